@@ -1,0 +1,1 @@
+"""Calibration models: one class each; a new one is one new file here, found by discovery."""
