@@ -1,0 +1,1 @@
+"""Parts of the HTTP service; `api.service` puts them together."""

@@ -1,0 +1,74 @@
+"""Which representation a request accepts: media type and content coding."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from api.http.problems import Problem, Violation
+
+JSON = "application/json"
+CSV = "text/csv"
+CONTENT_TYPES = {JSON: "application/json", CSV: "text/csv; charset=utf-8; header=present"}
+
+_QUALITY = re.compile(r"(?:0(?:\.\d{0,3})?|1(?:\.0{0,3})?)\Z")
+
+
+def preferences(header: str) -> list[tuple[str, float]]:
+    """Return the ranges of an Accept-like header with their weights, in the order given.
+
+    A range whose weight is not a weight (RFC 9110, 12.4.2) is left out, as if it were not there.
+    """
+    ranges = []
+    for part in header.split(","):
+        name, *arguments = (piece.strip() for piece in part.split(";"))
+        if not name:
+            continue
+        weight = 1.0
+        for argument in arguments:
+            key, _, value = argument.partition("=")
+            if key.strip().lower() == "q":
+                value = value.strip()
+                weight = float(value) if _QUALITY.match(value) else -1.0
+        if weight >= 0.0:
+            ranges.append((name.lower(), weight))
+    return ranges
+
+
+def _weight(media_type: str, accepted: Sequence[tuple[str, float]]) -> float:
+    """Return the weight of a media type: the most specific range that covers it decides."""
+    group = media_type.split("/")[0] + "/*"
+    for wanted in (media_type, group, "*/*"):
+        weights = [weight for name, weight in accepted if name == wanted]
+        if weights:
+            return max(weights)
+    return 0.0
+
+
+def media_type(accept: str | None, offered: Sequence[str]) -> str:
+    """Return the offered media type the client likes best; the first offered wins a tie.
+
+    Raises
+    ------
+    Problem
+        406 where the client accepts none of those offered.
+    """
+    if accept is None or not accept.strip():
+        return offered[0]
+    accepted = preferences(accept)
+    weight, chosen = max(
+        ((_weight(name, accepted), name) for name in offered), key=lambda pair: pair[0]
+    )
+    if weight <= 0.0:
+        error = Violation("Accept", accept, f"one of {', '.join(offered)}")
+        raise Problem(406, "not-acceptable", errors=[error])
+    return chosen
+
+
+def accepts_gzip(accept_encoding: str | None) -> bool:
+    """Say whether the client takes gzip, and does not like the bare bytes better."""
+    if not accept_encoding:
+        return False
+    weights = dict(preferences(accept_encoding))
+    gzip = weights.get("gzip", weights.get("x-gzip", weights.get("*", 0.0)))
+    return gzip > 0.0 and gzip >= weights.get("identity", 0.0)

@@ -1,0 +1,95 @@
+"""The page: static files of `api/page/`, and Plotly from the installed package."""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib.resources import files
+from importlib.util import find_spec
+from pathlib import Path
+
+from fastapi import FastAPI, Request, Response
+
+from api.http.nearest import nearest
+from api.http.parameters import Parameters
+from api.http.problems import Problem, Violation
+from api.http.representations import Representation
+
+PLOTLY = "plotly.min.js"
+CONTENT_TYPES = {
+    ".css": "text/css; charset=utf-8",
+    ".html": "text/html; charset=utf-8",
+    ".ico": "image/x-icon",
+    ".js": "text/javascript; charset=utf-8",
+    ".json": "application/json",
+    ".png": "image/png",
+    ".svg": "image/svg+xml",
+    ".txt": "text/plain; charset=utf-8",
+    ".webmanifest": "application/manifest+json",
+    ".woff2": "font/woff2",
+}
+ALREADY_COMPRESSED = {".png", ".woff2", ".ico"}
+NO_PARAMETERS = Parameters()
+
+
+def plotly_bundle() -> Path:
+    """Return where the installed plotly package keeps its JavaScript, without importing it.
+
+    Raises
+    ------
+    FileNotFoundError
+        Where plotly is not installed or keeps it elsewhere.
+    """
+    spec = find_spec("plotly")
+    for place in (spec.submodule_search_locations or ()) if spec else ():
+        bundle = Path(place) / "package_data" / PLOTLY
+        if bundle.is_file():
+            return bundle
+    raise FileNotFoundError(f"no package_data/{PLOTLY} in the installed plotly package")
+
+
+@cache
+def page_files() -> dict[str, Path]:
+    """Return the files of the page by the name they are served under: the only ones there are."""
+    directory = Path(str(files("api") / "page"))
+    served = {
+        path.relative_to(directory).as_posix(): path
+        for path in sorted(directory.rglob("*"))
+        if path.is_file() and path.suffix in CONTENT_TYPES
+    }
+    return {**served, PLOTLY: plotly_bundle()}
+
+
+@cache
+def page_file(name: str) -> Representation:
+    """Return a file of the page, read (and compressed) once.
+
+    Raises
+    ------
+    Problem
+        404 where the page has no such file.
+    """
+    served = page_files()
+    if name not in served:
+        error = Violation("file", name, "a file of the page", nearest(name, served))
+        raise Problem(404, "unknown-file", errors=[error])
+    path = served[name]
+    return Representation(
+        path.read_bytes(),
+        CONTENT_TYPES[path.suffix],
+        {"Vary": "Accept-Encoding"},
+        compressible=path.suffix not in ALREADY_COMPRESSED,
+    )
+
+
+def install(app: FastAPI) -> None:
+    """Serve the page in `app`."""
+
+    async def index(request: Request) -> Response:
+        return page_file("index.html").respond(request)
+
+    async def static(request: Request) -> Response:
+        NO_PARAMETERS.from_query(request.scope["query_string"])
+        return page_file(request.path_params["name"]).respond(request)
+
+    app.add_api_route("/", index, include_in_schema=False)
+    app.add_api_route("/page/{name:path}", static, include_in_schema=False)

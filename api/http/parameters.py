@@ -1,0 +1,402 @@
+"""Parameters of an endpoint, declared once: read from a query or a body, and documented.
+
+What is not declared is refused, with the nearest declared name; a value that is not valid is
+refused, with the nearest valid one. A `Parameters` reads both encodings and writes both
+OpenAPI descriptions, so that the document cannot say other than what is checked.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+from urllib.parse import parse_qsl, urlencode
+
+from api.http.nearest import nearest
+from api.http.problems import Problem, Violation
+
+MOST_FIELDS = 200  # of one query
+_NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:[eE][+-]?\d+)?\Z", re.ASCII)
+_INTEGER = re.compile(r"-?\d{1,18}\Z", re.ASCII)
+
+
+class InvalidValueError(ValueError):
+    """A value is not one the parameter takes; carries the nearest valid one."""
+
+    def __init__(self, nearest_valid: str | None = None) -> None:
+        super().__init__(nearest_valid)
+        self.nearest = nearest_valid
+
+
+class Kind(Protocol):
+    """What one value of a parameter may be."""
+
+    def from_text(self, text: str) -> Any:
+        """Read a value from a query; InvalidValueError where it is not valid."""
+        ...
+
+    def from_json(self, value: object) -> Any:
+        """Read a value from a JSON body; InvalidValueError where it is not valid."""
+        ...
+
+    def expected(self) -> str:
+        """Say in words what is valid."""
+        ...
+
+    def schema(self) -> dict[str, Any]:
+        """Return the JSON Schema of a value."""
+        ...
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One of a closed list of words; `words` is called when they are needed."""
+
+    words: Callable[[], Sequence[str]]
+
+    def from_text(self, text: str) -> str:
+        words = self.words()
+        if text not in words:
+            raise InvalidValueError(nearest(text, words))
+        return text
+
+    def from_json(self, value: object) -> str:
+        if not isinstance(value, str):
+            raise InvalidValueError
+        return self.from_text(value)
+
+    def expected(self) -> str:
+        words = ", ".join(self.words())
+        return f"one of {words}" if words else "nothing: there is no valid value"
+
+    def schema(self) -> dict[str, Any]:
+        words = list(self.words())
+        return {"type": "string", "enum": words} if words else {"type": "string", "maxLength": 0}
+
+
+@dataclass(frozen=True)
+class Number:
+    """A finite number between two bounds, both included."""
+
+    minimum: float
+    maximum: float
+
+    def from_text(self, text: str) -> float:
+        if not _NUMBER.match(text):
+            raise InvalidValueError
+        return self._within(float(text))
+
+    def from_json(self, value: object) -> float:
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise InvalidValueError
+        # Compared before it is converted: an integer may be too long for a float.
+        if isinstance(value, int) and not self.minimum <= value <= self.maximum:
+            raise InvalidValueError
+        return self._within(float(value))
+
+    def _within(self, value: float) -> float:
+        if not (math.isfinite(value) and self.minimum <= value <= self.maximum):
+            raise InvalidValueError
+        return value + 0.0  # -0.0 and 0.0 are the same requirement
+
+    def expected(self) -> str:
+        return f"a number from {self.minimum:g} to {self.maximum:g}"
+
+    def schema(self) -> dict[str, Any]:
+        return {"type": "number", "minimum": self.minimum, "maximum": self.maximum}
+
+
+@dataclass(frozen=True)
+class Integer:
+    """A whole number between two bounds, both included."""
+
+    minimum: int
+    maximum: int
+
+    def from_text(self, text: str) -> int:
+        if not _INTEGER.match(text):
+            raise InvalidValueError
+        return self._within(int(text))
+
+    def from_json(self, value: object) -> int:
+        if isinstance(value, float) and value.is_integer():
+            value = int(value)  # JSON knows one kind of number: 3.0 is an integer
+        if isinstance(value, bool) or not isinstance(value, int):
+            raise InvalidValueError
+        return self._within(value)
+
+    def _within(self, value: int) -> int:
+        if not self.minimum <= value <= self.maximum:
+            raise InvalidValueError
+        return value
+
+    def expected(self) -> str:
+        return f"an integer from {self.minimum} to {self.maximum}"
+
+    def schema(self) -> dict[str, Any]:
+        return {"type": "integer", "minimum": self.minimum, "maximum": self.maximum}
+
+
+@dataclass(frozen=True)
+class Text:
+    """Free text of bounded length, of one character at least."""
+
+    longest: int
+    pattern: str | None = None
+
+    def from_text(self, text: str) -> str:
+        if not 1 <= len(text) <= self.longest:
+            raise InvalidValueError
+        if self.pattern is not None and not re.fullmatch(self.pattern, text):
+            raise InvalidValueError
+        return text
+
+    def from_json(self, value: object) -> str:
+        if not isinstance(value, str):
+            raise InvalidValueError
+        return self.from_text(value)
+
+    def expected(self) -> str:
+        form = f" of the form {self.pattern}" if self.pattern else ""
+        return f"text of 1 to {self.longest} characters{form}"
+
+    def schema(self) -> dict[str, Any]:
+        bounds = {"type": "string", "minLength": 1, "maxLength": self.longest}
+        return {**bounds, "pattern": f"^{self.pattern}$"} if self.pattern else bounds
+
+
+@dataclass(frozen=True)
+class Flag:
+    """True or false."""
+
+    def from_text(self, text: str) -> bool:
+        if text not in {"true", "false"}:
+            raise InvalidValueError(nearest(text, ("true", "false")))
+        return text == "true"
+
+    def from_json(self, value: object) -> bool:
+        if not isinstance(value, bool):
+            raise InvalidValueError
+        return value
+
+    def expected(self) -> str:
+        return "true or false"
+
+    def schema(self) -> dict[str, Any]:
+        return {"type": "boolean"}
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A named parameter.
+
+    Attributes
+    ----------
+    name : as in the query and in a body
+    kind : what a value may be
+    description : for the documentation
+    repeatable : whether it may be given several times (a list in a body); its value is then a
+        sorted tuple without duplicates, empty where it is not given
+    default : the value of one that is not repeatable, where it is not given
+    """
+
+    name: str
+    kind: Kind
+    description: str
+    repeatable: bool = False
+    default: Any = None
+
+    def absent(self) -> Any:
+        """Return the value where the parameter is not given."""
+        return () if self.repeatable else self.default
+
+    def schema(self) -> dict[str, Any]:
+        """Return the JSON Schema of the parameter."""
+        schema = self.kind.schema()
+        if self.repeatable:
+            return {"type": "array", "items": schema, "maxItems": MOST_FIELDS // 2}
+        if self.default is not None:
+            schema["default"] = self.default
+        return schema
+
+
+Arguments = dict[str, Any]
+
+
+class Parameters:
+    """The parameters of one endpoint.
+
+    Parameters
+    ----------
+    declared : the parameters, in the order of the documentation
+    """
+
+    def __init__(self, declared: Iterable[Parameter] = ()) -> None:
+        self.declared = tuple(declared)
+        self._by_name = {parameter.name: parameter for parameter in self.declared}
+        self._absent = {parameter.name: parameter.absent() for parameter in self.declared}
+
+    def from_query(self, query: bytes) -> Arguments:
+        """Read a query string: a value for every declared parameter.
+
+        Raises
+        ------
+        Problem
+            400 for names that are not declared and for a query that cannot be read; 422 for
+            values that are not valid, each with its nearest.
+        """
+        if not query:
+            return dict(self._absent)
+        try:
+            pairs = parse_qsl(
+                query.decode("ascii"),
+                keep_blank_values=True,
+                strict_parsing=True,
+                errors="strict",
+                max_num_fields=MOST_FIELDS,
+            )
+        except ValueError as error:
+            expected = f"at most {MOST_FIELDS} fields name=value joined by &, percent-encoded UTF-8"
+            violation = Violation("query", query.decode("latin-1"), expected)
+            raise Problem(400, "malformed-query", errors=[violation]) from error
+        given: dict[str, list[str]] = {}
+        for name, text in pairs:
+            given.setdefault(name, []).append(text)
+        self._refuse_unknown(given)
+        violations: list[Violation] = []
+        arguments = dict(self._absent)
+        for name, texts in given.items():
+            parameter = self._by_name[name]
+            if len(texts) > 1 and not parameter.repeatable:
+                violations.append(Violation(name, ", ".join(texts), "one value, given once"))
+                continue
+            values = _values(name, parameter.kind, parameter.kind.from_text, texts, violations)
+            if values:
+                arguments[name] = _settled(parameter, values)
+        if violations:
+            raise Problem(422, "invalid-value", errors=violations)
+        return arguments
+
+    def from_body(self, body: object) -> Arguments:
+        """Read a parsed JSON body: an object whose members are the parameters.
+
+        Raises
+        ------
+        Problem
+            As `from_query`; a body that is no object is a 422.
+        """
+        if not isinstance(body, dict):
+            violation = Violation("body", _shown(body), "a JSON object")
+            raise Problem(422, "invalid-value", errors=[violation])
+        self._refuse_unknown(body)
+        violations: list[Violation] = []
+        arguments = dict(self._absent)
+        for name, given in body.items():
+            parameter = self._by_name[name]
+            if parameter.repeatable and not isinstance(given, list):
+                expected = f"a list, each item {parameter.kind.expected()}"
+                violations.append(Violation(name, _shown(given), expected))
+                continue
+            if parameter.repeatable and len(given) > MOST_FIELDS // 2:
+                expected = f"a list of at most {MOST_FIELDS // 2} items"
+                violations.append(Violation(name, f"{len(given)} items", expected))
+                continue
+            items = given if parameter.repeatable else [given]
+            values = _values(name, parameter.kind, parameter.kind.from_json, items, violations)
+            if values:
+                arguments[name] = _settled(parameter, values)
+        if violations:
+            raise Problem(422, "invalid-value", errors=violations)
+        return arguments
+
+    def canonical(self, arguments: Arguments) -> str:
+        """Return the one query string that means `arguments`; defaults are left out."""
+        pairs: list[tuple[str, str]] = []
+        for parameter in self.declared:
+            value = arguments[parameter.name]
+            if value == parameter.absent():
+                continue
+            for item in value if parameter.repeatable else (value,):
+                pairs.append((parameter.name, _text(item)))
+        return urlencode(pairs)
+
+    def _refuse_unknown(self, names: Iterable[str]) -> None:
+        unknown = [name for name in names if name not in self._by_name]
+        if unknown:
+            declared = sorted(self._by_name)
+            expected = f"one of {', '.join(declared)}" if declared else "no parameters"
+            raise Problem(
+                400,
+                "unknown-parameter",
+                errors=[
+                    Violation(name, None, f"a parameter name, {expected}", nearest(name, declared))
+                    for name in unknown
+                ],
+            )
+
+    def openapi(self) -> list[dict[str, Any]]:
+        """Return the OpenAPI parameter objects of the query."""
+        return [
+            {
+                "name": parameter.name,
+                "in": "query",
+                "required": False,
+                "description": parameter.description,
+                "schema": parameter.schema(),
+                **({"style": "form", "explode": True} if parameter.repeatable else {}),
+            }
+            for parameter in self.declared
+        ]
+
+    def body_schema(self) -> dict[str, Any]:
+        """Return the JSON Schema of the body."""
+        return {
+            "type": "object",
+            "additionalProperties": False,
+            "properties": {
+                parameter.name: {**parameter.schema(), "description": parameter.description}
+                for parameter in self.declared
+            },
+        }
+
+
+def _values(
+    name: str,
+    kind: Kind,
+    read: Callable[[Any], Any],
+    given: Sequence[Any],
+    violations: list[Violation],
+) -> list[Any]:
+    """Read every value, adding a violation for each that is not valid."""
+    values = []
+    for item in given:
+        try:
+            values.append(read(item))
+        except InvalidValueError as error:
+            violations.append(Violation(name, _shown(item), kind.expected(), error.nearest))
+    return values
+
+
+def _settled(parameter: Parameter, values: list[Any]) -> Any:
+    return tuple(sorted(set(values))) if parameter.repeatable else values[0]
+
+
+def _shown(value: object) -> str:
+    """Return a value as the refusal repeats it."""
+    if isinstance(value, str):
+        return value
+    if isinstance(value, Mapping | list):
+        return f"{'an object' if isinstance(value, Mapping) else 'a list'} of {len(value)} items"
+    if isinstance(value, bool) or value is None:
+        return {True: "true", False: "false", None: "null"}[value]
+    if isinstance(value, int) and value.bit_length() > 256:  # noqa: PLR2004 - str() of it may raise
+        return "a very long integer"
+    return str(value)
+
+
+def _text(value: object) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return repr(value) if isinstance(value, float) else str(value)

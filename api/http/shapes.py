@@ -1,0 +1,300 @@
+"""Shapes of the answers, for the OpenAPI document; tests hold live answers against them."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+
+class Shape(BaseModel):
+    """An answer or a part of one: exactly these members."""
+
+    model_config = ConfigDict(extra="forbid")
+
+
+class OpenShape(BaseModel):
+    """An answer or a part of one whose producer may say more than these members."""
+
+    model_config = ConfigDict(extra="allow")
+
+
+class Violation(Shape):
+    """One thing wrong with a request."""
+
+    parameter: str
+    value: str | None
+    expected: str
+    nearest: str | None = Field(description="The nearest valid name or value.")
+
+
+class ProblemDocument(Shape):
+    """A refusal (RFC 9457)."""
+
+    type: str
+    title: str
+    status: int
+    detail: str
+    instance: str
+    errors: list[Violation]
+
+
+class TaxonomyValue(Shape):
+    """A word of the vocabulary."""
+
+    value: str
+    name: str
+    category: str | None
+    section: str | None
+
+
+class Taxonomy(Shape):
+    """The vocabulary of the survey's mapping, by attribute."""
+
+    attributes: dict[str, list[TaxonomyValue]]
+
+
+class Study(Shape):
+    """A mapped study."""
+
+    key: str
+    title: str | None
+    authors: str | None
+    year: int | None
+    venue: str | None
+    doi: str | None
+    url: str | None
+    identity: str = Field(description="Whether a public page confirms author, year and topic.")
+    state: Literal["complete", "partial", "none"] = Field(
+        description="How much of the study can be run: every value of its mapping, some, none."
+    )
+    values: dict[str, list[str]]
+
+
+class AttributeValue(Shape):
+    """One value of the mapping and where it comes from."""
+
+    attribute: str
+    value: str | None
+    basis: str
+    source: str | None
+    note: str | None
+
+
+class StudyPipeline(Shape):
+    """A pipeline that runs what the study did, and the data sets it can be scored on."""
+
+    detector: str
+    mask: str
+    extractor: str
+    model: str
+    datasets: list[str]
+
+
+class Gap(Shape):
+    """A value of the mapping that nothing implements yet."""
+
+    attribute: str
+    value: str | None
+    reason: str
+
+
+class StudyDetail(Study):
+    """A mapped study with the basis of every value and what of it can be run."""
+
+    attributes: list[AttributeValue]
+    pipelines: list[StudyPipeline]
+    gaps: list[Gap]
+
+
+class Listing(Shape):
+    """A page of a list."""
+
+    total: int = Field(description="Items of the whole list.")
+    next: str | None = Field(description="Cursor of the next page; null on the last.")
+
+
+class Studies(Listing):
+    """A page of studies."""
+
+    items: list[Study]
+
+
+class Node(Shape):
+    """A value at a level of a decision flow."""
+
+    id: str
+    level: str
+    value: str
+    name: str
+    count: int = Field(description="Distinct studies.")
+    studies: list[str]
+
+
+class Link(Shape):
+    """Studies that go from one value to another."""
+
+    source: str
+    target: str
+    value: float = Field(description="Distinct studies, or the sum of their fractions.")
+    studies: list[str]
+
+
+class Flows(Shape):
+    """A decision flow: a Sankey diagram, or the rings of a sunburst."""
+
+    chart: str
+    levels: list[str]
+    counting: Literal["studies", "fractional"]
+    nodes: list[Node]
+    links: list[Link]
+
+
+class Measured(OpenShape):
+    """The best measured pipeline of a path, in the condition asked for."""
+
+    dataset: str
+    condition: str
+    extractor: str
+    model: str
+    rms_deg: float | None
+    bound_deg: float | None
+    over_bound: float | None
+    half_fov_deg: float | None
+    latency_us: float | None
+
+
+class Literature(OpenShape):
+    """What the literature says for a path."""
+
+    studies: int
+    support: float
+
+
+class Path(Shape):
+    """A way from a task to a calibrated sensor."""
+
+    rank: int
+    task: str
+    detector: str
+    mask: str
+    model: str
+    extractor: str
+    studies: list[str]
+    literature: Literature
+    measured: Measured | None
+    pareto: bool = Field(description="Whether no path is better in literature and measurement.")
+
+
+class Relaxation(OpenShape):
+    """A change of the requirements that leaves paths."""
+
+    constraint: str
+    paths: int
+
+
+class Blocked(Shape):
+    """Why nothing is left."""
+
+    constraint: str
+    detail: str
+    relaxations: list[Relaxation]
+
+
+class Recommendations(Shape):
+    """Ranked paths for a set of requirements, and the flow of the studies behind them."""
+
+    requirements: dict[str, Any]
+    count: int = Field(description="Paths that meet the requirements, beyond `limit` too.")
+    paths: list[Path]
+    nodes: list[Node]
+    links: list[Link]
+    blocked: Blocked | None
+
+
+class Algorithm(Shape):
+    """An implementation."""
+
+    name: str
+    role: Literal["extractor", "model"]
+    taxonomy: str
+    category: str | None
+    observation: str | None = Field(description="What an extractor reads.")
+    kind: str | None = Field(description="What an extractor's features mean.")
+    accepts: list[str] | None = Field(description="Kinds of features a model reads.")
+    labels: list[str]
+    studies: list[str]
+    origin: str
+    version: int
+    summary: str
+
+
+class Algorithms(Listing):
+    """A page of implementations."""
+
+    items: list[Algorithm]
+
+
+class Dataset(OpenShape):
+    """Card of a standard data set."""
+
+    name: str
+    version: int
+    detector: str
+    mask: str
+    observation: str
+    conditions: list[str]
+    description: str
+    follows: list[str]
+
+
+class Datasets(Listing):
+    """A page of standard data sets."""
+
+    items: list[Dataset]
+
+
+class Score(OpenShape):
+    """What a pipeline achieves on a data set in a condition."""
+
+    key: str
+    dataset: str
+    condition: str
+    extractor: str
+    model: str
+    status: str
+
+
+class Scores(Listing):
+    """A page of scores."""
+
+    items: list[Score]
+
+
+class Leaderboard(OpenShape):
+    """The published leaderboard."""
+
+    datasets: list[dict[str, Any]]
+
+
+class LeaderboardRow(OpenShape):
+    """A row of a data set's leaderboard."""
+
+    extractor: str
+    model: str
+
+
+class LeaderboardRows(Listing):
+    """A page of a data set's leaderboard, best first."""
+
+    items: list[LeaderboardRow]
+
+
+class Health(Shape):
+    """State of the service."""
+
+    status: Literal["ok"]
+    version: str
+    studies: int
+    datasets: int
+    scores: int
