@@ -1,0 +1,156 @@
+"""What a plan is made of: the datasets and implementations that are installed.
+
+The protocols say what the runner asks of a dataset; `benchmark.datasets` fulfils them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from difflib import get_close_matches
+from functools import cache
+from typing import Any, Protocol
+
+from numpy.typing import NDArray
+
+from algorithms.contract import Extractor, Floats, Model, Observation, SensorGeometry
+
+SPLITS = ("calibration", "test")
+
+
+class Samples(Protocol):
+    """Observations with their truth."""
+
+    @property
+    def observations(self) -> NDArray[Any]:
+        """Batch of N in the shape of the preset's kind of observation."""
+        ...
+
+    @property
+    def sun(self) -> Floats:
+        """True unit vectors (N, 3)."""
+        ...
+
+    @property
+    def origin_px(self) -> Floats | None:
+        """Detector coordinates (N, 2) of each window's first pixel; None where there are none."""
+        ...
+
+
+class Bound(Protocol):
+    """Cramer-Rao bound of the separation angle of N samples."""
+
+    @property
+    def angle_deg(self) -> Floats:
+        """Standard deviation (N,) in degrees; inf where not observable."""
+        ...
+
+    @property
+    def observable(self) -> NDArray[Any]:
+        """Where (N,) the direction is observable at all."""
+        ...
+
+
+class Preset(Protocol):
+    """A standard dataset."""
+
+    @property
+    def name(self) -> str:
+        """Unique name."""
+        ...
+
+    @property
+    def version(self) -> int:
+        """Raised when its data change on purpose."""
+        ...
+
+    @property
+    def detector(self) -> str:
+        """Value of the survey's taxonomy."""
+        ...
+
+    @property
+    def mask(self) -> str:
+        """Value of the survey's taxonomy."""
+        ...
+
+    @property
+    def observation(self) -> Observation:
+        """What an extractor reads here."""
+        ...
+
+    @property
+    def geometry(self) -> SensorGeometry:
+        """Nominal design."""
+        ...
+
+    @property
+    def conditions(self) -> tuple[str, ...]:
+        """Names of the conditions."""
+        ...
+
+    def generate(self, condition: str, split: str) -> Samples:
+        """Generate the samples of one split."""
+        ...
+
+    def parameters(self, condition: str) -> Mapping[str, Any]:
+        """Everything the numbers depend on."""
+        ...
+
+    def bound(self, condition: str, split: str = "test") -> Bound:
+        """Cramer-Rao bound of each sample of a split."""
+        ...
+
+
+class UnknownNameError(LookupError):
+    """A name that is not installed; the message names the nearest that is."""
+
+    def __init__(self, what: str, name: str, known: Iterable[str]) -> None:
+        self.what = what
+        self.name = name
+        self.known = tuple(sorted(known))
+        folded = {known_name.casefold(): known_name for known_name in self.known}
+        close = get_close_matches(name.casefold(), folded, n=1, cutoff=0.4)
+        self.nearest = folded[close[0]] if close else None
+        hint = f"did you mean {self.nearest!r}?" if self.nearest else f"known: {self.known}"
+        super().__init__(f"no {what} named {name!r}; {hint}")
+
+
+@dataclass(frozen=True)
+class Parts:
+    """Datasets and implementations by name; the plan's raw material."""
+
+    presets: Mapping[str, Preset]
+    extractors: Mapping[str, type[Extractor]]
+    models: Mapping[str, type[Model]]
+
+    def preset(self, name: str) -> Preset:
+        """Return the dataset of that name; UnknownNameError otherwise."""
+        if name not in self.presets:
+            raise UnknownNameError("dataset", name, self.presets)
+        return self.presets[name]
+
+    def extractor(self, name: str) -> type[Extractor]:
+        """Return the extractor class of that name; UnknownNameError otherwise."""
+        if name not in self.extractors:
+            raise UnknownNameError("extractor", name, self.extractors)
+        return self.extractors[name]
+
+    def model(self, name: str) -> type[Model]:
+        """Return the model class of that name; UnknownNameError otherwise."""
+        if name not in self.models:
+            raise UnknownNameError("model", name, self.models)
+        return self.models[name]
+
+
+@cache
+def installed() -> Parts:
+    """Everything found by discovery in `benchmark.datasets` and `algorithms`."""
+    from algorithms.discovery import discover_extractors, discover_models  # noqa: PLC0415 - slow
+    from benchmark import datasets  # noqa: PLC0415 - loads the simulator
+
+    return Parts(
+        presets={name: datasets.get(name) for name in datasets.names()},
+        extractors=discover_extractors(),
+        models=discover_models(),
+    )

@@ -1,0 +1,59 @@
+"""Where units are measured: in this process, in others, or on a Dask cluster. Same numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack
+from importlib import import_module
+from importlib.util import find_spec
+
+from joblib import Parallel, delayed, parallel_config
+
+from benchmark.runner_unit import Unit, UnitResult, measure
+
+
+class DaskMissingError(ImportError):
+    """A Dask scheduler was named and its client is not installed."""
+
+
+def outcomes(
+    units: Sequence[Unit], workers: int, scheduler: str | None = None
+) -> Iterator[UnitResult]:
+    """Measure units and give each result as soon as it is there, in any order.
+
+    Parameters
+    ----------
+    units
+        What to measure.
+    workers
+        Processes to use; with 1 everything happens in this one.
+    scheduler
+        Address of a Dask scheduler, e.g. ``tcp://127.0.0.1:8786``; `workers` is not read then.
+
+    Raises
+    ------
+    DaskMissingError
+        When `scheduler` is given without the ``distributed`` package.
+    """
+    if scheduler is None and (workers == 1 or len(units) == 1):
+        yield from map(measure, units)
+        return
+    with ExitStack() as stack:
+        if scheduler is None:
+            stack.enter_context(parallel_config("loky", n_jobs=workers, inner_max_num_threads=1))
+        else:
+            _connect(stack, scheduler)
+        yield from Parallel(return_as="generator_unordered", batch_size=1, pre_dispatch="2*n_jobs")(
+            delayed(measure)(unit) for unit in units
+        )
+
+
+def _connect(stack: ExitStack, scheduler: str) -> None:
+    if find_spec("distributed") is None:
+        raise DaskMissingError(
+            f"measuring on the Dask scheduler {scheduler} needs the package 'distributed'; "
+            "install it beside this one (pip install distributed) or leave the scheduler out"
+        )
+    distributed = import_module("distributed")
+    stack.enter_context(distributed.Client(scheduler))
+    stack.enter_context(parallel_config("dask", n_jobs=-1))

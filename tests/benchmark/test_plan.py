@@ -1,0 +1,76 @@
+"""What is measured, what is not, and why."""
+
+import dataclasses
+
+import fake_atlas
+import pytest
+
+from benchmark import plan
+from benchmark.plan import Cell
+from benchmark.plan_parts import UnknownNameError
+
+
+@pytest.fixture
+def parts():
+    return fake_atlas.parts()
+
+
+def test_every_compatible_combination_is_planned_in_sorted_order(parts):
+    found = plan.cells(parts=parts)
+    assert found == sorted(
+        Cell("fake-diodes", condition, extractor, "fake-least-squares")
+        for condition in ("quiet", "noisy")
+        for extractor in ("fake-currents", "fake-gaps")
+    )
+
+
+def test_cells_and_incompatible_pairs_together_are_everything(parts):
+    planned = {(c.dataset, c.extractor, c.model) for c in plan.cells(parts=parts)}
+    refused = plan.incompatible(parts=parts)
+    assert [(r.extractor, r.model) for r in refused] == [("fake-balanced", ""), ("fake-framed", "")]
+    assert "aperture_width_mm" in refused[0].reason
+    assert "reads frames; the dataset has currents" in refused[1].reason
+    assert len(planned) + len(refused) == len(parts.extractors) * len(parts.models)
+
+
+def test_features_a_model_cannot_read_are_refused_with_the_reason(parts):
+    class Spots(fake_atlas.LeastSquares):
+        name = "fake-spots"
+        accepts = frozenset({fake_atlas.FeatureKind.SPOT})
+
+    refused = plan.incompatible(
+        extractors="fake-currents", models="fake-spots", parts=fake_atlas.parts(Spots)
+    )
+    assert [r.reason for r in refused] == ["accepts spot; the extractor gives signals"]
+
+
+def test_filters_narrow_the_plan(parts):
+    found = plan.cells(conditions="noisy", extractors=["fake-gaps"], parts=parts)
+    assert found == [Cell("fake-diodes", "noisy", "fake-gaps", "fake-least-squares")]
+
+
+def test_a_condition_only_some_datasets_have_selects_those():
+    second = dataclasses.replace(fake_atlas.Diodes(), name="fake-other", conditions=("quiet",))
+    parts = fake_atlas.parts(presets=(fake_atlas.Diodes(), second))
+    assert {c.dataset for c in plan.cells(conditions="noisy", parts=parts)} == {"fake-diodes"}
+
+
+@pytest.mark.parametrize(
+    ("argument", "given", "nearest"),
+    [
+        ("datasets", "fake-diode", "fake-diodes"),
+        ("conditions", "nois", "noisy"),
+        ("extractors", "Fake-Curents", "fake-currents"),
+        ("models", "fake-least-square", "fake-least-squares"),
+    ],
+)
+def test_an_unknown_name_raises_with_the_nearest(parts, argument, given, nearest):
+    with pytest.raises(UnknownNameError, match=nearest) as caught:
+        plan.cells(**{argument: given}, parts=parts)
+    assert caught.value.nearest == nearest
+
+
+def test_architectures_and_their_datasets(parts):
+    assert plan.architectures(parts=parts) == {("PD", "Maskless")}
+    assert plan.datasets_for("PD", "Maskless", parts=parts) == ("fake-diodes",)
+    assert plan.datasets_for("CMOS", "Maskless", parts=parts) == ()
