@@ -1,0 +1,1 @@
+"""Measurements: simulator, standard datasets, bounds, runner, results and leaderboard."""

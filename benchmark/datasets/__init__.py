@@ -1,0 +1,75 @@
+"""Standard datasets: `names`, `get`.
+
+A dataset is one module of this package that defines ``PRESET``; nothing else registers it.
+Modules whose name starts with an underscore hold what the datasets share.
+"""
+
+from __future__ import annotations
+
+import difflib
+import importlib
+import pkgutil
+from functools import cache
+
+from benchmark.datasets._preset import Condition, Preset, Samples, data_digest
+
+__all__ = [
+    "Condition",
+    "Preset",
+    "Samples",
+    "UnknownDatasetError",
+    "data_digest",
+    "get",
+    "names",
+]
+
+
+class UnknownDatasetError(LookupError, ValueError):
+    """No dataset has this name; `nearest` is the closest one, or None."""
+
+    def __init__(self, name: str, known: tuple[str, ...]) -> None:
+        close = difflib.get_close_matches(name, known, n=1, cutoff=0.4)
+        self.name = name
+        self.nearest = close[0] if close else None
+        hint = f"; did you mean {self.nearest!r}?" if self.nearest else ""
+        super().__init__(f"no dataset {name!r}{hint} There are: {', '.join(known)}")
+
+
+def names() -> tuple[str, ...]:
+    """Names of all datasets, sorted."""
+    return tuple(sorted(_presets()))
+
+
+def get(name: str) -> Preset:
+    """The dataset of this name.
+
+    Raises
+    ------
+    UnknownDatasetError
+        Naming the nearest known one.
+    """
+    presets = _presets()
+    if name not in presets:
+        raise UnknownDatasetError(name, tuple(sorted(presets)))
+    return presets[name]
+
+
+@cache
+def _presets() -> dict[str, Preset]:
+    found: dict[str, Preset] = {}
+    for module in pkgutil.iter_modules(__path__):
+        if module.name.startswith("_"):
+            continue
+        loaded = importlib.import_module(f"{__name__}.{module.name}")
+        preset = getattr(loaded, "PRESET", None)
+        if not isinstance(preset, Preset):
+            raise TypeError(f"{loaded.__name__} must define PRESET, a Preset; got {preset!r}")
+        if preset.name in found:
+            raise ValueError(f"two datasets are called {preset.name!r}")
+        if preset.name.replace("-", "_") != module.name:
+            raise ValueError(
+                f"dataset {preset.name!r} belongs in a module called "
+                f"{preset.name.replace('-', '_')}; it is in {module.name}"
+            )
+        found[preset.name] = preset
+    return found

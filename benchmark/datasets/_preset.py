@@ -1,0 +1,270 @@
+"""`Preset`: a named, versioned, seeded dataset; its samples, parameters, bound and card."""
+
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.contract import Observation, SensorGeometry
+from benchmark.bounds import Bound, cramer_rao
+from benchmark.datasets._field import Field, Split
+from benchmark.seeds import generator
+from benchmark.simulator import SIMULATOR_VERSION
+from benchmark.simulator.environment import Earth, Irradiance
+from benchmark.simulator.faces import FaceSensor
+from benchmark.simulator.noise import NoiseStreams
+from benchmark.simulator.scene import Scene
+from benchmark.simulator.sensor import FixedPattern, Sensor
+
+Floats = NDArray[np.float64]
+
+SPLITS: tuple[Split, ...] = get_args(Split)
+#: Samples simulated together; memory only, the numbers do not depend on it.
+BATCH = 64
+
+
+@dataclass(frozen=True)
+class Samples:
+    """One split of a dataset.
+
+    Attributes
+    ----------
+    observations
+        (N, ...) what the sensor puts out; shape and unit as the dataset's card says.
+    sun
+        (N, 3) true unit vectors from the sensor to the Sun, float64.
+    origin_px
+        (N, 2) int64 detector coordinate (x, y) of each window's first pixel, or None.
+    """
+
+    observations: NDArray[Any]
+    sun: Floats
+    origin_px: NDArray[np.int64] | None
+
+
+def data_digest(samples: Samples) -> str:
+    """SHA-256 (hex) over names, dtypes, shapes and bytes of the arrays; little-endian."""
+    digest = hashlib.sha256()
+    for name in ("observations", "sun", "origin_px"):
+        array = getattr(samples, name)
+        if array is None:
+            digest.update(f"{name}:none;".encode())
+            continue
+        plain = np.ascontiguousarray(array, dtype=array.dtype.newbyteorder("<"))
+        digest.update(f"{name}:{plain.dtype.str}:{plain.shape};".encode())
+        digest.update(plain.tobytes())
+    return digest.hexdigest()
+
+
+@dataclass(frozen=True)
+class Condition:
+    """One condition of a dataset.
+
+    Attributes
+    ----------
+    description
+        What differs from the nominal condition, and why.
+    sensor
+        The sensor under this condition.
+    irradiance
+        How sunlight and stray light vary from sample to sample.
+    earth
+        Sunlit Earth in view on the test split (calibration happens on the ground), or None.
+    geometry
+        Nominal design where it differs from the dataset's, else None.
+    """
+
+    description: str
+    sensor: Sensor
+    irradiance: Irradiance
+    earth: Earth | None = None
+    geometry: SensorGeometry | None = None
+
+    def __post_init__(self) -> None:
+        if self.earth is not None and not isinstance(self.sensor, FaceSensor):
+            raise ValueError("light from the Earth is simulated for face sensors only")
+
+
+@dataclass(frozen=True)
+class Preset:
+    """A standard dataset.
+
+    All conditions share one sensor unit, the Sun directions, irradiances and window offsets of
+    each split; only the parameters that a condition names and the noise differ, so that
+    conditions compare sample by sample.
+
+    Attributes
+    ----------
+    name, version
+        ``<detector>-<mask>[-variant]``; the version is raised when the data change on purpose.
+    detector, mask
+        Values of the survey's taxonomy.
+    observation, units
+        What `Samples.observations` holds.
+    geometry
+        Nominal design; `geometry_for` gives a condition's own.
+    setups
+        The conditions by name.
+    field
+        Directions of the splits.
+    follows
+        Study keys whose architecture the dataset follows.
+    description, regime
+        In words: where the numbers come from; how light is propagated and why that is enough.
+    """
+
+    name: str
+    version: int
+    detector: str
+    mask: str
+    observation: Observation
+    units: str
+    geometry: SensorGeometry
+    setups: Mapping[str, Condition]
+    field: Field
+    follows: tuple[str, ...]
+    description: str
+    regime: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def conditions(self) -> tuple[str, ...]:
+        """Names of the conditions, ``nominal`` first."""
+        return tuple(self.setups)
+
+    def condition(self, name: str) -> Condition:
+        """The condition of this name; ValueError naming the known ones."""
+        if name not in self.setups:
+            raise ValueError(
+                f"dataset {self.name} has no condition {name!r}; it has "
+                f"{', '.join(self.conditions)}"
+            )
+        return self.setups[name]
+
+    def geometry_for(self, condition: str) -> SensorGeometry:
+        """The nominal design under this condition."""
+        return self.condition(condition).geometry or self.geometry
+
+    def fixed_pattern(self, condition: str) -> FixedPattern:
+        """The dataset's one unit as this condition shows it."""
+        return self.condition(condition).sensor.fixed_pattern(self.name, self.version, "unit")
+
+    def scene(self, condition: str, split: str) -> Scene:
+        """Sun, irradiance, stray light, windows and light from the Earth of a split."""
+        setup = self.condition(condition)
+        known = _split(split)
+        names = (self.name, self.version, known)
+        sun = self.field.sun(known, generator(*names, "sun"))
+        light, stray = setup.irradiance.draw(len(sun), generator(*names, "irradiance"))
+        origin = setup.sensor.origins(sun, generator(*names, "window"))
+        albedo = None
+        if setup.earth is not None and known == "test" and isinstance(setup.sensor, FaceSensor):
+            nadir = setup.earth.draw_nadir(sun, generator(*names, "nadir"))
+            pattern = self.fixed_pattern(condition)
+            albedo = light[:, None] * setup.sensor.earthlight(setup.earth, sun, nadir, pattern)
+        return Scene(sun, light, stray, origin, albedo)
+
+    def generate(self, condition: str, split: str) -> Samples:
+        """The samples of a split: ``calibration`` or ``test``.
+
+        Returns the same numbers whenever, wherever and beside whatever it is called.
+
+        Raises
+        ------
+        ValueError
+            On an unknown condition or split, naming the known ones.
+        """
+        sensor = self.condition(condition).sensor
+        scene = self.scene(condition, split)
+        pattern = self.fixed_pattern(condition)
+        streams = NoiseStreams.named(self.name, self.version, condition, split)
+        observations = np.concatenate(
+            [
+                sensor.observe(scene.part(start, start + BATCH), pattern, streams)
+                for start in range(0, len(scene), BATCH)
+            ]
+        )
+        return Samples(observations, scene.sun, scene.origin_px)
+
+    def bound(self, condition: str, split: str = "test") -> Bound:
+        """Cramer-Rao bound of every sample of a split (see `benchmark.bounds.cramer_rao`)."""
+        setup = self.condition(condition)
+        return cramer_rao(
+            setup.sensor,
+            self.scene(condition, split),
+            self.fixed_pattern(condition),
+            setup.irradiance,
+        )
+
+    def parameters(self, condition: str) -> dict[str, Any]:
+        """Everything the numbers of a condition depend on, as plain JSON values."""
+        setup = self.condition(condition)
+        return _plain(
+            {
+                "simulator_version": SIMULATOR_VERSION,
+                "dataset": self.name,
+                "dataset_version": self.version,
+                "condition": condition,
+                "sensor": setup.sensor,
+                "irradiance": setup.irradiance,
+                "earth": setup.earth,
+                "field": self.field,
+                "geometry": self.geometry_for(condition),
+            }
+        )
+
+    def card(self) -> dict[str, Any]:
+        """Everything a reader of the dataset needs, as plain JSON values; renders nothing."""
+        conditions = {
+            name: {
+                "description": setup.description,
+                "geometry": _plain(self.geometry_for(name)),
+                "parameters": self.parameters(name),
+            }
+            for name, setup in self.setups.items()
+        }
+        return {
+            "name": self.name,
+            "version": self.version,
+            "detector": self.detector,
+            "mask": self.mask,
+            "observation": str(self.observation),
+            "units": self.units,
+            "description": self.description,
+            "follows": list(self.follows),
+            "geometry": _plain(self.geometry),
+            "splits": self.field.card(),
+            "conditions": conditions,
+            "regime": _plain(self.regime),
+            "seeds": {
+                "generator": "NumPy PCG64, SeedSequence over the SHA-256 of the stream's names",
+                "unit": [self.name, self.version, "unit"],
+                "samples": [self.name, self.version, "<split>"],
+                "noise": [self.name, self.version, "<condition>", "<split>"],
+            },
+        }
+
+
+def _split(name: str) -> Split:
+    for split in SPLITS:
+        if name == split:
+            return split
+    raise ValueError(f"no split {name!r}; there are {', '.join(SPLITS)}")
+
+
+def _plain(value: Any) -> Any:
+    """Dataclasses, mappings and tuples as JSON objects and arrays; a dataclass names its type."""
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        fields = {f.name: _plain(getattr(value, f.name)) for f in dataclasses.fields(value)}
+        return {"type": type(value).__name__, **fields}
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, tuple | list):
+        return [_plain(item) for item in value]
+    return json.loads(json.dumps(value, allow_nan=False))

@@ -1,0 +1,50 @@
+"""Shot noise, read noise and conversion to digits; independent of how samples are batched."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmark.seeds import generator
+
+Floats = NDArray[np.float64]
+
+#: From this mean on a Poisson variate is drawn as a Gaussian of the same mean and variance.
+GAUSSIAN_FROM: float = 20.0
+
+
+@dataclass(frozen=True)
+class NoiseStreams:
+    """Two generators, each drawn in sample order: Gaussian values and small Poisson counts.
+
+    Two, because the number of small counts depends on the signal: drawn from the Gaussian
+    stream they would shift everything after them and tie the values to the batch size.
+    """
+
+    gaussian: np.random.Generator
+    poisson: np.random.Generator
+
+    @classmethod
+    def named(cls, *names: str | int) -> NoiseStreams:
+        """The streams of this dataset, version, condition and split."""
+        return cls(generator(*names, "gaussian"), generator(*names, "poisson"))
+
+
+def counted(mean: Floats, read_noise: float, streams: NoiseStreams) -> Floats:
+    """Electrons read out: Poisson(mean) plus Gaussian read noise, same shape as `mean`.
+
+    Means of `GAUSSIAN_FROM` electrons and more are drawn as Gaussians of variance equal to the
+    mean (skewness below 0.23, far below the read noise of the sensors here).
+    """
+    normal = streams.gaussian.standard_normal(mean.shape, dtype=np.float32)
+    many = mean >= GAUSSIAN_FROM
+    variance = np.where(many, mean, 0.0) + read_noise**2
+    electrons = np.sqrt(variance) * normal
+    electrons += mean
+    if not many.all():
+        few = ~many
+        means = np.maximum(mean[few], 0.0)
+        electrons[few] += streams.poisson.poisson(means) - means
+    return np.asarray(electrons, dtype=np.float64)

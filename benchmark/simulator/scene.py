@@ -1,0 +1,55 @@
+"""What one batch of samples looks at: Sun directions and what varies from sample to sample."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Scene:
+    """N samples before they reach the sensor.
+
+    Attributes
+    ----------
+    sun
+        (N, 3) unit vectors from the sensor to the Sun, sensor frame, +z the boresight.
+    irradiance
+        (N,) direct sunlight in units of the yearly mean.
+    stray
+        (N,) uniform stray light on every detector element, in units of the yearly mean
+        sunlight at normal incidence.
+    origin_px
+        (N, 2) detector coordinate (x, y) of each window's first pixel, or None.
+    albedo
+        (N, K) extra response of each of K detector elements to light from the Earth, in units
+        of the response to the yearly mean sunlight at normal incidence, or None.
+    """
+
+    sun: Floats
+    irradiance: Floats
+    stray: Floats
+    origin_px: NDArray[np.int64] | None = None
+    albedo: Floats | None = None
+
+    def __len__(self) -> int:
+        """Return the number of samples."""
+        return len(self.sun)
+
+    def part(self, start: int, stop: int) -> Scene:
+        """Samples `start` to `stop` (exclusive)."""
+        return Scene(
+            self.sun[start:stop],
+            self.irradiance[start:stop],
+            self.stray[start:stop],
+            None if self.origin_px is None else self.origin_px[start:stop],
+            None if self.albedo is None else self.albedo[start:stop],
+        )
+
+    def seen_from(self, sun: Floats) -> Scene:
+        """The same scene with other Sun directions (N, 3)."""
+        return replace(self, sun=sun)

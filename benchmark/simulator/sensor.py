@@ -1,0 +1,41 @@
+"""What every simulated sensor offers to datasets and bounds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmark.simulator.noise import NoiseStreams
+from benchmark.simulator.scene import Scene
+
+Floats = NDArray[np.float64]
+
+#: What one built unit deviates by, array by array; the same for all its samples.
+FixedPattern = Mapping[str, Floats]
+
+
+class Sensor(Protocol):
+    """A sensor design with its error sources; frozen dataclasses, fields = parameters."""
+
+    def fixed_pattern(self, *names: str | int) -> FixedPattern:
+        """The unit of this name: element gains, dark currents and the like."""
+        ...
+
+    def origins(self, sun: Floats, generator: np.random.Generator) -> NDArray[np.int64] | None:
+        """(N, 2) first pixel (x, y) of each sample's window; None where nothing is windowed."""
+        ...
+
+    def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
+        """(N, ...) mean observation in output units, before noise and rounding."""
+        ...
+
+    def variance(self, expected: Floats) -> Floats:
+        """Variance of every element about its mean: shot, read and rounding noise."""
+        ...
+
+    def observe(self, scene: Scene, pattern: FixedPattern, streams: NoiseStreams) -> NDArray[Any]:
+        """(N, ...) what the sensor puts out."""
+        ...
