@@ -1,0 +1,80 @@
+"""What can be wrong with a table, and where: file, row and column."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+
+
+@dataclass(frozen=True, order=True)
+class Problem:
+    """One thing wrong with the data.
+
+    Parameters
+    ----------
+    file : str
+        Name of the file, e.g. ``attributes.csv``.
+    row : int or None
+        Row as counted in the file, the header being 1; None where no row is at fault.
+    column : str or None
+        Name of the column; None where no column is at fault.
+    message : str
+        What was expected and what came.
+    """
+
+    file: str
+    row: int | None
+    column: str | None
+    message: str
+
+    def __str__(self) -> str:
+        place = self.file
+        if self.row is not None:
+            place += f", row {self.row}"
+        if self.column is not None:
+            place += f", column {self.column}"
+        return f"{place}: {self.message}"
+
+    def to_dict(self) -> dict[str, str | int | None]:
+        """Return the problem as plain JSON data."""
+        return asdict(self)
+
+
+class SurveyDataError(ValueError):
+    """The tables cannot be read; `problems` says where."""
+
+    def __init__(self, problems: tuple[Problem, ...]) -> None:
+        self.problems = problems
+        more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
+        super().__init__(f"{problems[0]}{more}")
+
+
+class SurveyImportError(ValueError):
+    """A table offered for import cannot be taken; nothing has been written.
+
+    Parameters
+    ----------
+    message : str
+        What was expected and what came.
+    row : int or None
+        Row in the offered table, the first line being 1.
+    column : str or None
+        Column in the offered table.
+    problems : tuple of Problem
+        Every problem found, where there are several.
+    """
+
+    def __init__(
+        self,
+        message: str,
+        *,
+        row: int | None = None,
+        column: str | None = None,
+        problems: tuple[Problem, ...] = (),
+    ) -> None:
+        self.message = message
+        self.row = row
+        self.column = column
+        self.problems = problems
+        places = [f"row {row}"] if row is not None else []
+        places += [f"column {column}"] if column is not None else []
+        super().__init__(": ".join([", ".join(places), message] if places else [message]))

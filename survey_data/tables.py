@@ -1,0 +1,108 @@
+"""The survey's tables as tidy pandas frames."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import pandas as pd
+
+from survey_data.csv_reading import Records, read_records
+from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name, table_names
+from survey_data.problems import Problem, SurveyDataError
+
+FIRST_ROW = 2  # the header is row 1, and the tables keep one record a line
+
+
+@dataclass(frozen=True)
+class SurveyTables:
+    """Every table as a frame with a default index: row i stands in the file's row i + 2.
+
+    Strings are str, whole numbers Int64, numbers float64, truth values bool; an empty cell is
+    missing (NaN/NA). ``attributes.value`` is text for every attribute, numeric ones included.
+    Columns and their meaning: ``datapackage.json``.
+    """
+
+    studies: pd.DataFrame
+    attributes: pd.DataFrame
+    taxonomy: pd.DataFrame
+    attribute_definitions: pd.DataFrame
+    bases: pd.DataFrame
+    aliases: pd.DataFrame
+    study_tables: pd.DataFrame
+    feature_assessment: pd.DataFrame
+    approaches: pd.DataFrame
+    findings: pd.DataFrame
+    claims: pd.DataFrame
+    references: pd.DataFrame
+    counts: pd.DataFrame
+
+
+def load(directory: str | Path | None = None) -> SurveyTables:
+    """Read the tables.
+
+    Parameters
+    ----------
+    directory : str or Path, optional
+        Where the CSV files are; by default the package's own data.
+
+    Returns
+    -------
+    SurveyTables
+        The frames. Form and types are checked here, meaning by `validate`.
+
+    Raises
+    ------
+    SurveyDataError
+        A file is missing or broken, or a cell is not of its column's type; names file, row and
+        column.
+    """
+    folder = DATA_DIRECTORY if directory is None else Path(directory)
+    frames: dict[str, pd.DataFrame] = {}
+    problems: list[Problem] = []
+    for table in table_names():
+        records = read_records(folder / file_name(table), list(column_types(table)))
+        problems += records.problems
+        if not records.problems:
+            frame, flaws = typed_frame(table, records)
+            frames[table] = frame
+            problems += flaws
+    if problems:
+        raise SurveyDataError(tuple(problems))
+    return SurveyTables(**frames)
+
+
+def typed_frame(table: str, records: Records) -> tuple[pd.DataFrame, list[Problem]]:
+    """Return a table's records as a typed frame, and the cells that are not of their type."""
+    problems: list[Problem] = []
+    columns: dict[str, pd.Series] = {}
+    for index, (name, kind) in enumerate(column_types(table).items()):
+        convert, dtype = _CONVERSIONS[kind]
+        values: list[object] = []
+        for row, cells in records.rows:
+            text = cells[index]
+            try:
+                values.append(convert(text) if text else None)
+            except ValueError:
+                values.append(None)
+                problems.append(
+                    Problem(file_name(table), row, name, f"expected {kind}, got {text!r}")
+                )
+        columns[name] = pd.Series(values, dtype=dtype)
+    return pd.DataFrame(columns), problems
+
+
+def _truth(text: str) -> bool:
+    if text not in {"true", "false"}:
+        raise ValueError(text)
+    return text == "true"
+
+
+_CONVERSIONS: dict[str, tuple[Callable[[str], object], str]] = {
+    "string": (str, "str"),
+    "integer": (int, "Int64"),
+    "year": (int, "Int64"),
+    "number": (float, "float64"),
+    "boolean": (_truth, "boolean"),
+}
