@@ -1,0 +1,34 @@
+"""Options that filter by the attributes of studies, as several commands take them."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+
+def _option(attribute: str) -> typer.models.OptionInfo:
+    text = f"Only with this {attribute}; may be repeated."
+    return typer.Option(f"--{attribute}", help=text, show_default=False)  # type: ignore[no-any-return]  # Typer types it Any
+
+
+def _excluded(attribute: str) -> typer.models.OptionInfo:
+    text = f"Never this {attribute}; may be repeated."
+    return typer.Option(f"--exclude-{attribute}", help=text, show_default=False)  # type: ignore[no-any-return]  # Typer types it Any
+
+
+Task = Annotated[list[str] | None, _option("task")]
+Error = Annotated[list[str] | None, _option("error")]
+Accuracy = Annotated[list[str] | None, _option("accuracy")]
+Detector = Annotated[list[str] | None, _option("detector")]
+Mask = Annotated[list[str] | None, _option("mask")]
+Model = Annotated[list[str] | None, _option("model")]
+Extractor = Annotated[list[str] | None, _option("extractor")]
+
+NoTask = Annotated[list[str] | None, _excluded("task")]
+NoError = Annotated[list[str] | None, _excluded("error")]
+NoAccuracy = Annotated[list[str] | None, _excluded("accuracy")]
+NoDetector = Annotated[list[str] | None, _excluded("detector")]
+NoMask = Annotated[list[str] | None, _excluded("mask")]
+NoModel = Annotated[list[str] | None, _excluded("model")]
+NoExtractor = Annotated[list[str] | None, _excluded("extractor")]

@@ -1,0 +1,121 @@
+"""What the columns of the bundle's measured tables hold: type, unit and meaning.
+
+The survey's tables bring their own descriptor; here stand the tables that come from the benchmark.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal
+
+Type = Literal["string", "integer", "number", "boolean"]
+
+TABLE_SCHEMA = "https://datapackage.org/profiles/2.0/tableschema.json"
+
+_FIELDS: dict[str, tuple[Type, str]] = {
+    # what was measured
+    "key": ("string", "Digest of everything the score depends on: code, data, parameters, seed."),
+    "schema": ("integer", "Version of the layout of a score."),
+    "rank": ("integer", "Place in the data set's condition, best first."),
+    "dataset": ("string", "Name of the standard data set."),
+    "dataset_version": ("integer", "Version of the data set."),
+    "condition": ("string", "Named condition of the data set."),
+    "detector": ("string", "Detector, as in the survey's taxonomy."),
+    "mask": ("string", "Mask, as in the survey's taxonomy."),
+    "half_fov_deg": ("number", "Half field of view of the sensor, degrees."),
+    "extractor": ("string", "Name of the feature extractor's implementation."),
+    "extractor_taxonomy": ("string", "Extractor, as in the survey's taxonomy."),
+    "extractor_version": ("integer", "Version of the extractor's numbers."),
+    "model": ("string", "Name of the calibration model's implementation."),
+    "model_taxonomy": ("string", "Model, as in the survey's taxonomy."),
+    "model_version": ("integer", "Version of the model's numbers."),
+    "status": ("string", "ok, or failed with a reason."),
+    "reason": ("string", "Why a pipeline failed; empty where it did not."),
+    "n_calibration": ("integer", "Samples of the calibration split."),
+    "n_test": ("integer", "Samples of the test split."),
+    # accuracy
+    "found_fraction": ("number", "Share of test samples with a prediction."),
+    "observable_fraction": ("number", "Share of test samples whose direction is observable."),
+    "rms_deg": ("number", "Root mean square separation angle of found samples, degrees."),
+    "median_deg": ("number", "Median separation angle, degrees."),
+    "p95_deg": ("number", "95th percentile of the separation angle, degrees."),
+    "max_deg": ("number", "Largest separation angle, degrees."),
+    "bias_alpha_deg": ("number", "Mean error of alpha, degrees."),
+    "bias_beta_deg": ("number", "Mean error of beta, degrees."),
+    "rms_alpha_deg": ("number", "Root mean square error of alpha, degrees."),
+    "rms_beta_deg": ("number", "Root mean square error of beta, degrees."),
+    "bound_deg": ("number", "Root mean square of the Cramer-Rao bound, degrees."),
+    "over_bound": ("number", "Root mean square error divided by the bound."),
+    "over_bound_se": ("number", "Standard error of over_bound."),
+    # provenance
+    "data_hash": ("string", "Hash of the samples."),
+    "harness_version": ("integer", "Version of how pipelines are run."),
+    "metric_version": ("integer", "Version of how errors become numbers."),
+    # time, measured where and when the results were published
+    "latency_us": ("number", "Time of one test sample in a batch, microseconds."),
+    "time_ratio": ("number", "The same time divided by a reference on the same samples."),
+    # algorithms and data sets
+    "name": ("string", "Unique name."),
+    "role": ("string", "extractor or model."),
+    "taxonomy": ("string", "Value of the survey's taxonomy that is implemented."),
+    "category": ("string", "Category of that value."),
+    "observation": ("string", "What is read: frames, profiles, currents or events."),
+    "kind": ("string", "What an extractor's features mean."),
+    "accepts": ("string", "Kinds of features a model reads, separated by semicolons."),
+    "labels": ("string", "The survey's labels of what is implemented, separated by semicolons."),
+    "studies": ("string", "Studies that are followed, separated by semicolons."),
+    "origin": ("string", "survey: described there; ours: not."),
+    "version": ("integer", "Raised when the numbers change on purpose."),
+    "summary": ("string", "What it does."),
+    "conditions": ("string", "Named conditions, separated by semicolons."),
+    "description": ("string", "What it is."),
+    "follows": ("string", "Studies whose sensor it follows, separated by semicolons."),
+}
+
+
+def schema(
+    columns: Sequence[str],
+    where: str,
+    *,
+    primary: Sequence[str],
+    foreign: Mapping[str, tuple[str, str]] | None = None,
+) -> dict[str, Any]:
+    """Describe a table as Table Schema v2.
+
+    Parameters
+    ----------
+    columns : of the table, in order
+    where : the table's name, for messages
+    primary : columns that identify a row
+    foreign : column -> (resource, column) that its values stand in
+
+    Raises
+    ------
+    ValueError
+        For a column nothing is known of: a table does not go out half described.
+    """
+    unknown = [name for name in columns if name not in _FIELDS]
+    if unknown:
+        raise ValueError(
+            f"{where}: no description of column {', '.join(unknown)} in api.deposit_fields"
+        )
+    required = {*primary, *(foreign or {})}
+    fields = []
+    for name in columns:
+        kind, description = _FIELDS[name]
+        field: dict[str, Any] = {"name": name, "type": kind, "description": description}
+        if name in required:
+            field["constraints"] = {"required": True}
+        fields.append(field)
+    described: dict[str, Any] = {
+        "$schema": TABLE_SCHEMA,
+        "fields": fields,
+        "missingValues": [""],
+        "primaryKey": list(primary),
+    }
+    if foreign:
+        described["foreignKeys"] = [
+            {"fields": [column], "reference": {"resource": resource, "fields": [target]}}
+            for column, (resource, target) in foreign.items()
+        ]
+    return described

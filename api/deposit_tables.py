@@ -1,0 +1,151 @@
+"""The measured tables of the bundle: algorithms, data sets, scores and leaderboard, as CSV."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from api.deposit_fields import schema
+from api.http.tables import cell
+from benchmark import datasets
+from benchmark.store import Store
+from registry.catalogue import catalogue
+
+_PIPELINE = ("dataset", "condition", "extractor", "model")
+
+
+class NothingPublishedError(FileNotFoundError):
+    """There are no published results to deposit."""
+
+
+@dataclass(frozen=True)
+class MeasuredTable:
+    """A table with its description.
+
+    Attributes
+    ----------
+    name : of the resource; the file is benchmark/<name>.csv
+    title, description : for people
+    text : the CSV, UTF-8, lines ended by a line feed
+    schema : Table Schema v2
+    """
+
+    name: str
+    title: str
+    description: str
+    text: str
+    schema: Mapping[str, Any]
+
+
+def measured_tables(published: Path) -> list[MeasuredTable]:
+    """Make the measured tables from a directory of published results.
+
+    Raises
+    ------
+    NothingPublishedError
+        Where it holds no scores or no leaderboard.
+    ValueError
+        Where a file cannot be read, or has a column nothing is known of.
+    """
+    store = Store(published)
+    scores = store.rows()
+    board = published / "leaderboard.csv"
+    if not scores or not board.is_file():
+        missing = store.scores_path if not scores else board
+        raise NothingPublishedError(f"{missing} is missing or empty; run `sunatlas leaderboard`")
+    names = {"extractor": ("algorithms", "name"), "model": ("algorithms", "name")}
+    foreign = {"dataset": ("datasets", "name"), **names}
+    return [
+        _algorithms(),
+        _datasets(),
+        _table(
+            "scores",
+            "Scores",
+            "One row a pipeline on a data set in a condition; a pure function of code and data.",
+            scores,
+            primary=("key",),
+            foreign=foreign,
+        ),
+        _published(board, foreign),
+    ]
+
+
+def _algorithms() -> MeasuredTable:
+    return _table(
+        "algorithms",
+        "Algorithms",
+        "Every implementation of an extractor or a model.",
+        [implementation.to_dict() for implementation in catalogue().listing()],
+        primary=("name",),
+    )
+
+
+def _datasets() -> MeasuredTable:
+    rows = [
+        {
+            "name": preset.name,
+            "version": preset.version,
+            "detector": preset.detector,
+            "mask": preset.mask,
+            "observation": str(preset.observation),
+            "half_fov_deg": preset.geometry.half_fov_deg,
+            "conditions": preset.conditions,
+            "description": preset.description,
+            "follows": preset.follows,
+        }
+        for preset in map(datasets.get, datasets.names())
+    ]
+    return _table(
+        "datasets",
+        "Standard data sets",
+        "The simulated sensors that pipelines are scored on.",
+        rows,
+        primary=("name",),
+    )
+
+
+def _table(
+    name: str,
+    title: str,
+    description: str,
+    rows: Sequence[Mapping[str, Any]],
+    *,
+    primary: Sequence[str],
+    foreign: Mapping[str, tuple[str, str]] | None = None,
+) -> MeasuredTable:
+    columns = list(dict.fromkeys(column for row in rows for column in row))
+    stream = io.StringIO(newline="")
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(columns)
+    writer.writerows([cell(row.get(column)) for column in columns] for row in rows)
+    described = schema(columns, f"{name}.csv", primary=primary, foreign=foreign)
+    return MeasuredTable(name, title, description, stream.getvalue(), described)
+
+
+def _published(path: Path, foreign: Mapping[str, tuple[str, str]]) -> MeasuredTable:
+    text = path.read_text("utf-8").replace("\r\n", "\n")
+    header = next(csv.reader(io.StringIO(text)), [])
+    described = schema(header, str(path), primary=_PIPELINE, foreign=foreign)
+    return MeasuredTable(
+        "leaderboard",
+        "Leaderboard",
+        "Pipelines ranked in each data set and condition.",
+        text,
+        described,
+    )
+
+
+def read_descriptor(path: Path) -> dict[str, Any]:
+    """Read a datapackage.json; ValueError naming the file where it is none."""
+    try:
+        found = json.loads(path.read_text("utf-8"))
+    except ValueError as error:
+        raise ValueError(f"{path}: not JSON ({error})") from error
+    if isinstance(found, dict) and isinstance(found.get("resources"), list):
+        return found
+    raise ValueError(f"{path}: expected an object with a list of resources")
