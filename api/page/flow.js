@@ -1,0 +1,169 @@
+/* The decision flow: which chart, how it is counted, drawn and as lists and a table. */
+
+import { byId, choice, h, problemNotice, segmented } from "./dom.js";
+import { attributeOf, fractional, grouped, rings, withAmounts } from "./flow_data.js";
+import { drawSankey, drawSunburst, erase } from "./flow_diagram.js";
+import { address, getJson } from "./service.js";
+import { ATTRIBUTES, LIMITS, set, show, standing, state } from "./state.js";
+import { amount, ATTRIBUTE_NAMES, plural } from "./wording.js";
+
+export const CROSS = ["task", "detector", "mask", "model", "extractor"];
+const CHARTS = [
+  ["cross-analysis", "Cross-analysis"], ["error", "Errors"], ["performance", "Performance"],
+  ["task", "Tasks"], ["model-sunburst", "Models (sunburst)"],
+];
+
+/** Node ids of the last flow, to know what a change left out. */
+let drawing = 0;
+
+export function showFlowControls() {
+  byId("flow-controls").replaceChildren(
+    choice("Chart", "chart", CHARTS, state.chart, (chart) => show({ chart })),
+    state.chart === "cross-analysis"
+      ? segmented("Detail of models and extractors", "detail", [["grouped", "Families"], ["all", "All values"]], state.detail, (detail) => show({ detail }))
+      : "",
+    segmented("Counting", "counting", [["studies", "Studies"], ["fractional", "Fractional"]], state.counting, (counting) => show({ counting })),
+    segmented("Form", "view", [["diagram", "Diagram"], ["table", "Table"]], state.view, (view) => show({ view })));
+}
+
+/** The flow to show: of the answer's paths, or one of the survey's charts filtered by study. */
+async function flowOf(answer, vocabulary, signal) {
+  if (state.chart === "cross-analysis") {
+    const flow = { chart: state.chart, levels: CROSS, counting: state.counting, nodes: answer.nodes, links: answer.links };
+    const counted = state.counting === "fractional" ? fractional(flow, answer.paths, CROSS) : withAmounts(flow);
+    return state.detail === "grouped" ? grouped(counted, vocabulary) : counted;
+  }
+  const filters = Object.fromEntries(ATTRIBUTES.map((a) => [a, state.include[a]]));
+  const flow = await getJson(address(`/v1/flows/${state.chart}`, { counting: state.counting, ...filters }), signal);
+  return withAmounts(flow);
+}
+
+function noteOf(flow, answer, studies) {
+  const parts = [];
+  if (state.chart === "cross-analysis") {
+    parts.push("Studies on the paths of the answer, from task to feature extractor. Select a value to require it.");
+    if (state.counting === "fractional" && answer.count > answer.paths.length) {
+      parts.push(`Counted over the first ${answer.paths.length} of ${answer.count} paths.`);
+    }
+  } else {
+    parts.push("Studies that have the required values.");
+    const unheeded = ATTRIBUTES.some((a) => state.exclude[a].length) || LIMITS.some((l) => state.limits[l] !== "");
+    if (unheeded) parts.push("Excluded values and limits apply to the cross-analysis only, not to this chart.");
+    for (const left of flow.left_out ?? []) {
+      parts.push(`${plural(left.count, "study", "studies")} without a known ${nameOf(left.level).toLowerCase()} not drawn there.`);
+    }
+  }
+  parts.push(state.counting === "fractional"
+    ? "Fractional: a study with several values is shared out, so that inflow equals outflow."
+    : `Each study counts once a value; one with several values is on several links (${studies} studies mapped).`);
+  return parts.join(" ");
+}
+
+const nameOf = (level) => (level === "calibration" ? "Calibration" : ATTRIBUTE_NAMES[level] ?? level);
+
+function valuesOf(node, vocabulary) {
+  const attribute = attributeOf(node.level);
+  if (!attribute || !ATTRIBUTES.includes(attribute)) return null;
+  return { attribute, values: node.level === attribute ? [node.value] : vocabulary.inFamily(attribute, node.value) };
+}
+
+function toggle(node, vocabulary) {
+  const target = valuesOf(node, vocabulary);
+  if (!target) return;
+  set(target.attribute, target.values, isRequired(node, vocabulary) ? null : "include");
+}
+
+function isRequired(node, vocabulary) {
+  const target = valuesOf(node, vocabulary);
+  return Boolean(target) && target.values.every((v) => standing(target.attribute, v) === "include");
+}
+
+/** Values by level, longest first: buttons that require a value. */
+function levelLists(flow, vocabulary) {
+  return h("div", { class: "level-list" }, flow.levels.map((level) => {
+    const nodes = flow.nodes.filter((n) => n.level === level).sort((a, b) => b.amount - a.amount);
+    const most = Math.max(...nodes.map((n) => n.amount), 1e-9);
+    return h("section", {}, h("h3", {}, nameOf(level)), h("ol", {}, nodes.map((node) => {
+      const required = isRequired(node, vocabulary);
+      return h("li", {}, h("button", {
+        type: "button", class: required ? "level-value required" : "level-value", title: node.name,
+        disabled: !valuesOf(node, vocabulary), "aria-pressed": required,
+        "aria-label": `${node.name}: ${amount(node.amount)} ${state.counting === "fractional" ? "study shares" : "studies"}, require`,
+        onclick: () => toggle(node, vocabulary),
+      }, h("span", { class: "bar", css: { "--share": node.amount / most } }),
+      h("span", {}, node.value), h("span", { class: "count" }, amount(node.amount))));
+    })));
+  }));
+}
+
+function linkTable(flow) {
+  const node = new Map(flow.nodes.map((n) => [n.id, n]));
+  const rank = (link) => flow.levels.indexOf(node.get(link.source).level);
+  const links = [...flow.links].sort((a, b) => rank(a) - rank(b) || b.value - a.value);
+  return h("details", { class: "flow-links" }, h("summary", {}, `All ${links.length} links with their studies`),
+    h("div", { class: "table-scroll", tabindex: "0", role: "region", "aria-label": "Links of the flow" },
+      h("table", { class: "plain" },
+        h("thead", {}, h("tr", {}, ["From", "To", "Studies", "Keys"].map((t, i) => h("th", { scope: "col", class: i === 2 && "number" }, t)))),
+        h("tbody", {}, links.map((l) => h("tr", {},
+          h("td", {}, node.get(l.source).value), h("td", {}, node.get(l.target).value),
+          h("td", { class: "number" }, amount(l.value)),
+          h("td", { class: "note" }, l.studies.map((key, i) => [i > 0 && ", ", h("a", { href: `/v1/studies/${encodeURIComponent(key)}` }, key)]))))))));
+}
+
+/** Draw the flow of an answer; a later call overtakes an earlier one. */
+export async function showFlow(answer, vocabulary, studies, signal) {
+  const turn = ++drawing;
+  const body = byId("flow-body");
+  body.setAttribute("aria-busy", "true");
+  body.classList.add("stale");
+  try {
+    const flow = await flowOf(answer, vocabulary, signal);
+    if (turn !== drawing) return;
+    byId("flow-note").textContent = noteOf(flow, answer, studies);
+    if (flow.links.length === 0) {
+      clear(body, h("p", { class: "notice" }, "No study has all the values asked for, so there is no flow to draw."));
+      return;
+    }
+    if (state.view === "table") {
+      clear(body, levelLists(flow, vocabulary), linkTable(flow));
+      return;
+    }
+    await diagram(body, flow, vocabulary, turn);
+  } catch (problem) {
+    if (problem.name === "AbortError" || turn !== drawing) return;
+    if (!problem.title) problem.title = "The diagram could not be drawn";
+    clear(body, problemNotice({ title: problem.title, status: problem.status, detail: problem.detail ?? problem.message, errors: problem.errors },
+      () => showFlow(answer, vocabulary, studies, signal)));
+  } finally {
+    if (turn === drawing) {
+      body.removeAttribute("aria-busy");
+      body.classList.remove("stale");
+    }
+  }
+}
+
+function clear(body, ...content) {
+  const old = body.querySelector(".diagram");
+  if (old) erase(old);
+  body.replaceChildren(...content);
+}
+
+async function diagram(body, flow, vocabulary, turn) {
+  const round = state.chart === "model-sunburst";
+  const description = `${CHARTS.find(([c]) => c === state.chart)[1]}: ${flow.levels.map(nameOf).join(", ")}. The same values stand in the table form.`;
+  let picture = body.querySelector(round ? ".diagram.round" : ".diagram:not(.round)");
+  const kept = Boolean(picture);
+  if (!kept) {
+    picture = h("div", { class: round ? "diagram round" : "diagram", role: "img" });
+    clear(body,
+      h("p", { class: "swipe", hidden: round }, "Scroll the diagram sideways, or choose “Table”."),
+      h("div", { class: round ? "" : "scroller", tabindex: round ? null : "0", role: round ? null : "region", "aria-label": round ? null : "Flow diagram" },
+        h("div", { class: "diagram-frame" }, h("div", { class: "levels-head", "aria-hidden": true, hidden: round }), picture)));
+  }
+  picture.setAttribute("aria-label", description);
+  body.querySelector(".levels-head").replaceChildren(...flow.levels.map((level) => h("span", {}, nameOf(level))));
+  if (round) await drawSunburst(picture, rings(flow, vocabulary));
+  else await drawSankey(picture, flow, (n) => isRequired(n, vocabulary), (n) => toggle(n, vocabulary));
+  if (turn !== drawing) return;
+  picture.dataset.nodes = flow.nodes.map((n) => n.id).join("|");
+}

@@ -1,0 +1,132 @@
+/* Sankey diagrams and the sunburst, drawn by Plotly in the colours of the page. */
+
+import { amount, plural } from "./wording.js";
+
+let asked = null;
+
+/** Plotly from this server, loaded when first needed: the rest of the page does not wait for it. */
+export function plotly() {
+  asked ??= new Promise((resolve, reject) => {
+    const script = document.createElement("script");
+    script.src = "/page/plotly.min.js";
+    script.onload = () => resolve(window.Plotly);
+    script.onerror = () => {
+      asked = null;
+      script.remove();
+      reject(new Error("The chart library /page/plotly.min.js could not be loaded."));
+    };
+    document.head.append(script);
+  });
+  return asked;
+}
+
+const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
+const CONFIG = { displayModeBar: false, responsive: true };
+
+function layout(height) {
+  return {
+    height, margin: { l: 2, r: 2, t: 8, b: 8 }, paper_bgcolor: "rgba(0,0,0,0)",
+    font: { family: colour("--font"), size: 13, color: colour("--text") },
+    hoverlabel: {
+      bgcolor: colour("--surface"), bordercolor: colour("--line-strong"),
+      font: { family: colour("--font"), size: 13, color: colour("--text") }, align: "left",
+    },
+  };
+}
+
+const listed = (studies) => `${studies.slice(0, 6).join(", ")}${studies.length > 6 ? `, and ${studies.length - 6} more` : ""}`;
+
+/**
+ * Where every node stands, for flows that do not all start at the first level: Plotly would
+ * otherwise move a node without inflow to the first column.
+ */
+function placed(nodes, levels) {
+  const x = [];
+  const y = [];
+  for (const [i, level] of levels.entries()) {
+    const column = nodes.map((n, at) => [n, at]).filter(([n]) => n.level === level);
+    const total = column.reduce((sum, [n]) => sum + n.amount, 0);
+    const room = 0.92 - 0.03 * column.length;
+    let top = 0.02;
+    for (const [node, at] of column) {
+      const size = room * (node.amount / total);
+      x[at] = Math.min(0.999, Math.max(0.001, i / (levels.length - 1)));
+      y[at] = top + size / 2;
+      top += size + 0.03;
+    }
+  }
+  return { x, y };
+}
+
+/** Draw a flow; required(node) colours a node, choose(node) is called on a click. */
+export async function drawSankey(container, flow, required, choose) {
+  const library = await plotly();
+  const linked = new Set(flow.links.flatMap((l) => [l.source, l.target]));
+  const nodes = flow.nodes.filter((n) => linked.has(n.id));
+  const at = new Map(nodes.map((n, i) => [n.id, i]));
+  const sun = nodes.map(required);
+  const tallest = Math.max(...flow.levels.map((level) => nodes.filter((n) => n.level === level).length));
+  const into = new Set(flow.links.map((l) => l.target));
+  const adrift = nodes.some((n) => n.level !== flow.levels[0] && !into.has(n.id));
+  const trace = {
+    type: "sankey",
+    arrangement: "fixed",
+    node: {
+      label: nodes.map((n) => `${n.value}  ${amount(n.amount)}`),
+      color: sun.map((yes) => colour(yes ? "--sun-node" : "--node")),
+      customdata: nodes.map((n) => `<b>${n.name}</b><br>${plural(n.studies.length, "study", "studies")}: ${listed(n.studies)}`),
+      hovertemplate: "%{customdata}<extra></extra>",
+      line: { width: 0 }, thickness: 12, pad: tallest > 14 ? 9 : 14, align: "left",
+      ...(adrift ? placed(nodes, flow.levels) : {}),
+    },
+    link: {
+      source: flow.links.map((l) => at.get(l.source)),
+      target: flow.links.map((l) => at.get(l.target)),
+      value: flow.links.map((l) => l.value),
+      color: flow.links.map((l) => colour(sun[at.get(l.source)] || sun[at.get(l.target)] ? "--sun-link" : "--node-link")),
+      hovercolor: flow.links.map(() => colour("--node-link-hover")),
+      customdata: flow.links.map((l) => `${amount(l.value)} · ${listed(l.studies)}`),
+      hovertemplate: "%{source.label} → %{target.label}<br>%{customdata}<extra></extra>",
+    },
+    textfont: { size: 13, color: colour("--text"), shadow: halo() },
+  };
+  const height = Math.min(760, Math.max(200, 70 + tallest * (tallest > 14 ? 30 : 44)));
+  await library.react(container, [trace], layout(height), CONFIG);
+  container.removeAllListeners?.("plotly_click");
+  container.on("plotly_click", (event) => {
+    const point = event.points[0];
+    const node = nodes[point.pointNumber];
+    if (point.source === undefined && node) choose(node);
+  });
+}
+
+/** Letters stay readable over links. */
+function halo() {
+  const ground = colour("--surface");
+  return ["-1px -1px", "1px -1px", "-1px 1px", "1px 1px", "0 0"].map((at) => `${at} 2px ${ground}`).join(", ");
+}
+
+/** Draw rings; a click zooms. */
+export async function drawSunburst(container, parts) {
+  const library = await plotly();
+  const children = new Set(parts.map((p) => p.parent));
+  const trace = {
+    type: "sunburst",
+    ids: parts.map((p) => p.id), labels: parts.map((p) => p.label), parents: parts.map((p) => p.parent),
+    // The rings inside show what their leaves add up to.
+    values: parts.map((p) => (children.has(p.id) ? 0 : p.amount)),
+    branchvalues: "remainder",
+    customdata: parts.map((p) => `${plural(p.studies.size, "study", "studies")}: ${listed([...p.studies])}`),
+    hovertemplate: "<b>%{label}</b><br>%{customdata}<extra></extra>",
+    marker: { colors: parts.map((p) => colour(p.leaf ? "--bar" : "--sunken")), line: { color: colour("--line-strong"), width: 1 } },
+    insidetextorientation: "radial", textfont: { color: colour("--text") },
+  };
+  const size = Math.min(620, Math.max(320, container.clientWidth));
+  await library.react(container, [trace], layout(size), CONFIG);
+}
+
+/** Forget a drawing, so that the next one starts afresh. */
+export function erase(container) {
+  if (window.Plotly && container.classList.contains("js-plotly-plot")) window.Plotly.purge(container);
+}

@@ -1,0 +1,167 @@
+/* The leaderboard: every pipeline on a data set, against the physical bound. */
+
+import { byId, choice, copyable, h, problemNotice } from "./dom.js";
+import { address, getAll, saveCsv } from "./service.js";
+import { show, state } from "./state.js";
+import { degrees, number, percent, plural, times } from "./wording.js";
+
+const COLUMNS = [
+  { field: "extractor", name: "Extractor", text: true },
+  { field: "model", name: "Model", text: true },
+  { field: "rms_deg", name: "RMS error", write: degrees },
+  { field: "over_bound", name: "Times the bound", write: times },
+  { field: "found_fraction", name: "Found", write: percent },
+  { field: "time_ratio", name: "Time ratio", write: times, title: "Time of extraction and prediction over that of a reference on the same observations" },
+];
+const SCALE = "Error and bound";
+
+let shown = null; // what the rows on screen belong to
+let turn = 0;
+
+const place = (rows) => {
+  const values = rows.flatMap((r) => [r.rms_deg, r.bound_deg]).filter((x) => x > 0 && Number.isFinite(x));
+  if (!values.length) return null;
+  const low = Math.floor(Math.log10(Math.min(...values) * 0.999));
+  const high = Math.max(low + 1, Math.ceil(Math.log10(Math.max(...values))));
+  const at = (x) => Math.min(1, Math.max(0, (Math.log10(x) - low) / (high - low)));
+  return { at, ticks: Array.from({ length: high - low + 1 }, (_, i) => 10 ** (low + i)) };
+};
+
+function bar(row, scale) {
+  if (!scale || !(row.rms_deg > 0)) return h("span", { class: "muted" }, "–");
+  const error = scale.at(row.rms_deg);
+  const bound = row.bound_deg > 0 ? scale.at(row.bound_deg) : null;
+  return h("div", { class: "scale", role: "img", "aria-label": `${degrees(row.rms_deg)} against a bound of ${degrees(row.bound_deg)}` },
+    scale.ticks.map((t) => h("i", { class: "tick", css: { "--at": scale.at(t) } })),
+    h("i", { class: "span", css: { "--from": 0, "--to": error } }),
+    bound !== null && h("i", { class: "limit", css: { "--at": bound } }));
+}
+
+function sorted(rows) {
+  const { sort, order } = state;
+  const sign = order === "descending" ? -1 : 1;
+  const missing = (x) => x === null || x === undefined || x === "" || Number.isNaN(x);
+  return [...rows].sort((a, b) => {
+    const [x, y] = [a[sort], b[sort]];
+    if (missing(x) || missing(y)) return missing(x) - missing(y); // what failed stands last, whatever the order
+    return sign * (typeof x === "string" ? x.localeCompare(y) : x - y);
+  });
+}
+
+function heading(column) {
+  const active = state.sort === column.field;
+  return h("th", {
+    scope: "col", role: "columnheader", class: !column.text && "number", title: column.title,
+    "aria-sort": active ? state.order : null,
+  }, h("button", {
+    type: "button", "data-sort": column.field,
+    onclick: () => show({ sort: column.field, order: active && state.order === "ascending" ? "descending" : "ascending" }),
+  }, column.name));
+}
+
+function evidence(row) {
+  const address_of = address("/v1/results", { dataset: row.dataset, condition: row.condition, extractor: row.extractor, model: row.model });
+  const facts = Object.entries(row).filter(([, v]) => v !== null && v !== "" && typeof v !== "object");
+  return h("div", { class: "evidence" },
+    h("dl", { class: "facts" }, facts.map(([name, value]) => h("div", {}, h("dt", {}, name), h("dd", {}, String(value))))),
+    h("p", { class: "links" }, h("a", { href: address_of }, "Score row (JSON)")));
+}
+
+function tableRow(row, scale, i) {
+  const id = `score-${i}`;
+  const detail = h("tr", { class: "detail", id, role: "row", hidden: true });
+  const expand = h("button", {
+    type: "button", class: "expand", "aria-expanded": false, "aria-controls": id, "aria-label": `Score of ${row.extractor} with ${row.model}`,
+    onclick: () => {
+      if (!detail.firstChild) detail.append(h("td", { colspan: String(COLUMNS.length + 2), role: "cell" }, evidence(row)));
+      detail.hidden = !detail.hidden;
+      expand.setAttribute("aria-expanded", String(!detail.hidden));
+    },
+  }, "Score");
+  const failed = row.status === "failed";
+  const taxonomy = (field) => row[`${field}_taxonomy`] && row[`${field}_taxonomy`].toLowerCase() !== row[field].toLowerCase() && row[`${field}_taxonomy`];
+  return [h("tr", { role: "row", class: "score" },
+    COLUMNS.map((c) => h("td", { role: "cell", "data-label": c.name, class: !c.text && "number" },
+      c.text ? h("span", { title: taxonomy(c.field) || null }, row[c.field]) : c.write(row[c.field]))),
+    h("td", { role: "cell" }, failed ? h("span", { class: "failed note" }, `failed: ${row.reason || "no reason stored"}`) : bar(row, scale)),
+    h("td", { role: "cell", class: "number" }, expand)), detail];
+}
+
+function draw() {
+  const { rows, dataset, condition, card } = shown;
+  const scale = place(rows);
+  const bound = rows.find((r) => r.bound_deg > 0)?.bound_deg ?? card?.bounds?.[condition];
+  const url = address(`/v1/leaderboard/${encodeURIComponent(dataset)}`, { condition, limit: 500 });
+  byId("board-card").replaceChildren(h("div", { class: "dataset-card" },
+    card && h("p", {}, card.description),
+    h("p", { class: "bound-line" }, "Cramér–Rao bound: ", h("strong", {}, degrees(bound)), " RMS",
+      card && [` · version ${card.version}`, card.follows?.length > 0 && [" · follows ", card.follows.map((k, i) => [i > 0 && ", ", h("a", { href: `/v1/studies/${encodeURIComponent(k)}` }, k)])]]),
+    h("div", { class: "links" }, h("a", { href: url }, "JSON"),
+      h("button", { type: "button", onclick: () => saveCsv(url, `${dataset}-${condition}.csv`) }, "CSV"),
+      h("a", { href: `/v1/datasets` }, "Data set card"),
+      card?.follows?.[0] && copyable(`sunatlas run ${card.follows[0]} --format json`, "the command that runs the study it follows"))));
+  const body = byId("board-body");
+  if (!rows.length) {
+    body.replaceChildren(h("p", { class: "notice" }, "No pipeline is scored on this data set in this condition yet. ",
+      h("code", {}, "sunatlas leaderboard"), " computes what is missing."));
+    return;
+  }
+  body.replaceChildren(
+    h("div", { class: "legend" },
+      h("span", {}, h("i", { class: "key-span" }), "RMS error, logarithmic"),
+      h("span", {}, h("i", { class: "key-limit" }), "Cramér–Rao bound"),
+      h("span", {}, "Time ratio: against a reference on the same observations")),
+    h("div", { class: "sort-narrow" }, choice("Sort by", "sort-narrow", COLUMNS.map((c) => [c.field, c.name]), state.sort, (sort) => show({ sort, order: "ascending" }))),
+    h("table", { class: "stacks board", role: "table", "aria-labelledby": "leaderboard-title" },
+      h("thead", { role: "rowgroup" }, h("tr", { role: "row" }, COLUMNS.map(heading),
+        h("th", { scope: "col", role: "columnheader" }, SCALE, scale && h("span", { class: "scale-head", "aria-hidden": true },
+          scale.ticks.map((t) => h("span", { css: { "--at": scale.at(t) } }, `${Number(t.toPrecision(1))}°`)))),
+        h("th", { scope: "col", role: "columnheader" }, h("span", { class: "visually-hidden" }, "Score")))),
+      h("tbody", { role: "rowgroup" }, sorted(rows).map((r, i) => tableRow(r, scale, i)))));
+}
+
+/** Sort what is on screen, keeping the keyboard on the heading. */
+export function resort() {
+  if (!shown) return;
+  const focused = document.activeElement?.dataset?.sort;
+  draw();
+  if (focused) byId("board-body").querySelector(`[data-sort="${focused}"]`)?.focus();
+  const column = COLUMNS.find((c) => c.field === state.sort);
+  byId("board-status").textContent = `Sorted by ${column?.name ?? state.sort}, ${state.order}.`;
+}
+
+export async function showLeaderboard(datasets) {
+  const mine = ++turn;
+  const body = byId("board-body");
+  if (!datasets.length) {
+    body.removeAttribute("aria-busy");
+    body.replaceChildren(h("p", { class: "notice" }, "This server has no data sets."));
+    return;
+  }
+  const card = datasets.find((d) => d.name === state.dataset) ?? datasets[0];
+  const condition = card.conditions.includes(state.board_condition) ? state.board_condition
+    : card.conditions.includes("nominal") ? "nominal" : card.conditions[0];
+  byId("board-controls").replaceChildren(
+    choice("Data set", "dataset", datasets.map((d) => [d.name, d.name]), card.name, (dataset) => show({ dataset })),
+    choice("Condition", "board-condition", card.conditions.map((c) => [c, c]), condition, (c) => show({ board_condition: c })));
+  body.setAttribute("aria-busy", "true");
+  if (shown) body.classList.add("stale");
+  else body.replaceChildren(h("p", { class: "loading" }, "Loading the leaderboard…"));
+  try {
+    const rows = await getAll(`/v1/leaderboard/${encodeURIComponent(card.name)}`, { condition, limit: 500 });
+    if (mine !== turn) return;
+    shown = { rows: rows.filter((r) => r.condition === undefined || r.condition === condition), dataset: card.name, condition, card };
+    draw();
+    byId("board-status").textContent = `${plural(shown.rows.length, "pipeline")} on ${card.name}, ${condition}.`;
+  } catch (problem) {
+    if (mine !== turn) return;
+    shown = null;
+    byId("board-card").replaceChildren();
+    body.replaceChildren(problemNotice(problem, () => showLeaderboard(datasets)));
+  } finally {
+    if (mine === turn) {
+      body.removeAttribute("aria-busy");
+      body.classList.remove("stale");
+    }
+  }
+}

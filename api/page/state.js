@@ -1,0 +1,95 @@
+/* What is asked and what is shown, kept in the address so that an answer can be shared. */
+
+export const ATTRIBUTES = ["task", "accuracy", "error", "detector", "mask", "model", "extractor"];
+export const LIMITS = ["max_error_deg", "min_fov_deg", "max_latency_us"];
+const VIEW = {
+  chart: "cross-analysis", counting: "studies", detail: "grouped", view: "diagram",
+  condition: "nominal", dataset: "", board_condition: "", sort: "rms_deg", order: "ascending",
+};
+
+const listeners = new Set();
+export const state = read(location.search);
+
+function read(search) {
+  const parameters = new URLSearchParams(search);
+  const found = { include: {}, exclude: {}, limits: {}, ...VIEW };
+  for (const attribute of ATTRIBUTES) {
+    found.include[attribute] = [...new Set(parameters.getAll(attribute))];
+    found.exclude[attribute] = [...new Set(parameters.getAll(`exclude_${attribute}`))];
+  }
+  for (const limit of LIMITS) found.limits[limit] = parameters.get(limit) ?? "";
+  for (const name of Object.keys(VIEW)) found[name] = parameters.get(name) || VIEW[name];
+  return found;
+}
+
+/** The requirements as the service's query parameters. */
+export function requirements(of = state) {
+  const query = {};
+  for (const attribute of ATTRIBUTES) {
+    if (of.include[attribute].length) query[attribute] = of.include[attribute];
+    if (of.exclude[attribute].length) query[`exclude_${attribute}`] = of.exclude[attribute];
+  }
+  for (const limit of LIMITS) if (of.limits[limit] !== "") query[limit] = of.limits[limit];
+  return query;
+}
+
+function search() {
+  const parameters = new URLSearchParams();
+  for (const [name, value] of Object.entries(requirements())) {
+    for (const one of [value].flat()) parameters.append(name, one);
+  }
+  for (const [name, usual] of Object.entries(VIEW)) if (state[name] !== usual) parameters.append(name, state[name]);
+  const text = parameters.toString();
+  return text ? `?${text}` : location.pathname;
+}
+
+/** Called with the set of what changed: "requirements" and/or names of view settings. */
+export function onChange(listener) {
+  listeners.add(listener);
+}
+
+function tell(changed, push) {
+  if (push) history.pushState(null, "", search());
+  else history.replaceState(null, "", search());
+  for (const listener of listeners) listener(new Set(changed));
+}
+
+/** Change how the answer is shown. */
+export function show(settings) {
+  Object.assign(state, settings);
+  tell(Object.keys(settings), false);
+}
+
+/** "include", "exclude" or null for one value; several values at once for a family. */
+export function set(attribute, values, standing) {
+  const list = [values].flat();
+  for (const where of ["include", "exclude"]) {
+    const others = state[where][attribute].filter((v) => !list.includes(v));
+    state[where][attribute] = standing === where ? [...others, ...list] : others;
+  }
+  tell(["requirements"], true);
+}
+
+export function standing(attribute, value) {
+  if (state.include[attribute].includes(value)) return "include";
+  return state.exclude[attribute].includes(value) ? "exclude" : null;
+}
+
+export function setLimit(name, text) {
+  state.limits[name] = text;
+  tell(["requirements"], true);
+}
+
+export function reset() {
+  for (const attribute of ATTRIBUTES) {
+    state.include[attribute] = [];
+    state.exclude[attribute] = [];
+  }
+  for (const limit of LIMITS) state.limits[limit] = "";
+  tell(["requirements"], true);
+}
+
+addEventListener("popstate", () => {
+  Object.assign(state, read(location.search));
+  for (const listener of listeners) listener(new Set(["requirements", ...Object.keys(VIEW)]));
+});

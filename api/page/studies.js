@@ -1,0 +1,74 @@
+/* A study as evidence: bibliography, how much of it runs here, and the basis of every value. */
+
+import { copyable, h, problemNotice } from "./dom.js";
+import { getOnce } from "./service.js";
+import { ATTRIBUTE_NAMES, BASES, IDENTITIES } from "./wording.js";
+
+const STATES = {
+  complete: "runs here completely", partial: "runs here in part", none: "nothing of it runs here yet",
+};
+
+const known = (text) => text !== null && text !== undefined && text !== "";
+
+function bibliography(study) {
+  return h("p", { class: "note" }, [
+    study.authors, known(study.year) && String(study.year), study.venue,
+  ].filter(known).filter(Boolean).join(" · "));
+}
+
+function links(study) {
+  const record = `/v1/studies/${encodeURIComponent(study.key)}`;
+  return h("p", { class: "links" },
+    known(study.doi) && h("a", { href: `https://doi.org/${study.doi}`, rel: "noreferrer" }, `doi:${study.doi}`),
+    !known(study.doi) && /^https?:/.test(study.url ?? "") && h("a", { href: study.url, rel: "noreferrer" }, "Record"),
+    h("a", { href: record }, "JSON"),
+    h("span", { class: "state", title: IDENTITIES[study.identity] }, `identity ${study.identity}`),
+    h("span", { class: "state" }, STATES[study.state] ?? study.state));
+}
+
+/** "source" as a link where it is an address. */
+function source(text) {
+  if (!known(text)) return "–";
+  return /^https?:\/\//.test(text) ? h("a", { href: text, rel: "noreferrer" }, new URL(text).hostname) : text;
+}
+
+function provenance(detail) {
+  const values = detail.attributes;
+  const cell = (label, ...content) => h("td", { role: "cell", "data-label": label }, h("span", {}, ...content));
+  return h("div", { class: "provenance" },
+    h("table", { class: "stacks", role: "table" },
+      h("caption", {}, `Where each value of ${detail.key} comes from`),
+      h("thead", { role: "rowgroup" }, h("tr", { role: "row" }, ["Attribute", "Value", "Basis", "Source", "Note"].map((t) => h("th", { scope: "col", role: "columnheader" }, t)))),
+      h("tbody", { role: "rowgroup" }, values.map((v) => h("tr", { role: "row" },
+        cell("Attribute", ATTRIBUTE_NAMES[v.attribute] ?? v.attribute),
+        cell("Value", known(v.value) ? v.value : "–"),
+        cell("Basis", h("span", { class: "basis", title: BASES[v.basis] }, v.basis)),
+        cell("Source", source(v.source)),
+        cell("Note", v.note ?? ""))))),
+    detail.pipelines.length > 0 && h("div", {}, h("p", {}, "Runs here as"),
+      h("ul", {}, detail.pipelines.slice(0, 12).map((p) => h("li", {},
+        `${p.detector} · ${p.mask} · ${p.extractor} → ${p.model}`,
+        p.datasets.length ? ` on ${p.datasets.join(", ")}` : " (no data set of its architecture yet)"))),
+      copyable(`sunatlas run ${detail.key} --format json`, `the command that runs ${detail.key}`)),
+    detail.gaps.length > 0 && h("div", {}, h("p", {}, "Not run here"),
+      h("ul", {}, detail.gaps.map((g) => h("li", {}, `${ATTRIBUTE_NAMES[g.attribute] ?? g.attribute}${known(g.value) ? ` ${g.value}` : ""}: ${g.reason}`)))));
+}
+
+function evidence(key) {
+  const place = h("div", { "aria-live": "polite" }, h("p", { class: "muted" }, "Loading…"));
+  const load = () => getOnce(`/v1/studies/${encodeURIComponent(key)}`).then(
+    (detail) => place.replaceChildren(provenance(detail)),
+    (problem) => place.replaceChildren(problemNotice(problem, load)));
+  load();
+  return place;
+}
+
+/** A study with its evidence behind a disclosure. */
+export function studyEntry(key, study) {
+  if (!study) return h("li", { class: "study" }, h("a", { href: `/v1/studies/${encodeURIComponent(key)}` }, key));
+  const disclosure = h("details", { class: "flow-links" }, h("summary", {}, `Basis of each value of ${key}`));
+  disclosure.addEventListener("toggle", () => disclosure.append(evidence(key)), { once: true });
+  return h("li", { class: "study" },
+    h("p", { class: "study-title" }, known(study.title) ? study.title : `${key} (title not known)`, " ", h("span", { class: "muted note" }, key)),
+    bibliography(study), links(study), disclosure);
+}

@@ -1,0 +1,50 @@
+/* Classic script, run before the first paint: the stored choice wins over the system's scheme. */
+(function () {
+  "use strict";
+  const system = window.matchMedia("(prefers-color-scheme: dark)");
+
+  function stored() {
+    try {
+      return localStorage.getItem("theme");
+    } catch {
+      return null; // storage refused: follow the system
+    }
+  }
+
+  function apply() {
+    const theme = stored() || (system.matches ? "dark" : "light");
+    if (document.documentElement.dataset.theme === theme) return;
+    document.documentElement.dataset.theme = theme;
+    document.dispatchEvent(new CustomEvent("themechange"));
+  }
+
+  function choose(theme) {
+    try {
+      // A choice equal to the system's is no choice: the page follows the system again.
+      if (theme === (system.matches ? "dark" : "light")) localStorage.removeItem("theme");
+      else localStorage.setItem("theme", theme);
+    } catch {
+      document.documentElement.dataset.theme = theme;
+      document.dispatchEvent(new CustomEvent("themechange"));
+      return;
+    }
+    apply();
+  }
+
+  apply();
+  system.addEventListener("change", apply);
+
+  document.addEventListener("DOMContentLoaded", () => {
+    const button = document.getElementById("theme-toggle");
+    const label = () => {
+      const other = document.documentElement.dataset.theme === "dark" ? "light" : "dark";
+      button.textContent = other === "dark" ? "Dark" : "Light";
+      button.setAttribute("aria-label", `Switch to the ${other} colour scheme`);
+      button.dataset.to = other;
+    };
+    button.hidden = false;
+    button.addEventListener("click", () => choose(button.dataset.to));
+    document.addEventListener("themechange", label);
+    label();
+  });
+})();

@@ -1,0 +1,94 @@
+/* Names and numbers as the page writes them. */
+
+export const ATTRIBUTE_NAMES = {
+  task: "Task", accuracy: "Accuracy class", error: "Error addressed", detector: "Detector",
+  mask: "Mask", model: "Calibration model", extractor: "Feature extractor",
+  model_category: "Model family", extractor_family: "Extractor family", "offline/online": "Calibration",
+  accuracy_deg: "Published accuracy", fov_deg: "Field of view",
+};
+
+export const LIMIT_NAMES = {
+  max_error_deg: { name: "Error at most", unit: "°", words: "error at most" },
+  min_fov_deg: { name: "Field of view at least", unit: "°", words: "field of view at least" },
+  max_latency_us: { name: "Latency at most", unit: "µs", words: "latency at most" },
+};
+
+export const BASES = {
+  "survey-table": "a mapping table of the survey",
+  "survey-text": "the survey's text",
+  abstract: "the study's abstract or record",
+  title: "the study's title",
+  inferred: "inferred from what else is known of the study",
+  recalled: "recalled, not seen on a page",
+  unknown: "not known",
+};
+
+export const IDENTITIES = {
+  confirmed: "author, year and topic confirmed on a public page",
+  recalled: "bibliographic data recalled, not seen on a page",
+  ambiguous: "more than one publication fits the key",
+  unknown: "no publication identified for the key",
+};
+
+/** Three significant digits, never an exponent; a dash where there is no number. */
+export function number(value, digits = 3) {
+  if (value === null || value === undefined || !Number.isFinite(Number(value))) return "–";
+  const x = Number(value);
+  if (x === 0) return "0";
+  const decimals = Math.max(0, digits - 1 - Math.floor(Math.log10(Math.abs(x))));
+  return x.toFixed(Math.min(decimals, 8));
+}
+
+export const degrees = (value) => (number(value) === "–" ? "–" : `${number(value)}°`);
+export const times = (value) => (number(value) === "–" ? "–" : `${number(value)}×`);
+/** A count, or a sum of fractions of studies. */
+export const amount = (value) => (Number.isInteger(value) ? String(value) : value.toFixed(1));
+export const plural = (n, one, many = `${one}s`) => `${n} ${n === 1 ? one : many}`;
+export const percent = (fraction) => {
+  if (fraction === null || fraction === undefined) return "–";
+  return fraction === 1 ? "100 %" : `${(Math.floor(fraction * 1000) / 10).toFixed(1)} %`;
+};
+
+/** The vocabulary: names and families of the taxonomy's values. */
+export class Vocabulary {
+  constructor(attributes) {
+    this.attributes = attributes;
+    this.entries = new Map();
+    for (const [attribute, values] of Object.entries(attributes)) {
+      for (const entry of values) this.entries.set(`${attribute}:${entry.value}`, entry);
+    }
+  }
+
+  values(attribute) {
+    return this.attributes[attribute] ?? [];
+  }
+
+  name(attribute, value) {
+    return this.entries.get(`${attribute}:${value}`)?.name || value;
+  }
+
+  /** Family of a value; a value without a family is its own. */
+  family(attribute, value) {
+    return this.entries.get(`${attribute}:${value}`)?.category || value;
+  }
+
+  inFamily(attribute, family) {
+    return this.values(attribute).filter((e) => (e.category || e.value) === family).map((e) => e.value);
+  }
+
+  /** Values as the sentence says them: a whole family by its name. [[label, values, isFamily], ...] */
+  gathered(attribute, values) {
+    const rest = new Set(values);
+    const parts = [];
+    if (attribute === "model" || attribute === "extractor") {
+      for (const family of new Set(this.values(attribute).map((e) => e.category || e.value))) {
+        const members = this.inFamily(attribute, family);
+        if (members.length > 1 && members.every((v) => rest.has(v))) {
+          parts.push([`any ${family}`, members, true]);
+          members.forEach((v) => rest.delete(v));
+        }
+      }
+    }
+    return [...parts, ...[...rest].map((v) => [v, [v], false])];
+  }
+}
