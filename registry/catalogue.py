@@ -1,0 +1,205 @@
+"""The catalogue: every extractor and model implemented, found by discovery.
+
+Nothing is registered by hand. The first call of `catalogue()` imports the implementations, and
+with them SciPy, OpenCV and Numba; importing this module does not.
+"""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Literal
+
+from registry import studies as registered
+from registry.taxonomy import NO_IMPLEMENTATION_STATED, Taxonomy, unknown_name
+
+if TYPE_CHECKING:
+    from algorithms.contract import Extractor, Model
+
+Role = Literal["extractor", "model"]
+
+
+@dataclass(frozen=True)
+class Implementation:
+    """What the catalogue says of one implementation."""
+
+    name: str
+    role: Role
+    taxonomy: str
+    category: str
+    observation: str | None  # extractors: what it reads
+    kind: str | None  # extractors: what its features mean
+    accepts: tuple[str, ...] | None  # models: the kinds of features it reads
+    labels: tuple[str, ...]
+    studies: tuple[str, ...]
+    origin: str
+    version: int
+    summary: str
+
+    def to_dict(self) -> dict[str, object]:
+        """As in the HTTP answer."""
+        return {
+            "name": self.name,
+            "role": self.role,
+            "taxonomy": self.taxonomy,
+            "category": self.category,
+            "observation": self.observation,
+            "kind": self.kind,
+            "accepts": None if self.accepts is None else list(self.accepts),
+            "labels": list(self.labels),
+            "studies": list(self.studies),
+            "origin": self.origin,
+            "version": self.version,
+            "summary": self.summary,
+        }
+
+
+class Catalogue:
+    """Implementations by name and by taxonomy value.
+
+    Parameters
+    ----------
+    extractors, models : mapping of name to class
+        An implementation whose taxonomy value is not in `taxonomy`, or whose name is another's,
+        raises ValueError.
+    taxonomy : Taxonomy
+    """
+
+    def __init__(
+        self,
+        extractors: Mapping[str, type[Extractor]],
+        models: Mapping[str, type[Model]],
+        taxonomy: Taxonomy,
+    ) -> None:
+        shared = sorted(extractors.keys() & models.keys())
+        if shared:
+            raise ValueError(f"both an extractor and a model are named {', '.join(shared)}")
+        self.extractors: Mapping[str, type[Extractor]] = MappingProxyType(dict(extractors))
+        self.models: Mapping[str, type[Model]] = MappingProxyType(dict(models))
+        self.taxonomy = taxonomy
+        self._extractors_for = _by_value("extractor", self.extractors, taxonomy)
+        self._models_for = _by_value("model", self.models, taxonomy)
+
+    def extractor(self, name: str) -> type[Extractor]:
+        """Return the extractor of this name; InvalidValueError with the nearest name."""
+        if name not in self.extractors:
+            raise unknown_name("extractor", name, self.extractors)
+        return self.extractors[name]
+
+    def model(self, name: str) -> type[Model]:
+        """Return the model of this name; InvalidValueError with the nearest name."""
+        if name not in self.models:
+            raise unknown_name("model", name, self.models)
+        return self.models[name]
+
+    def extractors_for(self, value: str) -> tuple[type[Extractor], ...]:
+        """Return the extractors implementing a taxonomy value, by name; empty if none does."""
+        self.taxonomy.require("extractor", value)
+        return tuple(self.extractors[name] for name in self._extractors_for.get(value, ()))
+
+    def models_for(self, value: str) -> tuple[type[Model], ...]:
+        """Return the models implementing a taxonomy value, by name; empty if none does."""
+        self.taxonomy.require("model", value)
+        return tuple(self.models[name] for name in self._models_for.get(value, ()))
+
+    def listing(self, role: Role | None = None) -> tuple[Implementation, ...]:
+        """Every implementation, extractors first, each by taxonomy order and name."""
+        found = [
+            *(self._describe_extractor(c) for c in self.extractors.values()),
+            *(self._describe_model(c) for c in self.models.values()),
+        ]
+        order = {
+            r: {v: i for i, v in enumerate(self.taxonomy.values(r))} for r in ("extractor", "model")
+        }
+        found.sort(key=lambda i: (i.role, order[i.role][i.taxonomy], i.name))
+        return tuple(i for i in found if role is None or i.role == role)
+
+    def gaps(self) -> tuple[tuple[str, str], ...]:
+        """(attribute, value) of every extractor and model of the taxonomy without implementation.
+
+        "None" needs none; a parent such as ECM is covered by any of its kinds.
+        """
+        return tuple(
+            (attribute, value)
+            for attribute, known in (
+                ("extractor", self._extractors_for),
+                ("model", self._models_for),
+            )
+            for value in self.taxonomy.values(attribute)
+            if value != NO_IMPLEMENTATION_STATED
+            and not any(kind in known for kind in self.taxonomy.kinds(attribute, value))
+        )
+
+    def _describe_extractor(self, cls: type[Extractor]) -> Implementation:
+        return Implementation(
+            name=cls.name,
+            role="extractor",
+            taxonomy=cls.taxonomy,
+            category=self.taxonomy.category("extractor", cls.taxonomy),
+            observation=str(cls.observation),
+            kind=str(cls.kind),
+            accepts=None,
+            labels=tuple(cls.labels),
+            studies=tuple(cls.studies),
+            origin=cls.origin,
+            version=cls.version,
+            summary=_summary(cls),
+        )
+
+    def _describe_model(self, cls: type[Model]) -> Implementation:
+        return Implementation(
+            name=cls.name,
+            role="model",
+            taxonomy=cls.taxonomy,
+            category=self.taxonomy.category("model", cls.taxonomy),
+            observation=None,
+            kind=None,
+            accepts=tuple(sorted(str(kind) for kind in cls.accepts)),
+            labels=tuple(cls.labels),
+            studies=tuple(cls.studies),
+            origin=cls.origin,
+            version=cls.version,
+            summary=_summary(cls),
+        )
+
+
+@lru_cache(maxsize=1)
+def catalogue() -> Catalogue:
+    """Everything implemented in `algorithms`, against the survey's taxonomy."""
+    discovery = importlib.import_module("algorithms.discovery")
+    return Catalogue(
+        discovery.discover_extractors(),
+        discovery.discover_models(),
+        registered.facts().taxonomy,
+    )
+
+
+def _by_value(
+    attribute: Role,
+    found: Mapping[str, type[Extractor | Model]],
+    taxonomy: Taxonomy,
+) -> dict[str, tuple[str, ...]]:
+    names: dict[str, list[str]] = {}
+    for name, cls in sorted(found.items()):
+        taxonomy.require(attribute, cls.taxonomy, parameter=f"{attribute} {name}")
+        names.setdefault(cls.taxonomy, []).append(name)
+    return {value: tuple(n) for value, n in names.items()}
+
+
+def _summary(cls: type) -> str:
+    """Return the first paragraph of the class's own docstring, on one line."""
+    text = inspect.cleandoc(cls.__doc__ or "")
+    return " ".join(_first_paragraph(text.splitlines()))
+
+
+def _first_paragraph(lines: Iterable[str]) -> list[str]:
+    paragraph: list[str] = []
+    for line in lines:
+        if not line.strip():
+            break
+        paragraph.append(line.strip())
+    return paragraph

@@ -1,0 +1,308 @@
+"""Flows of studies through a chain of attributes: what the survey's Sankey diagrams show.
+
+A study with several values at a level flows through every combination of its values, because the
+mapping says which values a study has and not which of them belong together. Nothing else is
+linked: two values meet in a link only if one study has both. Levels implied by the same attribute
+(`model_category` and `model`) move together, so a category links to its own models only.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from types import MappingProxyType
+from typing import Literal
+
+from registry import studies as registered
+from registry.studies import Facts, Study
+from registry.taxonomy import InvalidValueError, Taxonomy, attribute_of, unknown_name
+
+Counting = Literal["studies", "fractional"]
+COUNTINGS: tuple[Counting, ...] = ("studies", "fractional")
+
+Where = Mapping[str, str | Collection[str]]
+"""Level -> the values to keep: a study counts if it has one of them at every level named, and
+flows only through those it has."""
+
+CHARTS: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {
+        "error": ("error", "detector", "mask"),
+        "performance": ("accuracy", "mask", "model_category"),
+        "cross-analysis": ("task", "detector", "mask", "model", "extractor"),
+        "task": ("task", "detector", "mask"),
+        "model-sunburst": ("model_category", "calibration", "model"),
+    }
+)
+"""The survey's figures: errorsankey, perfsankey, casankey, its task diagram, modelsunburst."""
+
+_GROUPED = {"model": "model_category", "extractor": "extractor_family"}
+
+
+@dataclass(frozen=True)
+class Node:
+    """A value at a level. ``count`` is its studies' number, or their weight if fractional."""
+
+    id: str
+    level: str
+    value: str
+    name: str
+    count: float
+    studies: tuple[str, ...]
+
+    def to_dict(self) -> dict[str, object]:
+        """As in the HTTP answer."""
+        return {
+            "id": self.id,
+            "level": self.level,
+            "value": self.value,
+            "name": self.name,
+            "count": self.count,
+            "studies": list(self.studies),
+        }
+
+
+@dataclass(frozen=True)
+class Link:
+    """The studies that have both values; ``source`` and ``target`` are node ids."""
+
+    source: str
+    target: str
+    value: float
+    studies: tuple[str, ...]
+
+    def to_dict(self) -> dict[str, object]:
+        """As in the HTTP answer."""
+        return {
+            "source": self.source,
+            "target": self.target,
+            "value": self.value,
+            "studies": list(self.studies),
+        }
+
+
+@dataclass(frozen=True)
+class LeftOut:
+    """The studies without a value at a level: missing from its links, not from the count."""
+
+    level: str
+    studies: tuple[str, ...]
+
+    def to_dict(self) -> dict[str, object]:
+        """As in the HTTP answer."""
+        return {"level": self.level, "count": len(self.studies), "studies": list(self.studies)}
+
+
+@dataclass(frozen=True)
+class Flows:
+    """Nodes and links of a chain of levels.
+
+    ``studies`` are all that met the filter; those of them without a value at some level stand in
+    ``left_out``. Counting studies, they still count at the levels where they have values;
+    fractionally they are left out of the whole chart, so that inflow equals outflow.
+    """
+
+    chart: str | None
+    levels: tuple[str, ...]
+    counting: Counting
+    studies: tuple[str, ...]
+    nodes: tuple[Node, ...]
+    links: tuple[Link, ...]
+    left_out: tuple[LeftOut, ...]
+
+    def to_dict(self) -> dict[str, object]:
+        """As in the HTTP answer."""
+        return {
+            "chart": self.chart,
+            "levels": list(self.levels),
+            "counting": self.counting,
+            "studies": len(self.studies),
+            "nodes": [node.to_dict() for node in self.nodes],
+            "links": [link.to_dict() for link in self.links],
+            "left_out": [left.to_dict() for left in self.left_out],
+        }
+
+
+def chart(
+    name: str,
+    where: Where | None = None,
+    counting: Counting = "studies",
+    *,
+    grouped: bool = False,
+    facts: Facts | None = None,
+) -> Flows:
+    """One of the survey's charts; ``grouped`` shows categories instead of models and extractors.
+
+    Raises InvalidValueError naming the nearest chart, level or value.
+    """
+    if name not in CHARTS:
+        raise unknown_name("chart", name, CHARTS)
+    levels = CHARTS[name]
+    if grouped:
+        # Where the chart already has the category, its detail adds nothing and is dropped.
+        levels = tuple(dict.fromkeys(_GROUPED.get(level, level) for level in levels))
+    return _flows(name, levels, where or {}, counting, facts or registered.facts())
+
+
+def flows(
+    levels: Sequence[str],
+    where: Where | None = None,
+    counting: Counting = "studies",
+    facts: Facts | None = None,
+) -> Flows:
+    """Flows of studies through `levels`, left to right.
+
+    Parameters
+    ----------
+    levels : sequence of str
+        Two or more different attributes or pseudo-levels (`registry.taxonomy.LEVELS`).
+    where : mapping of level to value or values, optional
+        Keeps studies having one of the values at each level named (a parent such as ECM stands
+        for its kinds too), and of those studies only these values.
+    counting : {"studies", "fractional"}
+        Distinct studies on a link; or each study as weight 1, split evenly over the different
+        combinations of its values at `levels`.
+    facts : Facts, optional
+        The survey's by default.
+
+    Raises
+    ------
+    InvalidValueError
+        For an unknown level, value or counting, or a chain of fewer than two different levels.
+    """
+    return _flows(None, tuple(levels), where or {}, counting, facts or registered.facts())
+
+
+def allowed_values(where: Where, taxonomy: Taxonomy) -> dict[str, frozenset[str]]:
+    """Attribute -> the values that meet every condition on it or on a level it implies."""
+    allowed: dict[str, frozenset[str]] = {}
+    for level, wanted in where.items():
+        if level not in taxonomy.levels:
+            raise unknown_name("level", level, taxonomy.levels)
+        base = attribute_of(level)
+        values: set[str] = set()
+        for value in (wanted,) if isinstance(wanted, str) else wanted:
+            taxonomy.require(level, value)
+            values.update(taxonomy.kinds(level, value) if level == base else (value,))
+        meeting = frozenset(
+            v for v in taxonomy.values(base) if taxonomy.derived(level, v) in values
+        )
+        allowed[base] = allowed.get(base, meeting) & meeting
+    return allowed
+
+
+def _flows(
+    name: str | None, levels: tuple[str, ...], where: Where, counting: str, facts: Facts
+) -> Flows:
+    taxonomy = facts.taxonomy
+    _check_levels(levels, taxonomy)
+    if counting not in COUNTINGS:
+        raise unknown_name("counting", counting, COUNTINGS)
+    mode: Counting = "fractional" if counting == "fractional" else "studies"
+    allowed = allowed_values(where, taxonomy)
+    met = [study for study in facts.studies.values() if _meets(study, allowed)]
+
+    node_weight: dict[tuple[int, str], Fraction] = {}
+    link_weight: dict[tuple[int, str, str], Fraction] = {}
+    node_studies: dict[tuple[int, str], dict[str, None]] = {}
+    link_studies: dict[tuple[int, str, str], dict[str, None]] = {}
+    left_out: dict[str, list[str]] = {}
+    for study in met:
+        combinations = _combinations(study, levels, allowed, taxonomy)
+        missing = [at for at, value in enumerate(combinations[0]) if value is None]
+        for at in missing:
+            left_out.setdefault(levels[at], []).append(study.key)
+        if missing and mode == "fractional":
+            continue
+        share = Fraction(1, len(combinations))
+        for combination in combinations:
+            for at, value in enumerate(combination):
+                if value is None:
+                    continue
+                node = (at, value)
+                node_weight[node] = node_weight.get(node, Fraction()) + share
+                node_studies.setdefault(node, {})[study.key] = None
+                following = combination[at + 1] if at + 1 < len(levels) else None
+                if following is not None:
+                    link = (at, value, following)
+                    link_weight[link] = link_weight.get(link, Fraction()) + share
+                    link_studies.setdefault(link, {})[study.key] = None
+
+    order = [{v: i for i, v in enumerate(taxonomy.values(level))} for level in levels]
+    nodes = tuple(
+        Node(
+            id=f"{levels[at]}:{value}",
+            level=levels[at],
+            value=value,
+            name=taxonomy.name(levels[at], value),
+            count=float(node_weight[at, value]) if mode == "fractional" else len(keys),
+            studies=tuple(keys),
+        )
+        for (at, value), keys in sorted(
+            node_studies.items(), key=lambda item: (item[0][0], order[item[0][0]][item[0][1]])
+        )
+    )
+    links = tuple(
+        Link(
+            source=f"{levels[at]}:{source}",
+            target=f"{levels[at + 1]}:{target}",
+            value=float(link_weight[at, source, target]) if mode == "fractional" else len(keys),
+            studies=tuple(keys),
+        )
+        for (at, source, target), keys in sorted(
+            link_studies.items(),
+            key=lambda item: (
+                item[0][0],
+                order[item[0][0]][item[0][1]],
+                order[item[0][0] + 1][item[0][2]],
+            ),
+        )
+    )
+    return Flows(
+        chart=name,
+        levels=levels,
+        counting=mode,
+        studies=tuple(study.key for study in met),
+        nodes=nodes,
+        links=links,
+        left_out=tuple(
+            LeftOut(level, tuple(left_out[level])) for level in levels if level in left_out
+        ),
+    )
+
+
+def _check_levels(levels: tuple[str, ...], taxonomy: Taxonomy) -> None:
+    for level in levels:
+        if level not in taxonomy.levels:
+            raise unknown_name("level", level, taxonomy.levels)
+    if len(levels) < 2 or len(set(levels)) < len(levels):
+        raise InvalidValueError("levels", ",".join(levels), "two or more different levels")
+
+
+def _meets(study: Study, allowed: Mapping[str, frozenset[str]]) -> bool:
+    return all(not values.isdisjoint(study.of(a)) for a, values in allowed.items())
+
+
+def _combinations(
+    study: Study,
+    levels: tuple[str, ...],
+    allowed: Mapping[str, frozenset[str]],
+    taxonomy: Taxonomy,
+) -> list[tuple[str | None, ...]]:
+    """Return the different combinations of a study's values at `levels`; None where it has none."""
+    bases = tuple(dict.fromkeys(attribute_of(level) for level in levels))
+    at = [bases.index(attribute_of(level)) for level in levels]
+    choices: list[Iterable[str | None]] = [
+        [v for v in study.of(base) if base not in allowed or v in allowed[base]] or [None]
+        for base in bases
+    ]
+    return list(
+        dict.fromkeys(
+            tuple(
+                None if (value := row[i]) is None else taxonomy.derived(level, value)
+                for level, i in zip(levels, at, strict=True)
+            )
+            for row in itertools.product(*choices)
+        )
+    )

@@ -1,0 +1,221 @@
+"""The table of paths: every task > detector > mask > model > extractor that studies took.
+
+Built once from the facts. Study sets are integers, one bit a study, so that meeting a requirement
+is an intersection and a count.
+"""
+
+from __future__ import annotations
+
+import itertools
+import weakref
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from registry.flows import LeftOut
+from registry.measured import Measured, Measurements, Route
+from registry.requirements import LIMITS, Requirements
+from registry.studies import Facts
+from registry.taxonomy import ATTRIBUTES
+
+PATH_LEVELS = ("task", "detector", "mask", "model", "extractor")
+STUDY_ATTRIBUTES = tuple(a for a in ATTRIBUTES if a not in PATH_LEVELS)
+
+_SETS_KEPT = 4096
+
+
+@dataclass(frozen=True)
+class Answer:
+    """One path that meets the requirements, its studies as bits, and on what evidence.
+
+    ``architecture``, ``with_model`` and ``studies`` are the studies that took the path as far as
+    its mask, its model, and all along, each less those that do not meet the requirements.
+    """
+
+    path: int
+    architecture: int
+    with_model: int
+    studies: int
+    measured: Measured | None
+    basis: tuple[tuple[str, str], ...]  # (limit, "measured" | "stated")
+
+
+class PathTable:
+    """Paths and study sets of some facts.
+
+    A path exists if one study has all five of its values; a study without a value at one of the
+    levels is on none and stands in ``left_out``.
+    """
+
+    def __init__(self, facts: Facts) -> None:
+        self.taxonomy = facts.taxonomy
+        self.keys = facts.keys
+        self.everyone = (1 << len(self.keys)) - 1
+        self.having: dict[tuple[str, str], int] = {}
+        took: dict[tuple[str, ...], int] = {}
+        missing: dict[str, list[str]] = {}
+        self.numbers: dict[str, tuple[float | None, ...]] = {
+            "max_error_deg": tuple(s.number("accuracy_deg") for s in facts.studies.values()),
+            "min_fov_deg": tuple(s.number("fov_deg") for s in facts.studies.values()),
+            "max_latency_us": (None,) * len(self.keys),  # no study's latency is in the mapping
+        }
+        for at, study in enumerate(facts.studies.values()):
+            bit = 1 << at
+            for attribute in ATTRIBUTES:
+                for value in study.of(attribute):
+                    self.having[attribute, value] = self.having.get((attribute, value), 0) | bit
+            for level in PATH_LEVELS:
+                if not study.of(level):
+                    missing.setdefault(level, []).append(study.key)
+            for path in itertools.product(*(study.of(level) for level in PATH_LEVELS)):
+                for end in range(3, len(PATH_LEVELS) + 1):
+                    took[path[:end]] = took.get(path[:end], 0) | bit
+        self.order = order = [
+            {v: i for i, v in enumerate(self.taxonomy.values(a))} for a in PATH_LEVELS
+        ]
+        self.paths: tuple[tuple[str, ...], ...] = tuple(
+            sorted(
+                (path for path in took if len(path) == len(PATH_LEVELS)),
+                key=lambda path: [order[i][v] for i, v in enumerate(path)],
+            )
+        )
+        self.all_paths = (1 << len(self.paths)) - 1
+        self.sets = [(took[p[:3]], took[p[:4]], took[p]) for p in self.paths]
+        self.routes: list[Route] = [(p[1], p[2], p[4], p[3]) for p in self.paths]
+        self.through: dict[tuple[str, str], int] = {}
+        for at, path in enumerate(self.paths):
+            for step in zip(PATH_LEVELS, path, strict=True):
+                self.through[step] = self.through.get(step, 0) | 1 << at
+        self.left_out = tuple(
+            LeftOut(lv, tuple(missing[lv])) for lv in PATH_LEVELS if lv in missing
+        )
+        self._names: dict[int, tuple[str, ...]] = {}
+
+    def studies(self, bits: int) -> tuple[str, ...]:
+        """Return the keys of a study set."""
+        found = self._names.get(bits)
+        if found is None:
+            if len(self._names) >= _SETS_KEPT:
+                self._names.clear()
+            found = tuple(self.keys[at] for at in positions(bits))
+            self._names[bits] = found
+        return found
+
+    def meeting(self, requirements: Requirements, measurements: Measurements) -> list[Answer]:
+        """Return the paths that meet `requirements`, in taxonomy order.
+
+        A limit is judged on the path's measured rows; on the studies' stated numbers for what no
+        row measures. What is neither measured nor stated does not meet a limit.
+        """
+        studies = self.meeting_studies(requirements)
+        limits = [
+            (name, bound) for name in LIMITS if (bound := requirements.limit(name)) is not None
+        ]
+        stated = {name: self.stated_within(name, bound) for name, bound in limits}
+        answers = []
+        for at in positions(self.meeting_paths(requirements)):
+            architecture, with_model, taken = self.sets[at]
+            if not taken & studies:
+                continue
+            for row in measurements.on(self.routes[at]) or (None,):
+                kept = studies
+                basis: list[tuple[str, str]] = []
+                for name, bound in limits:
+                    number = None if row is None else measured_number(name, row)
+                    if number is None:
+                        kept &= stated[name]
+                        basis.append((name, "stated"))
+                    elif within(name, number, bound):
+                        basis.append((name, "measured"))
+                    else:
+                        kept = 0
+                        break
+                if taken & kept:
+                    answers.append(
+                        Answer(
+                            at,
+                            architecture & kept,
+                            with_model & kept,
+                            taken & kept,
+                            row,
+                            tuple(basis),
+                        )
+                    )
+                    break
+        return answers
+
+    def meeting_paths(self, requirements: Requirements) -> int:
+        """Return the paths (bits) whose own values are asked for and not excluded."""
+        kept = self.all_paths
+        for attribute in PATH_LEVELS:
+            if attribute in requirements.include:
+                kept &= self.any_path(attribute, requirements.include[attribute])
+            if attribute in requirements.exclude:
+                kept &= ~self.any_path(attribute, requirements.exclude[attribute])
+        return kept
+
+    def meeting_studies(self, requirements: Requirements) -> int:
+        """Return the studies (bits) whose error and accuracy are asked for and not excluded."""
+        kept = self.everyone
+        for attribute in STUDY_ATTRIBUTES:
+            if attribute in requirements.include:
+                kept &= self.any_study(attribute, requirements.include[attribute])
+            if attribute in requirements.exclude:
+                kept &= ~self.any_study(attribute, requirements.exclude[attribute])
+        return kept
+
+    def any_path(self, attribute: str, values: Iterable[str]) -> int:
+        """Return the paths (bits) through one of the values or their kinds."""
+        found = 0
+        for value in values:
+            for kind in self.taxonomy.kinds(attribute, value):
+                found |= self.through.get((attribute, kind), 0)
+        return found
+
+    def any_study(self, attribute: str, values: Iterable[str]) -> int:
+        """Return the studies (bits) having one of the values or their kinds."""
+        found = 0
+        for value in values:
+            for kind in self.taxonomy.kinds(attribute, value):
+                found |= self.having.get((attribute, kind), 0)
+        return found
+
+    def stated_within(self, limit: str, bound: float) -> int:
+        """Return the studies (bits) whose stated number keeps a limit."""
+        found = 0
+        for at, number in enumerate(self.numbers[limit]):
+            if number is not None and within(limit, number, bound):
+                found |= 1 << at
+        return found
+
+
+_TABLES: weakref.WeakKeyDictionary[Facts, PathTable] = weakref.WeakKeyDictionary()
+
+
+def path_table(facts: Facts) -> PathTable:
+    """Return the path table of these facts, built at the first call."""
+    table = _TABLES.get(facts)
+    if table is None:
+        table = _TABLES[facts] = PathTable(facts)
+    return table
+
+
+def positions(bits: int) -> Iterator[int]:
+    """Yield the positions of the set bits, lowest first."""
+    while bits:
+        lowest = bits & -bits
+        yield lowest.bit_length() - 1
+        bits ^= lowest
+
+
+def measured_number(limit: str, row: Measured) -> float | None:
+    """Return what a row measured of the quantity a limit is about."""
+    if limit == "max_error_deg":
+        return row.rms_deg
+    if limit == "min_fov_deg":
+        return None if row.half_fov_deg is None else 2 * row.half_fov_deg
+    return row.latency_us
+
+
+def within(limit: str, number: float, bound: float) -> bool:
+    """Return whether a number keeps a limit; a bound itself does."""
+    return number >= bound if limit.startswith("min_") else number <= bound

@@ -1,0 +1,214 @@
+"""The studies of the survey, every value with its provenance.
+
+`facts()` reads the survey once; everything in `registry` that needs studies takes a `Facts`, so
+that other tables can be handed in.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Protocol
+
+import survey_data
+from registry.taxonomy import (
+    NUMERIC_ATTRIBUTES,
+    Taxonomy,
+    TaxonomyEntry,
+    unknown_name,
+)
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+@dataclass(frozen=True)
+class AttributeValue:
+    """A value of one of a study's attributes, and where it comes from."""
+
+    value: str
+    basis: str  # survey-table, survey-text, abstract, title, inferred, recalled
+    source: str
+    note: str
+
+
+@dataclass(frozen=True)
+class Study:
+    """One study of the survey's mapping.
+
+    ``values`` holds the stated values only; an attribute whose cell is empty is absent from it
+    and stands in ``unknown`` with the note beside the empty cell.
+    """
+
+    key: str
+    title: str
+    authors: str
+    year: int | None
+    venue: str
+    doi: str
+    url: str
+    identity: str  # confirmed, recalled, ambiguous, unknown
+    note: str
+    values: Mapping[str, tuple[AttributeValue, ...]]
+    unknown: Mapping[str, str]
+
+    def of(self, attribute: str) -> tuple[str, ...]:
+        """Return the stated values of an attribute, without repetition; empty if unknown."""
+        return tuple(dict.fromkeys(v.value for v in self.values.get(attribute, ())))
+
+    def number(self, attribute: str) -> float | None:
+        """Return the stated `accuracy_deg` or `fov_deg` (the best of several); None if none."""
+        if attribute not in NUMERIC_ATTRIBUTES:
+            raise unknown_name("attribute", attribute, NUMERIC_ATTRIBUTES)
+        numbers = [float(text) for text in self.of(attribute)]
+        if not numbers:
+            return None
+        return min(numbers) if attribute == "accuracy_deg" else max(numbers)
+
+    def summary(self) -> dict[str, object]:
+        """Identity and values, as in a list of studies."""
+        return {
+            "key": self.key,
+            "title": self.title,
+            "authors": self.authors,
+            "year": self.year,
+            "venue": self.venue,
+            "doi": self.doi,
+            "url": self.url,
+            "identity": self.identity,
+            "values": {attribute: list(self.of(attribute)) for attribute in self.values},
+        }
+
+    def to_dict(self) -> dict[str, object]:
+        """Return the summary and every cell with its provenance, empty cells included."""
+        cells = [
+            {
+                "attribute": attribute,
+                "value": cell.value,
+                "basis": cell.basis,
+                "source": cell.source,
+                "note": cell.note,
+            }
+            for attribute, cells in self.values.items()
+            for cell in cells
+        ]
+        cells += [
+            {"attribute": a, "value": "", "basis": "unknown", "source": "", "note": note}
+            for a, note in self.unknown.items()
+        ]
+        return {**self.summary(), "note": self.note, "attributes": cells}
+
+
+@dataclass(frozen=True, eq=False)
+class Facts:
+    """The studies and the vocabulary they are described with."""
+
+    studies: Mapping[str, Study]
+    taxonomy: Taxonomy
+
+    @cached_property
+    def keys(self) -> tuple[str, ...]:
+        """Study keys in order; the position of a study is its bit in a study set."""
+        return tuple(self.studies)
+
+    def study(self, key: str) -> Study:
+        """One study; InvalidValueError naming the nearest key if there is none."""
+        if key not in self.studies:
+            raise unknown_name("study", key, self.studies)
+        return self.studies[key]
+
+
+class Tables(Protocol):
+    """The three tables read here, as `survey_data.load` gives them."""
+
+    @property
+    def studies(self) -> pd.DataFrame:
+        """One row a study."""
+        ...
+
+    @property
+    def attributes(self) -> pd.DataFrame:
+        """One row a value."""
+        ...
+
+    @property
+    def taxonomy(self) -> pd.DataFrame:
+        """One row a value of the vocabulary."""
+        ...
+
+
+@lru_cache(maxsize=1)
+def facts() -> Facts:
+    """Return the survey's studies and taxonomy, read once."""
+    return facts_from(survey_data.load())
+
+
+def studies() -> Mapping[str, Study]:
+    """Every study of the survey by key, in the table's order."""
+    return facts().studies
+
+
+def study(key: str) -> Study:
+    """One study of the survey; InvalidValueError naming the nearest key if there is none."""
+    return facts().study(key)
+
+
+def facts_from(tables: Tables) -> Facts:
+    """Facts from tables with the survey's columns.
+
+    Raises InvalidValueError for a value outside the taxonomy and ValueError for attributes of a
+    study that is not in the table of studies.
+    """
+    taxonomy = Taxonomy(
+        TaxonomyEntry(
+            row["attribute"], row["value"], row["name"], row["category"], row["survey_section"]
+        )
+        for row in _rows(tables.taxonomy)
+    )
+    stated: dict[str, dict[str, list[AttributeValue]]] = {}
+    unknown: dict[str, dict[str, str]] = {}
+    for row in _rows(tables.attributes):
+        key, attribute, value = row["study"], row["attribute"], row["value"]
+        if value == "":
+            unknown.setdefault(key, {})[attribute] = row["note"]
+            continue
+        if attribute not in NUMERIC_ATTRIBUTES:
+            taxonomy.require(attribute, value, parameter=f"{key} {attribute}")
+        cell = AttributeValue(value, row["basis"], row["source"], row["note"])
+        stated.setdefault(key, {}).setdefault(attribute, []).append(cell)
+    found: dict[str, Study] = {}
+    for row in _rows(tables.studies):
+        key = row["key"]
+        if key in found:
+            raise ValueError(f"study {key!r} stands twice in the table of studies")
+        found[key] = Study(
+            key=key,
+            title=row["title"],
+            authors=row["authors"],
+            year=int(float(row["year"])) if row["year"] else None,
+            venue=row["venue"],
+            doi=row["doi"],
+            url=row["url"],
+            identity=row["identity"],
+            note=row["note"],
+            values=MappingProxyType(
+                {attribute: tuple(cells) for attribute, cells in stated.pop(key, {}).items()}
+            ),
+            unknown=MappingProxyType(unknown.pop(key, {})),
+        )
+    strangers = sorted({*stated, *unknown})
+    if strangers:
+        raise ValueError(
+            f"attributes of studies not in the table of studies: {', '.join(strangers)}"
+        )
+    return Facts(MappingProxyType(found), taxonomy)
+
+
+def _rows(frame: pd.DataFrame) -> Iterable[dict[str, str]]:
+    """Rows as text; an empty cell is ""."""
+    filled = frame.astype(object).where(frame.notna(), "")
+    columns = [str(column) for column in filled.columns]
+    for row in filled.itertuples(index=False, name=None):
+        yield {column: str(cell) for column, cell in zip(columns, row, strict=True)}

@@ -1,0 +1,244 @@
+"""The survey's vocabulary: the values each attribute may take, their names and categories.
+
+A *level* is an attribute, or something every value of an attribute implies: a model's category
+and whether its calibration runs online, an extractor's family.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+
+ATTRIBUTES = ("task", "error", "accuracy", "detector", "mask", "model", "extractor")
+"""The categorical attributes of the survey's mapping."""
+
+NUMERIC_ATTRIBUTES = ("accuracy_deg", "fov_deg")
+"""Numbers that studies state: accuracy and full field of view, in degrees."""
+
+DERIVED_LEVELS: Mapping[str, str] = MappingProxyType(
+    {"model_category": "model", "calibration": "model", "extractor_family": "extractor"}
+)
+"""Pseudo-level -> the attribute whose values imply it."""
+
+LEVELS = (*ATTRIBUTES, *DERIVED_LEVELS)
+
+NO_IMPLEMENTATION_STATED = "None"
+"""The taxonomy's own value for a study without a model, an extractor or an error."""
+
+ONLINE_MODELS: Mapping[str, str] = MappingProxyType(
+    {
+        "ACM": "model:assem - compensates during operation, typically by iterative online filters",
+        "ECM": "model:elec - electrical effects, kind not stated, filtered during operation",
+        "ECM/Noise": "model:mnc - online iterative calibration such as Kalman filters",
+    }
+)
+"""The models the survey describes as calibrated online, with its section and reason.
+
+Every other model stands under its list of offline techniques (sec:ssmodrep). Networks trained in
+orbit are an option it mentions (model:dnn), not their rule, so they count as offline; so does the
+angular loss model (model:nonlin), a fixed response curve.
+"""
+
+_CALIBRATION_NAMES = {"offline": "Offline calibration", "online": "Online calibration"}
+
+
+class InvalidValueError(ValueError):
+    """A value that is not what its parameter takes.
+
+    Attributes
+    ----------
+    parameter, value
+        What was given.
+    expected : str
+        What would have been right, in words.
+    nearest : str or None
+        The most similar valid value; None if nothing is similar.
+    """
+
+    def __init__(
+        self, parameter: str, value: object, expected: str, nearest: str | None = None
+    ) -> None:
+        self.parameter = parameter
+        self.value = value
+        self.expected = expected
+        self.nearest = nearest
+        hint = f"; did you mean {nearest!r}?" if nearest is not None else ""
+        super().__init__(f"{parameter}: expected {expected}; got {value!r}{hint}")
+
+    def to_dict(self) -> dict[str, object]:
+        """`parameter`, `value`, `expected`, `nearest` as in a problem document."""
+        return {
+            "parameter": self.parameter,
+            "value": self.value,
+            "expected": self.expected,
+            "nearest": self.nearest,
+        }
+
+
+@dataclass(frozen=True)
+class TaxonomyEntry:
+    """One value of one attribute."""
+
+    attribute: str
+    value: str
+    name: str
+    category: str
+    section: str  # label in the survey, "" where it has none
+
+    def to_dict(self) -> dict[str, str]:
+        """`value`, `name`, `category`, `section`."""
+        return {
+            "value": self.value,
+            "name": self.name,
+            "category": self.category,
+            "section": self.section,
+        }
+
+
+class Taxonomy:
+    """The values of every attribute, in the survey's order.
+
+    Parameters
+    ----------
+    entries : iterable of TaxonomyEntry
+        A repeated (attribute, value) raises ValueError.
+    """
+
+    def __init__(self, entries: Iterable[TaxonomyEntry]) -> None:
+        table: dict[str, dict[str, TaxonomyEntry]] = {}
+        for entry in entries:
+            values = table.setdefault(entry.attribute, {})
+            if entry.value in values:
+                raise ValueError(f"taxonomy has {entry.attribute} {entry.value!r} twice")
+            values[entry.value] = entry
+        self._entries = table
+        self._levels = {level: self._level_names(level) for level in self.levels}
+
+    @property
+    def attributes(self) -> tuple[str, ...]:
+        """The attributes that have values here."""
+        return tuple(self._entries)
+
+    @property
+    def levels(self) -> tuple[str, ...]:
+        """Attributes and the pseudo-levels their values imply."""
+        derived = [level for level, base in DERIVED_LEVELS.items() if base in self._entries]
+        return (*self._entries, *derived)
+
+    def entries(self, attribute: str) -> tuple[TaxonomyEntry, ...]:
+        """Every entry of `attribute`; InvalidValueError if there is no such attribute."""
+        return tuple(self._values_of(attribute).values())
+
+    def entry(self, attribute: str, value: str) -> TaxonomyEntry:
+        """One entry; InvalidValueError with the nearest value if there is none."""
+        found = self._values_of(attribute).get(value)
+        if found is None:
+            raise self._unknown_value(attribute, value)
+        return found
+
+    def values(self, level: str) -> tuple[str, ...]:
+        """Return the values of an attribute or pseudo-level."""
+        return tuple(self._names_of(level))
+
+    def name(self, level: str, value: str) -> str:
+        """Return the full name of `value`; InvalidValueError if it is not one of `level`."""
+        self.require(level, value)
+        return self._levels[level][value]
+
+    def category(self, attribute: str, value: str) -> str:
+        """Return the category of `value`; InvalidValueError if it is not one of `attribute`."""
+        return self.entry(attribute, value).category
+
+    def contains(self, level: str, value: str) -> bool:
+        """Whether `value` is one of `level`."""
+        return value in self._names_of(level)
+
+    def require(self, level: str, value: str, parameter: str | None = None) -> None:
+        """Raise InvalidValueError, naming the nearest value, unless `level` has `value`."""
+        if value not in self._names_of(level):
+            raise self._unknown_value(level, value, parameter)
+
+    def nearest(self, level: str, text: str) -> str | None:
+        """Return the value of `level` most like `text`, by value or name; None if none is."""
+        names = self._names_of(level)
+        spelled = {name.casefold(): value for value, name in names.items()}
+        spelled |= {value.casefold(): value for value in names}
+        return nearest(text, spelled)
+
+    def kinds(self, attribute: str, value: str) -> tuple[str, ...]:
+        """`value` and, where it is a parent such as ECM or ICM, its kinds (ECM/Noise, ...)."""
+        self.require(attribute, value)
+        prefix = f"{value}/"
+        return (value, *(v for v in self._entries[attribute] if v.startswith(prefix)))
+
+    def derived(self, level: str, value: str) -> str:
+        """Return what `value` of the level's attribute means at `level`."""
+        if level not in DERIVED_LEVELS:
+            return value
+        if level == "calibration":
+            if value == NO_IMPLEMENTATION_STATED:
+                return NO_IMPLEMENTATION_STATED
+            return "online" if value in ONLINE_MODELS else "offline"
+        return self.category(DERIVED_LEVELS[level], value)
+
+    def to_dict(self) -> dict[str, list[dict[str, str]]]:
+        """Attribute -> its entries."""
+        return {a: [e.to_dict() for e in values.values()] for a, values in self._entries.items()}
+
+    def _values_of(self, attribute: str) -> dict[str, TaxonomyEntry]:
+        if attribute not in self._entries:
+            raise unknown_name("attribute", attribute, self._entries)
+        return self._entries[attribute]
+
+    def _names_of(self, level: str) -> dict[str, str]:
+        if level not in self._levels:
+            raise unknown_name("level", level, self._levels)
+        return self._levels[level]
+
+    def _unknown_value(
+        self, level: str, value: str, parameter: str | None = None
+    ) -> InvalidValueError:
+        return InvalidValueError(
+            parameter or level,
+            value,
+            f"one of {', '.join(self._names_of(level))}",
+            self.nearest(level, str(value)),
+        )
+
+    def _level_names(self, level: str) -> dict[str, str]:
+        if level not in DERIVED_LEVELS:
+            return {value: entry.name for value, entry in self._entries[level].items()}
+        base = self._entries[DERIVED_LEVELS[level]]
+        implied = dict.fromkeys(self.derived(level, value) for value in base)
+        return {value: _CALIBRATION_NAMES.get(value, value) for value in implied}
+
+
+def attribute_of(level: str) -> str:
+    """Return the attribute a level is read from: itself, or the one that implies it."""
+    return DERIVED_LEVELS.get(level, level)
+
+
+def nearest(text: str, candidates: Iterable[str] | Mapping[str, str]) -> str | None:
+    """Return the candidate most like `text`, ignoring case; None if none is like it.
+
+    A mapping gives what each spelling stands for.
+    """
+    spelled = (
+        {key.casefold(): value for key, value in candidates.items()}
+        if isinstance(candidates, Mapping)
+        else {key.casefold(): key for key in candidates}
+    )
+    found = difflib.get_close_matches(text.casefold(), spelled, n=1, cutoff=0.5)
+    return spelled[found[0]] if found else None
+
+
+def unknown_name(
+    parameter: str, value: object, names: Sequence[str] | Iterable[str]
+) -> InvalidValueError:
+    """Return the error for a name that is none of `names`."""
+    known = list(names)
+    return InvalidValueError(
+        parameter, value, f"one of {', '.join(known)}", nearest(str(value), known)
+    )
