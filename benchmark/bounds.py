@@ -153,7 +153,7 @@ def _batch(
 
 
 def _projected(sun: Floats, covariance: Floats) -> tuple[Floats, Floats]:
-    """Standard deviations of alpha and beta in degrees, NaN where s_z <= 0."""
+    """Return standard deviations of alpha and beta in degrees, NaN where s_z <= 0."""
     first, second = tangent_axes(sun)
     out = []
     for axis in (1, 0):

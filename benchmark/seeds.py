@@ -8,7 +8,7 @@ import numpy as np
 
 
 def seed_sequence(*names: str | int) -> np.random.SeedSequence:
-    """The seed of a named stream: SHA-256 over the names, 256 bits of entropy.
+    """Return the seed of a named stream: SHA-256 over the names, 256 bits of entropy.
 
     Parameters
     ----------
@@ -29,5 +29,5 @@ def seed_sequence(*names: str | int) -> np.random.SeedSequence:
 
 
 def generator(*names: str | int) -> np.random.Generator:
-    """A PCG-64 generator of the named stream (see `seed_sequence`)."""
+    """Return a PCG-64 generator of the named stream (see `seed_sequence`)."""
     return np.random.Generator(np.random.PCG64(seed_sequence(*names)))

@@ -41,7 +41,7 @@ def names() -> tuple[str, ...]:
 
 
 def get(name: str) -> Preset:
-    """The dataset of this name.
+    """Return the dataset of this name.
 
     Raises
     ------

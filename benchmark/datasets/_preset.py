@@ -112,8 +112,8 @@ class Preset:
         Nominal design; `geometry_for` gives a condition's own.
     setups
         The conditions by name.
-    field
-        Directions of the splits.
+    directions
+        Sun directions of the splits.
     follows
         Study keys whose architecture the dataset follows.
     description, regime
@@ -128,7 +128,7 @@ class Preset:
     units: str
     geometry: SensorGeometry
     setups: Mapping[str, Condition]
-    field: Field
+    directions: Field
     follows: tuple[str, ...]
     description: str
     regime: Mapping[str, Any] = field(default_factory=dict)
@@ -139,7 +139,7 @@ class Preset:
         return tuple(self.setups)
 
     def condition(self, name: str) -> Condition:
-        """The condition of this name; ValueError naming the known ones."""
+        """Return the condition of this name; ValueError naming the known ones."""
         if name not in self.setups:
             raise ValueError(
                 f"dataset {self.name} has no condition {name!r}; it has "
@@ -148,11 +148,11 @@ class Preset:
         return self.setups[name]
 
     def geometry_for(self, condition: str) -> SensorGeometry:
-        """The nominal design under this condition."""
+        """Return the nominal design under this condition."""
         return self.condition(condition).geometry or self.geometry
 
     def fixed_pattern(self, condition: str) -> FixedPattern:
-        """The dataset's one unit as this condition shows it."""
+        """Return the dataset's one unit as this condition shows it."""
         return self.condition(condition).sensor.fixed_pattern(self.name, self.version, "unit")
 
     def scene(self, condition: str, split: str) -> Scene:
@@ -160,7 +160,7 @@ class Preset:
         setup = self.condition(condition)
         known = _split(split)
         names = (self.name, self.version, known)
-        sun = self.field.sun(known, generator(*names, "sun"))
+        sun = self.directions.sun(known, generator(*names, "sun"))
         light, stray = setup.irradiance.draw(len(sun), generator(*names, "irradiance"))
         origin = setup.sensor.origins(sun, generator(*names, "window"))
         albedo = None
@@ -171,7 +171,7 @@ class Preset:
         return Scene(sun, light, stray, origin, albedo)
 
     def generate(self, condition: str, split: str) -> Samples:
-        """The samples of a split: ``calibration`` or ``test``.
+        """Simulate the samples of a split: ``calibration`` or ``test``.
 
         Returns the same numbers whenever, wherever and beside whatever it is called.
 
@@ -205,7 +205,7 @@ class Preset:
     def parameters(self, condition: str) -> dict[str, Any]:
         """Everything the numbers of a condition depend on, as plain JSON values."""
         setup = self.condition(condition)
-        return _plain(
+        plain: dict[str, Any] = _plain(
             {
                 "simulator_version": SIMULATOR_VERSION,
                 "dataset": self.name,
@@ -214,10 +214,11 @@ class Preset:
                 "sensor": setup.sensor,
                 "irradiance": setup.irradiance,
                 "earth": setup.earth,
-                "field": self.field,
+                "directions": self.directions,
                 "geometry": self.geometry_for(condition),
             }
         )
+        return plain
 
     def card(self) -> dict[str, Any]:
         """Everything a reader of the dataset needs, as plain JSON values; renders nothing."""
@@ -239,7 +240,7 @@ class Preset:
             "description": self.description,
             "follows": list(self.follows),
             "geometry": _plain(self.geometry),
-            "splits": self.field.card(),
+            "splits": self.directions.card(),
             "conditions": conditions,
             "regime": _plain(self.regime),
             "seeds": {

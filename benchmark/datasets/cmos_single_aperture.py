@@ -128,7 +128,7 @@ PRESET = Preset(
             _LIGHT,
         ),
     },
-    field=AngleField(_HALF_FOV_DEG),
+    directions=AngleField(_HALF_FOV_DEG),
     follows=("Chang2008", "Rufino2017", "Xie2012"),
     description=(
         "64 x 64 px windows of a 512 x 512 px array behind one round hole. The studies followed "

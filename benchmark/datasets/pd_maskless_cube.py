@@ -69,7 +69,7 @@ PRESET = Preset(
             earth=Earth(),
         ),
     },
-    field=SphereField(),
+    directions=SphereField(),
     follows=("Allgeier2009", "Frezza2022"),
     description=(
         "One photodiode a face, Sun from anywhere on the sphere. The studies followed give the "

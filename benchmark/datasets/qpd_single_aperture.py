@@ -113,7 +113,7 @@ PRESET = Preset(
             geometry=replace(_GEOMETRY, aperture_shape="round"),
         ),
     },
-    field=AngleField(_HALF_FOV_DEG),
+    directions=AngleField(_HALF_FOV_DEG),
     follows=("Boslooper2017", "Faizullin2017"),
     description=(
         "Four photodiodes under one aperture: square as in Boslooper2017, round as in "

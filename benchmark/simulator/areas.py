@@ -1,4 +1,7 @@
-"""Exact areas of intersections of half-planes and discs (compiled; loaded on first use)."""
+"""Exact areas of intersections of half-planes and discs (compiled; loaded on first use).
+
+Lines are rows (a, b, c) of ``a x + b y <= c`` with ``a^2 + b^2 = 1``, discs rows (x, y, radius).
+"""
 
 from __future__ import annotations
 
@@ -10,118 +13,202 @@ from numba import njit
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
+Interval = tuple[float, float]
+
+_EMPTY = (0.0, 0.0)
 
 
-def _convex_area(lines: Floats, discs: Floats) -> float:
-    """Area of ``{a x + b y <= c for all lines} and {inside all discs}`` by Green's theorem.
+def _cut_by_line_py(line: Floats, other: Floats, other_first: bool) -> Interval:
+    """Part of a boundary line on the allowed side of another, as a run of arc length."""
+    a, b, c = line
+    slope = other[1] * a - other[0] * b
+    room = other[2] - c * (other[0] * a + other[1] * b)
+    if abs(slope) >= 1e-14:
+        return (-1e300, room / slope) if slope > 0.0 else (room / slope, 1e300)
+    same = other[0] * a + other[1] * b > 0.0 and room == 0.0
+    if room < 0.0 or (same and other_first):  # of two equal lines only the first one counts
+        return _EMPTY
+    return -1e300, 1e300
 
-    Parameters
-    ----------
-    lines
-        (M, 3) rows a, b, c with ``a^2 + b^2 = 1``.
-    discs
-        (D, 3) rows x, y, radius.
 
-    Returns
-    -------
-    The area; 0 when the intersection is empty. The intersection must be bounded.
+_cut_by_line = njit(cache=True)(_cut_by_line_py)
+
+
+def _cut_by_disc_py(line: Floats, disc: Floats) -> Interval:
+    """Part of a boundary line inside a disc, as a run of arc length."""
+    a, b, c = line
+    x, y = a * c - disc[0], b * c - disc[1]
+    half = b * x - a * y
+    square = half * half - (x * x + y * y - disc[2] * disc[2])
+    if square <= 0.0:
+        return _EMPTY
+    root = math.sqrt(square)
+    return half - root, half + root
+
+
+_cut_by_disc = njit(cache=True)(_cut_by_disc_py)
+
+
+def _line_part_py(i: int, lines: Floats, discs: Floats) -> float:
+    """Green's integral along boundary line `i`: half its offset times its length."""
+    low, high = -1e300, 1e300
+    for j in range(lines.shape[0]):
+        if j != i:
+            start, stop = _cut_by_line(lines[i], lines[j], j < i)
+            low, high = max(low, start), min(high, stop)
+            if start == stop:
+                return 0.0
+    for j in range(discs.shape[0]):
+        start, stop = _cut_by_disc(lines[i], discs[j])
+        low, high = max(low, start), min(high, stop)
+        if start == stop:
+            return 0.0
+    return 0.5 * lines[i, 2] * max(high - low, 0.0)
+
+
+_line_part = njit(cache=True)(_line_part_py)
+
+
+def _cuts_py(i: int, lines: Floats, discs: Floats) -> Floats:
+    """Angles at which the rim of disc `i` meets any other boundary, sorted, ends included."""
+    x, y, radius = discs[i]
+    cuts = np.empty(2 * (lines.shape[0] + discs.shape[0]) + 2)
+    cuts[0], cuts[1] = -math.pi, math.pi
+    count = 2
+    for j in range(lines.shape[0] + discs.shape[0]):
+        if j < lines.shape[0]:
+            a, b, c = lines[j]
+            centre, reach = math.atan2(b, a), (c - a * x - b * y) / radius
+        else:
+            dx, dy = discs[j - lines.shape[0], 0] - x, discs[j - lines.shape[0], 1] - y
+            other, apart = discs[j - lines.shape[0], 2], math.sqrt(dx * dx + dy * dy)
+            if apart == 0.0:
+                continue
+            centre = math.atan2(dy, dx)
+            reach = (apart * apart + radius * radius - other * other) / (2.0 * apart * radius)
+        if abs(reach) < 1.0:
+            half = math.acos(reach)
+            cuts[count] = math.remainder(centre - half, 2.0 * math.pi)
+            cuts[count + 1] = math.remainder(centre + half, 2.0 * math.pi)
+            count += 2
+    return np.sort(cuts[:count])
+
+
+_cuts = njit(cache=True)(_cuts_py)
+
+
+def _holds_py(x: float, y: float, i: int, lines: Floats, discs: Floats) -> bool:
+    """Whether a point of the rim of disc `i` belongs to the boundary of the intersection."""
+    for j in range(lines.shape[0]):
+        if lines[j, 0] * x + lines[j, 1] * y > lines[j, 2]:
+            return False
+    for j in range(discs.shape[0]):
+        if j == i:
+            continue
+        dx, dy = x - discs[j, 0], y - discs[j, 1]
+        if (discs[j] == discs[i]).all():
+            if j < i:  # of two equal discs only the first one counts
+                return False
+        elif dx * dx + dy * dy > discs[j, 2] * discs[j, 2]:
+            return False
+    return True
+
+
+_holds = njit(cache=True)(_holds_py)
+
+
+def _disc_part_py(i: int, lines: Floats, discs: Floats) -> float:
+    """Green's integral along the arcs of disc `i` that bound the intersection."""
+    x, y, radius = discs[i]
+    total = 0.0
+    cuts = _cuts(i, lines, discs)
+    for j in range(cuts.shape[0] - 1):
+        start, stop = cuts[j], cuts[j + 1]
+        middle = (start + stop) / 2.0
+        point_x, point_y = x + radius * math.cos(middle), y + radius * math.sin(middle)
+        if stop > start and _holds(point_x, point_y, i, lines, discs):
+            sines = math.sin(stop) - math.sin(start)
+            cosines = math.cos(stop) - math.cos(start)
+            total += 0.5 * radius * (radius * (stop - start) + x * sines - y * cosines)
+    return total
+
+
+_disc_part = njit(cache=True)(_disc_part_py)
+
+
+def _convex_area_py(lines: Floats, discs: Floats) -> float:
+    """Area of the intersection of half-planes (M, 3) and discs (D, 3), by Green's theorem.
+
+    Returns 0 when it is empty. It must be bounded.
     """
     total = 0.0
     for i in range(lines.shape[0]):
-        a, b, c = lines[i, 0], lines[i, 1], lines[i, 2]
-        px, py, tx, ty = a * c, b * c, -b, a
-        low, high = -1e300, 1e300
-        for j in range(lines.shape[0]):
-            if j == i:
-                continue
-            slope = lines[j, 0] * tx + lines[j, 1] * ty
-            room = lines[j, 2] - lines[j, 0] * px - lines[j, 1] * py
-            if abs(slope) < 1e-14:
-                same = lines[j, 0] * a + lines[j, 1] * b > 0.0 and room == 0.0
-                if room < 0.0 or (same and j < i):  # of two equal lines the first one counts
-                    low, high = 0.0, 0.0
-            elif slope > 0.0:
-                high = min(high, room / slope)
-            else:
-                low = max(low, room / slope)
-        for j in range(discs.shape[0]):
-            dx, dy = px - discs[j, 0], py - discs[j, 1]
-            half = dx * tx + dy * ty
-            root = half * half - (dx * dx + dy * dy - discs[j, 2] * discs[j, 2])
-            if root <= 0.0:
-                low, high = 0.0, 0.0
-            else:
-                root = math.sqrt(root)
-                low, high = max(low, -half - root), min(high, -half + root)
-        if high > low:
-            total += 0.5 * c * (high - low)
-    cuts = np.empty(2 * (lines.shape[0] + discs.shape[0]) + 2)
+        total += _line_part(i, lines, discs)
     for i in range(discs.shape[0]):
-        x, y, radius = discs[i, 0], discs[i, 1], discs[i, 2]
-        cuts[0], cuts[1] = -math.pi, math.pi
-        count = 2
-        for j in range(lines.shape[0]):
-            reach = (lines[j, 2] - lines[j, 0] * x - lines[j, 1] * y) / radius
-            if abs(reach) < 1.0:
-                centre, half = math.atan2(lines[j, 1], lines[j, 0]), math.acos(reach)
-                cuts[count] = centre - half
-                cuts[count + 1] = centre + half
-                count += 2
-        for j in range(discs.shape[0]):
-            dx, dy = discs[j, 0] - x, discs[j, 1] - y
-            apart = math.sqrt(dx * dx + dy * dy)
-            if j == i or apart == 0.0:
-                continue
-            reach = (apart * apart + radius * radius - discs[j, 2] * discs[j, 2]) / (
-                2.0 * apart * radius
-            )
-            if abs(reach) < 1.0:
-                centre, half = math.atan2(dy, dx), math.acos(reach)
-                cuts[count] = centre - half
-                cuts[count + 1] = centre + half
-                count += 2
-        for j in range(2, count):
-            if cuts[j] < -math.pi:
-                cuts[j] += 2.0 * math.pi
-            elif cuts[j] > math.pi:
-                cuts[j] -= 2.0 * math.pi
-        ordered = np.sort(cuts[:count])
-        for j in range(count - 1):
-            start, stop = ordered[j], ordered[j + 1]
-            middle = (start + stop) / 2.0
-            mx, my = x + radius * math.cos(middle), y + radius * math.sin(middle)
-            inside = stop > start
-            for m in range(lines.shape[0]):
-                if lines[m, 0] * mx + lines[m, 1] * my > lines[m, 2]:
-                    inside = False
-            for m in range(discs.shape[0]):
-                dx, dy = mx - discs[m, 0], my - discs[m, 1]
-                same = discs[m, 0] == x and discs[m, 1] == y and discs[m, 2] == radius
-                if m != i and same and m < i:
-                    inside = False
-                if m != i and not same and dx * dx + dy * dy > discs[m, 2] * discs[m, 2]:
-                    inside = False
-            if inside:
-                total += 0.5 * (
-                    radius * radius * (stop - start)
-                    + radius * x * (math.sin(stop) - math.sin(start))
-                    - radius * y * (math.cos(stop) - math.cos(start))
-                )
-    return max(total, 0.0)
+        total += _disc_part(i, lines, discs)
+    return float(max(total, 0.0))
 
 
-convex_area: Callable[[Floats, Floats], float] = njit(cache=True)(_convex_area)
+convex_area: Callable[[Floats, Floats], float] = njit(cache=True)(_convex_area_py)
+_area = convex_area
 
 
-def _lit_boxes(
-    area: Floats,
-    boxes: Floats,
-    apertures: Floats,
-    lower: Floats,
-    upper: Floats,
-    weights: Floats,
+def _lines_of_box_py(box: Floats, extra: int) -> Floats:
+    """Half-planes (4 + extra, 3) of x_min, x_max, y_min, y_max; the extra rows left open."""
+    lines = np.zeros((4 + extra, 3))
+    lines[0, 0], lines[0, 2] = -1.0, -box[0]
+    lines[1, 0], lines[1, 2] = 1.0, box[1]
+    lines[2, 1], lines[2, 2] = -1.0, -box[2]
+    lines[3, 1], lines[3, 2] = 1.0, box[3]
+    return lines
+
+
+_lines_of_box = njit(cache=True)(_lines_of_box_py)
+
+
+def _lit_by_disc_py(box: Floats, aperture: Floats, lower: Floats, upper: Floats) -> float:
+    """Area of a box lit through a round aperture with both rims displaced."""
+    same = lower[0] == upper[0] and lower[1] == upper[1]
+    discs = np.empty((1 if same else 2, 3))
+    discs[0, 0], discs[0, 1] = aperture[1] + lower[0], aperture[2] + lower[1]
+    discs[-1, 0], discs[-1, 1] = aperture[1] + upper[0], aperture[2] + upper[1]
+    discs[:, 2] = aperture[3]
+    return float(_area(_lines_of_box(box, 0), discs))
+
+
+_lit_by_disc = njit(cache=True)(_lit_by_disc_py)
+
+
+def _lit_by_box_py(box: Floats, aperture: Floats, lower: Floats, upper: Floats) -> float:
+    """Area of a box lit through a rectangular aperture with both rims displaced."""
+    c, s = aperture[5], aperture[6]
+    dx, dy = upper[0] - lower[0], upper[1] - lower[1]
+    a = aperture[3] - abs(c * dx + s * dy) / 2.0
+    b = aperture[4] - abs(c * dy - s * dx) / 2.0
+    if a <= 0.0 or b <= 0.0:
+        return 0.0
+    x = aperture[1] + (lower[0] + upper[0]) / 2.0
+    y = aperture[2] + (lower[1] + upper[1]) / 2.0
+    if s == 0.0:
+        across = min(box[1], x + a) - max(box[0], x - a)
+        along = min(box[3], y + b) - max(box[2], y - b)
+        return max(across, 0.0) * max(along, 0.0)
+    u, v = c * x + s * y, c * y - s * x
+    lines = _lines_of_box(box, 4)
+    lines[4] = np.array([c, s, u + a])
+    lines[5] = np.array([-c, -s, a - u])
+    lines[6] = np.array([-s, c, v + b])
+    lines[7] = np.array([s, -c, b - v])
+    return float(_area(lines, np.empty((0, 3))))
+
+
+_lit_by_box = njit(cache=True)(_lit_by_box_py)
+
+
+def _lit_boxes_py(
+    area: Floats, boxes: Floats, apertures: Floats, rims: Floats, light: Floats
 ) -> None:
-    """Write the weighted lit area of boxes (detector elements) behind a mask.
+    """Write the lit area of boxes (detector elements) behind a mask, weighted by the light.
 
     Parameters
     ----------
@@ -131,60 +218,23 @@ def _lit_boxes(
         (B, 4) x_min, x_max, y_min, y_max.
     apertures
         (A, 7) `Mask.table`.
-    lower, upper
-        (N, K, 2) displacement of the mask's rims.
-    weights
+    rims
+        (2, N, K, 2) displacement of the mask's lower and upper rims.
+    light
         (N, K) light of each of the K points of the Sun.
     """
     area[:] = 0.0
-    disc_lines = np.empty((4, 3))
-    box_lines = np.empty((8, 3))
-    no_discs = np.empty((0, 3))
-    one_disc, two_discs = np.empty((1, 3)), np.empty((2, 3))
     for n in range(area.shape[0]):
-        for k in range(lower.shape[1]):
+        for k in range(light.shape[1]):
             for m in range(apertures.shape[0]):
-                a, b = apertures[m, 3], apertures[m, 4]
-                c, s = apertures[m, 5], apertures[m, 6]
-                cx, cy = apertures[m, 1] + lower[n, k, 0], apertures[m, 2] + lower[n, k, 1]
-                ux, uy = apertures[m, 1] + upper[n, k, 0], apertures[m, 2] + upper[n, k, 1]
-                dx, dy = ux - cx, uy - cy
                 for j in range(boxes.shape[0]):
-                    x0, x1, y0, y1 = boxes[j]
-                    lines = disc_lines if apertures[m, 0] < 0.5 else box_lines
-                    lines[0] = (-1.0, 0.0, -x0)
-                    lines[1] = (1.0, 0.0, x1)
-                    lines[2] = (0.0, -1.0, -y0)
-                    lines[3] = (0.0, 1.0, y1)
                     if apertures[m, 0] < 0.5:
-                        if dx == 0.0 and dy == 0.0:
-                            one_disc[0] = (cx, cy, a)
-                            lit = _area(lines, one_disc)
-                        else:
-                            two_discs[0] = (cx, cy, a)
-                            two_discs[1] = (ux, uy, a)
-                            lit = _area(lines, two_discs)
+                        lit = _lit_by_disc(boxes[j], apertures[m], rims[0, n, k], rims[1, n, k])
                     else:
-                        half_a = a - abs(c * dx + s * dy) / 2.0
-                        half_b = b - abs(c * dy - s * dx) / 2.0
-                        mx, my = (cx + ux) / 2.0, (cy + uy) / 2.0
-                        if half_a <= 0.0 or half_b <= 0.0:
-                            lit = 0.0
-                        elif s == 0.0:
-                            across = min(x1, mx + half_a) - max(x0, mx - half_a)
-                            along = min(y1, my + half_b) - max(y0, my - half_b)
-                            lit = max(across, 0.0) * max(along, 0.0)
-                        else:
-                            u, v = c * mx + s * my, c * my - s * mx
-                            lines[4] = (c, s, u + half_a)
-                            lines[5] = (-c, -s, half_a - u)
-                            lines[6] = (-s, c, v + half_b)
-                            lines[7] = (s, -c, half_b - v)
-                            lit = _area(lines, no_discs)
-                    area[n, j] += weights[n, k] * lit
+                        lit = _lit_by_box(boxes[j], apertures[m], rims[0, n, k], rims[1, n, k])
+                    area[n, j] += light[n, k] * lit
 
 
-_area = convex_area
-lit_boxes: Callable[[Floats, Floats, Floats, Floats, Floats, Floats], None] = njit(cache=True)(
-    _lit_boxes
+lit_boxes: Callable[[Floats, Floats, Floats, Floats, Floats], None] = njit(cache=True)(
+    _lit_boxes_py
 )

@@ -15,12 +15,14 @@ Response = Literal["cosine", "kelly"]
 
 
 def cosine_response(cosine: Floats) -> Floats:
-    """Lambert's law: the cosine of incidence, nothing from behind."""
+    """Return Lambert's response: the cosine of incidence, nothing from behind."""
     return np.maximum(cosine, 0.0)
 
 
 def kelly_response(cosine: Floats) -> Floats:
-    """The Kelly cosine, -0.369 c^3 + 0.637 c^2 + 0.750 c - 0.015 (eq:kellycos, Yousefian2017).
+    """Return the Kelly cosine (eq:kellycos, Yousefian2017).
+
+    ``-0.369 c^3 + 0.637 c^2 + 0.750 c - 0.015`` of the cosine c of incidence.
 
     Zero where the polynomial is negative: within 1.1 deg of grazing and behind. At normal
     incidence it is 1.003, as printed.

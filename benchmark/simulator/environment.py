@@ -140,7 +140,7 @@ def _dot(vectors: Floats, other: Floats) -> Floats:
 
 
 def uniform_direction(generator: np.random.Generator) -> tuple[float, float, float]:
-    """A unit vector uniform over the sphere (Marsaglia's rejection: square roots only)."""
+    """Draw a unit vector uniform over the sphere (Marsaglia's rejection: square roots only)."""
     while True:
         x, y = 2.0 * generator.random() - 1.0, 2.0 * generator.random() - 1.0
         square = x * x + y * y

@@ -63,7 +63,7 @@ class FaceSensor:
             "normals": built,
         }
 
-    def origins(self, sun: Floats, generator: np.random.Generator) -> None:  # noqa: ARG002
+    def origins(self, sun: Floats, generator: np.random.Generator) -> None:
         """Nothing is windowed (the arguments are the protocol's)."""
 
     def lit(self, scene: Scene, pattern: FixedPattern) -> Floats:

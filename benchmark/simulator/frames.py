@@ -56,7 +56,7 @@ class FrameSensor:
         jitter = self.window_jitter_px
         offset = generator.integers(-jitter, jitter + 1, size=(len(sun), 2))
         half = np.array([size // 2 for size in self.window_px])
-        return np.rint(self.spot_px(sun)).astype(np.int64) + offset - half
+        return np.asarray(np.rint(self.spot_px(sun)).astype(np.int64) + offset - half)
 
     def lit(self, scene: Scene) -> Floats:
         """(N, H, W) irradiance averaged over each pixel, in units of mean normal sunlight.
@@ -79,8 +79,7 @@ class FrameSensor:
         render(
             flux,
             self.camera.mask.table(pitch),
-            light.lower / pitch,
-            light.upper / pitch,
+            light.rims_mm / pitch,
             light.light * scene.irradiance[:, None],
             scene.origin_px - 0.5 - np.asarray(self.detector.centre_px),
         )
@@ -108,7 +107,7 @@ class FrameSensor:
         """(N, H, W) mean digital numbers before rounding."""
         detector = self.detector
         electrons = np.minimum(self._electrons(scene, pattern), detector.full_well_e)
-        return detector.offset_dn + electrons / detector.gain_e_per_dn
+        return np.asarray(detector.offset_dn + electrons / detector.gain_e_per_dn)
 
     def variance(self, expected: Floats) -> Floats:
         """Squared digital numbers: shot and read noise, and 1/12 for rounding."""

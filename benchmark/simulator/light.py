@@ -52,7 +52,7 @@ class SolarDisc:
         return _quadrature(self)
 
     def directions(self, sun: Floats) -> Floats:
-        """Unit vectors to the K points of the disc, (N, K, 3), for centres `sun` (N, 3)."""
+        """Return unit vectors to the K points of the disc, (N, K, 3), for centres `sun` (N, 3)."""
         offsets, _ = self.quadrature()
         first, second = tangent_axes(sun)
         along = np.sqrt(1.0 - np.sum(offsets**2, axis=1))
@@ -98,7 +98,7 @@ def tangent_axes(sun: Floats) -> tuple[Floats, Floats]:
 
 
 def from_angles(alpha_deg: Floats, beta_deg: Floats) -> Floats:
-    """Unit vectors (N, 3) with ``tan(alpha) = s_y/s_z`` and ``tan(beta) = s_x/s_z``.
+    """Return unit vectors (N, 3) with ``tan(alpha) = s_y/s_z`` and ``tan(beta) = s_x/s_z``.
 
     Tangents come from the C library, not from NumPy's processor-dependent ones, so that the
     same directions come out on every machine.

@@ -77,7 +77,7 @@ class Mask:
             raise ValueError(f"thickness_mm must not be negative; got {self.thickness_mm}")
 
     def table(self, unit_mm: float = 1.0) -> Floats:
-        """(A, 7) for the kernels: shape, x, y, half width, half height, cosine, sine."""
+        """Tabulate for the kernels, (A, 7): shape, x, y, half width, half height, cosine, sine."""
         return np.array(
             [
                 (

@@ -28,7 +28,7 @@ class NoiseStreams:
 
     @classmethod
     def named(cls, *names: str | int) -> NoiseStreams:
-        """The streams of this dataset, version, condition and split."""
+        """Return the streams of this dataset, version, condition and split."""
         return cls(generator(*names, "gaussian"), generator(*names, "poisson"))
 
 

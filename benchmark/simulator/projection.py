@@ -19,12 +19,11 @@ Floats = NDArray[np.float64]
 class ProjectedLight:
     """Where K points of the Sun put the mask's two rims, and how much light each carries.
 
-    `lower` and `upper` are (N, K, 2) displacements in mm, `light` (N, K) the irradiance on the
-    detector plane in units of normal incidence without glass.
+    `rims_mm` (2, N, K, 2) are the displacements of the lower and the upper rim, `light` (N, K)
+    the irradiance on the detector plane in units of normal incidence without glass.
     """
 
-    lower: Floats
-    upper: Floats
+    rims_mm: Floats
     light: Floats
 
 
@@ -46,6 +45,10 @@ class Camera:
         """Built distance from the detector to the middle of the mask."""
         return self.focal_length_mm + self.assembly.focal_length_error_mm
 
+    @property
+    def _offset(self) -> Floats:
+        return np.array([self.assembly.offset_x_mm, self.assembly.offset_y_mm])
+
     def spot_mm(self, sun: Floats) -> Floats:
         """(N, 2) where the ray through the mask's origin from the Sun's centre falls.
 
@@ -53,7 +56,7 @@ class Camera:
         """
         head = self.assembly.to_head(sun)
         shift = self.glass.displacement(head, self.height_mm)
-        return shift + [self.assembly.offset_x_mm, self.assembly.offset_y_mm]
+        return np.asarray(shift + self._offset)
 
     def project(self, sun: Floats) -> ProjectedLight:
         """Displacements and light for Sun directions `sun` (N, 3); no light from behind."""
@@ -62,11 +65,10 @@ class Camera:
         front = cosine > 1e-6
         safe = np.where(front[..., None], points, [0.0, 0.0, 1.0])
         thickness = self.mask.thickness_mm
-        offset = [self.assembly.offset_x_mm, self.assembly.offset_y_mm]
-        lower = self.glass.displacement(safe, self.height_mm - thickness / 2.0) + offset
+        lower = self.glass.displacement(safe, self.height_mm - thickness / 2.0) + self._offset
         upper = lower
         if thickness > 0:
             upper = lower + thickness * safe[..., :2] / safe[..., 2:]
         _, shares = self.sun.quadrature()
         light = np.where(front, shares * cosine * self.glass.transmission(safe), 0.0)
-        return ProjectedLight(lower, upper, light)
+        return ProjectedLight(np.stack([lower, upper]), light)

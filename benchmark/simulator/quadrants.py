@@ -29,7 +29,7 @@ class QuadrantSensor:
         """``gain`` (4,): relative gains of the quadrants."""
         return {"gain": readout.element_gains(self.readout, 4, *names)}
 
-    def origins(self, sun: Floats, generator: np.random.Generator) -> None:  # noqa: ARG002
+    def origins(self, sun: Floats, generator: np.random.Generator) -> None:
         """Nothing is windowed (the arguments are the protocol's)."""
 
     def lit(self, scene: Scene) -> Floats:
@@ -45,8 +45,7 @@ class QuadrantSensor:
             area,
             self.detector.boxes(),
             self.camera.mask.table(),
-            light.lower,
-            light.upper,
+            light.rims_mm,
             light.light * scene.irradiance[:, None],
         )
         return np.asarray(area / sum(a.area_mm2 for a in self.camera.mask.apertures))

@@ -41,7 +41,7 @@ class Scene:
         return len(self.sun)
 
     def part(self, start: int, stop: int) -> Scene:
-        """Samples `start` to `stop` (exclusive)."""
+        """Return samples `start` to `stop` (exclusive)."""
         return Scene(
             self.sun[start:stop],
             self.irradiance[start:stop],
@@ -51,5 +51,5 @@ class Scene:
         )
 
     def seen_from(self, sun: Floats) -> Scene:
-        """The same scene with other Sun directions (N, 3)."""
+        """Return the same scene with other Sun directions (N, 3)."""
         return replace(self, sun=sun)

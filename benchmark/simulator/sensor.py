@@ -21,7 +21,7 @@ class Sensor(Protocol):
     """A sensor design with its error sources; frozen dataclasses, fields = parameters."""
 
     def fixed_pattern(self, *names: str | int) -> FixedPattern:
-        """The unit of this name: element gains, dark currents and the like."""
+        """Build the unit of this name: element gains, dark currents and the like."""
         ...
 
     def origins(self, sun: Floats, generator: np.random.Generator) -> NDArray[np.int64] | None:
