@@ -49,9 +49,7 @@ class Page(Generic[Row]):
     link: str | None
 
 
-def page(
-    rows: Sequence[Row], path: str, parameters: Parameters, arguments: Arguments
-) -> Page[Row]:
+def page(rows: Sequence[Row], path: str, parameters: Parameters, arguments: Arguments) -> Page[Row]:
     """Return the page of `rows` that `arguments` ask for.
 
     A cursor is bound to the path and the filters it was given out for.

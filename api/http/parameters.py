@@ -77,10 +77,9 @@ class Choice:
 
 
 @dataclass(frozen=True)
-class Number:
-    """A finite number between two bounds, both included."""
+class PositiveNumber:
+    """A finite number above zero, up to a bound (included)."""
 
-    minimum: float
     maximum: float
 
     def from_text(self, text: str) -> float:
@@ -92,20 +91,20 @@ class Number:
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise InvalidValueError
         # Compared before it is converted: an integer may be too long for a float.
-        if isinstance(value, int) and not self.minimum <= value <= self.maximum:
+        if isinstance(value, int) and not 0 < value <= self.maximum:
             raise InvalidValueError
         return self._within(float(value))
 
     def _within(self, value: float) -> float:
-        if not (math.isfinite(value) and self.minimum <= value <= self.maximum):
+        if not (math.isfinite(value) and 0 < value <= self.maximum):
             raise InvalidValueError
-        return value + 0.0  # -0.0 and 0.0 are the same requirement
+        return value
 
     def expected(self) -> str:
-        return f"a number from {self.minimum:g} to {self.maximum:g}"
+        return f"a number above 0, at most {self.maximum:g}"
 
     def schema(self) -> dict[str, Any]:
-        return {"type": "number", "minimum": self.minimum, "maximum": self.maximum}
+        return {"type": "number", "exclusiveMinimum": 0, "maximum": self.maximum}
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,9 @@ from fastapi import Request, Response
 from api.http.negotiation import accepts_gzip
 
 WORTH_COMPRESSING = 512  # bytes; below, the gzip frame eats what it saves
-REVALIDATE = "no-cache"  # may be stored, must be revalidated: facts and scores change with a release
+REVALIDATE = (
+    "no-cache"  # may be stored, must be revalidated: facts and scores change with a release
+)
 
 _ENTITY_TAG = re.compile(r'(?:W/)?"([\x21\x23-\x7e\x80-\xff]*)"')
 

@@ -44,8 +44,8 @@ class TaxonomyValue(Shape):
 
     value: str
     name: str
-    category: str | None
-    section: str | None
+    category: str
+    section: str = Field(description="Label in the survey; empty where it has none.")
 
 
 class Taxonomy(Shape):
@@ -55,15 +55,15 @@ class Taxonomy(Shape):
 
 
 class Study(Shape):
-    """A mapped study."""
+    """A mapped study. A text is empty where nothing is known."""
 
     key: str
-    title: str | None
-    authors: str | None
+    title: str
+    authors: str
     year: int | None
-    venue: str | None
-    doi: str | None
-    url: str | None
+    venue: str
+    doi: str
+    url: str
     identity: str = Field(description="Whether a public page confirms author, year and topic.")
     state: Literal["complete", "partial", "none"] = Field(
         description="How much of the study can be run: every value of its mapping, some, none."
@@ -72,13 +72,13 @@ class Study(Shape):
 
 
 class AttributeValue(Shape):
-    """One value of the mapping and where it comes from."""
+    """One value of the mapping and where it comes from; an empty value is an empty cell."""
 
     attribute: str
-    value: str | None
+    value: str
     basis: str
-    source: str | None
-    note: str | None
+    source: str
+    note: str
 
 
 class StudyPipeline(Shape):
@@ -88,20 +88,26 @@ class StudyPipeline(Shape):
     mask: str
     extractor: str
     model: str
+    extractor_taxonomy: str
+    model_taxonomy: str
+    assumed: dict[str, str] = Field(
+        description="What the study states where that is not what runs: None, or a parent."
+    )
     datasets: list[str]
 
 
 class Gap(Shape):
-    """A value of the mapping that nothing implements yet."""
+    """Something of a study that cannot be run."""
 
     attribute: str
-    value: str | None
+    value: str
     reason: str
 
 
 class StudyDetail(Study):
     """A mapped study with the basis of every value and what of it can be run."""
 
+    note: str
     attributes: list[AttributeValue]
     pipelines: list[StudyPipeline]
     gaps: list[Gap]
@@ -127,7 +133,7 @@ class Node(Shape):
     level: str
     value: str
     name: str
-    count: int = Field(description="Distinct studies.")
+    count: float = Field(description="Distinct studies, or the sum of their fractions.")
     studies: list[str]
 
 
@@ -140,14 +146,24 @@ class Link(Shape):
     studies: list[str]
 
 
+class LeftOut(Shape):
+    """Studies without a value at a level."""
+
+    level: str
+    count: int
+    studies: list[str]
+
+
 class Flows(Shape):
     """A decision flow: a Sankey diagram, or the rings of a sunburst."""
 
     chart: str
     levels: list[str]
     counting: Literal["studies", "fractional"]
+    studies: int = Field(description="Studies that met the filters.")
     nodes: list[Node]
     links: list[Link]
+    left_out: list[LeftOut]
 
 
 class Measured(OpenShape):

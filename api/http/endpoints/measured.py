@@ -1,0 +1,124 @@
+"""/v1/datasets, /v1/results and /v1/leaderboard: what is measured, and on what."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from api.http.answers import Answer
+from api.http.endpoint import Endpoint, PathPart
+from api.http.knowledge import Knowledge
+from api.http.pagination import CURSOR, LIMIT, page
+from api.http.parameters import Arguments, Choice, Parameter, Parameters
+from api.http.shapes import Datasets, Leaderboard, LeaderboardRows, Scores
+
+DATASET_COLUMNS = ("name", "version", "detector", "mask", "observation", "conditions")
+SCORE_COLUMNS = ("dataset", "condition", "extractor", "model", "status", "rms_deg", "bound_deg")
+BOARD_COLUMNS = ("name", "condition")
+ROW_COLUMNS = ("condition", "extractor", "model", "rms_deg", "bound_deg", "over_bound")
+
+
+def endpoints(knowledge: Knowledge) -> list[Endpoint]:
+    """Return the endpoints of measurements."""
+    measurements = knowledge.measurements
+    narrowing = [
+        Parameter(
+            "condition", Choice(lambda: measurements.conditions), "Only this condition.", True
+        ),
+        Parameter(
+            "extractor",
+            Choice(lambda: tuple(knowledge.catalogue.extractors)),
+            "Only this extractor, by the name of its implementation.",
+            repeatable=True,
+        ),
+        Parameter(
+            "model",
+            Choice(lambda: tuple(knowledge.catalogue.models)),
+            "Only this model, by the name of its implementation.",
+            repeatable=True,
+        ),
+    ]
+    dataset = Parameter(
+        "dataset", Choice(lambda: measurements.dataset_names), "Only this data set.", True
+    )
+    of_list = Parameters([LIMIT, CURSOR])
+    of_results = Parameters([dataset, *narrowing, LIMIT, CURSOR])
+    of_board = Parameters([*narrowing, LIMIT, CURSOR])
+
+    def listing(
+        rows: Sequence[Mapping[str, Any]],
+        columns: Sequence[str],
+        path: str,
+        parameters: Parameters,
+        arguments: Arguments,
+    ) -> Answer:
+        shown = page(rows, path, parameters, arguments)
+        document = {"items": shown.items, "total": shown.total, "next": shown.next}
+        return Answer(document, columns, lambda: shown.items, shown.link)
+
+    def build_datasets(_parts: Mapping[str, str], arguments: Arguments) -> Answer:
+        return listing(measurements.cards, DATASET_COLUMNS, "/v1/datasets", of_list, arguments)
+
+    def build_results(_parts: Mapping[str, str], arguments: Arguments) -> Answer:
+        rows = [row for row in measurements.scores if _wanted(row, arguments)]
+        return listing(rows, SCORE_COLUMNS, "/v1/results", of_results, arguments)
+
+    def build_leaderboard(_parts: Mapping[str, str], _arguments: Arguments) -> Answer:
+        board = measurements.leaderboard
+        return Answer(board, BOARD_COLUMNS, lambda: measurements.board_rows())
+
+    def build_board(parts: Mapping[str, str], arguments: Arguments) -> Answer:
+        name = parts["dataset"]
+        rows = [row for row in measurements.board_rows(name) if _wanted(row, arguments)]
+        return listing(rows, ROW_COLUMNS, f"/v1/leaderboard/{name}", of_board, arguments)
+
+    return [
+        Endpoint(
+            path="/v1/datasets",
+            name="datasets",
+            summary="The standard data sets",
+            description="Cards of the simulated data sets every pipeline is scored on.",
+            shape=Datasets,
+            build=build_datasets,
+            parameters=of_list,
+            example_arguments="limit=1",
+        ),
+        Endpoint(
+            path="/v1/results",
+            name="results",
+            summary="The scores",
+            description="One row a data set, condition, extractor and model, failures included.",
+            shape=Scores,
+            build=build_results,
+            parameters=of_results,
+            example_arguments="limit=1",
+        ),
+        Endpoint(
+            path="/v1/leaderboard",
+            name="leaderboard",
+            summary="The leaderboard",
+            description="The published leaderboard of every data set and condition.",
+            shape=Leaderboard,
+            build=build_leaderboard,
+        ),
+        Endpoint(
+            path="/v1/leaderboard/{dataset}",
+            name="leaderboard_of_dataset",
+            summary="The leaderboard of a data set",
+            description="Rows of one data set's leaderboard, best first within a condition.",
+            shape=LeaderboardRows,
+            build=build_board,
+            parameters=of_board,
+            parts=(
+                PathPart("dataset", "Name of the data set.", lambda: measurements.dataset_names),
+            ),
+            example={"dataset": "cmos-single-aperture"},
+            example_arguments="limit=1",
+        ),
+    ]
+
+
+def _wanted(row: Mapping[str, Any], arguments: Arguments) -> bool:
+    """Say whether a row has one of the wanted words of every field that is narrowed."""
+    fields = ("dataset", "condition", "extractor", "model")
+    return all(row.get(name) in arguments[name] for name in fields if arguments.get(name))

@@ -1,0 +1,76 @@
+"""All that the service tells: facts, implementations and measurements, each loaded once.
+
+Loading is lazy, so that an application is there at once; `load_all` does it at start-up.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+
+from api.http.measurements import Measurements
+from registry.catalogue import Catalogue, catalogue
+from registry.measured import Measurements as Measured
+from registry.resolution import Resolution, resolve_all
+from registry.studies import Facts, facts
+from registry.taxonomy import Taxonomy
+
+
+class Knowledge:
+    """Facts, implementations and measurements.
+
+    Parameters
+    ----------
+    measurements : the published ones by default
+    """
+
+    def __init__(self, measurements: Measurements | None = None) -> None:
+        self.measurements = Measurements() if measurements is None else measurements
+
+    @cached_property
+    def facts(self) -> Facts:
+        """Studies and taxonomy."""
+        return facts()
+
+    @property
+    def taxonomy(self) -> Taxonomy:
+        """The vocabulary."""
+        return self.facts.taxonomy
+
+    @cached_property
+    def catalogue(self) -> Catalogue:
+        """The implementations. The first use imports every one of them."""
+        return catalogue()
+
+    @cached_property
+    def resolutions(self) -> Mapping[str, Resolution]:
+        """What can be run of each study, by key."""
+        pairs = self.measurements.architectures
+        return resolve_all(pairs, catalogue=self.catalogue, facts=self.facts)
+
+    def study_keys(self) -> Sequence[str]:
+        """Keys of all studies."""
+        return self.facts.keys
+
+    def conditions(self) -> Sequence[str]:
+        """Conditions that measured performance can be read in, the nominal one first."""
+        return tuple(dict.fromkeys(("nominal", *self.measurements.conditions)))
+
+    @cached_property
+    def _measured(self) -> Mapping[str, Measured]:
+        return {name: Measured(self.measurements.comparable(name)) for name in self.conditions()}
+
+    def measured_in(self, condition: str) -> Measured:
+        """Return what is measured in a condition, as recommendations take it."""
+        return self._measured[condition]
+
+    def load_all(self) -> None:
+        """Load everything now, so that no request has to wait for it.
+
+        Raises
+        ------
+        ValueError
+            Where a file of facts or of published results cannot be read.
+        """
+        _ = self.resolutions, self.measurements.scores, self.measurements.runs
+        _ = self._measured, self.measurements.leaderboard, self.measurements.cards

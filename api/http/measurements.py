@@ -1,0 +1,136 @@
+"""The published measurements: scores, running times, leaderboard and the standard data sets."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from benchmark.store import PUBLISHED, Store
+
+from registry.measured import Measured
+
+if TYPE_CHECKING:
+    from benchmark.datasets import Preset
+
+_TAKEN = tuple(f.name for f in dataclasses.fields(Measured) if f.name != "latency_us")
+
+Row = Mapping[str, Any]
+
+
+class Measurements:
+    """What has been measured, read once from published files; nothing where there are none.
+
+    Parameters
+    ----------
+    directory : of the published files
+    """
+
+    def __init__(self, directory: Path = PUBLISHED) -> None:
+        self.directory = directory
+
+    @cached_property
+    def scores(self) -> Sequence[Row]:
+        """Score rows, sorted by data set, condition, extractor and model."""
+        return Store(self.directory).rows()
+
+    @cached_property
+    def runs(self) -> Mapping[str, Row]:
+        """Running times by key of the score they belong to."""
+        return Store(self.directory).runs()
+
+    def comparable(self, condition: str) -> list[Measured]:
+        """Return the scores of a condition as recommendations take them, failures left out."""
+        return [
+            Measured(
+                **{name: row.get(name) for name in _TAKEN},
+                latency_us=self.runs.get(row["key"], {}).get("latency_us"),
+            )
+            for row in self.scores
+            if row["condition"] == condition and row["status"] == "ok"
+        ]
+
+    @cached_property
+    def leaderboard(self) -> Mapping[str, Any]:
+        """The published leaderboard; without data sets where none is published.
+
+        Raises
+        ------
+        ValueError
+            Where the file is not a JSON object.
+        """
+        path = self.directory / "leaderboard.json"
+        if not path.is_file():
+            return {"schema": None, "datasets": []}
+        board = json.loads(path.read_bytes())
+        if not isinstance(board, dict):
+            raise ValueError(f"{path}: expected a JSON object, got {type(board).__name__}")
+        return board
+
+    @cached_property
+    def presets(self) -> Mapping[str, Preset]:
+        """The standard data sets by name. The first use loads the simulator."""
+        from benchmark import datasets  # noqa: PLC0415 - slow, and not needed to make the service
+
+        return {name: datasets.get(name) for name in datasets.names()}
+
+    @cached_property
+    def dataset_names(self) -> tuple[str, ...]:
+        """Names of the standard data sets."""
+        return tuple(self.presets)
+
+    @cached_property
+    def cards(self) -> Sequence[Row]:
+        """Cards of the standard data sets: conditions by name, what they are in `setups`.
+
+        `bounds` are the published ones: the Cramer-Rao bound of the condition, as rms in degrees.
+        """
+        cards = []
+        for name, preset in self.presets.items():
+            card = preset.card()
+            card["setups"] = card["conditions"]
+            card["conditions"] = list(preset.conditions)
+            card["bounds"] = self.bounds(name)
+            cards.append(card)
+        return cards
+
+    def bounds(self, dataset: str) -> dict[str, float]:
+        """Return the bound (rms, degrees) of each measured condition of a data set.
+
+        A score's bound is over the samples its pipeline found; the data set's is that of the
+        pipeline that found most.
+        """
+        best: dict[str, tuple[float, float]] = {}
+        for row in self.scores:
+            if row["dataset"] == dataset and row["status"] == "ok" and row["bound_deg"] is not None:
+                found = (row["found_fraction"], row["bound_deg"])
+                best[row["condition"]] = max(best.get(row["condition"], found), found)
+        return {condition: bound for condition, (_, bound) in best.items()}
+
+    def board_rows(self, dataset: str | None = None) -> Sequence[Row]:
+        """Rows of the leaderboard, of one data set or of all."""
+        return [
+            row
+            for board in self.leaderboard["datasets"]
+            if dataset is None or board["name"] == dataset
+            for row in board.get("rows", ())
+        ]
+
+    @cached_property
+    def conditions(self) -> tuple[str, ...]:
+        """Conditions that any standard data set has, in order of appearance."""
+        presets = self.presets.values()
+        return tuple(dict.fromkeys(name for preset in presets for name in preset.conditions))
+
+    @cached_property
+    def architectures(self) -> frozenset[tuple[str, str]]:
+        """The (detector, mask) pairs that a standard data set simulates."""
+        return frozenset((preset.detector, preset.mask) for preset in self.presets.values())
+
+    def simulating(self, detector: str, mask: str) -> list[str]:
+        """Return the names of the data sets of an architecture."""
+        presets = self.presets.values()
+        return [p.name for p in presets if (p.detector, p.mask) == (detector, mask)]

@@ -1,0 +1,182 @@
+"""How fast a recommendation is over HTTP, as a ratio to an empty FastAPI endpoint.
+
+`python -m api.speed [--format json]`. Both applications run side by side under uvicorn in this
+process, on one event loop; one client asks them in turn over kept connections, so that whatever
+else the machine does hits both alike. Two kinds of queries: the same again and again (answered
+from memory), and a different one each time (computed). Exit status 1 where a ratio is above
+`LARGEST_RATIO`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import gc
+import json
+import socket
+import statistics
+import sys
+import threading
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass
+from http.client import HTTPConnection
+from itertools import count
+
+import uvicorn
+from fastapi import FastAPI
+
+from api.service import create_app
+
+LARGEST_RATIO = 5.0
+REPEATED = "/v1/recommendations?task=Accuracy"
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Median latencies of one kind of queries, over all rounds.
+
+    Attributes
+    ----------
+    queries : "repeated" or "different"
+    empty_us : median of the empty endpoint, in microseconds, in the round of `ratio`
+    recommendation_us : median of the recommendation in that round, in microseconds
+    ratio : the median of the rounds' ratios
+    least_ratio : the least of the rounds' ratios; what the machine's other work disturbs least
+    """
+
+    queries: str
+    empty_us: float
+    recommendation_us: float
+    ratio: float
+    least_ratio: float
+
+
+def empty_app() -> FastAPI:
+    """Return the reference: an application whose endpoint does nothing."""
+    app = FastAPI()
+
+    @app.get("/")
+    async def nothing() -> dict[str, str]:
+        return {}
+
+    return app
+
+
+@contextmanager
+def serving(apps: Sequence[FastAPI]) -> Iterator[list[HTTPConnection]]:
+    """Serve applications from a thread of this process; yield a connection to each."""
+    servers = [
+        uvicorn.Server(uvicorn.Config(app, log_level="error", access_log=False)) for app in apps
+    ]
+    sockets = [_listening() for _ in apps]
+
+    async def serve_all() -> None:
+        pairs = zip(servers, sockets, strict=True)
+        await asyncio.gather(*(server.serve(sockets=[listening]) for server, listening in pairs))
+
+    thread = threading.Thread(target=asyncio.run, args=(serve_all(),), daemon=True)
+    thread.start()
+    try:
+        while not all(server.started for server in servers):
+            if not thread.is_alive():
+                raise RuntimeError("the servers did not start; their log says why")
+            time.sleep(0.01)
+        connections = [HTTPConnection(*listening.getsockname()) for listening in sockets]
+        yield connections
+        for connection in connections:
+            connection.close()
+    finally:
+        for server in servers:
+            server.should_exit = True
+        thread.join()
+        for listening in sockets:
+            listening.close()
+
+
+def _listening() -> socket.socket:
+    """Return a socket that listens on a free port of the loopback interface."""
+    listening = socket.create_server(("127.0.0.1", 0))
+    listening.setblocking(False)
+    return listening
+
+
+def different() -> Iterator[str]:
+    """Yield paths of recommendations whose requirements were never asked for before."""
+    tasks = ("Accuracy", "Cost", "Power", "FOV", "Latency", "Volume", "Precision")
+    for number in count():
+        task = tasks[number % len(tasks)]
+        yield f"/v1/recommendations?task={task}&max_error_deg={0.5 + number * 1e-6:.6f}"
+
+
+def repeated() -> Iterator[str]:
+    """Yield the same path again and again."""
+    while True:
+        yield REPEATED
+
+
+def asked(connection: HTTPConnection, path: str) -> float:
+    """Return how long an answer takes, in microseconds; RuntimeError where it is a refusal."""
+    start = time.perf_counter_ns()
+    connection.request("GET", path)
+    response = connection.getresponse()
+    response.read()
+    spent = (time.perf_counter_ns() - start) / 1e3
+    if response.status != 200:  # noqa: PLR2004 - OK
+        raise RuntimeError(f"{path} was answered by {response.status}")
+    return spent
+
+
+def measure(rounds: int = 7, requests: int = 60, app: FastAPI | None = None) -> list[Measured]:
+    """Measure both kinds of queries, `rounds` times `requests` interleaved pairs each."""
+    service = create_app() if app is None else app
+    kinds = {"repeated": repeated(), "different": different()}
+    found: dict[str, list[tuple[float, float, float]]] = {name: [] for name in kinds}
+    with serving([empty_app(), service]) as (empty, atlas):
+        for paths in kinds.values():  # warm
+            for _ in range(10):
+                asked(empty, "/")
+                asked(atlas, next(paths))
+        for _ in range(rounds):
+            for name, paths in kinds.items():
+                gc.collect()
+                pairs = [(asked(empty, "/"), asked(atlas, next(paths))) for _ in range(requests)]
+                reference = statistics.median(pair[0] for pair in pairs)
+                answer = statistics.median(pair[1] for pair in pairs)
+                found[name].append((answer / reference, reference, answer))
+    results = []
+    for name, ratios in found.items():
+        ratio, reference, answer = sorted(ratios)[len(ratios) // 2]
+        results.append(Measured(name, reference, answer, ratio, min(ratios)[0]))
+    return results
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Measure, print, and return the exit status."""
+    parser = argparse.ArgumentParser(prog="python -m api.speed", description=__doc__)
+    parser.add_argument("--format", choices=("text", "json"), default="text")
+    parser.add_argument("--rounds", type=int, default=7)
+    parser.add_argument("--requests", type=int, default=60)
+    given = parser.parse_args(arguments)
+    results = measure(given.rounds, given.requests)
+    kept = all(result.ratio <= LARGEST_RATIO for result in results)
+    if given.format == "json":
+        document = {
+            "largest_ratio": LARGEST_RATIO,
+            "kept": kept,
+            "measured": [asdict(result) for result in results],
+        }
+        sys.stdout.write(json.dumps(document, indent=2) + "\n")
+    else:
+        for result in results:
+            sys.stdout.write(
+                f"{result.queries:10s} {result.recommendation_us:8.0f} us, "
+                f"empty endpoint {result.empty_us:6.0f} us, ratio {result.ratio:.2f} "
+                f"(least {result.least_ratio:.2f}, at most {LARGEST_RATIO:g})\n"
+            )
+    return 0 if kept else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,68 @@
+"""A client that asks the application in this process, as a browser would ask a server."""
+
+from __future__ import annotations
+
+import asyncio
+import csv
+import io
+from collections.abc import Iterator
+from typing import Any
+
+import httpx
+import pytest
+from fastapi import FastAPI
+
+from api.service import create_app
+
+
+class Client:
+    """Synchronous requests to an ASGI application, on one event loop."""
+
+    def __init__(self, app: FastAPI) -> None:
+        self.app = app
+        self._runner = asyncio.Runner()
+        transport = httpx.ASGITransport(app, raise_app_exceptions=False)
+        self._client = httpx.AsyncClient(transport=transport, base_url="http://atlas.test")
+
+    def request(self, method: str, url: str, **options: Any) -> httpx.Response:
+        return self._runner.run(self._client.request(method, url, **options))
+
+    def get(self, url: str, accept: str | None = None, **options: Any) -> httpx.Response:
+        headers = {**options.pop("headers", {}), **({"Accept": accept} if accept else {})}
+        return self.request("GET", url, headers=headers, **options)
+
+    def post(self, url: str, **options: Any) -> httpx.Response:
+        return self.request("POST", url, **options)
+
+    def table(self, url: str) -> list[dict[str, str]]:
+        """Rows of the CSV at `url`."""
+        response = self.get(url, accept="text/csv")
+        assert response.status_code == 200, response.text
+        assert response.headers["content-type"].startswith("text/csv")
+        return list(csv.DictReader(io.StringIO(response.text, newline="")))
+
+    def walk(self, url: str) -> list[dict[str, Any]]:
+        """All items of a list, page by page along the Link header."""
+        items: list[dict[str, Any]] = []
+        following: str | None = url
+        while following is not None:
+            response = self.get(following)
+            assert response.status_code == 200, response.text
+            page = response.json()
+            items += page["items"]
+            link = response.links.get("next")
+            assert (link is None) == (page["next"] is None)
+            following = None if link is None else link["url"]
+        return items
+
+    def close(self) -> None:
+        self._runner.run(self._client.aclose())
+        self._runner.close()
+
+
+@pytest.fixture(scope="session")
+def atlas() -> Iterator[Client]:
+    """The service as it is served."""
+    client = Client(create_app())
+    yield client
+    client.close()

@@ -1,0 +1,141 @@
+"""ETags, conditional requests, HEAD and gzip: the bytes are the same however they come."""
+
+import gzip
+import hashlib
+import json
+
+import pytest
+
+PATHS = [
+    "/v1/taxonomy",
+    "/v1/studies",
+    "/v1/studies/Chang2008",
+    "/v1/flows/error",
+    "/v1/recommendations?task=Accuracy",
+    "/v1/algorithms",
+    "/v1/datasets",
+    "/v1/leaderboard",
+    "/v1/leaderboard/cmos-single-aperture",
+    "/v1/results",
+    "/openapi.json",
+    "/",
+    "/page/index.html",
+    "/page/plotly.min.js",
+]
+PLAIN = {"Accept-Encoding": "identity"}
+GZIP = {"Accept-Encoding": "gzip"}
+
+
+@pytest.mark.parametrize("path", PATHS)
+def test_bytes_known_by_their_etag_are_not_sent_again(atlas, path):
+    whole = atlas.get(path, headers=PLAIN)
+    etag = whole.headers["etag"]
+    assert whole.status_code == 200
+    assert not etag.startswith("W/")
+    for header in (etag, f"W/{etag}", f'"other", {etag}', "*"):
+        answer = atlas.get(path, headers={**PLAIN, "If-None-Match": header})
+        assert answer.status_code == 304, header
+        assert answer.content == b""
+        assert answer.headers["etag"] == etag
+        assert answer.headers["vary"] == whole.headers["vary"]
+        assert "content-type" not in answer.headers
+    answer = atlas.get(path, headers={**PLAIN, "If-None-Match": '"other"'})
+    assert answer.content == whole.content
+
+
+def raw_body(atlas, path, headers):
+    """The body as it travels, without the client decoding it."""
+
+    async def read():
+        async with atlas._client.stream("GET", path, headers=headers) as response:
+            return response, b"".join([chunk async for chunk in response.aiter_raw()])
+
+    return atlas._runner.run(read())
+
+
+@pytest.mark.parametrize("path", PATHS)
+def test_gzip_carries_the_same_bytes_under_another_etag(atlas, path):
+    plain, body = raw_body(atlas, path, PLAIN)
+    assert "content-encoding" not in plain.headers
+    zipped, compressed = raw_body(atlas, path, GZIP)
+    if len(body) < 512:
+        assert compressed == body
+        return
+    assert zipped.headers["content-encoding"] == "gzip"
+    assert int(zipped.headers["content-length"]) == len(compressed) < len(body)
+    assert gzip.decompress(compressed) == body
+    assert zipped.headers["etag"] != plain.headers["etag"]
+    assert "Accept-Encoding" in zipped.headers["vary"]
+
+
+@pytest.mark.parametrize("path", [p for p in PATHS if p != "/"])
+def test_head_is_get_without_a_body(atlas, path):
+    get = atlas.get(path, headers=PLAIN)
+    head = atlas.request("HEAD", path, headers=PLAIN)
+    assert head.status_code == 200
+    assert head.content == b""
+    assert dict(head.headers) == dict(get.headers)
+
+
+def test_head_of_nothing_is_a_404(atlas):
+    response = atlas.request("HEAD", "/v1/nothing")
+    assert response.status_code == 404
+    assert response.content == b""
+
+
+def test_representations_have_different_etags(atlas):
+    json_etag = atlas.get("/v1/studies").headers["etag"]
+    csv_etag = atlas.get("/v1/studies", accept="text/csv").headers["etag"]
+    assert json_etag != csv_etag
+    assert "Accept" in atlas.get("/v1/studies").headers["vary"].split(", ")
+
+
+def test_the_same_question_spelt_otherwise_has_the_same_answer(atlas):
+    one = atlas.get("/v1/recommendations?task=Accuracy&task=FOV&max_error_deg=1")
+    two = atlas.get("/v1/recommendations?max_error_deg=1.0&task=FOV&task=Accuracy&task=FOV")
+    three = atlas.post(
+        "/v1/recommendations", json={"max_error_deg": 1, "task": ["FOV", "Accuracy"]}
+    )
+    assert one.content == two.content == three.content
+    assert one.headers["etag"] == two.headers["etag"] == three.headers["etag"]
+
+
+def test_post_knows_no_304(atlas):
+    headers = {"If-None-Match": "*"}
+    assert atlas.post("/v1/recommendations", json={}, headers=headers).status_code == 200
+
+
+def test_health_is_never_stored(atlas):
+    response = atlas.get("/healthz")
+    assert response.headers["cache-control"] == "no-store"
+    state = response.json()
+    assert state["status"] == "ok"
+    assert state["studies"] == 129
+    assert state["datasets"] == atlas.get("/v1/datasets").json()["total"]
+    assert state["scores"] == atlas.get("/v1/results").json()["total"]
+
+
+def test_plotly_is_the_installed_packages_own(atlas):
+    from importlib.metadata import distribution
+
+    bundle = distribution("plotly").locate_file("plotly/package_data/plotly.min.js")
+    with open(str(bundle), "rb") as file:  # noqa: PTH123 - a package path, not a Path
+        expected = hashlib.sha256(file.read()).hexdigest()
+    served = atlas.get("/page/plotly.min.js")
+    assert hashlib.sha256(served.content).hexdigest() == expected
+    assert served.headers["content-type"].startswith("text/javascript")
+
+
+def test_every_answer_keeps_the_page_to_itself(atlas):
+    for path in ("/", "/v1/taxonomy", "/healthz", "/page/plotly.min.js"):
+        headers = atlas.get(path).headers
+        assert headers["x-content-type-options"] == "nosniff"
+        policy = dict(part.split(" ", 1) for part in headers["content-security-policy"].split("; "))
+        assert policy["default-src"] == "'none'"
+        assert policy["script-src"] == "'self'"
+        assert policy["connect-src"] == "'self'"
+        assert "http" not in headers["content-security-policy"]
+
+
+def test_the_openapi_document_is_served_as_it_is(atlas):
+    assert atlas.get("/openapi.json").json() == json.loads(json.dumps(atlas.app.openapi()))
