@@ -63,7 +63,7 @@ def _line_part_py(i: int, lines: Floats, discs: Floats) -> float:
         low, high = max(low, start), min(high, stop)
         if start == stop:
             return 0.0
-    return 0.5 * lines[i, 2] * max(high - low, 0.0)
+    return float(0.5 * lines[i, 2] * max(high - low, 0.0))
 
 
 _line_part = njit(cache=True)(_line_part_py)
@@ -88,8 +88,8 @@ def _cuts_py(i: int, lines: Floats, discs: Floats) -> Floats:
             reach = (apart * apart + radius * radius - other * other) / (2.0 * apart * radius)
         if abs(reach) < 1.0:
             half = math.acos(reach)
-            cuts[count] = math.remainder(centre - half, 2.0 * math.pi)
-            cuts[count + 1] = math.remainder(centre + half, 2.0 * math.pi)
+            for k, angle in enumerate((centre - half, centre + half)):
+                cuts[count + k] = angle - 2.0 * math.pi * math.floor(angle / (2.0 * math.pi) + 0.5)
             count += 2
     return np.sort(cuts[:count])
 
@@ -192,7 +192,7 @@ def _lit_by_box_py(box: Floats, aperture: Floats, lower: Floats, upper: Floats) 
     if s == 0.0:
         across = min(box[1], x + a) - max(box[0], x - a)
         along = min(box[3], y + b) - max(box[2], y - b)
-        return max(across, 0.0) * max(along, 0.0)
+        return float(max(across, 0.0) * max(along, 0.0))
     u, v = c * x + s * y, c * y - s * x
     lines = _lines_of_box(box, 4)
     lines[4] = np.array([c, s, u + a])
