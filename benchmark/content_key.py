@@ -10,9 +10,10 @@ import dataclasses
 import hashlib
 import json
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from collections.abc import Set as AbstractSet
 from enum import Enum
+from types import FunctionType
 from typing import Any
 
 import numpy as np
@@ -90,12 +91,23 @@ def preset_code(preset: Preset) -> str:
 
 
 def preset_modules(preset: Preset) -> tuple[str, ...]:
-    """Modules a preset's numbers start from: its class's, and the one that made the instance."""
-    made_in = getattr(preset, "module", None)
-    modules = {type(preset).__module__}
-    if isinstance(made_in, str):
-        modules.add(made_in)
-    return tuple(sorted(modules))
+    """Modules of the preset's class and of every dataclass instance or function it holds."""
+    return tuple(sorted(set(_modules_of(preset))))
+
+
+def _modules_of(value: object) -> Iterator[str]:
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        yield type(value).__module__
+        for part in dataclasses.fields(value):
+            yield from _modules_of(getattr(value, part.name))
+    elif isinstance(value, Mapping):
+        for item in value.values():
+            yield from _modules_of(item)
+    elif isinstance(value, list | tuple):
+        for item in value:
+            yield from _modules_of(item)
+    elif isinstance(value, FunctionType):
+        yield value.__module__
 
 
 def seed(*names: str) -> int:

@@ -32,7 +32,7 @@ class Samples(Protocol):
         ...
 
     @property
-    def origin_px(self) -> Floats | None:
+    def origin_px(self) -> NDArray[Any] | None:
         """Detector coordinates (N, 2) of each window's first pixel; None where there are none."""
         ...
 
@@ -87,6 +87,10 @@ class Preset(Protocol):
     @property
     def conditions(self) -> tuple[str, ...]:
         """Names of the conditions."""
+        ...
+
+    def geometry_for(self, condition: str) -> SensorGeometry:
+        """Return the nominal design under one condition."""
         ...
 
     def generate(self, condition: str, split: str) -> Samples:

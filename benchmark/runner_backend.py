@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import os
+import platform
+import threading
+import time
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
+from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
 
@@ -43,9 +48,28 @@ def outcomes(
             stack.enter_context(parallel_config("loky", n_jobs=workers, inner_max_num_threads=1))
         else:
             _connect(stack, scheduler)
+        coordinator = (platform.node(), os.getpid())
         yield from Parallel(return_as="generator_unordered", batch_size=1, pre_dispatch="2*n_jobs")(
-            delayed(measure)(unit) for unit in units
+            delayed(_measure_for)(coordinator, unit) for unit in units
         )
+
+
+def _measure_for(coordinator: tuple[str, int], unit: Unit) -> UnitResult:
+    """Measure in a worker process, which ends when the coordinator does, even by a kill."""
+    host, process = coordinator
+    if (host, os.getppid()) == (platform.node(), process):
+        _end_with(process)
+    return measure(unit)
+
+
+@cache
+def _end_with(parent: int) -> None:
+    def watch() -> None:
+        while os.getppid() == parent:
+            time.sleep(0.5)
+        os._exit(1)
+
+    threading.Thread(target=watch, daemon=True, name="end with the coordinator").start()
 
 
 def _connect(stack: ExitStack, scheduler: str) -> None:

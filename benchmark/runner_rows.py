@@ -52,7 +52,7 @@ class Keys:
         An implementation that cannot be built for the sensor enters without parameters; what is
         measured then is its failure.
         """
-        geometry = self._parts.preset(cell.dataset).geometry
+        geometry = self._parts.preset(cell.dataset).geometry_for(cell.condition)
         extractor_class = self._parts.extractor(cell.extractor)
         model_class = self._parts.model(cell.model)
         return cell_key(
@@ -84,7 +84,7 @@ def score_row(key: str, data_hash: str | None, result: UnitResult, outcome: Outc
         "condition": unit.condition,
         "detector": unit.preset.detector,
         "mask": unit.preset.mask,
-        "half_fov_deg": unit.preset.geometry.half_fov_deg,
+        "half_fov_deg": unit.preset.geometry_for(unit.condition).half_fov_deg,
         "extractor": unit.extractor.name,
         "extractor_taxonomy": unit.extractor.taxonomy,
         "extractor_version": unit.extractor.version,

@@ -116,7 +116,7 @@ def _data(preset: Preset, condition: str) -> _Data:
 
 def _measured(unit: Unit, data: _Data) -> UnitResult:
     _seed_opencv(seed(unit.preset.name, unit.condition, unit.extractor.name))
-    extractor = unit.extractor.for_sensor(unit.preset.geometry)
+    extractor = unit.extractor.for_sensor(unit.preset.geometry_for(unit.condition))
     started = time.perf_counter()
     calibration = _features(extractor, data.calibration)  # also warms compiled code up
     calibration_s = time.perf_counter() - started
@@ -142,7 +142,9 @@ def _outcome(
     name = model_class.name
     try:
         _seed_opencv(seed(unit.preset.name, unit.condition, unit.extractor.name, name))
-        model = model_class.for_sensor(unit.preset.geometry, unit.extractor.kind)
+        model = model_class.for_sensor(
+            unit.preset.geometry_for(unit.condition), unit.extractor.kind
+        )
         started = time.perf_counter()
         model.fit(calibration, data.calibration.sun)
         fit_s = time.perf_counter() - started

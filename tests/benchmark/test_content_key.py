@@ -64,7 +64,9 @@ def test_comments_docstrings_and_formatting_do_not_change_the_digest(plug_in):
     rewrite(plug_in / "top.py", '"""Top."""\n', '"""Other words."""\n\n# and a comment\n')
     rewrite(plug_in / "top.py", "  # sum", "")
     rewrite(plug_in / "top.py", '"""Lazy."""', "'''Lazier.'''")
-    rewrite(plug_in / "top.py", "lazy.value + leaf.value + value", "(lazy.value\n + leaf.value) + value")
+    rewrite(
+        plug_in / "top.py", "lazy.value + leaf.value + value", "(lazy.value\n + leaf.value) + value"
+    )
     assert closure_digest("plugin_pkg.top") == before
 
 
@@ -149,7 +151,7 @@ def test_the_data_hash_sees_every_array_its_shape_and_type_but_not_its_memory_la
 def test_a_key_depends_on_each_of_its_parts():
     preset = fake_atlas.Diodes()
 
-    def key(preset=preset, condition="quiet", data="d", extractor=None, model=None, seed=1):
+    def key(*, preset=preset, condition="quiet", data="d", extractor=None, model=None, seed=1):
         return content_key.cell_key(
             content_key.data_specification(preset, condition),
             data,

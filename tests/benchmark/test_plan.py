@@ -3,6 +3,7 @@
 import dataclasses
 
 import fake_atlas
+import fake_plan
 import pytest
 
 from benchmark import plan
@@ -12,7 +13,7 @@ from benchmark.plan_parts import UnknownNameError
 
 @pytest.fixture
 def parts():
-    return fake_atlas.parts()
+    return fake_plan.parts()
 
 
 def test_every_compatible_combination_is_planned_in_sorted_order(parts):
@@ -39,7 +40,7 @@ def test_features_a_model_cannot_read_are_refused_with_the_reason(parts):
         accepts = frozenset({fake_atlas.FeatureKind.SPOT})
 
     refused = plan.incompatible(
-        extractors="fake-currents", models="fake-spots", parts=fake_atlas.parts(Spots)
+        extractors="fake-currents", models="fake-spots", parts=fake_plan.parts(Spots)
     )
     assert [r.reason for r in refused] == ["accepts spot; the extractor gives signals"]
 
@@ -51,7 +52,7 @@ def test_filters_narrow_the_plan(parts):
 
 def test_a_condition_only_some_datasets_have_selects_those():
     second = dataclasses.replace(fake_atlas.Diodes(), name="fake-other", conditions=("quiet",))
-    parts = fake_atlas.parts(presets=(fake_atlas.Diodes(), second))
+    parts = fake_plan.parts(presets=(fake_atlas.Diodes(), second))
     assert {c.dataset for c in plan.cells(conditions="noisy", parts=parts)} == {"fake-diodes"}
 
 

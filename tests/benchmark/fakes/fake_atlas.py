@@ -1,6 +1,7 @@
 """A whole benchmark in small: four tilted diodes, whose bound has a closed form.
 
-Kept importable (not a test module) so that worker processes and digests of code find it.
+Kept importable (not a test module) so that worker processes and digests of code find it;
+imports nothing of the benchmark, so that its keys do not change with it.
 """
 
 from __future__ import annotations
@@ -14,7 +15,6 @@ from typing import Any, ClassVar
 import numpy as np
 
 from algorithms.contract import FeatureKind, Observation, SensorGeometry
-from benchmark.plan_parts import Parts
 
 _TILT = np.deg2rad(30.0)
 NORMALS = np.array(
@@ -64,6 +64,9 @@ class Diodes:
             face_normals=tuple(tuple(row) for row in NORMALS.tolist()), half_fov_deg=25.0
         )
 
+    def geometry_for(self, condition: str) -> SensorGeometry:
+        return self.geometry
+
     def noise(self, condition: str) -> float:
         return {"quiet": 1e-3, "noisy": 1e-2}[condition]
 
@@ -84,7 +87,9 @@ class Diodes:
         log(f"generate {self.name} {condition} {split}")
         sun, rng = self.truth(condition, split)
         currents = sun @ NORMALS.T
-        return FakeSamples(currents + self.noise(condition) * rng.standard_normal(currents.shape), sun)
+        return FakeSamples(
+            currents + self.noise(condition) * rng.standard_normal(currents.shape), sun
+        )
 
     def bound(self, condition: str, split: str = "test") -> FakeBound:
         """Known amplitude, white noise: covariance of the tangent plane is sigma^2 (J^T J)^-1."""
@@ -199,12 +204,3 @@ class Unbuildable(LeastSquares):
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Any:
         raise ValueError("no such sensor")
-
-
-def parts(*models: Any, presets: tuple[Any, ...] = (Diodes(),)) -> Parts:
-    extractors = (Currents, Gaps, Framed, Balanced)
-    return Parts(
-        {preset.name: preset for preset in presets},
-        {extractor.name: extractor for extractor in extractors},
-        {model.name: model for model in models or (LeastSquares,)},
-    )
