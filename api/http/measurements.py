@@ -9,8 +9,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from benchmark.store import PUBLISHED, Store
-
+from benchmark.store import PUBLISHED, Store, StoreError
 from registry.measured import Measured
 
 if TYPE_CHECKING:
@@ -44,14 +43,13 @@ class Measurements:
 
     def comparable(self, condition: str) -> list[Measured]:
         """Return the scores of a condition as recommendations take them, failures left out."""
-        return [
-            Measured(
-                **{name: row.get(name) for name in _TAKEN},
-                latency_us=self.runs.get(row["key"], {}).get("latency_us"),
-            )
-            for row in self.scores
-            if row["condition"] == condition and row["status"] == "ok"
-        ]
+        found = []
+        for row in self.scores:
+            if row["condition"] == condition and row["status"] == "ok":
+                taken: dict[str, Any] = {name: row[name] for name in _TAKEN}
+                latency_us = self.runs.get(row["key"], {}).get("latency_us")
+                found.append(Measured(**taken, latency_us=latency_us))
+        return found
 
     @cached_property
     def leaderboard(self) -> Mapping[str, Any]:
@@ -59,7 +57,7 @@ class Measurements:
 
         Raises
         ------
-        ValueError
+        StoreError
             Where the file is not a JSON object.
         """
         path = self.directory / "leaderboard.json"
@@ -67,7 +65,7 @@ class Measurements:
             return {"schema": None, "datasets": []}
         board = json.loads(path.read_bytes())
         if not isinstance(board, dict):
-            raise ValueError(f"{path}: expected a JSON object, got {type(board).__name__}")
+            raise StoreError(f"{path}: expected a JSON object, got {type(board).__name__}")
         return board
 
     @cached_property

@@ -37,7 +37,7 @@ def preferences(header: str) -> list[tuple[str, float]]:
 
 def _weight(media_type: str, accepted: Sequence[tuple[str, float]]) -> float:
     """Return the weight of a media type: the most specific range that covers it decides."""
-    group = media_type.split("/")[0] + "/*"
+    group = media_type.partition("/")[0] + "/*"
     for wanted in (media_type, group, "*/*"):
         weights = [weight for name, weight in accepted if name == wanted]
         if weights:

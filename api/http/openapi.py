@@ -99,7 +99,7 @@ def _complete(operation: dict[str, Any], endpoint: Endpoint) -> None:
     for status in sorted(statuses):
         operation["responses"][str(status)] = (
             {"description": "The bytes of the ETag in If-None-Match are still the answer."}
-            if status == 304  # noqa: PLR2004 - the one status without a document
+            if status == 304
             else _refusal(status, endpoint)
         )
 
@@ -116,10 +116,10 @@ def _example_refusal(status: int, endpoint: Endpoint) -> dict[str, Any] | None:
     """Return a problem that the endpoint raises, by making its example slightly wrong."""
     path = endpoint.path.format(**endpoint.example)
     try:
-        if status == 400:  # noqa: PLR2004 - as in REFUSALS
+        if status == 400:
             names = [parameter.name for parameter in endpoint.parameters.declared] or ["limit"]
             endpoint.parameters.from_query(f"{names[0]}s=1".encode())
-        elif status == 404:  # noqa: PLR2004 - as in REFUSALS
+        elif status == 404:
             part = endpoint.parts[0]
             part.check(endpoint.example[part.name] + "x")
     except Problem as problem:

@@ -10,8 +10,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
-from api.http.parameters import Arguments, Integer, Parameter, Parameters, Text
+from api.http.parameters import Arguments, Parameter, Parameters
 from api.http.problems import Problem, Violation
+from api.http.values import Integer, Text
 
 Row = TypeVar("Row")
 

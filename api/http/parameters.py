@@ -7,184 +7,16 @@ OpenAPI descriptions, so that the document cannot say other than what is checked
 
 from __future__ import annotations
 
-import math
-import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 from urllib.parse import parse_qsl, urlencode
 
 from api.http.nearest import nearest
 from api.http.problems import Problem, Violation
+from api.http.values import InvalidValueError, Kind
 
 MOST_FIELDS = 200  # of one query
-_NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:[eE][+-]?\d+)?\Z", re.ASCII)
-_INTEGER = re.compile(r"-?\d{1,18}\Z", re.ASCII)
-
-
-class InvalidValueError(ValueError):
-    """A value is not one the parameter takes; carries the nearest valid one."""
-
-    def __init__(self, nearest_valid: str | None = None) -> None:
-        super().__init__(nearest_valid)
-        self.nearest = nearest_valid
-
-
-class Kind(Protocol):
-    """What one value of a parameter may be."""
-
-    def from_text(self, text: str) -> Any:
-        """Read a value from a query; InvalidValueError where it is not valid."""
-        ...
-
-    def from_json(self, value: object) -> Any:
-        """Read a value from a JSON body; InvalidValueError where it is not valid."""
-        ...
-
-    def expected(self) -> str:
-        """Say in words what is valid."""
-        ...
-
-    def schema(self) -> dict[str, Any]:
-        """Return the JSON Schema of a value."""
-        ...
-
-
-@dataclass(frozen=True)
-class Choice:
-    """One of a closed list of words; `words` is called when they are needed."""
-
-    words: Callable[[], Sequence[str]]
-
-    def from_text(self, text: str) -> str:
-        words = self.words()
-        if text not in words:
-            raise InvalidValueError(nearest(text, words))
-        return text
-
-    def from_json(self, value: object) -> str:
-        if not isinstance(value, str):
-            raise InvalidValueError
-        return self.from_text(value)
-
-    def expected(self) -> str:
-        words = ", ".join(self.words())
-        return f"one of {words}" if words else "nothing: there is no valid value"
-
-    def schema(self) -> dict[str, Any]:
-        words = list(self.words())
-        return {"type": "string", "enum": words} if words else {"type": "string", "maxLength": 0}
-
-
-@dataclass(frozen=True)
-class PositiveNumber:
-    """A finite number above zero, up to a bound (included)."""
-
-    maximum: float
-
-    def from_text(self, text: str) -> float:
-        if not _NUMBER.match(text):
-            raise InvalidValueError
-        return self._within(float(text))
-
-    def from_json(self, value: object) -> float:
-        if isinstance(value, bool) or not isinstance(value, int | float):
-            raise InvalidValueError
-        # Compared before it is converted: an integer may be too long for a float.
-        if isinstance(value, int) and not 0 < value <= self.maximum:
-            raise InvalidValueError
-        return self._within(float(value))
-
-    def _within(self, value: float) -> float:
-        if not (math.isfinite(value) and 0 < value <= self.maximum):
-            raise InvalidValueError
-        return value
-
-    def expected(self) -> str:
-        return f"a number above 0, at most {self.maximum:g}"
-
-    def schema(self) -> dict[str, Any]:
-        return {"type": "number", "exclusiveMinimum": 0, "maximum": self.maximum}
-
-
-@dataclass(frozen=True)
-class Integer:
-    """A whole number between two bounds, both included."""
-
-    minimum: int
-    maximum: int
-
-    def from_text(self, text: str) -> int:
-        if not _INTEGER.match(text):
-            raise InvalidValueError
-        return self._within(int(text))
-
-    def from_json(self, value: object) -> int:
-        if isinstance(value, float) and value.is_integer():
-            value = int(value)  # JSON knows one kind of number: 3.0 is an integer
-        if isinstance(value, bool) or not isinstance(value, int):
-            raise InvalidValueError
-        return self._within(value)
-
-    def _within(self, value: int) -> int:
-        if not self.minimum <= value <= self.maximum:
-            raise InvalidValueError
-        return value
-
-    def expected(self) -> str:
-        return f"an integer from {self.minimum} to {self.maximum}"
-
-    def schema(self) -> dict[str, Any]:
-        return {"type": "integer", "minimum": self.minimum, "maximum": self.maximum}
-
-
-@dataclass(frozen=True)
-class Text:
-    """Free text of bounded length, of one character at least."""
-
-    longest: int
-    pattern: str | None = None
-
-    def from_text(self, text: str) -> str:
-        if not 1 <= len(text) <= self.longest:
-            raise InvalidValueError
-        if self.pattern is not None and not re.fullmatch(self.pattern, text):
-            raise InvalidValueError
-        return text
-
-    def from_json(self, value: object) -> str:
-        if not isinstance(value, str):
-            raise InvalidValueError
-        return self.from_text(value)
-
-    def expected(self) -> str:
-        form = f" of the form {self.pattern}" if self.pattern else ""
-        return f"text of 1 to {self.longest} characters{form}"
-
-    def schema(self) -> dict[str, Any]:
-        bounds = {"type": "string", "minLength": 1, "maxLength": self.longest}
-        return {**bounds, "pattern": f"^{self.pattern}$"} if self.pattern else bounds
-
-
-@dataclass(frozen=True)
-class Flag:
-    """True or false."""
-
-    def from_text(self, text: str) -> bool:
-        if text not in {"true", "false"}:
-            raise InvalidValueError(nearest(text, ("true", "false")))
-        return text == "true"
-
-    def from_json(self, value: object) -> bool:
-        if not isinstance(value, bool):
-            raise InvalidValueError
-        return value
-
-    def expected(self) -> str:
-        return "true or false"
-
-    def schema(self) -> dict[str, Any]:
-        return {"type": "boolean"}
 
 
 @dataclass(frozen=True)
@@ -317,8 +149,8 @@ class Parameters:
             value = arguments[parameter.name]
             if value == parameter.absent():
                 continue
-            for item in value if parameter.repeatable else (value,):
-                pairs.append((parameter.name, _text(item)))
+            items = value if parameter.repeatable else (value,)
+            pairs.extend((parameter.name, _text(item)) for item in items)
         return urlencode(pairs)
 
     def _refuse_unknown(self, names: Iterable[str]) -> None:
@@ -390,7 +222,7 @@ def _shown(value: object) -> str:
         return f"{'an object' if isinstance(value, Mapping) else 'a list'} of {len(value)} items"
     if isinstance(value, bool) or value is None:
         return {True: "true", False: "false", None: "null"}[value]
-    if isinstance(value, int) and value.bit_length() > 256:  # noqa: PLR2004 - str() of it may raise
+    if isinstance(value, int) and value.bit_length() > 256:  # str() of it may raise
         return "a very long integer"
     return str(value)
 

@@ -96,7 +96,7 @@ class Problem(Exception):  # noqa: N818 - the RFC's own word
 
 def respond(request: Request, problem: Problem) -> Response:
     """Return `problem` as the response to `request`."""
-    # Not the fast serialiser of answers: input may hold lone surrogates, which only escaping carries.
+    # Not the answers' fast serialiser: input may hold lone surrogates, which only escaping carries.
     body = json.dumps(problem.document(request.url.path)).encode()
     headers = {"Cache-Control": "no-store", **problem.headers}
     return Response(body, problem.status, headers, media_type=MEDIA_TYPE)
@@ -127,7 +127,7 @@ def install(app: FastAPI) -> None:
             )
         return respond(request, problem)
 
-    async def failed(request: Request, error: Exception) -> Response:
+    async def failed(request: Request, _error: Exception) -> Response:
         detail = "The service failed on this request; the cause is in its log."
         return respond(request, Problem(500, "internal-server-error", detail))
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from api.http.knowledge import Knowledge
-from api.http.parameters import Arguments, Choice, Parameter
+from api.http.parameters import Arguments, Parameter
+from api.http.values import Choice
 from registry.studies import Study
 from registry.taxonomy import ATTRIBUTES
 

@@ -8,8 +8,9 @@ from api.http.answers import Answer
 from api.http.endpoint import Endpoint, PathPart
 from api.http.endpoints.attributes import attribute_filters, wanted_values
 from api.http.knowledge import Knowledge
-from api.http.parameters import Arguments, Choice, Flag, Parameter, Parameters
+from api.http.parameters import Arguments, Parameter, Parameters
 from api.http.shapes import Flows
+from api.http.values import Choice, Flag
 from registry.flows import CHARTS, COUNTINGS, chart
 
 COLUMNS = ("source", "target", "value", "studies")

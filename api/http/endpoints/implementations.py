@@ -8,8 +8,9 @@ from api.http.answers import Answer
 from api.http.endpoint import Endpoint
 from api.http.knowledge import Knowledge
 from api.http.pagination import CURSOR, LIMIT, page
-from api.http.parameters import Arguments, Choice, Parameter, Parameters
+from api.http.parameters import Arguments, Parameter, Parameters
 from api.http.shapes import Algorithm, Algorithms
+from api.http.values import Choice
 
 ROLES = ("extractor", "model")
 

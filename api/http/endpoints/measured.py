@@ -9,8 +9,9 @@ from api.http.answers import Answer
 from api.http.endpoint import Endpoint, PathPart
 from api.http.knowledge import Knowledge
 from api.http.pagination import CURSOR, LIMIT, page
-from api.http.parameters import Arguments, Choice, Parameter, Parameters
+from api.http.parameters import Arguments, Parameter, Parameters
 from api.http.shapes import Datasets, Leaderboard, LeaderboardRows, Scores
+from api.http.values import Choice
 
 DATASET_COLUMNS = ("name", "version", "detector", "mask", "observation", "conditions")
 SCORE_COLUMNS = ("dataset", "condition", "extractor", "model", "status", "rms_deg", "bound_deg")
@@ -65,7 +66,7 @@ def endpoints(knowledge: Knowledge) -> list[Endpoint]:
 
     def build_leaderboard(_parts: Mapping[str, str], _arguments: Arguments) -> Answer:
         board = measurements.leaderboard
-        return Answer(board, BOARD_COLUMNS, lambda: measurements.board_rows())
+        return Answer(board, BOARD_COLUMNS, measurements.board_rows)
 
     def build_board(parts: Mapping[str, str], arguments: Arguments) -> Answer:
         name = parts["dataset"]

@@ -10,8 +10,9 @@ from api.http.endpoint import Endpoint
 from api.http.endpoints.attributes import values_of
 from api.http.knowledge import Knowledge
 from api.http.pagination import LARGEST_PAGE
-from api.http.parameters import Arguments, Choice, Integer, Parameter, Parameters, PositiveNumber
+from api.http.parameters import Arguments, Parameter, Parameters
 from api.http.shapes import Recommendations
+from api.http.values import Choice, Integer, PositiveNumber
 from registry.recommendation import Recommendation, recommend
 from registry.requirements import EXCLUDE, LIMITS
 from registry.taxonomy import ATTRIBUTES

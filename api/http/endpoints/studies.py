@@ -10,8 +10,9 @@ from api.http.endpoint import Endpoint, PathPart
 from api.http.endpoints.attributes import attribute_filters, has_values, wanted_values
 from api.http.knowledge import Knowledge
 from api.http.pagination import CURSOR, LIMIT, page
-from api.http.parameters import Arguments, Choice, Integer, Parameter, Parameters, Text
+from api.http.parameters import Arguments, Parameter, Parameters
 from api.http.shapes import Studies, StudyDetail
+from api.http.values import Choice, Integer, Text
 from registry.studies import Study
 from registry.taxonomy import ATTRIBUTES, NUMERIC_ATTRIBUTES
 
@@ -45,24 +46,8 @@ def endpoints(knowledge: Knowledge) -> list[Endpoint]:
         values = summary.pop("values")
         return {**summary, "state": knowledge.resolutions[study.key].state, "values": values}
 
-    def matches(study: Study, arguments: Arguments) -> bool:
-        first, last, words = arguments["year_min"], arguments["year_max"], arguments["q"]
-        if first is not None or last is not None:
-            if study.year is None:
-                return False
-            if not (first or 0) <= study.year <= (last if last is not None else study.year):
-                return False
-        if words is not None:
-            text = f"{study.key} {study.title} {study.authors} {study.venue}".casefold()
-            if not all(word in text for word in words.casefold().split()):
-                return False
-        states = arguments["state"]
-        if states and knowledge.resolutions[study.key].state not in states:
-            return False
-        return has_values(knowledge, study, wanted_values(arguments))
-
     def build_list(_parts: Mapping[str, str], arguments: Arguments) -> Answer:
-        found = [s for s in knowledge.facts.studies.values() if matches(s, arguments)]
+        found = [s for s in knowledge.facts.studies.values() if _matches(knowledge, s, arguments)]
         shown = page(found, "/v1/studies", parameters, arguments)
         items = [row(study) for study in shown.items]
         return Answer(
@@ -115,3 +100,29 @@ def endpoints(knowledge: Knowledge) -> list[Endpoint]:
             example={"key": "Chang2008"},
         ),
     ]
+
+
+def _matches(knowledge: Knowledge, study: Study, arguments: Arguments) -> bool:
+    """Say whether a study is among those asked for."""
+    states = arguments["state"]
+    return (
+        _in_years(study, arguments["year_min"], arguments["year_max"])
+        and _has_words(study, arguments["q"])
+        and (not states or knowledge.resolutions[study.key].state in states)
+        and has_values(knowledge, study, wanted_values(arguments))
+    )
+
+
+def _in_years(study: Study, first: int | None, last: int | None) -> bool:
+    if first is None and last is None:
+        return True
+    if study.year is None:
+        return False
+    return (first is None or first <= study.year) and (last is None or study.year <= last)
+
+
+def _has_words(study: Study, words: str | None) -> bool:
+    if words is None:
+        return True
+    text = f"{study.key} {study.title} {study.authors} {study.venue}".casefold()
+    return all(word in text for word in words.casefold().split())
