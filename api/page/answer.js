@@ -2,7 +2,7 @@
 
 import { byId, copyable, h } from "./dom.js";
 import { address, saveCsv } from "./service.js";
-import { ATTRIBUTES, LIMITS, requirements, set, setLimit, state } from "./state.js";
+import { ATTRIBUTES, LIMITS, measuredCondition, requirements, set, setLimit, setRequirements, state } from "./state.js";
 import { ATTRIBUTE_NAMES, LIMIT_NAMES, plural } from "./wording.js";
 
 function chip(label, spoken, remove, not) {
@@ -56,7 +56,7 @@ export function showSummary(answer, studies) {
     h("strong", {}, String(measured)), answer.count > answer.paths.length
       ? ` of the first ${answer.paths.length} measured here.` : " of them measured here.");
   const asked = requirements();
-  const url = address("/v1/recommendations", { ...asked, condition: state.condition, limit: 500 });
+  const url = address("/v1/recommendations", { ...asked, condition: measuredCondition(), limit: 500 });
   byId("answer-links").replaceChildren(
     h("a", { href: url }, "This answer as JSON"),
     h("button", { type: "button", onclick: () => saveCsv(url, "recommendations.csv") }, "as CSV"),
@@ -74,8 +74,8 @@ export function commandLine(asked) {
 /** Why nothing is left, and what would leave something. */
 export function showBlocked(blocked, relax) {
   byId("blocked").replaceChildren(...(blocked ? [h("div", { class: "notice" },
-    h("p", {}, h("strong", {}, "No path meets these requirements. "), blocked.detail),
-    h("p", {}, "The constraint that leaves nothing: ", h("code", { class: "culprit" }, blocked.constraint)),
+    h("p", {}, h("strong", {}, "No path meets these requirements. "), `${blocked.detail.charAt(0).toUpperCase()}${blocked.detail.slice(1)}.`),
+    h("p", {}, "The constraint that leaves nothing: ", h("code", { class: "culprit" }, blocked.constraint || "none: no study has a value at every level")),
     blocked.relaxations.length > 0 && h("p", { id: "relax-title" }, "What would leave something:"),
     blocked.relaxations.length > 0 && h("div", { class: "relaxations", role: "group", "aria-labelledby": "relax-title" },
       blocked.relaxations.map((r) => h("button", {
@@ -87,28 +87,24 @@ export function showBlocked(blocked, relax) {
       }, `${relaxationWords(r)} → ${plural(r.paths, "path")}`))))] : []));
 }
 
-function relaxationWords(relaxation) {
-  const { constraint, drop, change } = relaxation;
+/** One constraint of a relaxation in words; asked: the values or the bound. */
+function constraintWords(constraint, asked, verb) {
   const limit = LIMIT_NAMES[constraint];
-  if (limit && typeof change === "number") return `${limit.name}: ${change} ${limit.unit}`.replace(" °", "°");
-  if (limit) return `Drop “${limit.words}”`;
+  if (limit) return `${verb === "drop" ? "drop " : ""}${limit.words} ${asked} ${limit.unit}`.replace(" °", "°");
   const excluded = constraint.startsWith("exclude_");
   const attribute = constraint.replace("exclude_", "");
-  const values = Array.isArray(drop) ? drop.join(" or ") : typeof drop === "string" ? drop : "";
-  const subject = (ATTRIBUTE_NAMES[attribute] ?? attribute).toLowerCase();
-  if (Array.isArray(change) || typeof change === "string") return `${excluded ? "Exclude" : "Ask for"} ${subject} ${[change].flat().join(" or ")}`;
-  return excluded ? `Allow ${subject} ${values}` : `Drop ${subject} ${values}`.trim();
+  const subject = `${(ATTRIBUTE_NAMES[attribute] ?? attribute).toLowerCase()} ${[asked].flat().join(" or ")}`;
+  if (verb === "change") return excluded ? `exclude only ${subject}` : subject;
+  return excluded ? `allow ${subject}` : `drop ${subject}`;
 }
 
-/** Apply a relaxation to the state. */
-export function relax({ constraint, drop, change }) {
-  if (constraint in LIMIT_NAMES) {
-    setLimit(constraint, typeof change === "number" ? String(change) : "");
-    return;
-  }
-  const attribute = constraint.replace("exclude_", "");
-  const where = constraint.startsWith("exclude_") ? "exclude" : "include";
-  const values = Array.isArray(drop) || typeof drop === "string" ? [drop].flat() : state[where][attribute];
-  if (change !== undefined && change !== null) set(attribute, [change].flat(), where);
-  else set(attribute, [...values], null);
+function relaxationWords({ drop, change }) {
+  const verb = drop ? "drop" : "change";
+  const words = Object.entries(drop ?? change ?? {}).map(([c, asked]) => constraintWords(c, asked, verb)).join(" and ");
+  return `${words.charAt(0).toUpperCase()}${words.slice(1)}`;
+}
+
+/** The requirements with a relaxation applied. */
+export function relax({ drop, change }) {
+  setRequirements({ ...requirements(), ...Object.fromEntries(Object.keys(drop ?? {}).map((c) => [c, []])), ...change });
 }

@@ -2,7 +2,7 @@
 
 import { byId, choice, h, problemNotice, segmented } from "./dom.js";
 import { attributeOf, fractional, grouped, rings, withAmounts } from "./flow_data.js";
-import { drawSankey, drawSunburst, erase } from "./flow_diagram.js";
+import { drawSankey, drawSunburst, erase, labelRoom } from "./flow_diagram.js";
 import { address, getJson } from "./service.js";
 import { ATTRIBUTES, LIMITS, set, show, standing, state } from "./state.js";
 import { amount, ATTRIBUTE_NAMES, plural } from "./wording.js";
@@ -13,8 +13,7 @@ const CHARTS = [
   ["task", "Tasks"], ["model-sunburst", "Models (sunburst)"],
 ];
 
-/** Node ids of the last flow, to know what a change left out. */
-let drawing = 0;
+let drawing = 0; // the last call of showFlow: what an earlier one brings is out of date
 
 export function showFlowControls() {
   byId("flow-controls").replaceChildren(
@@ -42,6 +41,9 @@ function noteOf(flow, answer, studies) {
   const parts = [];
   if (state.chart === "cross-analysis") {
     parts.push("Studies on the paths of the answer, from task to feature extractor. Select a value to require it.");
+    if (answer.left_out?.length) {
+      parts.push(`On no path for want of a known value: ${answer.left_out.map((l) => `${l.count} without ${nameOf(l.level).toLowerCase()}`).join(", ")}.`);
+    }
     if (state.counting === "fractional" && answer.count > answer.paths.length) {
       parts.push(`Counted over the first ${answer.paths.length} of ${answer.count} paths.`);
     }
@@ -50,7 +52,7 @@ function noteOf(flow, answer, studies) {
     const unheeded = ATTRIBUTES.some((a) => state.exclude[a].length) || LIMITS.some((l) => state.limits[l] !== "");
     if (unheeded) parts.push("Excluded values and limits apply to the cross-analysis only, not to this chart.");
     for (const left of flow.left_out ?? []) {
-      parts.push(`${plural(left.count, "study", "studies")} without a known ${nameOf(left.level).toLowerCase()} not drawn there.`);
+      parts.push(`${plural(left.count, "study", "studies")} without a known ${nameOf(left.level).toLowerCase()} ${left.count === 1 ? "is" : "are"} not drawn there.`);
     }
   }
   parts.push(state.counting === "fractional"
@@ -161,7 +163,10 @@ async function diagram(body, flow, vocabulary, turn) {
         h("div", { class: "diagram-frame" }, h("div", { class: "levels-head", "aria-hidden": true, hidden: round }), picture)));
   }
   picture.setAttribute("aria-label", description);
-  body.querySelector(".levels-head").replaceChildren(...flow.levels.map((level) => h("span", {}, nameOf(level))));
+  const heads = body.querySelector(".levels-head");
+  heads.replaceChildren(...flow.levels.map((level, i) =>
+    h("span", { css: { "--at": i / (flow.levels.length - 1) } }, nameOf(level))));
+  heads.style.setProperty("--labels", `${labelRoom(flow)}px`);
   if (round) await drawSunburst(picture, rings(flow, vocabulary));
   else await drawSankey(picture, flow, (n) => isRequired(n, vocabulary), (n) => toggle(n, vocabulary));
   if (turn !== drawing) return;

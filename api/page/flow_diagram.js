@@ -22,11 +22,13 @@ export function plotly() {
 
 const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
+const narrow = () => matchMedia("(max-width: 700px)").matches;
+
 const CONFIG = { displayModeBar: false, responsive: true };
 
-function layout(height) {
+function layout(height, right = 2) {
   return {
-    height, margin: { l: 2, r: 2, t: 8, b: 8 }, paper_bgcolor: "rgba(0,0,0,0)",
+    height, margin: { l: 2, r: right, t: 8, b: 8 }, paper_bgcolor: "rgba(0,0,0,0)",
     font: { family: colour("--font"), size: 13, color: colour("--text") },
     hoverlabel: {
       bgcolor: colour("--surface"), bordercolor: colour("--line-strong"),
@@ -59,6 +61,28 @@ function placed(nodes, levels) {
   return { x, y };
 }
 
+const THICKNESS = 12;
+const label = (node) => `${node.value}  ${amount(node.amount)}`;
+
+/** Pixels that the labels of the last level need beside it. */
+export function labelRoom(flow) {
+  const last = flow.nodes.filter((n) => n.level === flow.levels.at(-1));
+  return 16 + Math.ceil(7.4 * Math.max(...last.map((n) => label(n).length), 8));
+}
+
+/** Plotly writes the last level's labels inward, over those of the level before: turn them out. */
+function labelsOutward(container) {
+  for (const text of container.querySelectorAll(".sankey-node .node-label")) {
+    if (text.getAttribute("text-anchor") !== "end") continue;
+    const [, , y] = /translate\(([-\d.]+)[, ]+([-\d.]+)\)/.exec(text.getAttribute("transform")) ?? [];
+    if (y === undefined) continue;
+    text.setAttribute("transform", `translate(${THICKNESS + 3},${y})`);
+    text.setAttribute("text-anchor", "start");
+    // Lines of a label carry their own anchor.
+    for (const line of text.querySelectorAll("tspan")) line.setAttribute("text-anchor", "start");
+  }
+}
+
 /** Draw a flow; required(node) colours a node, choose(node) is called on a click. */
 export async function drawSankey(container, flow, required, choose) {
   const library = await plotly();
@@ -73,11 +97,11 @@ export async function drawSankey(container, flow, required, choose) {
     type: "sankey",
     arrangement: "fixed",
     node: {
-      label: nodes.map((n) => `${n.value}  ${amount(n.amount)}`),
+      label: nodes.map(label),
       color: sun.map((yes) => colour(yes ? "--sun-node" : "--node")),
       customdata: nodes.map((n) => `<b>${n.name}</b><br>${plural(n.studies.length, "study", "studies")}: ${listed(n.studies)}`),
       hovertemplate: "%{customdata}<extra></extra>",
-      line: { width: 0 }, thickness: 12, pad: tallest > 14 ? 9 : 14, align: "left",
+      line: { width: 0 }, thickness: THICKNESS, pad: tallest > 14 ? 9 : 14, align: "left",
       ...(adrift ? placed(nodes, flow.levels) : {}),
     },
     link: {
@@ -89,11 +113,14 @@ export async function drawSankey(container, flow, required, choose) {
       customdata: flow.links.map((l) => `${amount(l.value)} · ${listed(l.studies)}`),
       hovertemplate: "%{source.label} → %{target.label}<br>%{customdata}<extra></extra>",
     },
-    textfont: { size: 13, color: colour("--text"), shadow: halo() },
+    textfont: { size: narrow() ? 12 : 13, color: colour("--text"), shadow: halo() },
   };
   const height = Math.min(760, Math.max(200, 70 + tallest * (tallest > 14 ? 30 : 44)));
-  await library.react(container, [trace], layout(height), CONFIG);
-  container.removeAllListeners?.("plotly_click");
+  await library.react(container, [trace], layout(height, labelRoom(flow)), CONFIG);
+  labelsOutward(container);
+  container.removeAllListeners("plotly_afterplot");
+  container.on("plotly_afterplot", () => labelsOutward(container));
+  container.removeAllListeners("plotly_click");
   container.on("plotly_click", (event) => {
     const point = event.points[0];
     const node = nodes[point.pointNumber];

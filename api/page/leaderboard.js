@@ -9,16 +9,18 @@ const COLUMNS = [
   { field: "extractor", name: "Extractor", text: true },
   { field: "model", name: "Model", text: true },
   { field: "rms_deg", name: "RMS error", write: degrees },
-  { field: "over_bound", name: "Times the bound", write: times },
+  { field: "over_bound", name: "× bound", title: "RMS error over the Cramér–Rao bound of the samples found", write: times },
   { field: "found_fraction", name: "Found", write: percent },
   { field: "time_ratio", name: "Time ratio", write: times, title: "Time of extraction and prediction over that of a reference on the same observations" },
 ];
-const SCALE = "Error and bound";
+const SCALE = "Error, log scale";
+const FIRST = 16;
 
 let shown = null; // what the rows on screen belong to
 let turn = 0;
 
-const place = (rows) => {
+/** A logarithmic scale that all rows share: position of a number from 0 to 1, and its ticks. */
+const scaleOf = (rows) => {
   const values = rows.flatMap((r) => [r.rms_deg, r.bound_deg]).filter((x) => x > 0 && Number.isFinite(x));
   if (!values.length) return null;
   const low = Math.floor(Math.log10(Math.min(...values) * 0.999));
@@ -31,9 +33,11 @@ function bar(row, scale) {
   if (!scale || !(row.rms_deg > 0)) return h("span", { class: "muted" }, "–");
   const error = scale.at(row.rms_deg);
   const bound = row.bound_deg > 0 ? scale.at(row.bound_deg) : null;
+  const from = bound ?? error;
   return h("div", { class: "scale", role: "img", "aria-label": `${degrees(row.rms_deg)} against a bound of ${degrees(row.bound_deg)}` },
     scale.ticks.map((t) => h("i", { class: "tick", css: { "--at": scale.at(t) } })),
-    h("i", { class: "span", css: { "--from": 0, "--to": error } }),
+    h("i", { class: "span", css: { "--from": Math.min(from, error), "--to": Math.max(from, error) } }),
+    h("i", { class: "dot", css: { "--at": error } }),
     bound !== null && h("i", { class: "limit", css: { "--at": bound } }));
 }
 
@@ -89,7 +93,7 @@ function tableRow(row, scale, i) {
 
 function draw() {
   const { rows, dataset, condition, card } = shown;
-  const scale = place(rows);
+  const scale = scaleOf(rows);
   const bound = rows.find((r) => r.bound_deg > 0)?.bound_deg ?? card?.bounds?.[condition];
   const url = address(`/v1/leaderboard/${encodeURIComponent(dataset)}`, { condition, limit: 500 });
   byId("board-card").replaceChildren(h("div", { class: "dataset-card" },
@@ -101,14 +105,15 @@ function draw() {
       h("a", { href: `/v1/datasets` }, "Data set card"),
       card?.follows?.[0] && copyable(`sunatlas run ${card.follows[0]} --format json`, "the command that runs the study it follows"))));
   const body = byId("board-body");
+  const listed = sorted(rows).slice(0, shown.all ? rows.length : FIRST);
   if (!rows.length) {
-    body.replaceChildren(h("p", { class: "notice" }, "No pipeline is scored on this data set in this condition yet. ",
-      h("code", {}, "sunatlas leaderboard"), " computes what is missing."));
+    body.replaceChildren(h("div", { class: "notice" }, h("p", {}, "No pipeline is scored on this data set in this condition yet. ",
+      h("code", {}, "sunatlas leaderboard"), " computes what is missing.")));
     return;
   }
   body.replaceChildren(
     h("div", { class: "legend" },
-      h("span", {}, h("i", { class: "key-span" }), "RMS error, logarithmic"),
+      h("span", {}, h("i", { class: "key-dot" }), "RMS error, on a logarithmic scale"),
       h("span", {}, h("i", { class: "key-limit" }), "Cramér–Rao bound"),
       h("span", {}, "Time ratio: against a reference on the same observations")),
     h("div", { class: "sort-narrow" }, choice("Sort by", "sort-narrow", COLUMNS.map((c) => [c.field, c.name]), state.sort, (sort) => show({ sort, order: "ascending" }))),
@@ -117,7 +122,17 @@ function draw() {
         h("th", { scope: "col", role: "columnheader" }, SCALE, scale && h("span", { class: "scale-head", "aria-hidden": true },
           scale.ticks.map((t) => h("span", { css: { "--at": scale.at(t) } }, `${Number(t.toPrecision(1))}°`)))),
         h("th", { scope: "col", role: "columnheader" }, h("span", { class: "visually-hidden" }, "Score")))),
-      h("tbody", { role: "rowgroup" }, sorted(rows).map((r, i) => tableRow(r, scale, i)))));
+      h("tbody", { role: "rowgroup" }, listed.map((r, i) => tableRow(r, scale, i)))),
+    listed.length < rows.length
+      ? h("button", {
+        type: "button", class: "more",
+        onclick: () => {
+          shown.all = true;
+          draw();
+          body.querySelectorAll(".expand")[FIRST]?.focus();
+        },
+      }, `Show all ${rows.length} pipelines`)
+      : "");
 }
 
 /** Sort what is on screen, keeping the keyboard on the heading. */

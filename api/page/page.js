@@ -7,7 +7,7 @@ import { resort, showLeaderboard } from "./leaderboard.js";
 import { showPaths, showPathsControls } from "./paths.js";
 import { buildRequirements, updateRequirements } from "./requirements.js";
 import { address, getAll, getJson } from "./service.js";
-import { ATTRIBUTES, onChange, requirements, state } from "./state.js";
+import { ATTRIBUTES, measuredCondition, onChange, requirements, state } from "./state.js";
 import { Vocabulary } from "./wording.js";
 
 const MOST_PATHS = 500;
@@ -38,7 +38,7 @@ async function ask() {
     byId(id).classList.add("stale");
   }
   try {
-    answer = await getJson(address("/v1/recommendations", { ...requirements(), condition: state.condition, limit: MOST_PATHS }), signal);
+    answer = await getJson(address("/v1/recommendations", { ...requirements(), condition: measuredCondition(), limit: MOST_PATHS }), signal);
     showSummary(answer, known.studies.size);
     showBlocked(answer.blocked, relax);
     updateRequirements(present(answer));

@@ -4,10 +4,10 @@ import { byId, choice, copyable, h } from "./dom.js";
 import { address } from "./service.js";
 import { show, standing, state } from "./state.js";
 import { studyEntry } from "./studies.js";
-import { amount, degrees, number, plural, times } from "./wording.js";
+import { degrees, LIMIT_NAMES, number, plural, times } from "./wording.js";
 
 const FIRST = 12;
-const COLUMNS = ["Rank", "Path", "Literature support", "Measured here", ""];
+const COLUMNS = ["Rank", "Path", "Literature support", "Measured here", ""]; // the last holds buttons
 const CHAIN = ["task", "detector", "mask", "model", "extractor"];
 
 let all = false; // whether rows beyond the first are shown
@@ -49,6 +49,17 @@ function measuredEvidence(m) {
     } }, "Show in the leaderboard")));
 }
 
+/** How the support comes about, and on what each limit was judged. */
+function support(path) {
+  const { studies, with_model: model, architecture } = path.literature;
+  if (architecture === undefined) return null;
+  const judged = Object.entries(path.basis ?? {}).map(([limit, basis]) =>
+    `${LIMIT_NAMES[limit].name.toLowerCase()} judged on what is ${basis === "stated" ? "stated by the studies" : "measured here"}`);
+  return h("p", { class: "note" }, `Support ${number(path.literature.support)} is the geometric mean of `
+    + `${plural(architecture, "study", "studies")} with this task, detector and mask, ${model} that also used the model, `
+    + `and ${studies} on the whole path.`, judged.length > 0 && ` Limits: ${judged.join("; ")}.`);
+}
+
 function row(path, studies) {
   const id = `path-${path.rank}`;
   const detail = h("tr", { class: "detail", id, role: "row", hidden: true });
@@ -63,7 +74,7 @@ function row(path, studies) {
         detail.append(h("td", { colspan: String(COLUMNS.length), role: "cell" }, h("div", { class: "evidence" },
           h("div", {}, h("h3", {}, `Literature: ${plural(path.studies.length, "study", "studies")}`),
             h("ul", { class: "study-list" }, path.studies.map((k) => studyEntry(k, studies.get(k))))),
-          measuredEvidence(path.measured),
+          support(path), measuredEvidence(path.measured),
           key && copyable(`sunatlas run ${key} --format json`, "the command that reproduces it"))));
       }
       detail.hidden = !open;
@@ -71,12 +82,11 @@ function row(path, studies) {
     },
   }, "Evidence");
   return [h("tr", { role: "row", class: "path" },
-    cell("Rank", { class: "number" }, h("span", {}, String(path.rank), path.pareto && [" ", h("span", { class: "pareto-mark" }, "Pareto")])),
+    cell("Rank", { class: "number" }, h("span", {}, String(path.rank)), path.pareto && h("div", {}, h("span", { class: "pareto-mark" }, "Pareto"))),
     h("td", { role: "cell" }, h("ol", { class: "pathway" }, CHAIN.map((level) =>
       h("li", {}, h("span", { class: standing(level, path[level]) === "include" && "asked" }, path[level]))))),
-    cell("Literature", { class: "number" }, h("span", {}, plural(path.literature.studies, "study", "studies")),
-      path.literature.support !== path.literature.studies
-        && h("div", { class: "below" }, `support ${amount(path.literature.support)}`)),
+    cell("Literature support", { class: "number" }, h("strong", {}, number(path.literature.support)),
+      h("div", { class: "below" }, plural(path.literature.studies, "study", "studies"))),
     cell("Measured here", { class: "number" }, measuredCell(path.measured)),
     h("td", { role: "cell", class: "number" }, expand)), detail];
 }

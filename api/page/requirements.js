@@ -25,7 +25,8 @@ function facet(attribute, entry, count) {
     item.dataset.standing = now ?? "none";
     include.setAttribute("aria-pressed", String(now === "include"));
     exclude.setAttribute("aria-pressed", String(now === "exclude"));
-    if (present) item.dataset.absent = String(!present[attribute]?.has(value));
+    // Beside a required value the others are alternatives, whatever the answer holds now.
+    if (present) item.dataset.absent = String(!present[attribute].has(value) && !state.include[attribute].length);
   });
   return item;
 }

@@ -80,13 +80,23 @@ export function setLimit(name, text) {
   tell(["requirements"], true);
 }
 
-export function reset() {
+/** Replace all requirements by those of a query. */
+export function setRequirements(query) {
   for (const attribute of ATTRIBUTES) {
-    state.include[attribute] = [];
-    state.exclude[attribute] = [];
+    state.include[attribute] = [query[attribute] ?? []].flat();
+    state.exclude[attribute] = [query[`exclude_${attribute}`] ?? []].flat();
   }
-  for (const limit of LIMITS) state.limits[limit] = "";
+  for (const limit of LIMITS) state.limits[limit] = String([query[limit] ?? ""].flat()[0] ?? "");
   tell(["requirements"], true);
+}
+
+export function reset() {
+  setRequirements({});
+}
+
+/** The condition to ask for; the service's own choice where it is the usual one. */
+export function measuredCondition() {
+  return state.condition === VIEW.condition ? null : state.condition;
 }
 
 addEventListener("popstate", () => {
