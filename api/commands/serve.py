@@ -22,7 +22,7 @@ def serve(
 ) -> None:
     """Serve the page and the HTTP interface.
 
-    The page is at /, the API under /v1, its documentation at /docs. Ctrl-C stops.
+    The page is at /, the API under /v1, its description at /openapi.json. Ctrl-C stops.
     """
     listener = listen(host, port)
     with listener:

@@ -1,0 +1,130 @@
+"""Measuring cells for a command: where results are looked up, where new ones go.
+
+A cell that the published results hold for the code and data as they are is read there. Any other
+is measured once into the working store, a directory of the same files, and read from it the next
+time: $SUNATLAS_STORE, else sunatlas/ in the user's cache directory ($XDG_CACHE_HOME or ~/.cache).
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from benchmark.plan import Cell
+from benchmark.runner import RunInterruptedError, Summary, run, stale
+from benchmark.store import Store, cell_of
+
+Row = dict[str, Any]
+
+WorkersOption = Annotated[
+    int, typer.Option(min=1, help="Processes; the numbers do not depend on it.")
+]
+StoreOption = Annotated[
+    Path | None,
+    typer.Option(
+        help="Where new results go; by default $SUNATLAS_STORE, else the user's cache directory.",
+        file_okay=False,
+        show_default=False,
+    ),
+]
+
+
+@dataclass(frozen=True)
+class Scored:
+    """Rows of cells and where they came from.
+
+    Attributes
+    ----------
+    rows : score rows with latency_us and time_ratio where known, in the order of the cells
+    published, kept, measured : how many were read from the published results, how many from the
+        working store, how many measured now
+    directory : the working store
+    warnings : of the runner
+    """
+
+    rows: list[Row]
+    published: int
+    kept: int
+    measured: int
+    directory: Path
+    warnings: tuple[str, ...]
+
+    def sources(self) -> dict[str, Any]:
+        """Say where the rows came from, for JSON."""
+        return {
+            "published": self.published,
+            "kept": self.kept,
+            "measured": self.measured,
+            "directory": str(self.directory),
+        }
+
+
+def working_directory(given: Path | None = None) -> Path:
+    """Return the directory of the working store."""
+    named = os.environ.get("SUNATLAS_STORE")
+    if given is not None or named:
+        return given or Path(str(named))
+    cache = os.environ.get("XDG_CACHE_HOME")
+    return (Path(cache) if cache else Path.home() / ".cache") / "sunatlas"
+
+
+def available_workers() -> int:
+    """Return the number of processors this process may use."""
+    affinity = getattr(os, "sched_getaffinity", None)
+    return len(affinity(0)) if affinity else os.cpu_count() or 1
+
+
+def scored(cells: Iterable[Cell], workers: int, directory: Path | None) -> Scored:
+    """Read what is known of the cells and measure the rest.
+
+    Raises
+    ------
+    typer.Exit
+        With 130 on Ctrl-C, after saying what is kept.
+    StoreLockedError, StoreError
+        As `benchmark.runner.run`.
+    """
+    wanted = sorted(set(cells))
+    shipped, work = Store(), Store(working_directory(directory))
+    elsewhere = stale(wanted, shipped)
+    missing = stale(elsewhere, work)
+    warnings: tuple[str, ...] = ()
+    if missing:
+        warnings = measure(missing, work, workers).warnings
+    found = {**_rows(shipped, set(wanted) - set(elsewhere)), **_rows(work, set(elsewhere))}
+    return Scored(
+        rows=[found[cell] for cell in wanted],
+        published=len(wanted) - len(elsewhere),
+        kept=len(elsewhere) - len(missing),
+        measured=len(missing),
+        directory=work.directory,
+        warnings=warnings,
+    )
+
+
+def measure(
+    cells: Iterable[Cell], store: Store, workers: int, *, only_these: bool = False
+) -> Summary:
+    """Run the runner with a progress bar on a terminal; Ctrl-C ends with a line and 130."""
+    try:
+        return run(cells, store, workers, only_these=only_these)
+    except RunInterruptedError as interrupted:
+        typer.echo(f"sunatlas: {interrupted}", err=True)
+        raise typer.Exit(130) from interrupted
+
+
+def _rows(store: Store, cells: set[Cell]) -> dict[Cell, Row]:
+    if not cells:
+        return {}
+    runs = store.runs()
+    timed = ("latency_us", "time_ratio")
+    return {
+        cell: {**row, **{name: runs.get(row["key"], {}).get(name) for name in timed}}
+        for row in store.rows()
+        if (cell := cell_of(row)) in cells
+    }
