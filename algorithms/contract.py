@@ -11,10 +11,13 @@ from __future__ import annotations
 import dataclasses
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Any, ClassVar, Literal, Protocol, Self, runtime_checkable
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol, Self, cast, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
 
 Floats = NDArray[np.float64]
 
@@ -67,7 +70,7 @@ class SensorGeometry:
 
 @runtime_checkable
 class Extractor(Protocol):
-    """Observations in, features out. Implementations are frozen dataclasses (fields = parameters)."""
+    """Observations in, features out; a frozen dataclass whose fields are its parameters."""
 
     name: ClassVar[str]  # unique slug of the implementation, e.g. "bctm"
     taxonomy: ClassVar[str]  # value of the survey's taxonomy, e.g. "BCTM"
@@ -86,7 +89,7 @@ class Extractor(Protocol):
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
-        """The extractor with the parameters this sensor's design asks for."""
+        """Return the extractor with the parameters this sensor's design asks for."""
         ...
 
     def extract(self, observations: ArrayLike) -> Floats:
@@ -105,11 +108,14 @@ class Model(Protocol):
     origin: ClassVar[Origin]
     version: ClassVar[int]
     accepts: ClassVar[frozenset[FeatureKind]]
-    needs: ClassVar[tuple[str, ...]]
+    needs: ClassVar[tuple[str, ...]]  # fields for_sensor takes whatever the kind of features
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
-        """The unfitted model for this sensor's design and this kind of features."""
+        """Return the unfitted model for this sensor's design and this kind of features.
+
+        ValueError where `kind` is not accepted or a field it takes is None.
+        """
         ...
 
     def fit(self, features: ArrayLike, sun: ArrayLike) -> Self:
@@ -122,12 +128,13 @@ class Model(Protocol):
 
 
 def parameters(implementation: Extractor | Model) -> dict[str, Any]:
-    """The constructor parameters of an implementation, by name."""
-    if not dataclasses.is_dataclass(implementation):
-        raise TypeError(f"{type(implementation).__name__} is not a dataclass")
-    return {
-        f.name: getattr(implementation, f.name) for f in dataclasses.fields(implementation) if f.init
-    }
+    """Return the constructor parameters of an implementation, by name.
+
+    TypeError where it is not a dataclass.
+    """
+    # The protocols are structural: that an implementation is a dataclass, only running it shows.
+    fields = dataclasses.fields(cast("DataclassInstance", implementation))
+    return {field.name: getattr(implementation, field.name) for field in fields if field.init}
 
 
 @dataclass

@@ -1,0 +1,145 @@
+"""Sun directions as unit vectors, as projected angles and as rotation angles, all in degrees.
+
+Two pairs of angles are in use and agree only on the axes: projected angles
+(``tan(alpha) = s_y/s_z``, ``tan(beta) = s_x/s_z``, eq:stdproj) and rotation angles
+(``s = (sin(beta) cos(alpha), sin(alpha), cos(beta) cos(alpha))``, a turntable's, eq:lsq).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from algorithms.row_arithmetic import normalised
+
+Floats = NDArray[np.float64]
+
+
+def angles_from_sun(sun: ArrayLike) -> Floats:
+    """Projected angles of Sun vectors.
+
+    Parameters
+    ----------
+    sun : array_like, shape (N, 3)
+        Vectors to the Sun in the sensor frame; their length does not matter.
+
+    Returns
+    -------
+    ndarray, shape (N, 2)
+        ``(alpha, beta)`` in degrees; a NaN row where the Sun is not in front (``s_z <= 0``).
+
+    Raises
+    ------
+    ValueError
+        If `sun` is not (N, 3).
+    """
+    return np.degrees(np.arctan(tangents_from_sun(sun)))
+
+
+def sun_from_angles(angles_deg: ArrayLike) -> Floats:
+    """Sun unit vectors of projected angles; the inverse of `angles_from_sun`.
+
+    Parameters
+    ----------
+    angles_deg : array_like, shape (N, 2)
+        ``(alpha, beta)`` in degrees.
+
+    Returns
+    -------
+    ndarray, shape (N, 3)
+        Unit vectors; a NaN row where an angle is NaN or reaches 90 degrees.
+
+    Raises
+    ------
+    ValueError
+        If `angles_deg` is not (N, 2).
+    """
+    angles = _rows(angles_deg, 2, "angles_deg")
+    front = np.abs(angles) < 90.0
+    tangents = np.full_like(angles, np.nan)
+    tangents[front] = np.tan(np.radians(angles[front]))
+    return sun_from_tangents(tangents)
+
+
+def tangents_from_sun(sun: ArrayLike) -> Floats:
+    """``(tan(alpha), tan(beta))`` (N, 2) of Sun vectors (N, 3); NaN row where ``s_z <= 0``."""
+    vectors = _rows(sun, 3, "sun")
+    tangents = np.full((len(vectors), 2), np.nan)
+    front = vectors[:, 2] > 0
+    tangents[front] = vectors[front][:, [1, 0]] / vectors[front][:, 2:]
+    return tangents
+
+
+def sun_from_tangents(tangents: ArrayLike) -> Floats:
+    """Sun unit vectors (N, 3) of ``(tan(alpha), tan(beta))`` (N, 2); NaN rows stay NaN."""
+    columns = _rows(tangents, 2, "tangents")
+    return normalised(
+        np.column_stack([columns[:, 1], columns[:, 0], np.ones(len(columns))]),
+    )
+
+
+def rotations_from_sun(sun: ArrayLike) -> Floats:
+    """Rotation angles of Sun vectors: the axes of a two-axis turntable (eq:lsq).
+
+    Parameters
+    ----------
+    sun : array_like, shape (N, 3)
+        Vectors to the Sun in the sensor frame.
+
+    Returns
+    -------
+    ndarray, shape (N, 2)
+        ``(alpha, beta)`` in degrees with ``alpha = asin(s_y)`` and ``beta = atan2(s_x, s_z)``.
+
+    Raises
+    ------
+    ValueError
+        If `sun` is not (N, 3).
+    """
+    x, y, z = _rows(sun, 3, "sun").T
+    rotations = np.column_stack([np.arctan2(y, np.hypot(x, z)), np.arctan2(x, z)])
+    return np.asarray(np.degrees(rotations), dtype=np.float64)
+
+
+def sun_from_rotations(rotations_deg: ArrayLike) -> Floats:
+    """Sun unit vectors (N, 3) of rotation angles (N, 2); the inverse of `rotations_from_sun`."""
+    alpha, beta = np.radians(_rows(rotations_deg, 2, "rotations_deg")).T
+    return np.column_stack(
+        [np.sin(beta) * np.cos(alpha), np.sin(alpha), np.cos(beta) * np.cos(alpha)]
+    )
+
+
+def separation_deg(first: ArrayLike, second: ArrayLike) -> Floats:
+    """Angle between paired vectors, exact for the smallest and the largest angles alike.
+
+    ``atan2(|a x b|, a . b)``: the arc cosine of the dot product loses every angle below about
+    1e-6 degrees.
+
+    Parameters
+    ----------
+    first, second : array_like, shape (N, 3)
+        Vectors; their lengths do not matter.
+
+    Returns
+    -------
+    ndarray, shape (N,)
+        Degrees in [0, 180]; NaN where either vector has a NaN.
+
+    Raises
+    ------
+    ValueError
+        If an array is not (N, 3) or their lengths differ.
+    """
+    a, b = _rows(first, 3, "first"), _rows(second, 3, "second")
+    if len(a) != len(b):
+        raise ValueError(f"first and second must pair up; got {len(a)} and {len(b)} rows")
+    cross = np.linalg.norm(np.cross(a, b), axis=1)
+    angle = np.degrees(np.arctan2(cross, np.einsum("ij,ij->i", a, b)))
+    return np.asarray(angle, dtype=np.float64)
+
+
+def _rows(values: ArrayLike, columns: int, name: str) -> Floats:
+    array = np.asarray(values, dtype=np.float64)
+    if array.ndim != 2 or array.shape[1] != columns:
+        raise ValueError(f"{name} must have shape (N, {columns}); got {array.shape}")
+    return array

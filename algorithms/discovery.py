@@ -1,0 +1,112 @@
+"""Every extractor and model there is, found by walking the modules that hold them.
+
+A class counts when it is public, is written in the module walked (not imported into it), and has
+the contract's method. Modules and classes with a leading underscore are skipped.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import importlib
+import inspect
+import pkgutil
+from collections.abc import Iterator
+from types import ModuleType
+from typing import cast
+
+import algorithms.extractors
+import algorithms.models
+from algorithms.contract import Extractor, Model
+
+
+def discover_extractors() -> dict[str, type[Extractor]]:
+    """Extractor classes by their unique name, in alphabetical order.
+
+    Raises
+    ------
+    TypeError
+        If a class extracts but lacks part of the contract, or is not a frozen dataclass.
+    ValueError
+        If two classes carry the same name.
+    """
+    found = implementations(algorithms.extractors, Extractor, "extract")
+    for name, implementation in found.items():
+        # dataclass keeps how it was called here; it has no public name.
+        if not implementation.__dataclass_params__.frozen:  # type: ignore[attr-defined]
+            raise TypeError(f"extractor {name} must be a frozen dataclass")
+    return cast("dict[str, type[Extractor]]", found)
+
+
+def discover_models() -> dict[str, type[Model]]:
+    """Model classes by their unique name, in alphabetical order.
+
+    Raises
+    ------
+    TypeError
+        If a class predicts but lacks part of the contract, or is not a dataclass.
+    ValueError
+        If two classes carry the same name.
+    """
+    return cast("dict[str, type[Model]]", implementations(algorithms.models, Model, "predict"))
+
+
+def implementations(package: ModuleType, contract: type, method: str) -> dict[str, type]:
+    """Public classes of a package's modules that have `method`, by their ``name``.
+
+    Parameters
+    ----------
+    package : module
+        The package walked, its sub-packages included.
+    contract : type
+        The protocol whose annotations and methods each class must carry.
+    method : str
+        The method that makes a class an implementation.
+
+    Raises
+    ------
+    TypeError
+        If an implementation lacks part of `contract`, or is not a dataclass.
+    ValueError
+        If two implementations carry the same name.
+    """
+    members = _members(contract)
+    found: dict[str, type] = {}
+    for implementation in _public_classes(package):
+        if not callable(getattr(implementation, method, None)):
+            continue
+        where = f"{implementation.__module__}.{implementation.__qualname__}"
+        missing = sorted(member for member in members if not hasattr(implementation, member))
+        if missing:
+            raise TypeError(f"{where} lacks {', '.join(missing)} of the {contract.__name__}")
+        if not dataclasses.is_dataclass(implementation):
+            raise TypeError(f"{where} must be a dataclass: its fields are its parameters")
+        name = vars(implementation)["name"]
+        if name in found:
+            other = found[name]
+            raise ValueError(
+                f"two implementations are named {name!r}: "
+                f"{other.__module__}.{other.__qualname__} and {where}"
+            )
+        found[name] = implementation
+    return dict(sorted(found.items()))
+
+
+def _members(contract: type) -> set[str]:
+    methods = {
+        name
+        for name, member in vars(contract).items()
+        if not name.startswith("_")
+        and (callable(member) or isinstance(member, (property, classmethod)))
+    }
+    return methods | set(contract.__annotations__)
+
+
+def _public_classes(package: ModuleType) -> Iterator[type]:
+    prefix = f"{package.__name__}."
+    for info in sorted(pkgutil.walk_packages(package.__path__, prefix), key=lambda i: i.name):
+        if any(part.startswith("_") for part in info.name.removeprefix(prefix).split(".")):
+            continue
+        module = importlib.import_module(info.name)
+        for name, member in inspect.getmembers(module, inspect.isclass):
+            if not name.startswith("_") and member.__module__ == module.__name__:
+                yield member

@@ -1,0 +1,36 @@
+"""The level a frame has where no light of the spot falls, estimated from the frame itself."""
+
+from __future__ import annotations
+
+from typing import Any, Literal, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.contract import Floats
+
+Background = Literal["none", "border", "median"]
+"""``none``: zero. ``border``: median of the outermost pixels, right while the spot keeps off the
+edge. ``median``: median of all pixels, right while the spot covers less than half of them."""
+
+
+def require_background(background: str, by: str) -> None:
+    """Raise ValueError unless `background` names a way to estimate it."""
+    if background not in get_args(Background):
+        raise ValueError(
+            f"{by}: background must be one of {', '.join(get_args(Background))}; got {background!r}"
+        )
+
+
+def background_level(frames: NDArray[Any], background: Background) -> Floats:
+    """Background of each frame (N,), in the frames' unit; NaN where a pixel used is NaN."""
+    if background == "none":
+        return np.zeros(len(frames))
+    if background == "border":
+        pixels = np.concatenate(
+            [frames[:, 0], frames[:, -1], frames[:, 1:-1, 0], frames[:, 1:-1, -1]], axis=1
+        )
+    else:
+        pixels = frames.reshape(len(frames), -1)
+    with np.errstate(invalid="ignore"):
+        return np.asarray(np.median(pixels, axis=1), dtype=np.float64)

@@ -1,0 +1,213 @@
+"""Signals of a few photodiodes: as they are (Direct) and balanced over a quadrant (alg:VB)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, Literal, Self, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from algorithms.contract import FeatureKind, Floats, Observation, Origin, SensorGeometry
+from algorithms.inputs import as_currents
+from algorithms.row_arithmetic import quotient_rows
+
+Normalisation = Literal["none", "sum", "maximum", "length"]
+
+
+@dataclass(frozen=True)
+class DirectSignals:
+    """Calibrated signal of each photodiode: dark reading off, gain divided out, normalised.
+
+    Each reading is proportional to the irradiance projected on its detector; the transimpedance
+    amplifier's offset and gain are undone, so that equal light gives equal signals.
+
+    Parameters
+    ----------
+    elements : int
+        Number of detector elements K, at least 1.
+    dark : float or tuple of float
+        Reading without light, in the reading's unit: one for all elements or one an element.
+    gain : float or tuple of float
+        Reading per unit of signal, positive (the transimpedance in ohm for voltages, times the
+        current at full Sun to have the signal in units of one Sun; a frequency's Hz per unit).
+    normalisation : {"none", "sum", "maximum", "length"}
+        What each row's signals are divided by: nothing, their sum, the largest, or their
+        Euclidean length.
+    saturation : float or None
+        A reading that reaches it says only "at least": the row is NaN.
+
+    Notes
+    -----
+    Implements: fe:direct (Allgeier2009): ``Q = G I + Q_dark``, so ``I = (Q - Q_dark) / G``; the
+    survey states it in words only.
+
+    Shapes: readings (N, K), currents, voltages or frequencies, to signals (N, K), dimensionless
+    unless `normalisation` is "none" and `gain` carries a unit.
+
+    Failure: a NaN row where a reading is NaN, infinite or saturated, or where no signal is
+    positive, or where the sum to normalise by is not positive. Light from elsewhere (albedo) is
+    not told apart.
+
+    Cost: 3 operations an element.
+    """
+
+    name: ClassVar[str] = "direct"
+    taxonomy: ClassVar[str] = "Direct"
+    studies: ClassVar[tuple[str, ...]] = ("Allgeier2009",)
+    labels: ClassVar[tuple[str, ...]] = ("fe:direct",)
+    origin: ClassVar[Origin] = "survey"
+    version: ClassVar[int] = 1
+    observation: ClassVar[Observation] = Observation.CURRENTS
+    kind: ClassVar[FeatureKind] = FeatureKind.SIGNALS
+    needs: ClassVar[tuple[str, ...]] = ("face_normals",)
+
+    elements: int = 6
+    dark: float | tuple[float, ...] = 0.0
+    gain: float | tuple[float, ...] = 1.0
+    normalisation: Normalisation = "none"
+    saturation: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.elements < 1:
+            raise ValueError(f"{self.name}: elements must be at least 1; got {self.elements!r}")
+        if self.normalisation not in get_args(Normalisation):
+            raise ValueError(
+                f"{self.name}: normalisation must be one of "
+                f"{', '.join(get_args(Normalisation))}; got {self.normalisation!r}"
+            )
+        _require_calibration(self.name, self.elements, self.dark, self.gain)
+
+    @property
+    def features(self) -> tuple[str, ...]:
+        """One name an element, in the order of the readings."""
+        return tuple(f"signal_{index}" for index in range(1, self.elements + 1))
+
+    @classmethod
+    def for_sensor(cls, geometry: SensorGeometry) -> Self:
+        """One element a face; signals as read, without dark reading or gain."""
+        geometry.require("face_normals", by=cls.name)
+        return cls(elements=len(geometry.face_normals or ()))
+
+    def extract(self, observations: ArrayLike) -> Floats:
+        """Signals (N, K) of readings (N, K); ValueError on wrong input."""
+        readings = as_currents(observations, self.elements, self.name)
+        signals = _calibrated(readings, self.dark, self.gain, self.saturation)
+        found = (signals > 0).any(axis=1)
+        if self.normalisation == "sum":
+            divisor = signals.sum(axis=1)
+        elif self.normalisation == "maximum":
+            divisor = signals.max(axis=1)
+        elif self.normalisation == "length":
+            divisor = np.linalg.norm(signals, axis=1)
+        else:
+            divisor = np.ones(len(signals))
+        found &= divisor > 0
+        return quotient_rows(signals, divisor, found)
+
+
+@dataclass(frozen=True)
+class VoltageBalance:
+    """Balances of a quadrant photodiode: how far the spot's light leans along x and along y.
+
+    The difference of two halves over the sum of all four is free of the light's strength, and
+    proportional to the tangent of the Sun angle behind a square aperture.
+
+    Parameters
+    ----------
+    order : tuple of four int
+        Column (0 to 3) of the quadrants Q1, Q2, Q3, Q4. In the detector frame, where the spot
+        falls at ``X = h tan(beta)``, ``Y = h tan(alpha)``, they lie at Q1 (-x, +y), Q2 (+x, +y),
+        Q3 (+x, -y) and Q4 (-x, -y).
+    dark : float or tuple of four float
+        Reading without light, in the reading's unit, by column.
+    gain : float or tuple of four float
+        Reading per unit of light, positive, by column (transimpedance, or its mismatch).
+    saturation : float or None
+        A reading that reaches it says only "at least": the row is NaN.
+
+    Notes
+    -----
+    Implements: alg:VB (fe:vb, Boslooper2017): ``s_a = (Q2 + Q3 - Q1 - Q4) / sum Q`` along x,
+    ``s_b = (Q1 + Q2 - Q3 - Q4) / sum Q`` along y. Survey prints ``S_A = tan(alpha) /
+    tan(alpha_MAX)`` for its x axis with ``alpha_MAX = d / (2 h)``; corrected because
+    ``tan(alpha_MAX) = d / (2 h)``, and because x goes with beta here: ``s_a = 2 h tan(beta) / d``
+    and ``s_b = 2 h tan(alpha) / d``, exact for a square aperture of width d.
+
+    Shapes: readings (N, 4), currents or voltages, to ``(s_a, s_b)`` (N, 2), dimensionless, in
+    [-1, 1] while no reading is below dark.
+
+    Failure: a NaN row where a reading is NaN, infinite or saturated, or where the sum is not
+    positive. At -1 or 1 all light is on one half and only the direction is known.
+
+    Cost: 17 operations a sample.
+    """
+
+    name: ClassVar[str] = "voltage-balance"
+    taxonomy: ClassVar[str] = "Voltage balance"
+    studies: ClassVar[tuple[str, ...]] = ("Boslooper2017",)
+    labels: ClassVar[tuple[str, ...]] = ("fe:vb", "alg:VB")
+    origin: ClassVar[Origin] = "survey"
+    version: ClassVar[int] = 1
+    observation: ClassVar[Observation] = Observation.CURRENTS
+    kind: ClassVar[FeatureKind] = FeatureKind.BALANCE
+    needs: ClassVar[tuple[str, ...]] = ()
+
+    order: tuple[int, int, int, int] = (0, 1, 2, 3)
+    dark: float | tuple[float, ...] = 0.0
+    gain: float | tuple[float, ...] = 1.0
+    saturation: float | None = None
+
+    def __post_init__(self) -> None:
+        if sorted(self.order) != [0, 1, 2, 3]:
+            raise ValueError(
+                f"{self.name}: order must hold the columns 0, 1, 2 and 3 once each; "
+                f"got {self.order!r}"
+            )
+        _require_calibration(self.name, 4, self.dark, self.gain)
+
+    @property
+    def features(self) -> tuple[str, ...]:
+        """Names of the two output columns: the x balance, then the y balance."""
+        return ("s_a", "s_b")
+
+    @classmethod
+    def for_sensor(cls, geometry: SensorGeometry) -> Self:  # noqa: ARG003 - nothing to choose
+        """Return the published method, readings in the order Q1 to Q4."""
+        return cls()
+
+    def extract(self, observations: ArrayLike) -> Floats:
+        """Balances (N, 2) of readings (N, 4); ValueError on wrong input."""
+        readings = as_currents(observations, 4, self.name)
+        light = _calibrated(readings, self.dark, self.gain, self.saturation)
+        q1, q2, q3, q4 = light[:, list(self.order)].T
+        total = q1 + q2 + q3 + q4
+        differences = np.column_stack([(q2 + q3) - (q1 + q4), (q1 + q2) - (q3 + q4)])
+        return quotient_rows(differences, total, total > 0)
+
+
+def _calibrated(
+    readings: Floats,
+    dark: float | tuple[float, ...],
+    gain: float | tuple[float, ...],
+    saturation: float | None,
+) -> Floats:
+    """Return ``(readings - dark) / gain``; a NaN row where one is not finite or is saturated."""
+    unusable = ~np.isfinite(readings).all(axis=1)
+    if saturation is not None:
+        unusable |= (readings >= saturation).any(axis=1)
+    readings[unusable] = np.nan
+    return np.asarray((readings - np.asarray(dark)) / np.asarray(gain), dtype=np.float64)
+
+
+def _require_calibration(
+    by: str, elements: int, dark: float | tuple[float, ...], gain: float | tuple[float, ...]
+) -> None:
+    """Raise ValueError unless dark and gain are finite, gain positive, one or one an element."""
+    for parameter, value in (("dark", dark), ("gain", gain)):
+        if np.shape(value) not in ((), (elements,)):
+            raise ValueError(f"{by}: {parameter} must be one number or {elements}; got {value!r}")
+        if not np.isfinite(value).all():
+            raise ValueError(f"{by}: {parameter} must be finite; got {value!r}")
+    if not (np.asarray(gain) > 0).all():
+        raise ValueError(f"{by}: gain must be positive; got {gain!r}")

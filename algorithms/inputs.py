@@ -1,0 +1,174 @@
+"""Checks at the door: what an extractor or model was given, as an array it can work on.
+
+Every function raises ValueError saying what was expected and what came, and never changes the
+caller's array.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from algorithms.contract import FeatureKind, Floats, NotFittedError
+
+Frames = NDArray[Any]
+
+UNIT_TOLERANCE = 1e-6
+"""Largest departure from length one of a vector given as a unit vector."""
+
+_FRAME_DTYPES = tuple(np.dtype(name) for name in ("uint8", "uint16", "float32", "float64"))
+
+
+def as_frames(observations: ArrayLike) -> Frames:
+    """Frames (N, H, W) ready for a compiled kernel.
+
+    Parameters
+    ----------
+    observations : array_like, shape (N, H, W)
+        Real numbers. uint8, uint16, float32 and float64 keep their type; booleans become uint8,
+        half floats float32, every other type float64 (exact for integers below 2**53).
+
+    Returns
+    -------
+    ndarray, shape (N, H, W)
+        Row-contiguous, aligned, in native byte order, read-only; a copy only where needed.
+
+    Raises
+    ------
+    ValueError
+        If the input is not three-dimensional, is empty, is masked or does not hold real numbers.
+    """
+    array = _numbers(observations, "observations", 3, "(N, H, W)")
+    if array.dtype.kind == "b":
+        array = array.astype(np.uint8)
+    elif array.dtype == np.float16:
+        array = array.astype(np.float32)
+    dtype = array.dtype.newbyteorder("=")
+    if dtype not in _FRAME_DTYPES:
+        dtype = np.dtype(np.float64)
+    # The read-only flag is part of an array's type in Numba: one flag, one compilation.
+    frames = np.require(array, dtype=dtype, requirements=["C_CONTIGUOUS", "ALIGNED"]).view()
+    frames.flags.writeable = False
+    return frames
+
+
+def as_currents(observations: ArrayLike, columns: int, by: str) -> Floats:
+    """Detector readings (N, `columns`) as float64.
+
+    Raises
+    ------
+    ValueError
+        If the input is not (N, `columns`), is empty, is masked or does not hold real numbers;
+        the message names `by`.
+    """
+    array = _numbers(observations, f"observations of {by}", 2, f"(N, {columns})")
+    if array.shape[1] != columns:
+        raise ValueError(
+            f"{by} reads observations of shape (N, {columns}), one column a detector element; "
+            f"got {array.shape}"
+        )
+    return np.array(array, dtype=np.float64)
+
+
+def as_features(features: ArrayLike, columns: int, by: str) -> Floats:
+    """Features (N, `columns`) as float64, with every row that is not finite set to NaN.
+
+    Raises
+    ------
+    ValueError
+        If the input is not (N, `columns`), is empty, is masked or does not hold real numbers.
+    """
+    array = _numbers(features, f"features of {by}", 2, f"(N, {columns})")
+    if array.shape[1] != columns:
+        raise ValueError(f"{by} reads features of shape (N, {columns}); got {array.shape}")
+    found = np.array(array, dtype=np.float64)
+    found[~np.isfinite(found).all(axis=1)] = np.nan
+    return found
+
+
+def as_calibration(
+    features: ArrayLike, sun: ArrayLike, columns: int, by: str
+) -> tuple[Floats, Floats]:
+    """Paired features (n, `columns`) and Sun unit vectors (n, 3), rows without features left out.
+
+    Raises
+    ------
+    ValueError
+        If either shape is wrong, their lengths differ, or a Sun vector is not finite and of unit
+        length within `UNIT_TOLERANCE`.
+    """
+    found = as_features(features, columns, by)
+    vectors = np.array(_numbers(sun, f"sun of {by}", 2, "(N, 3)"), dtype=np.float64)
+    if vectors.shape != (len(found), 3):
+        raise ValueError(
+            f"{by} fits to sun of shape ({len(found)}, 3), one unit vector a feature row; "
+            f"got {vectors.shape}"
+        )
+    lengths = np.linalg.norm(vectors, axis=1)
+    wrong = ~(np.abs(lengths - 1.0) <= UNIT_TOLERANCE)
+    if wrong.any():
+        row = int(np.argmax(wrong))
+        raise ValueError(f"sun must hold unit vectors; row {row} has length {lengths[row]:.6g}")
+    usable = ~np.isnan(found).any(axis=1)
+    return found[usable], vectors[usable]
+
+
+def as_frontal_calibration(features: ArrayLike, sun: ArrayLike, by: str) -> tuple[Floats, Floats]:
+    """`as_calibration` of two columns for a planar detector: every Sun must have ``s_z > 0``."""
+    found, vectors = as_calibration(features, sun, 2, by)
+    behind = vectors[:, 2] <= 0
+    if behind.any():
+        raise ValueError(
+            f"{by} is a planar model: the Sun must be in front of the detector (s_z > 0); "
+            f"{int(behind.sum())} calibration rows with features have s_z <= 0"
+        )
+    return found, vectors
+
+
+def require_samples(count: int, needed: int, by: str, why: str) -> None:
+    """Raise ValueError when fewer than `needed` samples with features are there to fit."""
+    if count < needed:
+        raise ValueError(f"{by} needs at least {needed} samples with features ({why}); got {count}")
+
+
+def require_fitted(model: object, attribute: str) -> None:
+    """Raise NotFittedError unless `model` carries the fitted `attribute`."""
+    if not hasattr(model, attribute):
+        raise NotFittedError(
+            f"this {type(model).__name__} is not fitted yet; call fit(features, sun) first"
+        )
+
+
+def require_kind(kind: FeatureKind, accepts: Iterable[FeatureKind], by: str) -> None:
+    """Raise ValueError when `kind` is not one of the feature kinds `by` accepts."""
+    kinds = sorted(accepts)
+    if kind not in kinds:
+        raise ValueError(f"{by} accepts {', '.join(kinds)} features; got {kind}")
+
+
+def require_positive(by: str, **parameters: float) -> None:
+    """Raise ValueError naming the first parameter that is not positive and finite."""
+    for name, value in parameters.items():
+        if not (np.isfinite(value) and value > 0):
+            raise ValueError(f"{by}: {name} must be positive and finite; got {value!r}")
+
+
+def _numbers(values: ArrayLike, what: str, ndim: int, shape: str) -> NDArray[Any]:
+    if isinstance(values, np.ma.MaskedArray):
+        raise ValueError(  # noqa: TRY004 - the contract: wrong input is a ValueError
+            f"{what} must be a plain array; got a masked one (mark missing values with NaN)"
+        )
+    try:
+        array = np.asarray(values)
+    except ValueError as error:
+        raise ValueError(f"{what} must have shape {shape}; got a ragged sequence") from error
+    if array.dtype.kind not in "buif":
+        raise ValueError(f"{what} must hold real numbers; got dtype {array.dtype}")
+    if array.ndim != ndim:
+        raise ValueError(f"{what} must have shape {shape}; got {array.shape}")
+    if array.size == 0:
+        raise ValueError(f"{what} must not be empty; got shape {array.shape}")
+    return array

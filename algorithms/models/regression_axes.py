@@ -1,0 +1,72 @@
+"""What regressions share: the target they learn, features scaled to [-1, 1], and the solution."""
+
+from __future__ import annotations
+
+from typing import Literal, get_args
+
+import numpy as np
+
+from algorithms.angles import (
+    angles_from_sun,
+    sun_from_angles,
+    sun_from_tangents,
+    tangents_from_sun,
+)
+from algorithms.contract import Floats
+
+Target = Literal["angle", "tangent"]
+
+
+def require_target(target: str, by: str) -> None:
+    """Raise ValueError unless `target` is one of the quantities a regression can learn."""
+    if target not in get_args(Target):
+        raise ValueError(
+            f"{by}: target must be one of {', '.join(get_args(Target))}; got {target!r}"
+        )
+
+
+def target_from_sun(sun: Floats, target: Target) -> Floats:
+    """``(alpha, beta)`` (N, 2) in degrees, or their tangents, of Sun vectors (N, 3)."""
+    return angles_from_sun(sun) if target == "angle" else tangents_from_sun(sun)
+
+
+def sun_from_target(values: Floats, target: Target) -> Floats:
+    """Sun unit vectors (N, 3) of what a regression gives; NaN where an angle reaches 90."""
+    return sun_from_angles(values) if target == "angle" else sun_from_tangents(values)
+
+
+def feature_scaling(features: Floats, by: str) -> tuple[Floats, Floats]:
+    """Middle and half range of each column: the map of the calibrated range onto [-1, 1].
+
+    Raises
+    ------
+    ValueError
+        If a column holds a single value, so that nothing can be learnt along it.
+    """
+    low, high = features.min(axis=0), features.max(axis=0)
+    half = (high - low) / 2.0
+    if not (half > 0).all():
+        column = int(np.argmin(half))
+        raise ValueError(
+            f"{by} needs calibration samples that spread along both features; "
+            f"all have {low[column]:.6g} in column {column}"
+        )
+    return (low + high) / 2.0, half
+
+
+def solve_regression(design: Floats, wanted: Floats, by: str) -> Floats:
+    """Least-squares coefficients of a design matrix (n, terms).
+
+    Raises
+    ------
+    ValueError
+        If the samples do not settle every term (rank deficient), naming both numbers.
+    """
+    solution, _, rank, _ = np.linalg.lstsq(design, wanted)
+    terms = design.shape[1]
+    if rank < terms:
+        raise ValueError(
+            f"{by} needs at least {terms} samples at different features to fit {terms} terms; "
+            f"the {len(design)} given settle only {int(rank)}"
+        )
+    return np.asarray(solution, dtype=np.float64)
