@@ -121,9 +121,9 @@ def verify(directory: Path) -> list[tuple[str, str]]:
 
 
 def _invalid(descriptor: Path) -> list[tuple[str, str]]:
-    from frictionless import Package, validate  # noqa: PLC0415 - a second that building does without
+    from frictionless import Package  # noqa: PLC0415 - a second that building does without
 
-    report = validate(Package(str(descriptor)))
+    report = Package(str(descriptor)).validate()
     found = [(DESCRIPTOR, error.message) for error in report.errors]
     found += [(task.place, error.message) for task in report.tasks for error in task.errors]
     return found
