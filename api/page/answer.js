@@ -41,8 +41,7 @@ export function showQuestion(vocabulary) {
     clauses.push([`${words} `, chip(label, `${words} ${label}`, () => setLimit(limit, ""))]);
   }
   byId("question").replaceChildren(clauses.length
-    ? h("p", { class: "question" }, "Asked for: ", clauses.map((clause, i) =>
-      h("span", { class: "question" }, clause, i < clauses.length - 1 ? "," : "")))
+    ? h("p", { class: "question" }, "Asked for: ", clauses.map((clause, i) => [clause, i < clauses.length - 1 ? ", " : "."]))
     : h("p", { class: "muted" }, "Nothing is required yet: every path of the survey is shown. Choose requirements, or select a value in the flow."));
 }
 
@@ -90,18 +89,18 @@ export function showBlocked(blocked, relax) {
 /** One constraint of a relaxation in words; asked: the values or the bound. */
 function constraintWords(constraint, asked, verb) {
   const limit = LIMIT_NAMES[constraint];
-  if (limit) return `${verb === "drop" ? "drop " : ""}${limit.words} ${asked} ${limit.unit}`.replace(" °", "°");
+  if (limit) return `${limit.words} ${asked} ${limit.unit}`.replace(" °", "°");
   const excluded = constraint.startsWith("exclude_");
   const attribute = constraint.replace("exclude_", "");
   const subject = `${(ATTRIBUTE_NAMES[attribute] ?? attribute).toLowerCase()} ${[asked].flat().join(" or ")}`;
-  if (verb === "change") return excluded ? `exclude only ${subject}` : subject;
-  return excluded ? `allow ${subject}` : `drop ${subject}`;
+  if (excluded) return `${verb === "change" ? "only " : ""}the exclusion of ${subject}`;
+  return subject;
 }
 
 function relaxationWords({ drop, change }) {
   const verb = drop ? "drop" : "change";
-  const words = Object.entries(drop ?? change ?? {}).map(([c, asked]) => constraintWords(c, asked, verb)).join(" and ");
-  return `${words.charAt(0).toUpperCase()}${words.slice(1)}`;
+  const words = Object.entries(drop ?? change ?? {}).map(([c, asked]) => constraintWords(c, asked, verb));
+  return `${verb === "drop" ? "Drop" : "Ask instead for"} ${words.join(" and ")}`;
 }
 
 /** The requirements with a relaxation applied. */

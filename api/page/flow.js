@@ -28,21 +28,23 @@ export function showFlowControls() {
 /** The flow to show: of the answer's paths, or one of the survey's charts filtered by study. */
 async function flowOf(answer, vocabulary, signal) {
   if (state.chart === "cross-analysis") {
-    const flow = { chart: state.chart, levels: CROSS, counting: state.counting, nodes: answer.nodes, links: answer.links };
-    const counted = state.counting === "fractional" ? fractional(flow, answer.paths, CROSS) : withAmounts(flow);
-    return state.detail === "grouped" ? grouped(counted, vocabulary) : counted;
+    const all = { chart: state.chart, levels: CROSS, counting: state.counting, nodes: answer.nodes, links: answer.links };
+    const flow = state.detail === "grouped" ? grouped(all, vocabulary) : all;
+    return state.counting === "fractional" ? fractional(flow, answer.paths, vocabulary) : withAmounts(flow);
   }
   const filters = Object.fromEntries(ATTRIBUTES.map((a) => [a, state.include[a]]));
   const flow = await getJson(address(`/v1/flows/${state.chart}`, { counting: state.counting, ...filters }), signal);
   return withAmounts(flow);
 }
 
+const wanting = (left) => left.map((l) => `${plural(l.count, "study", "studies")} without ${nameOf(l.level).toLowerCase()}`).join(", ");
+
 function noteOf(flow, answer, studies) {
   const parts = [];
   if (state.chart === "cross-analysis") {
     parts.push("Studies on the paths of the answer, from task to feature extractor. Select a value to require it.");
     if (answer.left_out?.length) {
-      parts.push(`On no path for want of a known value: ${answer.left_out.map((l) => `${l.count} without ${nameOf(l.level).toLowerCase()}`).join(", ")}.`);
+      parts.push(`On no path for want of a known value: ${wanting(answer.left_out)}.`);
     }
     if (state.counting === "fractional" && answer.count > answer.paths.length) {
       parts.push(`Counted over the first ${answer.paths.length} of ${answer.count} paths.`);
@@ -51,9 +53,7 @@ function noteOf(flow, answer, studies) {
     parts.push("Studies that have the required values.");
     const unheeded = ATTRIBUTES.some((a) => state.exclude[a].length) || LIMITS.some((l) => state.limits[l] !== "");
     if (unheeded) parts.push("Excluded values and limits apply to the cross-analysis only, not to this chart.");
-    for (const left of flow.left_out ?? []) {
-      parts.push(`${plural(left.count, "study", "studies")} without a known ${nameOf(left.level).toLowerCase()} ${left.count === 1 ? "is" : "are"} not drawn there.`);
-    }
+    if (flow.left_out?.length) parts.push(`Not drawn for want of a known value: ${wanting(flow.left_out)}.`);
   }
   parts.push(state.counting === "fractional"
     ? "Fractional: a study with several values is shared out, so that inflow equals outflow."
@@ -170,5 +170,6 @@ async function diagram(body, flow, vocabulary, turn) {
   if (round) await drawSunburst(picture, rings(flow, vocabulary));
   else await drawSankey(picture, flow, (n) => isRequired(n, vocabulary), (n) => toggle(n, vocabulary));
   if (turn !== drawing) return;
+  picture.dataset.chart = state.chart;
   picture.dataset.nodes = flow.nodes.map((n) => n.id).join("|");
 }

@@ -2,8 +2,6 @@
 
 const GROUPED = { model: "model_category", extractor: "extractor_family" };
 
-const unionSize = (sets) => new Set(sets.flat()).size;
-
 /** Attribute whose values a level shows, or null where a level is not an attribute. */
 export function attributeOf(level) {
   const found = Object.keys(GROUPED).find((attribute) => GROUPED[attribute] === level);
@@ -11,85 +9,79 @@ export function attributeOf(level) {
   return level === "offline/online" ? null : level;
 }
 
-/**
- * The flow of a recommendation, with each study counted once over all its paths: a study on
- * k paths gives 1/k to each, so that what flows into a value flows out of it.
- */
-export function fractional(flow, paths, levels) {
-  const paths_of = new Map();
-  for (const path of paths) for (const key of path.studies) paths_of.set(key, (paths_of.get(key) ?? 0) + 1);
-  const nodes = new Map();
-  const links = new Map();
-  const add = (map, id, x) => map.set(id, (map.get(id) ?? 0) + x);
-  for (const path of paths) {
-    const weight = path.studies.reduce((sum, key) => sum + 1 / paths_of.get(key), 0);
-    levels.forEach((level, i) => {
-      add(nodes, `${level}:${path[level]}`, weight);
-      if (i) add(links, `${levels[i - 1]}:${path[levels[i - 1]]}\n${level}:${path[level]}`, weight);
-    });
-  }
-  return {
-    ...flow,
-    nodes: flow.nodes.map((n) => ({ ...n, amount: nodes.get(n.id) ?? 0 })),
-    links: flow.links.map((l) => ({ ...l, value: links.get(`${l.source}\n${l.target}`) ?? 0 })),
-  };
+/** Value of a path at a level, which may be a family. */
+function valueAt(path, level, vocabulary) {
+  const attribute = attributeOf(level);
+  return level === attribute ? path[level] : vocabulary.family(attribute, path[attribute]);
 }
 
-/** Models and extractors by family: studies are counted once a family, fractions are added. */
+/** Models and extractors by family: a study counts once a family. */
 export function grouped(flow, vocabulary) {
   const id_of = new Map();
   const nodes = new Map();
+  const join = (map, id, made, keys) => {
+    const known = map.get(id) ?? { ...made, studies: new Set() };
+    keys.forEach((key) => known.studies.add(key));
+    map.set(id, known);
+  };
   for (const node of flow.nodes) {
-    const level = GROUPED[node.level];
-    const value = level ? vocabulary.family(node.level, node.value) : node.value;
-    const id = `${level ?? node.level}:${value}`;
+    const family = GROUPED[node.level];
+    const level = family ?? node.level;
+    const value = family ? vocabulary.family(node.level, node.value) : node.value;
+    const id = `${level}:${value}`;
     id_of.set(node.id, id);
-    const known = nodes.get(id) ?? { id, level: level ?? node.level, value, name: level ? value : node.name, parts: [] };
-    known.parts.push(node);
-    nodes.set(id, known);
+    join(nodes, id, { id, level, value, name: family ? value : node.name }, node.studies);
   }
   const links = new Map();
   for (const link of flow.links) {
-    const source = id_of.get(link.source);
-    const target = id_of.get(link.target);
-    const id = `${source}\n${target}`;
-    const known = links.get(id) ?? { source, target, parts: [] };
-    known.parts.push(link);
-    links.set(id, known);
+    const [source, target] = [id_of.get(link.source), id_of.get(link.target)];
+    join(links, `${source}\n${target}`, { source, target }, link.studies);
   }
-  const fraction = flow.counting === "fractional";
-  const studies = (parts) => [...new Set(parts.flatMap((p) => p.studies))].sort();
-  const total = (parts, field) => parts.reduce((sum, p) => sum + p[field], 0);
+  const counted = (map, field) => [...map.values()].map((made) => {
+    const studies = [...made.studies].sort();
+    return { ...made, studies, [field]: studies.length };
+  });
   return {
     ...flow,
     levels: flow.levels.map((level) => GROUPED[level] ?? level),
-    nodes: [...nodes.values()].map(({ parts, ...node }) => ({
-      ...node,
-      studies: studies(parts),
-      count: unionSize(parts.map((p) => p.studies)),
-      amount: fraction ? total(parts, "amount") : unionSize(parts.map((p) => p.studies)),
-    })),
-    links: [...links.values()].map(({ parts, ...link }) => ({
-      ...link,
-      studies: studies(parts),
-      value: fraction ? total(parts, "value") : unionSize(parts.map((p) => p.studies)),
-    })),
+    nodes: counted(nodes, "count"),
+    links: counted(links, "value"),
   };
 }
 
-/** What a node amounts to under fractional counting: what flows through it. */
-export function withAmounts(flow) {
-  if (flow.counting !== "fractional") return { ...flow, nodes: flow.nodes.map((n) => ({ ...n, amount: n.count })) };
-  const into = new Map();
-  const out = new Map();
-  for (const { source, target, value } of flow.links) {
-    out.set(source, (out.get(source) ?? 0) + value);
-    into.set(target, (into.get(target) ?? 0) + value);
+/**
+ * A flow of paths with each study counted once in all: a study that shows k different
+ * combinations of values gives 1/k to each, so that what flows into a value flows out of it.
+ */
+export function fractional(flow, paths, vocabulary) {
+  const combinations = new Map(); // study -> combination -> its values
+  for (const path of paths) {
+    const values = flow.levels.map((level) => `${level}:${valueAt(path, level, vocabulary)}`);
+    for (const key of path.studies) {
+      if (!combinations.has(key)) combinations.set(key, new Map());
+      combinations.get(key).set(values.join("\n"), values);
+    }
+  }
+  const amounts = new Map();
+  const add = (id, x) => amounts.set(id, (amounts.get(id) ?? 0) + x);
+  for (const different of combinations.values()) {
+    for (const values of different.values()) {
+      values.forEach((id, i) => {
+        add(id, 1 / different.size);
+        if (i) add(`${values[i - 1]}\n${id}`, 1 / different.size);
+      });
+    }
   }
   return {
     ...flow,
-    nodes: flow.nodes.map((n) => ({ ...n, amount: Math.max(into.get(n.id) ?? 0, out.get(n.id) ?? 0) || n.count })),
+    nodes: flow.nodes.map((n) => ({ ...n, amount: amounts.get(n.id) ?? 0 })),
+    links: flow.links.map((l) => ({ ...l, value: amounts.get(`${l.source}\n${l.target}`) ?? 0 })),
   };
+}
+
+/** A flow of the service with what each node amounts to: its count, whole or fractional. */
+export function withAmounts(flow) {
+  return { ...flow, nodes: flow.nodes.map((n) => ({ ...n, amount: n.count })) };
 }
 
 /** Leaves and rings of the model sunburst: family > calibration off or on line > model. */

@@ -165,7 +165,8 @@ export async function showLeaderboard(datasets) {
   try {
     const rows = await getAll(`/v1/leaderboard/${encodeURIComponent(card.name)}`, { condition, limit: 500 });
     if (mine !== turn) return;
-    shown = { rows: rows.filter((r) => r.condition === undefined || r.condition === condition), dataset: card.name, condition, card };
+    const named = rows.map((row) => ({ dataset: card.name, condition, ...row }));
+    shown = { rows: named.filter((row) => row.condition === condition), dataset: card.name, condition, card };
     draw();
     byId("board-status").textContent = `${plural(shown.rows.length, "pipeline")} on ${card.name}, ${condition}.`;
   } catch (problem) {
