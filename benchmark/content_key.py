@@ -150,11 +150,14 @@ def cell_key(
 
 
 def implementation_key(
-    implementation: type[Extractor | Model], build: Callable[[], Extractor | Model]
+    implementation: type[Extractor | Model],
+    build: Callable[[], Extractor | Model],
+    code: Callable[[str], str] = closure_digest,
 ) -> dict[str, object]:
     """Say what of an implementation enters a key: name, version, parameters, code.
 
     `build` makes it with the parameters that are scored; one that fails to be built has None.
+    `code` digests what its module reaches.
     """
     try:
         built = parameters(build())
@@ -164,7 +167,7 @@ def implementation_key(
         "name": implementation.name,
         "version": implementation.version,
         "parameters": built,
-        "code": closure_digest(implementation.__module__),
+        "code": code(implementation.__module__),
     }
 
 

@@ -14,6 +14,7 @@ from benchmark.content_key import (
     joined_hash,
     seed,
 )
+from benchmark.content_key_closure import closure_digest
 from benchmark.plan import Cell
 from benchmark.plan_parts import SPLITS, Parts
 from benchmark.runner_unit import Outcome, UnitResult
@@ -27,6 +28,7 @@ class Keys:
     def __init__(self, parts: Parts) -> None:
         self._parts = parts
         self._specification = cache(self._uncached_specification)
+        self._code = cache(closure_digest)
 
     def pinned_hash(self, cell: Cell, pins: Mapping[tuple[str, str, str], Pin]) -> str | None:
         """Hash of the cell's data, trusted because code and parameters are those it was pinned for.
@@ -58,9 +60,13 @@ class Keys:
         return cell_key(
             self._specification(cell.dataset, cell.condition),
             data_hash,
-            implementation_key(extractor_class, partial(extractor_class.for_sensor, geometry)),
             implementation_key(
-                model_class, partial(model_class.for_sensor, geometry, extractor_class.kind)
+                extractor_class, partial(extractor_class.for_sensor, geometry), self._code
+            ),
+            implementation_key(
+                model_class,
+                partial(model_class.for_sensor, geometry, extractor_class.kind),
+                self._code,
             ),
             seed(cell.dataset, cell.condition, cell.extractor, cell.model),
         )
