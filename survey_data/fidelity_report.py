@@ -26,7 +26,7 @@ from survey_data.tables import SurveyTables
 
 @dataclass(frozen=True)
 class CountLine:
-    """A count: what the tables hold, what the survey states (None: nothing), and why they differ."""
+    """A count held, the one the survey states (None: none), and why the two differ."""
 
     id: str
     held: int
@@ -158,15 +158,15 @@ def fidelity(tables: SurveyTables, problems: Sequence[Problem] = ()) -> Fidelity
 
 def _counts(tables: SurveyTables) -> tuple[CountLine, ...]:
     lines = []
-    for row in tables.counts.itertuples(index=False):
-        column = "" if pd.isna(row.column) else str(row.column)
-        value = "" if pd.isna(row.value) else str(row.value)
+    for row in tables.counts.to_dict("records"):
+        column = "" if pd.isna(row["column"]) else str(row["column"])
+        value = "" if pd.isna(row["value"]) else str(row["value"])
         lines.append(
             CountLine(
-                id=str(row.id),
-                held=count_rows(getattr(tables, str(row.table)), column, value),
-                stated=None if pd.isna(row.stated) else int(str(row.stated)),
-                explanation=str(row.explanation),
+                id=str(row["id"]),
+                held=count_rows(getattr(tables, row["table"]), column, value),
+                stated=None if pd.isna(row["stated"]) else int(row["stated"]),
+                explanation=str(row["explanation"]),
             )
         )
     return tuple(lines)
@@ -206,10 +206,11 @@ def accuracy_class(tables: SurveyTables, accuracy_deg: float) -> str:
     LookupError
         No class holds it (negative or not a number).
     """
-    for row in tables.taxonomy[tables.taxonomy["attribute"] == "accuracy"].itertuples(index=False):
-        upper = float("inf") if pd.isna(row.max_deg) else float(str(row.max_deg))
-        if float(str(row.min_deg)) <= accuracy_deg < upper:
-            return str(row.value)
+    classes = tables.taxonomy[tables.taxonomy["attribute"] == "accuracy"]
+    for row in classes.to_dict("records"):
+        upper = float("inf") if pd.isna(row["max_deg"]) else row["max_deg"]
+        if row["min_deg"] <= accuracy_deg < upper:
+            return str(row["value"])
     raise LookupError(f"no accuracy class holds {accuracy_deg} deg")
 
 

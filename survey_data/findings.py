@@ -159,7 +159,7 @@ def parse_finding(row: Mapping[str, Any], vocabulary: Vocabulary) -> Finding:
     )
 
 
-def _parse_given(text: object, vocabulary: Vocabulary) -> Iterable[tuple[str, str]]:
+def _parse_given(text: Any, vocabulary: Vocabulary) -> Iterable[tuple[str, str]]:
     if pd.isna(text):
         return
     for condition in str(text).split("&"):

@@ -114,14 +114,15 @@ def _studies_are_complete(frames: Frames) -> Iterator[Problem]:
     held: dict[tuple[str, str], list[int]] = {}
     for index, cell in _texts(frames["attributes"], "study", "attribute"):
         held.setdefault((cell[0], cell[1]), []).append(index)
-    for definition in definitions.itertuples(index=False):
-        attribute = str(definition.attribute)
+    for definition in definitions.to_dict("records"):
+        attribute, complete = str(definition["attribute"]), definition["complete"]
+        single = not pd.isna(definition["multiple"]) and not definition["multiple"]
         for index, (key,) in _texts(frames["studies"], "key"):
             rows = held.get((key, attribute), [])
-            if definition.complete is True and not rows:
+            if not pd.isna(complete) and complete and not rows:
                 message = f"{key} has no row for the attribute {attribute} in attributes.csv"
                 yield _problem("studies", index, "key", message)
-            if definition.multiple is False and len(rows) > 1:
+            if single and len(rows) > 1:
                 message = f"{key} has several values of {attribute}, which admits one"
                 yield _problem("attributes", rows[1], "value", message)
 
@@ -262,8 +263,8 @@ def _accuracy_classes_tile(frames: Frames) -> Iterator[Problem]:
     """Check that the accuracy classes cover every angle once; other values have no limits."""
     frame = frames["taxonomy"]
     limits = [
-        (float(row.min_deg), float(row.max_deg), index, row.attribute == "accuracy")
-        for index, row in enumerate(frame.itertuples(index=False))
+        (row["min_deg"], row["max_deg"], index, row["attribute"] == "accuracy")
+        for index, row in enumerate(frame.to_dict("records"))
     ]
     for least, most, index, is_class in limits:
         if not is_class and not (math.isnan(least) and math.isnan(most)):

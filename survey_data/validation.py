@@ -145,7 +145,7 @@ def _as_problem(table: str, error: Any, rows: list[tuple[int, list[str]]]) -> Pr
     column = getattr(error, "field_name", None)
     if column is None:
         names = getattr(error, "field_names", None)
-        column = names[0] if error.type == "foreign-key" and names else primary_key(table)[0]
+        column = names[-1] if error.type == "foreign-key" and names else primary_key(table)[0]
     note = error.note or error.message
     if error.type == "primary-key":
         note = f"duplicate row: the key ({', '.join(primary_key(table))}) stands already: {note}"

@@ -1,0 +1,85 @@
+"""The fidelity report: every number is counted from the tables at hand."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+
+import survey_data
+
+
+def test_129_studies_are_held_and_128_stated_and_the_difference_is_explained(
+    tables: survey_data.SurveyTables,
+) -> None:
+    report = survey_data.fidelity(tables).to_dict()
+    assert (report["studies"], report["stated"]) == (129, 128)
+    for key in ("Liebe2001", "Mobasser2001", "TrebiOllennu2001", "Wu2001"):
+        assert key in report["explanation"]
+        assert key in report["early_keys"]
+    assert report["case_references"] == ["Adatrao2016", "Bhanderi2006"]
+    assert "Adatrao2016" in report["explanation"]
+    assert len(report["findings"]) == 51
+    assert report["problems"] == []
+    assert json.loads(json.dumps(report)) == report
+
+
+def test_completeness_adds_up_for_every_attribute(tables: survey_data.SurveyTables) -> None:
+    report = survey_data.fidelity(tables)
+    known = tables.attributes.dropna(subset=["value"])
+    for entry in report.completeness:
+        assert entry.known + entry.unknown == 129
+        assert sum(entry.by_basis.values()) == entry.known
+        assert entry.known == known.loc[known["attribute"] == entry.attribute, "study"].nunique()
+        assert "unknown" not in entry.by_basis
+    by_name = {entry.attribute: entry for entry in report.completeness}
+    assert by_name["model"].by_basis == {"survey-table": 129}
+    assert by_name["extractor"].by_basis == {"survey-table": 129}
+    assert by_name["accuracy"].known == 59
+
+
+def test_the_strongest_basis_of_a_cell_is_counted(tables: survey_data.SurveyTables) -> None:
+    attributes = tables.attributes.copy()
+    rows = attributes.index[attributes.eval("study == 'Antonello2018' and attribute == 'task'")]
+    attributes.loc[rows[1], "basis"] = "survey-text"
+    before = survey_data.fidelity(tables)
+    after = survey_data.fidelity(dataclasses.replace(tables, attributes=attributes))
+    task = next(i for i, e in enumerate(before.completeness) if e.attribute == "task")
+    assert (
+        after.completeness[task].by_basis["survey-text"]
+        == before.completeness[task].by_basis["survey-text"] + 1
+    )
+
+
+def test_the_counts_follow_the_tables(tables: survey_data.SurveyTables) -> None:
+    fewer = dataclasses.replace(
+        tables,
+        studies=tables.studies.query("key != 'Wu2001'"),
+        attributes=tables.attributes.query("study != 'Wu2001'"),
+    )
+    report = survey_data.fidelity(fewer)
+    assert report.studies == 128
+    assert "Wu2001" not in report.early_keys
+    assert {line.id: line.held for line in report.counts}["studies-2001"] == 3
+
+
+def test_accuracies_outside_their_class_are_shown(tables: survey_data.SurveyTables) -> None:
+    report = survey_data.fidelity(tables)
+    shown = {entry.study: (entry.filed, entry.by_limits) for entry in report.class_disagreements}
+    # exactly the reports at a boundary in words: 0.01 deg, one arcminute rounded, 6 arcsec
+    assert shown == {
+        "Lin2016": ("VFSS", "UFSS"),
+        "Rufino2008": ("VFSS", "FSS"),
+        "Rufino2009b": ("VFSS", "FSS"),
+        "Rufino2017": ("FSS", "VFSS"),
+        "Wei2017": ("FSS", "VFSS"),
+        "Xie2012": ("FSS", "VFSS"),
+        "Xie2013": ("FSS", "VFSS"),
+    }
+
+
+def test_problems_are_carried(tables: survey_data.SurveyTables) -> None:
+    problem = survey_data.Problem("studies.csv", 2, "year", "no year")
+    report = survey_data.fidelity(tables, [problem])
+    assert report.to_dict()["problems"] == [
+        {"file": "studies.csv", "row": 2, "column": "year", "message": "no year"}
+    ]

@@ -1,0 +1,133 @@
+"""No file, however mangled, makes validation or loading crash."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+import survey_data
+from survey_data.descriptor import column_types, file_name, table_names
+
+SETTINGS = {
+    "deadline": None,
+    "derandomize": True,
+    "suppress_health_check": [HealthCheck.function_scoped_fixture],
+}
+INTERESTING = st.one_of(
+    st.binary(max_size=8),
+    st.sampled_from(
+        [b'"', b'""', b",", b"\n", b"\r", b"\r\n", b"\x00", b"\xff", b"\xef\xbb\xbf", b"1e999",
+         b"None", b"nan", b"-", b"9" * 5000, "\u2028".encode(), "\u0663".encode(), b"|", b">", b"+"]
+    ),
+)  # fmt: skip
+
+
+@st.composite
+def mutations(draw: st.DrawFn) -> list[tuple[float, int, bytes]]:
+    """Edits at a relative position: bytes removed, bytes put in."""
+    edit = st.tuples(st.floats(0, 1), st.integers(0, 12), INTERESTING)
+    return draw(st.lists(edit, min_size=1, max_size=4))
+
+
+def mutate(data: bytes, edits: list[tuple[float, int, bytes]]) -> bytes:
+    for position, removed, added in edits:
+        at = int(position * len(data))
+        data = data[:at] + added + data[at + removed :]
+    return data
+
+
+@given(st.sampled_from(table_names()), mutations())
+@settings(max_examples=20, **SETTINGS)
+def test_random_corruption_gives_problems_or_stays_valid(
+    copy: Any, table: str, edits: list[tuple[float, int, bytes]]
+) -> None:
+    path = copy.path(table)
+    original = path.read_bytes()
+    try:
+        path.write_bytes(mutate(original, edits))
+        problems = survey_data.validate(copy.directory)
+        assert all(p.message and p.file.endswith(".csv") for p in problems)
+        if not problems:  # what is valid can be loaded
+            assert len(survey_data.load(copy.directory).studies) == 129
+    finally:
+        path.write_bytes(original)
+
+
+@given(st.data())
+@settings(max_examples=15, **SETTINGS)
+def test_random_cells_give_problems_or_stay_valid(copy: Any, data: st.DataObject) -> None:
+    # well-formed CSV with any text in one cell: types, keys, grammar and rules are reached
+    table = data.draw(st.sampled_from(table_names()))
+    rows = copy.rows(table)
+    row = data.draw(st.integers(2, len(rows)))
+    column = data.draw(st.sampled_from(list(column_types(table))))
+    others = [cells[rows[0].index(column)] for cells in rows[1:]]
+    text = data.draw(st.one_of(st.text(max_size=20), st.sampled_from(others)))
+    before = copy.path(table).read_bytes()
+    try:
+        copy.set(table, row, column, text)
+        problems = survey_data.validate(copy.directory)
+        assert all(p.message for p in problems)
+        if not problems:
+            assert survey_data.fidelity(survey_data.load(copy.directory)).studies == 129
+    finally:
+        copy.path(table).write_bytes(before)
+
+
+@given(st.binary(max_size=300))
+@settings(max_examples=150, **SETTINGS)
+def test_any_bytes_are_read_or_reported(copy: Any, content: bytes) -> None:
+    from survey_data.csv_reading import read_records
+
+    path = copy.path("claims")
+    path.write_bytes(content)
+    records = read_records(path, list(column_types("claims")))
+    assert records.problems  # no random bytes make the header
+    assert {p.file for p in records.problems} == {"claims.csv"}
+
+
+@given(content=st.one_of(st.binary(max_size=400), st.text(max_size=300).map(str.encode)))
+@pytest.mark.parametrize("name", ["theirs.csv", "theirs.xlsx"])
+@settings(max_examples=40, **SETTINGS)
+def test_any_offered_file_is_taken_or_refused(copy: Any, name: str, content: bytes) -> None:
+    path = copy.directory / name
+    path.write_bytes(content)
+    before = copy.path("attributes").read_bytes()
+    with pytest.raises(survey_data.SurveyImportError):
+        survey_data.import_table(path, copy.directory, apply=True)
+    assert copy.path("attributes").read_bytes() == before
+
+
+@pytest.fixture(scope="module")
+def workbook(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    import openpyxl
+
+    book = openpyxl.Workbook()
+    book.active.append(["Key", "Mask"])
+    book.active.append(["Chang2008", "Pinhole"])
+    path = tmp_path_factory.mktemp("book") / "theirs.xlsx"
+    book.save(path)
+    return path.read_bytes()
+
+
+@given(mutations())
+@settings(max_examples=60, **SETTINGS)
+def test_a_mangled_workbook_is_read_or_refused(
+    copy: Any, workbook: bytes, edits: list[tuple[float, int, bytes]]
+) -> None:
+    path = copy.directory / "theirs.xlsx"
+    path.write_bytes(mutate(workbook, edits))
+    try:
+        columns = list(survey_data.read_table(path).columns)
+    except survey_data.SurveyImportError as error:
+        columns = [str(error)]
+    assert columns
+
+
+def test_every_table_is_among_the_corrupted(copy: Any) -> None:
+    assert {file_name(table) for table in table_names()} == {
+        path.name for path in copy.directory.glob("*.csv")
+    }

@@ -1,0 +1,370 @@
+"""Every kind of corruption of every table is reported with file, row and column."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import survey_data
+from survey_data.descriptor import column_types, file_name, primary_key, table_names
+from survey_data.rules import check_rules
+
+ALL = table_names()
+
+
+def located(problems: list[survey_data.Problem], row: int, column: str | None = None) -> bool:
+    """Say whether a problem names this row (and column, if one is given)."""
+    return any(
+        p.row == row and p.column is not None and (column is None or p.column == column)
+        for p in problems
+    )
+
+
+def test_the_shipped_tables_are_valid() -> None:
+    assert survey_data.validate() == []
+
+
+def test_a_plain_copy_is_valid_also_with_windows_line_ends(copy: Any) -> None:
+    for table in ALL:
+        path = copy.path(table)
+        path.write_bytes(path.read_bytes().replace(b"\n", b"\r\n"))
+    assert survey_data.validate(copy.directory) == []
+    assert len(survey_data.load(copy.directory).studies) == 129
+
+
+def test_a_directory_that_is_not_there_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(NotADirectoryError, match="nowhere"):
+        survey_data.validate(tmp_path / "nowhere")
+
+
+def line(data: bytes, row: int) -> tuple[list[bytes], int]:
+    return data.split(b"\n"), row - 1
+
+
+def in_line(old: bytes | None, new: bytes, row: int = 3) -> object:
+    """Corrupt one line: replace its first `old` (its start where None) by `new`."""
+
+    def corrupt(data: bytes) -> bytes:
+        lines, index = line(data, row)
+        lines[index] = new + lines[index] if old is None else lines[index].replace(old, new, 1)
+        return b"\n".join(lines)
+
+    return corrupt
+
+
+def without_last_cell(data: bytes) -> bytes:
+    lines, index = line(data, 3)
+    lines[index] = b"alone"
+    return b"\n".join(lines)
+
+
+def double_first_column(data: bytes) -> bytes:
+    lines = data.split(b"\n")
+    first, _, *rest = lines[0].split(b",")
+    return b"\n".join([b",".join([first, first, *rest]), *lines[1:]])
+
+
+FORM = {
+    "unclosed quote": (in_line(None, b'"'), 3),
+    "stray quote": (in_line(b",", b'x"y,'), 3),
+    "extra cell": (in_line(None, b"one,more,"), 3),
+    "missing cell": (without_last_cell, 3),
+    "bad encoding": (in_line(None, b"\xff\xfe"), 3),
+    "null byte": (in_line(None, b"\x00"), 3),
+    "blank row": (in_line(None, b"\n"), 3),
+    "space around a value": (in_line(None, b" "), 3),
+    "byte-order mark": (in_line(None, b"\xef\xbb\xbf", row=1), 1),
+    "missing column": (in_line(b",", b"_", row=1), 1),
+    "renamed column": (in_line(None, b"x", row=1), 1),
+    "duplicate column": (double_first_column, 1),
+    "empty file": (lambda data: b"", 1),
+}
+
+
+@pytest.mark.parametrize("kind", FORM)
+@pytest.mark.parametrize("table", ALL)
+def test_broken_form_is_located_in_every_table(kind: str, table: str, copy: Any) -> None:
+    from survey_data.csv_reading import read_records
+
+    corrupt, row = FORM[kind]
+    path = copy.path(table)
+    path.write_bytes(corrupt(path.read_bytes()))
+    problems = read_records(path, list(column_types(table))).problems
+    assert located(problems, row), problems
+    assert {p.file for p in problems} == {file_name(table)}
+
+
+@pytest.mark.parametrize("kind", FORM)
+def test_broken_form_of_all_tables_at_once_is_reported_for_each(kind: str, copy: Any) -> None:
+    corrupt, row = FORM[kind]
+    for table in ALL:
+        path = copy.path(table)
+        path.write_bytes(corrupt(path.read_bytes()))
+    problems = survey_data.validate(copy.directory)
+    for table in ALL:
+        assert located([p for p in problems if p.file == file_name(table)], row)
+    with pytest.raises(survey_data.SurveyDataError, match=r"row \d+, column \w+: "):
+        survey_data.load(copy.directory)
+
+
+@pytest.mark.parametrize("table", ALL)
+def test_a_missing_file_is_named_and_nothing_else_is_blamed(table: str, copy: Any) -> None:
+    copy.path(table).unlink()
+    problems = survey_data.validate(copy.directory)
+    assert survey_data.Problem(file_name(table), None, None, "the file is missing") in problems
+    assert {p.file for p in problems} == {file_name(table)}
+    with pytest.raises(survey_data.SurveyDataError, match=f"{file_name(table)}: the file is miss"):
+        survey_data.load(copy.directory)
+
+
+@pytest.mark.parametrize("table", ALL)
+def test_a_duplicate_row_is_located_in_every_table(table: str, copy: Any) -> None:
+    copy.edit(table, lambda rows: rows.append(list(rows[2])))
+    row = len(copy.rows(table))
+    problems = copy.found(file_name(table))
+    assert any(p.row == row and p.column and "duplicate row" in p.message for p in problems)
+
+
+@pytest.mark.parametrize("table", ALL)
+def test_an_empty_key_is_located_in_every_table(table: str, copy: Any) -> None:
+    column = primary_key(table)[0]
+    copy.set(table, 3, column, "")
+    assert located(copy.found(file_name(table)), 3, column)
+
+
+@pytest.mark.parametrize("table", ALL)
+def test_a_row_left_out_is_located_in_every_table(table: str, copy: Any) -> None:
+    copy.edit(table, lambda rows: rows.pop(1))
+    problems = survey_data.validate(copy.directory)
+    assert any(p.row is not None and p.column is not None for p in problems)
+    named = {p.file for p in problems}
+    # an attribute row is missed where the study stands and where the printed tables have it
+    assert (
+        (named & {"studies.csv", "study_tables.csv"})
+        if table == "attributes"
+        else (file_name(table) in named)
+    )
+
+
+UNKNOWN = {
+    "studies": [("type", "leaflet"), ("identity", "sure"), ("year", "MMX"), ("year", "1066")],
+    "attributes": [("value", "Sundial"), ("basis", "hearsay"), ("attribute", "colour")],
+    "taxonomy": [("attribute", "colour"), ("min_deg", "wide")],
+    "attribute_definitions": [("kind", "vague"), ("multiple", "perhaps"), ("attribute", "colour")],
+    "bases": [("basis", "hearsay"), ("rank", "1"), ("rank", "high")],
+    "aliases": [("value", "Sundial"), ("origin", "nowhere")],
+    "study_tables": [("value", "Sundial"), ("source", "tab:none"), ("attribute", "task")],
+    "feature_assessment": [("extractor", "Sundial"), ("score", "3"), ("property", "Beauty")],
+    "approaches": [("general", "Astrology")],
+    "findings": [("expects", "error: Sundial"), ("kind", "best"), ("given", "error=Sundial")],
+    "claims": [("section", "model:sundial"), ("study", "Nobody1999"), ("id", "claim")],
+    "references": [("role", "friend"), ("mapped_key", "Nobody1999"), ("doi", "doi:10.1/x")],
+    "counts": [("table", "sundials"), ("held", "many")],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("table", ALL)
+def test_unknown_values_are_located_in_every_table(table: str, copy: Any) -> None:
+    for row, (column, text) in enumerate(UNKNOWN[table], 3):
+        copy.set(table, row, column, text)
+    problems = copy.found(file_name(table))
+    for row, (column, _) in enumerate(UNKNOWN[table], 3):
+        assert located(problems, row, column), (row, column, problems)
+
+
+def test_a_count_that_does_not_hold_is_reported_at_the_end_of_the_table(copy: Any) -> None:
+    copy.set("counts", 3, "held", "7")  # the studies of 2001
+    problems = survey_data.validate(copy.directory)
+    assert [(p.file, p.row, p.column) for p in problems] == [("studies.csv", 131, "year")]
+    copy.set("counts", 3, "column", "sundial")
+    assert located(copy.found("counts.csv"), 3, "column")
+
+
+def test_values_are_checked_against_their_own_attribute(copy: Any) -> None:
+    # QPD is a detector and a model, but no mask
+    rows = copy.rows("attributes")
+    row = next(i for i, cells in enumerate(rows, 1) if cells[1] == "mask" and cells[2])
+    copy.set("attributes", row, "value", "QPD")
+    assert located(copy.found("attributes.csv"), row, "value")
+
+
+def test_a_number_is_a_number_in_range(copy: Any) -> None:
+    texts = ["0", "200", "-1", "nan", "inf", "0,5", "1e99", "0.5 deg", "\u0663"]
+    rows = copy.rows("attributes")
+    at = [i for i, cells in enumerate(rows, 1) if cells[1] == "accuracy_deg"]
+    for row, text in zip(at, texts, strict=False):
+        copy.set("attributes", row, "value", text)
+    problems = copy.found("attributes.csv")
+    assert [p.row for p in problems] == at[: len(texts)]
+    assert {p.column for p in problems} == {"value"}
+
+
+def test_a_cell_has_one_basis(copy: Any) -> None:
+    rows = copy.rows("attributes")
+    row = next(i for i, cells in enumerate(rows, 1) if cells[3] == "abstract")
+    again = list(rows[row - 1])
+    again[3] = "title"
+    copy.edit("attributes", lambda rows: rows.append(again))
+    problems = copy.found("attributes.csv")
+    assert any(p.column == "basis" and "two bases" in p.message for p in problems)
+
+
+@pytest.mark.parametrize(
+    ("pick", "column", "text", "blamed"),
+    [
+        (lambda c: c[3] == "unknown", "value", None, "value"),
+        (lambda c: c[3] == "unknown", "basis", "title", "basis"),
+        (lambda c: c[3] == "abstract", "value", "", "basis"),
+        (lambda c: c[3] == "abstract", "basis", "unknown", "value"),
+    ],
+)
+def test_unknown_and_empty_go_together(
+    pick: object, column: str, text: str | None, blamed: str, copy: Any
+) -> None:
+    rows = copy.rows("attributes")
+    row = next(i for i, cells in enumerate(rows[1:], 2) if pick(cells))
+    known = next(c[2] for c in rows[1:] if c[1] == rows[row - 1][1] and c[2])
+    copy.set("attributes", row, column, known if text is None else text)
+    assert located(copy.found("attributes.csv"), row, blamed)
+
+
+def test_a_study_without_a_row_for_an_attribute_is_named(copy: Any) -> None:
+    copy.edit(
+        "attributes",
+        lambda rows: rows.remove(next(c for c in rows if c[:2] == ["Chang2008", "mask"])),
+    )
+    row = next(i for i, c in enumerate(copy.rows("studies"), 1) if c[0] == "Chang2008")
+    problems = copy.found("studies.csv")
+    assert [(p.row, p.column) for p in problems] == [(row, "key")]
+    assert "mask" in problems[0].message
+
+
+def test_a_study_has_one_accuracy_class(copy: Any) -> None:
+    rows = copy.rows("attributes")
+    first = next(i for i, c in enumerate(rows) if c[1] == "accuracy" and c[2] == "FSS")
+    another = list(rows[first])
+    another[2] = "CSS"
+    copy.edit("attributes", lambda rows: rows.insert(first + 1, another))
+    assert located(copy.found("attributes.csv"), first + 2, "value")
+
+
+def test_a_printed_cell_must_be_carried_and_a_carried_cell_printed(copy: Any) -> None:
+    rows = copy.rows("attributes")
+    row = next(i for i, c in enumerate(rows, 1) if c[:3] == ["Chang2008", "extractor", "BCTM"])
+    copy.set("attributes", row, "value", "PD")
+    problems = survey_data.validate(copy.directory)
+    assert located([p for p in problems if p.file == "attributes.csv"], row, "value")
+    assert any(p.file == "study_tables.csv" and "Chang2008" in p.message for p in problems)
+
+
+def test_a_kind_of_a_printed_label_agrees_with_it_and_another_label_s_does_not(
+    copy: Any,
+) -> None:
+    rows = copy.rows("attributes")
+    row = next(i for i, c in enumerate(rows, 1) if c[:3] == ["OKeefe2017", "model", "ECM/Noise"])
+    copy.set("attributes", row, "value", "ECM/Angular loss")  # printed as ECM
+    assert survey_data.validate(copy.directory) == []
+    copy.set("attributes", row, "value", "ICM/Shadow")
+    assert located(copy.found("attributes.csv"), row, "value")
+
+
+def test_doi_and_year_syntax_are_checked(copy: Any) -> None:
+    dois = ["doi:10.1109/x", "https://doi.org/10.1109/x", "11.1109/x", "10.1109/", "10.1109/a b"]
+    years = ["1999", "14", "20l4", "2014.5", "03000"]
+    for row, (doi, year) in enumerate(zip(dois, years, strict=True), 2):
+        copy.set("studies", row, "doi", doi)
+        copy.set("studies", row, "year", year)
+    problems = copy.found("studies.csv")
+    for row in range(2, 2 + len(dois)):
+        assert located(problems, row, "doi")
+        assert located(problems, row, "year") or row == 2
+    # only where every year can be read is it compared with the key's
+    for row, key_year in enumerate(["2014", "2011", "2009", "2014", "2018"], 2):
+        copy.set("studies", row, "year", key_year)
+    copy.set("studies", 2, "year", "2015")
+    assert located(copy.found("studies.csv"), 2, "year")
+
+
+GRAMMAR = [
+    ("given", "error"),
+    ("given", "colour=red"),
+    ("given", "error=Alignment&"),
+    ("expects", "error"),
+    ("expects", "colour: red"),
+    ("expects", "error: Alignment|Alignment|Optical"),
+    ("expects", "error: Alignment>Optical"),
+    ("expects", "detector+mask: CMOS"),
+    ("expects", "model_category: LSQ"),
+    ("expects", "year: twenty"),
+    ("kind", "order"),
+    ("kind", "top-centroid"),
+]
+
+
+def test_the_findings_grammar_is_checked(copy: Any) -> None:
+    sound = copy.rows("findings")[1]  # a top-set over errors
+    rows = copy.rows("findings")
+    for row, (column, text) in enumerate(GRAMMAR, 2):
+        cells = [rows[row - 1][0], *sound[1:]]
+        cells[rows[0].index(column)] = text
+        rows[row - 1] = cells
+    copy.write("findings", rows)
+    found = [(p.row, p.column) for p in copy.found("findings.csv")]
+    blamed = [("expects" if column == "kind" else column) for column, _ in GRAMMAR]
+    assert found == list(enumerate(blamed, 2))
+
+
+@pytest.mark.parametrize("value", ["CSS", "FSS", "VFSS", "UFSS"])
+@pytest.mark.parametrize("column", ["min_deg", "max_deg"])
+def test_accuracy_classes_leave_no_gap(
+    value: str, column: str, tables: survey_data.SurveyTables
+) -> None:
+    taxonomy = tables.taxonomy.copy()
+    assert check_rules({"taxonomy": taxonomy}) == []
+    taxonomy.loc[taxonomy["value"] == value, column] = 0.3
+    assert {p.column for p in check_rules({"taxonomy": taxonomy})} <= {"min_deg", "max_deg"}
+    assert check_rules({"taxonomy": taxonomy})
+
+
+def test_the_assessment_keeps_one_case_study_an_extractor(copy: Any) -> None:
+    copy.set("feature_assessment", 3, "case_study", "Chang2008")
+    assert located(copy.found("feature_assessment.csv"), 3, "case_study")
+
+
+def test_columns_in_another_order_are_reported(copy: Any) -> None:
+    copy.edit("claims", lambda rows: [cells.reverse() for cells in rows] and None)
+    assert located(copy.found("claims.csv"), 1)
+
+
+@pytest.mark.parametrize(
+    ("content", "told"),
+    [
+        (b"", "broken JSON"),
+        (b"{", "broken JSON"),
+        (b"\xff", "broken JSON"),
+        (b"[]", "differs from the descriptor"),
+        (b"[" * 100_000, "broken JSON"),
+    ],
+)
+def test_a_broken_descriptor_is_reported(content: bytes, told: str, copy: Any) -> None:
+    (copy.directory / "datapackage.json").write_bytes(content)
+    assert any(told in p.message for p in copy.found("datapackage.json"))
+
+
+def test_a_weakened_descriptor_is_reported(copy: Any) -> None:
+    path = copy.directory / "datapackage.json"
+    path.write_text(
+        path.read_text(encoding="utf-8").replace('"required": true', '"required": 1', 1)
+    )
+    problems = copy.found("datapackage.json")
+    assert "/resources/0/schema/fields/0/constraints/required" in problems[0].message
+    path.unlink()
+    assert copy.found("datapackage.json")[0].message == "the file is missing"
+
+
+def test_a_problem_reads_as_a_place_and_a_message() -> None:
+    problem = survey_data.Problem("studies.csv", 7, "year", "expected a year")
+    assert str(problem) == "studies.csv, row 7, column year: expected a year"
+    assert problem.to_dict()["row"] == 7
