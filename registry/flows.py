@@ -203,8 +203,8 @@ def _flows(
     allowed = allowed_values(where, taxonomy)
     met = [study for study in facts.studies.values() if _meets(study, allowed)]
 
-    node_weight: dict[tuple[int, str], Fraction] = {}
-    link_weight: dict[tuple[int, str, str], Fraction] = {}
+    node_weight: dict[tuple[int, str], Fraction | int] = {}
+    link_weight: dict[tuple[int, str, str], Fraction | int] = {}
     node_studies: dict[tuple[int, str], dict[str, None]] = {}
     link_studies: dict[tuple[int, str, str], dict[str, None]] = {}
     left_out: dict[str, list[str]] = {}
@@ -215,18 +215,18 @@ def _flows(
             left_out.setdefault(levels[at], []).append(study.key)
         if missing and mode == "fractional":
             continue
-        share = Fraction(1, len(combinations))
+        share = Fraction(1, len(combinations)) if mode == "fractional" else 0
         for combination in combinations:
             for at, value in enumerate(combination):
                 if value is None:
                     continue
                 node = (at, value)
-                node_weight[node] = node_weight.get(node, Fraction()) + share
+                node_weight[node] = node_weight.get(node, 0) + share
                 node_studies.setdefault(node, {})[study.key] = None
                 following = combination[at + 1] if at + 1 < len(levels) else None
                 if following is not None:
                     link = (at, value, following)
-                    link_weight[link] = link_weight.get(link, Fraction()) + share
+                    link_weight[link] = link_weight.get(link, 0) + share
                     link_studies.setdefault(link, {})[study.key] = None
 
     order = [{v: i for i, v in enumerate(taxonomy.values(level))} for level in levels]

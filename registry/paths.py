@@ -9,7 +9,7 @@ from __future__ import annotations
 import itertools
 import weakref
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from registry.flows import LeftOut
 from registry.measured import Measured, Measurements, Route
@@ -23,8 +23,7 @@ STUDY_ATTRIBUTES = tuple(a for a in ATTRIBUTES if a not in PATH_LEVELS)
 _SETS_KEPT = 4096
 
 
-@dataclass(frozen=True)
-class Answer:
+class Answer(NamedTuple):
     """One path that meets the requirements, its studies as bits, and on what evidence.
 
     ``architecture``, ``with_model`` and ``studies`` are the studies that took the path as far as
@@ -69,9 +68,7 @@ class PathTable:
             for path in itertools.product(*(study.of(level) for level in PATH_LEVELS)):
                 for end in range(3, len(PATH_LEVELS) + 1):
                     took[path[:end]] = took.get(path[:end], 0) | bit
-        self.order = order = [
-            {v: i for i, v in enumerate(self.taxonomy.values(a))} for a in PATH_LEVELS
-        ]
+        order = [{v: i for i, v in enumerate(self.taxonomy.values(a))} for a in PATH_LEVELS]
         self.paths: tuple[tuple[str, ...], ...] = tuple(
             sorted(
                 (path for path in took if len(path) == len(PATH_LEVELS)),
@@ -81,6 +78,7 @@ class PathTable:
         self.all_paths = (1 << len(self.paths)) - 1
         self.sets = [(took[p[:3]], took[p[:4]], took[p]) for p in self.paths]
         self.routes: list[Route] = [(p[1], p[2], p[4], p[3]) for p in self.paths]
+        self._lay_out(order)
         self.through: dict[tuple[str, str], int] = {}
         for at, path in enumerate(self.paths):
             for step in zip(PATH_LEVELS, path, strict=True):
@@ -89,6 +87,36 @@ class PathTable:
             LeftOut(lv, tuple(missing[lv])) for lv in PATH_LEVELS if lv in missing
         )
         self._names: dict[int, tuple[str, ...]] = {}
+
+    def _lay_out(self, order: list[dict[str, int]]) -> None:
+        """Give every node and link of the paths a number, in chart order."""
+        nodes = sorted(
+            {(at, value) for path in self.paths for at, value in enumerate(path)},
+            key=lambda node: (node[0], order[node[0]][node[1]]),
+        )
+        links = sorted(
+            {
+                (at, *step)
+                for path in self.paths
+                for at, step in enumerate(itertools.pairwise(path))
+            },
+            key=lambda link: (link[0], order[link[0]][link[1]], order[link[0] + 1][link[2]]),
+        )
+        self.nodes = [
+            (PATH_LEVELS[at], value, self.taxonomy.name(PATH_LEVELS[at], value))
+            for at, value in nodes
+        ]
+        self.links = [
+            (f"{PATH_LEVELS[at]}:{source}", f"{PATH_LEVELS[at + 1]}:{target}")
+            for at, source, target in links
+        ]
+        node_at = {node: i for i, node in enumerate(nodes)}
+        link_at = {link: i for i, link in enumerate(links)}
+        self.nodes_on = [[node_at[node] for node in enumerate(path)] for path in self.paths]
+        self.links_on = [
+            [link_at[at, *step] for at, step in enumerate(itertools.pairwise(path))]
+            for path in self.paths
+        ]
 
     def studies(self, bits: int) -> tuple[str, ...]:
         """Return the keys of a study set."""

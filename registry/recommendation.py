@@ -12,7 +12,7 @@ studies agree on model and extractor stands above one as large whose studies sca
 
 from __future__ import annotations
 
-import itertools
+import operator
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
@@ -20,7 +20,7 @@ from types import MappingProxyType
 from registry import studies as registered
 from registry.flows import LeftOut, Link, Node
 from registry.measured import Measured, Measurements
-from registry.paths import PATH_LEVELS, Answer, PathTable, measured_number, path_table
+from registry.paths import Answer, PathTable, measured_number, path_table
 from registry.relaxation import Blocked, Relaxation, explain
 from registry.requirements import LIMITS, Requirements
 from registry.studies import Facts
@@ -205,28 +205,30 @@ def _pareto(ranked: Sequence[Answer], requirements: Requirements) -> frozenset[i
     quantities = [name for name in LIMITS if requirements.limit(name) is not None] or [
         "max_error_deg"
     ]
-    points: list[tuple[tuple[float, ...], int]] = []
-    for at, answer in enumerate(ranked):
-        costs = [float(-_backing(answer))]
-        for name in quantities:
-            number = None if answer.measured is None else measured_number(name, answer.measured)
-            sign = -1.0 if name.startswith("min_") else 1.0
-            costs.append(float("inf") if number is None else sign * number)
-        points.append((tuple(costs), at))
-    points.sort()
-    # In this order whatever beats a point stands before it; and if that is beaten itself, then by
-    # something that beats the point too. So the front found so far is all there is to compare.
+    costs = [_costs(answer, quantities) for answer in ranked]
+    # In sorted order whatever beats a point stands before it; and if that is beaten itself, then
+    # by something that beats the point too. So the front found so far is all there is to compare.
     front: list[tuple[float, ...]] = []
-    best = set()
-    for point, at in points:
-        if not any(
-            other != point and all(o <= p for o, p in zip(other, point, strict=True))
-            for other in front
-        ):
-            best.add(at)
-            if not front or front[-1] != point:
-                front.append(point)
-    return frozenset(best)
+    for point in sorted(set(costs)):
+        for other in front:
+            if all(map(operator.le, other, point)):
+                break
+        else:
+            front.append(point)
+    best = set(front)
+    return frozenset(at for at, point in enumerate(costs) if point in best)
+
+
+def _costs(answer: Answer, quantities: Sequence[str]) -> tuple[float, ...]:
+    """Return what is to be small: support negated, then each quantity, infinite if unmeasured."""
+    costs = [float(-_backing(answer))]
+    for name in quantities:
+        number = None if answer.measured is None else measured_number(name, answer.measured)
+        if number is None:
+            costs.append(float("inf"))
+        else:
+            costs.append(-number if name.startswith("min_") else number)
+    return tuple(costs)
 
 
 def _path(table: PathTable, answer: Answer, rank: int, pareto: bool) -> RecommendedPath:
@@ -254,38 +256,30 @@ def _narrowed(
     table: PathTable, answers: Sequence[Answer]
 ) -> tuple[tuple[Node, ...], tuple[Link, ...]]:
     """Return nodes and links of the paths found, with the studies that took them."""
-    at_node: list[dict[str, int]] = [{} for _ in PATH_LEVELS]
-    on_link: list[dict[tuple[str, str], int]] = [{} for _ in PATH_LEVELS[1:]]
+    node_bits = [0] * len(table.nodes)
+    link_bits = [0] * len(table.links)
     for answer in answers:
-        path, studies = table.paths[answer.path], answer.studies
-        for value, found in zip(path, at_node, strict=True):
-            found[value] = found.get(value, 0) | studies
-        for step, links in zip(itertools.pairwise(path), on_link, strict=True):
-            links[step] = links.get(step, 0) | studies
-    order = table.order
+        studies = answer.studies
+        for at in table.nodes_on[answer.path]:
+            node_bits[at] |= studies
+        for at in table.links_on[answer.path]:
+            link_bits[at] |= studies
     return (
         tuple(
             Node(
                 id=f"{level}:{value}",
                 level=level,
                 value=value,
-                name=table.taxonomy.name(level, value),
+                name=name,
                 count=bits.bit_count(),
                 studies=table.studies(bits),
             )
-            for at, level in enumerate(PATH_LEVELS)
-            for value, bits in sorted(at_node[at].items(), key=lambda item: order[at][item[0]])
+            for (level, value, name), bits in zip(table.nodes, node_bits, strict=True)
+            if bits
         ),
         tuple(
-            Link(
-                source=f"{PATH_LEVELS[at]}:{source}",
-                target=f"{PATH_LEVELS[at + 1]}:{target}",
-                value=bits.bit_count(),
-                studies=table.studies(bits),
-            )
-            for at, links in enumerate(on_link)
-            for (source, target), bits in sorted(
-                links.items(), key=lambda item: (order[at][item[0][0]], order[at + 1][item[0][1]])
-            )
+            Link(source=source, target=target, value=bits.bit_count(), studies=table.studies(bits))
+            for (source, target), bits in zip(table.links, link_bits, strict=True)
+            if bits
         ),
     )

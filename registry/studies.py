@@ -56,7 +56,11 @@ class Study:
 
     def of(self, attribute: str) -> tuple[str, ...]:
         """Return the stated values of an attribute, without repetition; empty if unknown."""
-        return tuple(dict.fromkeys(v.value for v in self.values.get(attribute, ())))
+        return self._stated.get(attribute, ())
+
+    @cached_property
+    def _stated(self) -> Mapping[str, tuple[str, ...]]:
+        return {a: tuple(dict.fromkeys(v.value for v in cells)) for a, cells in self.values.items()}
 
     def number(self, attribute: str) -> float | None:
         """Return the stated `accuracy_deg` or `fov_deg` (the best of several); None if none."""

@@ -1,0 +1,40 @@
+from collections.abc import Callable, Mapping, Sequence
+from types import MappingProxyType
+
+import pytest
+
+from registry import studies
+from registry.studies import AttributeValue, Facts, Study
+
+Row = Mapping[str, Sequence[str]]
+
+
+@pytest.fixture(scope="session")
+def survey() -> Facts:
+    return studies.facts()
+
+
+@pytest.fixture(scope="session")
+def facts_of(survey: Facts) -> Callable[[Sequence[Row]], Facts]:
+    """Facts of invented studies S0, S1, ... with the survey's vocabulary."""
+
+    def build(rows: Sequence[Row]) -> Facts:
+        found = {}
+        for at, row in enumerate(rows):
+            values = {a: tuple(AttributeValue(v, "title", "", "") for v in row[a]) for a in row}
+            found[f"S{at}"] = Study(
+                key=f"S{at}",
+                title="",
+                authors="",
+                year=2020,
+                venue="",
+                doi="",
+                url="",
+                identity="unknown",
+                note="",
+                values=MappingProxyType({a: cells for a, cells in values.items() if cells}),
+                unknown=MappingProxyType({a: "" for a, cells in values.items() if not cells}),
+            )
+        return Facts(found, survey.taxonomy)
+
+    return build

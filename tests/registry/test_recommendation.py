@@ -1,0 +1,494 @@
+"""Recommendations: what brute force over studies and rows gives, ranked as said."""
+
+import itertools
+import math
+import statistics
+import time
+from collections.abc import Callable, Iterable, Mapping
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from registry.flows import chart
+from registry.measured import Measured, Measurements
+from registry.recommendation import Recommendation, recommend
+from registry.requirements import PARAMETERS, Requirements
+from registry.studies import Facts, Study
+from registry.taxonomy import InvalidValueError
+
+LEVELS = ("task", "detector", "mask", "model", "extractor")
+VALUES = {
+    "task": ["Accuracy", "Cost"],
+    "error": ["Optical", "Alignment"],
+    "accuracy": ["FSS", "CSS"],
+    "detector": ["CMOS", "PD"],
+    "mask": ["Slit", "Lens"],
+    "model": ["SPM", "ECM", "ECM/Noise"],
+    "extractor": ["BCTM", "Direct"],
+    "accuracy_deg": ["0.01", "0.5", "2"],
+    "fov_deg": ["60", "120"],
+}
+Rows = list[Mapping[str, list[str]]]
+rows = st.lists(
+    st.fixed_dictionaries(
+        {
+            a: st.lists(
+                st.sampled_from(v),
+                max_size=1 if a.endswith("_deg") else 2,
+                min_size=1 if a in LEVELS else 0,
+                unique=True,
+            )
+            for a, v in VALUES.items()
+        }
+    ),
+    min_size=1,
+    max_size=6,
+)
+numbers = st.none() | st.sampled_from([0.005, 0.01, 0.3, 1.0])
+measured_rows = st.lists(
+    st.builds(
+        Measured,
+        dataset=st.sampled_from(["d1", "d2"]),
+        condition=st.just("nominal"),
+        detector=st.sampled_from(VALUES["detector"]),
+        mask=st.sampled_from(VALUES["mask"]),
+        extractor=st.just("e"),
+        extractor_taxonomy=st.sampled_from(VALUES["extractor"]),
+        model=st.just("m"),
+        model_taxonomy=st.sampled_from(["SPM", "ECM/Noise"]),
+        rms_deg=numbers,
+        half_fov_deg=st.none() | st.sampled_from([20.0, 30.0, 60.0]),
+        latency_us=st.none() | st.sampled_from([1.0, 10.0]),
+    ),
+    max_size=8,
+)
+answers_to_ask = {
+    **{
+        prefix + a: st.lists(st.sampled_from(VALUES[a]), min_size=1, max_size=2, unique=True)
+        for prefix in ("", "exclude_")
+        for a in VALUES
+        if not a.endswith("_deg")
+    },
+    "max_error_deg": st.sampled_from([0.004, 0.01, 0.5, 3.0]),
+    "min_fov_deg": st.sampled_from([50.0, 120.0, 200.0]),
+    "max_latency_us": st.sampled_from([0.5, 5.0, 50.0]),
+}
+asked = st.lists(st.sampled_from(list(answers_to_ask)), max_size=5, unique=True).flatmap(
+    lambda names: st.fixed_dictionaries({name: answers_to_ask[name] for name in names})
+)
+
+
+def kinds(values: Iterable[str]) -> set[str]:
+    return {k for v in values for k in ((v, "ECM/Noise") if v == "ECM" else (v,))}
+
+
+def keeps(study: Study, row: Measured | None, limit: str, bound: float) -> bool:
+    number = {
+        "max_error_deg": study.number("accuracy_deg"),
+        "min_fov_deg": study.number("fov_deg"),
+        "max_latency_us": None,
+    }[limit]
+    if row is not None:
+        full = None if row.half_fov_deg is None else 2 * row.half_fov_deg
+        measured = {
+            "max_error_deg": row.rms_deg,
+            "min_fov_deg": full,
+            "max_latency_us": row.latency_us,
+        }[limit]
+        number = number if measured is None else measured
+    if number is None:
+        return False
+    return number >= bound if limit == "min_fov_deg" else number <= bound
+
+
+def brute_force(
+    facts: Facts, ask: Mapping[str, object], table: list[Measured]
+) -> dict[tuple[str, ...], set[str]]:
+    """Path -> studies, by asking every study, combination and row in turn."""
+    found: dict[tuple[str, ...], set[str]] = {}
+    paths = {
+        path: None
+        for study in facts.studies.values()
+        for path in itertools.product(*(study.of(level) for level in LEVELS))
+    }
+    for path in paths:
+        value_of = dict(zip(LEVELS, path, strict=True))
+        on_route = sorted(
+            (
+                row
+                for row in table
+                if row.rms_deg is not None
+                and (row.detector, row.mask) == path[1:3]
+                and (row.model_taxonomy, row.extractor_taxonomy) == path[3:]
+            ),
+            key=lambda row: (row.rms_deg, row.dataset),
+        )
+        survivors: list[set[str]] = []
+        for row in on_route or [None]:
+            keys = set()
+            for key, study in facts.studies.items():
+                met = all(value_of[level] in study.of(level) for level in LEVELS)
+                for name, wanted in ask.items():
+                    if isinstance(wanted, list):
+                        base = name.removeprefix("exclude_")
+                        has = {value_of[base]} if base in LEVELS else set(study.of(base))
+                        met &= bool(has & kinds(wanted)) != name.startswith("exclude_")
+                    elif isinstance(wanted, float):
+                        met &= keeps(study, row, name, wanted)
+                if met:
+                    keys.add(key)
+            if keys:
+                survivors.append(keys)
+        if survivors:
+            # Rows differ in which limits they leave to the studies; any that is met will do.
+            found[path] = set().union(*survivors)
+    return found
+
+
+def path_of(path: object) -> tuple[str, ...]:
+    return tuple(getattr(path, level) for level in LEVELS)
+
+
+@settings(deadline=None, derandomize=True, max_examples=200)
+@given(table=rows, ask=asked, measured=measured_rows)
+def test_paths_and_their_studies_are_those_brute_force_finds(
+    facts_of: Callable[[Rows], Facts],
+    table: Rows,
+    ask: dict[str, object],
+    measured: list[Measured],
+) -> None:
+    facts = facts_of(table)
+    answer = recommend(ask, measured, facts=facts)
+    expected = brute_force(facts, ask, measured)
+    assert {path_of(p) for p in answer.paths} == set(expected)
+    for path in answer.paths:
+        assert set(path.studies) <= expected[path_of(path)]
+        assert path.studies
+        if path.measured is None:
+            assert set(path.studies) == expected[path_of(path)]
+        assert len(path.studies) == path.literature.studies
+    assert answer.count == len(answer.paths)
+    assert (answer.blocked is None) == bool(expected)
+
+
+@settings(deadline=None, derandomize=True, max_examples=150)
+@given(table=rows, ask=asked, measured=measured_rows)
+def test_relaxations_give_the_paths_they_promise_and_nothing_smaller_does(
+    facts_of: Callable[[Rows], Facts],
+    table: Rows,
+    ask: dict[str, object],
+    measured: list[Measured],
+) -> None:
+    facts = facts_of(table)
+    answer = recommend(ask, measured, facts=facts)
+    if answer.blocked is None:
+        return
+    blocked = answer.blocked
+    for relaxation in blocked.relaxations:
+        relaxed = recommend(relaxation.apply(answer.requirements), measured, facts=facts)
+        assert relaxed.count == relaxation.paths > 0
+    first = blocked.relaxations[0]
+    assert tuple(first.drop) == blocked.constraints
+    for size in range(1, len(blocked.constraints) + 1):
+        working = {
+            names
+            for names in itertools.combinations(answer.requirements.names, size)
+            if recommend(answer.requirements.without(*names), measured, facts=facts).count
+        }
+        if size < len(blocked.constraints):
+            assert not working
+        else:
+            offered = {tuple(r.drop) for r in blocked.relaxations if r.drop}
+            assert offered <= working
+            assert len(offered) == min(len(working), 10)
+
+
+@settings(deadline=None, derandomize=True, max_examples=100)
+@given(table=rows, measured=measured_rows, bound=st.sampled_from([0.004, 0.009]))
+def test_the_changed_limit_is_the_strictest_that_gives_a_path(
+    facts_of: Callable[[Rows], Facts], table: Rows, measured: list[Measured], bound: float
+) -> None:
+    facts = facts_of(table)
+    answer = recommend({"max_error_deg": bound}, measured, facts=facts)
+    changes = [r for r in answer.blocked.relaxations if r.change] if answer.blocked else []
+    for relaxation in changes:
+        limit = relaxation.change["max_error_deg"]
+        assert isinstance(limit, float)
+        just_below = {"max_error_deg": math.nextafter(limit, 0)}
+        assert recommend(just_below, measured, facts=facts).count == 0
+
+
+@settings(deadline=None, derandomize=True, max_examples=150)
+@given(table=rows, ask=asked, measured=measured_rows)
+def test_the_pareto_set_is_what_comparing_all_pairs_leaves(
+    facts_of: Callable[[Rows], Facts],
+    table: Rows,
+    ask: dict[str, object],
+    measured: list[Measured],
+) -> None:
+    answer = recommend(ask, measured, facts=facts_of(table))
+    limits = [n for n in ("max_error_deg", "min_fov_deg", "max_latency_us") if n in ask]
+    points = []
+    for path in answer.paths:
+        counts = path.literature
+        merit = [float(counts.studies * counts.with_model * counts.architecture)]
+        for limit in limits or ["max_error_deg"]:
+            row = path.measured
+            number = (
+                row
+                and {
+                    "max_error_deg": row.rms_deg,
+                    "min_fov_deg": row.half_fov_deg,
+                    "max_latency_us": row.latency_us,
+                }[limit]
+            )
+            sign = 1 if limit == "min_fov_deg" else -1
+            merit.append(-math.inf if number is None else sign * number)
+        points.append(merit)
+    for path, merit in zip(answer.paths, points, strict=True):
+        beaten = any(
+            other != merit and all(o >= m for o, m in zip(other, merit, strict=True))
+            for other in points
+        )
+        assert path.pareto == (not beaten)
+
+
+@settings(deadline=None, derandomize=True, max_examples=100)
+@given(table=rows, ask=asked, measured=measured_rows)
+def test_rank_goes_by_support_then_measured_error(
+    facts_of: Callable[[Rows], Facts],
+    table: Rows,
+    ask: dict[str, object],
+    measured: list[Measured],
+) -> None:
+    facts = facts_of(table)
+    answer = recommend(ask, measured, facts=facts)
+    keys = [
+        (
+            -round(path.literature.support, 9),
+            math.inf if path.measured is None else path.measured.rms_deg,
+        )
+        for path in answer.paths
+    ]
+    assert keys == sorted(keys)
+    assert [path.rank for path in answer.paths] == list(range(1, answer.count + 1))
+    again = recommend(ask, Measurements(reversed(measured)), facts=facts, limit=2)
+    assert again.paths == answer.paths[:2]
+    assert (again.count, again.nodes, again.links) == (answer.count, answer.nodes, answer.links)
+
+
+def test_support_is_the_geometric_mean_of_distinct_studies_at_three_depths(survey: Facts) -> None:
+    answer = recommend({"task": "Accuracy"}, facts=survey)
+    for path in answer.paths:
+        depths = [
+            sum(
+                all(getattr(path, level) in s.of(level) for level in LEVELS[:end])
+                for s in survey.studies.values()
+            )
+            for end in (5, 4, 3)
+        ]
+        literature = path.literature
+        assert depths == [literature.studies, literature.with_model, literature.architecture]
+        assert literature.support == pytest.approx(statistics.geometric_mean(depths))
+
+
+def test_a_lone_path_of_a_well_backed_architecture_ranks_above_an_isolated_one(
+    facts_of: Callable[[Rows], Facts],
+) -> None:
+    backed = {"task": ["Cost"], "detector": ["PD"], "mask": ["Slit"], "model": ["LUT"]}
+    isolated = {"task": ["Cost"], "detector": ["CCD"], "mask": ["Lens"], "model": ["LUT"]}
+    facts = facts_of(
+        [
+            {**isolated, "extractor": ["BCM"]},
+            {**backed, "extractor": ["Direct"]},
+            {**backed, "extractor": ["Voltage balance"]},
+        ]
+    )
+    assert [path.detector for path in recommend({}, facts=facts).paths] == ["PD", "PD", "CCD"]
+
+
+def test_for_accuracy_cmos_with_multi_aperture_and_encoded_masks_is_among_the_first_ten(
+    survey: Facts,
+) -> None:
+    # What the survey's cross-analysis recommends for accuracy; ten is a page of the answer.
+    answer = recommend({"task": ["Accuracy"]}, limit=10, facts=survey)
+    leading = {(path.detector, path.mask) for path in answer.paths}
+    assert {("CMOS", "Multi-Ap."), ("CMOS", "Encoded")} <= leading
+    assert answer.count > 50
+
+
+def test_nodes_and_links_are_the_cross_analysis_narrowed_to_the_answer(survey: Facts) -> None:
+    ask = {"task": ["Accuracy"], "detector": ["CMOS"]}
+    answer = recommend(ask, facts=survey)
+    whole = chart("cross-analysis", ask, facts=survey)
+    wide = {(link.source, link.target): set(link.studies) for link in whole.links}
+    narrow = {(link.source, link.target): set(link.studies) for link in answer.links}
+    complete = {s.key for s in survey.studies.values() if all(s.of(level) for level in LEVELS)}
+    assert narrow == {k: v & complete for k, v in wide.items() if v & complete}
+    assert {n.id for n in answer.nodes} == {end for link in narrow for end in link}
+    assert {left.level: len(left.studies) for left in answer.left_out} == {
+        level: sum(not s.of(level) for s in survey.studies.values())
+        for level in ("task", "detector", "mask")
+    }
+
+
+def score(**changed: object) -> Measured:
+    row: dict[str, object] = {
+        "dataset": "d",
+        "condition": "nominal",
+        "detector": "CMOS",
+        "mask": "Slit",
+        "extractor": "bctm",
+        "extractor_taxonomy": "BCTM",
+        "model": "spm",
+        "model_taxonomy": "SPM",
+        "rms_deg": 0.1,
+        "half_fov_deg": 60.0,
+    }
+    return Measured(**{**row, **changed})  # type: ignore[arg-type]
+
+
+def one_study(facts_of: Callable[[Rows], Facts], **numbers: str) -> Facts:
+    path = {
+        "task": ["Cost"],
+        "detector": ["CMOS"],
+        "mask": ["Slit"],
+        "model": ["SPM"],
+        "extractor": ["BCTM"],
+    }
+    return facts_of([{**path, **{a: [n] for a, n in numbers.items()}}])
+
+
+def test_a_measurement_outranks_what_the_study_states(facts_of: Callable[[Rows], Facts]) -> None:
+    facts = one_study(facts_of, accuracy_deg="0.01")
+    ask = {"max_error_deg": 0.05}
+    assert recommend(ask, facts=facts).paths[0].basis == {"max_error_deg": "stated"}
+    assert recommend(ask, [score()], facts=facts).count == 0
+    (path,) = recommend(ask, [score(rms_deg=0.04)], facts=facts).paths
+    assert path.basis == {"max_error_deg": "measured"}
+    assert path.measured == score(rms_deg=0.04)
+
+
+def test_a_quantity_not_measured_is_judged_on_what_is_stated(
+    facts_of: Callable[[Rows], Facts],
+) -> None:
+    facts = one_study(facts_of, fov_deg="100")
+    ask = {"max_error_deg": 0.2, "min_fov_deg": 90}
+    (path,) = recommend(ask, [score(half_fov_deg=None)], facts=facts).paths
+    assert path.basis == {"max_error_deg": "measured", "min_fov_deg": "stated"}
+
+
+def test_min_fov_is_the_full_field_of_view(facts_of: Callable[[Rows], Facts]) -> None:
+    facts = one_study(facts_of)
+    assert recommend({"min_fov_deg": 120}, [score()], facts=facts).count == 1
+    assert recommend({"min_fov_deg": 120.1}, [score()], facts=facts).count == 0
+
+
+def test_the_most_accurate_row_that_meets_all_limits_is_shown(
+    facts_of: Callable[[Rows], Facts],
+) -> None:
+    rows = [score(dataset="narrow", rms_deg=0.01, half_fov_deg=10.0), score(dataset="wide")]
+    facts = one_study(facts_of)
+    assert recommend({}, rows, facts=facts).paths[0].measured == rows[0]
+    assert recommend({"min_fov_deg": 90}, rows, facts=facts).paths[0].measured == rows[1]
+
+
+def test_failed_runs_and_numbers_that_are_none_do_not_count(
+    facts_of: Callable[[Rows], Facts],
+) -> None:
+    facts = one_study(facts_of)
+    failed = [score(rms_deg=None), score(rms_deg=math.nan)]
+    assert recommend({}, failed, facts=facts).paths[0].measured is None
+    assert score(over_bound=math.inf).over_bound is None
+
+
+def test_a_limit_nothing_tells_of_says_so(survey: Facts) -> None:
+    answer = recommend({"task": "Accuracy", "max_latency_us": 5}, facts=survey)
+    assert answer.blocked is not None
+    assert answer.blocked.constraint == "max_latency_us"
+    assert "Nothing measured or stated tells of max_latency_us" in answer.blocked.detail
+
+
+def test_an_impossible_question_names_the_constraint_and_ways_out(survey: Facts) -> None:
+    ask = {"task": ["Accuracy"], "detector": ["Event"], "mask": ["V-Slit"]}
+    answer = recommend(ask, facts=survey).to_dict()
+    assert answer["paths"] == answer["nodes"] == answer["links"] == []
+    blocked = answer["blocked"]
+    assert isinstance(blocked, dict)
+    assert blocked["constraint"] == "mask"
+    assert {"constraint": "mask", "drop": {"mask": ["V-Slit"]}, "paths": 1} in blocked[
+        "relaxations"
+    ]
+    assert {"constraint": "mask", "change": {"mask": ["L-Slit"]}, "paths": 1} in blocked[
+        "relaxations"
+    ]
+
+
+def test_no_studies_is_no_one_constraints_fault(facts_of: Callable[[Rows], Facts]) -> None:
+    answer = recommend({"task": "Cost"}, facts=facts_of([]))
+    assert answer.blocked is not None
+    assert answer.blocked.constraints == ()
+    assert answer.blocked.relaxations == ()
+
+
+def test_requirements_are_given_back_as_they_can_be_given_again(survey: Facts) -> None:
+    ask = {"task": "Cost", "exclude_mask": ["Lens", "Slit"], "max_error_deg": 2, "model": []}
+    answer = recommend(ask, facts=survey)
+    echo = answer.to_dict()["requirements"]
+    assert echo == {"task": ["Cost"], "exclude_mask": ["Lens", "Slit"], "max_error_deg": 2.0}
+    assert isinstance(echo, dict)
+    assert recommend(echo, facts=survey).paths == answer.paths
+
+
+@pytest.mark.parametrize(
+    ("ask", "message"),
+    [
+        ({"tsk": "Accuracy"}, "did you mean 'task'"),
+        ({"exclude_detektor": "PD"}, "did you mean 'exclude_detector'"),
+        ({"mask": ["Encodd"]}, "mask: .*did you mean 'Encoded'"),
+        ({"exclude_mask": ["Encodd"]}, "exclude_mask: .*did you mean 'Encoded'"),
+        ({"mask": 3}, "a value of the taxonomy"),
+        ({"mask": [3]}, "a value of the taxonomy"),
+        ({"max_error_deg": 0}, "a positive number of degrees; got 0"),
+        ({"max_error_deg": math.nan}, "a positive number of degrees; got nan"),
+        ({"max_error_deg": "0.1"}, "a positive number of degrees; got '0.1'"),
+        ({"max_latency_us": True}, "a positive number of microseconds; got True"),
+        ({"min_fov_deg": 361}, "at most 360; got 361"),
+    ],
+)
+def test_wrong_requirements_name_what_was_expected(
+    survey: Facts, ask: dict[str, object], message: str
+) -> None:
+    with pytest.raises(InvalidValueError, match=message):
+        recommend(ask, facts=survey)
+
+
+def test_requirements_built_by_hand_are_checked_too(survey: Facts) -> None:
+    with pytest.raises(InvalidValueError, match="did you mean 'CMOS'"):
+        recommend(Requirements(include={"detector": ("CMOZ",)}), facts=survey)
+    with pytest.raises(InvalidValueError, match="at least 1"):
+        recommend({}, limit=0, facts=survey)
+
+
+def test_the_worst_question_is_explained_in_the_time_of_a_few_hundred_answers(
+    survey: Facts,
+) -> None:
+    # Every parameter asked, nothing met: looking at all subsets of 17 would take 131072 answers.
+    taxonomy = survey.taxonomy
+    ask: dict[str, object] = {
+        name: list(taxonomy.values(name.removeprefix("exclude_")))
+        for name in PARAMETERS
+        if not name.startswith(("max_", "min_"))
+    }
+    ask |= {"max_error_deg": 1e-9, "min_fov_deg": 360.0, "max_latency_us": 1e-9}
+
+    def seconds(question: Mapping[str, object]) -> tuple[float, Recommendation]:
+        start = time.perf_counter()
+        answer = recommend(question, facts=survey)
+        return time.perf_counter() - start, answer
+
+    plain = min(seconds({})[0] for _ in range(5))
+    blocked, answer = min((seconds(ask) for _ in range(3)), key=lambda timed: timed[0])
+    assert answer.blocked is not None
+    assert blocked < 300 * plain
