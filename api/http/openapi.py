@@ -122,6 +122,10 @@ def _example_refusal(status: int, endpoint: Endpoint) -> dict[str, Any] | None:
         elif status == 404:
             part = endpoint.parts[0]
             part.check(endpoint.example[part.name] + "x")
+        elif status == 422 and endpoint.method == "POST":
+            endpoint.parameters.from_body({"limit": 0})
+        elif status == 422:
+            endpoint.parameters.from_query(f"{endpoint.parameters.declared[0].name}=0".encode())
     except Problem as problem:
         example: dict[str, Any] = json.loads(to_json(problem.document(path)))
         return example

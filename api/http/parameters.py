@@ -16,7 +16,8 @@ from api.http.nearest import nearest
 from api.http.problems import Problem, Violation
 from api.http.values import InvalidValueError, Kind
 
-MOST_FIELDS = 200  # of one query
+MOST_FIELDS = 500  # of one query
+MOST_VALUES = 100  # of one parameter
 
 
 @dataclass(frozen=True)
@@ -47,7 +48,7 @@ class Parameter:
         """Return the JSON Schema of the parameter."""
         schema = self.kind.schema()
         if self.repeatable:
-            return {"type": "array", "items": schema, "maxItems": MOST_FIELDS // 2}
+            return {"type": "array", "items": schema, "maxItems": MOST_VALUES}
         if self.default is not None:
             schema["default"] = self.default
         return schema
@@ -103,6 +104,9 @@ class Parameters:
             if len(texts) > 1 and not parameter.repeatable:
                 violations.append(Violation(name, ", ".join(texts), "one value, given once"))
                 continue
+            if len(texts) > MOST_VALUES:
+                violations.append(_too_many(name, len(texts)))
+                continue
             values = _values(name, parameter.kind, parameter.kind.from_text, texts, violations)
             if values:
                 arguments[name] = _settled(parameter, values)
@@ -130,9 +134,8 @@ class Parameters:
                 expected = f"a list, each item {parameter.kind.expected()}"
                 violations.append(Violation(name, _shown(given), expected))
                 continue
-            if parameter.repeatable and len(given) > MOST_FIELDS // 2:
-                expected = f"a list of at most {MOST_FIELDS // 2} items"
-                violations.append(Violation(name, f"{len(given)} items", expected))
+            if parameter.repeatable and len(given) > MOST_VALUES:
+                violations.append(_too_many(name, len(given)))
                 continue
             items = given if parameter.repeatable else [given]
             values = _values(name, parameter.kind, parameter.kind.from_json, items, violations)
@@ -208,6 +211,10 @@ def _values(
         except InvalidValueError as error:
             violations.append(Violation(name, _shown(item), kind.expected(), error.nearest))
     return values
+
+
+def _too_many(name: str, number: int) -> Violation:
+    return Violation(name, f"{number} values", f"at most {MOST_VALUES} values")
 
 
 def _settled(parameter: Parameter, values: list[Any]) -> Any:

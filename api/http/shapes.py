@@ -166,7 +166,7 @@ class Flows(Shape):
     left_out: list[LeftOut]
 
 
-class Measured(OpenShape):
+class Measured(Shape):
     """The best measured pipeline of a path, in the condition asked for."""
 
     dataset: str
@@ -180,11 +180,13 @@ class Measured(OpenShape):
     latency_us: float | None
 
 
-class Literature(OpenShape):
-    """What the literature says for a path."""
+class Literature(Shape):
+    """How the literature backs a path: numbers of distinct studies that meet the requirements."""
 
-    studies: int
-    support: float
+    studies: int = Field(description="Of the whole path.")
+    with_model: int = Field(description="Of task, detector, mask and model.")
+    architecture: int = Field(description="Of task, detector and mask.")
+    support: float = Field(description="Geometric mean of the three.")
 
 
 class Path(Shape):
@@ -199,6 +201,9 @@ class Path(Shape):
     studies: list[str]
     literature: Literature
     measured: Measured | None
+    basis: dict[str, Literal["measured", "stated"]] = Field(
+        description="On what each numeric requirement was judged."
+    )
     pareto: bool = Field(description="Whether no path is better in literature and measurement.")
 
 
@@ -225,6 +230,7 @@ class Recommendations(Shape):
     paths: list[Path]
     nodes: list[Node]
     links: list[Link]
+    left_out: list[LeftOut] = Field(description="Studies on no path for want of a value.")
     blocked: Blocked | None
 
 
@@ -271,14 +277,35 @@ class Datasets(Listing):
 
 
 class Score(OpenShape):
-    """What a pipeline achieves on a data set in a condition."""
+    """What a pipeline achieves on a data set in a condition. Numbers are null where undefined."""
 
-    key: str
+    key: str = Field(description="Digest of all that the numbers depend on.")
     dataset: str
+    dataset_version: int
     condition: str
+    detector: str
+    mask: str
+    half_fov_deg: float | None
     extractor: str
+    extractor_taxonomy: str
     model: str
-    status: str
+    model_taxonomy: str
+    status: Literal["ok", "failed"]
+    reason: str = Field(description="Why it failed; empty where it did not.")
+    n_calibration: int | None
+    n_test: int | None
+    found_fraction: float | None
+    rms_deg: float | None
+    median_deg: float | None
+    p95_deg: float | None
+    max_deg: float | None
+    bias_alpha_deg: float | None
+    bias_beta_deg: float | None
+    rms_alpha_deg: float | None
+    rms_beta_deg: float | None
+    bound_deg: float | None = Field(description="Cramer-Rao bound, rms over the found samples.")
+    over_bound: float | None = Field(description="RMS error over the bound.")
+    data_hash: str | None
 
 
 class Scores(Listing):
@@ -287,21 +314,35 @@ class Scores(Listing):
     items: list[Score]
 
 
+class LeaderboardRow(Score):
+    """A score with its place."""
+
+    rank: int | None = Field(description="Place by RMS error in the condition; null if failed.")
+    time_ratio: float | None = Field(description="Time over that of a reference.")
+
+
+class LeaderboardDataset(OpenShape):
+    """The leaderboard of a data set."""
+
+    name: str
+    version: int
+    detector: str
+    mask: str
+    conditions: list[str]
+    rows: list[LeaderboardRow]
+
+
 class Leaderboard(OpenShape):
-    """The published leaderboard."""
+    """The published leaderboard; no schema and no data sets where none is published."""
 
-    datasets: list[dict[str, Any]]
+    model_config = ConfigDict(extra="allow", serialize_by_alias=True)
 
-
-class LeaderboardRow(OpenShape):
-    """A row of a data set's leaderboard."""
-
-    extractor: str
-    model: str
+    schema_version: int | str | None = Field(alias="schema")
+    datasets: list[LeaderboardDataset]
 
 
 class LeaderboardRows(Listing):
-    """A page of a data set's leaderboard, best first."""
+    """A page of a data set's leaderboard, best first within a condition."""
 
     items: list[LeaderboardRow]
 

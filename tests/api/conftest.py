@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import csv
 import io
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import httpx
@@ -66,3 +66,17 @@ def atlas() -> Iterator[Client]:
     client = Client(create_app())
     yield client
     client.close()
+
+
+@pytest.fixture(scope="session")
+def client_of() -> Iterator[Callable[[FastAPI], Client]]:
+    """Makes clients of other applications."""
+    made: list[Client] = []
+
+    def make(app: FastAPI) -> Client:
+        made.append(Client(app))
+        return made[-1]
+
+    yield make
+    for client in made:
+        client.close()

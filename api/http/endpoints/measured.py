@@ -15,8 +15,7 @@ from api.http.values import Choice
 
 DATASET_COLUMNS = ("name", "version", "detector", "mask", "observation", "conditions")
 SCORE_COLUMNS = ("dataset", "condition", "extractor", "model", "status", "rms_deg", "bound_deg")
-BOARD_COLUMNS = ("name", "condition")
-ROW_COLUMNS = ("condition", "extractor", "model", "rms_deg", "bound_deg", "over_bound")
+RANK_COLUMNS = ("rank", "dataset", "condition", "extractor", "model", "rms_deg", "bound_deg")
 
 
 def endpoints(knowledge: Knowledge) -> list[Endpoint]:
@@ -66,12 +65,12 @@ def endpoints(knowledge: Knowledge) -> list[Endpoint]:
 
     def build_leaderboard(_parts: Mapping[str, str], _arguments: Arguments) -> Answer:
         board = measurements.leaderboard
-        return Answer(board, BOARD_COLUMNS, measurements.board_rows)
+        return Answer(board, RANK_COLUMNS, measurements.board_rows)
 
     def build_board(parts: Mapping[str, str], arguments: Arguments) -> Answer:
         name = parts["dataset"]
         rows = [row for row in measurements.board_rows(name) if _wanted(row, arguments)]
-        return listing(rows, ROW_COLUMNS, f"/v1/leaderboard/{name}", of_board, arguments)
+        return listing(rows, RANK_COLUMNS, f"/v1/leaderboard/{name}", of_board, arguments)
 
     return [
         Endpoint(

@@ -19,7 +19,7 @@ from registry.taxonomy import ATTRIBUTES
 
 PATH = "/v1/recommendations"
 COLUMNS = ("rank", "task", "detector", "mask", "model", "extractor", "studies", "pareto")
-DEFAULT_PATHS = 50
+DEFAULT_PATHS = 20
 NOMINAL = "nominal"
 
 # What no requirement goes beyond: directions, a full turn, and 11 days.

@@ -1,0 +1,152 @@
+"""The OpenAPI document says what the service does: examples are live, answers fit their schemas."""
+
+import csv
+import io
+import json
+
+import jsonschema
+import pytest
+
+PROBLEM = "application/problem+json"
+
+
+def operations(document):
+    for path, item in document["paths"].items():
+        for method, operation in item.items():
+            yield path, method, operation
+
+
+def validator(document, schema):
+    whole = {**schema, "components": document["components"]}
+    return jsonschema.Draft202012Validator(whole)
+
+
+@pytest.fixture(scope="module")
+def document(atlas):
+    return atlas.get("/openapi.json").json()
+
+
+def test_every_endpoint_of_the_contract_is_documented(document):
+    assert {(path, method) for path, method, _ in operations(document)} == {
+        ("/v1/taxonomy", "get"),
+        ("/v1/studies", "get"),
+        ("/v1/studies/{key}", "get"),
+        ("/v1/flows/{chart}", "get"),
+        ("/v1/recommendations", "get"),
+        ("/v1/recommendations", "post"),
+        ("/v1/algorithms", "get"),
+        ("/v1/datasets", "get"),
+        ("/v1/leaderboard", "get"),
+        ("/v1/leaderboard/{dataset}", "get"),
+        ("/v1/results", "get"),
+        ("/healthz", "get"),
+    }
+
+
+def test_examples_are_what_is_answered(atlas, document):
+    """The example's question is asked over HTTP; its answer is the example, in JSON and CSV."""
+    from api.http.endpoints import all_endpoints
+    from api.http.knowledge import Knowledge
+
+    checked = 0
+    for endpoint in all_endpoints(Knowledge()):
+        operation = document["paths"][endpoint.path][endpoint.method.lower()]
+        content = operation["responses"]["200"]["content"]
+        path = endpoint.path.format(**endpoint.example)
+        for accept in ("application/json", "text/csv"):
+            if endpoint.method == "POST":
+                body = operation["requestBody"]["content"]["application/json"]["example"]
+                answer = atlas.post(path, json=body, headers={"Accept": accept})
+            else:
+                answer = atlas.get(f"{path}?{endpoint.example_arguments}".rstrip("?"), accept)
+            assert answer.status_code == 200
+            example = content[accept]["example"]
+            if accept == "text/csv":
+                assert answer.text == example
+                list(csv.reader(io.StringIO(example), strict=True))
+            else:
+                assert answer.json() == example
+                validator(document, content[accept]["schema"]).validate(example)
+            checked += 1
+    assert checked == 22
+
+
+def test_examples_of_refusals_are_what_is_refused(atlas, document):
+    problem = validator(document, {"$ref": "#/components/schemas/ProblemDocument"})
+    checked = 0
+    for path, method, operation in operations(document):
+        for status, response in operation["responses"].items():
+            if not status.startswith("4"):
+                continue
+            content = response["content"][PROBLEM]
+            assert content["schema"] == {"$ref": "#/components/schemas/ProblemDocument"}
+            example = content.get("example")
+            if example is None:
+                continue
+            problem.validate(example)
+            assert example["status"] == int(status)
+            checked += 1
+            if method == "get" and status == "400":
+                wrong = example["errors"][0]["parameter"]
+                live = atlas.get(f"{example['instance']}?{wrong}=1").json()
+                assert live == example, path
+    assert checked == 22
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        "/v1/taxonomy",
+        "/v1/studies",
+        "/v1/studies/Liebe2001",
+        "/v1/flows/model-sunburst?counting=fractional",
+        "/v1/flows/cross-analysis?grouped=true",
+        "/v1/recommendations",
+        "/v1/recommendations?max_error_deg=0.000001",
+        "/v1/recommendations?task=Accuracy&exclude_task=Accuracy",
+        "/v1/algorithms",
+        "/v1/datasets",
+        "/v1/leaderboard",
+        "/v1/leaderboard/qpd-single-aperture",
+        "/v1/results",
+        "/healthz",
+    ],
+)
+def test_whole_answers_fit_their_schemas(atlas, document, path):
+    plain = path.partition("?")[0]
+    template = {
+        "/v1/studies/Liebe2001": "/v1/studies/{key}",
+        "/v1/leaderboard/qpd-single-aperture": "/v1/leaderboard/{dataset}",
+        "/v1/flows/model-sunburst": "/v1/flows/{chart}",
+        "/v1/flows/cross-analysis": "/v1/flows/{chart}",
+    }.get(plain, plain)
+    content = document["paths"][template]["get"]["responses"]["200"]["content"]
+    answer = atlas.get(path)
+    assert answer.status_code == 200
+    validator(document, content["application/json"]["schema"]).validate(answer.json())
+
+
+def test_documented_words_are_the_vocabulary(atlas, document):
+    taxonomy = atlas.get("/v1/taxonomy").json()["attributes"]
+    parameters = {
+        p["name"]: p["schema"]
+        for p in document["paths"]["/v1/recommendations"]["get"]["parameters"]
+    }
+    body = document["paths"]["/v1/recommendations"]["post"]["requestBody"]["content"]
+    properties = body["application/json"]["schema"]["properties"]
+    assert set(properties) == set(parameters)
+    for attribute, entries in taxonomy.items():
+        words = [entry["value"] for entry in entries]
+        for name in (attribute, f"exclude_{attribute}"):
+            assert parameters[name]["items"]["enum"] == words
+            assert properties[name]["items"]["enum"] == words
+
+
+def test_the_document_is_valid_openapi_without_foreign_addresses(document):
+    assert document["openapi"].startswith("3.1")
+    identifiers = [operation["operationId"] for _, _, operation in operations(document)]
+    assert len(set(identifiers)) == len(identifiers)
+    text = json.dumps({k: v for k, v in document.items() if k != "paths"})
+    assert "http://" not in text
+    for path, method, operation in operations(document):
+        assert operation["summary"], (path, method)

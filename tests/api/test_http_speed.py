@@ -1,0 +1,36 @@
+"""A recommendation costs at most five empty FastAPI endpoints, asked side by side."""
+
+import itertools
+import json
+
+from api import speed
+
+
+def test_a_recommendation_is_within_five_empty_endpoints(atlas):
+    results = speed.measure(rounds=7, requests=25, app=atlas.app)
+    assert [result.queries for result in results] == ["repeated", "excluding", "limiting"]
+    for result in results:
+        assert result.empty_us > 0
+        # The least of the interleaved rounds: what the machine's other work disturbs least.
+        assert result.least_ratio <= speed.LARGEST_RATIO, result
+
+
+def test_queries_that_are_to_differ_do(atlas):
+    for kind in (speed.excluding(), speed.limiting()):
+        paths = list(itertools.islice(kind, 500))
+        assert len(set(paths)) == 500
+        answers = [atlas.get(path) for path in paths[:3]]
+        assert all(answer.status_code == 200 for answer in answers)
+    broad = atlas.get(next(speed.excluding())).json()
+    assert broad["count"] > 50
+
+
+def test_the_command_prints_ratios_and_its_exit_status_tells(monkeypatch, capsys):
+    kept = speed.Measured("repeated", 100.0, 200.0, 2.0, 1.9)
+    broken = speed.Measured("excluding", 100.0, 510.0, 5.1, 4.0)
+    monkeypatch.setattr(speed, "measure", lambda *_: [kept])
+    assert speed.main(["--format", "json"]) == 0
+    assert json.loads(capsys.readouterr().out)["kept"] is True
+    monkeypatch.setattr(speed, "measure", lambda *_: [kept, broken])
+    assert speed.main([]) == 1
+    assert "5.10" in capsys.readouterr().out
