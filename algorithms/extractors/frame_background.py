@@ -27,9 +27,9 @@ def background_level(frames: NDArray[Any], background: Background) -> Floats:
     if background == "none":
         return np.zeros(len(frames))
     if background == "border":
-        pixels = np.concatenate(
-            [frames[:, 0], frames[:, -1], frames[:, 1:-1, 0], frames[:, 1:-1, -1]], axis=1
-        )
+        border = np.ones(frames.shape[1:], dtype=np.bool_)
+        border[1:-1, 1:-1] = False
+        pixels = frames[:, border]
     else:
         pixels = frames.reshape(len(frames), -1)
     with np.errstate(invalid="ignore"):

@@ -78,8 +78,8 @@ class LeastSquaresGeometry:
     Shapes: features ``(x, y)`` (N, 2), in px or dimensionless, to unit vectors (N, 3).
 
     Failure: a NaN row for a NaN feature row. fit raises ValueError below 3 samples, where the
-    samples do not settle the five parameters (all in one place or on one line), or where it does
-    not converge.
+    samples do not settle the five parameters (all in one place, or alpha swept alone), or where
+    it does not converge.
 
     Cost: 5 transcendental functions and 20 operations a sample; the fit, some ten passes of
     about 80 operations a sample and a QR factorisation (2 N, 5) each.
@@ -226,5 +226,5 @@ def _require_settled(jacobian: Floats, by: str) -> None:
     if not settled:
         raise ValueError(
             f"{by}: the calibration samples do not settle the five parameters; "
-            "they must spread over the field of view in both axes"
+            "they must spread over the field of view"
         )

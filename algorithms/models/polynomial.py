@@ -216,9 +216,12 @@ class SurfacePolynomial:
         require_fitted(self, "coefficients_")
         found = as_features(features, 2, self.name)
         scaled = _within((found - self.middle_) / self.half_range_, self.extrapolation)
-        # einsum, not a matrix product: BLAS rounds a sample differently in batches of another size
         terms = _surface_terms(scaled, self.degree)
-        return sun_from_target(np.einsum("nt,at->na", terms, self.coefficients_), self.target)
+        # Term by term: a matrix product rounds a sample differently in batches of another size.
+        values = np.zeros((len(found), 2))
+        for term in range(terms.shape[1]):
+            values += terms[:, term : term + 1] * self.coefficients_[:, term]
+        return sun_from_target(values, self.target)
 
 
 def _axis_terms(scaled: Floats, degree: int) -> Floats:

@@ -1,0 +1,114 @@
+"""A sensor, and observations and calibrations of every kind an implementation may read."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from algorithms.angles import sun_from_angles
+from algorithms.contract import FeatureKind, Observation, SensorGeometry
+
+Floats = NDArray[np.float64]
+
+FACES = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
+COMMON_SUITE = "test_common_suite.py::test_"
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """Features of known Suns."""
+
+    features: Floats
+    sun: Floats
+
+
+@pytest.fixture(scope="session")
+def geometry() -> SensorGeometry:
+    """A sensor with every field known, so that every implementation can be made for it."""
+    return SensorGeometry(
+        focal_length_mm=2.0,
+        pixel_pitch_mm=0.01,
+        centre_px=(200.0, 150.0),
+        aperture_width_mm=4.0,
+        aperture_shape="square",
+        face_normals=FACES,
+        half_fov_deg=35.0,
+    )
+
+
+@pytest.fixture(scope="session")
+def field() -> Floats:
+    """Suns on a turntable's grid, 35 degrees to each side, then at random in between."""
+    steps = np.linspace(-35.0, 35.0, 15)
+    grid = np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
+    between = np.random.default_rng(5).uniform(-34.0, 34.0, (60, 2))
+    return sun_from_angles(np.vstack([grid, between]))
+
+
+def _spots(count: int = 9, height: int = 24, width: int = 31) -> NDArray[np.uint8]:
+    """Small noisy spots on a background, whole numbers that every dtype holds."""
+    rng = np.random.default_rng(11)
+    y, x = np.mgrid[:height, :width]
+    centres = rng.uniform((8.0, 8.0), (width - 8.0, height - 8.0), (count, 2))
+    frames = np.empty((count, height, width))
+    for frame, (cx, cy) in zip(frames, centres, strict=True):
+        frame[:] = 200 * np.exp(-((x - cx) ** 2 + (y - cy) ** 2) / 9.0)
+    return (frames + rng.integers(0, 12, frames.shape)).astype(np.uint8)
+
+
+@pytest.fixture(scope="session")
+def observations_for() -> Callable[[Any], NDArray[Any]]:
+    """Observations (N, ...) with something to find in every row, for one extractor class."""
+
+    def make(extractor: Any) -> NDArray[Any]:
+        if extractor.observation is Observation.FRAMES:
+            return _spots()
+        if extractor.observation is Observation.CURRENTS:
+            columns = {FeatureKind.BALANCE: 4, FeatureKind.SIGNALS: len(FACES)}[extractor.kind]
+            return np.random.default_rng(12).integers(20, 250, (9, columns)).astype(np.uint8)
+        raise NotImplementedError(f"make sample {extractor.observation} here for {extractor}")
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def calibration_for(
+    geometry: SensorGeometry, field: Floats
+) -> Callable[[FeatureKind], Calibration]:
+    """Noiseless features of the sensor as drawn, of one kind."""
+
+    def make(kind: FeatureKind) -> Calibration:
+        tan_beta, tan_alpha = (field[:, :2] / field[:, 2:]).T
+        if kind is FeatureKind.SPOT:
+            scale = geometry.focal_length_mm / geometry.pixel_pitch_mm
+            x, y = geometry.centre_px
+            return Calibration(
+                np.column_stack([x + scale * tan_beta, y + scale * tan_alpha]), field
+            )
+        if kind is FeatureKind.BALANCE:
+            scale = 2 * geometry.focal_length_mm / geometry.aperture_width_mm
+            return Calibration(scale * np.column_stack([tan_beta, tan_alpha]), field)
+        if kind is FeatureKind.SIGNALS:
+            return Calibration(np.maximum(field @ np.array(geometry.face_normals).T, 0.0), field)
+        raise NotImplementedError(f"make sample {kind} features here")
+
+    return make
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """Say how many checks of the common suite passed, and on how many implementations."""
+    passed = [
+        report.nodeid
+        for report in terminalreporter.stats.get("passed", [])
+        if f"{COMMON_SUITE}extractor[" in report.nodeid or f"{COMMON_SUITE}model[" in report.nodeid
+    ]
+    if passed:
+        names = {nodeid.split("[")[1].rsplit("-check_")[0] for nodeid in passed}
+        terminalreporter.write_line(
+            f"common suite: {len(passed)} checks passed on {len(names)} implementations"
+        )
