@@ -9,9 +9,9 @@ from __future__ import annotations
 import itertools
 import weakref
 from collections.abc import Iterable, Iterator
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
-from registry.flows import LeftOut
+from registry.flows import LeftOut, Link, Node
 from registry.measured import Measured, Measurements, Route
 from registry.requirements import LIMITS, Requirements
 from registry.studies import Facts
@@ -20,20 +20,25 @@ from registry.taxonomy import ATTRIBUTES
 PATH_LEVELS = ("task", "detector", "mask", "model", "extractor")
 STUDY_ATTRIBUTES = tuple(a for a in ATTRIBUTES if a not in PATH_LEVELS)
 
-_SETS_KEPT = 4096
+_MOST_KEPT = 4096
+
+Key = TypeVar("Key")
+Made = TypeVar("Made")
 
 
 class Answer(NamedTuple):
     """One path that meets the requirements, its studies as bits, and on what evidence.
 
     ``architecture``, ``with_model`` and ``studies`` are the studies that took the path as far as
-    its mask, its model, and all along, each less those that do not meet the requirements.
+    its mask, its model, and all along, each less those that do not meet the requirements;
+    ``backing`` is the product of their numbers.
     """
 
     path: int
     architecture: int
     with_model: int
     studies: int
+    backing: int
     measured: Measured | None
     basis: tuple[tuple[str, str], ...]  # (limit, "measured" | "stated")
 
@@ -86,7 +91,9 @@ class PathTable:
         self.left_out = tuple(
             LeftOut(lv, tuple(missing[lv])) for lv in PATH_LEVELS if lv in missing
         )
-        self._names: dict[int, tuple[str, ...]] = {}
+        self._keys_of: dict[int, tuple[str, ...]] = {}
+        self._nodes_of: dict[tuple[int, int], Node] = {}
+        self._links_of: dict[tuple[int, int], Link] = {}
 
     def _lay_out(self, order: list[dict[str, int]]) -> None:
         """Give every node and link of the paths a number, in chart order."""
@@ -120,12 +127,29 @@ class PathTable:
 
     def studies(self, bits: int) -> tuple[str, ...]:
         """Return the keys of a study set."""
-        found = self._names.get(bits)
+        found = self._keys_of.get(bits)
         if found is None:
-            if len(self._names) >= _SETS_KEPT:
-                self._names.clear()
             found = tuple(self.keys[at] for at in positions(bits))
-            self._names[bits] = found
+            _keep(self._keys_of, bits, found)
+        return found
+
+    def node(self, at: int, bits: int) -> Node:
+        """Return node number `at` with the studies it has."""
+        found = self._nodes_of.get((at, bits))
+        if found is None:
+            level, value, name = self.nodes[at]
+            keys = self.studies(bits)
+            found = Node(f"{level}:{value}", level, value, name, len(keys), keys)
+            _keep(self._nodes_of, (at, bits), found)
+        return found
+
+    def link(self, at: int, bits: int) -> Link:
+        """Return link number `at` with the studies it has."""
+        found = self._links_of.get((at, bits))
+        if found is None:
+            keys = self.studies(bits)
+            found = Link(*self.links[at], len(keys), keys)
+            _keep(self._links_of, (at, bits), found)
         return found
 
     def meeting(self, requirements: Requirements, measurements: Measurements) -> list[Answer]:
@@ -158,16 +182,9 @@ class PathTable:
                         kept = 0
                         break
                 if taken & kept:
-                    answers.append(
-                        Answer(
-                            at,
-                            architecture & kept,
-                            with_model & kept,
-                            taken & kept,
-                            row,
-                            tuple(basis),
-                        )
-                    )
+                    sets = (architecture & kept, with_model & kept, taken & kept)
+                    backing = sets[0].bit_count() * sets[1].bit_count() * sets[2].bit_count()
+                    answers.append(Answer(at, *sets, backing, row, tuple(basis)))
                     break
         return answers
 
@@ -225,6 +242,13 @@ def path_table(facts: Facts) -> PathTable:
     if table is None:
         table = _TABLES[facts] = PathTable(facts)
     return table
+
+
+def _keep(kept: dict[Key, Made], key: Key, made: Made) -> None:
+    """Keep what was made for the next question, without ever keeping much."""
+    if len(kept) >= _MOST_KEPT:
+        kept.clear()
+    kept[key] = made
 
 
 def positions(bits: int) -> Iterator[int]:

@@ -183,18 +183,11 @@ def recommend(
     )
 
 
-def _backing(answer: Answer) -> int:
-    """Return the product whose cube root is the support: exact, so equal paths tie."""
-    return (
-        answer.studies.bit_count() * answer.with_model.bit_count() * answer.architecture.bit_count()
-    )
-
-
 def _rank(answer: Answer) -> tuple[int, float, int]:
     error = float("inf")
     if answer.measured is not None and answer.measured.rms_deg is not None:
         error = answer.measured.rms_deg
-    return (-_backing(answer), error, answer.path)
+    return (-answer.backing, error, answer.path)
 
 
 def _pareto(ranked: Sequence[Answer], requirements: Requirements) -> frozenset[int]:
@@ -221,7 +214,7 @@ def _pareto(ranked: Sequence[Answer], requirements: Requirements) -> frozenset[i
 
 def _costs(answer: Answer, quantities: Sequence[str]) -> tuple[float, ...]:
     """Return what is to be small: support negated, then each quantity, infinite if unmeasured."""
-    costs = [float(-_backing(answer))]
+    costs = [float(-answer.backing)]
     for name in quantities:
         number = None if answer.measured is None else measured_number(name, answer.measured)
         if number is None:
@@ -265,21 +258,6 @@ def _narrowed(
         for at in table.links_on[answer.path]:
             link_bits[at] |= studies
     return (
-        tuple(
-            Node(
-                id=f"{level}:{value}",
-                level=level,
-                value=value,
-                name=name,
-                count=bits.bit_count(),
-                studies=table.studies(bits),
-            )
-            for (level, value, name), bits in zip(table.nodes, node_bits, strict=True)
-            if bits
-        ),
-        tuple(
-            Link(source=source, target=target, value=bits.bit_count(), studies=table.studies(bits))
-            for (source, target), bits in zip(table.links, link_bits, strict=True)
-            if bits
-        ),
+        tuple(table.node(at, bits) for at, bits in enumerate(node_bits) if bits),
+        tuple(table.link(at, bits) for at, bits in enumerate(link_bits) if bits),
     )

@@ -1,7 +1,7 @@
 """Flows count what a group-by counts, and invent no link."""
 
 import itertools
-from collections import Counter
+from collections import defaultdict
 from collections.abc import Callable, Mapping, Sequence
 
 import pandas as pd
@@ -106,8 +106,8 @@ def test_fractional_inflow_equals_outflow_and_nothing_is_lost(
 ) -> None:
     facts = facts_of(table)
     found = flows(levels, where, "fractional", facts)
-    inflow: Counter[str] = Counter()
-    outflow: Counter[str] = Counter()
+    inflow: defaultdict[str, float] = defaultdict(float)
+    outflow: defaultdict[str, float] = defaultdict(float)
     for link in found.links:
         outflow[link.source] += link.value
         inflow[link.target] += link.value
