@@ -13,8 +13,9 @@ from typer.testing import CliRunner
 from api.command_line import COMMANDS, app, load
 from api.service import create_app
 
-LONGEST_LIST = 2
+LONGEST_LIST = 1
 LONGEST_TEXT = 160
+DEEPEST = 4
 REFUSED = "/v1/studies?detectr=CMOS"
 
 
@@ -107,12 +108,14 @@ def _exchange(request: str, body: Any, answer: tuple[int, str, str]) -> str:
     return f"```http\n{request}{asked}\n```\n\n{status}, `{media_type}`:\n\n```json\n{shown}\n```"
 
 
-def _shortened(value: Any) -> Any:
-    """Cut long lists, saying how much was left out."""
+def _shortened(value: Any, depth: int = 0) -> Any:
+    """Cut long lists, saying how much was left out, and what lies deep."""
+    if depth >= DEEPEST and len(json.dumps(value)) > LONGEST_TEXT // 2:
+        return "…"
     if isinstance(value, dict):
-        return {name: _shortened(member) for name, member in value.items()}
+        return {name: _shortened(member, depth + 1) for name, member in value.items()}
     if isinstance(value, list):
-        kept = [_shortened(member) for member in value[:LONGEST_LIST]]
+        kept = [_shortened(member, depth + 1) for member in value[:LONGEST_LIST]]
         left = len(value) - len(kept)
         return [*kept, f"… {left} more"] if left else kept
     if isinstance(value, str) and len(value) > LONGEST_TEXT:

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from api.commands.measuring import StoreOption, available_workers, scored
+from api.commands.measuring import AVAILABLE_WORKERS, ManyWorkersOption, StoreOption, scored
 from api.commands.tables import Format, FormatOption, emit
 from benchmark.plan import cells
 
@@ -41,9 +41,7 @@ def benchmark(
         list[str] | None,
         typer.Option(help="Only this implementation of a model; may be repeated."),
     ] = None,
-    workers: Annotated[
-        int, typer.Option(min=1, help="Processes.", show_default="the processors there are")
-    ] = available_workers(),
+    workers: ManyWorkersOption = AVAILABLE_WORKERS,
     store: StoreOption = None,
     form: FormatOption = Format.TABLE,
 ) -> None:

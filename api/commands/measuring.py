@@ -8,7 +8,8 @@ time: $SUNATLAS_STORE, else sunatlas/ in the user's cache directory ($XDG_CACHE_
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
@@ -16,13 +17,30 @@ from typing import Annotated, Any
 import typer
 
 from benchmark.plan import Cell
-from benchmark.runner import RunInterruptedError, Summary, run, stale
-from benchmark.store import Store, cell_of
+from benchmark.runner import RunInterruptedError, run, stale
+from benchmark.store import PUBLISHED, Store, cell_of
 
 Row = dict[str, Any]
 
+
+def _available_workers() -> int:
+    """Return the number of processors this process may use."""
+    affinity = getattr(os, "sched_getaffinity", None)
+    return len(affinity(0)) if affinity else os.cpu_count() or 1
+
+
+AVAILABLE_WORKERS = _available_workers()
+
 WorkersOption = Annotated[
     int, typer.Option(min=1, help="Processes; the numbers do not depend on it.")
+]
+ManyWorkersOption = Annotated[
+    int,
+    typer.Option(
+        min=1,
+        help="Processes; the numbers do not depend on it.",
+        show_default="the processors there are",
+    ),
 ]
 StoreOption = Annotated[
     Path | None,
@@ -73,12 +91,6 @@ def working_directory(given: Path | None = None) -> Path:
     return (Path(cache) if cache else Path.home() / ".cache") / "sunatlas"
 
 
-def available_workers() -> int:
-    """Return the number of processors this process may use."""
-    affinity = getattr(os, "sched_getaffinity", None)
-    return len(affinity(0)) if affinity else os.cpu_count() or 1
-
-
 def scored(cells: Iterable[Cell], workers: int, directory: Path | None) -> Scored:
     """Read what is known of the cells and measure the rest.
 
@@ -90,12 +102,13 @@ def scored(cells: Iterable[Cell], workers: int, directory: Path | None) -> Score
         As `benchmark.runner.run`.
     """
     wanted = sorted(set(cells))
-    shipped, work = Store(), Store(working_directory(directory))
+    shipped, work = Store(PUBLISHED), Store(working_directory(directory))
     elsewhere = stale(wanted, shipped)
     missing = stale(elsewhere, work)
     warnings: tuple[str, ...] = ()
     if missing:
-        warnings = measure(missing, work, workers).warnings
+        with interruptible():
+            warnings = run(missing, work, workers).warnings
     found = {**_rows(shipped, set(wanted) - set(elsewhere)), **_rows(work, set(elsewhere))}
     return Scored(
         rows=[found[cell] for cell in wanted],
@@ -107,12 +120,11 @@ def scored(cells: Iterable[Cell], workers: int, directory: Path | None) -> Score
     )
 
 
-def measure(
-    cells: Iterable[Cell], store: Store, workers: int, *, only_these: bool = False
-) -> Summary:
-    """Run the runner with a progress bar on a terminal; Ctrl-C ends with a line and 130."""
+@contextmanager
+def interruptible() -> Iterator[None]:
+    """Let Ctrl-C end a run with a line that says what is kept, and exit code 130."""
     try:
-        return run(cells, store, workers, only_these=only_these)
+        yield
     except RunInterruptedError as interrupted:
         typer.echo(f"sunatlas: {interrupted}", err=True)
         raise typer.Exit(130) from interrupted
