@@ -69,26 +69,46 @@ def _line_part_py(i: int, lines: Floats, discs: Floats) -> float:
 _line_part = njit(cache=True)(_line_part_py)
 
 
+def _meeting_py(disc: Floats, other: Floats, is_line: bool) -> Interval:
+    """Where the rim of a disc leaves another boundary's inside: angle of its middle, half width.
+
+    Half width 0: the whole rim is inside; pi: none of it is (touching from outside counts so).
+    """
+    x, y, radius = disc
+    if is_line:
+        middle = math.atan2(other[1], other[0])
+        cosine = (other[2] - other[0] * x - other[1] * y) / radius
+    else:
+        dx, dy = other[0] - x, other[1] - y
+        apart2 = dx * dx + dy * dy
+        if apart2 == 0.0:
+            return 0.0, 0.0 if radius <= other[2] else math.pi
+        middle = math.atan2(-dy, -dx)
+        cosine = (other[2] * other[2] - apart2 - radius * radius) / (
+            2.0 * math.sqrt(apart2) * radius
+        )
+    return middle, math.acos(min(max(cosine, -1.0), 1.0))
+
+
+_meeting = njit(cache=True)(_meeting_py)
+
+
 def _cuts_py(i: int, lines: Floats, discs: Floats) -> Floats:
-    """Angles at which the rim of disc `i` meets any other boundary, sorted, ends included."""
-    x, y, radius = discs[i]
+    """Sorted angles at which the rim of disc `i` meets other boundaries, ends included.
+
+    Empty when all of the rim lies outside one of them.
+    """
     cuts = np.empty(2 * (lines.shape[0] + discs.shape[0]) + 2)
     cuts[0], cuts[1] = -math.pi, math.pi
     count = 2
     for j in range(lines.shape[0] + discs.shape[0]):
-        if j < lines.shape[0]:
-            a, b, c = lines[j]
-            centre, reach = math.atan2(b, a), (c - a * x - b * y) / radius
-        else:
-            dx, dy = discs[j - lines.shape[0], 0] - x, discs[j - lines.shape[0], 1] - y
-            other, apart = discs[j - lines.shape[0], 2], math.sqrt(dx * dx + dy * dy)
-            if apart == 0.0:
-                continue
-            centre = math.atan2(dy, dx)
-            reach = (apart * apart + radius * radius - other * other) / (2.0 * apart * radius)
-        if abs(reach) < 1.0:
-            half = math.acos(reach)
-            for k, angle in enumerate((centre - half, centre + half)):
+        is_line = j < lines.shape[0]
+        other = lines[j] if is_line else discs[j - lines.shape[0]]
+        middle, half = _meeting(discs[i], other, is_line)
+        if half == math.pi:
+            return cuts[:0]
+        if half > 0.0:
+            for k, angle in enumerate((middle - half, middle + half)):
                 cuts[count + k] = angle - 2.0 * math.pi * math.floor(angle / (2.0 * math.pi) + 0.5)
             count += 2
     return np.sort(cuts[:count])

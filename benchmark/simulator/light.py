@@ -29,7 +29,7 @@ class SolarDisc:
 
     diameter_deg: float = 0.533
     limb_darkening: float = 0.6
-    rings: tuple[int, ...] = (4, 8, 16, 20)
+    rings: tuple[int, ...] = (8, 12, 16, 20, 24, 28)
 
     def __post_init__(self) -> None:
         if not 0 <= self.diameter_deg < 90:
