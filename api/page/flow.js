@@ -89,7 +89,7 @@ function levelLists(flow, vocabulary) {
       const required = isRequired(node, vocabulary);
       return h("li", {}, h("button", {
         type: "button", class: required ? "level-value required" : "level-value", title: node.name,
-        disabled: !valuesOf(node, vocabulary), "aria-pressed": required,
+        disabled: !valuesOf(node, vocabulary), "aria-pressed": required, "data-node": node.id,
         "aria-label": `${node.name}: ${amount(node.amount)} ${state.counting === "fractional" ? "study shares" : "studies"}, require`,
         onclick: () => toggle(node, vocabulary),
       }, h("span", { class: "bar", css: { "--share": node.amount / most } }),
@@ -127,7 +127,10 @@ export async function showFlow(answer, vocabulary, studies, signal) {
       return;
     }
     if (state.view === "table") {
+      const focused = document.activeElement?.dataset?.node;
       clear(body, levelLists(flow, vocabulary), linkTable(flow));
+      // The lists are new elements; the keyboard stays on the value it was on.
+      [...body.querySelectorAll("[data-node]")].find((b) => b.dataset.node === focused)?.focus();
       return;
     }
     await diagram(body, flow, vocabulary, turn);

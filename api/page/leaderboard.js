@@ -26,7 +26,9 @@ const scaleOf = (rows) => {
   const low = Math.floor(Math.log10(Math.min(...values) * 0.999));
   const high = Math.max(low + 1, Math.ceil(Math.log10(Math.max(...values))));
   const at = (x) => Math.min(1, Math.max(0, (Math.log10(x) - low) / (high - low)));
-  return { at, ticks: Array.from({ length: high - low + 1 }, (_, i) => 10 ** (low + i)) };
+  const ticks = Array.from({ length: high - low + 1 }, (_, i) => 10 ** (low + i));
+  const step = Math.ceil((high - low) / 3); // labels of more decades than three would run together
+  return { at, ticks, labelled: ticks.filter((_, i) => (high - low - i) % step === 0) };
 };
 
 function bar(row, scale) {
@@ -84,11 +86,38 @@ function tableRow(row, scale, i) {
   }, "Score");
   const failed = row.status === "failed";
   const taxonomy = (field) => row[`${field}_taxonomy`] && row[`${field}_taxonomy`].toLowerCase() !== row[field].toLowerCase() && row[`${field}_taxonomy`];
+  const cell = (c) => h("td", { role: "cell", "data-label": c.name, class: c.text ? "word" : "number" },
+    c.text ? h("span", { title: taxonomy(c.field) || null }, row[c.field]) : c.write(row[c.field]));
+  const numbers = COLUMNS.filter((c) => !c.text);
   return [h("tr", { role: "row", class: "score" },
-    COLUMNS.map((c) => h("td", { role: "cell", "data-label": c.name, class: !c.text && "number" },
-      c.text ? h("span", { title: taxonomy(c.field) || null }, row[c.field]) : c.write(row[c.field]))),
-    h("td", { role: "cell" }, failed ? h("span", { class: "failed note" }, `failed: ${row.reason || "no reason stored"}`) : bar(row, scale)),
-    h("td", { role: "cell", class: "number" }, expand)), detail];
+    COLUMNS.filter((c) => c.text).map(cell),
+    failed
+      ? h("td", { role: "cell", class: "wide failed note", colspan: String(numbers.length + 1), "aria-colspan": numbers.length + 1 },
+        `failed: ${row.reason || "no reason stored"}`)
+      : [numbers.map(cell), h("td", { role: "cell", class: "wide" }, bar(row, scale))],
+    h("td", { role: "cell", class: "number last" }, expand)), detail];
+}
+
+/** Leaves of a nested object as [dotted name, text]; lists of plain values are one leaf. */
+function leaves(value, name = "") {
+  if (value === null || value === undefined) return [];
+  if (Array.isArray(value)) {
+    return value.some((v) => typeof v === "object" && v !== null)
+      ? value.flatMap((v, i) => leaves(v, `${name}[${i}]`))
+      : [[name, value.join(", ")]];
+  }
+  if (typeof value !== "object") return [[name, String(value)]];
+  return Object.entries(value).flatMap(([k, v]) => leaves(v, name ? `${name}.${k}` : k));
+}
+
+/** What the numbers depend on: geometry, splits, regime, seeds and the condition's parameters. */
+function cardOf(card, condition) {
+  const { units, geometry, splits, regime, seeds } = card;
+  const facts = [...leaves({ units, geometry, splits, regime, seeds }), ...leaves(card.setups?.[condition]?.parameters, condition)];
+  return h("details", { class: "flow-links" }, h("summary", {}, `Card of ${card.name}: everything its numbers depend on`),
+    h("dl", { class: "facts card-facts" }, facts.filter(([name]) => !name.endsWith(".type")).map(([name, value]) =>
+      h("div", {}, h("dt", {}, name), h("dd", {}, value)))),
+    h("p", { class: "links" }, h("a", { href: "/v1/datasets" }, "All cards (JSON)")));
 }
 
 function draw() {
@@ -98,12 +127,13 @@ function draw() {
   const url = address(`/v1/leaderboard/${encodeURIComponent(dataset)}`, { condition, limit: 500 });
   byId("board-card").replaceChildren(h("div", { class: "dataset-card" },
     card && h("p", {}, card.description),
+    card?.setups?.[condition]?.description && h("p", {}, h("strong", {}, condition), `: ${card.setups[condition].description}`),
     h("p", { class: "bound-line" }, "Cramér–Rao bound: ", h("strong", {}, degrees(bound)), " RMS",
       card && [` · version ${card.version}`, card.follows?.length > 0 && [" · follows ", card.follows.map((k, i) => [i > 0 && ", ", h("a", { href: `/v1/studies/${encodeURIComponent(k)}` }, k)])]]),
     h("div", { class: "links" }, h("a", { href: url }, "JSON"),
       h("button", { type: "button", onclick: () => saveCsv(url, `${dataset}-${condition}.csv`) }, "CSV"),
-      h("a", { href: `/v1/datasets` }, "Data set card"),
-      card?.follows?.[0] && copyable(`sunatlas run ${card.follows[0]} --format json`, "the command that runs the study it follows"))));
+      card?.follows?.[0] && copyable(`sunatlas run ${card.follows[0]} --format json`, "the command that runs the study it follows")),
+    card && cardOf(card, condition)));
   const body = byId("board-body");
   const listed = sorted(rows).slice(0, shown.all ? rows.length : FIRST);
   if (!rows.length) {
@@ -120,7 +150,7 @@ function draw() {
     h("table", { class: "stacks board", role: "table", "aria-labelledby": "leaderboard-title" },
       h("thead", { role: "rowgroup" }, h("tr", { role: "row" }, COLUMNS.map(heading),
         h("th", { scope: "col", role: "columnheader" }, SCALE, scale && h("span", { class: "scale-head", "aria-hidden": true },
-          scale.ticks.map((t) => h("span", { css: { "--at": scale.at(t) } }, `${Number(t.toPrecision(1))}°`)))),
+          scale.labelled.map((t) => h("span", { css: { "--at": scale.at(t) } }, `${number(t, 1)}°`)))),
         h("th", { scope: "col", role: "columnheader" }, h("span", { class: "visually-hidden" }, "Score")))),
       h("tbody", { role: "rowgroup" }, listed.map((r, i) => tableRow(r, scale, i)))),
     listed.length < rows.length

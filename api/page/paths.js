@@ -28,7 +28,8 @@ function measuredCell(m) {
   if (!m) return h("span", { class: "muted" }, "not measured");
   return [
     h("a", { href: scoreAddress(m), title: "The score row" }, `${degrees(m.rms_deg)} RMS`),
-    h("div", { class: "below" }, `${times(m.over_bound)} the bound · ${m.dataset}, ${m.condition}`),
+    h("div", { class: "below" }, `${times(m.over_bound)} the bound`),
+    h("div", { class: "below" }, m.dataset),
   ];
 }
 
@@ -70,12 +71,12 @@ function row(path, studies) {
     onclick: () => {
       const open = detail.hidden;
       if (open && !detail.firstChild) {
-        const key = path.studies[0];
+        const key = path.studies.find((k) => studies.get(k)?.state !== "none");
         detail.append(h("td", { colspan: String(COLUMNS.length), role: "cell" }, h("div", { class: "evidence" },
           h("div", {}, h("h3", {}, `Literature: ${plural(path.studies.length, "study", "studies")}`),
             h("ul", { class: "study-list" }, path.studies.map((k) => studyEntry(k, studies.get(k))))),
           support(path), measuredEvidence(path.measured),
-          key && copyable(`sunatlas run ${key} --format json`, "the command that reproduces it"))));
+          key && h("p", { class: "note" }, "Run it yourself: ", copyable(`sunatlas run ${key} --format json`, `the command that runs ${key}`)))));
       }
       detail.hidden = !open;
       expand.setAttribute("aria-expanded", String(open));

@@ -153,6 +153,9 @@ def test_every_chart_draws_without_complaint_and_without_another_host(wide: Visi
             assert page.locator(".sankey-link").count() > 10
     assert wide.complaints == []
     assert {urlsplit(url).netloc for url in wide.requests} == {urlsplit(wide.address).netloc}
+    with urlopen(wide.address, timeout=20) as response:
+        policy = response.headers["Content-Security-Policy"]
+    assert "script-src 'self';" in policy  # no inline script, no evaluation of text
 
 
 def test_a_requirement_narrows_flow_paths_and_address_together(wide: Visit) -> None:
@@ -294,6 +297,30 @@ def test_the_keyboard_alone_requires_a_value_opens_evidence_and_sorts(wide: Visi
     assert "Found, descending" in page.locator("#board-status").inner_text()
 
 
+def test_a_value_of_the_table_is_required_and_keeps_the_focus(wide: Visit) -> None:
+    page = wide.go("/?view=table")
+    _tab_to(page, '.level-value[data-node="detector:CCD"]')
+    page.keyboard.press("Enter")
+    wide.settle()
+    assert wide.query()["detector"] == ["CCD"]
+    focused = page.locator(":focus")
+    assert focused.get_attribute("data-node") == "detector:CCD"
+    assert focused.get_attribute("aria-pressed") == "true"
+
+
+def test_a_server_that_is_gone_is_said_and_asked_again(wide: Visit) -> None:
+    page = wide.go("/?view=table")
+    page.route("**/v1/recommendations*", lambda route: route.abort())
+    page.locator('.facet-include[data-attribute="task"][data-value="Cost"]').click()
+    expect(page.get_by_role("alert")).to_contain_text("The server does not answer")
+    page.unroute("**/v1/recommendations*")
+    page.get_by_role("button", name="Try again").click()
+    wide.settle()
+    answer = _get(f"{wide.address}/v1/recommendations?task=Cost")
+    assert wide.paths() == answer["count"]
+    assert page.get_by_role("alert").count() == 0
+
+
 def test_the_leaderboard_shows_every_row_the_service_has(wide: Visit) -> None:
     page = wide.go("/?view=table")
     for card in _get(f"{wide.address}/v1/datasets?limit=500")["items"]:
@@ -310,6 +337,7 @@ def test_the_leaderboard_shows_every_row_the_service_has(wide: Visit) -> None:
         if more.count():
             more.click()
         assert page.locator(".score").count() == rows["total"]
+        assert page.evaluate("document.documentElement.scrollWidth") <= WIDE[0]
         if not rows["total"]:
             assert "No pipeline is scored" in page.locator("#board-body").inner_text()
 
