@@ -41,7 +41,7 @@ def box(x0: float, x1: float, y0: float, y1: float) -> np.ndarray:
 
 
 def square_quadrants(gap: float = 0.0, shape: str = "rectangle") -> QuadrantSensor:
-    mask = Mask((Aperture(shape, 2.0, 2.0),))  # type: ignore[arg-type]
+    mask = Mask((Aperture(shape, 2.0, 2.0),))
     return QuadrantSensor(Camera(1.0, mask, POINT), Quadrants(2.0, gap), IDEAL)
 
 

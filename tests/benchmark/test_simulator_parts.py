@@ -165,7 +165,7 @@ def test_streams_are_told_apart_by_every_name_and_its_place() -> None:
     ("make", "said"),
     [
         (lambda: Aperture("round", 0.1, 0.2), "one diameter"),
-        (lambda: Aperture("oval", 0.1, 0.2), "'round' or 'rectangle'"),  # type: ignore[arg-type]
+        (lambda: Aperture("oval", 0.1, 0.2), "'round' or 'rectangle'"),
         (lambda: Aperture("round", 0.0, 0.0), "positive"),
         (lambda: Mask(()), "at least one aperture"),
         (lambda: Mask((Aperture("round", 1, 1),), -0.1), "thickness_mm"),
