@@ -43,7 +43,8 @@ class BasicCentroid:
     Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers.
 
     Failure: a NaN row for a frame that is dark (sum not positive), without contrast (all dark or
-    all saturated) or holds a NaN or infinity. A second spot or a cut one is averaged in unseen.
+    all saturated) or holds a NaN or infinity, or whose centroid falls outside it (pixels of both
+    signs that almost cancel). A second spot or a cut one is averaged in unseen.
 
     Cost: 4 operations a pixel, one pass.
     """
@@ -167,15 +168,14 @@ class ThresholdedCentroid:
 
         def centroid(windows: Windows) -> Floats:
             moments.moments_above(frames, maxima, level, windows, sums)
-            return _ratio(sums[:, :3] - (cut - level)[:, None] * sums[:, 3:])
+            return _ratio(sums, cut - level)
 
         if self.window_px is None:
             found = centroid(moments.whole_frame(frames))
         else:
             start = moments.first_brightest(frames, maxima)
             found = follow_spot(start, self.window_px, frames.shape[1:], centroid)
-        found[~usable] = np.nan
-        return found
+        return _inside(found, usable, frames.shape[1:])
 
 
 @dataclass(frozen=True)
@@ -207,7 +207,8 @@ class FilteredCentroid:
     Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers.
 
     Failure: a NaN row for a frame that is dark (sum not positive), without contrast (all dark or
-    all saturated) or holds a NaN or infinity.
+    all saturated) or holds a NaN or infinity, or whose centroid falls outside it (pixels of both
+    signs that almost cancel).
 
     Cost: 4 operations a pixel, one pass.
     """
@@ -257,7 +258,7 @@ def _box_centroids(
 
     def centroid(windows: Windows) -> Floats:
         moments.box_moments(frames, windows, reach, zero, sums)
-        return _ratio(sums[:, :3] - base[:, None] * sums[:, 3:])
+        return _ratio(sums, base)
 
     if window_px is None:
         found = centroid(moments.whole_frame(frames))
@@ -266,8 +267,7 @@ def _box_centroids(
         moments.row_maxima(frames, maxima)
         start = moments.first_brightest(frames, maxima)
         found = follow_spot(start, window_px, frames.shape[1:], centroid)
-    found[~_usable(frames)] = np.nan
-    return found
+    return _inside(found, _usable(frames), frames.shape[1:])
 
 
 def _usable(frames: NDArray[Any]) -> NDArray[np.bool_]:
@@ -279,7 +279,19 @@ def _usable(frames: NDArray[Any]) -> NDArray[np.bool_]:
     return ~unusable
 
 
-def _ratio(moments: Floats) -> Floats:
-    """(x, y) of the moments ``(sum, sum x, sum y)``; a NaN row where the sum is not positive."""
-    total = moments[:, 0]
-    return quotient_rows(moments[:, 1:], total, (total > 0) & np.isfinite(total))
+def _inside(found: Floats, usable: NDArray[np.bool_], shape: tuple[int, int]) -> Floats:
+    """Centroids (N, 2) of usable frames; a NaN row where it falls outside the frame."""
+    edge = np.array([shape[1] - 0.5, shape[0] - 0.5])
+    inside = ((found >= -0.5) & (found <= edge)).all(axis=1)
+    return np.where((usable & inside)[:, None], found, np.nan)
+
+
+def _ratio(sums: NDArray[Any], offset: Floats) -> Floats:
+    """(x, y) from a kernel's sums (N, 6), `offset` (N,) taken off every pixel summed.
+
+    A NaN row where the light left is not positive.
+    """
+    with np.errstate(invalid="ignore", over="ignore"):  # infinite pixels: those frames are NaN
+        light, light_x, light_y = (sums[:, :3] - offset[:, None] * sums[:, 3:]).T
+        found = (light > 0) & np.isfinite(light)
+        return quotient_rows(np.column_stack([light_x, light_y]), light, found)

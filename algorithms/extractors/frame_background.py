@@ -32,5 +32,5 @@ def background_level(frames: NDArray[Any], background: Background) -> Floats:
         pixels = frames[:, border]
     else:
         pixels = frames.reshape(len(frames), -1)
-    with np.errstate(invalid="ignore"):
+    with np.errstate(invalid="ignore", over="ignore"):
         return np.asarray(np.median(pixels, axis=1), dtype=np.float64)

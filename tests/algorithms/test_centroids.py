@@ -254,6 +254,21 @@ def test_light_without_a_positive_sum_is_not_found(extractor):
         assert np.isnan(extractor.extract(frames)).all()
 
 
+def test_pixels_of_both_signs_that_almost_cancel_are_not_found():
+    frame = np.zeros((1, 9, 9))
+    frame[0, 2, 2], frame[0, 6, 6] = 1.0, -0.999
+    for extractor in (BasicCentroid(), FilteredCentroid()):
+        assert np.isnan(extractor.extract(frame)).all()
+
+
+@pytest.mark.parametrize("extractor", [*CENTROIDS, PixelMax(), BasicCentroid(window_px=5)], ids=str)
+def test_values_too_large_to_sum_are_not_found(extractor):
+    frame = np.full((1, 6, 6), 1e300)
+    frame[0, 2, 2] = 1.7e308
+    found = extractor.extract(frame)
+    assert np.isnan(found).all() or np.abs(found - 2.5).max() < 3
+
+
 def test_sums_do_not_overflow_on_large_saturated_frames():
     frame = np.full((1, 2000, 3000), 65535, dtype=np.uint16)
     frame[0, 0, 0] = 65534
