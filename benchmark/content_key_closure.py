@@ -48,7 +48,8 @@ def closure(*modules: str) -> tuple[str, ...]:
         if name in found or path is None:
             continue
         found.add(name)
-        waiting.extend(_imports(path, name, roots))
+        imported = _imports(path, path.stat().st_mtime_ns, name)
+        waiting.extend(other for other in imported if other.partition(".")[0] in roots)
     return tuple(sorted(found))
 
 
@@ -101,18 +102,16 @@ def _syntax_digest(path: Path, modified_ns: int) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def _imports(path: Path, name: str, roots: frozenset[str]) -> Iterator[str]:
+@lru_cache(maxsize=1024)
+def _imports(path: Path, modified_ns: int, name: str) -> tuple[str, ...]:
     package = name if path.name == "__init__.py" else name.rpartition(".")[0]
-    for node in ast.walk(_tree(path, path.stat().st_mtime_ns)):
+    found: list[str] = []
+    for node in ast.walk(_tree(path, modified_ns)):
         if isinstance(node, ast.Import):
-            candidates = [alias.name for alias in node.names]
+            found.extend(alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
-            candidates = list(_imported_from(node, package))
-        else:
-            continue
-        for candidate in candidates:
-            if candidate.partition(".")[0] in roots:
-                yield candidate
+            found.extend(_imported_from(node, package))
+    return tuple(dict.fromkeys(found))
 
 
 def _imported_from(node: ast.ImportFrom, package: str) -> Iterator[str]:
