@@ -56,7 +56,7 @@ def subject(ratio, worst):
 )
 @pytest.mark.parametrize("form", ["table", "json"])
 def test_a_broken_limit_or_another_result_is_the_exit_status(
-    monkeypatch, capsys, ratio, worst, status, form
+    monkeypatch, capsys, *, ratio, worst, status, form
 ):
     monkeypatch.setattr(speed, "subjects", lambda: [subject(ratio, worst)])
     assert speed.main(["--format", form, "--repeats", "3"]) == status
