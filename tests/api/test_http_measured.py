@@ -37,7 +37,7 @@ def score_row(number, cell):
     (dataset, detector, mask, half_fov), condition, extractor, model, rms, bound, _ = cell
     metrics = dict.fromkeys(METRICS)
     if rms is not None:
-        metrics |= {name: 0.25 for name in METRICS}
+        metrics |= dict.fromkeys(METRICS, 0.25)
         metrics |= {"rms_deg": rms, "bound_deg": bound, "over_bound": rms / bound}
         metrics |= {"found_fraction": 1.0 if extractor == "bctm" else 0.9}
     return {

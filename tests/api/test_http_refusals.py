@@ -5,6 +5,9 @@ import math
 
 import pytest
 
+from api.http.knowledge import Knowledge
+from api.service import create_app
+
 LISTS = [
     "/v1/studies",
     "/v1/algorithms",
@@ -239,3 +242,15 @@ def test_json_answers_hold_no_nan(atlas):
     for path in TABLES:
         document = json.loads(atlas.get(path).content, parse_constant=refuse)
         assert not (isinstance(document, float) and math.isnan(document))
+
+
+def test_a_failure_is_a_problem_that_tells_nothing_of_the_inside(client_of):
+    class Broken(Knowledge):
+        @property
+        def taxonomy(self):
+            raise RuntimeError("secret of the inside")
+
+    response = client_of(create_app(Broken())).get("/v1/taxonomy")
+    document = problem(response, 500)
+    assert "secret" not in response.text
+    assert document["errors"] == []
