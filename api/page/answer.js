@@ -59,7 +59,7 @@ export function showSummary(answer, studies) {
   byId("answer-links").replaceChildren(
     h("a", { href: url }, "This answer as JSON"),
     h("button", { type: "button", onclick: () => saveCsv(url, "recommendations.csv") }, "as CSV"),
-    copyable(commandLine(asked), "the command line of this answer"));
+    copyable(commandLine(measuredCondition() ? { ...asked, condition: measuredCondition() } : asked), "the command line of this answer"));
 }
 
 /** The same question to the command line. */
