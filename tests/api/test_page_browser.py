@@ -10,6 +10,7 @@ import threading
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qs, urlsplit
 from urllib.request import urlopen
@@ -356,29 +357,7 @@ def test_nothing_overflows_a_narrow_screen(narrow: Visit, path: str) -> None:
     assert narrow.complaints == []
 
 
-CONTRAST = """(selectors) => {
-    const channels = (text) => text.match(/[\\d.]+/g).map(Number);
-    const linear = (c) => (c /= 255) <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4;
-    const light = ([r, g, b]) => 0.2126 * linear(r) + 0.7152 * linear(g) + 0.0722 * linear(b);
-    const ground = (element) => {
-        for (let e = element; e; e = e.parentElement) {
-            const colour = channels(getComputedStyle(e).backgroundColor);
-            if (colour.length === 3 || colour[3] === 1) return colour;
-        }
-        return [255, 255, 255];
-    };
-    const found = {};
-    for (const selector of selectors) {
-        for (const element of document.querySelectorAll(selector)) {
-            if (!element.checkVisibility()) continue;
-            const ink = channels(getComputedStyle(element).color);
-            const [a, b] = [light(ink), light(ground(element))];
-            const ratio = (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
-            found[selector] = Math.min(found[selector] ?? 99, ratio);
-        }
-    }
-    return found;
-}"""
+CONTRAST = (Path(__file__).parent / "page_contrast.js").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("scheme", ["wide", "dark"])
