@@ -20,6 +20,7 @@ from api.http.endpoints import all_endpoints, health
 from api.http.knowledge import Knowledge
 from api.http.negotiation import JSON
 from api.http.openapi import describe
+from api.http.parameters import Parameters
 from api.http.representations import Representation
 
 DESCRIPTION = (
@@ -76,6 +77,7 @@ def create_app(knowledge: Knowledge | None = None) -> FastAPI:
         return app.openapi_schema
 
     async def openapi_json(request: Request) -> Response:
+        Parameters().from_query(request.scope["query_string"])
         if not documents:
             body = to_json(app.openapi())
             documents.append(Representation(body, JSON, {"Vary": "Accept-Encoding"}))

@@ -79,7 +79,7 @@ def test_only_files_of_the_page_are_served(atlas, path):
     problem(atlas.get(path), 404)
 
 
-@pytest.mark.parametrize("path", [*TABLES, "/healthz"])
+@pytest.mark.parametrize("path", [*TABLES, "/healthz", "/openapi.json"])
 def test_unknown_parameters_are_refused_everywhere(atlas, path):
     error = first(problem(atlas.get(f"{path}?limt=3"), 400))
     assert error["parameter"] == "limt"
