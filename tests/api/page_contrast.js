@@ -1,6 +1,6 @@
 /* Least contrast of visible text against its ground (WCAG 2.2), by selector. */
 (selectors) => {
-    const channels = (text) => text.match(/[\\d.]+/g).map(Number);
+    const channels = (text) => text.match(/[\d.]+/g).map(Number);
     const linear = (c) => (c /= 255) <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4;
     const light = ([r, g, b]) => 0.2126 * linear(r) + 0.7152 * linear(g) + 0.0722 * linear(b);
     const ground = (element) => {
