@@ -1,0 +1,100 @@
+"""The recipes of docs/architecture.md, followed as printed, in a copy of the tree."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+FLOORS = ("survey_data", "registry", "algorithms", "benchmark", "api")
+RECIPE = re.compile(r"```python file=(\S+)\n(.*?)```", re.DOTALL)
+
+MEASURE = """
+import json, sys
+from benchmark import datasets, plan, runner
+from benchmark.store import Store
+from registry.catalogue import catalogue
+
+found = catalogue()
+pairs = [("cmos-single-aperture", "squared-centroid", "spm"),
+         ("pd-maskless-cube-dim", "direct", "basic"),
+         ("pd-maskless-cube", "direct", "basic")]
+store = Store(sys.argv[1])
+for dataset, extractor, model in pairs:
+    runner.run(plan.cells(dataset, "nominal", extractor, model), store)
+print(json.dumps({
+    "extractor": "squared-centroid" in found.extractors,
+    "for_value": [c.name for c in found.extractors_for("BCM")],
+    "datasets": list(datasets.names()),
+    "rows": store.rows(),
+}))
+"""
+
+
+def run(arguments: list[str], tree: Path) -> str:
+    environment = os.environ | {"PYTHONPATH": str(tree), "NUMBA_CACHE_DIR": str(tree / ".numba")}
+    done = subprocess.run(
+        [sys.executable, *arguments],
+        cwd=tree,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+@pytest.fixture(scope="module")
+def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The floors copied, with the documented files added and nothing else changed."""
+    tree = tmp_path_factory.mktemp("tree")
+    for floor in FLOORS:
+        shutil.copytree(ROOT / floor, tree / floor, ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copytree(ROOT / "tests" / "algorithms", tree / "tests" / "algorithms")
+    recipes = RECIPE.findall((ROOT / "docs" / "architecture.md").read_text())
+    assert len(recipes) == 2
+    for name, text in recipes:
+        assert not (tree / name).exists()
+        (tree / name).write_text(text)
+    return tree
+
+
+def test_one_file_makes_an_algorithm_and_one_a_dataset_that_are_measured(tree: Path) -> None:
+    answer = json.loads(run(["-c", MEASURE, str(tree / "store")], tree))
+    assert answer["extractor"]
+    assert "squared-centroid" in answer["for_value"]
+    assert "pd-maskless-cube-dim" in answer["datasets"]
+    rows = {(row["dataset"], row["extractor"]): row for row in answer["rows"]}
+    centroid = rows["cmos-single-aperture", "squared-centroid"]
+    assert centroid["status"] == "ok"
+    assert 1.0 < centroid["over_bound"] < 1000.0
+    dim = rows["pd-maskless-cube-dim", "direct"]
+    bright = rows["pd-maskless-cube", "direct"]
+    # a tenth of the light at the same amplifier noise: about ten times the bound
+    assert 8.0 < dim["bound_deg"] / bright["bound_deg"] < 12.0
+
+
+def test_the_new_algorithm_passes_the_common_suite(tree: Path) -> None:
+    printed = run(
+        ["-m", "pytest", "-q", "-p", "no:cacheprovider", "--import-mode=importlib",
+         "tests/algorithms/test_common_suite.py", "-k", "squared-centroid"],
+        tree,
+    )  # fmt: skip
+    passed = int(re.search(r"(\d+) passed", printed)[1])
+    assert passed >= 10
+
+
+def test_adding_a_dataset_changes_no_other(tree: Path) -> None:
+    digest = (
+        "from benchmark import datasets as d;"
+        "print(d.data_digest(d.get('pd-maskless-cube').generate('nominal', 'test')))"
+    )
+    assert run(["-c", digest], tree) == run(["-c", digest], ROOT)
