@@ -264,8 +264,13 @@ class _Scorer:
 
     def combine(self, target: str, name: float, values: float | None) -> float:
         """Return the score of a column for a target."""
+        identifies = target in {"study", "title"}
         if values is None:
             return name
-        if target in self._categorical or target in {"study", "title"}:
-            return _NAME_WEIGHT * name + (1 - _NAME_WEIGHT) * values
-        return name if values >= 0.5 else 0.0  # numbers fit many columns: the name decides
+        if identifies or target in self._categorical:
+            score = _NAME_WEIGHT * name + (1 - _NAME_WEIGHT) * values
+        else:
+            score = name if values >= 0.5 else 0.0  # numbers fit many columns: the name decides
+        # A column called as ours is not passed over for cells that cannot be read: they are shown.
+        called_so = name == 1.0 and (values > 0 or identifies)
+        return max(score, _LEAST_SCORE) if called_so else score

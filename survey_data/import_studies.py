@@ -70,19 +70,22 @@ class StudyFinder:
 
     def _find_title(self, title: str) -> str:
         plain = normalise(title)
+        keys = self._titles.get(plain) or self._keys_of_like_title(plain)
+        if not keys:
+            raise StudyNotFoundError(f"no study has the title {title!r}")
+        if len(keys) > 1:
+            raise StudyNotFoundError(f"the title {title!r} may mean {' or '.join(sorted(keys))}")
+        return keys[0]
+
+    def _keys_of_like_title(self, plain: str) -> list[str]:
         ranked = sorted(
             ((similarity(plain, other), other) for other in self._titles if _close(plain, other)),
             reverse=True,
         )
         if not ranked or ranked[0][0] < _LEAST_SCORE:
-            raise StudyNotFoundError(f"no study has the title {title!r}")
-        keys = list(self._titles[ranked[0][1]])
-        for score, other in ranked[1:]:
-            if ranked[0][0] - score < _LEAST_LEAD:
-                keys += self._titles[other]
-        if len(keys) > 1:
-            raise StudyNotFoundError(f"the title {title!r} may mean {' or '.join(sorted(keys))}")
-        return keys[0]
+            return []
+        likeliest = [other for score, other in ranked if ranked[0][0] - score < _LEAST_LEAD]
+        return [key for other in likeliest for key in self._titles[other]]
 
     def _find_author(self, authors: str, year: str) -> str:
         first = re.split(r"[;,&]|\band\b|\bet\b", authors)[0]

@@ -45,14 +45,12 @@ def _texts(frame: pd.DataFrame, *columns: str) -> Iterator[tuple[int, tuple[str,
 def _values_belong(frames: Frames) -> Iterator[Problem]:
     """Check that a value is of its attribute's vocabulary, or a number in its range."""
     vocabulary = Vocabulary(frames["taxonomy"]).values
-    definitions = frames["attribute_definitions"].set_index("attribute")
-    attributes = frames["attributes"]
-    for index, (attribute, value) in _texts(attributes, "attribute", "value"):
-        if not value or attribute not in definitions.index:
+    rows = frames["attribute_definitions"].to_dict("records")
+    definitions = {str(row["attribute"]): row for row in rows}
+    for index, (attribute, value) in _texts(frames["attributes"], "attribute", "value"):
+        if not value or attribute not in definitions:
             continue
-        definition = definitions.loc[attribute]
-        if isinstance(definition, pd.DataFrame):
-            continue  # defined twice: reported there
+        definition = definitions[attribute]
         if definition["kind"] == "categorical":
             if value not in vocabulary.get(attribute, ()):
                 message = f"unknown taxonomy value {value!r} of {attribute}"

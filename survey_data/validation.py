@@ -113,8 +113,6 @@ def _check_schema(sound: dict[str, Records]) -> list[Problem]:
     foreign keys into a table that could not be read are left out.
     """
     package = descriptor()
-    # The profile is a web address: the descriptor's own validity is a test, not a request.
-    package.pop("$schema", None)
     resources = []
     for resource in package["resources"]:
         table = resource["name"]
@@ -131,8 +129,8 @@ def _check_schema(sound: dict[str, Records]) -> list[Problem]:
     if not resources:
         return []
     package["resources"] = resources
-    problems: list[Problem] = []
     report = frictionless.Package.from_descriptor(package).validate()
+    problems = [Problem(DESCRIPTOR_FILE, None, None, str(error.note)) for error in report.errors]
     for task in report.tasks:
         rows = sound[task.name].rows
         problems += [_as_problem(task.name, error, rows) for error in task.errors]

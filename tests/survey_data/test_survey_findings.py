@@ -26,23 +26,29 @@ def rows_of(table: str) -> list[dict[str, str]]:
         return list(csv.DictReader(stream))
 
 
-def judge_by_brute_force(row: dict[str, str]) -> tuple[str, dict[str, int]]:
-    """Verdict and counts straight from the files: sets of studies, one per value."""
+def studies_having() -> dict[tuple[str, str], set[str]]:
+    """(attribute, value) -> studies, straight from the files."""
     category = {(r["attribute"], r["value"]): r["category"] for r in rows_of("taxonomy")}
+    derived = {"model": "model_category", "extractor": "extractor_family"}
     having: dict[tuple[str, str], set[str]] = defaultdict(set)
     for r in rows_of("attributes"):
         if r["value"]:
             having[r["attribute"], r["value"]].add(r["study"])
-            if r["attribute"] == "model":
-                having["model_category", category["model", r["value"]]].add(r["study"])
-            if r["attribute"] == "extractor":
-                having["extractor_family", category["extractor", r["value"]]].add(r["study"])
+        if r["attribute"] in derived:
+            family = category[r["attribute"], r["value"]]
+            having[derived[r["attribute"]], family].add(r["study"])
     for r in rows_of("studies"):
         having["year", r["year"]].add(r["key"])
     for (a, detector), left in list(having.items()):
         for (b, mask), right in list(having.items()):
             if (a, b) == ("detector", "mask") and left & right:
                 having["detector+mask", f"{detector}+{mask}"] = left & right
+    return having
+
+
+def judge_by_brute_force(row: dict[str, str]) -> tuple[str, dict[str, int]]:
+    """Verdict and counts by sets of studies, one per value."""
+    having = studies_having()
     chosen = {r["key"] for r in rows_of("studies")}
     for condition in filter(None, row["given"].split("&")):
         attribute, value = condition.split("=")
@@ -56,7 +62,8 @@ def judge_by_brute_force(row: dict[str, str]) -> tuple[str, dict[str, int]]:
     counted = len(set().union(*sets.values()))
     counts = {value: len(studies) for value, studies in sets.items() if studies}
     if row["kind"] == "top-centroid":
-        counts = {v: n for v, n in counts.items() if category["extractor", v][:8] == "Centroid"}
+        others = ("Direct", "Voltage balance", "Linear-phase", "Eigen-analysis", "None")
+        counts = {value: count for value, count in counts.items() if value not in others}
     if counted < 3:
         return "undecidable", counts
     got = [counts.get(value, 0) for value in named]

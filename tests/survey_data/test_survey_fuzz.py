@@ -40,7 +40,7 @@ def mutate(data: bytes, edits: list[tuple[float, int, bytes]]) -> bytes:
 
 
 @given(st.sampled_from(table_names()), mutations())
-@settings(max_examples=20, **SETTINGS)
+@settings(max_examples=16, **SETTINGS)
 def test_random_corruption_gives_problems_or_stays_valid(
     copy: Any, table: str, edits: list[tuple[float, int, bytes]]
 ) -> None:
@@ -57,7 +57,7 @@ def test_random_corruption_gives_problems_or_stays_valid(
 
 
 @given(st.data())
-@settings(max_examples=15, **SETTINGS)
+@settings(max_examples=12, **SETTINGS)
 def test_random_cells_give_problems_or_stay_valid(copy: Any, data: st.DataObject) -> None:
     # well-formed CSV with any text in one cell: types, keys, grammar and rules are reached
     table = data.draw(st.sampled_from(table_names()))

@@ -1,0 +1,193 @@
+"""An import writes what was asked for, once, or nothing at all."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import survey_data
+from survey_data import SurveyImportError, import_table, load, validate
+
+
+def offer(copy: Any, text: str) -> Path:
+    path = copy.directory / "theirs.txt"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def cell(copy: Any, study: str, attribute: str) -> list[list[str]]:
+    return [row for row in copy.rows("attributes") if row[:2] == [study, attribute]]
+
+
+THEIRS = (
+    "Key;Mask;Task;Error;Accuracy (deg);Model\n"
+    "Alvi2014;Slit;Accuracy;Alignment;0.2;\n"  # mask agrees, task and error and accuracy are new
+    "Chang2008;Multi;Cost, Accuracy;;;LUT\n"  # model is printed otherwise
+    "Nobody1999;Slit;Cost;;;\n"
+)
+
+
+def test_a_comparison_writes_nothing_and_shows_every_kind(copy: Any) -> None:
+    before = {path: path.read_bytes() for path in copy.directory.iterdir()}
+    plan = import_table(offer(copy, THEIRS), copy.directory)
+    after = {path: path.read_bytes() for path in copy.directory.iterdir() if path in before}
+    assert after == before
+    assert plan.written == 0
+    kinds = {(d.study, d.attribute): d.kind for d in (*plan.differences, *plan.confirmed)}
+    assert kinds["Alvi2014", "mask"] == "confirmed"
+    assert kinds["Alvi2014", "error"] == "new"
+    assert kinds["Alvi2014", "accuracy_deg"] == "new"
+    assert kinds["Chang2008", "mask"] == "changed"
+    assert kinds["Chang2008", "model"] == "conflict"
+    (conflict,) = plan.conflicts
+    assert (conflict.ours, conflict.theirs) == (("SPM",), ("LUT",))
+    assert (conflict.basis, conflict.row, conflict.column) == ("survey-table", 3, "Model")
+    assert [(entry.row, entry.reason) for entry in plan.unmatched] == [
+        (4, "no study has the key 'Nobody1999'")
+    ]
+    assert plan.matched == ((2, "Alvi2014"), (3, "Chang2008"))
+    assert json.loads(json.dumps(plan.to_dict()))["differences"][0]["study"] == "Alvi2014"
+
+
+def test_applying_raises_the_basis_and_keeps_what_was_said_before(copy: Any) -> None:
+    old_mask = cell(copy, "Alvi2014", "mask")[0]
+    plan = import_table(offer(copy, THEIRS), copy.directory, apply=True)
+    assert plan.written == len(plan.edits) > 0
+    assert validate(copy.directory) == []
+    doi = "10.5281/zenodo.15784429"
+    (mask,) = cell(copy, "Alvi2014", "mask")
+    assert mask[2:5] == ["Slit", "authors-table", doi]
+    assert old_mask[3] in mask[5]
+    assert old_mask[5] in mask[5]
+    assert cell(copy, "Alvi2014", "error") == [
+        ["Alvi2014", "error", "Alignment", "authors-table", doi, ""]
+    ]
+    assert cell(copy, "Alvi2014", "accuracy_deg")[0][2] == "0.2"
+    (changed,) = cell(copy, "Chang2008", "mask")
+    assert changed[2] == "Multi-Ap."
+    assert "Single-Ap." in changed[5]
+    assert {row[2] for row in cell(copy, "Chang2008", "task")} == {"Cost", "Accuracy"}
+
+
+def test_the_survey_s_printed_cells_are_never_overwritten(copy: Any) -> None:
+    before = [row for row in copy.rows("attributes") if row[3] == "survey-table"]
+    import_table(offer(copy, THEIRS), copy.directory, apply=True)
+    assert [row for row in copy.rows("attributes") if row[3] == "survey-table"] == before
+
+
+def test_only_the_cells_taken_over_change(copy: Any) -> None:
+    before = copy.rows("attributes")
+    plan = import_table(offer(copy, THEIRS), copy.directory, apply=True)
+    touched = {(edit.study, edit.attribute) for edit in plan.edits}
+    rest = [row for row in copy.rows("attributes") if (row[0], row[1]) not in touched]
+    assert rest == [row for row in before if (row[0], row[1]) not in touched]
+    others = set(copy.directory.iterdir())
+    assert {path.name for path in others if path.suffix not in {".csv", ".json"}} == {"theirs.txt"}
+
+
+def test_applying_twice_changes_nothing_the_second_time(copy: Any) -> None:
+    path = offer(copy, THEIRS)
+    import_table(path, copy.directory, apply=True)
+    once = copy.path("attributes").read_bytes()
+    again = import_table(path, copy.directory, apply=True)
+    assert again.written == 0
+    assert [entry.kind for entry in again.differences] == ["conflict"]
+    assert again.confirmed == ()
+    assert copy.path("attributes").read_bytes() == once
+
+
+def test_a_newer_authors_table_replaces_an_older_one(copy: Any) -> None:
+    import_table(offer(copy, "Key,Mask\nAlvi2014,Lens\n"), copy.directory, apply=True)
+    import_table(offer(copy, "Key,Mask\nAlvi2014,V-Slit\n"), copy.directory, apply=True)
+    (mask,) = cell(copy, "Alvi2014", "mask")
+    assert mask[2:4] == ["V-Slit", "authors-table"]
+
+
+def test_our_own_table_brings_no_difference(copy: Any) -> None:
+    attributes = load(copy.directory).attributes.dropna(subset=["value"])
+    cells = attributes.groupby(["study", "attribute"])["value"].agg("; ".join).unstack()
+    path = copy.directory / "theirs.csv"
+    cells.to_csv(path)
+    plan = import_table(path, copy.directory)
+    assert plan.differences == plan.guesses == plan.errors == plan.unmatched == ()
+    assert len(plan.matched) == 129
+
+
+@pytest.mark.parametrize(
+    ("text", "row", "column", "told"),
+    [
+        ("Key,Mask\nAlvi2014,Lens\nChang2008,Sundial\n", 3, "Mask", "'Sundial' is no value"),
+        ("Key,Mask,FOV\nAlvi2014,Lens,wide\n", 2, "FOV", "expected an angle"),
+        ("Key,Accuracy class,Mask\nAlvi2014,\"CSS, FSS\",Lens\n", 2, "Accuracy class", "takes one"),
+        ("Key,Authors,Year,Mask\nAlvi2014,,,Lens\n,B. Alvi,2014,Slit\n", 3, "Key", "as row 2 does"),
+    ],
+)  # fmt: skip
+def test_an_unreadable_cell_stops_everything(
+    text: str, row: int, column: str, told: str, copy: Any
+) -> None:
+    path = offer(copy, text)
+    before = copy.path("attributes").read_bytes()
+    overrides = {"FOV": "fov_deg"} if "FOV" in text else None
+    plan = import_table(path, copy.directory, overrides=overrides)
+    assert [(p.row, p.column) for p in plan.errors] == [(row, column)]
+    with pytest.raises(SurveyImportError, match=told) as caught:
+        import_table(path, copy.directory, overrides=overrides, apply=True)
+    assert (caught.value.row, caught.value.column) == (row, column)
+    assert copy.path("attributes").read_bytes() == before
+    tables = load(copy.directory)
+    frame = survey_data.read_table(path)
+    with pytest.raises(SurveyImportError, match=told):
+        survey_data.differences(tables, frame, survey_data.match_columns(tables, frame, overrides))
+
+
+def test_rows_on_one_study_are_united(copy: Any) -> None:
+    text = "Key,Task\nAlvi2014,Cost\nAlvi2014,Volume\n"
+    import_table(offer(copy, text), copy.directory, apply=True)
+    assert [row[2] for row in cell(copy, "Alvi2014", "task")] == ["Cost", "Volume"]
+
+
+def test_a_table_about_other_studies_is_refused(copy: Any) -> None:
+    with pytest.raises(SurveyImportError, match="our studies: row 2, no study has the key"):
+        import_table(offer(copy, "Key,Mask\nNobody1999,Slit\n"), copy.directory)
+
+
+def test_a_plan_made_before_our_tables_changed_is_refused(copy: Any) -> None:
+    plan = import_table(offer(copy, "Key,Mask\nAlvi2014,Lens\n"), copy.directory)
+    import_table(offer(copy, "Key,Mask\nAlvi2014,V-Slit\n"), copy.directory, apply=True)
+    before = copy.path("attributes").read_bytes()
+    with pytest.raises(SurveyImportError, match="changed since the comparison"):
+        survey_data.apply_import(copy.directory, plan)
+    assert copy.path("attributes").read_bytes() == before
+
+
+def test_an_import_into_invalid_tables_is_refused(copy: Any) -> None:
+    copy.set("studies", 2, "doi", "no doi")
+    before = copy.path("attributes").read_bytes()
+    with pytest.raises(SurveyImportError, match=r"not be valid: studies.csv, row 2, column doi"):
+        import_table(offer(copy, "Key,Mask\nAlvi2014,Lens\n"), copy.directory, apply=True)
+    assert copy.path("attributes").read_bytes() == before
+
+
+def test_a_failing_write_leaves_the_old_file(copy: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(self: Path, target: Path) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    path = offer(copy, "Key,Mask\nAlvi2014,Lens\n")
+    before = {entry.name for entry in copy.directory.iterdir()}
+    old = copy.path("attributes").read_bytes()
+    monkeypatch.setattr(Path, "replace", refuse)
+    with pytest.raises(SurveyImportError, match="cannot write"):
+        import_table(path, copy.directory, apply=True)
+    assert copy.path("attributes").read_bytes() == old
+    assert {entry.name for entry in copy.directory.iterdir()} == before
+
+
+def test_angles_that_differ_by_rounding_are_the_same(copy: Any) -> None:
+    # Mobasser2003 is held as 0.0167 deg
+    text = "Key,Accuracy\nMobasser2003,1 arcmin\n"
+    plan = import_table(offer(copy, text), copy.directory, overrides={"Accuracy": "accuracy_deg"})
+    assert plan.differences == ()
+    assert [entry.theirs for entry in plan.confirmed] == [("0.0167",)]
