@@ -62,7 +62,9 @@ def shown(column: str, value: object) -> str:
     if value is None:
         return "-"
     if isinstance(value, float):
-        return f"{value:.4g}" if column != "found_fraction" else f"{value:.4f}"
+        if column == "found_fraction":
+            return f"{value:.4f}"
+        return f"{value:#.4g}".rstrip(".")
     return str(value)
 
 
