@@ -13,7 +13,7 @@ from api.command_line import app
 from api.commands import leaderboard, measuring
 from benchmark.plan import cells, datasets_for
 from benchmark.runner import RunInterruptedError, stale
-from benchmark.store import PUBLISHED, Store
+from benchmark.store import PUBLISHED, Store, cell_of
 from registry.resolution import resolve
 
 CHEAP = ("--dataset", "pd-maskless-cube", "--condition", "nominal", "--model", "basic")
@@ -71,8 +71,7 @@ def test_a_run_that_finds_nothing_published_measures_once(unpublished):
 
 def test_what_is_published_is_read_there():
     found = json.loads(sunatlas("benchmark", *CHEAP, "--format", "json").stdout)
-    stored = [json.loads(line) for line in (PUBLISHED / "scores.jsonl").open(encoding="utf-8")]
-    keys = {row["key"] for row in stored}
+    keys = {row["key"] for row in Store(PUBLISHED).rows()}
     assert found["scores"]
     assert {row["key"] for row in found["scores"]} <= keys
     assert found["sources"]["published"] == len(found["scores"])
@@ -176,13 +175,15 @@ def test_one_altered_number_is_named_by_its_cell(published):
 
 
 def test_an_up_to_date_leaderboard_is_left_as_it_is(published):
-    assert stale(cells(), Store(published)) == [], "run `make leaderboard`"
+    # What failed is tried again, and only that.
+    failed = {cell_of(row) for row in Store(published).rows() if row["status"] == "failed"}
+    assert set(stale(cells(), Store(published))) <= failed, "run `make leaderboard`"
     before = {path.name: path.read_bytes() for path in published.iterdir() if path.is_file()}
     shown = sunatlas("leaderboard", "--workers", 1, "--format", "json")
     assert shown.exit_code == 0, shown.stderr
     after = {path.name: path.read_bytes() for path in published.iterdir() if path.is_file()}
     assert after == before
-    assert " 0 measured" in shown.stderr
+    assert f" {len(failed)} measured" in shown.stderr
     assert json.loads(shown.stdout) == json.loads(before["leaderboard.json"])
 
 
