@@ -116,6 +116,8 @@ export async function drawSankey(container, flow, required, choose) {
     textfont: { size: narrow() ? 12 : 13, color: colour("--text"), shadow: halo() },
   };
   const height = Math.min(760, Math.max(200, 70 + tallest * (tallest > 14 ? 30 : 44)));
+  // A changed drawing glides to its new form; one drawn afresh stands there at once.
+  if (matchMedia("(prefers-reduced-motion: reduce)").matches) erase(container);
   await library.react(container, [trace], layout(height, labelRoom(flow)), CONFIG);
   labelsOutward(container);
   container.removeAllListeners("plotly_afterplot");
