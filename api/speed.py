@@ -146,7 +146,10 @@ def asked(connection: HTTPConnection, path: str) -> float:
 
 
 def measure(rounds: int = 15, requests: int = 30, app: FastAPI | None = None) -> list[Measured]:
-    """Measure every kind of queries, `rounds` times `requests` interleaved pairs each."""
+    """Measure every kind of queries, `rounds` times `requests` interleaved pairs each.
+
+    `app` is the service, not asked before: what it remembers would not be computed.
+    """
     service = create_app() if app is None else app
     kinds = {"repeated": repeated(), "excluding": excluding(), "limiting": limiting()}
     found: dict[str, list[tuple[float, float]]] = {name: [] for name in kinds}
