@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import product
 
@@ -134,15 +134,28 @@ def _listed(names: Names, everything: Iterable[str]) -> list[str]:
 def _why_not_extractor(preset: Preset, extractor: type[Extractor]) -> str:
     if extractor.observation != preset.observation:
         return f"reads {extractor.observation}; the dataset has {preset.observation}"
-    return _missing_design(preset, extractor)
+    return _missing_design(preset, extractor) or _refusal(
+        lambda: extractor.for_sensor(preset.geometry)
+    )
 
 
 def _why_not_model(preset: Preset, extractor: type[Extractor], model: type[Model]) -> str:
     if extractor.kind not in model.accepts:
         return f"accepts {', '.join(sorted(model.accepts))}; the extractor gives {extractor.kind}"
-    return _missing_design(preset, model)
+    return _missing_design(preset, model) or _refusal(
+        lambda: model.for_sensor(preset.geometry, extractor.kind)
+    )
 
 
 def _missing_design(preset: Preset, implementation: type[Extractor | Model]) -> str:
     missing = [name for name in implementation.needs if getattr(preset.geometry, name) is None]
     return f"needs {', '.join(missing)}; the sensor has none" if missing else ""
+
+
+def _refusal(build: Callable[[], object]) -> str:
+    """Why an implementation does not fit a design that has all the fields it needs, or empty."""
+    try:
+        build()
+    except ValueError as error:  # what for_sensor raises for another architecture
+        return str(error)
+    return ""

@@ -172,8 +172,14 @@ class VoltageBalance:
         return ("s_a", "s_b")
 
     @classmethod
-    def for_sensor(cls, geometry: SensorGeometry) -> Self:  # noqa: ARG003 - nothing to choose
-        """Return the published method, readings in the order Q1 to Q4."""
+    def for_sensor(cls, geometry: SensorGeometry) -> Self:
+        """Return the published method, readings in the order Q1 to Q4.
+
+        ValueError where the sensor has no detector plane but faces, and not four of them.
+        """
+        faces = geometry.face_normals
+        if geometry.focal_length_mm is None and faces is not None and len(faces) != 4:
+            raise ValueError(f"{cls.name} reads four quadrants; the sensor has {len(faces)} faces")
         return cls()
 
     def extract(self, observations: ArrayLike) -> Floats:

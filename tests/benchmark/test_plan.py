@@ -45,6 +45,31 @@ def test_features_a_model_cannot_read_are_refused_with_the_reason(parts):
     assert [r.reason for r in refused] == ["accepts spot; the extractor gives signals"]
 
 
+def test_a_design_that_an_implementation_refuses_is_not_planned_and_says_why():
+    class Pairs(fake_atlas.LeastSquares):
+        name = "fake-pairs"
+
+        @classmethod
+        def for_sensor(cls, geometry, kind):
+            raise ValueError(f"needs two faces; got {len(geometry.face_normals)}")
+
+    class Halves(fake_atlas.Currents):
+        name = "fake-halves"
+
+        @classmethod
+        def for_sensor(cls, geometry):
+            raise ValueError("needs halves")
+
+    parts = fake_plan.parts(fake_atlas.LeastSquares, Pairs)
+    parts = dataclasses.replace(parts, extractors={**parts.extractors, "fake-halves": Halves})
+    assert {c.model for c in plan.cells(parts=parts)} == {"fake-least-squares"}
+    assert "fake-halves" not in {c.extractor for c in plan.cells(parts=parts)}
+    faces = len(fake_atlas.Diodes().geometry.face_normals)
+    refused = {(r.extractor, r.model): r.reason for r in plan.incompatible(parts=parts)}
+    assert refused["fake-currents", "fake-pairs"] == f"needs two faces; got {faces}"
+    assert refused["fake-halves", ""] == "needs halves"
+
+
 def test_filters_narrow_the_plan(parts):
     found = plan.cells(conditions="noisy", extractors=["fake-gaps"], parts=parts)
     assert found == [Cell("fake-diodes", "noisy", "fake-gaps", "fake-least-squares")]

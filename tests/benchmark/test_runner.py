@@ -136,7 +136,7 @@ def test_a_failure_is_a_row_with_its_reason_and_is_tried_again(store, log, monke
     reasons = {cell.model: reason for cell, reason in summary.failed}
     assert reasons == {
         "fake-broken": "RuntimeError: gives up always",
-        "fake-unbuildable": "ValueError: no such sensor",
+        "fake-unbuildable": "RuntimeError: no such sensor",
     }
     failed = store.query(status="failed")
     assert len(failed) == len(summary.failed) == 8

@@ -203,4 +203,4 @@ class Unbuildable(LeastSquares):
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Any:
-        raise ValueError("no such sensor")
+        raise RuntimeError("no such sensor")
