@@ -18,7 +18,7 @@ from benchmark.datasets._field import Field, Split
 from benchmark.seeds import generator
 from benchmark.simulator import SIMULATOR_VERSION
 from benchmark.simulator.environment import Earth, Irradiance
-from benchmark.simulator.faces import FaceSensor
+from benchmark.simulator.faces import Faces
 from benchmark.simulator.noise import NoiseStreams
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern, Sensor
@@ -88,7 +88,7 @@ class Condition:
     geometry: SensorGeometry | None = None
 
     def __post_init__(self) -> None:
-        if self.earth is not None and not isinstance(self.sensor, FaceSensor):
+        if self.earth is not None and not isinstance(self.sensor, Faces):
             raise ValueError("light from the Earth is simulated for face sensors only")
 
 
@@ -164,7 +164,7 @@ class Preset:
         light, stray = setup.irradiance.draw(len(sun), generator(*names, "irradiance"))
         origin = setup.sensor.origins(sun, generator(*names, "window"))
         albedo = None
-        if setup.earth is not None and known == "test" and isinstance(setup.sensor, FaceSensor):
+        if setup.earth is not None and known == "test" and isinstance(setup.sensor, Faces):
             nadir = setup.earth.draw_nadir(sun, generator(*names, "nadir"))
             pattern = self.fixed_pattern(condition)
             albedo = light[:, None] * setup.sensor.earthlight(setup.earth, sun, nadir, pattern)

@@ -1,4 +1,4 @@
-"""Currents of bare photodiodes that face different ways: `FaceSensor`."""
+"""Light on bare detector elements that face different ways, `Faces`; currents: `FaceSensor`."""
 
 from __future__ import annotations
 
@@ -30,38 +30,25 @@ CUBE: tuple[tuple[float, float, float], ...] = (
 )
 
 
-@dataclass(frozen=True)
-class FaceSensor:
-    """K maskless photodiodes with outward normals and an angular response.
+class Faces:
+    """Light on K bare elements with outward normals, whatever turns it into a signal.
 
-    Attributes
-    ----------
-    normals
-        (K, 3) nominal unit vectors.
-    normal_error_deg
-        Standard deviation a tangent axis of each built normal about its nominal one.
-    response
-        ``cosine`` or ``kelly``.
+    The base of frozen dataclasses that have these fields; what they mean is said in `FaceSensor`.
     """
 
     normals: tuple[tuple[float, float, float], ...]
-    readout: CurrentReadout
-    response: Response = "kelly"
-    normal_error_deg: float = 0.0
-    sun: SolarDisc = field(default_factory=SolarDisc)
-    assembly: Assembly = field(default_factory=Assembly)
+    response: Response
+    normal_error_deg: float
+    sun: SolarDisc
+    assembly: Assembly
 
-    def fixed_pattern(self, *names: str | int) -> FixedPattern:
-        """``gain`` (K,) and ``normals`` (K, 3): the unit's gains and built normals."""
+    def built_normals(self, *names: str | int) -> Floats:
+        """(K, 3) normals of the unit of this name."""
         nominal = np.array(self.normals)
         error = generator(*names, "normals").standard_normal(nominal.shape)
         error -= np.sum(error * nominal, axis=1, keepdims=True) * nominal
         built = nominal + math.tan(math.radians(self.normal_error_deg)) * error
-        built /= np.sqrt(np.sum(built**2, axis=1, keepdims=True))
-        return {
-            "gain": readout.element_gains(self.readout, len(nominal), *names),
-            "normals": built,
-        }
+        return np.asarray(built / np.sqrt(np.sum(built**2, axis=1, keepdims=True)))
 
     def origins(self, sun: Floats, generator: np.random.Generator) -> None:
         """Nothing is windowed (the arguments are the protocol's)."""
@@ -84,12 +71,45 @@ class FaceSensor:
         head = self.assembly.to_head
         return earth.response(head(sun), head(nadir), pattern["normals"], self.response)
 
-    def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
-        """(N, K) mean microamperes."""
+    def received(self, scene: Scene, pattern: FixedPattern) -> Floats:
+        """(N, K) response to all light: direct, stray and from the Earth; units as of `lit`."""
         response = self.lit(scene, pattern) + scene.stray[:, None]
         if scene.albedo is not None:
             response += scene.albedo
-        return readout.currents(self.readout, response, pattern)
+        return response
+
+
+@dataclass(frozen=True)
+class FaceSensor(Faces):
+    """K maskless photodiodes with outward normals and an angular response.
+
+    Attributes
+    ----------
+    normals
+        (K, 3) nominal unit vectors.
+    normal_error_deg
+        Standard deviation a tangent axis of each built normal about its nominal one.
+    response
+        ``cosine`` or ``kelly``.
+    """
+
+    normals: tuple[tuple[float, float, float], ...]
+    readout: CurrentReadout
+    response: Response = "kelly"
+    normal_error_deg: float = 0.0
+    sun: SolarDisc = field(default_factory=SolarDisc)
+    assembly: Assembly = field(default_factory=Assembly)
+
+    def fixed_pattern(self, *names: str | int) -> FixedPattern:
+        """``gain`` (K,) and ``normals`` (K, 3): the unit's gains and built normals."""
+        return {
+            "gain": readout.element_gains(self.readout, len(self.normals), *names),
+            "normals": self.built_normals(*names),
+        }
+
+    def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
+        """(N, K) mean microamperes."""
+        return readout.currents(self.readout, self.received(scene, pattern), pattern)
 
     def variance(self, expected: Floats) -> Floats:
         """Squared microamperes."""
