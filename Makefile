@@ -41,6 +41,7 @@ lint: $(STAMP) ## ruff, mypy (strict), the floors
 
 bench: $(STAMP) ## speed, as ratios to references measured in the same run
 	$(BIN)/python -m benchmark.speed
+	$(BIN)/python -m api.speed
 
 leaderboard: $(STAMP) ## bring scores and leaderboard up to date with code and data
 	$(BIN)/sunatlas leaderboard --workers $(WORKERS)
