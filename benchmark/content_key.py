@@ -56,8 +56,12 @@ def digest(value: object) -> str:
 def samples_hash(samples: Samples) -> str:
     """SHA-256 (32 hexadecimal digits) over the arrays of one split: names, types, shapes, bytes."""
     state = hashlib.sha256()
-    for name in ("observations", "sun", "origin_px"):
-        array: NDArray[Any] | None = getattr(samples, name)
+    arrays: dict[str, NDArray[Any] | None] = {
+        name: getattr(samples, name) for name in ("observations", "sun", "origin_px")
+    }
+    context: Mapping[str, NDArray[Any]] = getattr(samples, "context", None) or {}
+    arrays.update((f"context.{name}", context[name]) for name in sorted(context))
+    for name, array in arrays.items():
         if array is None:
             state.update(f"{name} none\n".encode())
             continue

@@ -42,18 +42,32 @@ class Samples:
         (N, 3) true unit vectors from the sensor to the Sun, float64.
     origin_px
         (N, 2) int64 detector coordinate (x, y) of each window's first pixel, or None.
+    context
+        What else is known of each sample by column name, e.g. ``time_s``: arrays of N rows. None
+        where there is nothing.
     """
 
     observations: NDArray[Any]
     sun: Floats
     origin_px: NDArray[np.int64] | None
+    context: Mapping[str, NDArray[Any]] | None = None
+
+    def arrays(self) -> dict[str, NDArray[Any] | None]:
+        """Everything that hashes cover by name: columns of the context come last, sorted."""
+        found: dict[str, NDArray[Any] | None] = {
+            "observations": self.observations,
+            "sun": self.sun,
+            "origin_px": self.origin_px,
+        }
+        for name in sorted(self.context or ()):
+            found[f"context.{name}"] = (self.context or {})[name]
+        return found
 
 
 def data_digest(samples: Samples) -> str:
     """SHA-256 (hex) over names, dtypes, shapes and bytes of the arrays; little-endian."""
     digest = hashlib.sha256()
-    for name in ("observations", "sun", "origin_px"):
-        array = getattr(samples, name)
+    for name, array in samples.arrays().items():
         if array is None:
             digest.update(f"{name}:none;".encode())
             continue
