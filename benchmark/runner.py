@@ -1,8 +1,8 @@
 """Measure cells into a store: in parallel, resumable, never twice what is already there.
 
-The unit of parallel work is one (dataset, condition, extractor); only this process writes. Every
-finished unit is on disk before the next one is awaited, so a killed run loses what was in flight
-and nothing else. Numbers do not depend on the number of workers.
+A unit is one (dataset, condition, extractor); a worker takes a few that share samples. Only this
+process writes, and what a worker hands back is on disk before the next is awaited, so a killed run
+loses what was in flight and nothing else. Numbers do not depend on the number of workers.
 """
 
 from __future__ import annotations

@@ -16,6 +16,8 @@ from joblib import Parallel, delayed, parallel_config
 
 from benchmark.runner_unit import Unit, UnitResult, measure
 
+_BUNDLE = 4
+
 
 class DaskMissingError(ImportError):
     """A Dask scheduler was named and its client is not installed."""
@@ -49,17 +51,38 @@ def outcomes(
         else:
             _connect(stack, scheduler)
         coordinator = (platform.node(), os.getpid())
-        yield from Parallel(return_as="generator_unordered", batch_size=1, pre_dispatch="2*n_jobs")(
-            delayed(_measure_for)(coordinator, unit) for unit in units
-        )
+        parallel = Parallel(return_as="generator_unordered", batch_size=1, pre_dispatch="2*n_jobs")
+        for results in parallel(
+            delayed(_measure_for)(coordinator, bundle) for bundle in bundles(units)
+        ):
+            yield from results
 
 
-def _measure_for(coordinator: tuple[str, int], unit: Unit) -> UnitResult:
+def bundles(units: Sequence[Unit]) -> list[list[Unit]]:
+    """Group units of one dataset and condition that follow each other, at most four.
+
+    They share samples, so one worker does them: generating often costs more than the rest.
+    """
+    found: list[list[Unit]] = []
+    for unit in units:
+        last = found[-1] if found else []
+        if (
+            last
+            and len(last) < _BUNDLE
+            and (last[0].preset.name, last[0].condition) == (unit.preset.name, unit.condition)
+        ):
+            last.append(unit)
+        else:
+            found.append([unit])
+    return found
+
+
+def _measure_for(coordinator: tuple[str, int], bundle: Sequence[Unit]) -> list[UnitResult]:
     """Measure in a worker process, which ends when the coordinator does, even by a kill."""
     host, process = coordinator
     if (host, os.getppid()) == (platform.node(), process):
         _end_with(process)
-    return measure(unit)
+    return [measure(unit) for unit in bundle]
 
 
 @cache

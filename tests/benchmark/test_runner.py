@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from benchmark import plan, runner, runner_unit
-from benchmark.runner_backend import DaskMissingError
+from benchmark.runner_backend import DaskMissingError, bundles
 from benchmark.runner_progress import silent, terminal_progress
 from benchmark.store import Store
 from benchmark.store_journal import Journal
@@ -227,6 +227,15 @@ def test_a_run_records_times_place_and_versions_outside_the_key(store):
             1e6 * (run["extract_s"] + run["predict_s"]) / 400, rel=1e-4
         )
         assert set(run["environment"]["libraries"]) >= {"numpy", "scipy", "joblib"}
+
+
+def test_units_that_share_samples_go_to_one_worker_four_at_most():
+    def unit(name, condition, number):
+        return runner_unit.Unit(fake_atlas.Diodes(name=name), condition, number, ())
+
+    units = [unit("a", "x", i) for i in range(6)] + [unit("a", "y", 6), unit("b", "y", 7)]
+    grouped = bundles(units)
+    assert [[u.extractor for u in bundle] for bundle in grouped] == [[0, 1, 2, 3], [4, 5], [6], [7]]
 
 
 def test_dask_without_its_package_is_a_clear_error(store):
