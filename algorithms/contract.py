@@ -51,6 +51,15 @@ class SensorGeometry:
 
     A field is None where the architecture has no such thing. ``face_normals`` holds K unit
     vectors in the sensor frame, one a detector element.
+
+    Linear arrays: ``line_axes`` names the detector axis along which each of them lies, in the
+    order of their ``line_pixels`` columns in a profile; all lie behind slits of the same layout.
+    A row of ``slits`` is (position mm, slant deg, width mm): its spot falls ``position + D_u +
+    D_v tan(slant)`` from the array's middle, D the displacement (h tan(beta), h tan(alpha)), u
+    the array's axis and v the other one. ``cover_glass`` holds (thickness mm, index) a plate.
+
+    Code dials: a row of ``code_bits`` Gray tracks with cells of ``code_cell_mm`` and four fine
+    tracks of ``fine_period_mm`` on each of ``line_axes``.
     """
 
     focal_length_mm: float | None = None
@@ -60,6 +69,14 @@ class SensorGeometry:
     aperture_shape: Literal["round", "square"] | None = None
     face_normals: tuple[tuple[float, float, float], ...] | None = None
     half_fov_deg: float | None = None
+    line_axes: tuple[Literal["x", "y"], ...] | None = None
+    line_pixels: int | None = None
+    slits: tuple[tuple[float, float, float], ...] | None = None
+    mask_thickness_mm: float | None = None
+    cover_glass: tuple[tuple[float, float], ...] | None = None
+    code_bits: int | None = None
+    code_cell_mm: float | None = None
+    fine_period_mm: float | None = None
 
     def require(self, *fields: str, by: str) -> None:
         """Raise ValueError naming the fields of this geometry that `by` needs and are None."""

@@ -26,6 +26,18 @@ from benchmark.simulator.sensor import FixedPattern, Sensor
 Floats = NDArray[np.float64]
 
 SPLITS: tuple[Split, ...] = get_args(Split)
+#: Fields of the geometry that are written even where they are None; later ones are not.
+_FIRST_GEOMETRY = frozenset(
+    {
+        "focal_length_mm",
+        "pixel_pitch_mm",
+        "centre_px",
+        "aperture_width_mm",
+        "aperture_shape",
+        "face_normals",
+        "half_fov_deg",
+    }
+)
 #: Samples simulated together; memory only, the numbers do not depend on it.
 BATCH = 64
 
@@ -277,6 +289,13 @@ def _plain(value: Any) -> Any:
     """Dataclasses, mappings and tuples as JSON objects and arrays; a dataclass names its type."""
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
         fields = {f.name: _plain(getattr(value, f.name)) for f in dataclasses.fields(value)}
+        if isinstance(value, SensorGeometry):
+            # a field added for one architecture must not change the parameters of the others
+            fields = {
+                name: item
+                for name, item in fields.items()
+                if item is not None or name in _FIRST_GEOMETRY
+            }
         return {"type": type(value).__name__, **fields}
     if isinstance(value, Mapping):
         return {str(key): _plain(item) for key, item in value.items()}
