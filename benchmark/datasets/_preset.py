@@ -196,26 +196,38 @@ class Preset:
             albedo = light[:, None] * setup.sensor.earthlight(setup.earth, sun, nadir, pattern)
         return Scene(sun, light, stray, origin, albedo)
 
-    def generate(self, condition: str, split: str) -> Samples:
+    def generate(self, condition: str, split: str, n: int | None = None) -> Samples:
         """Simulate the samples of a split: ``calibration`` or ``test``.
 
         Returns the same numbers whenever, wherever and beside whatever it is called.
 
+        Parameters
+        ----------
+        condition, split
+            Which.
+        n
+            Only the first n samples, or all there are where that is fewer; the same numbers.
+
         Raises
         ------
         ValueError
-            On an unknown condition or split, naming the known ones.
+            On an unknown condition or split, naming the known ones; on n below 1.
         """
         sensor = self.condition(condition).sensor
         scene = self.scene(condition, split)
+        if n is not None:
+            if n < 1:
+                raise ValueError(f"n must be at least 1; got {n}")
+            scene = scene.part(0, n)
         pattern = self.fixed_pattern(condition)
         streams = NoiseStreams.named(self.name, self.version, condition, split)
-        observations = np.concatenate(
-            [
-                sensor.observe(scene.part(start, start + BATCH), pattern, streams)
-                for start in range(0, len(scene), BATCH)
-            ]
-        )
+        first = sensor.observe(scene.part(0, BATCH), pattern, streams)
+        # filled batch by batch: joining a list of batches would hold everything twice
+        observations = np.empty((len(scene), *first.shape[1:]), first.dtype)
+        observations[: len(first)] = first
+        for start in range(BATCH, len(scene), BATCH):
+            batch = sensor.observe(scene.part(start, start + BATCH), pattern, streams)
+            observations[start : start + BATCH] = batch
         return Samples(observations, scene.sun, scene.origin_px)
 
     def bound(self, condition: str, split: str = "test") -> Bound:
