@@ -18,7 +18,12 @@ from pathlib import Path
 from typing import Any
 
 import survey_data
-from api.deposit_checksums import (
+from api.deposit_crate import CRATE, crate
+from api.deposit_identity import Identity, identity
+from api.deposit_package import NAME, package
+from api.deposit_readme import readme
+from api.deposit_tables import MeasuredTable, measured_tables, read_descriptor
+from benchmark.checksums import (
     CHECKSUMS,
     ChecksumFileError,
     contents,
@@ -26,11 +31,6 @@ from api.deposit_checksums import (
     read_checksums,
     write_checksums,
 )
-from api.deposit_crate import CRATE, crate
-from api.deposit_identity import Identity, identity
-from api.deposit_package import NAME, package
-from api.deposit_readme import readme
-from api.deposit_tables import MeasuredTable, measured_tables, read_descriptor
 from benchmark.store import PUBLISHED
 
 DESCRIPTOR = "datapackage.json"

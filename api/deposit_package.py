@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from api.deposit_checksums import sha256
 from api.deposit_identity import Identity
 from api.deposit_tables import MeasuredTable
+from benchmark.checksums import sha256
 
 NAME = "sun-sensor-atlas"
 PROFILE = "https://datapackage.org/profiles/2.0/datapackage.json"

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from api.deposit_checksums import CHECKSUMS
 from api.deposit_identity import Identity
+from benchmark.checksums import CHECKSUMS
 
 
 def readme(who: Identity, descriptor: Mapping[str, Any]) -> str:

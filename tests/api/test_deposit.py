@@ -16,8 +16,8 @@ from frictionless import Package
 
 import survey_data
 from api import deposit
-from api.deposit_checksums import CHECKSUMS, ChecksumFileError, read_checksums
 from api.deposit_tables import NothingPublishedError
+from benchmark.checksums import CHECKSUMS, ChecksumFileError, read_checksums
 from benchmark.store import PUBLISHED, Store
 
 ROOT = Path(__file__).resolve().parents[2]

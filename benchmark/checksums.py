@@ -1,4 +1,4 @@
-"""SHA-256 of every file of a bundle, in the format `sha256sum --check` reads."""
+"""SHA-256 of every file of a directory, in the format `sha256sum --check` reads."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def read_checksums(directory: Path) -> dict[str, str]:
         if found is None or pure.is_absolute() or ".." in pure.parts:
             raise ChecksumFileError(
                 f"{path}, line {number}: expected 64 hexadecimal digits, two spaces and a path "
-                f"inside the bundle; got {line[:120]!r}"
+                f"inside the directory; got {line[:120]!r}"
             )
         if name in listed:
             raise ChecksumFileError(f"{path}, line {number}: {name} is listed twice")
