@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from benchmark.seeds import generator
 from benchmark.simulator.detectors import PixelArray
 from benchmark.simulator.noise import NoiseStreams, counted
-from benchmark.simulator.projection import Camera
+from benchmark.simulator.projection import Camera, ProjectedLight
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
 
@@ -58,6 +58,10 @@ class FrameSensor:
         half = np.array([size // 2 for size in self.window_px])
         return np.asarray(np.rint(self.spot_px(sun)).astype(np.int64) + offset - half)
 
+    def projected(self, scene: Scene) -> ProjectedLight:
+        """Where the mask's rims fall, and with how much light, before sunlight's own variation."""
+        return self.camera.project(scene.sun)
+
     def lit(self, scene: Scene) -> Floats:
         """(N, H, W) irradiance averaged over each pixel, in units of mean normal sunlight.
 
@@ -73,7 +77,7 @@ class FrameSensor:
         if scene.origin_px is None:
             raise ValueError("frames need the windows' origins; the scene's origin_px is None")
         pitch = self.detector.pitch_mm
-        light = self.camera.project(scene.sun)
+        light = self.projected(scene)
         columns, rows = self.window_px
         flux = np.empty((len(scene), rows, columns))
         render(
