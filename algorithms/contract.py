@@ -60,6 +60,9 @@ class SensorGeometry:
 
     Code dials: a row of ``code_bits`` Gray tracks with cells of ``code_cell_mm`` and four fine
     tracks of ``fine_period_mm`` on each of ``line_axes``.
+
+    Masks of many apertures: a row of ``apertures`` is (x mm, y mm, width mm), the centre over the
+    detector's centre; ``subfields`` counts the coded groups an axis, in rows of groups.
     """
 
     focal_length_mm: float | None = None
@@ -77,6 +80,8 @@ class SensorGeometry:
     code_bits: int | None = None
     code_cell_mm: float | None = None
     fine_period_mm: float | None = None
+    apertures: tuple[tuple[float, float, float], ...] | None = None
+    subfields: int | None = None
 
     def require(self, *fields: str, by: str) -> None:
         """Raise ValueError naming the fields of this geometry that `by` needs and are None."""

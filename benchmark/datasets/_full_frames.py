@@ -1,0 +1,53 @@
+"""`FullFramePreset`: a dataset of full frames, whose bound looks at the lit pixels only."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from benchmark.bounds import Bound, cramer_rao
+from benchmark.datasets._preset import Preset
+from benchmark.simulator.lit_pixels import LitPixels
+from benchmark.simulator.masks import Mask
+from benchmark.simulator.multi_spot_frames import MultiSpotSensor
+
+#: Samples whose bound is computed together; memory only, the numbers do not depend on it.
+BOUND_BATCH = 16
+
+
+def drawn(mask: Mask) -> tuple[tuple[float, float, float], ...]:
+    """Return a mask's apertures as `SensorGeometry` holds them: x, y and width, mm."""
+    return tuple((a.x_mm, a.y_mm, a.width_mm) for a in mask.apertures)
+
+
+@dataclass(frozen=True)
+class FullFramePreset(Preset):
+    """A `Preset` whose conditions all hold a `MultiSpotSensor`."""
+
+    def bound(self, condition: str, split: str = "test") -> Bound:
+        """Cramer-Rao bound of every sample of a split (see `benchmark.bounds.cramer_rao`).
+
+        Pixels far from light enter as one mean (see `LitPixels`).
+
+        Raises
+        ------
+        TypeError
+            When the condition's sensor is no `MultiSpotSensor`.
+        """
+        setup = self.condition(condition)
+        sensor = setup.sensor
+        if not isinstance(sensor, MultiSpotSensor):
+            raise TypeError(f"{self.name} must hold a MultiSpotSensor; got {type(sensor).__name__}")
+        scene, pattern = self.scene(condition, split), self.fixed_pattern(condition)
+        parts = []
+        for start in range(0, len(scene), BOUND_BATCH):
+            part = scene.part(start, start + BOUND_BATCH)
+            lit = LitPixels(sensor, part, pattern)
+            parts.append(cramer_rao(lit, part, pattern, setup.irradiance))
+        return Bound(
+            angle_deg=np.concatenate([part.angle_deg for part in parts]),
+            alpha_deg=np.concatenate([part.alpha_deg for part in parts]),
+            beta_deg=np.concatenate([part.beta_deg for part in parts]),
+            observable=np.concatenate([part.observable for part in parts]),
+        )

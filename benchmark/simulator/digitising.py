@@ -1,0 +1,109 @@
+"""Full frames to digital numbers in one pass (loaded on first use: Numba).
+
+Noise dominates the cost of a mostly dark frame of a million pixels. Every pixel is drawn by
+inverting the normal distribution: 32 random bits are a probability, and a table of quantiles with
+linear interpolation gives the value. 2^14 equal steps of probability are enough but for the outer
+2^-10 on either side, which have a table of their own, as fine again. The distribution function so
+drawn is within 1e-6 of the normal one; values end at 6.3 standard deviations.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import lru_cache
+from statistics import NormalDist
+from typing import Any
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+_STEPS = 1 << 14
+_TAIL = 2.0**-10
+
+
+@lru_cache(maxsize=1)
+def quantiles() -> Floats:
+    """(2, 16385) normal quantiles: of probabilities 0 to 1, and of 0 to 2^-10, in equal steps.
+
+    Where the first row falls into the tails it is not used.
+    """
+    normal = NormalDist()
+    tail = [normal.inv_cdf(2.0**-33)]
+    tail += [normal.inv_cdf(_TAIL * step / _STEPS) for step in range(1, _STEPS + 1)]
+    first = round(_STEPS * _TAIL)
+    half = [0.0] * first + [normal.inv_cdf(k / _STEPS) for k in range(first, _STEPS // 2)]
+    table = np.array([[*half, 0.0, *(-value for value in reversed(half))], tail])
+    table.flags.writeable = False
+    return table
+
+
+def _normal_py(word: int, table: Floats) -> float:
+    """Turn 32 random bits into a normal value."""
+    step = word >> 18
+    if 16 <= step < 16368:
+        rest = ((word & 262143) + 0.5) / 262144.0
+        return float(table[0, step] + rest * (table[0, step + 1] - table[0, step]))
+    upper = step >= 16368
+    if upper:
+        word = 4294967295 - word
+    step, rest = word >> 8, ((word & 255) + 0.5) / 256.0
+    value = table[1, step] + rest * (table[1, step + 1] - table[1, step])
+    return float(-value if upper else value)
+
+
+_normal: Callable[[int, Floats], float] = njit(cache=True)(_normal_py)
+
+
+def _digitise_py(
+    out: NDArray[np.uint16],
+    light: Floats,
+    bits: NDArray[np.uint64],
+    tables: tuple[Floats, Floats, Floats],
+    numbers: tuple[float, float, float, float, float, float, float],
+) -> None:
+    """Write the digital numbers of one frame.
+
+    Parameters
+    ----------
+    out, light
+        (H, W): digital numbers, overwritten, and irradiance in units of mean sunlight.
+    bits
+        (ceil(H W / 2),) random words, two pixels each, low half first.
+    tables
+        `quantiles`, and (H, W) relative gain and dark electrons.
+    numbers
+        Stray light (added to `light`), electrons of full light, squared read noise, full well,
+        electrons a digital number, offset and largest digital number.
+    """
+    stray, sunlit, read2, full_well, per_dn, offset, top = numbers
+    table, gain, dark = tables
+    height, width = out.shape
+    noise = np.empty(width)
+    for row in range(height):
+        # in two loops: the look-up cannot be vectorised, the arithmetic can
+        for column in range(width):
+            pixel = row * width + column
+            word = int((bits[pixel >> 1] >> np.uint64(32 * (pixel & 1))) & np.uint64(0xFFFFFFFF))
+            noise[column] = _normal(word, table)
+        for column in range(width):
+            mean = (light[row, column] + stray) * sunlit * gain[row, column] + dark[row, column]
+            value = mean + math.sqrt(max(mean, 0.0) + read2) * noise[column]
+            value = np.rint(offset + min(value, full_well) / per_dn)
+            out[row, column] = np.uint16(min(max(value, 0.0), top))
+
+
+digitise: Callable[..., Any] = njit(cache=True)(_digitise_py)
+
+
+def _normals_py(out: Floats, bits: NDArray[np.uint64], table: Floats) -> None:
+    for n in range(out.shape[0]):
+        word = int((bits[n >> 1] >> np.uint64(32 * (n & 1))) & np.uint64(0xFFFFFFFF))
+        out[n] = _normal(word, table)
+
+
+#: Normal values alone, (n,), of (ceil(n / 2),) random words.
+normals: Callable[[Floats, NDArray[np.uint64], Floats], None] = njit(cache=True)(_normals_py)
