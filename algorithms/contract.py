@@ -30,7 +30,7 @@ class Observation(StrEnum):
     FRAMES = "frames"  # (N, H, W) digital numbers or electrons
     PROFILES = "profiles"  # (N, W)
     CURRENTS = "currents"  # (N, K) currents, voltages or frequencies, one column a detector
-    EVENTS = "events"  # structured, one sequence a sample
+    EVENTS = "events"  # (N, M, 3) x_px, y_px, t_us since reset, by time; NaN rows after the last
 
 
 class FeatureKind(StrEnum):
@@ -63,6 +63,9 @@ class SensorGeometry:
 
     Masks of many apertures: a row of ``apertures`` is (x mm, y mm, width mm), the centre over the
     detector's centre; ``subfields`` counts the coded groups an axis, in rows of groups.
+
+    Lenses: ``lens_distortion`` (k1, k2) images the tangents t of a direction, r = |t|, at
+    ``focal_length_mm t (1 + k1 r^2 + k2 r^4)``.
     """
 
     focal_length_mm: float | None = None
@@ -82,6 +85,7 @@ class SensorGeometry:
     fine_period_mm: float | None = None
     apertures: tuple[tuple[float, float, float], ...] | None = None
     subfields: int | None = None
+    lens_distortion: tuple[float, float] | None = None
 
     def require(self, *fields: str, by: str) -> None:
         """Raise ValueError naming the fields of this geometry that `by` needs and are None."""
