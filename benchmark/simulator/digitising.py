@@ -61,7 +61,7 @@ _normal: Callable[[int, Floats], float] = njit(cache=True)(_normal_py)
 def _digitise_py(
     out: NDArray[np.uint16],
     light: Floats,
-    bits: NDArray[np.uint64],
+    bits: NDArray[np.int64],
     tables: tuple[Floats, Floats, Floats],
     numbers: tuple[float, float, float, float, float, float, float],
 ) -> None:
@@ -72,7 +72,7 @@ def _digitise_py(
     out, light
         (H, W): digital numbers, overwritten, and irradiance in units of mean sunlight.
     bits
-        (ceil(H W / 2),) random words, two pixels each, low half first.
+        (ceil(H W / 2),) random words of 64 bits, two pixels each, low half first.
     tables
         `quantiles`, and (H, W) relative gain and dark electrons.
     numbers
@@ -87,7 +87,7 @@ def _digitise_py(
         # in two loops: the look-up cannot be vectorised, the arithmetic can
         for column in range(width):
             pixel = row * width + column
-            word = int((bits[pixel >> 1] >> np.uint64(32 * (pixel & 1))) & np.uint64(0xFFFFFFFF))
+            word = int((bits[pixel >> 1] >> (32 * (pixel & 1))) & 0xFFFFFFFF)
             noise[column] = _normal(word, table)
         for column in range(width):
             mean = (light[row, column] + stray) * sunlit * gain[row, column] + dark[row, column]
@@ -99,11 +99,11 @@ def _digitise_py(
 digitise: Callable[..., Any] = njit(cache=True)(_digitise_py)
 
 
-def _normals_py(out: Floats, bits: NDArray[np.uint64], table: Floats) -> None:
+def _normals_py(out: Floats, bits: NDArray[np.int64], table: Floats) -> None:
     for n in range(out.shape[0]):
-        word = int((bits[n >> 1] >> np.uint64(32 * (n & 1))) & np.uint64(0xFFFFFFFF))
+        word = int((bits[n >> 1] >> (32 * (n & 1))) & 0xFFFFFFFF)
         out[n] = _normal(word, table)
 
 
 #: Normal values alone, (n,), of (ceil(n / 2),) random words.
-normals: Callable[[Floats, NDArray[np.uint64], Floats], None] = njit(cache=True)(_normals_py)
+normals: Callable[[Floats, NDArray[np.int64], Floats], None] = njit(cache=True)(_normals_py)

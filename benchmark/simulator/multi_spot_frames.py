@@ -184,7 +184,7 @@ class MultiSpotSensor:
             digitise(
                 out[n],
                 light,
-                streams.gaussian.bit_generator.random_raw(words),
+                streams.gaussian.bit_generator.random_raw(words).view(np.int64),
                 tables,
                 (float(scene.stray[n]), *numbers),
             )
