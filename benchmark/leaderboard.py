@@ -8,10 +8,12 @@ files are not what they should be.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace as replace_fields
 from itertools import groupby
 from pathlib import Path
 from typing import Any
 
+from benchmark import data_pins
 from benchmark.content_key import SCHEMA_VERSION
 from benchmark.leaderboard_check import Difference, check
 from benchmark.leaderboard_formats import FORMATS
@@ -93,6 +95,8 @@ def update(
 ) -> Summary:
     """Measure what is missing or out of date, drop what is no longer planned, write the files.
 
+    Every dataset's data are pinned, whether anything can be measured on them or not.
+
     Parameters and errors as `benchmark.runner.run`.
     """
     summary = run(
@@ -104,8 +108,9 @@ def update(
         only_these=True,
         parts=parts,
     )
+    pinned = data_pins.update(Store(directory), workers, progress, parts=parts)
     write(directory)
-    return summary
+    return replace_fields(summary, warnings=(*summary.warnings, *pinned.warnings))
 
 
 def _order(row: Row) -> tuple[object, ...]:

@@ -12,10 +12,10 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from benchmark import runner
+from benchmark import data_pins, runner
 from benchmark.leaderboard_formats import FORMATS, Cells
 from benchmark.plan import cells
-from benchmark.plan_parts import Parts
+from benchmark.plan_parts import SPLITS, Parts
 from benchmark.runner_progress import ProgressCallback
 from benchmark.scoring import METRICS
 from benchmark.store import PUBLISHED, Row, Store, cell_of
@@ -141,6 +141,21 @@ def _outdated(store: Store, parts: Parts | None) -> Iterator[Difference]:
             )
     for cell in sorted(rows.keys() - set(planned)):
         yield Difference("scores.jsonl", f"{cell}/row", "present", "not planned")
+    yield from _unpinned(store, parts)
+
+
+def _unpinned(store: Store, parts: Parts | None) -> Iterator[Difference]:
+    """Find data that are not pinned for the code as it is, and pins of nothing."""
+    pins = store.pins()
+    for dataset, condition in data_pins.outdated(store, parts=parts):
+        place = f"{dataset}/{condition}"
+        if all((dataset, condition, split) in pins for split in SPLITS):
+            changed = "another: code or parameters have changed"
+            yield Difference("data.jsonl", f"{place}/specification", "as it was", changed)
+        else:
+            yield Difference("data.jsonl", f"{place}/pin", "absent", "pinned")
+    for nothing in sorted(pins.keys() - data_pins.places(parts)):
+        yield Difference("data.jsonl", f"{'/'.join(nothing)}/pin", "present", "no such data")
 
 
 def _derived(store: Store) -> Iterator[Difference]:

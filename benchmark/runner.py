@@ -102,7 +102,7 @@ def run(
             results = outcomes(_units(missing, parts), workers, scheduler)
             with terminal_progress() if progress is None else nullcontext(progress) as report:
                 recorder.record(results, len(missing), report)
-        _finalise(store, journal, known, wanted if only_these else None)
+        _finalise(store, journal, known, parts, wanted if only_these else None)
     return Summary(
         store=store.directory,
         planned=len(wanted),
@@ -215,16 +215,24 @@ def _cell(result: UnitResult, model: str) -> Cell:
     return Cell(unit.preset.name, unit.condition, unit.extractor.name, model)
 
 
-def _finalise(store: Store, journal: Journal, known: Progress, keep: list[Cell] | None) -> None:
+def _finalise(
+    store: Store, journal: Journal, known: Progress, parts: Parts, keep: list[Cell] | None
+) -> None:
     if keep is not None:
         kept = frozenset(keep)
         known.rows = {cell: row for cell, row in known.rows.items() if cell in kept}
-    places = {(cell.dataset, cell.condition, split) for cell in known.rows for split in SPLITS}
+        # datasets that nothing can be measured on are pinned too (benchmark.data_pins)
+        conditions = {name: preset.conditions for name, preset in parts.presets.items()}
+        known.pins = {
+            place: pin
+            for place, pin in known.pins.items()
+            if place[1] in conditions.get(place[0], ()) and place[2] in SPLITS
+        }
     current = {row["key"] for row in known.rows.values()}
     store.write(
         known.rows.values(),
         (run for key, run in known.runs.items() if key in current),
-        (pin for place, pin in known.pins.items() if place in places),
+        known.pins.values(),
     )
     journal.remove()
 

@@ -18,7 +18,7 @@ from algorithms.contract import Extractor, Floats, Model, in_detector_coordinate
 from benchmark.content_key import data_specification, digest, samples_hash, seed
 from benchmark.plan_parts import SPLITS, Bound, Preset, Samples
 from benchmark.runner_timing import Timing, best_of, one_thread
-from benchmark.scoring import Score, score
+from benchmark.scoring import Score, score, stored
 from benchmark.store import Pin
 
 #: Datasets under one condition kept per process: the plan hands out a dataset's units in a row.
@@ -93,6 +93,7 @@ def _data(preset: Preset, condition: str) -> _Data:
     if place not in _kept:
         splits = {split: preset.generate(condition, split) for split in SPLITS}
         specification = data_specification(preset, condition)
+        bound = preset.bound(condition, "test")
         pins = tuple(
             Pin(
                 preset.name,
@@ -102,16 +103,20 @@ def _data(preset: Preset, condition: str) -> _Data:
                 specification,
                 samples_hash(samples),
                 len(samples.sun),
+                _rms_deg(bound) if split == "test" else None,
             )
             for split, samples in splits.items()
         )
-        _kept[place] = _Data(
-            splits["calibration"], splits["test"], preset.bound(condition, "test"), pins
-        )
+        _kept[place] = _Data(splits["calibration"], splits["test"], bound, pins)
     _kept.move_to_end(place)
     while len(_kept) > _KEPT:
         _kept.popitem(last=False)
     return _kept[place]
+
+
+def _rms_deg(bound: Bound) -> float | None:
+    seen = np.asarray(bound.angle_deg)[np.asarray(bound.observable)]
+    return stored(float(np.sqrt(np.mean(seen**2)))) if seen.size else None
 
 
 def _measured(unit: Unit, data: _Data) -> UnitResult:

@@ -44,7 +44,11 @@ class UnknownFieldError(LookupError):
 
 @dataclass(frozen=True)
 class Pin:
-    """Hash of one generated split, and what it was generated from."""
+    """Hash of one generated split, what it was generated from, and its bound.
+
+    ``bound_deg`` is the Cramer-Rao bound of the test split, root mean square over the samples
+    where the direction is observable; None for other splits and where there is no bound.
+    """
 
     dataset: str
     condition: str
@@ -53,6 +57,7 @@ class Pin:
     specification: str
     data_hash: str
     n: int
+    bound_deg: float | None = None
 
     @property
     def place(self) -> tuple[str, str, str]:

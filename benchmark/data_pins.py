@@ -1,0 +1,213 @@
+"""Pins of data: the hash of every dataset, condition and split, whatever can be measured on it.
+
+A run pins what it measures; here is pinned what remains. A pin made by the code as it is stays, so
+that bringing pins up to date renders only what is new or has changed.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Collection, Iterator, Mapping
+from contextlib import nullcontext
+from dataclasses import dataclass
+from pathlib import Path
+
+from joblib import Parallel, delayed
+
+from benchmark.content_key import data_specification
+from benchmark.plan_parts import SPLITS, Parts, Preset, UnknownNameError, installed
+from benchmark.runner_progress import ProgressCallback, terminal_progress
+from benchmark.runner_timing import one_thread
+from benchmark.runner_unit import generated_pins, reason_of
+from benchmark.store import Pin, Store
+from benchmark.store_journal import Journal, locked
+
+Condition = tuple[str, str]  # (dataset, condition)
+Place = tuple[str, str, str]  # (dataset, condition, split)
+
+
+@dataclass(frozen=True)
+class Pinned:
+    """What was pinned.
+
+    Attributes
+    ----------
+    store
+        Where.
+    kept, renewed
+        How many conditions were pinned for the code as it is, how many are now.
+    warnings
+        Data that another hash is pinned for, or that cannot be generated.
+    seconds
+        How long it took.
+    """
+
+    store: Path
+    kept: int
+    renewed: int
+    warnings: tuple[str, ...]
+    seconds: float
+
+
+def outdated(
+    store: Store, datasets: Collection[str] | None = None, *, parts: Parts | None = None
+) -> list[Condition]:
+    """List the conditions with a split that is not pinned for the code as it is, in order.
+
+    Parameters
+    ----------
+    store
+        Where the pins are.
+    datasets
+        Names; all by default.
+    parts
+        Datasets; what is installed by default.
+
+    Raises
+    ------
+    UnknownNameError
+        For a dataset that is not installed.
+    """
+    known = parts or installed()
+    pins = Journal(store).progress().pins
+    return [
+        (preset.name, condition)
+        for preset in _chosen(known, datasets)
+        for condition in preset.conditions
+        if not _is_pinned(preset, condition, pins)
+    ]
+
+
+def places(parts: Parts | None = None) -> set[Place]:
+    """Return everything there is to pin: (dataset, condition, split)."""
+    return {
+        (preset.name, condition, split)
+        for preset in (parts or installed()).presets.values()
+        for condition in preset.conditions
+        for split in SPLITS
+    }
+
+
+def update(
+    store: Store,
+    workers: int = 1,
+    progress: ProgressCallback | None = None,
+    *,
+    datasets: Collection[str] | None = None,
+    again: bool = False,
+    parts: Parts | None = None,
+) -> Pinned:
+    """Generate what is not pinned for the code as it is, and pin it.
+
+    What is generated is on disk before the next is awaited, so a killed call loses only what was
+    in flight.
+
+    Parameters
+    ----------
+    store
+        Where the pins are.
+    workers
+        Number of processes; the hashes do not depend on it.
+    progress
+        As `benchmark.runner.run`.
+    datasets
+        Names; all by default.
+    again
+        Generate what is pinned as well; a hash other than the pinned one is a warning, the pin
+        stays.
+    parts
+        Datasets; what is installed by default.
+
+    Raises
+    ------
+    UnknownNameError
+        For a dataset that is not installed.
+    StoreLockedError
+        When a runner writes to the store.
+    """
+    if workers < 1:
+        raise ValueError(f"workers must be at least 1; got {workers}")
+    started = time.perf_counter()
+    known = parts or installed()
+    presets = _chosen(known, datasets)
+    with locked(store):
+        journal = Journal(store)
+        journal.cut_torn_line()
+        held = journal.progress()
+        every = [(preset, condition) for preset in presets for condition in preset.conditions]
+        missing = [one for one in every if again or not _is_pinned(*one, held.pins)]
+        warnings: list[str] = []
+        renewed = 0
+        with terminal_progress() if progress is None else nullcontext(progress) as report:
+            report(0, len(missing), "")
+            for done, (preset, condition, pins, reason) in enumerate(
+                _generated(missing, workers), start=1
+            ):
+                new = [pin for pin in pins if _differs(held.pins.get(pin.place), pin, warnings)]
+                journal.append(new, [])
+                held.pins.update((pin.place, pin) for pin in new)
+                renewed += bool(new)
+                if reason:
+                    warnings.append(f"{preset.name} {condition}: cannot be generated: {reason}")
+                report(done, len(missing), f"{preset.name} {condition}")
+        there = places(known)
+        store.write(
+            held.rows.values(),
+            held.runs.values(),
+            (pin for place, pin in held.pins.items() if place in there),
+        )
+        journal.remove()
+    return Pinned(
+        store.directory,
+        len(every) - len(missing),
+        renewed,
+        tuple(warnings),
+        time.perf_counter() - started,
+    )
+
+
+def _chosen(parts: Parts, datasets: Collection[str] | None) -> list[Preset]:
+    if datasets is None:
+        return [parts.presets[name] for name in sorted(parts.presets)]
+    for name in sorted(datasets):
+        if name not in parts.presets:
+            raise UnknownNameError("dataset", name, parts.presets)
+    return [parts.presets[name] for name in sorted(set(datasets))]
+
+
+def _is_pinned(preset: Preset, condition: str, pins: Mapping[Place, Pin]) -> bool:
+    found = [pins.get((preset.name, condition, split)) for split in SPLITS]
+    if None in found:
+        return False
+    specification = data_specification(preset, condition)
+    return all(pin is not None and pin.specification == specification for pin in found)
+
+
+def _differs(pinned: Pin | None, pin: Pin, warnings: list[str]) -> bool:
+    """Say whether to renew a pin; one made by the same code stays, and another hash is told."""
+    if pinned is None or pinned.specification != pin.specification:
+        return True
+    if pinned.data_hash != pin.data_hash:
+        warnings.append(
+            f"{pin.dataset} {pin.condition} {pin.split}: data hash {pin.data_hash} on this "
+            f"machine, pinned {pinned.data_hash}"
+        )
+    return False
+
+
+def _generated(
+    wanted: list[tuple[Preset, str]], workers: int
+) -> Iterator[tuple[Preset, str, tuple[Pin, ...], str]]:
+    if workers == 1 or len(wanted) < 2:
+        yield from (_generate(preset, condition) for preset, condition in wanted)
+        return
+    parallel = Parallel(n_jobs=workers, return_as="generator_unordered", batch_size=1)
+    yield from parallel(delayed(_generate)(preset, condition) for preset, condition in wanted)
+
+
+def _generate(preset: Preset, condition: str) -> tuple[Preset, str, tuple[Pin, ...], str]:
+    with one_thread():
+        try:
+            return preset, condition, generated_pins(preset, condition), ""
+        except Exception as error:  # noqa: BLE001 - any error of a dataset is told with its name
+            return preset, condition, (), reason_of(error)
