@@ -17,7 +17,7 @@ from benchmark.simulator.multi_spot_frames import MultiSpotSensor
 from benchmark.simulator.optics import fresnel_number
 from benchmark.simulator.projection import Camera
 
-_DIAMETER_MM, _FOCAL_MM, _SPACING_MM = 0.16, 1.0, 0.853
+_DIAMETER_MM, _FOCAL_MM, _SPACING_MM = 0.16, 1.0, 0.833
 #: Every spot is whole on the detector up to here (S-FOV); beyond, fewer are (X-FOV).
 _ALL_SPOTS_DEG, _HALF_FOV_DEG = 50.0, 60.0
 
@@ -73,10 +73,10 @@ PRESET = FullFramePreset(
     description=(
         "Full frames of 1024 x 1024 px behind 10 x 10 round holes, the count of Rufino2009b, "
         "which gives no other size in what was mapped. Round numbers: holes of 0.16 mm stand "
-        "1 mm up (Fresnel number 12; Mobasser2003 has 0.5 mm), 0.853 mm apart, so that spots of "
+        "1 mm up (Fresnel number 12; Mobasser2003 has 0.5 mm), 0.833 mm apart, so that spots of "
         "16 px never touch and no two of a row fall alike on the 10 um pixels. All 100 spots "
-        "are whole on the detector up to 50 deg in either angle (S-FOV), 80 of 100 with one "
-        "angle and 64 with both at 60 deg, the field's edge (X-FOV). Holes are off by 1 um in "
+        "are whole on the detector up to 50 deg in either angle (S-FOV), 90 of 100 with one "
+        "angle and 81 with both at 60 deg, the field's edge (X-FOV). Holes are off by 1 um in "
         "position, 1 um in size (the unit as a whole) and 0.5 um an edge. Few samples, because "
         "a frame is 2 MB. The Sun is sampled at 36 points: pixels are within 0.5 % of peak of a "
         "finer sampling with both angles up to 45 deg, 1.2 % at 60 deg."
