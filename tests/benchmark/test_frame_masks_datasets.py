@@ -21,6 +21,8 @@ from benchmark.simulator.multi_spot_frames import MultiSpotSensor
 from benchmark.simulator.noise import NoiseStreams
 from benchmark.simulator.projection import Camera
 from benchmark.simulator.scene import Scene
+from benchmark.speed import Subject, compare
+from benchmark.speed_frames import frames_of_many_spots
 
 LIGHT = Irradiance(stray=0.002, stray_spread=0.0004)
 
@@ -208,3 +210,12 @@ def test_generation_depends_on_neither_batch_nor_order(monkeypatch: pytest.Monke
     again = few.generate("missing-apertures", "test")
     assert np.array_equal(first.observations, again.observations)
     assert np.array_equal(first.origin_px, np.zeros((7, 2)))
+
+
+def test_million_pixel_frames_agree_with_the_brute_force_they_are_timed_against() -> None:
+    subject = Subject(**frames_of_many_spots())
+    assert subject.worst <= subject.tolerance
+    frames = subject.call()
+    assert isinstance(frames, np.ndarray)
+    assert frames.shape == (subject.items, 1024, 1024)
+    assert compare(subject, 2).ratio < subject.limit
