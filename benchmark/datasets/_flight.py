@@ -282,4 +282,4 @@ def _last_seen(lit: NDArray[np.bool_]) -> NDArray[np.int64]:
 def _known(split: str) -> Split:
     if split not in SPLITS:
         raise ValueError(f"no split {split!r}; there are {', '.join(SPLITS)}")
-    return cast("Split", split)
+    return split
