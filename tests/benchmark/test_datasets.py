@@ -68,7 +68,8 @@ def test_samples_are_what_the_card_says(made, name: str, condition: str) -> None
             assert samples.origin_px is not None
             assert samples.origin_px.shape == (count, 2)
         else:
-            assert samples.observations.dtype == np.float64
+            digital = preset.observation is Observation.PROFILES
+            assert samples.observations.dtype == (np.uint16 if digital else np.float64)
             assert samples.observations.ndim == 2
             assert samples.origin_px is None
         assert np.isfinite(samples.observations).all()

@@ -1,0 +1,104 @@
+"""Compiled light through the tracks of a code dial (loaded on first use: Numba)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Interval = tuple[float, float]
+
+_NODES, _SHARES = np.polynomial.legendre.leggauss(3)
+
+
+def _open_length_py(u: float, track: Floats, numbers: Floats) -> float:
+    """Open length of a track from the dial's left end to `u`, weighted by its transmission."""
+    kind, period, cell, square = track[0], numbers[0], numbers[1], numbers[2]
+    reach = cell * (track.shape[0] - 5) / 2.0
+    u = min(max(u - track[3], -reach), reach)
+    if kind == 0.0:
+        place = (u + reach) / cell
+        number = min(int(place), track.shape[0] - 6)
+        below, above = track[4 + number], track[5 + number]
+        return float(below + (above - below) * (place - number))
+    # rows F1..F4 transmit (1 - cos)/2, (1 - sin)/2, (1 + cos)/2, (1 + sin)/2 of the phase
+    if square > 0.0:
+        turn = u / period - kind / 4.0
+        whole = math.floor(turn)
+        return float(period * (whole / 2.0 + min(turn - whole, 0.5)))
+    phase = 2.0 * math.pi * u / period
+    wave = -math.sin(phase)
+    if kind == 2.0:
+        wave = math.cos(phase)
+    elif kind == 3.0:
+        wave = math.sin(phase)
+    elif kind == 4.0:
+        wave = -math.cos(phase)
+    return float(u / 2.0 + period / (4.0 * math.pi) * wave)
+
+
+_open_length = njit(cache=True)(_open_length_py)
+
+
+def _chord_py(v: float, lower: Floats, upper: Floats, numbers: Floats) -> Interval:
+    """Both ends of the slit's light on the line at `v`; left > right where there is none."""
+    x, y, a, b, c, s = numbers[3:]
+    du, dv = upper[0] - lower[0], upper[1] - lower[1]
+    a = a - abs(c * du + s * dv) / 2.0
+    b = b - abs(c * dv - s * du) / 2.0
+    middle = x + (lower[0] + upper[0]) / 2.0
+    off = v - y - (lower[1] + upper[1]) / 2.0
+    left, right = (-a - s * off) / c, (a - s * off) / c
+    if s != 0.0:
+        one, two = (c * off - b) / s, (c * off + b) / s
+        left, right = max(left, min(one, two)), min(right, max(one, two))
+    elif abs(off) > b:
+        right = left - 1.0
+    return middle + left, middle + right
+
+
+_chord = njit(cache=True)(_chord_py)
+
+
+def _read_py(out: Floats, tracks: Floats, rims: Floats, light: Floats, numbers: Floats) -> None:
+    """Write the light behind every track of one dial, in units of the slit's width.
+
+    Parameters
+    ----------
+    out
+        (N, T), overwritten; mm: times a track's height it is the light's flux.
+    tracks
+        (T, 4 + cells + 1): kind (0 coarse, 1 to 4 for the fine rows F1 to F4), middle across the
+        dial, half height, displacement of the pattern along it, mm; then, of coarse tracks, the
+        open length from the left end to each cell's edge, mm.
+    rims
+        (2, N, K, 2) displacement of the slit's lower and upper rims, mm, (u, v).
+    light
+        (N, K) light of each of the K points of the Sun.
+    numbers
+        (9,) fine period and cell, mm; 1 for square fine rows, 0 for sinusoidal ones; the slit's
+        row of `Mask.table` without its kind.
+    """
+    tilted = numbers[8] != 0.0
+    for n in range(out.shape[0]):
+        for t in range(tracks.shape[0]):
+            track = tracks[t]
+            total = 0.0
+            for k in range(light.shape[1]):
+                lower, upper = rims[0, n, k], rims[1, n, k]
+                # a slit parallel to the tracks' normal lights every line of a track alike
+                for q in range(3 if tilted else 1):
+                    node, share = (_NODES[q], _SHARES[q] / 2.0) if tilted else (0.0, 1.0)
+                    left, right = _chord(track[1] + node * track[2], lower, upper, numbers)
+                    if right > left:
+                        passed = _open_length(right, track, numbers)
+                        passed -= _open_length(left, track, numbers)
+                        total += light[n, k] * share * passed
+            out[n, t] = total
+
+
+read_dial: Callable[[Floats, Floats, Floats, Floats, Floats], None] = njit(cache=True)(_read_py)
