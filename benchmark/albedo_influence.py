@@ -208,6 +208,5 @@ def on_aperture(
     offset = np.asarray(scene.origin_px) - np.asarray(detector.centre_px)
     sight = np.concatenate([scale * (spots + offset), np.ones((2, len(scene), 1))], axis=2)
     sight /= np.sqrt(np.sum(sight**2, axis=2, keepdims=True))
-    light = preset.condition("nominal").irradiance
-    bound = cramer_rao(sensor, scene, pattern, light).angle_deg
+    bound = cramer_rao(sensor, scene, pattern, preset.condition("nominal").irradiance).angle_deg
     return Influence(separation_deg(sight[0], sight[1]), bound)
