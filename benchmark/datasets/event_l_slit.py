@@ -17,7 +17,7 @@ from benchmark.simulator.projection import Camera
 
 _WIDTH_MM, _FOCAL_MM, _HALF_FOV_DEG = 0.15, 1.0, 40.0
 #: The L's corner lies over (-_CORNER_MM, -_CORNER_MM); its arms are _ARM_MM long.
-_CORNER_MM, _ARM_MM = 0.72, 3.2
+_CORNER_MM, _ARM_MM = 0.58, 3.2
 
 _DETECTOR = SpikingArray(
     columns=64,
@@ -149,8 +149,8 @@ PRESET = Preset(
         "the line along y tells x (beta), the one along x tells y (alpha). The studies followed "
         "give the architecture, no geometry in what was mapped. Round numbers instead: pixels of "
         "50 um (such pixels are large); slits of 0.15 mm 1 mm up keep the Fresnel number at 10 and "
-        "make lines three pixels wide; the corner lies 0.72 mm off both axes so that it stays on "
-        "the array over +-40 deg with at least 30 pixels of either arm. The mask has no thickness "
+        "make lines three pixels wide; the corner lies 0.58 mm off both axes so that it stays on "
+        "the array over +-40 deg with at least 25 pixels of either arm. The mask has no thickness "
         "(chrome on glass, its refraction left out). The array is reset after 384 events, which "
         "is all fully lit pixels and most of the lines' edges, or after 5 ms, before pixels in "
         "stray light fire. The bound is that of the times of the pixels that fire before the "

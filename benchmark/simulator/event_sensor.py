@@ -17,6 +17,10 @@ from benchmark.simulator.sensor import FixedPattern
 
 Floats = NDArray[np.float64]
 
+#: Electrons a microsecond below which no pixel is taken to be: without light and dark current it
+#: never fires, but its time stays a number.
+_LEAST_RATE = 1e-9
+
 
 @dataclass(frozen=True)
 class SpikingArray:
@@ -79,7 +83,7 @@ class SpikingArray:
         per_us = self.threshold_e / self.sunlit_us
         rate = per_us * np.maximum(light, 0.0) * pattern["gain"]
         rate += self.dark.level() * 1e-6
-        return np.asarray(self.threshold_e * pattern["threshold"] / rate)
+        return np.asarray(self.threshold_e * pattern["threshold"] / np.maximum(rate, _LEAST_RATE))
 
     def variance_us2(self, times_us: Floats) -> Floats:
         """Squared microseconds: shot noise of the charge and comparator noise, bus and clock."""
