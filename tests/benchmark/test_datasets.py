@@ -67,6 +67,12 @@ def test_samples_are_what_the_card_says(made, name: str, condition: str) -> None
             assert samples.observations.ndim == 3
             assert samples.origin_px is not None
             assert samples.origin_px.shape == (count, 2)
+        elif preset.observation is Observation.EVENTS:
+            assert samples.observations.dtype == np.float64
+            assert samples.observations.shape[2] == 3
+            assert samples.origin_px is None
+            assert np.isfinite(samples.observations[:, 0]).all()
+            continue  # rows after a sample's last event are NaN
         else:
             digital = preset.observation is Observation.PROFILES
             assert samples.observations.dtype == (np.uint16 if digital else np.float64)
@@ -216,7 +222,9 @@ def test_round_aperture_condition_has_its_own_geometry() -> None:
 def test_propagation_is_geometric_where_it_is_claimed() -> None:
     for name in datasets.names():
         regime = datasets.get(name).card()["regime"]
-        assert regime["propagation"] == "geometric"
+        if regime["propagation"] != "geometric":
+            assert regime["reason"]
+            continue
         assert regime.get("fresnel_number", math.inf) > 10
 
 
