@@ -39,7 +39,7 @@ from benchmark.dataset_preview import preview_png
 from benchmark.datasets import Preset, Samples
 from benchmark.plan_parts import SPLITS, UnknownNameError
 from benchmark.scoring import stored
-from benchmark.store import PUBLISHED, Store
+from benchmark.store import PUBLISHED, Pin, Store
 
 CARD = "card.json"
 #: Layout of an export; raised when a file or a field changes its meaning.
@@ -126,7 +126,7 @@ def export(
     out = Path(os.path.abspath(out))  # noqa: PTH100 - resolve() would follow a symbolic link
     _require_free(out, force=force)
     out.parent.mkdir(parents=True, exist_ok=True)
-    pins = {place: pin.data_hash for place, pin in Store(published).pins().items()}
+    pins = Store(published).pins()
     with _temporary(out) as work:
         made = work / "export"
         made.mkdir()
@@ -206,20 +206,21 @@ def _samples(arrays: Mapping[str, NDArray[Any]]) -> Samples:
 
 
 def _write_split(
-    made: Path, preset: Preset, which: tuple[str, str], n: int | None, pinned: str | None
+    made: Path, preset: Preset, which: tuple[str, str], n: int | None, pinned: Pin | None
 ) -> list[dict[str, Any]]:
     condition, split = which
     samples = preset.generate(condition, split, n)
-    whole = preset.bound(condition, split)
+    bound = preset.bound(condition, split, n)
     arrays = {name: array for name, array in samples.arrays().items() if array is not None}
-    arrays |= _bounds(whole, len(samples.sun))
+    arrays |= _bounds(bound)
+    count = len(samples.sun)
     about = {
         "condition": condition,
         "split": split,
-        "samples": len(samples.sun),
+        "samples": count,
         "data_hash": samples_hash(samples),
-        "published_data_hash": pinned if len(samples.sun) == len(whole.angle_deg) else None,
-        "bound_rms_deg": None if math.isnan(whole.rms_deg) else stored(whole.rms_deg),
+        "published_data_hash": pinned.data_hash if pinned and pinned.n == count else None,
+        "bound_rms_deg": None if math.isnan(bound.rms_deg) else stored(bound.rms_deg),
     }
     path = f"{condition}/{split}.npz"
     write_archive(made / path, arrays)
@@ -232,12 +233,12 @@ def _write_split(
     return files
 
 
-def _bounds(bound: Bound, n: int) -> dict[str, NDArray[Any]]:
+def _bounds(bound: Bound) -> dict[str, NDArray[Any]]:
     return {
-        "bound_deg": bound.angle_deg[:n],
-        "bound_alpha_deg": bound.alpha_deg[:n],
-        "bound_beta_deg": bound.beta_deg[:n],
-        "observable": bound.observable[:n],
+        "bound_deg": bound.angle_deg,
+        "bound_alpha_deg": bound.alpha_deg,
+        "bound_beta_deg": bound.beta_deg,
+        "observable": bound.observable,
     }
 
 

@@ -25,7 +25,7 @@ def drawn(mask: Mask) -> tuple[tuple[float, float, float], ...]:
 class FullFramePreset(Preset):
     """A `Preset` whose conditions all hold a `MultiSpotSensor`."""
 
-    def bound(self, condition: str, split: str = "test") -> Bound:
+    def bound(self, condition: str, split: str = "test", n: int | None = None) -> Bound:
         """Cramer-Rao bound of every sample of a split (see `benchmark.bounds.cramer_rao`).
 
         Pixels far from light enter as one mean (see `LitPixels`).
@@ -40,6 +40,7 @@ class FullFramePreset(Preset):
         if not isinstance(sensor, MultiSpotSensor):
             raise TypeError(f"{self.name} must hold a MultiSpotSensor; got {type(sensor).__name__}")
         scene, pattern = self.scene(condition, split), self.fixed_pattern(condition)
+        scene = scene.part(0, len(scene) if n is None else n)
         parts = []
         for start in range(0, len(scene), BOUND_BATCH):
             part = scene.part(start, start + BOUND_BATCH)

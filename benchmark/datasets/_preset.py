@@ -214,11 +214,7 @@ class Preset:
             On an unknown condition or split, naming the known ones; on n below 1.
         """
         sensor = self.condition(condition).sensor
-        scene = self.scene(condition, split)
-        if n is not None:
-            if n < 1:
-                raise ValueError(f"n must be at least 1; got {n}")
-            scene = scene.part(0, n)
+        scene = _first(self.scene(condition, split), n)
         pattern = self.fixed_pattern(condition)
         streams = NoiseStreams.named(self.name, self.version, condition, split)
         first = sensor.observe(scene.part(0, BATCH), pattern, streams)
@@ -230,12 +226,15 @@ class Preset:
             observations[start : start + BATCH] = batch
         return Samples(observations, scene.sun, scene.origin_px)
 
-    def bound(self, condition: str, split: str = "test") -> Bound:
-        """Cramer-Rao bound of every sample of a split (see `benchmark.bounds.cramer_rao`)."""
+    def bound(self, condition: str, split: str = "test", n: int | None = None) -> Bound:
+        """Cramer-Rao bound of every sample of a split (see `benchmark.bounds.cramer_rao`).
+
+        Parameters as `generate`.
+        """
         setup = self.condition(condition)
         return cramer_rao(
             setup.sensor,
-            self.scene(condition, split),
+            _first(self.scene(condition, split), n),
             self.fixed_pattern(condition),
             setup.irradiance,
         )
@@ -295,6 +294,12 @@ def _split(name: str) -> Split:
         if name == split:
             return split
     raise ValueError(f"no split {name!r}; there are {', '.join(SPLITS)}")
+
+
+def _first(scene: Scene, n: int | None) -> Scene:
+    if n is not None and n < 1:
+        raise ValueError(f"n must be at least 1; got {n}")
+    return scene if n is None else scene.part(0, n)
 
 
 def _plain(value: Any) -> Any:
