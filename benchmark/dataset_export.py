@@ -38,6 +38,7 @@ from benchmark.dataset_files import columns_of, read_archive, write_archive, wri
 from benchmark.dataset_preview import preview_png
 from benchmark.datasets import Preset, Samples
 from benchmark.plan_parts import SPLITS, UnknownNameError
+from benchmark.runner_progress import ProgressCallback, silent
 from benchmark.scoring import stored
 from benchmark.store import PUBLISHED, Pin, Store
 
@@ -90,6 +91,7 @@ def export(
     splits: Sequence[str] | None = None,
     n: int | None = None,
     force: bool = False,
+    progress: ProgressCallback = silent,
     published: Path = PUBLISHED,
 ) -> Exported:
     """Write a dataset to the directory `out`, whole or not at all.
@@ -106,6 +108,8 @@ def export(
         Only the first n samples of each split.
     force
         Replace an earlier export. Anything else in the way is refused all the same.
+    progress
+        Called as ``progress(done, total, what)`` in splits.
     published
         Where the pinned hashes are.
 
@@ -131,9 +135,11 @@ def export(
         made = work / "export"
         made.mkdir()
         files: list[dict[str, Any]] = []
-        for condition in chosen:
+        total = len(chosen) * len(wanted)
+        for done, condition in enumerate(chosen):
             (made / condition).mkdir()
-            for split in wanted:
+            for more, split in enumerate(wanted):
+                progress(done * len(wanted) + more, total, f"{condition} {split}")
                 pinned = pins.get((name, condition, split))
                 files += _write_split(made, preset, (condition, split), n, pinned)
             picture = f"{condition}/preview.png"
@@ -145,6 +151,7 @@ def export(
         (made / CARD).write_text(text, "utf-8", newline="\n")
         write_checksums(made)
         _replace(made, out, work / "before")
+        progress(total, total, "")
     return Exported(out, tuple(contents(out)), card)
 
 
