@@ -29,8 +29,11 @@ _FIELDS: dict[str, tuple[Type, str]] = {
     "model": ("string", "Name of the calibration model's implementation."),
     "model_taxonomy": ("string", "Model, as in the survey's taxonomy."),
     "model_version": ("integer", "Version of the model's numbers."),
-    "status": ("string", "ok, or failed with a reason."),
-    "reason": ("string", "Why a pipeline failed; empty where it did not."),
+    "status": (
+        "string",
+        "ok, refused (the model cannot work on these data) or failed, with a reason.",
+    ),
+    "reason": ("string", "Why there is no score; empty where there is one."),
     "n_calibration": ("integer", "Samples of the calibration split."),
     "n_test": ("integer", "Samples of the test split."),
     # accuracy

@@ -135,7 +135,7 @@ def _outdated(store: Store, parts: Parts | None) -> Iterator[Difference]:
         row = rows.get(cell)
         if row is None:
             yield Difference("scores.jsonl", f"{cell}/row", "absent", "planned")
-        elif row["status"] == "ok":
+        elif row["status"] != "failed":
             yield Difference(
                 "scores.jsonl", f"{cell}/key", row["key"], "another: code or data have changed"
             )

@@ -132,9 +132,9 @@ def _to_markdown(board: Board) -> str:
             lines.append("|" + "|".join(_rule(column) for column in SHOWN) + "|")
             for row in condition["rows"]:
                 lines.append(f"| {' | '.join(text for _, text in row['columns'])} |")
-            failed = [row for row in condition["rows"] if row["reason"]]
-            lines += ["", *(f"Failed: {row['cell']}: {row['reason']}" for row in failed)]
-            lines += [""] if failed else []
+            unscored = [row for row in condition["rows"] if row["reason"]]
+            lines += ["", *(f"No score: {row['cell']}: {row['reason']}" for row in unscored)]
+            lines += [""] if unscored else []
     return "\n".join(lines).rstrip("\n") + "\n"
 
 

@@ -127,7 +127,7 @@ def stale(cells: Iterable[Cell], store: Store, *, parts: Parts | None = None) ->
 
 def _is_stored(cell: Cell, known: Progress, keys: Keys) -> bool:
     row = known.rows.get(cell)
-    if row is None or row["status"] != "ok":
+    if row is None or row["status"] == "failed":
         return False
     data_hash = keys.pinned_hash(cell, known.pins)
     return data_hash is not None and row["key"] == keys.key(cell, data_hash)

@@ -97,7 +97,7 @@ def score_row(key: str, data_hash: str | None, result: UnitResult, outcome: Outc
         "model": model.name,
         "model_taxonomy": model.taxonomy,
         "model_version": model.version,
-        "status": "ok" if outcome.score else "failed",
+        "status": "ok" if outcome.score else "refused" if outcome.refused else "failed",
         "reason": outcome.reason,
         "n_calibration": result.n_calibration,
         "n_test": result.n_test,

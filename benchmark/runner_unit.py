@@ -37,13 +37,19 @@ class Unit:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What came of one model: a score with times, or the reason there is none."""
+    """What came of one model: a score with times, or the reason there is none.
+
+    `refused`: the model's ``fit`` or ``predict`` raised ValueError, its contract's word for data
+    it cannot work on. That is a result of method and data, as repeatable as a score; any other
+    error is a failure, tried again by the next run.
+    """
 
     model: str
     reason: str
     score: Score | None = None
     fit_s: float = 0.0
     predict: Timing | None = None
+    refused: bool = False
 
 
 @dataclass(frozen=True)
@@ -151,10 +157,15 @@ def _outcome(
             unit.preset.geometry_for(unit.condition), unit.extractor.kind
         )
         started = time.perf_counter()
-        model.fit(calibration, data.calibration.sun)
-        fit_s = time.perf_counter() - started
         observations = data.test.observations
-        predicted, predict = best_of(lambda: model.predict(test), lambda: reference(observations))
+        try:
+            model.fit(calibration, data.calibration.sun)
+            fit_s = time.perf_counter() - started
+            predicted, predict = best_of(
+                lambda: model.predict(test), lambda: reference(observations)
+            )
+        except ValueError as error:
+            return Outcome(name, reason_of(error), refused=True)
         result = score(predicted, data.test.sun, data.bound.angle_deg, data.bound.observable)
     except Exception as error:  # noqa: BLE001 - any error of a model is a row with its reason
         return Outcome(name, reason_of(error))

@@ -268,6 +268,30 @@ class Dataset(OpenShape):
     conditions: list[str]
     description: str
     follows: list[str]
+    units: str
+    bounds: dict[str, float] = Field(description="Cramer-Rao bound by condition, rms, degrees.")
+    splits: dict[str, dict[str, Any]]
+    setups: dict[str, dict[str, Any]] = Field(description="What each condition is.")
+    preview: str = Field(description="Where its picture is served.")
+
+
+class Data(Shape):
+    """The published data of a split in a condition; null where none are pinned."""
+
+    condition: str
+    split: str
+    samples: int
+    data_hash: str | None
+    bound_deg: float | None = Field(description="Cramer-Rao bound, rms over the test split.")
+
+
+class DatasetDetail(Dataset):
+    """Card of a standard data set, with every parameter that its numbers depend on."""
+
+    geometry: dict[str, Any]
+    regime: dict[str, Any]
+    seeds: dict[str, Any]
+    data: list[Data]
 
 
 class Datasets(Listing):
@@ -290,8 +314,8 @@ class Score(OpenShape):
     extractor_taxonomy: str
     model: str
     model_taxonomy: str
-    status: Literal["ok", "failed"]
-    reason: str = Field(description="Why it failed; empty where it did not.")
+    status: Literal["ok", "refused", "failed"]
+    reason: str = Field(description="Why there is no score; empty where there is one.")
     n_calibration: int | None
     n_test: int | None
     found_fraction: float | None
@@ -317,7 +341,9 @@ class Scores(Listing):
 class LeaderboardRow(Score):
     """A score with its place."""
 
-    rank: int | None = Field(description="Place by RMS error in the condition; null if failed.")
+    rank: int | None = Field(
+        description="Place by RMS error in the condition; null without a score."
+    )
     time_ratio: float | None = Field(description="Time over that of a reference.")
 
 

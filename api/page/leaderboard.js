@@ -84,7 +84,7 @@ function tableRow(row, scale, i) {
       expand.setAttribute("aria-expanded", String(!detail.hidden));
     },
   }, "Score");
-  const failed = row.status === "failed";
+  const failed = row.status !== "ok";
   const taxonomy = (field) => row[`${field}_taxonomy`] && row[`${field}_taxonomy`].toLowerCase() !== row[field].toLowerCase() && row[`${field}_taxonomy`];
   const cell = (c) => h("td", { role: "cell", "data-label": c.name, class: c.text ? "word" : "number" },
     c.text ? h("span", { title: taxonomy(c.field) || null }, row[c.field]) : c.write(row[c.field]));
@@ -93,7 +93,7 @@ function tableRow(row, scale, i) {
     COLUMNS.filter((c) => c.text).map(cell),
     failed
       ? h("td", { role: "cell", class: "wide failed note", colspan: String(numbers.length + 1), "aria-colspan": numbers.length + 1 },
-        `failed: ${row.reason || "no reason stored"}`)
+        `${row.status}: ${row.reason || "no reason stored"}`)
       : [numbers.map(cell), h("td", { role: "cell", class: "wide" }, bar(row, scale))],
     h("td", { role: "cell", class: "number last" }, expand)), detail];
 }

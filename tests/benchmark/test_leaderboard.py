@@ -126,7 +126,7 @@ def test_a_reason_cannot_break_the_page_and_failures_are_shown(tmp_path, monkeyp
     assert "<script>" not in text
     assert "&lt;script&gt;" in text
     assert (
-        "Failed: fake-diodes/quiet/fake-gaps/fake-broken: ValueError"
+        "No score: fake-diodes/quiet/fake-gaps/fake-broken: ValueError"
         in (tmp_path / "leaderboard.md").read_text()
     )
 

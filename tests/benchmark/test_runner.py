@@ -259,3 +259,19 @@ def test_no_workers_is_refused(store):
     with pytest.raises(ValueError, match="at least 1; got 0"):
         measure(store, workers=0)
     assert not store.scores_path.exists()
+
+
+def test_a_refusal_is_a_result_that_is_kept(store, log):
+    """ValueError from `fit` is the contract's word for data a model cannot work on."""
+    parts = fake_plan.parts(fake_atlas.LeastSquares, fake_atlas.Choosy)
+    summary = measure(store, parts)
+    assert summary.failed == ()
+    refused = store.query(status="refused")
+    assert {(row["model"], row["reason"]) for row in refused} == {
+        ("fake-choosy", "ValueError: needs other samples")
+    }
+    assert len(refused) == 4
+    assert all(row["rms_deg"] is None for row in refused)
+    attempts = log().count("fit fake-choosy")
+    assert measure(store, parts).computed == 0
+    assert log().count("fit fake-choosy") == attempts

@@ -204,3 +204,12 @@ class Unbuildable(LeastSquares):
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Any:
         raise RuntimeError("no such sensor")
+
+
+@dataclass
+class Choosy(LeastSquares):
+    name: ClassVar[str] = "fake-choosy"
+
+    def fit(self, features: Any, sun: Any) -> Any:
+        log("fit fake-choosy")
+        raise ValueError("needs other samples")
