@@ -61,11 +61,23 @@ def _spots(count: int = 9, height: int = 24, width: int = 31) -> NDArray[np.uint
     return (frames + rng.integers(0, 12, frames.shape)).astype(np.uint8)
 
 
+def _squares(geometry: SensorGeometry, count: int = 5) -> NDArray[np.uint8]:
+    """Noisy spots as wide as the sensor's square aperture, whole numbers that every dtype holds."""
+    width = round(geometry.aperture_width_mm / geometry.pixel_pitch_mm)
+    rng = np.random.default_rng(13)
+    frames = rng.integers(0, 12, (count, width + 10, width + 13)).astype(np.uint8)
+    for frame, (left, top) in zip(frames, rng.integers(2, 9, (count, 2)), strict=True):
+        frame[top : top + width, left : left + width] += 200
+    return frames
+
+
 @pytest.fixture(scope="session")
-def observations_for() -> Callable[[Any], NDArray[Any]]:
+def observations_for(geometry: SensorGeometry) -> Callable[[Any], NDArray[Any]]:
     """Observations (N, ...) with something to find in every row, for one extractor class."""
 
     def make(extractor: Any) -> NDArray[Any]:
+        if extractor.name == "tm":  # its template is the sensor's aperture
+            return _squares(geometry)
         if extractor.observation is Observation.FRAMES:
             return _spots()
         if extractor.observation is Observation.CURRENTS:

@@ -1,0 +1,121 @@
+"""Middle of a spot's profiles, averaged over many thresholds (MT-ACM)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, Literal, Self, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from algorithms.contract import FeatureKind, Floats, Observation, Origin, SensorGeometry
+from algorithms.inputs import as_frames
+
+Crossing = Literal["pixel", "linear"]
+"""``pixel``: the first entry above the threshold. ``linear``: interpolated to the entry before."""
+
+
+@dataclass(frozen=True)
+class MultipleThresholdCentroid:
+    """Midpoint between a profile's two flanks, averaged over many thresholds.
+
+    The frame is reduced to its column and row sums; each threshold makes them binary, and the
+    first rises from both ends have their middle in the spot's centre where the spot is
+    symmetric. Averaging thresholds resolves fractions of a pixel.
+
+    Parameters
+    ----------
+    accuracy_px : float
+        Wanted accuracy dx of a position, at least 1e-4 px: sets the number of thresholds.
+    lowest, highest : float
+        Fractions of the profile's height above its floor between which thresholds lie. Ours: the
+        study leaves them open; noise must stay below the lowest, and the top is too flat to tell
+        a position.
+    crossing : {"pixel", "linear"}
+        Whether a rise counts at its pixel, as published, or is interpolated to the entry before.
+
+    Notes
+    -----
+    Implements: alg:MTACM1, alg:MTACM2 (fe:mtacm, Massari2004): ``N_TH > sigma sqrt(e) / dx``,
+    ``x_ml = (h_l + k_l) / 2``, ``x_c = mean_l x_ml``, in pixels (Delta X = 1). h_l is the first
+    rise from the left, k_l the first from the right; a threshold that one side does not cross is
+    left out. Survey prints x over the row sums; corrected because x runs along columns here. The
+    floor is the profile's median, sigma its area above that over ``sqrt(2 pi)`` of its height.
+
+    Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers.
+
+    Failure: a NaN row for a frame that is dark (no profile entry positive), without contrast (all
+    dark or all saturated) or holds a NaN or infinity, for spots wider than half of the frame, and
+    where the edge cuts the spot so that no threshold has a rise from both sides. Two spots
+    give the middle between their outer flanks unseen.
+
+    Cost: 2 operations a pixel for the profiles, the median of each, and 4 a threshold.
+    """
+
+    name: ClassVar[str] = "mt-acm"
+    taxonomy: ClassVar[str] = "MT-ACM"
+    studies: ClassVar[tuple[str, ...]] = ("Massari2004",)
+    labels: ClassVar[tuple[str, ...]] = ("fe:mtacm", "alg:MTACM1", "alg:MTACM2")
+    origin: ClassVar[Origin] = "survey"
+    version: ClassVar[int] = 1
+    observation: ClassVar[Observation] = Observation.FRAMES
+    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
+    needs: ClassVar[tuple[str, ...]] = ()
+
+    accuracy_px: float = 0.01
+    lowest: float = 0.25
+    highest: float = 0.9
+    crossing: Crossing = "pixel"
+
+    def __post_init__(self) -> None:
+        if not 1e-4 <= self.accuracy_px < np.inf:
+            raise ValueError(
+                f"{self.name}: accuracy_px must be at least 1e-4 and finite; "
+                f"got {self.accuracy_px!r}"
+            )
+        if not 0.0 <= self.lowest < self.highest <= 1.0:
+            raise ValueError(
+                f"{self.name}: lowest and highest must rise within [0, 1]; "
+                f"got {self.lowest!r} and {self.highest!r}"
+            )
+        if self.crossing not in get_args(Crossing):
+            raise ValueError(
+                f"{self.name}: crossing must be one of {', '.join(get_args(Crossing))}; "
+                f"got {self.crossing!r}"
+            )
+
+    @property
+    def features(self) -> tuple[str, ...]:
+        """Names of the two output columns."""
+        return ("x_px", "y_px")
+
+    @classmethod
+    def for_sensor(cls, geometry: SensorGeometry) -> Self:  # noqa: ARG003 - nothing to choose
+        """Return the published method, whatever the sensor."""
+        return cls()
+
+    def extract(self, observations: ArrayLike) -> Floats:
+        """Positions (N, 2) in frames (N, H, W); ValueError on wrong input."""
+        from algorithms.kernels import crossings, moments  # noqa: PLC0415 - Numba, at first use
+
+        frames = as_frames(observations)
+        count, height, width = frames.shape
+        columns = np.empty((count, width), dtype=moments.zero_of(frames).dtype)
+        rows = np.empty((count, height), dtype=columns.dtype)
+        moments.profiles(frames, moments.zero_of(frames), rows, columns)
+        unusable = np.empty(count, dtype=np.bool_)
+        moments.unusable(frames, frames.dtype.kind == "f", unusable)
+        unusable |= ~((columns.max(axis=1) > 0) & (rows.max(axis=1) > 0))
+        found = np.empty((2, count))
+        for middle, profile in zip(found, (columns, rows), strict=True):
+            usable = np.where(unusable[:, None], 0.0, profile)
+            crossings.threshold_midpoints(
+                usable,
+                np.median(usable, axis=1),
+                self.accuracy_px,
+                self.lowest,
+                self.highest,
+                self.crossing == "linear",
+                middle,
+            )
+        return np.where(np.isnan(found).any(axis=0), np.nan, found).T.copy()
