@@ -17,7 +17,7 @@ from algorithms.kernels.compilation import compiled
 #: Sums of a ring: see `_ring_sums`.
 _SUMS = 16
 #: Width of a ring, px, at a contrast of one, and its limits.
-_WIDTH, _FINEST, _COARSEST = 2.4, 0.35, 1.0
+_WIDTH, _FINEST, _COARSEST = 2.1, 0.3, 1.0
 
 
 @compiled
