@@ -101,6 +101,8 @@ def _ask(service: Any, method: str, target: str, body: Any = None) -> tuple[int,
 
 def _exchange(request: str, body: Any, answer: tuple[int, str, str]) -> str:
     status, media_type, text = answer
+    if media_type.startswith("image/"):
+        return f"```http\n{request}\n```\n\n{status}, `{media_type}`."
     asked = "" if body is None else f"\n\n{json.dumps(body, ensure_ascii=False)}"
     if "json" in media_type:
         shown = "\n".join(_pretty(_shortened(json.loads(text))))

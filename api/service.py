@@ -16,7 +16,7 @@ from pydantic_core import to_json
 
 from api.http import middleware, page, problems
 from api.http.answers import Answers
-from api.http.endpoints import all_endpoints, health
+from api.http.endpoints import all_endpoints, health, previews
 from api.http.knowledge import Knowledge
 from api.http.negotiation import JSON
 from api.http.openapi import describe
@@ -66,6 +66,9 @@ def create_app(knowledge: Knowledge | None = None) -> FastAPI:
     answers = Answers()
     for endpoint in endpoints:
         endpoint.install(app, answers)
+    drawn = previews.pictures(known)
+    for picture in drawn:
+        picture.install(app, answers)
     health.install(app, known)
     page.install(app)
 
@@ -73,7 +76,7 @@ def create_app(knowledge: Knowledge | None = None) -> FastAPI:
 
     def openapi() -> dict[str, Any]:
         if app.openapi_schema is None:
-            app.openapi_schema = describe(app, endpoints)
+            app.openapi_schema = describe(app, endpoints, drawn)
         return app.openapi_schema
 
     async def openapi_json(request: Request) -> Response:

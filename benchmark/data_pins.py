@@ -37,7 +37,7 @@ class Pinned:
     kept, renewed
         How many conditions were pinned for the code as it is, how many are now.
     warnings
-        Data that another hash is pinned for, or that cannot be generated.
+        Data that cannot be generated.
     seconds
         How long it took.
     """
@@ -94,7 +94,6 @@ def update(
     progress: ProgressCallback | None = None,
     *,
     datasets: Collection[str] | None = None,
-    again: bool = False,
     parts: Parts | None = None,
 ) -> Pinned:
     """Generate what is not pinned for the code as it is, and pin it.
@@ -112,9 +111,6 @@ def update(
         As `benchmark.runner.run`.
     datasets
         Names; all by default.
-    again
-        Generate what is pinned as well; a hash other than the pinned one is a warning, the pin
-        stays.
     parts
         Datasets; what is installed by default.
 
@@ -135,7 +131,7 @@ def update(
         journal.cut_torn_line()
         held = journal.progress()
         every = [(preset, condition) for preset in presets for condition in preset.conditions]
-        missing = [one for one in every if again or not _is_pinned(*one, held.pins)]
+        missing = [one for one in every if not _is_pinned(*one, held.pins)]
         warnings: list[str] = []
         renewed = 0
         with terminal_progress() if progress is None else nullcontext(progress) as report:
@@ -143,12 +139,10 @@ def update(
             for done, (preset, condition, pins, reason) in enumerate(
                 _generated(missing, workers), start=1
             ):
-                new = [pin for pin in pins if _differs(held.pins.get(pin.place), pin, warnings)]
-                journal.append(new, [])
-                held.pins.update((pin.place, pin) for pin in new)
-                renewed += bool(new)
-                if reason:
-                    warnings.append(f"{preset.name} {condition}: cannot be generated: {reason}")
+                journal.append(pins, [])
+                held.pins.update((pin.place, pin) for pin in pins)
+                renewed += bool(pins)
+                warnings += [_failure(preset, condition, reason)] if reason else []
                 report(done, len(missing), f"{preset.name} {condition}")
         there = places(known)
         store.write(
@@ -164,6 +158,33 @@ def update(
         tuple(warnings),
         time.perf_counter() - started,
     )
+
+
+def differences(
+    store: Store,
+    workers: int = 1,
+    progress: ProgressCallback | None = None,
+    *,
+    datasets: Collection[str] | None = None,
+    parts: Parts | None = None,
+) -> list[str]:
+    """Generate everything again and say what is not as pinned; writes nothing.
+
+    Parameters and errors as `update`. Hashes hold on the machine's kind they were made on; see
+    `benchmark.leaderboard_check.RELATIVE_TOLERANCE`.
+    """
+    pinned = Journal(store).progress().pins
+    presets = _chosen(parts or installed(), datasets)
+    every = [(preset, condition) for preset in presets for condition in preset.conditions]
+    wrong: list[str] = []
+    with terminal_progress() if progress is None else nullcontext(progress) as report:
+        for done, (preset, condition, pins, reason) in enumerate(
+            _generated(every, workers), start=1
+        ):
+            wrong += [_failure(preset, condition, reason)] if reason else []
+            wrong += [line for pin in pins if (line := _difference(pinned.get(pin.place), pin))]
+            report(done, len(every), f"{preset.name} {condition}")
+    return sorted(wrong)
 
 
 def _chosen(parts: Parts, datasets: Collection[str] | None) -> list[Preset]:
@@ -183,16 +204,20 @@ def _is_pinned(preset: Preset, condition: str, pins: Mapping[Place, Pin]) -> boo
     return all(pin is not None and pin.specification == specification for pin in found)
 
 
-def _differs(pinned: Pin | None, pin: Pin, warnings: list[str]) -> bool:
-    """Say whether to renew a pin; one made by the same code stays, and another hash is told."""
-    if pinned is None or pinned.specification != pin.specification:
-        return True
-    if pinned.data_hash != pin.data_hash:
-        warnings.append(
-            f"{pin.dataset} {pin.condition} {pin.split}: data hash {pin.data_hash} on this "
-            f"machine, pinned {pinned.data_hash}"
-        )
-    return False
+def _difference(pinned: Pin | None, pin: Pin) -> str:
+    where = f"{pin.dataset} {pin.condition} {pin.split}"
+    if pinned is None:
+        return f"{where}: not pinned"
+    if pinned.specification != pin.specification:
+        return f"{where}: pinned for other code or parameters"
+    for name in ("data_hash", "n", "bound_deg"):
+        if getattr(pinned, name) != getattr(pin, name):
+            return f"{where}: {name} {getattr(pin, name)}, pinned {getattr(pinned, name)}"
+    return ""
+
+
+def _failure(preset: Preset, condition: str, reason: str) -> str:
+    return f"{preset.name} {condition}: cannot be generated: {reason}"
 
 
 def _generated(

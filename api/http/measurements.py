@@ -9,7 +9,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from benchmark.store import PUBLISHED, Store, StoreError
+from benchmark.store import PUBLISHED, Pin, Store, StoreError
 from registry.measured import Measured
 
 if TYPE_CHECKING:
@@ -81,26 +81,73 @@ class Measurements:
         return tuple(self.presets)
 
     @cached_property
+    def pins(self) -> Mapping[tuple[str, str, str], Pin]:
+        """Hashes and bounds of the published data by (data set, condition, split)."""
+        return Store(self.directory).pins()
+
+    @cached_property
     def cards(self) -> Sequence[Row]:
-        """Cards of the standard data sets: conditions by name, what they are in `setups`.
+        """Cards of the standard data sets, short: what a condition is in words, no parameters."""
+        short = ("name", "version", "detector", "mask", "observation", "units")
+        words = ("conditions", "bounds", "description", "follows", "splits", "preview")
+        return [
+            {
+                **{name: card[name] for name in (*short, *words)},
+                "setups": {
+                    condition: {"description": setup["description"]}
+                    for condition, setup in card["setups"].items()
+                },
+            }
+            for card in map(self.card, self.presets)
+        ]
+
+    def card(self, dataset: str) -> dict[str, Any]:
+        """Return the whole card of a data set: conditions by name, what they are in `setups`.
 
         `bounds` are the published ones: the Cramer-Rao bound of the condition, as rms in degrees.
+        `data` are the published hashes, and `preview` is where the picture is served.
         """
-        cards = []
-        for name, preset in self.presets.items():
-            card = preset.card()
-            card["setups"] = card["conditions"]
-            card["conditions"] = list(preset.conditions)
-            card["bounds"] = self.bounds(name)
-            cards.append(card)
-        return cards
+        preset = self.presets[dataset]
+        card = preset.card()
+        card["setups"] = card["conditions"]
+        card["conditions"] = list(preset.conditions)
+        card["bounds"] = self.bounds(dataset)
+        card["preview"] = f"/v1/datasets/{dataset}/preview.png"
+        card["data"] = [
+            {
+                "condition": condition,
+                "split": split,
+                "samples": about["samples"],
+                "data_hash": pin.data_hash
+                if (pin := self._pin(dataset, condition, split))
+                else None,
+                "bound_deg": pin.bound_deg if pin else None,
+            }
+            for condition in preset.conditions
+            for split, about in card["splits"].items()
+        ]
+        return card
+
+    def _pin(self, dataset: str, condition: str, split: str) -> Pin | None:
+        """Return a pin; None where there is none, or it is of another version of the data."""
+        pin = self.pins.get((dataset, condition, split))
+        return pin if pin and pin.version == self.presets[dataset].version else None
 
     def bounds(self, dataset: str) -> dict[str, float]:
-        """Return the bound (rms, degrees) of each measured condition of a data set.
+        """Return the bound (rms, degrees) of each condition of a data set that has one published.
 
-        A score's bound is over the samples its pipeline found; the data set's is that of the
-        pipeline that found most.
+        Over all samples of the test split where the direction is observable. Where the data are
+        not pinned, that of the pipeline that found most: a score's bound is over the samples its
+        pipeline found.
         """
+        pinned = {
+            condition: pin.bound_deg
+            for condition in self.presets[dataset].conditions
+            if (pin := self._pin(dataset, condition, "test")) and pin.bound_deg is not None
+        }
+        return {**self._scored_bounds(dataset), **pinned}
+
+    def _scored_bounds(self, dataset: str) -> dict[str, float]:
         best: dict[str, tuple[float, float]] = {}
         for row in self.scores:
             if row["dataset"] == dataset and row["status"] == "ok" and row["bound_deg"] is not None:

@@ -9,6 +9,7 @@ from api.http.problems import Problem, Violation
 
 JSON = "application/json"
 CSV = "text/csv"
+PNG = "image/png"
 CONTENT_TYPES = {JSON: "application/json", CSV: "text/csv; charset=utf-8; header=present"}
 
 _QUALITY = re.compile(r"(?:0(?:\.\d{0,3})?|1(?:\.0{0,3})?)\Z")

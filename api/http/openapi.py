@@ -12,6 +12,7 @@ from pydantic_core import to_json
 
 from api.http.endpoint import Endpoint
 from api.http.negotiation import CSV, JSON
+from api.http.pictures import Picture
 from api.http.problems import MEDIA_TYPE, Problem
 from api.http.shapes import ProblemDocument
 
@@ -26,11 +27,15 @@ REFUSALS = {
     415: "The body is not said to be JSON.",
     422: "A value that is not valid; the nearest is named.",
 }
+ETAG = {"schema": {"type": "string"}, "description": "Strong validator of the bytes."}
+NOT_MODIFIED = "The bytes of the ETag in If-None-Match are still the answer."
 ALWAYS_POSSIBLE = (400, 405, 406)
 OF_A_BODY = (413, 415, 422)
 
 
-def describe(app: FastAPI, endpoints: Sequence[Endpoint]) -> dict[str, Any]:
+def describe(
+    app: FastAPI, endpoints: Sequence[Endpoint], pictures: Sequence[Picture] = ()
+) -> dict[str, Any]:
     """Return the OpenAPI document of `app`, whose routes of facts are `endpoints`.
 
     The examples are the answers the endpoints give now.
@@ -47,12 +52,26 @@ def describe(app: FastAPI, endpoints: Sequence[Endpoint]) -> dict[str, Any]:
     schemas["ProblemDocument"] = own
     for endpoint in endpoints:
         _complete(document["paths"][endpoint.path][endpoint.method.lower()], endpoint)
+    for picture in pictures:
+        _complete_picture(document["paths"][picture.path]["get"], picture)
     return document
 
 
-def _complete(operation: dict[str, Any], endpoint: Endpoint) -> None:
-    """Add to FastAPI's description of an operation what it cannot know."""
-    parameters = [
+def _complete_picture(operation: dict[str, Any], picture: Picture) -> None:
+    operation["parameters"] = _path_parameters(picture)
+    operation["responses"] = {
+        "200": {
+            "description": "The picture.",
+            "content": picture.content(),
+            "headers": {"ETag": ETAG},
+        },
+        "304": {"description": NOT_MODIFIED},
+        **{str(status): _refusal(status, picture) for status in (400, 404, 405, 406)},
+    }
+
+
+def _path_parameters(endpoint: Endpoint | Picture) -> list[dict[str, Any]]:
+    return [
         {
             "name": part.name,
             "in": "path",
@@ -63,6 +82,11 @@ def _complete(operation: dict[str, Any], endpoint: Endpoint) -> None:
         }
         for part in endpoint.parts
     ]
+
+
+def _complete(operation: dict[str, Any], endpoint: Endpoint) -> None:
+    """Add to FastAPI's description of an operation what it cannot know."""
+    parameters = _path_parameters(endpoint)
     statuses = set(ALWAYS_POSSIBLE)
     if endpoint.parts:
         statuses.add(404)
@@ -93,18 +117,16 @@ def _complete(operation: dict[str, Any], endpoint: Endpoint) -> None:
         "example": answer.represent(CSV).body.decode(),
     }
     operation["responses"]["200"]["headers"] = {
-        "ETag": {"schema": {"type": "string"}, "description": "Strong validator of the bytes."},
+        "ETag": ETAG,
         "Link": {"schema": {"type": "string"}, "description": "The next page, where there is one."},
     }
     for status in sorted(statuses):
         operation["responses"][str(status)] = (
-            {"description": "The bytes of the ETag in If-None-Match are still the answer."}
-            if status == 304
-            else _refusal(status, endpoint)
+            {"description": NOT_MODIFIED} if status == 304 else _refusal(status, endpoint)
         )
 
 
-def _refusal(status: int, endpoint: Endpoint) -> dict[str, Any]:
+def _refusal(status: int, endpoint: Endpoint | Picture) -> dict[str, Any]:
     content: dict[str, Any] = {"schema": PROBLEM_REFERENCE}
     example = _example_refusal(status, endpoint)
     if example is not None:
@@ -112,7 +134,7 @@ def _refusal(status: int, endpoint: Endpoint) -> dict[str, Any]:
     return {"description": REFUSALS[status], "content": {MEDIA_TYPE: content}}
 
 
-def _example_refusal(status: int, endpoint: Endpoint) -> dict[str, Any] | None:
+def _example_refusal(status: int, endpoint: Endpoint | Picture) -> dict[str, Any] | None:
     """Return a problem that the endpoint raises, by making its example slightly wrong."""
     path = endpoint.path.format(**endpoint.example)
     try:

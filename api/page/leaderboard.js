@@ -1,7 +1,7 @@
 /* The leaderboard: every pipeline on a data set, against the physical bound. */
 
 import { byId, choice, copyable, h, problemNotice } from "./dom.js";
-import { address, getAll, saveCsv } from "./service.js";
+import { address, getAll, getJson, saveCsv } from "./service.js";
 import { show, state } from "./state.js";
 import { degrees, number, percent, plural, times } from "./wording.js";
 
@@ -15,6 +15,7 @@ const COLUMNS = [
 ];
 const SCALE = "Error, log scale";
 const FIRST = 16;
+const MOST_ENTRIES = 8; // of a list of lists, such as the apertures of a mask
 
 let shown = null; // what the rows on screen belong to
 let turn = 0;
@@ -102,7 +103,9 @@ function tableRow(row, scale, i) {
 function leaves(value, name = "") {
   if (value === null || value === undefined) return [];
   if (Array.isArray(value)) {
-    return value.some((v) => typeof v === "object" && v !== null)
+    const nested = value.some((v) => typeof v === "object" && v !== null);
+    if (nested && value.length > MOST_ENTRIES) return [[name, `${value.length} entries, in the JSON`]];
+    return nested
       ? value.flatMap((v, i) => leaves(v, `${name}[${i}]`))
       : [[name, value.join(", ")]];
   }
@@ -110,14 +113,33 @@ function leaves(value, name = "") {
   return Object.entries(value).flatMap(([k, v]) => leaves(v, name ? `${name}.${k}` : k));
 }
 
-/** What the numbers depend on: geometry, splits, regime, seeds and the condition's parameters. */
-function cardOf(card, condition) {
+/** Its picture, and what the numbers depend on: geometry, splits, regime, seeds, parameters. */
+function cardParts(card, condition, url) {
   const { units, geometry, splits, regime, seeds } = card;
   const facts = [...leaves({ units, geometry, splits, regime, seeds }), ...leaves(card.setups?.[condition]?.parameters, condition)];
-  return h("details", { class: "flow-links" }, h("summary", {}, `Card of ${card.name}: everything its numbers depend on`),
+  return [
+    h("img", { class: "preview", src: card.preview, width: 1000, alt: `Nominal samples of ${card.name}: ${card.observation}` }),
     h("dl", { class: "facts card-facts" }, facts.filter(([name]) => !name.endsWith(".type")).map(([name, value]) =>
       h("div", {}, h("dt", {}, name), h("dd", {}, value)))),
-    h("p", { class: "links" }, h("a", { href: "/v1/datasets" }, "All cards (JSON)")));
+    h("p", { class: "links" }, h("a", { href: url }, `Card of ${card.name} (JSON)`))];
+}
+
+/** The whole card, asked for when it is opened. */
+function cardOf(card, condition) {
+  const url = `/v1/datasets/${encodeURIComponent(card.name)}`;
+  const body = h("div", {});
+  const load = async () => {
+    body.replaceChildren(h("p", { class: "loading" }, "Loading the card…"));
+    try {
+      body.replaceChildren(...cardParts(await getJson(url), condition, url));
+    } catch (problem) {
+      body.replaceChildren(problemNotice(problem, load));
+    }
+  };
+  return h("details", {
+    class: "flow-links",
+    ontoggle: (event) => { if (event.target.open && !body.firstChild) load(); },
+  }, h("summary", {}, `Card of ${card.name}: a picture, and everything its numbers depend on`), body);
 }
 
 function draw() {

@@ -17,6 +17,8 @@ OPERATIONS = [
     ("POST", "/v1/recommendations"),
     ("GET", "/v1/algorithms"),
     ("GET", "/v1/datasets"),
+    ("GET", "/v1/datasets/{name}"),
+    ("GET", "/v1/datasets/{name}/preview.png"),
     ("GET", "/v1/leaderboard"),
     ("GET", "/v1/leaderboard/{dataset}"),
     ("GET", "/v1/results"),

@@ -36,6 +36,8 @@ def test_every_endpoint_of_the_contract_is_documented(document):
         ("/v1/recommendations", "post"),
         ("/v1/algorithms", "get"),
         ("/v1/datasets", "get"),
+        ("/v1/datasets/{name}", "get"),
+        ("/v1/datasets/{name}/preview.png", "get"),
         ("/v1/leaderboard", "get"),
         ("/v1/leaderboard/{dataset}", "get"),
         ("/v1/results", "get"),
@@ -68,7 +70,7 @@ def test_examples_are_what_is_answered(atlas, document):
                 assert answer.json() == example
                 validator(document, content[accept]["schema"]).validate(example)
             checked += 1
-    assert checked == 22
+    assert checked == 24
 
 
 def test_examples_of_refusals_are_what_is_refused(atlas, document):
@@ -90,7 +92,7 @@ def test_examples_of_refusals_are_what_is_refused(atlas, document):
                 wrong = example["errors"][0]["parameter"]
                 live = atlas.get(f"{example['instance']}?{wrong}=1").json()
                 assert live == example, path
-    assert checked == 22
+    assert checked == 26
 
 
 @pytest.mark.parametrize(
@@ -106,6 +108,7 @@ def test_examples_of_refusals_are_what_is_refused(atlas, document):
         "/v1/recommendations?task=Accuracy&exclude_task=Accuracy",
         "/v1/algorithms",
         "/v1/datasets",
+        "/v1/datasets/pd-orbit",
         "/v1/leaderboard",
         "/v1/leaderboard/qpd-single-aperture",
         "/v1/results",
@@ -116,6 +119,7 @@ def test_whole_answers_fit_their_schemas(atlas, document, path):
     plain = path.partition("?")[0]
     template = {
         "/v1/studies/Liebe2001": "/v1/studies/{key}",
+        "/v1/datasets/pd-orbit": "/v1/datasets/{name}",
         "/v1/leaderboard/qpd-single-aperture": "/v1/leaderboard/{dataset}",
         "/v1/flows/model-sunburst": "/v1/flows/{chart}",
         "/v1/flows/cross-analysis": "/v1/flows/{chart}",

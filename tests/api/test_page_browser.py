@@ -342,6 +342,24 @@ def test_the_leaderboard_shows_every_row_the_service_has(wide: Visit) -> None:
             assert "No pipeline is scored" in page.locator("#board-body").inner_text()
 
 
+@pytest.mark.parametrize("name", ["cmos-compound-eye", "qpd-single-aperture"])
+def test_the_card_of_a_data_set_opens_with_its_picture(wide: Visit, name: str) -> None:
+    page = wide.go("/?view=table")
+    page.locator("#dataset").select_option(name)
+    summary = page.get_by_text(f"Card of {name}: a picture")
+    summary.click()
+    picture = page.locator("#board-card img.preview")
+    picture.wait_for()
+    page.wait_for_function("() => document.querySelector('img.preview').naturalWidth > 0")
+    card = _get(f"{wide.address}/v1/datasets/{name}")
+    assert picture.get_attribute("src") == card["preview"]
+    facts = page.locator(".card-facts").inner_text()
+    assert f"{card['geometry']['half_fov_deg']:g}" in facts
+    assert len(facts) < 20_000, "hundreds of apertures belong in the JSON"
+    assert page.evaluate("document.documentElement.scrollWidth") <= WIDE[0]
+    assert wide.complaints == []
+
+
 @pytest.mark.parametrize(
     "path", ["/?task=Accuracy", "/?view=table&detail=all", "/?detector=Event&mask=Lens"]
 )

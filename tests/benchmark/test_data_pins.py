@@ -91,17 +91,33 @@ def test_pins_of_what_is_no_longer_there_go(store):
     assert {place[0] for place in store.pins()} == {"fake-diodes"}
 
 
-def test_a_hash_other_than_the_pinned_one_is_told_and_the_pin_stays(store):
+def test_generating_again_tells_what_is_not_as_pinned_and_writes_nothing(store):
     there = parts(Diodes())
     update(store, parts=there)
-    good = store.pins()
-    wrong = [dataclasses.replace(pin, data_hash="0" * 32) for pin in good.values()]
-    store.write([], [], wrong)
-    assert update(store, parts=there).warnings == (), "what is pinned is not generated"
-    told = update(store, parts=there, again=True).warnings
-    assert len(told) == 4
-    assert all("pinned 00000000" in warning for warning in told)
-    assert set(store.pins().values()) == set(wrong)
+
+    def told(**changed):
+        first, *rest = store.pins().values()
+        wrong = Store(store.directory.with_name("wrong"))
+        wrong.write([], [], [*rest, dataclasses.replace(first, **changed)])
+        before = wrong.data_path.read_bytes()
+        found = data_pins.differences(wrong, progress=silent, parts=there)
+        assert wrong.data_path.read_bytes() == before
+        return found
+
+    assert told() == []
+    place = "fake-diodes noisy calibration"
+    (line,) = told(data_hash="0" * 32)
+    assert line.startswith(f"{place}: data_hash ")
+    assert line.endswith(f", pinned {'0' * 32}")
+    assert told(n=5) == [f"{place}: n 400, pinned 5"]
+    assert told(bound_deg=1.0) == [f"{place}: bound_deg None, pinned 1.0"]
+    assert told(specification="x") == [f"{place}: pinned for other code or parameters"]
+    assert told(split="else") == [f"{place}: not pinned"]
+    gone = data_pins.differences(store, progress=silent, parts=parts(Diodes(), Missing()))
+    assert gone == [
+        f"fake-missing {condition}: cannot be generated: OSError: no data today"
+        for condition in ("noisy", "quiet")
+    ]
 
 
 def test_data_that_cannot_be_made_are_told_and_the_rest_is_pinned(store):

@@ -10,10 +10,11 @@ from api.http.endpoint import Endpoint, PathPart
 from api.http.knowledge import Knowledge
 from api.http.pagination import CURSOR, LIMIT, page
 from api.http.parameters import Arguments, Parameter, Parameters
-from api.http.shapes import Datasets, Leaderboard, LeaderboardRows, Scores
+from api.http.shapes import DatasetDetail, Datasets, Leaderboard, LeaderboardRows, Scores
 from api.http.values import Choice
 
 DATASET_COLUMNS = ("name", "version", "detector", "mask", "observation", "conditions")
+DATA_COLUMNS = ("condition", "split", "samples", "data_hash", "bound_deg")
 SCORE_COLUMNS = ("dataset", "condition", "extractor", "model", "status", "rms_deg", "bound_deg")
 RANK_COLUMNS = ("rank", "dataset", "condition", "extractor", "model", "rms_deg", "bound_deg")
 
@@ -59,6 +60,10 @@ def endpoints(knowledge: Knowledge) -> list[Endpoint]:
     def build_datasets(_parts: Mapping[str, str], arguments: Arguments) -> Answer:
         return listing(measurements.cards, DATASET_COLUMNS, "/v1/datasets", of_list, arguments)
 
+    def build_dataset(parts: Mapping[str, str], _arguments: Arguments) -> Answer:
+        card = measurements.card(parts["name"])
+        return Answer(card, DATA_COLUMNS, lambda: card["data"])
+
     def build_results(_parts: Mapping[str, str], arguments: Arguments) -> Answer:
         rows = [row for row in measurements.scores if _wanted(row, arguments)]
         return listing(rows, SCORE_COLUMNS, "/v1/results", of_results, arguments)
@@ -77,11 +82,23 @@ def endpoints(knowledge: Knowledge) -> list[Endpoint]:
             path="/v1/datasets",
             name="datasets",
             summary="The standard data sets",
-            description="Cards of the simulated data sets every pipeline is scored on.",
+            description="Short cards of the simulated data sets every pipeline is scored on.",
             shape=Datasets,
             build=build_datasets,
             parameters=of_list,
             example_arguments="limit=1",
+        ),
+        Endpoint(
+            path="/v1/datasets/{name}",
+            name="dataset",
+            summary="One data set",
+            description="Its card: geometry, conditions with every parameter that the numbers "
+            "depend on, seeds, the bound of each condition, the hash of each split, and where its "
+            "picture is. As CSV: the hashes and bounds.",
+            shape=DatasetDetail,
+            build=build_dataset,
+            parts=(dataset_name(knowledge),),
+            example={"name": "cmos-single-aperture"},
         ),
         Endpoint(
             path="/v1/results",
@@ -116,6 +133,12 @@ def endpoints(knowledge: Knowledge) -> list[Endpoint]:
             example_arguments="limit=1",
         ),
     ]
+
+
+def dataset_name(knowledge: Knowledge) -> PathPart:
+    """Return the part of a path that names a data set."""
+    names = knowledge.measurements
+    return PathPart("name", "Name of the data set.", lambda: names.dataset_names)
 
 
 def _wanted(row: Mapping[str, Any], arguments: Arguments) -> bool:
