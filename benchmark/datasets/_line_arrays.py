@@ -10,12 +10,17 @@ from benchmark.datasets._preset import Condition
 from benchmark.simulator.assembly import Assembly
 from benchmark.simulator.detectors import DarkCurrent, PixelArray
 from benchmark.simulator.environment import Irradiance
+from benchmark.simulator.light import SolarDisc
 from benchmark.simulator.lines import LineSensor
 from benchmark.simulator.optics import CoverGlass, Plate, fresnel_number
 from benchmark.simulator.slit_masks import SlitErrors, slit_rows
 
 LIGHT = Irradiance(stray=0.002, stray_spread=0.0004)
 PLATE = Plate(0.5, 1.52)
+
+#: For pixels of some 10 um, over a dozen of which the Sun blurs an edge at 60 deg: the steps that
+#: single points make must not show (0.2 % of the peak).
+SUN = SolarDisc(rings=(28, 28, 28, 28, 28, 28))
 
 #: Small errors that remain after careful assembly.
 ASSEMBLED = Assembly(

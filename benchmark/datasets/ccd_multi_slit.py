@@ -7,6 +7,7 @@ from benchmark.datasets._field import AngleField
 from benchmark.datasets._line_arrays import (
     ASSEMBLED,
     SLITS_ASSEMBLED,
+    SUN,
     ccd,
     conditions,
     design,
@@ -22,7 +23,8 @@ _HALF_FOV_DEG = 60.0
 _SENSOR = LineSensor(
     camera=Camera(
         focal_length_mm=1.8,
-        mask=crossed_pairs(3.9, (0.7, 0.9), width_mm=0.2, length_mm=6.6, thickness_mm=0.01),
+        mask=crossed_pairs(4.6, (0.7, 0.9), width_mm=0.2, length_mm=7.7, thickness_mm=0.01),
+        sun=SUN,
         assembly=ASSEMBLED,
     ),
     detector=ccd(2048, 0.014),
@@ -48,7 +50,7 @@ PRESET = Preset(
         "with tan(beta) - tan(alpha), those of the other with tan(beta) + tan(alpha), both "
         "at 45 deg to the array. No dimensions are given. Round numbers instead: slits of "
         "0.2 mm 1.8 mm up keep the Fresnel number above 10; spacings of 0.7 and 0.9 mm tell "
-        "the pairs apart; 7.8 mm between the pairs keep their slits from crossing in the "
+        "the pairs apart; 9.2 mm between the pairs keep their slits from crossing in the "
         "mask, and so their peaks from overlapping anywhere in the field (image type 0 of "
         "alg:PPE); 2048 pixels of 14 um hold them."
     ),

@@ -7,6 +7,7 @@ from benchmark.datasets._field import AngleField
 from benchmark.datasets._line_arrays import (
     ASSEMBLED,
     SLITS_ASSEMBLED,
+    SUN,
     ccd,
     conditions,
     design,
@@ -22,7 +23,8 @@ _HALF_FOV_DEG = 60.0
 _SENSOR = LineSensor(
     camera=Camera(
         focal_length_mm=1.8,
-        mask=periodic(16, 0.4, width_mm=0.2, length_mm=7.0, thickness_mm=0.01),
+        mask=periodic(16, 0.4, width_mm=0.2, length_mm=7.6, thickness_mm=0.01),
+        sun=SUN,
         assembly=ASSEMBLED,
     ),
     detector=ccd(1024, 0.014),

@@ -7,6 +7,7 @@ from benchmark.datasets._field import AngleField
 from benchmark.datasets._line_arrays import (
     ASSEMBLED,
     SLITS_ASSEMBLED,
+    SUN,
     ccd,
     conditions,
     design,
@@ -22,7 +23,8 @@ _HALF_FOV_DEG = 60.0
 _SENSOR = LineSensor(
     camera=Camera(
         focal_length_mm=2.5,
-        mask=slit_row((0.0,), width_mm=0.25, length_mm=9.6, thickness_mm=0.01),
+        mask=slit_row((0.0,), width_mm=0.25, length_mm=10.4, thickness_mm=0.01),
+        sun=SUN,
         assembly=ASSEMBLED,
     ),
     detector=ccd(1024, 0.014),

@@ -22,10 +22,10 @@ _HALF_FOV_DEG = 64.0
 _SENSOR = LineSensor(
     camera=Camera(
         focal_length_mm=1.0,
-        mask=without(periodic(16, 0.32, width_mm=0.15, length_mm=4.8, thickness_mm=0.01), (2, 11)),
+        mask=without(periodic(16, 0.32, width_mm=0.15, length_mm=5.4, thickness_mm=0.01), (2, 11)),
         assembly=ASSEMBLED,
     ),
-    detector=ccd(96, 0.1),
+    detector=ccd(104, 0.1),
     pixel_height_mm=0.2,
     fill_factor=0.9,
     errors=SLITS_ASSEMBLED,
@@ -48,7 +48,7 @@ PRESET = Preset(
         "marks one after the other as the light moves by a fifteenth of a mark; two of 16 "
         "slits are left out as position code. Few, large pixels, as the abstract claims. "
         "The field of +-64 deg is the study's; it gives no dimensions. Round numbers "
-        "instead: slits of 0.15 mm 1 mm up keep the Fresnel number above 10; 96 pixels of "
+        "instead: slits of 0.15 mm 1 mm up keep the Fresnel number above 10; 104 pixels of "
         "0.1 mm, 90 percent of it sensitive, hold the pattern."
     ),
     regime=regime(_SENSOR),

@@ -10,15 +10,16 @@ from benchmark.datasets._line_arrays import ASSEMBLED, LIGHT, MISASSEMBLED
 from benchmark.datasets._preset import Condition, Preset
 from benchmark.simulator.code_dial import CodeDial, CodeDialSensor
 from benchmark.simulator.detectors import CurrentReadout, DarkCurrent
+from benchmark.simulator.light import SolarDisc
 from benchmark.simulator.optics import fresnel_number
 from benchmark.simulator.projection import Camera
 from benchmark.simulator.slit_masks import slit_row
 
-_FOCAL_MM, _WIDTH_MM, _HALF_FOV_DEG = 2.5, 0.3, 60.0
+_FOCAL_MM, _WIDTH_MM, _HALF_FOV_DEG = 2.5, 0.32, 60.0
 _DIAL = CodeDial(
     bits=5,
-    cell_mm=0.3,
-    period_mm=0.6,
+    cell_mm=0.32,
+    period_mm=0.64,
     track_height_mm=0.25,
     track_pitch_mm=0.3,
     track_error_mm=0.002,
@@ -27,6 +28,8 @@ _SENSOR = CodeDialSensor(
     camera=Camera(
         focal_length_mm=_FOCAL_MM,
         mask=slit_row((0.0,), _WIDTH_MM, length_mm=13.0, thickness_mm=0.01),
+        # a slit's width evens the disc out: few points of the Sun are enough
+        sun=SolarDisc(rings=(8, 12, 16)),
         assembly=ASSEMBLED,
     ),
     dial=_DIAL,
@@ -113,7 +116,7 @@ PRESET = Preset(
         "tell the cell, four fine rows in quadrature the phase in it (Fan2013, eq:fourier). The "
         "study gives the principle and the field of +-60 deg; its semi-cylindrical lens, which "
         "keeps rays of the measured plane straight, is left out. No dimensions are given. Round "
-        "numbers instead: a 0.3 mm slit 2.5 mm up keeps the Fresnel number above 10; a fine "
+        "numbers instead: a 0.32 mm slit 2.5 mm up keeps the Fresnel number above 10; a fine "
         "period of twice the slit's width keeps its contrast at 2/pi; Gray cells of half a "
         "period leave a quarter of it for coarse errors; 32 of them span the field."
     ),

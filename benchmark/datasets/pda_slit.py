@@ -22,7 +22,7 @@ _HALF_FOV_DEG = 60.0
 _SENSOR = LineSensor(
     camera=Camera(
         focal_length_mm=2.5,
-        mask=slit_row((0.0,), width_mm=0.3, length_mm=9.6, thickness_mm=0.02),
+        mask=slit_row((0.0,), width_mm=0.3, length_mm=10.8, thickness_mm=0.02),
         assembly=ASSEMBLED,
     ),
     detector=photodiode_array(256, 0.05),

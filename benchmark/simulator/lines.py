@@ -124,7 +124,7 @@ class LineSensor:
         """Let the plate's thickness stand along its own, tilted normal."""
         middle = (paths[0] + paths[1]) / 2.0
         thickness = self.camera.mask.thickness_mm / self.detector.pitch_mm
-        through = thickness * (math.cos(tilt) * paths[2] + np.array([0.0, math.sin(tilt)]))
+        through = thickness * (math.cos(tilt) * paths[2] - np.array([0.0, math.sin(tilt)]))
         paths[0], paths[1] = middle - through / 2.0, middle + through / 2.0
 
     def _electrons(self, scene: Scene, pattern: FixedPattern) -> Floats:
