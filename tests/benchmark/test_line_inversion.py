@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from benchmark import datasets
+from benchmark import datasets, plan
 from benchmark.bounds import cramer_rao
 from benchmark.simulator.assembly import Assembly
 from benchmark.simulator.code_dial import CodeDialSensor
@@ -304,6 +304,12 @@ def test_light_of_the_dial_is_conserved_over_the_field() -> None:
         for pair in ((0, 2), (1, 3)):
             both = fine[..., pair[0]] + fine[..., pair[1]]
             assert both == pytest.approx(np.repeat(light[:, None], 2, 1), rel=1e-9), condition
+
+
+def test_quadrant_balances_are_not_planned_on_a_code_dial() -> None:
+    assert not plan.cells("pd-code-dial", extractors="voltage-balance")
+    refused = plan.incompatible("pd-code-dial", extractors="voltage-balance")
+    assert any("the sensor has a code dial" in pair.reason for pair in refused)
 
 
 def test_bound_of_a_reticle_falls_with_the_square_root_of_its_slits() -> None:
