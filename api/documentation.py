@@ -12,8 +12,10 @@ import sys
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
+from api.documentation_export import export_example
 from api.documentation_parts import (
     command_line,
+    coverage,
     datasets,
     extractors,
     findings,
@@ -28,7 +30,7 @@ DIRECTORY = Path(__file__).resolve().parents[1] / "docs"
 Make = Callable[[], str]
 PAGES: Mapping[str, Mapping[str, Make]] = {
     "algorithms.md": {"extractors": extractors, "models": models, "missing": missing},
-    "datasets.md": {"datasets": datasets},
+    "datasets.md": {"coverage": coverage, "example": export_example, "datasets": datasets},
     "survey.md": {"findings": findings, "resolutions": resolutions},
     "http.md": {"endpoints": http_examples},
     "command-line.md": {"help": command_line},

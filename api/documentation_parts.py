@@ -10,9 +10,11 @@ from typing import Any
 import survey_data
 from api.documentation_examples import command_line, http_examples
 from api.http.knowledge import Knowledge
+from benchmark import coverage as simulated
 
 __all__ = [
     "command_line",
+    "coverage",
     "datasets",
     "extractors",
     "findings",
@@ -72,6 +74,23 @@ def missing() -> str:
 def datasets() -> str:
     """Write a card for each standard data set, with the published bounds."""
     return "\n\n".join(_card(card) for card in _knowledge().measurements.cards)
+
+
+def coverage() -> str:
+    """Say which detector-mask pairs of the mapped studies are simulated."""
+    found = simulated.coverage()
+    rows = [
+        (
+            pair.detector,
+            pair.mask,
+            str(len(pair.studies)),
+            ", ".join(f"[{name}](#{name})" for name in pair.datasets) or pair.reason,
+        )
+        for pair in found.pairs
+    ]
+    return f"{found.sentence()}\n\n" + _table(
+        ("detector", "mask", "studies", "data sets, or why none"), rows
+    )
 
 
 def findings() -> str:
