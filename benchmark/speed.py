@@ -16,6 +16,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 
 from benchmark.runner_timing import one_thread
+from benchmark.speed_light import diffracted_frames, light_of_frames
 from benchmark.speed_references import centroid_of_spots, rendering_of_frames
 
 
@@ -108,7 +109,8 @@ def _microseconds(call: Callable[[], object], items: int) -> float:
 
 def subjects() -> list[Subject]:
     """Prepare everything that is measured; a slower one is repeated as often."""
-    return [Subject(**centroid_of_spots()), Subject(**rendering_of_frames())]
+    prepared = (centroid_of_spots, rendering_of_frames, light_of_frames, diffracted_frames)
+    return [Subject(**prepare()) for prepare in prepared]
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

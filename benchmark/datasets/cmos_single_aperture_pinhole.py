@@ -43,7 +43,7 @@ _SENSOR = DiffractiveFrameSensor(
     ),
     widest_deg=45.0,
 )
-# stray light counts in full sunlight on the detector, of which the spot's peak gets 1/150
+# stray light counts in full sunlight on the detector, of which the spot's peak gets 1/180
 _LIGHT = Irradiance(stray=2e-5, stray_spread=4e-6)
 _UNEVEN = UnevenIrradiance(stray=2e-4, stray_spread=4e-5, slope_spread=5e-5)
 
@@ -87,7 +87,7 @@ PRESET = UnevenPreset(
         "gives no pixels and no field. Round numbers: 24 um pixels, so that a window holds the "
         "pattern and its stretching by oblique light; a field of 30 deg an axis (39 deg in the "
         "corners), where it is twice as long; 448 px hold it. No filter: the pattern's peak "
-        "has 1/150 of full sunlight, exposed to 20,000 electrons. The foil counts as thin. "
+        "has 1/180 of full sunlight, exposed to 17,000 electrons. The foil counts as thin. "
         "Windows are placed from the true spot, rounded, plus a uniform whole offset of up to "
         "8 px an axis."
     ),

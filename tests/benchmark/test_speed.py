@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from benchmark import datasets, speed
+from benchmark.speed_light import diffracted_frames, light_of_frames
 from benchmark.speed_references import centroid_of_spots, counted_light, rendering_of_frames
 
 
@@ -29,6 +30,13 @@ def test_simulating_is_twenty_times_faster_than_counting_and_gives_its_light(ren
     found = speed.compare(rendering, repeats=2)
     assert found.agrees, found
     assert found.ratio <= found.limit == 0.05, found
+
+
+@pytest.mark.parametrize("prepare", [light_of_frames, diffracted_frames])
+def test_light_alone_keeps_its_ratio_to_brute_force_and_gives_its_result(prepare):
+    found = speed.compare(speed.Subject(**prepare()), repeats=2)
+    assert found.agrees, found
+    assert found.ratio <= found.limit, found
 
 
 def test_the_counted_light_is_an_oracle_for_the_total_of_a_frame():
