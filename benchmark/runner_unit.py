@@ -23,6 +23,8 @@ from benchmark.store import Pin
 
 #: Datasets under one condition kept per process: the plan hands out a dataset's units in a row.
 _KEPT = 2
+#: Bytes of kept observations from which on only one dataset is: a worker stays below 1.5 GB.
+_KEPT_BYTES = 128 * 2**20
 
 
 @dataclass(frozen=True)
@@ -97,6 +99,7 @@ def generated_pins(preset: Preset, condition: str) -> tuple[Pin, ...]:
 def _data(preset: Preset, condition: str) -> _Data:
     place = (preset.name, condition, digest(preset.parameters(condition)))
     if place not in _kept:
+        _make_room()
         splits = {split: preset.generate(condition, split) for split in SPLITS}
         specification = data_specification(preset, condition)
         bound = preset.bound(condition, "test")
@@ -115,9 +118,18 @@ def _data(preset: Preset, condition: str) -> _Data:
         )
         _kept[place] = _Data(splits["calibration"], splits["test"], bound, pins)
     _kept.move_to_end(place)
-    while len(_kept) > _KEPT:
-        _kept.popitem(last=False)
     return _kept[place]
+
+
+def _make_room() -> None:
+    """Let go of what was used longest ago, before more is generated."""
+    while _kept and (len(_kept) >= _KEPT or _kept_bytes() > _KEPT_BYTES):
+        _kept.popitem(last=False)
+
+
+def _kept_bytes() -> int:
+    splits = [split for data in _kept.values() for split in (data.calibration, data.test)]
+    return sum(np.asarray(split.observations).nbytes for split in splits)
 
 
 def _rms_deg(bound: Bound) -> float | None:

@@ -238,6 +238,25 @@ def test_units_that_share_samples_go_to_one_worker_four_at_most():
     assert [[u.extractor for u in bundle] for bundle in grouped] == [[0, 1, 2, 3], [4, 5], [6], [7]]
 
 
+def test_a_worker_lets_go_of_large_data_before_it_generates_more(monkeypatch):
+    preset = fake_atlas.Diodes()
+    held = []
+    generate = fake_atlas.Diodes.generate
+
+    def watched(self, condition, split):
+        held.append(len(runner_unit._kept))
+        return generate(self, condition, split)
+
+    monkeypatch.setattr(fake_atlas.Diodes, "generate", watched)
+    for limit, expected in ((2**30, [0, 0, 1, 1]), (1000, [0, 0, 0, 0])):
+        monkeypatch.setattr(runner_unit, "_KEPT_BYTES", limit)
+        runner_unit._kept.clear()
+        held.clear()
+        for condition in preset.conditions:
+            runner_unit.generated_pins(preset, condition)
+        assert held == expected
+
+
 def test_dask_without_its_package_is_a_clear_error(store):
     with pytest.raises(DaskMissingError, match="pip install distributed"):
         measure(store, scheduler="tcp://127.0.0.1:1")
