@@ -17,7 +17,7 @@ Arrays = Mapping[str, NDArray[Any]]
 #: Before this no zip file can be; every archive is dated so, or the same data were other bytes.
 _DATE = (1980, 1, 1, 0, 0, 0)
 #: Noise hardly compresses; more effort gains a few per cent for several times the time.
-_EFFORT = 3
+_EFFORT = 1
 
 
 def write_archive(path: Path, arrays: Arrays) -> None:

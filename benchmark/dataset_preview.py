@@ -21,7 +21,7 @@ from benchmark.preview_canvas import LINES, MUTED, SHADE, Canvas, Plot, heat, nu
 Floats = NDArray[np.float64]
 
 #: Samples that are rendered to choose from.
-FIRST_SAMPLES = 24
+FIRST_SAMPLES = 16
 _WIDTH = 1000
 _LEFT, _TOP = 24, 78
 _TILE, _ACROSS, _DOWN = 208, 4, 2
