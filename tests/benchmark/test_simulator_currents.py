@@ -64,7 +64,10 @@ def test_area_of_a_disc_in_a_box_is_the_integral_of_its_chords(
         half = math.sqrt(max(radius**2 - (height - y) ** 2, 0.0))
         return max(min(x1, x + half) - max(x0, x - half), 0.0)
 
-    steps = np.linspace(y0, y1, 40)
+    # between the heights where the rim starts, ends or meets a side, the chord is smooth
+    meets = [math.sqrt(max(radius**2 - (side - x) ** 2, 0.0)) for side in (x0, x1)]
+    bends = [y + sign * reach for reach in (radius, *meets) for sign in (-1, 1)]
+    steps = sorted({y0, y1, *(bend for bend in bends if y0 < bend < y1)})
     expected = sum(
         integrate.quad(chord, a, b, epsabs=1e-9)[0] for a, b in itertools.pairwise(steps)
     )
