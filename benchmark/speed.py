@@ -16,6 +16,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 
 from benchmark.runner_timing import one_thread
+from benchmark.speed_frames import frames_of_a_coded_mask, frames_of_many_spots
 from benchmark.speed_light import diffracted_frames, light_of_frames
 from benchmark.speed_references import centroid_of_spots, rendering_of_frames
 
@@ -109,7 +110,14 @@ def _microseconds(call: Callable[[], object], items: int) -> float:
 
 def subjects() -> list[Subject]:
     """Prepare everything that is measured; a slower one is repeated as often."""
-    prepared = (centroid_of_spots, rendering_of_frames, light_of_frames, diffracted_frames)
+    prepared = (
+        centroid_of_spots,
+        rendering_of_frames,
+        light_of_frames,
+        diffracted_frames,
+        frames_of_many_spots,
+        frames_of_a_coded_mask,
+    )
     return [Subject(**prepare()) for prepare in prepared]
 
 
