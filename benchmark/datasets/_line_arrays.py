@@ -158,7 +158,7 @@ def design(sensor: LineSensor, half_fov_deg: float) -> SensorGeometry:
     return SensorGeometry(
         focal_length_mm=sensor.camera.focal_length_mm,
         pixel_pitch_mm=sensor.detector.pitch_mm,
-        centre_px=(middle, middle) if len(sensor.axes) == 2 else None,
+        centre_px=(middle, middle),  # both coordinates are counted in pixels of the array
         aperture_width_mm=mask.apertures[0].width_mm,
         half_fov_deg=half_fov_deg,
         line_axes=sensor.axes,

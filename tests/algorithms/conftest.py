@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -16,6 +16,7 @@ from algorithms.contract import FeatureKind, Observation, SensorGeometry
 Floats = NDArray[np.float64]
 
 FACES = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
+LINE_PIXELS = 60
 COMMON_SUITE = "test_common_suite.py::test_"
 
 
@@ -39,6 +40,24 @@ def geometry() -> SensorGeometry:
         face_normals=FACES,
         half_fov_deg=35.0,
     )
+
+
+@pytest.fixture(scope="session")
+def design_for(geometry: SensorGeometry) -> Callable[[Any], SensorGeometry]:
+    """The sensor one extractor class is made for: profiles come from lines behind a slit."""
+
+    def make(extractor: Any) -> SensorGeometry:
+        if extractor.observation is Observation.PROFILES:
+            return replace(
+                geometry,
+                pixel_pitch_mm=0.05,
+                line_axes=("x", "y"),
+                line_pixels=LINE_PIXELS,
+                slits=((0.0, 0.0, 0.3),),
+            )
+        return geometry
+
+    return make
 
 
 @pytest.fixture(scope="session")
@@ -71,6 +90,16 @@ def _squares(geometry: SensorGeometry, count: int = 5) -> NDArray[np.uint8]:
     return frames
 
 
+def _profiles(count: int = 9) -> NDArray[np.uint8]:
+    """Noisy light of a slit six pixels wide on two lines, whole numbers that every dtype holds."""
+    rng = np.random.default_rng(14)
+    at = np.arange(LINE_PIXELS)
+    centres = rng.uniform(12.0, LINE_PIXELS - 13.0, (count, 2, 1))
+    light = 200 / (1 + np.exp(4 * (np.abs(at - centres) - 3.0)))
+    profiles = (light + rng.integers(0, 12, light.shape)).astype(np.uint8)
+    return profiles.reshape(count, 2 * LINE_PIXELS)
+
+
 @pytest.fixture(scope="session")
 def observations_for(geometry: SensorGeometry) -> Callable[[Any], NDArray[Any]]:
     """Observations (N, ...) with something to find in every row, for one extractor class."""
@@ -80,6 +109,8 @@ def observations_for(geometry: SensorGeometry) -> Callable[[Any], NDArray[Any]]:
             return _squares(geometry)
         if extractor.observation is Observation.FRAMES:
             return _spots()
+        if extractor.observation is Observation.PROFILES:
+            return _profiles()
         if extractor.observation is Observation.CURRENTS:
             columns = {FeatureKind.BALANCE: 4, FeatureKind.SIGNALS: len(FACES)}[extractor.kind]
             return np.random.default_rng(12).integers(20, 250, (9, columns)).astype(np.uint8)

@@ -431,10 +431,10 @@ def check_refuses_other_kinds_and_names_missing_geometry(cls, model, cal, geomet
 
 @pytest.mark.parametrize("check", EXTRACTOR_CHECKS, ids=lambda check: check.__name__)
 @pytest.mark.parametrize("name", EXTRACTORS)
-def test_extractor(name, check, geometry, observations_for):
+def test_extractor(name, check, design_for, observations_for):
     cls = EXTRACTORS[name]
     RAN.add((name, check.__name__))
-    check(cls, cls.for_sensor(geometry), observations_for(cls))
+    check(cls, cls.for_sensor(design_for(cls)), observations_for(cls))
 
 
 @pytest.mark.parametrize("check", MODEL_CHECKS, ids=lambda check: check.__name__)
