@@ -35,10 +35,11 @@ class MatchedProfile:
     -----
     Implements: nothing printed in the survey. With p(r) the profile, c = (cos, sin) of a pixel's
     direction and v its variance, the step d solves ``sum(c c^T p'^2 / v) d = -sum(c p' (I - p)
-    / v)``; sums over rings in which p is a parabola, whose mean is free. The background and its
-    variance are those of the frame's border; a lit pixel has more variance in proportion to its
-    light, by the factor that explains the scatter within the rings. Of the slope squared, what
-    noise explains is taken off.
+    / v)``. The slope of p is that of a line through the seven rings about a pixel's, its bend
+    that of the slopes beside; a ring is as wide as the contrast to the power -1/3. The background
+    and its variance are those of the frame's border; a lit pixel has more variance in proportion
+    to its light, by the factor that explains the scatter within the rings. Of the slope squared,
+    what noise explains is taken off.
 
     Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers.
 
@@ -47,7 +48,7 @@ class MatchedProfile:
     compact spot (two spots, a line, noise) or touch the edge (a spot cut by it). A spot that is
     not round is found without bias where it is symmetric, above the bound.
 
-    Cost: 2 operations a pixel, 40 a pixel of the spot's surroundings and step.
+    Cost: 2 operations a pixel, 45 a pixel of the spot's surroundings and step.
     """
 
     name: ClassVar[str] = "matched-profile"
@@ -55,7 +56,7 @@ class MatchedProfile:
     studies: ClassVar[tuple[str, ...]] = ()
     labels: ClassVar[tuple[str, ...]] = ()
     origin: ClassVar[Origin] = "ours"
-    version: ClassVar[int] = 1
+    version: ClassVar[int] = 2
     observation: ClassVar[Observation] = Observation.FRAMES
     kind: ClassVar[FeatureKind] = FeatureKind.SPOT
     needs: ClassVar[tuple[str, ...]] = ()
