@@ -76,15 +76,35 @@ def joined_hash(split_hashes: Mapping[str, str]) -> str:
     return digest(dict(split_hashes))
 
 
-def data_specification(preset: Preset, condition: str) -> str:
-    """Digest of everything generated data depend on: names, version, parameters and code."""
+class Specifications:
+    """`data_specification` of datasets, each digested once: code as it is when first asked for."""
+
+    def __init__(self) -> None:
+        self._known: dict[tuple[str, str], str] = {}
+        self._code: dict[str, str] = {}
+
+    def of(self, preset: Preset, condition: str) -> str:
+        """Return the digest of a dataset under one condition; datasets are told by name."""
+        place = preset.name, condition
+        if place not in self._known:
+            if preset.name not in self._code:
+                self._code[preset.name] = preset_code(preset)
+            self._known[place] = data_specification(preset, condition, self._code[preset.name])
+        return self._known[place]
+
+
+def data_specification(preset: Preset, condition: str, code: str | None = None) -> str:
+    """Digest of everything generated data depend on: names, version, parameters and code.
+
+    `code` is `preset_code(preset)` where that is known.
+    """
     return digest(
         {
             "dataset": preset.name,
             "version": preset.version,
             "condition": condition,
             "parameters": preset.parameters(condition),
-            "code": preset_code(preset),
+            "code": code or preset_code(preset),
         }
     )
 
@@ -100,6 +120,8 @@ def preset_modules(preset: Preset) -> tuple[str, ...]:
 
 
 def _modules_of(value: object) -> Iterator[str]:
+    if value is None or isinstance(value, float | str | int):  # most of what a preset holds
+        return
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
         yield type(value).__module__
         for part in dataclasses.fields(value):
@@ -176,7 +198,7 @@ def implementation_key(
 
 
 def _plain(value: object) -> object:
-    if value is None or (isinstance(value, str | bool | int) and not isinstance(value, Enum)):
+    if value is None or (isinstance(value, str | int) and not isinstance(value, Enum)):
         return value
     if isinstance(value, float):
         return float(f"{value:.12g}") if math.isfinite(value) else repr(value)

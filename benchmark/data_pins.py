@@ -14,7 +14,7 @@ from pathlib import Path
 
 from joblib import Parallel, delayed
 
-from benchmark.content_key import data_specification
+from benchmark.content_key import Specifications
 from benchmark.plan_parts import SPLITS, Parts, Preset, UnknownNameError, installed
 from benchmark.runner_progress import ProgressCallback, terminal_progress
 from benchmark.runner_timing import one_thread
@@ -50,7 +50,11 @@ class Pinned:
 
 
 def outdated(
-    store: Store, datasets: Collection[str] | None = None, *, parts: Parts | None = None
+    store: Store,
+    datasets: Collection[str] | None = None,
+    *,
+    parts: Parts | None = None,
+    specifications: Specifications | None = None,
 ) -> list[Condition]:
     """List the conditions with a split that is not pinned for the code as it is, in order.
 
@@ -62,19 +66,22 @@ def outdated(
         Names; all by default.
     parts
         Datasets; what is installed by default.
+    specifications
+        Digests of datasets to share with other calls of the same run.
 
     Raises
     ------
     UnknownNameError
         For a dataset that is not installed.
     """
+    specifications = specifications or Specifications()
     known = parts or installed()
     pins = Journal(store).progress().pins
     return [
         (preset.name, condition)
         for preset in _chosen(known, datasets)
         for condition in preset.conditions
-        if not _is_pinned(preset, condition, pins)
+        if not _is_pinned(preset, condition, pins, specifications)
     ]
 
 
@@ -95,6 +102,7 @@ def update(
     *,
     datasets: Collection[str] | None = None,
     parts: Parts | None = None,
+    specifications: Specifications | None = None,
 ) -> Pinned:
     """Generate what is not pinned for the code as it is, and pin it.
 
@@ -113,6 +121,8 @@ def update(
         Names; all by default.
     parts
         Datasets; what is installed by default.
+    specifications
+        Digests of datasets to share with other calls of the same run.
 
     Raises
     ------
@@ -125,13 +135,14 @@ def update(
         raise ValueError(f"workers must be at least 1; got {workers}")
     started = time.perf_counter()
     known = parts or installed()
+    specifications = specifications or Specifications()
     presets = _chosen(known, datasets)
     with locked(store):
         journal = Journal(store)
         journal.cut_torn_line()
         held = journal.progress()
         every = [(preset, condition) for preset in presets for condition in preset.conditions]
-        missing = [one for one in every if not _is_pinned(*one, held.pins)]
+        missing = [one for one in every if not _is_pinned(*one, held.pins, specifications)]
         warnings: list[str] = []
         renewed = 0
         with terminal_progress() if progress is None else nullcontext(progress) as report:
@@ -196,11 +207,16 @@ def _chosen(parts: Parts, datasets: Collection[str] | None) -> list[Preset]:
     return [parts.presets[name] for name in sorted(set(datasets))]
 
 
-def _is_pinned(preset: Preset, condition: str, pins: Mapping[Place, Pin]) -> bool:
+def _is_pinned(
+    preset: Preset,
+    condition: str,
+    pins: Mapping[Place, Pin],
+    specifications: Specifications,
+) -> bool:
     found = [pins.get((preset.name, condition, split)) for split in SPLITS]
     if None in found:
         return False
-    specification = data_specification(preset, condition)
+    specification = specifications.of(preset, condition)
     return all(pin is not None and pin.specification == specification for pin in found)
 
 

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from benchmark import data_pins
-from benchmark.content_key import SCHEMA_VERSION
+from benchmark.content_key import SCHEMA_VERSION, Specifications
 from benchmark.leaderboard_check import Difference, check
 from benchmark.leaderboard_formats import FORMATS
 from benchmark.plan import cells
@@ -99,6 +99,7 @@ def update(
 
     Parameters and errors as `benchmark.runner.run`.
     """
+    specifications = Specifications()
     summary = run(
         cells(parts=parts),
         Store(directory),
@@ -107,8 +108,11 @@ def update(
         scheduler=scheduler,
         only_these=True,
         parts=parts,
+        specifications=specifications,
     )
-    pinned = data_pins.update(Store(directory), workers, progress, parts=parts)
+    pinned = data_pins.update(
+        Store(directory), workers, progress, parts=parts, specifications=specifications
+    )
     write(directory)
     return replace_fields(summary, warnings=(*summary.warnings, *pinned.warnings))
 

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from benchmark import data_pins, runner
+from benchmark.content_key import Specifications
 from benchmark.leaderboard_formats import FORMATS, Cells
 from benchmark.plan import cells
 from benchmark.plan_parts import SPLITS, Parts
@@ -82,11 +83,19 @@ def check(
         When a stored line cannot be read.
     """
     store = Store(directory)
-    found = [*_derived(store), *_outdated(store, parts)]
+    specifications = Specifications()
+    found = [*_derived(store), *_outdated(store, parts, specifications)]
     if not stored_only:
         with tempfile.TemporaryDirectory() as temporary:
             fresh = Store(temporary)
-            runner.run(cells(parts=parts), fresh, workers, progress, parts=parts)
+            runner.run(
+                cells(parts=parts),
+                fresh,
+                workers,
+                progress,
+                parts=parts,
+                specifications=specifications,
+            )
             found += compare(store.rows(), fresh.rows())
     return list(dict.fromkeys(found))
 
@@ -127,11 +136,13 @@ def _close(column: str, committed: Row, measured: Row) -> bool:
     return math.isclose(one, other, rel_tol=0.0, abs_tol=allowed)
 
 
-def _outdated(store: Store, parts: Parts | None) -> Iterator[Difference]:
+def _outdated(
+    store: Store, parts: Parts | None, specifications: Specifications
+) -> Iterator[Difference]:
     """Find stored scores that are of other code or data than there is, too few or too many."""
     planned = cells(parts=parts)
     rows = {cell_of(row): row for row in store.rows()}
-    for cell in runner.stale(planned, store, parts=parts):
+    for cell in runner.stale(planned, store, parts=parts, specifications=specifications):
         row = rows.get(cell)
         if row is None:
             yield Difference("scores.jsonl", f"{cell}/row", "absent", "planned")
@@ -141,13 +152,15 @@ def _outdated(store: Store, parts: Parts | None) -> Iterator[Difference]:
             )
     for cell in sorted(rows.keys() - set(planned)):
         yield Difference("scores.jsonl", f"{cell}/row", "present", "not planned")
-    yield from _unpinned(store, parts)
+    yield from _unpinned(store, parts, specifications)
 
 
-def _unpinned(store: Store, parts: Parts | None) -> Iterator[Difference]:
+def _unpinned(
+    store: Store, parts: Parts | None, specifications: Specifications
+) -> Iterator[Difference]:
     """Find data that are not pinned for the code as it is, and pins of nothing."""
     pins = store.pins()
-    for dataset, condition in data_pins.outdated(store, parts=parts):
+    for dataset, condition in data_pins.outdated(store, parts=parts, specifications=specifications):
         place = f"{dataset}/{condition}"
         if all((dataset, condition, split) in pins for split in SPLITS):
             changed = "another: code or parameters have changed"

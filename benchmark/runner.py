@@ -18,6 +18,7 @@ from importlib.metadata import version
 from itertools import groupby
 from pathlib import Path
 
+from benchmark.content_key import Specifications
 from benchmark.plan import Cell
 from benchmark.plan_parts import SPLITS, Parts, installed
 from benchmark.runner_backend import outcomes
@@ -54,6 +55,7 @@ def run(
     scheduler: str | None = None,
     only_these: bool = False,
     parts: Parts | None = None,
+    specifications: Specifications | None = None,
 ) -> Summary:
     """Measure the cells that the store does not hold yet.
 
@@ -74,6 +76,8 @@ def run(
         Drop stored results of cells that are not among `cells` (a full run); otherwise they stay.
     parts
         Datasets and implementations; what is installed by default.
+    specifications
+        Digests of datasets to share with other calls of the same run.
 
     Raises
     ------
@@ -91,7 +95,7 @@ def run(
     started = time.perf_counter()
     wanted = sorted(set(cells))
     parts = parts or installed()
-    keys = Keys(parts)
+    keys = Keys(parts, specifications)
     with locked(store):
         journal = Journal(store)
         journal.cut_torn_line()
@@ -118,10 +122,16 @@ def run(
     )
 
 
-def stale(cells: Iterable[Cell], store: Store, *, parts: Parts | None = None) -> list[Cell]:
+def stale(
+    cells: Iterable[Cell],
+    store: Store,
+    *,
+    parts: Parts | None = None,
+    specifications: Specifications | None = None,
+) -> list[Cell]:
     """List the cells that the store does not hold as code and data now are; renders nothing."""
     known = Journal(store).progress()
-    keys = Keys(parts or installed())
+    keys = Keys(parts or installed(), specifications)
     return [cell for cell in sorted(set(cells)) if not _is_stored(cell, known, keys)]
 
 

@@ -16,7 +16,10 @@ from joblib import Parallel, delayed, parallel_config
 
 from benchmark.runner_unit import Unit, UnitResult, measure
 
+#: Units a worker takes at once when there is too little to give each a whole dataset.
 _BUNDLE = 4
+#: Datasets for every worker from which on each is done by one worker.
+_DATASETS_A_WORKER = 4
 
 
 class DaskMissingError(ImportError):
@@ -53,23 +56,26 @@ def outcomes(
         coordinator = (platform.node(), os.getpid())
         parallel = Parallel(return_as="generator_unordered", batch_size=1, pre_dispatch="2*n_jobs")
         for results in parallel(
-            delayed(_measure_for)(coordinator, bundle) for bundle in bundles(units)
+            delayed(_measure_for)(coordinator, bundle) for bundle in bundles(units, workers)
         ):
             yield from results
 
 
-def bundles(units: Sequence[Unit]) -> list[list[Unit]]:
-    """Group units of one dataset and condition that follow each other, at most four.
+def bundles(units: Sequence[Unit], workers: int = 1) -> list[list[Unit]]:
+    """Group units that follow each other and share samples or light, for one worker to do.
 
-    They share samples, so one worker does them: generating often costs more than the rest.
+    Generating samples and their bound often costs more than the rest. With many datasets to do, a
+    bundle is a dataset, whose conditions see the same light (see
+    `benchmark.simulator.light_memory`); else at most four units of a dataset and condition.
     """
+    many = len({unit.preset.name for unit in units}) >= _DATASETS_A_WORKER * workers
     found: list[list[Unit]] = []
     for unit in units:
         last = found[-1] if found else []
         if (
             last
-            and len(last) < _BUNDLE
-            and (last[0].preset.name, last[0].condition) == (unit.preset.name, unit.condition)
+            and last[0].preset.name == unit.preset.name
+            and (many or (len(last) < _BUNDLE and last[0].condition == unit.condition))
         ):
             last.append(unit)
         else:

@@ -8,8 +8,8 @@ from functools import cache, partial
 from benchmark.content_key import (
     HARNESS_VERSION,
     SCHEMA_VERSION,
+    Specifications,
     cell_key,
-    data_specification,
     implementation_key,
     joined_hash,
     seed,
@@ -25,9 +25,9 @@ from benchmark.store import Pin, Row
 class Keys:
     """Keys of cells; digests of code are computed once for each part."""
 
-    def __init__(self, parts: Parts) -> None:
+    def __init__(self, parts: Parts, specifications: Specifications | None = None) -> None:
         self._parts = parts
-        self._specification = cache(self._uncached_specification)
+        self._specifications = specifications or Specifications()
         self._code = cache(closure_digest)
 
     def pinned_hash(self, cell: Cell, pins: Mapping[tuple[str, str, str], Pin]) -> str | None:
@@ -71,8 +71,8 @@ class Keys:
             seed(cell.dataset, cell.condition, cell.extractor, cell.model),
         )
 
-    def _uncached_specification(self, dataset: str, condition: str) -> str:
-        return data_specification(self._parts.preset(dataset), condition)
+    def _specification(self, dataset: str, condition: str) -> str:
+        return self._specifications.of(self._parts.preset(dataset), condition)
 
 
 def score_row(key: str, data_hash: str | None, result: UnitResult, outcome: Outcome) -> Row:

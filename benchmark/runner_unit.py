@@ -19,6 +19,7 @@ from benchmark.content_key import data_specification, digest, samples_hash, seed
 from benchmark.plan_parts import SPLITS, Bound, Preset, Samples
 from benchmark.runner_timing import Timing, best_of, one_thread
 from benchmark.scoring import Score, score, stored
+from benchmark.simulator.light_memory import memory
 from benchmark.store import Pin
 
 #: Datasets under one condition kept per process: the plan hands out a dataset's units in a row.
@@ -100,6 +101,7 @@ def _data(preset: Preset, condition: str) -> _Data:
     place = (preset.name, condition, digest(preset.parameters(condition)))
     if place not in _kept:
         _make_room()
+        memory.remember(preset.name)  # the conditions of a dataset see the same Suns
         splits = {split: preset.generate(condition, split) for split in SPLITS}
         specification = data_specification(preset, condition)
         bound = preset.bound(condition, "test")

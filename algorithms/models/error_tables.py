@@ -97,7 +97,13 @@ def solve_table(design: Any, roughness: list[Any], weight: float, errors: Floats
     normal = design.T @ design
     for differences in roughness:
         normal = normal + weight * (differences.T @ differences)
-    factors = splu(csc_array(normal))
+    # symmetric and positive definite: pivots stay on the diagonal, ordering keeps the symmetry
+    factors = splu(
+        csc_array(normal),
+        permc_spec="MMD_AT_PLUS_A",
+        diag_pivot_thresh=0.0,
+        options={"SymmetricMode": True},
+    )
     return np.asarray(factors.solve(np.ascontiguousarray(design.T @ errors)), dtype=np.float64)
 
 

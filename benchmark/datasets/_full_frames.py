@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from benchmark.bounds import Bound, cramer_rao
-from benchmark.datasets._preset import Preset
+from benchmark.datasets._preset import Preset, first
 from benchmark.simulator.lit_pixels import LitPixels
 from benchmark.simulator.masks import Mask
 from benchmark.simulator.multi_spot_frames import MultiSpotSensor
@@ -39,13 +39,12 @@ class FullFramePreset(Preset):
         sensor = setup.sensor
         if not isinstance(sensor, MultiSpotSensor):
             raise TypeError(f"{self.name} must hold a MultiSpotSensor; got {type(sensor).__name__}")
-        scene, pattern = self.scene(condition, split), self.fixed_pattern(condition)
-        scene = scene.part(0, len(scene) if n is None else n)
+        scene, pattern = first(self.scene(condition, split), n), self.fixed_pattern(condition)
         parts = []
         for start in range(0, len(scene), BOUND_BATCH):
             part = scene.part(start, start + BOUND_BATCH)
             lit = LitPixels(sensor, part, pattern)
-            parts.append(cramer_rao(lit, part, pattern, setup.irradiance))
+            parts.append(cramer_rao(lit, part, pattern, setup.irradiance, self.bound_step_rad))
         return Bound(
             angle_deg=np.concatenate([part.angle_deg for part in parts]),
             alpha_deg=np.concatenate([part.alpha_deg for part in parts]),

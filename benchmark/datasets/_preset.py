@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 import json
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, get_args
@@ -13,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.contract import Observation, SensorGeometry
-from benchmark.bounds import Bound, cramer_rao
+from benchmark.bounds import STEP_RAD, Bound, cramer_rao
 from benchmark.datasets._field import Field, Split
 from benchmark.seeds import generator
 from benchmark.simulator import SIMULATOR_VERSION
@@ -144,6 +145,8 @@ class Preset:
         Study keys whose architecture the dataset follows.
     description, regime
         In words: where the numbers come from; how light is propagated and why that is enough.
+    bound_step_rad
+        Half step of the bound's differences (see `benchmark.bounds.cramer_rao`).
     """
 
     name: str
@@ -158,6 +161,7 @@ class Preset:
     follows: tuple[str, ...]
     description: str
     regime: Mapping[str, Any] = field(default_factory=dict)
+    bound_step_rad: float = STEP_RAD
 
     @property
     def conditions(self) -> tuple[str, ...]:
@@ -214,13 +218,13 @@ class Preset:
             On an unknown condition or split, naming the known ones; on n below 1.
         """
         sensor = self.condition(condition).sensor
-        scene = _first(self.scene(condition, split), n)
+        scene = first(self.scene(condition, split), n)
         pattern = self.fixed_pattern(condition)
         streams = NoiseStreams.named(self.name, self.version, condition, split)
-        first = sensor.observe(scene.part(0, BATCH), pattern, streams)
+        head = sensor.observe(scene.part(0, BATCH), pattern, streams)
         # filled batch by batch: joining a list of batches would hold everything twice
-        observations = np.empty((len(scene), *first.shape[1:]), first.dtype)
-        observations[: len(first)] = first
+        observations = np.empty((len(scene), *head.shape[1:]), head.dtype)
+        observations[: len(head)] = head
         for start in range(BATCH, len(scene), BATCH):
             batch = sensor.observe(scene.part(start, start + BATCH), pattern, streams)
             observations[start : start + BATCH] = batch
@@ -234,9 +238,10 @@ class Preset:
         setup = self.condition(condition)
         return cramer_rao(
             setup.sensor,
-            _first(self.scene(condition, split), n),
+            first(self.scene(condition, split), n),
             self.fixed_pattern(condition),
             setup.irradiance,
+            self.bound_step_rad,
         )
 
     def parameters(self, condition: str) -> dict[str, Any]:
@@ -253,6 +258,7 @@ class Preset:
                 "earth": setup.earth,
                 "directions": self.directions,
                 "geometry": self.geometry_for(condition),
+                "bound_step_rad": self.bound_step_rad,
             }
         )
         return plain
@@ -296,7 +302,8 @@ def _split(name: str) -> Split:
     raise ValueError(f"no split {name!r}; there are {', '.join(SPLITS)}")
 
 
-def _first(scene: Scene, n: int | None) -> Scene:
+def first(scene: Scene, n: int | None) -> Scene:
+    """Return the first n samples, all for None; ValueError for n below 1."""
     if n is not None and n < 1:
         raise ValueError(f"n must be at least 1; got {n}")
     return scene if n is None else scene.part(0, n)
@@ -304,6 +311,10 @@ def _first(scene: Scene, n: int | None) -> Scene:
 
 def _plain(value: Any) -> Any:
     """Dataclasses, mappings and tuples as JSON objects and arrays; a dataclass names its type."""
+    if value is None or type(value) in (str, bool, int):
+        return value
+    if type(value) is float and math.isfinite(value):
+        return value
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
         fields = {f.name: _plain(getattr(value, f.name)) for f in dataclasses.fields(value)}
         if isinstance(value, SensorGeometry):

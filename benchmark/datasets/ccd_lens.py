@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from algorithms.contract import Observation, SensorGeometry
+from benchmark.bounds import LENS_STEP_RAD
 from benchmark.datasets._field import AngleField
 from benchmark.datasets._preset import Condition, Preset
 from benchmark.simulator.assembly import Assembly
@@ -161,11 +162,12 @@ PRESET = Preset(
         "the blurred Sun. Half of the overflow goes either way; what reaches the end of a "
         "column is lost. The bound is that of the pixels' own charges, cut at the full well, and "
         "the columns' overflows, which make up the picture: pixels under a trail count as if it "
-        "did not cover them. Its differences over 0.03 deg leave it some 4 % too large."
+        "did not cover them."
     ),
     regime={
         "propagation": "lens",
         "reason": "the lens's blur of 1 px (standard deviation) contains diffraction: the Airy "
         "radius at f/3 and 550 nm is 2.0 um",
     },
+    bound_step_rad=LENS_STEP_RAD,
 )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from algorithms.contract import Observation, SensorGeometry
+from benchmark.bounds import LENS_STEP_RAD
 from benchmark.datasets._field import AngleField
 from benchmark.datasets._preset import Condition, Preset
 from benchmark.simulator.assembly import Assembly
@@ -151,7 +152,7 @@ PRESET = Preset(
         "some 5000 times the full well. The reset level is sampled after a tenth of the exposure "
         "and gives way beyond one full well of charge, so that pixels with 10 to 20 full wells of "
         "light go from white to black. The bound counts, pixel by pixel, what is neither white "
-        "nor black; its differences over 0.03 deg blur the rims and leave it some 3 % too large. "
+        "nor black. "
         "Dark current at 0.1 ms is too little at any temperature for a hot condition."
     ),
     regime={
@@ -159,4 +160,5 @@ PRESET = Preset(
         "reason": "the lens's blur of 1 px (standard deviation) contains diffraction: the Airy "
         "radius at f/4 and 550 nm is 2.7 um",
     },
+    bound_step_rad=LENS_STEP_RAD,
 )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Hashable
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,8 +18,7 @@ from benchmark.simulator.diffraction_tables import (
 )
 from benchmark.simulator.masks import Aperture
 from benchmark.simulator.optics import fresnel_number
-from benchmark.simulator.scene import Scene
-from benchmark.simulator.stray_light import UnevenFrameSensor, add_slope
+from benchmark.simulator.stray_light import UnevenFrameSensor
 
 Floats = NDArray[np.float64]
 
@@ -68,31 +68,26 @@ class DiffractiveFrameSensor(UnevenFrameSensor):
         if self.nodes < 1:
             raise ValueError(f"nodes must be at least 1; got {self.nodes}")
 
-    def lit(self, scene: Scene) -> Floats:
-        """(N, H, W) as `FrameSensor.lit`, diffracted; with the uneven part of stray light.
+    def _optics(self) -> tuple[Hashable, ...]:
+        far = self.window_jitter_px, self.widest_deg, self.nodes
+        return (*super()._optics(), self.spectrum, far)
 
-        Raises
-        ------
-        ValueError
-            When the scene has no window origins.
-        """
-        if scene.origin_px is None:
-            raise ValueError("frames need the windows' origins; the scene's origin_px is None")
+    def _rendered(self, sun: Floats, origin_px: NDArray[np.int64]) -> Floats:
+        """(N, H, W) as `FrameSensor._rendered`, diffracted."""
         pitch = self.detector.pitch_mm
         columns, rows = self.window_px
-        flux = np.zeros((len(scene), rows, columns))
+        flux = np.zeros((len(sun), rows, columns))
         assembly = self.camera.assembly
         offset = np.array([assembly.offset_x_mm, assembly.offset_y_mm])
-        corner = (scene.origin_px - 0.5 - np.asarray(self.detector.centre_px)) * pitch - offset
+        corner = (origin_px - 0.5 - np.asarray(self.detector.centre_px)) * pitch - offset
         round_ones: dict[float, list[Aperture]] = {}
         for aperture in self.camera.mask.apertures:
             if aperture.shape == "round":
                 round_ones.setdefault(aperture.width_mm, []).append(aperture)
             else:
-                self._add_rectangle(flux, scene, corner, aperture)
+                self._add_rectangle(flux, sun, corner, aperture)
         for diameter, apertures in round_ones.items():
-            self._add_round(flux, scene, corner, diameter, apertures)
-        add_slope(flux, scene, self.detector)
+            self._add_round(flux, sun, corner, diameter, apertures)
         return flux
 
     def _pattern(self, diameter: float) -> RoundPattern:
@@ -109,18 +104,18 @@ class DiffractiveFrameSensor(UnevenFrameSensor):
         )
 
     def _add_round(
-        self, flux: Floats, scene: Scene, corner: Floats, diameter: float, group: list[Aperture]
+        self, flux: Floats, sun: Floats, corner: Floats, diameter: float, group: list[Aperture]
     ) -> None:
         from benchmark.simulator.diffraction_kernels import add_round  # noqa: PLC0415 - Numba
 
         pattern = self._pattern(diameter)
-        head = self.camera.assembly.to_head(scene.sun)
+        head = self.camera.assembly.to_head(sun)
         front = head[:, 2] > 1e-6
         safe = np.where(front[:, None], head, [0.0, 0.0, 1.0])
         sine = np.sqrt(np.sum(safe[:, :2] ** 2, axis=1))
         known = np.minimum(sine, math.sin(math.radians(self.widest_deg)))
         steps, unit = pattern.scales(known)
-        light = scene.irradiance * safe[:, 2] * self.camera.glass.transmission(safe) * unit
+        light = safe[:, 2] * self.camera.glass.transmission(safe) * unit
         numbers = np.column_stack([np.where(front, light, 0.0), pattern.place(known), 1.0 / steps])
         centres = np.array([(a.x_mm, a.y_mm) for a in group])
         gauss, shares = np.polynomial.legendre.leggauss(self.nodes)
@@ -136,17 +131,15 @@ class DiffractiveFrameSensor(UnevenFrameSensor):
             ),
         )
 
-    def _add_rectangle(
-        self, flux: Floats, scene: Scene, corner: Floats, aperture: Aperture
-    ) -> None:
+    def _add_rectangle(self, flux: Floats, sun: Floats, corner: Floats, aperture: Aperture) -> None:
         from benchmark.simulator.diffraction_slit_kernels import (  # noqa: PLC0415 - Numba
             add_rectangle,
         )
 
-        projected = self.camera.project(scene.sun)
+        projected = self.camera.project(sun)
         assembly = self.camera.assembly
         offset = np.array([assembly.offset_x_mm, assembly.offset_y_mm])
-        head = assembly.to_head(scene.sun)
+        head = assembly.to_head(sun)
         square = np.minimum(head[:, :2] ** 2, 1.0)
         sine2 = np.sum(square, axis=1)
         turn = np.where(sine2[:, None] > 0, square / np.where(sine2 > 0, sine2, 1.0)[:, None], 0.5)
@@ -159,7 +152,7 @@ class DiffractiveFrameSensor(UnevenFrameSensor):
             flux,
             (
                 projected.rims_mm[0] - offset + np.array([aperture.x_mm, aperture.y_mm]),
-                projected.light * scene.irradiance[:, None],
+                projected.light,
                 corner,
                 spread,
             ),

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from benchmark.seeds import generator
 from benchmark.simulator.detectors import DarkCurrent
+from benchmark.simulator.light_memory import memory
 from benchmark.simulator.noise import NoiseStreams
 from benchmark.simulator.projection import Camera
 from benchmark.simulator.scene import Scene
@@ -116,17 +117,26 @@ class EventSensor:
 
         The rendering alone: no stray light, no fixed pattern.
         """
+        detector = self.detector
+        size = detector.rows, detector.columns, detector.pitch_mm
+        key = type(self).__name__, self.camera, size, scene.sun.tobytes()
+        flux = memory.rendered(key, lambda: self._rendered(scene.sun))
+        flux *= scene.irradiance[:, None, None]
+        return flux
+
+    def _rendered(self, sun: Floats) -> Floats:
+        """(N, H, W) light of the mean sunlight from (N, 3)."""
         from benchmark.simulator.rasteriser import render  # noqa: PLC0415 - Numba on demand
 
         detector = self.detector
-        light = self.camera.project(scene.sun)
-        flux = np.empty((len(scene), detector.rows, detector.columns))
+        light = self.camera.project(sun)
+        flux = np.empty((len(sun), detector.rows, detector.columns))
         render(
             flux,
             self.camera.mask.table(detector.pitch_mm),
             light.rims_mm / detector.pitch_mm,
-            light.light * scene.irradiance[:, None],
-            np.full((len(scene), 2), -0.5) - np.asarray(detector.centre_px),
+            light.light,
+            np.full((len(sun), 2), -0.5) - np.asarray(detector.centre_px),
         )
         return flux
 

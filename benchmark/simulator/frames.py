@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 
 from benchmark.seeds import generator
 from benchmark.simulator.detectors import PixelArray
+from benchmark.simulator.light_memory import memory
 from benchmark.simulator.noise import NoiseStreams, counted
 from benchmark.simulator.projection import Camera, ProjectedLight
 from benchmark.simulator.scene import Scene
@@ -72,20 +74,33 @@ class FrameSensor:
         ValueError
             When the scene has no window origins.
         """
-        from benchmark.simulator.rasteriser import render  # noqa: PLC0415 - Numba on demand
-
         if scene.origin_px is None:
             raise ValueError("frames need the windows' origins; the scene's origin_px is None")
+        key = (*self._optics(), scene.sun.tobytes(), scene.origin_px.tobytes())
+        flux = memory.rendered(key, lambda: self._rendered(scene.sun, np.asarray(scene.origin_px)))
+        flux *= scene.irradiance[:, None, None]
+        return flux
+
+    def _optics(self) -> tuple[Hashable, ...]:
+        """Everything `_rendered` depends on but its arguments."""
+        detector = self.detector
+        size = detector.rows, detector.columns, detector.pitch_mm
+        return type(self).__name__, self.camera, self.window_px, size
+
+    def _rendered(self, sun: Floats, origin_px: NDArray[np.int64]) -> Floats:
+        """(N, H, W) light of the mean sunlight from (N, 3) in windows at (N, 2)."""
+        from benchmark.simulator.rasteriser import render  # noqa: PLC0415 - Numba on demand
+
         pitch = self.detector.pitch_mm
-        light = self.projected(scene)
+        light = self.camera.project(sun)
         columns, rows = self.window_px
-        flux = np.empty((len(scene), rows, columns))
+        flux = np.empty((len(sun), rows, columns))
         render(
             flux,
             self.camera.mask.table(pitch),
             light.rims_mm / pitch,
-            light.light * scene.irradiance[:, None],
-            scene.origin_px - 0.5 - np.asarray(self.detector.centre_px),
+            light.light,
+            origin_px - 0.5 - np.asarray(self.detector.centre_px),
         )
         return flux
 

@@ -14,6 +14,7 @@ from benchmark.simulator.detectors import PixelArray
 from benchmark.simulator.flare import Clouds, Flare
 from benchmark.simulator.lens import Lens
 from benchmark.simulator.light import SolarDisc
+from benchmark.simulator.light_memory import memory
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
 
@@ -112,6 +113,13 @@ class LensCamera:
         The image is the Sun's disc point by point through the lens, each blurred by a Gaussian
         that is integrated over the pixels exactly; flare is centred on the Sun's centre.
         """
+        detector = self.detector
+        size = detector.rows, detector.columns, detector.pitch_mm
+        optics = self.lens, self.blur_mm, self.flare, self.sun, self.assembly
+        key = (type(self).__name__, size, optics, sun.tobytes())
+        return memory.rendered(key, lambda: self._shares(sun))
+
+    def _shares(self, sun: Floats) -> Floats:
         head = self.assembly.to_head(sun)
         points = self._pixels(self.sun.directions(head))
         _, weights = self.sun.quadrature()

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from benchmark.seeds import generator
 from benchmark.simulator.detectors import PixelArray
+from benchmark.simulator.light_memory import memory
 from benchmark.simulator.noise import NoiseStreams, counted
 from benchmark.simulator.projection import Camera
 from benchmark.simulator.scene import Scene
@@ -95,27 +96,36 @@ class LineSensor:
 
         This is the rendering itself: no fixed pattern, no noise, no stray light.
         """
+        detector = self.detector
+        pixels = detector.columns, detector.pitch_mm, self.pixel_height_mm, self.fill_factor
+        key = (type(self).__name__, self.camera, pixels, self.axes, self.errors)
+        flux = memory.rendered((*key, scene.sun.tobytes()), lambda: self._rendered(scene.sun))
+        flux *= scene.irradiance[:, None]
+        return flux
+
+    def _rendered(self, sun: Floats) -> Floats:
+        """(N, W) light of the mean sunlight from (N, 3)."""
         from benchmark.simulator.line_kernel import expose  # noqa: PLC0415 - Numba on demand
 
         pitch, columns = self.detector.pitch_mm, self.detector.columns
-        projected = self.camera.project(scene.sun)
-        light = projected.light * scene.irradiance[:, None]
+        projected = self.camera.project(sun)
+        light = projected.light
         lower, upper = projected.rims_mm
         tangents = np.zeros_like(lower)
         tilt = math.radians(self.errors.inclination_deg)
         if tilt != 0.0:
-            points = self.camera.sun.directions(self.camera.assembly.to_head(scene.sun))
+            points = self.camera.sun.directions(self.camera.assembly.to_head(sun))
             tangents = points[..., :2] / np.maximum(points[..., 2:], 1e-6)
         half_height = self.pixel_height_mm / pitch / 2.0
         numbers = -columns / 2.0, half_height, self.fill_factor, math.cos(tilt), math.sin(tilt)
-        flux = np.empty((len(scene), self.width_px))
+        flux = np.empty((len(sun), self.width_px))
         for number, axis in enumerate(self.axes):
             along = np.stack([lower / pitch, upper / pitch, tangents])
             if axis == "y":
                 along = np.ascontiguousarray(along[..., ::-1])
             if tilt != 0.0:
                 self._tilt(along, tilt)
-            part = np.empty((len(scene), columns))
+            part = np.empty((len(sun), columns))
             expose(part, self._slits(axis), along, light, numbers)
             flux[:, number * columns : (number + 1) * columns] = part
         return flux

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmark.simulator.light_memory import memory
 from benchmark.simulator.multi_spot_frames import MultiSpotSensor
 from benchmark.simulator.noise import NoiseStreams
 from benchmark.simulator.scene import Scene
@@ -60,6 +61,13 @@ class LitPixels:
 
     def _rendered(self, sun: Floats) -> Floats:
         """(N, P) light of mean sunlight on the pixels."""
+        detector = self.sensor.detector
+        mask = self.pattern["apertures"].tobytes(), self.pattern["transmission"].tobytes()
+        place = detector.rows, detector.columns, detector.pitch_mm, self._pixels.tobytes()
+        key = (type(self.sensor).__name__, self.sensor.camera, mask, place, sun.tobytes())
+        return memory.rendered(key, lambda: self._from(sun))
+
+    def _from(self, sun: Floats) -> Floats:
         detector = self.sensor.detector
         frame = np.zeros((detector.rows, detector.columns))
         out = np.zeros(self._pixels.shape)

@@ -13,6 +13,7 @@ from benchmark import datasets
 from benchmark.bounds import cramer_rao
 from benchmark.datasets import Condition
 from benchmark.seeds import generator
+from benchmark.simulator.detectors import DarkCurrent
 from benchmark.simulator.environment import Irradiance
 from benchmark.simulator.faces import FaceSensor
 from benchmark.simulator.frames import FrameSensor
@@ -120,6 +121,78 @@ def test_shot_limited_bound_falls_with_the_square_root_of_the_photons() -> None:
         pattern = sensor.fixed_pattern("test")
         found.append(cramer_rao(sensor, scene, pattern, setup.irradiance).angle_deg)
     assert found[0] / found[1] == pytest.approx(2.0, rel=0.01)
+
+
+def bounds_by_pitch(sunlit_e: float, read_noise_e: float) -> list[np.ndarray]:
+    """Bounds with pixels of 6, 3 and 1.5 micrometres, their light in proportion to their area."""
+    setup, _ = setup_of("cmos-single-aperture")
+    assert isinstance(setup.sensor, FrameSensor)
+    found = []
+    for ratio in (0.5, 0.25, 0.125):
+        detector = replace(
+            setup.sensor.detector,
+            columns=2048,
+            rows=2048,
+            pitch_mm=setup.sensor.detector.pitch_mm * ratio,
+            sunlit_e=sunlit_e * ratio**2,
+            full_well_e=1e8,
+            gain_e_per_dn=1.0,
+            read_noise_e=read_noise_e,
+            bits=24,
+            prnu=0.0,
+            dark=DarkCurrent(0.0),
+        )
+        sensor = replace(setup.sensor, detector=detector, window_px=(256, 256))
+        scene = scene_at(replace(setup, sensor=sensor), [10.0, 40.0], [-20.0, 5.0])
+        pattern = sensor.fixed_pattern("test")
+        found.append(cramer_rao(sensor, scene, pattern, setup.irradiance).angle_deg)
+    return found
+
+
+def test_counting_photons_finer_pixels_gain_ever_less() -> None:
+    """What a pixel blurs is lost at the dim rim of the spot: first order in the pitch."""
+    coarse, middle, fine = bounds_by_pitch(sunlit_e=1e6, read_noise_e=0.0)
+    once, twice = 1 - middle / coarse, 1 - fine / middle
+    assert (once < 0.1).all()
+    assert twice / once == pytest.approx(0.5, rel=0.1)
+
+
+def test_read_noise_makes_finer_pixels_worse_in_proportion() -> None:
+    """``sum (dS/dx)^2 / r^2``: pitch^4 a pixel, and pitch^-2 pixels."""
+    _, middle, fine = bounds_by_pitch(sunlit_e=1e3, read_noise_e=1e3)
+    assert fine / middle == pytest.approx(2.0, rel=0.03)
+
+
+def test_the_near_test_of_observability_agrees_with_the_far_one() -> None:
+    """Where both can be asked: a deviation just below and just above the step."""
+    setup, pattern = setup_of("cmos-single-aperture", "high-noise")
+    scene = scene_at(setup, [0.0, 30.0, -50.0], [0.0, -40.0, 20.0])
+    sigma = np.radians(cramer_rao(setup.sensor, scene, pattern, setup.irradiance).angle_deg)
+    for factor in (0.3, 3.0):  # the far test below, the near one above
+        step = float(factor * sigma.max())
+        bound = cramer_rao(setup.sensor, scene, pattern, setup.irradiance, step)
+        assert bound.observable.all()
+
+
+def test_a_signal_that_ends_within_the_step_is_not_observed() -> None:
+    """A face that the Sun is about to leave: derivatives promise what one side does not keep."""
+    setup, _ = setup_of("pd-maskless-cube")
+    assert isinstance(setup.sensor, FaceSensor)
+    # noise so low that a standard deviation is far below the differences' step
+    readout = replace(setup.sensor.readout, noise_ua=1e-7, bits=24, integration_s=1e6)
+    sensor = replace(setup.sensor, readout=readout)
+    light = Irradiance(spread=0.02, stray=0.002, stray_spread=1e-3)
+    scene = scene_at(replace(setup, sensor=sensor), [30.0, 0.0], [35.0, 0.0])
+    sun = np.array([[0.0, 0.0, 1.0], *scene.sun[:1]])
+    seen = cramer_rao(sensor, still(setup, sun), sensor.fixed_pattern("test"), light)
+    assert seen.observable.tolist() == [False, True]
+
+
+def test_a_step_that_is_none_is_refused() -> None:
+    setup, pattern = setup_of("cmos-single-aperture")
+    scene = scene_at(setup, [0.0], [0.0])
+    with pytest.raises(ValueError, match="step_rad must be positive; got 0"):
+        cramer_rao(setup.sensor, scene, pattern, setup.irradiance, 0.0)
 
 
 def test_read_limited_bound_grows_in_proportion_to_the_noise() -> None:

@@ -238,6 +238,17 @@ def test_units_that_share_samples_go_to_one_worker_four_at_most():
     assert [[u.extractor for u in bundle] for bundle in grouped] == [[0, 1, 2, 3], [4, 5], [6], [7]]
 
 
+def test_with_many_datasets_each_is_done_by_one_worker():
+    units = [
+        runner_unit.Unit(fake_atlas.Diodes(name=name), condition, number, ())
+        for name in "abcdefgh"
+        for condition in "xy"
+        for number in range(6)
+    ]
+    assert [len(bundle) for bundle in bundles(units, workers=2)] == [12] * 8
+    assert max(len(bundle) for bundle in bundles(units, workers=3)) == 4
+
+
 def test_a_worker_lets_go_of_large_data_before_it_generates_more(monkeypatch):
     preset = fake_atlas.Diodes()
     held = []
