@@ -1,0 +1,275 @@
+"""Match spots to the apertures that cast them: the displacement that explains most of them."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.contract import Floats
+from algorithms.kernels.compilation import compiled
+
+Indices = NDArray[np.int64]
+
+#: Displacements tried, those that most pairs of a spot and an aperture vote for.
+_CANDIDATES = 64
+#: Rounds of matching and averaging; the first reaches further, by _REACH tolerances.
+_ROUNDS = 4
+_REACH = 2.0
+
+
+@compiled
+def _nearest(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    table: Indices, corner: Floats, cell: float, apertures: Floats, x: float, y: float, reach: float
+) -> tuple[int, float]:
+    """Aperture nearest to a point within `reach`, and its squared distance; -1 for none.
+
+    `table` (R, C) holds the aperture in each cell of a lattice from `corner`, or -1.
+    """
+    best = -1
+    least = reach * reach
+    top = max(math.floor((y - reach - corner[1]) / cell), 0)
+    bottom = min(math.floor((y + reach - corner[1]) / cell) + 1, table.shape[0])
+    left = max(math.floor((x - reach - corner[0]) / cell), 0)
+    right = min(math.floor((x + reach - corner[0]) / cell) + 1, table.shape[1])
+    for i in range(top, bottom):
+        for j in range(left, right):
+            a = table[i, j]
+            if a >= 0:
+                dx = x - apertures[a, 0]
+                dy = y - apertures[a, 1]
+                distance = dx * dx + dy * dy
+                if distance < least:
+                    least = distance
+                    best = a
+    return best, least
+
+
+@compiled
+def _expected(
+    apertures: Floats, x: float, y: float, frame: tuple[int, int], margin: float
+) -> int:
+    """How many apertures cast a spot that is whole in the frame (height, width)."""
+    found = 0
+    for a in range(apertures.shape[0]):
+        half = 0.5 * apertures[a, 2] + margin
+        px = apertures[a, 0] + x
+        py = apertures[a, 1] + y
+        if half <= px < frame[1] - 1 - half and half <= py < frame[0] - 1 - half:
+            found += 1
+    return found
+
+
+@compiled
+def _votes(
+    spots: Floats,
+    apertures: Floats,
+    cell: float,
+    ballot: NDArray[np.int32],
+    touched: Indices,
+    best: Indices,
+    counts: Indices,
+) -> int:
+    """Write to `best` the cells of displacement that most pairs vote for; return how many.
+
+    Each pair of a spot (S, 3) and an aperture votes for one cell of `ballot`, which is left
+    empty again. A cell counts with its eight neighbours (`counts`), and only where none of them
+    alone has more.
+    """
+    columns = ballot.shape[1]
+    flat = ballot.ravel()
+    low_x = apertures[:, 0].max()
+    low_y = apertures[:, 1].max()
+    cells = 0
+    for s in range(spots.shape[0]):
+        for a in range(apertures.shape[0]):
+            # one cell of margin all around
+            j = int((spots[s, 0] - apertures[a, 0] + low_x) / cell) + 1
+            i = int((spots[s, 1] - apertures[a, 1] + low_y) / cell) + 1
+            at = i * columns + j
+            if flat[at] == 0:
+                touched[cells] = at
+                cells += 1
+            flat[at] += 1
+    together = np.empty(cells, dtype=np.int64)
+    most = 0
+    for t in range(cells):
+        at = touched[t]
+        votes = 0
+        for i in range(-1, 2):
+            for j in range(-1, 2):
+                votes += flat[at + i * columns + j]
+        together[t] = votes
+        most = max(most, votes)
+    # most cells hold chance pairs
+    floor = max(most // 3, 1)
+    kept = 0
+    for t in range(cells):
+        votes = together[t]
+        at = touched[t]
+        if votes < floor or (kept == best.size and votes <= counts[kept - 1]):
+            continue
+        peak = True
+        for i in range(-1, 2):
+            for j in range(-1, 2):
+                other = flat[at + i * columns + j]
+                own = flat[at]
+                # of equal neighbours the first stands
+                if other > own or (other == own and i * columns + j < 0):
+                    peak = False
+        if not peak:
+            continue
+        place = kept if kept < best.size else kept - 1
+        while place > 0 and counts[place - 1] < votes:
+            counts[place] = counts[place - 1]
+            best[place] = best[place - 1]
+            place -= 1
+        counts[place] = votes
+        best[place] = at
+        kept = min(kept + 1, best.size)
+    for t in range(cells):
+        flat[touched[t]] = 0
+    return kept
+
+
+@compiled
+def _fit(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    spots: Floats,
+    apertures: Floats,
+    table: Indices,
+    corner: Floats,
+    cell: float,
+    x: float,
+    y: float,
+    tolerance: float,
+    partner: Indices,
+    distance: Floats,
+) -> tuple[float, float, float, int]:
+    """Displacement near (x, y) under which spots lie on apertures, its quality and their number.
+
+    `partner` (A,) receives the spot of each aperture, or -1. The quality is the sum over the
+    matched of one less their squared distance in tolerances.
+    """
+    matched = 0
+    quality = 0.0
+    for turn in range(_ROUNDS):
+        reach = tolerance * (_REACH if turn == 0 else 1.0)
+        partner[:] = -1
+        for s in range(spots.shape[0]):
+            a, squared = _nearest(
+                table, corner, cell, apertures, spots[s, 0] - x, spots[s, 1] - y, reach
+            )
+            if a >= 0 and (partner[a] < 0 or squared < distance[a]):
+                partner[a] = s
+                distance[a] = squared
+        matched = 0
+        quality = 0.0
+        sum_x = 0.0
+        sum_y = 0.0
+        for a in range(apertures.shape[0]):
+            s = partner[a]
+            if s >= 0:
+                matched += 1
+                quality += 1.0 - distance[a] / (reach * reach)
+                sum_x += spots[s, 0] - apertures[a, 0]
+                sum_y += spots[s, 1] - apertures[a, 1]
+        if matched == 0:
+            break
+        if turn < _ROUNDS - 1:
+            x = sum_x / matched
+            y = sum_y / matched
+    return x, y, quality, matched
+
+
+@compiled
+def match(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    spots: Floats,
+    counts: Indices,
+    apertures: Floats,
+    table: Indices,
+    corner: Floats,
+    cell: float,
+    frame: tuple[int, int],
+    margin: float,
+    tolerance: float,
+    absent: float,
+    clear: float,
+    share: float,
+    displacement: Floats,
+    partners: Indices,
+) -> None:
+    """Find the displacement (x, y) of the apertures that explains each frame's spots.
+
+    A displacement scores by its quality (see `_fit`), less `absent` for each aperture whose spot
+    would be whole in the frame: so a grid is not taken for the one shifted by a hole.
+
+    Parameters
+    ----------
+    spots, counts
+        (N, S, 3) and (N,) as `spots.segment` writes them.
+    apertures, table, corner, cell
+        (A, 3) x, y, width; the lattice of `_nearest`.
+    frame, margin
+        Height and width; px that a spot reaches beyond its aperture.
+    tolerance
+        Largest distance of a spot from its place, px.
+    absent, clear, share
+        The price above; by how much the best displacement must beat every other; the least
+        share of the expected spots that must be there.
+    displacement, partners
+        (N, 2) and (N, A): receive the displacement, NaN where none is found, and the spot of
+        each aperture, -1 for none.
+    """
+    height, width = frame
+    wide = width + apertures[:, 0].max() - apertures[:, 0].min()
+    high = height + apertures[:, 1].max() - apertures[:, 1].min()
+    ballot = np.zeros((int(high / tolerance) + 4, int(wide / tolerance) + 4), dtype=np.int32)
+    largest = max(counts.max(), 1)
+    touched = np.empty(largest * apertures.shape[0], dtype=np.int64)
+    best = np.empty(_CANDIDATES, dtype=np.int64)
+    votes = np.empty(_CANDIDATES, dtype=np.int64)
+    partner = np.empty(apertures.shape[0], dtype=np.int64)
+    distance = np.empty(apertures.shape[0])
+    low_x = apertures[:, 0].max()
+    low_y = apertures[:, 1].max()
+    for k in range(spots.shape[0]):
+        displacement[k] = np.nan
+        partners[k] = -1
+        if counts[k] < 1:
+            continue
+        seen = spots[k, : counts[k]]
+        candidates = _votes(seen, apertures, tolerance, ballot, touched, best, votes)
+        first = -np.inf
+        first_x = np.nan
+        first_y = np.nan
+        second = -np.inf
+        for c in range(candidates):
+            x = (best[c] % ballot.shape[1] - 0.5) * tolerance - low_x
+            y = (best[c] // ballot.shape[1] - 0.5) * tolerance - low_y
+            # No spot adds more than one: this one can neither win nor be near to it.
+            price = absent * _expected(apertures, x, y, frame, margin)
+            if votes[c] - price < first - 2.0 * clear:
+                continue
+            x, y, quality, matched = _fit(
+                seen, apertures, table, corner, cell, x, y, tolerance, partner, distance
+            )
+            expected = _expected(apertures, x, y, frame, margin)
+            score = quality - absent * expected
+            same = abs(x - first_x) < tolerance and abs(y - first_y) < tolerance
+            if score > first:
+                if not same:
+                    second = first
+                first, first_x, first_y = score, x, y
+                if matched >= share * expected:
+                    displacement[k, 0] = x
+                    displacement[k, 1] = y
+                    partners[k] = partner
+                else:
+                    displacement[k] = np.nan
+            elif not same:
+                second = max(second, score)
+        if first - second < clear:
+            displacement[k] = np.nan
+        if np.isnan(displacement[k, 0]):
+            partners[k] = -1
