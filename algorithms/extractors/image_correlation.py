@@ -21,6 +21,7 @@ from algorithms.extractors.aperture_pattern import (
     frame_levels,
     lattice,
     margin_px,
+    nearest_distance,
     require_pattern,
     without_gaps,
 )
@@ -30,6 +31,8 @@ Shape = Literal["round", "square"]
 
 #: Points an axis of a pixel at which a template's coverage is sampled.
 _SAMPLES = 16
+#: Longest correlation to each side, px: cost grows with its square, accuracy no more.
+_LONGEST = 8.0
 
 
 @dataclass(frozen=True)
@@ -134,14 +137,18 @@ class ImageCorrelation:
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
         """Return the method with this sensor's mask; ValueError where its light is no spots.
 
-        Correlations reach a quarter of a spot's width to each side, where its hill is steep.
+        Correlations reach half a spot's width to each side, 8 px at most, less where the window
+        would hold light of a neighbour.
         """
         design = design_pattern(geometry, cls.needs, cls.name)
         shape = geometry.aperture_shape
         if shape is None:  # said above; for the type checker
             raise ValueError(f"{cls.name} needs the sensor geometry's aperture_shape")
-        width = max(w for _, _, w in design["apertures_px"]) + design["blur_px"]
-        return cls(shape=shape, correlations=2 * max(round(width / 4.0), 1), **design)
+        apertures = np.array(design["apertures_px"])
+        width = float(apertures[:, 2].max()) + design["blur_px"]
+        room = nearest_distance(apertures) - width - 1.0
+        reach = max(int(min(math.ceil(width / 2.0), room, _LONGEST)), 1)
+        return cls(shape=shape, correlations=2 * reach, **design)
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Positions (N, 2) in frames (N, H, W); ValueError on wrong input."""
