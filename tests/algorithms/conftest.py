@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
@@ -16,7 +17,14 @@ from algorithms.contract import FeatureKind, Observation, SensorGeometry
 Floats = NDArray[np.float64]
 
 FACES = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
+PYRAMID = tuple(
+    (math.cos(turn) / 2, math.sin(turn) / 2, math.sqrt(0.75))
+    for turn in np.linspace(0, 2 * np.pi, 6, endpoint=False).tolist()
+)
+DIAL = {"code_bits": 5, "code_cell_mm": 0.15, "fine_period_mm": 0.3}
 LINE_PIXELS = 60
+HOLES = ((-0.08, -0.06, 0.05), (0.08, -0.05, 0.05), (-0.07, 0.07, 0.05), (0.09, 0.06, 0.05))
+MULTI_SPOT = {"mcam", "fmms", "feic"}
 COMMON_SUITE = "test_common_suite.py::test_"
 
 
@@ -44,10 +52,16 @@ def geometry() -> SensorGeometry:
 
 @pytest.fixture(scope="session")
 def design_for(geometry: SensorGeometry) -> Callable[[Any], SensorGeometry]:
-    """The sensor one extractor class is made for: profiles come from lines behind a slit."""
+    """The sensor one class is made for: lines behind a slit, code dials, a pyramid of faces."""
 
-    def make(extractor: Any) -> SensorGeometry:
-        if extractor.observation is Observation.PROFILES:
+    def make(implementation: Any) -> SensorGeometry:
+        if "code_bits" in implementation.needs:
+            return replace(geometry, line_axes=("x", "y"), **DIAL)
+        if implementation.name in {"panoramic", "pyramidal"}:  # three faces lit, whatever the Sun
+            return replace(geometry, face_normals=PYRAMID)
+        if implementation.name in MULTI_SPOT:
+            return replace(geometry, aperture_width_mm=0.05, apertures=HOLES)
+        if getattr(implementation, "observation", None) is Observation.PROFILES:
             return replace(
                 geometry,
                 pixel_pitch_mm=0.05,
@@ -90,6 +104,18 @@ def _squares(geometry: SensorGeometry, count: int = 5) -> NDArray[np.uint8]:
     return frames
 
 
+def _many_spots(geometry: SensorGeometry, count: int = 6) -> NDArray[np.uint8]:
+    """Noisy spots of a few square holes, whole numbers that every dtype holds."""
+    rng = np.random.default_rng(15)
+    y, x = np.mgrid[:40, :46]
+    light = np.zeros((count, 40, 46))
+    for frame, (left, top) in zip(light, rng.uniform((19, 17), (26, 22), (count, 2)), strict=True):
+        for place_x, place_y, width in np.array(HOLES) / geometry.pixel_pitch_mm:
+            away = np.maximum(np.abs(x - left - place_x), np.abs(y - top - place_y))
+            frame += 200 / (1 + np.exp(4 * (away - width / 2)))
+    return (light + rng.integers(0, 12, light.shape)).astype(np.uint8)
+
+
 def _profiles(count: int = 9) -> NDArray[np.uint8]:
     """Noisy light of a slit six pixels wide on two lines, whole numbers that every dtype holds."""
     rng = np.random.default_rng(14)
@@ -100,6 +126,20 @@ def _profiles(count: int = 9) -> NDArray[np.uint8]:
     return profiles.reshape(count, 2 * LINE_PIXELS)
 
 
+def _dial_signals(geometry: SensorGeometry, tangents: Floats) -> Floats:
+    """Light behind the tracks of ideal code dials, one an axis, under a slit without width."""
+    parts = []
+    for tangent in tangents.T:
+        place = geometry.focal_length_mm * tangent
+        cell = np.floor(place / geometry.code_cell_mm).astype(int) + 2 ** (geometry.code_bits - 1)
+        gray = cell ^ (cell >> 1)
+        parts += [(gray >> bit) & 1 for bit in reversed(range(geometry.code_bits))]
+        phase = 2 * np.pi * place / geometry.fine_period_mm
+        parts += [(1 - np.cos(phase)) / 2, (1 - np.sin(phase)) / 2]
+        parts += [(1 + np.cos(phase)) / 2, (1 + np.sin(phase)) / 2]
+    return np.column_stack(parts).astype(np.float64)
+
+
 @pytest.fixture(scope="session")
 def observations_for(geometry: SensorGeometry) -> Callable[[Any], NDArray[Any]]:
     """Observations (N, ...) with something to find in every row, for one extractor class."""
@@ -107,12 +147,16 @@ def observations_for(geometry: SensorGeometry) -> Callable[[Any], NDArray[Any]]:
     def make(extractor: Any) -> NDArray[Any]:
         if extractor.name == "tm":  # its template is the sensor's aperture
             return _squares(geometry)
+        if extractor.name in MULTI_SPOT:
+            return _many_spots(geometry)
         if extractor.observation is Observation.FRAMES:
             return _spots()
         if extractor.observation is Observation.PROFILES:
             return _profiles()
         if extractor.observation is Observation.CURRENTS:
             columns = {FeatureKind.BALANCE: 4, FeatureKind.SIGNALS: len(FACES)}[extractor.kind]
+            if "code_bits" in extractor.needs:
+                columns = 2 * (DIAL["code_bits"] + 4)
             return np.random.default_rng(12).integers(20, 250, (9, columns)).astype(np.uint8)
         raise NotImplementedError(f"make sample {extractor.observation} here for {extractor}")
 
@@ -120,12 +164,10 @@ def observations_for(geometry: SensorGeometry) -> Callable[[Any], NDArray[Any]]:
 
 
 @pytest.fixture(scope="session")
-def calibration_for(
-    geometry: SensorGeometry, field: Floats
-) -> Callable[[FeatureKind], Calibration]:
-    """Noiseless features of the sensor as drawn, of one kind."""
+def calibration_for(geometry: SensorGeometry, field: Floats) -> Callable[..., Calibration]:
+    """Noiseless features of the sensor as drawn, of one kind; by default of `geometry`."""
 
-    def make(kind: FeatureKind) -> Calibration:
+    def make(kind: FeatureKind, geometry: SensorGeometry = geometry) -> Calibration:
         tan_beta, tan_alpha = (field[:, :2] / field[:, 2:]).T
         if kind is FeatureKind.SPOT:
             scale = geometry.focal_length_mm / geometry.pixel_pitch_mm
@@ -136,6 +178,10 @@ def calibration_for(
         if kind is FeatureKind.BALANCE:
             scale = 2 * geometry.focal_length_mm / geometry.aperture_width_mm
             return Calibration(scale * np.column_stack([tan_beta, tan_alpha]), field)
+        if kind is FeatureKind.SIGNALS and geometry.code_bits is not None:
+            return Calibration(
+                _dial_signals(geometry, np.column_stack([tan_beta, tan_alpha])), field
+            )
         if kind is FeatureKind.SIGNALS:
             return Calibration(np.maximum(field @ np.array(geometry.face_normals).T, 0.0), field)
         raise NotImplementedError(f"make sample {kind} features here")

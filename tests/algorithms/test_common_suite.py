@@ -439,12 +439,13 @@ def test_extractor(name, check, design_for, observations_for):
 
 @pytest.mark.parametrize("check", MODEL_CHECKS, ids=lambda check: check.__name__)
 @pytest.mark.parametrize("name", MODELS)
-def test_model(name, check, geometry, calibration_for):
+def test_model(name, check, design_for, calibration_for):
     cls = MODELS[name]
     RAN.add((name, check.__name__))
+    design = design_for(cls)
     for kind in sorted(cls.accepts):
-        extra = (geometry,) if "geometry" in check.__code__.co_varnames else ()
-        check(cls, cls.for_sensor(geometry, kind), calibration_for(kind), *extra)
+        extra = (design,) if "geometry" in check.__code__.co_varnames else ()
+        check(cls, cls.for_sensor(design, kind), calibration_for(kind, design), *extra)
 
 
 def test_every_check_ran_on_every_implementation(request):

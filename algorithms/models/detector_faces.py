@@ -1,0 +1,43 @@
+"""What models of detectors facing different ways share: their normals and sums over them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from algorithms.contract import Floats
+
+Normals = tuple[tuple[float, float, float], ...]
+
+UNIT_TOLERANCE = 1e-6
+"""Largest departure of a normal's length from one, and of two normals' cosine from a design's."""
+
+
+def require_normals(face_normals: Normals, by: str) -> Floats:
+    """Return the normals (K, 3), K at least three, unit vectors that do not lie in one plane.
+
+    Raises
+    ------
+    ValueError
+        Otherwise, naming `by`.
+    """
+    normals = np.asarray(face_normals, dtype=np.float64)
+    if normals.ndim == 2 and normals.shape[0] >= 3 and normals.shape[1] == 3:
+        unit = np.abs(np.linalg.norm(normals, axis=1) - 1.0) <= UNIT_TOLERANCE
+        if unit.all() and np.linalg.svd(normals, compute_uv=False)[-1] > UNIT_TOLERANCE:
+            return normals
+    raise ValueError(
+        f"{by} needs at least three unit face normals that span space; got {face_normals!r}"
+    )
+
+
+def row_sums(columns: Floats, weights: Sequence[float] | Floats) -> Floats:
+    """``sum_k weights_k columns_k`` (N,) of (N, K), added column by column.
+
+    A matrix product adds in an order that depends on how many rows there are.
+    """
+    total = np.zeros(len(columns))
+    for column, weight in zip(columns.T, weights, strict=True):
+        total += weight * column
+    return total
