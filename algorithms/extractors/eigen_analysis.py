@@ -95,5 +95,6 @@ class EigenAnalysis(SlitLines):
             slit_patterns.least_projections(
                 strongest, spectra.powers, spectra.period, reach, step
             )
+            step[~np.isfinite(cross).all(axis=-1)] = np.nan
             shifts = shifts + step
         return self.spots(shifts)

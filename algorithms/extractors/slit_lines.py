@@ -116,12 +116,9 @@ class SlitLines:
             )
             for position, slant, width in slits
         )
-        tangent = math.tan(math.radians(min(fov + _TILT_DEG, 89.0)))
         steepest = max(abs(slit[1]) for slit in drawn)
-        # A shadow's edge is blurred by the Sun's width times d tan(theta) = sec^2 d theta, and
-        # most where both angles are largest; a slant adds the other axis' blur.
-        blur = height / pitch * _SUN_RAD * (1.0 + 2.0 * tangent**2) * math.hypot(1.0, steepest)
-        return cls(axes, pixels, drawn, height / pitch * tangent, blur + _SAMPLING_PX)
+        margin = edge_margin_px(height / pitch, fov, steepest)
+        return cls(axes, pixels, drawn, height / pitch * _edge_tangent(fov), margin)
 
     @property
     def tangents(self) -> tuple[float, ...]:
@@ -251,6 +248,21 @@ class SlitLines:
                 for tangent in self.tangents
             ]
         )
+
+
+def edge_margin_px(height_px: float, half_fov_deg: float, slant_tangent: float = 0.0) -> float:
+    """Return what the Sun's width adds to a spot on each side at the field's edge, px.
+
+    A shadow's edge is blurred by the Sun's width times ``d tan(theta) = sec^2 d theta``, most
+    where both angles are largest; behind a slant the other axis' blur comes in. Pixels add theirs.
+    """
+    edge = _edge_tangent(half_fov_deg)
+    blur = height_px * _SUN_RAD * (1.0 + 2.0 * edge**2) * math.hypot(1.0, slant_tangent)
+    return blur + _SAMPLING_PX
+
+
+def _edge_tangent(half_fov_deg: float) -> float:
+    return math.tan(math.radians(min(half_fov_deg + _TILT_DEG, 89.0)))
 
 
 def dark_level(lines: Floats) -> Floats:

@@ -85,7 +85,14 @@ def match(  # noqa: C901, PLR0912, PLR0914, PLR0915, PLR0917 - Numba: one loop, 
             bright = least[1, : ends[1]].max()
             slope = tangents[1] - tangents[0]
             far = reach * abs(slope)
-            for n in range(ends[0]):
+            # Brightest first: what is darker than a pair found cannot be in a better one.
+            bottom = max(low[0] - math.floor(reach * (1 + abs(tangents[0]))), 0)
+            limit = min(low[0] + math.floor(reach * (1 + abs(tangents[0]))) + 1, ends[0])
+            if limit <= bottom:
+                continue
+            start = bottom + np.argmax(least[0, bottom:limit])
+            for turn in range(bottom - 1, limit):
+                n = start if turn < bottom else turn
                 if not least[0, n] + bright > top:
                     continue
                 shift = n - low[0]

@@ -69,6 +69,8 @@ def design_for(geometry: SensorGeometry) -> Callable[[Any], SensorGeometry]:
                 line_pixels=LINE_PIXELS,
                 slits=((0.0, 0.0, 0.3),),
             )
+        if implementation.name == "linear-phase-frame":  # its reference is the sample spots' width
+            return replace(geometry, aperture_width_mm=0.06)
         return geometry
 
     return make
