@@ -3,6 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
+PEERS := $(VENV)/.peers
 WORKERS ?= 2
 PORT ?= 8000
 # One thread per worker: parallel work is by processes, and scores must not depend on the machine's cores.
@@ -39,7 +40,11 @@ lint: $(STAMP) ## ruff, mypy (strict), the floors
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-bench: $(STAMP) ## speed, as ratios to references measured in the same run
+$(PEERS): $(STAMP) requirements-peers.lock
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-peers.lock
+	touch $@
+
+bench: $(PEERS) ## speed and accuracy beside peers, as ratios measured in the same run
 	$(BIN)/python -m benchmark.speed
 	$(BIN)/python -m api.speed
 
@@ -49,9 +54,11 @@ leaderboard: $(STAMP) ## bring scores and leaderboard up to date with code and d
 docs: $(STAMP) ## regenerate the generated parts of docs/
 	$(BIN)/python -m api.documentation
 
-lock: $(STAMP) ## renew requirements.lock from pyproject.toml (needs uv on the PATH)
+lock: $(STAMP) ## renew both lock files from pyproject.toml (needs uv on the PATH)
 	uv pip compile --universal --python-version 3.11 --extra dev --generate-hashes \
 		--no-emit-index-url --no-header -o requirements.lock pyproject.toml
+	uv pip compile --universal --python-version 3.11 --extra peers --constraints requirements.lock \
+		--generate-hashes --no-emit-index-url --no-header -o requirements-peers.lock pyproject.toml
 
 clean: ## remove the virtual environment and caches
 	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache

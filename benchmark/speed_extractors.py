@@ -80,7 +80,7 @@ def methods(chosen: ReferenceSet) -> dict[str, Method]:
         "mt-acm": MultipleThresholdCentroid(),
         "mt-acm crossing=linear": MultipleThresholdCentroid(crossing="linear"),
         "tm": TemplateMatch(width_px=float(2 * half)),
-        "tm background=border": TemplateMatch(width_px=float(2 * half), background="border"),
+        "tm binarise=no": TemplateMatch(width_px=float(2 * half), binarise=False),
         "matched-profile": MatchedProfile(),
         "matched-profile steps=2": MatchedProfile(steps=2),
         "gaussian-fit": GaussianFit(),

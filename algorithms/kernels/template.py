@@ -16,6 +16,11 @@ _SLACK = 1.0
 #: Sub-pixel searches in turn: steps a pixel, and how many are tried to each side.
 _SEARCHES = ((4, 6), (8, 8), (16, 16))
 _COARSEST_LAST = 0.5  # px, the last step of the coarse search
+#: Search for most light: chords of a row, and rounds. Positions compared are a whole pixel apart:
+#: where within a pixel its light falls is not known, and over a whole one the error cancels.
+_CHORDS = 4
+_APART = 1.0
+_ROUNDS = 4
 
 
 @compiled
@@ -165,3 +170,76 @@ def best_positions(  # noqa: PLR0917 - Numba takes no keyword-only ones
         if inside and least <= worst * area:
             out[k, 0] = x
             out[k, 1] = y
+
+
+@compiled
+def _light_before(before: Floats, i: int, x: float) -> float:
+    """Light of row i left of x, each pixel's spread evenly over it; `before` (H, W + 1) sums it."""
+    at = min(max(x + 0.5, 0.0), before.shape[1] - 1.0)
+    j = min(int(at), before.shape[1] - 2)
+    return float(before[i, j] + (at - j) * (before[i, j + 1] - before[i, j]))
+
+
+@compiled
+def _light_inside(before: Floats, x: float, y: float, half: float, square: bool) -> float:
+    """Light inside the outline at (x, y)."""
+    total = 0.0
+    first = max(math.floor(y - half + 0.5), 0)
+    last = min(math.floor(y + half + 0.5), before.shape[0] - 1)
+    for i in range(first, last + 1):
+        low = max(i - 0.5, y - half)
+        share = (min(i + 0.5, y + half) - low) / _CHORDS
+        for k in range(1 if square else _CHORDS):
+            side = half
+            if not square:
+                off = low + (k + 0.5) * share - y
+                side = math.sqrt(max(half * half - off * off, 0.0))
+            light = _light_before(before, i, x + side) - _light_before(before, i, x - side)
+            total += light * (share * _CHORDS if square else share)
+    return total
+
+
+@compiled
+def most_light(frames: NDArray[Any], half: float, square: bool, out: Floats) -> None:
+    """Move positions `out` (N, 2) to where the outline holds most light, by parabolas.
+
+    A NaN row where it has no maximum within a half width of the start, or leaves the frame.
+    """
+    count, height, width = frames.shape
+    before = np.zeros((height, width + 1))
+    grid = np.empty((3, 3))
+    for k in range(count):
+        x, y = out[k, 0], out[k, 1]
+        if math.isnan(x) or math.isnan(y):
+            continue
+        reach = 2.0 * half + 2.0
+        for i in range(max(int(y - reach), 0), min(int(y + reach) + 2, height)):
+            light = 0.0
+            for j in range(width):
+                light += frames[k, i, j]
+                before[i, j + 1] = light
+        found = True
+        for _ in range(_ROUNDS):
+            for a in range(3):
+                for b in range(3):
+                    grid[a, b] = _light_inside(
+                        before, x + (b - 1) * _APART, y + (a - 1) * _APART, half, square
+                    )
+            slope_x = grid[0, 2] + grid[1, 2] + grid[2, 2] - grid[0, 0] - grid[1, 0] - grid[2, 0]
+            slope_y = grid[2, 0] + grid[2, 1] + grid[2, 2] - grid[0, 0] - grid[0, 1] - grid[0, 2]
+            total = grid.sum()
+            bend_x = total - 3.0 * (grid[0, 1] + grid[1, 1] + grid[2, 1])
+            bend_y = total - 3.0 * (grid[1, 0] + grid[1, 1] + grid[1, 2])
+            if not (bend_x < 0.0 and bend_y < 0.0):
+                found = False
+                break
+            # Least squares over nine points: slope = S / (6 d), half bend = B / (6 d^2).
+            x -= min(max(_APART * slope_x / (2.0 * bend_x), -1.0), 1.0)
+            y -= min(max(_APART * slope_y / (2.0 * bend_y), -1.0), 1.0)
+            if abs(x - out[k, 0]) > half or abs(y - out[k, 1]) > half:
+                found = False
+                break
+        inside = x - half >= -0.5 and x + half <= width - 0.5
+        inside = inside and y - half >= -0.5 and y + half <= height - 0.5
+        out[k, 0] = x if found and inside else np.nan
+        out[k, 1] = y if found and inside else np.nan
