@@ -92,9 +92,7 @@ class EigenAnalysis(SlitLines):
             slit_patterns.frequency_correlations(cross, covariance)
             # LAPACK takes one matrix at a time, so each profile's result is its own.
             strongest = np.ascontiguousarray(np.linalg.eigh(covariance)[1][..., -1])
-            slit_patterns.least_projections(
-                strongest, spectra.powers, spectra.period, reach, step
-            )
+            slit_patterns.least_projections(strongest, spectra.powers, spectra.period, reach, step)
             step[~np.isfinite(cross).all(axis=-1)] = np.nan
             shifts = shifts + step
         return self.spots(shifts)

@@ -189,12 +189,11 @@ class FrameLinearPhase:
         moments.profiles(frames, moments.zero_of(frames), rows, columns)
         unusable = np.empty(count, dtype=np.bool_)
         moments.unusable(frames, frames.dtype.kind == "f", unusable)
+        columns[unusable] = 0
+        rows[unusable] = 0
         half = math.ceil(self.width_px / 2.0 + self.margin_px)
         found = np.column_stack(
-            [
-                self._near(np.where(unusable[:, None], 0.0, sums), half)
-                for sums in (columns, rows)
-            ]
+            [self._near(sums.astype(np.float64), half) for sums in (columns, rows)]
         )
         spectra = SpotSpectra.of(
             np.array([float(half)]),
@@ -209,12 +208,13 @@ class FrameLinearPhase:
         step = np.empty((2 * count, 1))
         none = np.zeros(2 * count)
         for _ in range(_PASSES):
-            seen = np.isfinite(found).all(axis=1)
-            centres = np.where(seen[:, None], np.rint(found), -1.0).astype(np.int64)
+            unseen = np.isnan(found).any(axis=1)
+            found[unseen] = -1.0  # a window about no pixel leaves the frame
+            centres = np.rint(found).astype(np.int64)
             window_sums.window_profiles(frames, centres, half, windows)
             cross = spectra.cross(windows.reshape(2 * count, -1), none, none[:, None])
             slit_patterns.phase_slopes(cross, spectra.powers, spectra.period, step)
-            found = centres + step.reshape(count, 2)
+            found = np.asarray(centres + step.reshape(count, 2), dtype=np.float64)
         found[~np.isfinite(found).all(axis=1)] = np.nan
         return found
 

@@ -200,9 +200,9 @@ class ProfileThresholdAverage(SlitLines):
 
         def middles(lines: Floats, floors: Floats) -> Floats:
             found = np.empty(len(lines))
-            lit = np.isfinite(lines).all(axis=1)
+            inside = np.isfinite(lines[:, 0])  # windows are NaN as a whole, or not at all
             crossings.threshold_midpoints(
-                np.where(lit[:, None], lines, 0.0),
+                np.where(inside[:, None], lines, 0.0),
                 floors,
                 self.accuracy_px,
                 self.lowest,
@@ -210,12 +210,15 @@ class ProfileThresholdAverage(SlitLines):
                 self.crossing == "linear",
                 found,
             )
-            return np.where(lit, found, np.nan)
+            return np.where(inside, found, np.nan)
 
-        edges = [middle + side * slit[2] / 2.0 for slit, middle in zip(self.slits, self.pattern(), strict=True) for side in (-1, 1)]
-        return self.spots(
-            _shifts(self, self.lines(observations), (min(edges) + max(edges)) / 2.0, middles)
-        )
+        edges = [
+            middle + side * slit[2] / 2.0
+            for slit, middle in zip(self.slits, self.pattern(), strict=True)
+            for side in (-1, 1)
+        ]
+        middle = float(min(edges) + max(edges)) / 2.0
+        return self.spots(_shifts(self, self.lines(observations), middle, middles))
 
 
 def _light_middle(slits: SlitLines) -> float:

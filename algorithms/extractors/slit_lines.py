@@ -1,4 +1,4 @@
-"""Lines of pixels behind slits: which light of a profile is which slit's, and where it puts the Sun.
+"""Lines of pixels behind slits: which light is which slit's, and what displacement it tells.
 
 What the extractors of profiles share. A slit of slant rho has its spot at ``position + D_u + D_v
 tan(rho)`` on its line, D the displacement of the mask's shadow: slits of one slant move together,

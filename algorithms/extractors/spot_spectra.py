@@ -47,9 +47,7 @@ class SpotSpectra:
     def behind(cls, slits: SlitLines, padded: bool, lobes: float) -> Self:
         """Windows and references of slits, up to `lobes` times their spectrum's first zero."""
         widths = [slit[2] for slit in slits.slits]
-        return cls.of(
-            slits.pattern(), slits.groups, widths, "square", slits.half_px, padded, lobes
-        )
+        return cls.of(slits.pattern(), slits.groups, widths, "square", slits.half_px, padded, lobes)
 
     @classmethod
     def of(  # noqa: PLR0917 - what the attributes are made of

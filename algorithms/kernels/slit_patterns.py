@@ -24,7 +24,114 @@ _NEWTON = 6
 
 
 @compiled
-def match(  # noqa: C901, PLR0912, PLR0914, PLR0915, PLR0917 - Numba: one loop, no keyword-only
+def _least_scores(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    row: Floats, places: Counts, groups: Counts, group: int, low: int, out: Floats
+) -> None:
+    """Write the least score of a group's spots at each shift to `out`, shift ``n - low`` at n."""
+    first = True
+    for i in range(places.size):
+        if groups[i] == group:
+            start = places[i] - low
+            if first:
+                out[:] = row[start : start + out.size]
+                first = False
+            else:
+                for n in range(out.size):
+                    out[n] = min(out[n], row[start + n])
+
+
+@compiled
+def _apart(places: Counts, groups: Counts, first: int, second: int, apart: float) -> bool:
+    """Whether the spots of two groups at these shifts keep their distance."""
+    for i in range(places.size):
+        for j in range(places.size):
+            gap = abs(places[i] + first - places[j] - second)
+            if groups[i] == 0 and groups[j] == 1 and gap < apart:
+                return False
+    return True
+
+
+@compiled
+def _alone(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    row: Floats,
+    floor: float,
+    level: float,
+    places: Counts,
+    groups: Counts,
+    shifts: Counts,
+    clear_of: int,
+) -> bool:
+    """Whether no score further than `clear_of` from all spots comes near their level."""
+    near = np.zeros(row.size, dtype=np.bool_)
+    for i in range(places.size):
+        at = places[i] + shifts[groups[i]]
+        near[max(at - clear_of, 0) : at + clear_of + 1] = True
+    for j in range(row.size):
+        if not near[j] and row[j] - floor >= _RIVAL * (level - floor):
+            return False
+    return True
+
+
+@compiled
+def _plateau_middle(scores: Floats, first: int, plateau: int) -> float:
+    """Return the middle of the equal scores from the first to `plateau` pixels after it."""
+    last = first
+    for n in range(first, min(first + plateau + 1, scores.size)):
+        if scores[n] == scores[first]:
+            last = n
+    return 0.5 * (first + last)
+
+
+@compiled
+def _best_pair(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    first: Floats,
+    second: Floats,
+    low: Counts,
+    places: Counts,
+    groups: Counts,
+    tangents: Floats,
+    reach: float,
+    apart: float,
+) -> tuple[int, int]:
+    """Find the indices of the largest sum that a Sun can cast; -1 where there is none.
+
+    Index n of a group is its shift ``n - low``.
+    """
+    best = -1
+    best_other = -1
+    top = -np.inf
+    bright = second.max()
+    slope = tangents[1] - tangents[0]
+    far = reach * abs(slope)
+    widest = math.floor(reach * (1 + abs(tangents[0])))
+    bottom = max(low[0] - widest, 0)
+    limit = min(low[0] + widest + 1, first.size)
+    if limit <= bottom:
+        return best, best_other
+    # Brightest first: what is darker than a pair found cannot be in a better one.
+    start = bottom + np.argmax(first[bottom:limit])
+    for turn in range(bottom - 1, limit):
+        n = start if turn < bottom else turn
+        if not first[n] + bright > top:
+            continue
+        shift = n - low[0]
+        begin = max(math.ceil(shift - far) + low[1], 0)
+        end = min(math.floor(shift + far) + low[1] + 1, second.size)
+        for m in range(begin, end):
+            if not first[n] + second[m] > top:
+                continue
+            other = m - low[1]
+            if abs(shift - (other - shift) / slope * tangents[0]) > reach:
+                continue
+            if _apart(places, groups, shift, other, apart):
+                top = first[n] + second[m]
+                best = n
+                best_other = m
+    return best, best_other
+
+
+@compiled
+def match(  # noqa: PLR0917 - Numba takes no keyword-only ones
     scores: Floats,
     floors: Floats,
     places: Counts,
@@ -45,101 +152,48 @@ def match(  # noqa: C901, PLR0912, PLR0914, PLR0915, PLR0917 - Numba: one loop, 
     above the floor (R,), or where light further than `clear_of` from all spots is half as bright.
     """
     rows, length = scores.shape
-    spots = places.size
     kinds = tangents.size
     low = np.full(kinds, length)
     high = np.full(kinds, -length)
-    for i in range(spots):
+    for i in range(places.size):
         low[groups[i]] = min(low[groups[i]], places[i])
         high[groups[i]] = max(high[groups[i]], places[i])
-    least = np.empty((kinds, 2 * length))
-    ends = np.zeros(kinds, dtype=np.int64)
+    ends = length - high + low
+    if ends.min() <= 0:
+        out[:] = np.nan
+        return
+    least = np.empty((kinds, ends.max()))
     best = np.zeros(kinds, dtype=np.int64)
-    near = np.empty(length, dtype=np.bool_)
-    for g in range(kinds):
-        ends[g] = length - high[g] + low[g]
     for r in range(rows):
         out[r] = np.nan
-        if ends.min() <= 0:
-            continue
         row = scores[r]
+        level = np.inf
         for g in range(kinds):
-            first = True
-            for i in range(spots):
-                if groups[i] != g:
-                    continue
-                start = places[i] - low[g]
-                if first:
-                    least[g, : ends[g]] = row[start : start + ends[g]]
-                    first = False
-                else:
-                    for n in range(ends[g]):
-                        least[g, n] = min(least[g, n], row[start + n])
-        # Index n of a group is the shift n - low.
-        found = True
+            _least_scores(row, places, groups, g, low[g], least[g, : ends[g]])
         if kinds == 1:
             best[0] = np.argmax(least[0, : ends[0]])
         else:
-            found = False
-            top = -np.inf
-            bright = least[1, : ends[1]].max()
-            slope = tangents[1] - tangents[0]
-            far = reach * abs(slope)
-            # Brightest first: what is darker than a pair found cannot be in a better one.
-            bottom = max(low[0] - math.floor(reach * (1 + abs(tangents[0]))), 0)
-            limit = min(low[0] + math.floor(reach * (1 + abs(tangents[0]))) + 1, ends[0])
-            if limit <= bottom:
-                continue
-            start = bottom + np.argmax(least[0, bottom:limit])
-            for turn in range(bottom - 1, limit):
-                n = start if turn < bottom else turn
-                if not least[0, n] + bright > top:
-                    continue
-                shift = n - low[0]
-                begin = max(math.ceil(shift - far) + low[1], 0)
-                end = min(math.floor(shift + far) + low[1] + 1, ends[1])
-                for m in range(begin, end):
-                    if not least[0, n] + least[1, m] > top:
-                        continue
-                    other = m - low[1]
-                    if abs(shift - (other - shift) / slope * tangents[0]) > reach:
-                        continue
-                    clear = True
-                    for i in range(spots):
-                        for j in range(spots):
-                            if groups[i] == 0 and groups[j] == 1:
-                                gap = places[i] + shift - places[j] - other
-                                clear = clear and abs(gap) >= apart
-                    if clear:
-                        top = least[0, n] + least[1, m]
-                        best[0] = n
-                        best[1] = m
-                        found = True
-        if not found:
-            continue
-        level = np.inf
+            best[0], best[1] = _best_pair(
+                least[0, : ends[0]],
+                least[1, : ends[1]],
+                low,
+                places,
+                groups,
+                tangents,
+                reach,
+                apart,
+            )
         for g in range(kinds):
-            level = min(level, least[g, best[g]])
-        if not level > floors[r]:
-            continue
-        near[:] = False
-        for i in range(spots):
-            at = places[i] + best[groups[i]] - low[groups[i]]
-            near[max(at - clear_of, 0) : at + clear_of + 1] = True
-        for j in range(length):
-            if not near[j] and row[j] - floors[r] >= _RIVAL * (level - floors[r]):
-                found = False
-        if found:
+            level = min(level, least[g, best[g]]) if best[g] >= 0 else -np.inf
+        if level > floors[r] and _alone(
+            row, floors[r], level, places, groups, best - low, clear_of
+        ):
             for g in range(kinds):
-                last = best[g]
-                for n in range(best[g], min(best[g] + plateau, ends[g] - 1) + 1):
-                    if least[g, n] == least[g, best[g]]:
-                        last = n
-                out[r, g] = 0.5 * (best[g] + last) - low[g]
+                out[r, g] = _plateau_middle(least[g, : ends[g]], best[g], plateau) - low[g]
 
 
 @compiled
-def cross_spectra(  # noqa: PLR0914, PLR0917 - Numba: no keyword-only ones
+def cross_spectra(  # noqa: PLR0917 - Numba takes no keyword-only ones
     lines: Floats,
     floors: Floats,
     shifts: Floats,
