@@ -17,14 +17,19 @@ from algorithms.inputs import require_positive
 Apertures = tuple[tuple[float, float, float], ...]
 """A row an aperture: x, y from the middle of the mask, and width, px."""
 
+PATTERN_NEEDS = ("focal_length_mm", "pixel_pitch_mm", "aperture_width_mm", "aperture_shape")
+"""Fields of a sensor's design that `design_pattern` reads; slits have no shape there."""
+
 #: Angular diameter of the Sun, rad: its image behind a hole is this times the distance.
 SOLAR_DIAMETER = 0.0093
+#: Middle of the light that silicon sees.
+_WAVELENGTH_MM = 550e-6
 #: Pixels of a spot above its threshold, over those of its aperture: the least of the smallest,
 #: the most of the largest with the Sun's image, which grows with incidence.
 _AREAS = (0.4, 6.0)
 #: Least pixels of a spot: fewer are hot pixels.
 _LEAST_PIXELS = 4.0
-#: Price of an aperture that should be seen and is not, in spots found; see `aperture_grid.match`.
+#: Price of an aperture that should be seen and is not, in spots found.
 _ABSENT = 0.15
 #: Spots by which the best displacement must be ahead of every other.
 _CLEAR = 0.5
@@ -87,7 +92,7 @@ class Pattern:
     spots: Floats
 
 
-def design_pattern(geometry: SensorGeometry, needs: tuple[str, ...], by: str) -> dict[str, Any]:
+def design_pattern(geometry: SensorGeometry, by: str) -> dict[str, Any]:
     """Parameters ``apertures_px`` and ``blur_px`` of a sensor's mask.
 
     A sensor without a list of apertures has one, over the detector's middle.
@@ -95,9 +100,9 @@ def design_pattern(geometry: SensorGeometry, needs: tuple[str, ...], by: str) ->
     Raises
     ------
     ValueError
-        Where one of `needs` is None, or the design's light is no spots.
+        Where a field needed is None, or the design's light is no image of apertures.
     """
-    geometry.require(*needs, by=by)
+    geometry.require(*PATTERN_NEEDS, by=by)
     for field in ("slits", "code_bits", "lens_distortion"):
         if getattr(geometry, field) is not None:
             raise ValueError(f"{by} reads spots behind apertures; the sensor's design has {field}")
@@ -106,6 +111,12 @@ def design_pattern(geometry: SensorGeometry, needs: tuple[str, ...], by: str) ->
     if pitch is None or width is None or focal is None:
         raise ValueError(f"{by} needs pixel_pitch_mm, aperture_width_mm and focal_length_mm")
     apertures = geometry.apertures or ((0.0, 0.0, width),)
+    fresnel = min(w for _, _, w in apertures) ** 2 / (4.0 * _WAVELENGTH_MM * focal)
+    if fresnel < 1.0:
+        raise ValueError(
+            f"{by} reads images of apertures; the sensor's are of Fresnel number {fresnel:.2g}: "
+            "diffraction makes their spots, at least 1 is needed"
+        )
     return {
         # a thousandth of a pixel is a fraction of what masks are made to
         "apertures_px": tuple(tuple(round(v / pitch, 6) for v in row) for row in apertures),
@@ -225,9 +236,7 @@ def find_pattern(
         (height, width),
         margin_px(blur_px),
         tolerance_px,
-        _ABSENT,
-        _CLEAR,
-        SHARE,
+        (_ABSENT, _CLEAR, SHARE),
         displacement,
         partners,
     )

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from algorithms.contract import FeatureKind, Floats, Observation, Origin, SensorGeometry
 from algorithms.extractors.aperture_pattern import (
+    PATTERN_NEEDS,
     SHARE,
     Apertures,
     Levels,
@@ -97,12 +98,7 @@ class ImageCorrelation:
     version: ClassVar[int] = 1
     observation: ClassVar[Observation] = Observation.FRAMES
     kind: ClassVar[FeatureKind] = FeatureKind.SPOT
-    needs: ClassVar[tuple[str, ...]] = (
-        "focal_length_mm",
-        "pixel_pitch_mm",
-        "aperture_width_mm",
-        "aperture_shape",
-    )
+    needs: ClassVar[tuple[str, ...]] = PATTERN_NEEDS
 
     apertures_px: Apertures = field(repr=False)
     shape: Shape = "round"
@@ -140,7 +136,7 @@ class ImageCorrelation:
         Correlations reach half a spot's width to each side, 8 px at most, less where the window
         would hold light of a neighbour.
         """
-        design = design_pattern(geometry, cls.needs, cls.name)
+        design = design_pattern(geometry, cls.name)
         shape = geometry.aperture_shape
         if shape is None:  # said above; for the type checker
             raise ValueError(f"{cls.name} needs the sensor geometry's aperture_shape")

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from algorithms.contract import FeatureKind, Floats, Observation, Origin, SensorGeometry
 from algorithms.extractors.aperture_pattern import (
+    PATTERN_NEEDS,
     SHARE,
     Apertures,
     Levels,
@@ -94,7 +95,7 @@ class MeanShift:
     version: ClassVar[int] = 1
     observation: ClassVar[Observation] = Observation.FRAMES
     kind: ClassVar[FeatureKind] = FeatureKind.SPOT
-    needs: ClassVar[tuple[str, ...]] = ("focal_length_mm", "pixel_pitch_mm", "aperture_width_mm")
+    needs: ClassVar[tuple[str, ...]] = PATTERN_NEEDS
 
     apertures_px: Apertures = field(repr=False)
     bandwidth_px: float
@@ -128,7 +129,7 @@ class MeanShift:
 
         The bandwidth is a spot's width at normal incidence, or what neighbours leave of it.
         """
-        design = design_pattern(geometry, cls.needs, cls.name)
+        design = design_pattern(geometry, cls.name)
         apertures = np.array(design["apertures_px"])
         width = float(apertures[:, 2].max()) + design["blur_px"]
         room = nearest_distance(apertures) - width / 2.0 - 1.0

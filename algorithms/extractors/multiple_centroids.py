@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from algorithms.contract import FeatureKind, Floats, Observation, Origin, SensorGeometry
 from algorithms.extractors.aperture_pattern import (
+    PATTERN_NEEDS,
     Apertures,
     design_pattern,
     find_pattern,
@@ -71,7 +72,7 @@ class MultipleCentroids:
     version: ClassVar[int] = 1
     observation: ClassVar[Observation] = Observation.FRAMES
     kind: ClassVar[FeatureKind] = FeatureKind.SPOT
-    needs: ClassVar[tuple[str, ...]] = ("focal_length_mm", "pixel_pitch_mm", "aperture_width_mm")
+    needs: ClassVar[tuple[str, ...]] = PATTERN_NEEDS
 
     apertures_px: Apertures = field(repr=False)
     blur_px: float = 0.0
@@ -91,7 +92,7 @@ class MultipleCentroids:
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
         """Return the method with this sensor's mask; ValueError where its light is no spots."""
-        return cls(**design_pattern(geometry, cls.needs, cls.name))
+        return cls(**design_pattern(geometry, cls.name))
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Averaged positions (N, 2) in frames (N, H, W); ValueError on wrong input."""

@@ -11,6 +11,7 @@ from algorithms.contract import Floats
 from algorithms.kernels.compilation import compiled
 
 Indices = NDArray[np.int64]
+Votes = NDArray[np.int32]
 
 #: Displacements tried, those that most pairs of a spot and an aperture vote for.
 _CANDIDATES = 64
@@ -47,9 +48,7 @@ def _nearest(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def _expected(
-    apertures: Floats, x: float, y: float, frame: tuple[int, int], margin: float
-) -> int:
+def _expected(apertures: Floats, x: float, y: float, frame: tuple[int, int], margin: float) -> int:
     """How many apertures cast a spot that is whole in the frame (height, width)."""
     found = 0
     for a in range(apertures.shape[0]):
@@ -62,74 +61,78 @@ def _expected(
 
 
 @compiled
-def _votes(
-    spots: Floats,
-    apertures: Floats,
-    cell: float,
-    ballot: NDArray[np.int32],
-    touched: Indices,
-    best: Indices,
-    counts: Indices,
+def _cast(
+    spots: Floats, apertures: Floats, cell: float, ballot: Votes, touched: Indices
 ) -> int:
-    """Write to `best` the cells of displacement that most pairs vote for; return how many.
+    """Add the vote of each pair of spot and aperture; write the cells voted for, return how many.
 
-    Each pair of a spot (S, 3) and an aperture votes for one cell of `ballot`, which is left
-    empty again. A cell counts with its eight neighbours (`counts`), and only where none of them
-    alone has more.
+    A pair votes for its displacement; `ballot` starts one cell below the least there can be.
     """
-    columns = ballot.shape[1]
     flat = ballot.ravel()
     low_x = apertures[:, 0].max()
     low_y = apertures[:, 1].max()
     cells = 0
     for s in range(spots.shape[0]):
         for a in range(apertures.shape[0]):
-            # one cell of margin all around
             j = int((spots[s, 0] - apertures[a, 0] + low_x) / cell) + 1
             i = int((spots[s, 1] - apertures[a, 1] + low_y) / cell) + 1
-            at = i * columns + j
+            at = i * ballot.shape[1] + j
             if flat[at] == 0:
                 touched[cells] = at
                 cells += 1
             flat[at] += 1
-    together = np.empty(cells, dtype=np.int64)
+    return cells
+
+
+@compiled
+def _around(ballot: Votes, at: int) -> int:
+    """Votes of a cell and its eight neighbours."""
+    i, j = at // ballot.shape[1], at % ballot.shape[1]
+    votes = 0
+    for line in range(i - 1, i + 2):
+        for column in range(j - 1, j + 2):
+            votes += ballot[line, column]
+    return votes
+
+
+@compiled
+def _is_peak(ballot: Votes, at: int) -> bool:
+    """Whether no neighbour of a cell has more votes, and none before it as many."""
+    i, j = at // ballot.shape[1], at % ballot.shape[1]
+    for line in range(i - 1, i + 2):
+        for column in range(j - 1, j + 2):
+            other = ballot[line, column]
+            before = line < i or (line == i and column < j)
+            if other > ballot[i, j] or (before and other == ballot[i, j]):
+                return False
+    return True
+
+
+@compiled
+def _rank(ballot: Votes, touched: Indices, best: Indices, votes: Indices) -> int:
+    """Write the peaks of the ballot with most votes around them to `best`; return how many.
+
+    Those with less than a third of the most are chance pairs.
+    """
     most = 0
-    for t in range(cells):
-        at = touched[t]
-        votes = 0
-        for i in range(-1, 2):
-            for j in range(-1, 2):
-                votes += flat[at + i * columns + j]
-        together[t] = votes
-        most = max(most, votes)
-    # most cells hold chance pairs
-    floor = max(most // 3, 1)
+    for at in touched:
+        most = max(most, _around(ballot, at))
     kept = 0
-    for t in range(cells):
-        votes = together[t]
-        at = touched[t]
-        if votes < floor or (kept == best.size and votes <= counts[kept - 1]):
+    for at in touched:
+        around = _around(ballot, at)
+        full = kept == best.size
+        if around < max(most // 3, 1) or (full and around <= votes[kept - 1]):
             continue
-        peak = True
-        for i in range(-1, 2):
-            for j in range(-1, 2):
-                other = flat[at + i * columns + j]
-                own = flat[at]
-                # of equal neighbours the first stands
-                if other > own or (other == own and i * columns + j < 0):
-                    peak = False
-        if not peak:
+        if not _is_peak(ballot, at):
             continue
-        place = kept if kept < best.size else kept - 1
-        while place > 0 and counts[place - 1] < votes:
-            counts[place] = counts[place - 1]
+        place = kept - 1 if full else kept
+        while place > 0 and votes[place - 1] < around:
+            votes[place] = votes[place - 1]
             best[place] = best[place - 1]
             place -= 1
-        counts[place] = votes
+        votes[place] = around
         best[place] = at
         kept = min(kept + 1, best.size)
-    for t in range(cells):
-        flat[touched[t]] = 0
     return kept
 
 
@@ -183,6 +186,67 @@ def _fit(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
+def _explain(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    spots: Floats,
+    apertures: Floats,
+    table: Indices,
+    corner: Floats,
+    cell: float,
+    frame: tuple[int, int],
+    margin: float,
+    tolerance: float,
+    prices: tuple[float, float, float],
+    places: Floats,
+    votes: Indices,
+    partner: Indices,
+    partners: Indices,
+) -> tuple[float, float]:
+    """Best displacement near one of `places` (C, 2), and the spot of each aperture under it.
+
+    NaN where none is clear. `votes` (C,) are the most spots that a place can explain.
+    """
+    absent, clear, share = prices
+    distance = np.empty(apertures.shape[0])
+    first = -np.inf
+    first_x = np.nan
+    first_y = np.nan
+    second = -np.inf
+    enough = False
+    for c in range(votes.size):
+        # No spot adds more than one: this one can neither win nor be near to it.
+        price = absent * _expected(apertures, places[c, 0], places[c, 1], frame, margin)
+        if votes[c] - price < first - 2.0 * clear:
+            continue
+        x, y, quality, matched = _fit(
+            spots,
+            apertures,
+            table,
+            corner,
+            cell,
+            places[c, 0],
+            places[c, 1],
+            tolerance,
+            partner,
+            distance,
+        )
+        expected = _expected(apertures, x, y, frame, margin)
+        score = quality - absent * expected
+        same = abs(x - first_x) < tolerance and abs(y - first_y) < tolerance
+        if score > first:
+            if not same:
+                second = first
+            first, first_x, first_y = score, x, y
+            enough = matched >= share * expected
+            partners[:] = partner
+        elif not same:
+            second = max(second, score)
+    if enough and first - second >= clear:
+        return first_x, first_y
+    partners[:] = -1
+    return np.nan, np.nan
+
+
+@compiled
 def match(  # noqa: PLR0917 - Numba takes no keyword-only ones
     spots: Floats,
     counts: Indices,
@@ -193,15 +257,13 @@ def match(  # noqa: PLR0917 - Numba takes no keyword-only ones
     frame: tuple[int, int],
     margin: float,
     tolerance: float,
-    absent: float,
-    clear: float,
-    share: float,
+    prices: tuple[float, float, float],
     displacement: Floats,
     partners: Indices,
 ) -> None:
     """Find the displacement (x, y) of the apertures that explains each frame's spots.
 
-    A displacement scores by its quality (see `_fit`), less `absent` for each aperture whose spot
+    A displacement scores by its quality (see `_fit`), less a price for each aperture whose spot
     would be whole in the frame: so a grid is not taken for the one shifted by a hole.
 
     Parameters
@@ -214,62 +276,51 @@ def match(  # noqa: PLR0917 - Numba takes no keyword-only ones
         Height and width; px that a spot reaches beyond its aperture.
     tolerance
         Largest distance of a spot from its place, px.
-    absent, clear, share
-        The price above; by how much the best displacement must beat every other; the least
+    prices
+        The price ``absent``; by how much the best displacement must beat every other; the least
         share of the expected spots that must be there.
     displacement, partners
         (N, 2) and (N, A): receive the displacement, NaN where none is found, and the spot of
         each aperture, -1 for none.
     """
     height, width = frame
-    wide = width + apertures[:, 0].max() - apertures[:, 0].min()
-    high = height + apertures[:, 1].max() - apertures[:, 1].min()
-    ballot = np.zeros((int(high / tolerance) + 4, int(wide / tolerance) + 4), dtype=np.int32)
-    largest = max(counts.max(), 1)
-    touched = np.empty(largest * apertures.shape[0], dtype=np.int64)
-    best = np.empty(_CANDIDATES, dtype=np.int64)
-    votes = np.empty(_CANDIDATES, dtype=np.int64)
-    partner = np.empty(apertures.shape[0], dtype=np.int64)
-    distance = np.empty(apertures.shape[0])
     low_x = apertures[:, 0].max()
     low_y = apertures[:, 1].max()
+    wide = width + low_x - apertures[:, 0].min()
+    high = height + low_y - apertures[:, 1].min()
+    ballot = np.zeros((int(high / tolerance) + 4, int(wide / tolerance) + 4), dtype=np.int32)
+    touched = np.empty(max(counts.max(), 1) * apertures.shape[0], dtype=np.int64)
+    best = np.empty(_CANDIDATES, dtype=np.int64)
+    votes = np.empty(_CANDIDATES, dtype=np.int64)
+    places = np.empty((_CANDIDATES, 2))
+    partner = np.empty(apertures.shape[0], dtype=np.int64)
     for k in range(spots.shape[0]):
         displacement[k] = np.nan
         partners[k] = -1
         if counts[k] < 1:
             continue
         seen = spots[k, : counts[k]]
-        candidates = _votes(seen, apertures, tolerance, ballot, touched, best, votes)
-        first = -np.inf
-        first_x = np.nan
-        first_y = np.nan
-        second = -np.inf
+        cells = _cast(seen, apertures, tolerance, ballot, touched)
+        candidates = _rank(ballot, touched[:cells], best, votes)
+        for at in touched[:cells]:
+            ballot.ravel()[at] = 0
         for c in range(candidates):
-            x = (best[c] % ballot.shape[1] - 0.5) * tolerance - low_x
-            y = (best[c] // ballot.shape[1] - 0.5) * tolerance - low_y
-            # No spot adds more than one: this one can neither win nor be near to it.
-            price = absent * _expected(apertures, x, y, frame, margin)
-            if votes[c] - price < first - 2.0 * clear:
-                continue
-            x, y, quality, matched = _fit(
-                seen, apertures, table, corner, cell, x, y, tolerance, partner, distance
-            )
-            expected = _expected(apertures, x, y, frame, margin)
-            score = quality - absent * expected
-            same = abs(x - first_x) < tolerance and abs(y - first_y) < tolerance
-            if score > first:
-                if not same:
-                    second = first
-                first, first_x, first_y = score, x, y
-                if matched >= share * expected:
-                    displacement[k, 0] = x
-                    displacement[k, 1] = y
-                    partners[k] = partner
-                else:
-                    displacement[k] = np.nan
-            elif not same:
-                second = max(second, score)
-        if first - second < clear:
-            displacement[k] = np.nan
-        if np.isnan(displacement[k, 0]):
-            partners[k] = -1
+            places[c, 0] = (best[c] % ballot.shape[1] - 0.5) * tolerance - low_x
+            places[c, 1] = (best[c] // ballot.shape[1] - 0.5) * tolerance - low_y
+        x, y = _explain(
+            seen,
+            apertures,
+            table,
+            corner,
+            cell,
+            frame,
+            margin,
+            tolerance,
+            prices,
+            places,
+            votes[:candidates],
+            partner,
+            partners[k],
+        )
+        displacement[k, 0] = x
+        displacement[k, 1] = y

@@ -10,14 +10,87 @@ from numpy.typing import NDArray
 from algorithms.contract import Floats
 from algorithms.kernels.compilation import compiled
 
+Runs = NDArray[np.int32]
+"""(R, 5) lit pixels side by side: a run of the same spot before it or itself, first column, past
+the last, number of pixels, whether the frame's edge cuts it."""
+
 
 @compiled
-def _root(parent: NDArray[np.int32], run: int) -> int:
+def _root(runs: Runs, run: int) -> int:
     """First run of the spot that a run belongs to, with the way there halved."""
-    while parent[run] != run:
-        parent[run] = parent[parent[run]]
-        run = parent[run]
+    while runs[run, 0] != run:
+        runs[run, 0] = runs[runs[run, 0], 0]
+        run = runs[run, 0]
     return run
+
+
+@compiled
+def _add_runs(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    row: NDArray[Any], level: float, line: int, outermost: bool, runs: Runs, light: Floats, end: int
+) -> int:
+    """Append the runs of one row and their moments from index `end` on; return the new end."""
+    j = 0
+    while j < row.size:
+        if not row[j] > level:
+            j += 1
+            continue
+        first = j
+        total = 0.0
+        moment = 0.0
+        while j < row.size and row[j] > level:
+            u = row[j] - level
+            total += u
+            moment += (j - first) * u
+            j += 1
+        runs[end, 0] = end
+        runs[end, 1] = first
+        runs[end, 2] = j
+        runs[end, 3] = j - first
+        runs[end, 4] = outermost or first == 0 or j == row.size
+        light[end, 0] = total
+        light[end, 1] = moment + first * total
+        light[end, 2] = line * total
+        end += 1
+    return end
+
+
+@compiled
+def _join(runs: Runs, above: int, here: int, end: int) -> None:
+    """Join the runs ``here .. end - 1`` of a row to those above, ``above .. here - 1``."""
+    for run in range(here, end):
+        # those that end before this one begins touch none to come
+        while above < here and runs[above, 2] < runs[run, 1]:
+            above += 1
+        other = above
+        while other < here and runs[other, 1] <= runs[run, 2]:
+            a = _root(runs, other)
+            b = _root(runs, run)
+            runs[max(a, b), 0] = min(a, b)
+            other += 1
+
+
+@compiled
+def _keep(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    runs: Runs, light: Floats, end: int, least: float, most: float, spots: Floats
+) -> int:
+    """Sum the runs of each spot and write the whole ones of right size; return how many."""
+    for run in range(end - 1, -1, -1):  # a root comes before all of its runs
+        root = _root(runs, run)
+        if root != run:
+            runs[root, 3] += runs[run, 3]
+            runs[root, 4] |= runs[run, 4]
+            light[root] += light[run]
+    found = 0
+    for run in range(end):
+        if runs[run, 0] != run or runs[run, 4] or not least <= runs[run, 3] <= most:
+            continue
+        if found == spots.shape[0]:
+            return -1
+        spots[found, 0] = light[run, 1] / light[run, 0]
+        spots[found, 1] = light[run, 2] / light[run, 0]
+        spots[found, 2] = runs[run, 3]
+        found += 1
+    return found
 
 
 @compiled
@@ -39,74 +112,17 @@ def segment(  # noqa: PLR0917 - Numba takes no keyword-only ones
     largest values: rows that hold no pixel above the level are not read.
     """
     count, height, width = frames.shape
-    room = height * (width // 2 + 1)  # runs of lit pixels, at most every other one
-    parent = np.empty(room, dtype=np.int32)
-    first = np.empty(room, dtype=np.int32)
-    end = np.empty(room, dtype=np.int32)
-    pixels = np.empty(room, dtype=np.int32)
-    cut = np.empty(room, dtype=np.bool_)
-    light = np.empty(room)
-    light_x = np.empty(room)
-    light_y = np.empty(room)
+    room = height * (width // 2 + 1)  # at most every other pixel starts a run
+    runs = np.empty((room, 5), dtype=np.int32)
+    light = np.empty((room, 3))
     for k in range(count):
-        level = levels[k]
-        above = 0  # runs of the row above: above .. here - 1
+        above = 0
         here = 0
-        runs = 0
+        end = 0
         for i in range(height):
-            above = here
-            here = runs
-            if not maxima[k, i] > level:
-                continue
-            row = frames[k, i]
-            j = 0
-            while j < width:
-                if not row[j] > level:
-                    j += 1
-                    continue
-                total = 0.0
-                total_x = 0.0
-                start = j
-                while j < width and row[j] > level:
-                    u = row[j] - level
-                    total += u
-                    total_x += (j - start) * u
-                    j += 1
-                parent[runs] = runs
-                first[runs] = start
-                end[runs] = j
-                pixels[runs] = j - start
-                cut[runs] = start == 0 or j == width or i == 0 or i == height - 1
-                light[runs] = total
-                light_x[runs] = total_x + start * total
-                light_y[runs] = i * total
-                # Runs of the row above that end before this one begins touch none to come.
-                while above < here and end[above] < start:
-                    above += 1
-                other = above
-                while other < here and first[other] <= j:
-                    a = _root(parent, other)
-                    b = _root(parent, runs)
-                    parent[max(a, b)] = min(a, b)
-                    other += 1
-                runs += 1
-        for run in range(runs - 1, -1, -1):  # a root comes before all of its runs
-            root = _root(parent, run)
-            if root != run:
-                pixels[root] += pixels[run]
-                cut[root] |= cut[run]
-                light[root] += light[run]
-                light_x[root] += light_x[run]
-                light_y[root] += light_y[run]
-        found = 0
-        for run in range(runs):
-            if parent[run] != run or cut[run] or not least <= pixels[run] <= most:
-                continue
-            if found == spots.shape[1]:
-                found = -1
-                break
-            spots[k, found, 0] = light_x[run] / light[run]
-            spots[k, found, 1] = light_y[run] / light[run]
-            spots[k, found, 2] = pixels[run]
-            found += 1
-        counts[k] = found
+            above, here = here, end
+            if maxima[k, i] > levels[k]:
+                outermost = i == 0 or i == height - 1
+                end = _add_runs(frames[k, i], levels[k], i, outermost, runs, light, end)
+                _join(runs, above, here, end)
+        counts[k] = _keep(runs, light, end, least, most, spots[k])
