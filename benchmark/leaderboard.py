@@ -13,7 +13,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
-from benchmark import data_pins
+from benchmark import data_pins, sweeps
 from benchmark.content_key import SCHEMA_VERSION, Specifications
 from benchmark.leaderboard_check import Difference, check
 from benchmark.leaderboard_formats import FORMATS
@@ -27,7 +27,9 @@ from benchmark.store import PUBLISHED, Row, Store, cell_of, replace
 __all__ = ["Difference", "build", "check", "update", "write"]
 
 
-def build(rows: Iterable[Row], runs: Mapping[str, Row]) -> dict[str, Any]:
+def build(
+    rows: Iterable[Row], runs: Mapping[str, Row], swept: Iterable[Row] = ()
+) -> dict[str, Any]:
     """Rank stored rows within each dataset and condition.
 
     Parameters
@@ -36,13 +38,15 @@ def build(rows: Iterable[Row], runs: Mapping[str, Row]) -> dict[str, Any]:
         Score rows as `Store.rows` gives them.
     runs
         Times by key as `Store.runs` gives them; only their ratio to the reference is shown.
+    swept
+        Rows of sweeps as `benchmark.sweeps.read` gives them.
 
     Returns
     -------
     dict
-        ``schema``, ``metric_version`` and ``datasets``: each with ``name``, ``version``,
-        ``detector``, ``mask``, ``conditions`` and ``rows``. A row is the score row with ``rank``
-        (by rms error; null where there is none) and ``time_ratio``.
+        ``schema``, ``metric_version``, ``sweeps`` (as given) and ``datasets``: each with
+        ``name``, ``version``, ``detector``, ``mask``, ``conditions`` and ``rows``. A row is the
+        score row with ``rank`` (by rms error; null where there is none) and ``time_ratio``.
     """
     ranked = sorted(rows, key=_order)
     datasets = []
@@ -65,12 +69,17 @@ def build(rows: Iterable[Row], runs: Mapping[str, Row]) -> dict[str, Any]:
                 "rows": listed,
             }
         )
-    return {"schema": SCHEMA_VERSION, "metric_version": METRIC_VERSION, "datasets": datasets}
+    return {
+        "schema": SCHEMA_VERSION,
+        "metric_version": METRIC_VERSION,
+        "datasets": datasets,
+        "sweeps": list(swept),
+    }
 
 
 def files(store: Store) -> dict[str, str]:
     """Make the text of every leaderboard file from what a store holds."""
-    board = build(store.rows(), store.runs())
+    board = build(store.rows(), store.runs(), sweeps.read(store.directory))
     return {name: form.render(board) for name, form in FORMATS.items()}
 
 
@@ -95,7 +104,8 @@ def update(
 ) -> Summary:
     """Measure what is missing or out of date, drop what is no longer planned, write the files.
 
-    Every dataset's data are pinned, whether anything can be measured on them or not.
+    Every dataset's data are pinned, whether anything can be measured on them or not, and every
+    extractor is measured on the reference features (`benchmark.sweeps`).
 
     Parameters and errors as `benchmark.runner.run`.
     """
@@ -113,8 +123,12 @@ def update(
     pinned = data_pins.update(
         Store(directory), workers, progress, parts=parts, specifications=specifications
     )
+    swept = sweeps.update(
+        directory, workers, progress, extractors=parts.extractors if parts else None
+    )
     write(directory)
-    return replace_fields(summary, warnings=(*summary.warnings, *pinned.warnings))
+    failed = (f"sweep {point} failed: {reason}" for point, reason in swept.failed)
+    return replace_fields(summary, warnings=(*summary.warnings, *pinned.warnings, *failed))
 
 
 def _order(row: Row) -> tuple[object, ...]:

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from benchmark import data_pins, runner
+from benchmark import data_pins, runner, sweeps
 from benchmark.content_key import Specifications
 from benchmark.leaderboard_formats import FORMATS, Cells
 from benchmark.plan import cells
@@ -213,7 +213,9 @@ def _blamed(
     Where JSON and CSV agree with each other and not with the results they are derived from, it is
     the results that were changed.
     """
+    swept = by_file.get("sweeps.csv", {})
     as_json, as_csv = by_file.get("leaderboard.json", {}), by_file.get("leaderboard.csv", {})
+    as_csv = {**as_csv, **swept}
     agreed = {
         place: change
         for place, change in as_json.items()
@@ -221,6 +223,7 @@ def _blamed(
     }
     for (cell, column), (derived, stored) in agreed.items():
         source = "runs.jsonl" if column == "time_ratio" else "scores.jsonl"
+        source = sweeps.FILE if (cell, column) in swept else source
         yield Difference(source, f"{cell}/{column}", stored, derived)
     conditions = {cell.rsplit("/", 2)[0] for cell, _ in agreed}
     for name, changes in by_file.items():

@@ -15,6 +15,8 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
+from benchmark import sweep_tables
+
 Board = Mapping[str, Any]
 #: Text of each cell by ("dataset/condition/extractor/model", column).
 Cells = dict[tuple[str, str], str]
@@ -73,12 +75,13 @@ def _to_json(board: Board) -> str:
 
 
 def _from_json(text: str) -> Cells:
+    board = json.loads(text)
     return {
         (_cell(row), column): _plain(value)
-        for dataset in json.loads(text)["datasets"]
+        for dataset in board["datasets"]
         for row in dataset["rows"]
         for column, value in row.items()
-    }
+    } | sweep_tables.cells(board["sweeps"])
 
 
 def _to_csv(board: Board) -> str:
@@ -135,6 +138,7 @@ def _to_markdown(board: Board) -> str:
             unscored = [row for row in condition["rows"] if row["reason"]]
             lines += ["", *(f"No score: {row['cell']}: {row['reason']}" for row in unscored)]
             lines += [""] if unscored else []
+    lines += sweep_tables.to_markdown(board["sweeps"])
     return "\n".join(lines).rstrip("\n") + "\n"
 
 
@@ -143,9 +147,10 @@ def _rule(column: str) -> str:
 
 
 def _from_markdown(text: str) -> Cells:
-    found: Cells = {}
+    datasets, _, sweeps = text.partition(f"\n# {sweep_tables.HEADING}\n")
+    found = sweep_tables.from_markdown(sweeps)
     dataset = condition = ""
-    for line in text.splitlines():
+    for line in datasets.splitlines():
         if line.startswith("## "):
             dataset = line[3:]
         elif line.startswith("### "):
@@ -170,7 +175,14 @@ def _to_html(board: Board) -> str:
         keep_trailing_newline=True,
     )
     template = environment.get_template("leaderboard.html")
-    return template.render(tables=list(_tables(board)), headings=SHOWN, legend=LEGEND)
+    return template.render(
+        tables=list(_tables(board)),
+        headings=SHOWN,
+        legend=LEGEND,
+        sweeps=sweep_tables.tables(board["sweeps"]),
+        unmeasured=sweep_tables.unmeasured(board["sweeps"]),
+        sweep_legend=sweep_tables.LEGEND,
+    )
 
 
 class _TableReader(HTMLParser):
@@ -180,6 +192,7 @@ class _TableReader(HTMLParser):
         super().__init__()
         self.found: Cells = {}
         self._row = ""
+        self._cell = ""
         self._column = ""
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
@@ -187,8 +200,9 @@ class _TableReader(HTMLParser):
         if tag == "tr":
             self._row = given.get("data-cell") or ""
         elif tag in ("td", "th") and self._row:
+            self._cell = given.get("data-cell") or self._row
             self._column = given.get("data-column") or ""
-            self.found[self._row, self._column] = ""
+            self.found[self._cell, self._column] = ""
 
     def handle_endtag(self, tag: str) -> None:
         if tag in ("td", "th"):
@@ -196,7 +210,7 @@ class _TableReader(HTMLParser):
 
     def handle_data(self, data: str) -> None:
         if self._row and self._column:
-            self.found[self._row, self._column] += data
+            self.found[self._cell, self._column] += data
 
 
 def _from_html(text: str) -> Cells:
@@ -216,6 +230,7 @@ def _plain(value: object) -> str:
 FORMATS = {
     "leaderboard.json": Format(_to_json, _from_json),
     "leaderboard.csv": Format(_to_csv, _from_csv),
+    "sweeps.csv": Format(lambda board: sweep_tables.to_csv(board["sweeps"]), sweep_tables.from_csv),
     "leaderboard.md": Format(_to_markdown, _from_markdown),
     "leaderboard.html": Format(_to_html, _from_html),
 }

@@ -74,3 +74,4 @@ class Knowledge:
         """
         _ = self.resolutions, self.measurements.scores, self.measurements.runs
         _ = self._measured, self.measurements.leaderboard, self.measurements.cards
+        _ = self.measurements.sweeps, self.measurements.assessment

@@ -9,6 +9,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from benchmark import sweeps
 from benchmark.store import PUBLISHED, Pin, Store, StoreError
 from registry.measured import Measured
 
@@ -67,6 +68,23 @@ class Measurements:
         if not isinstance(board, dict):
             raise StoreError(f"{path}: expected a JSON object, got {type(board).__name__}")
         return board
+
+    @cached_property
+    def sweeps(self) -> Sequence[Row]:
+        """Rows of the sweeps on reference features, in order."""
+        return sweeps.read(self.directory)
+
+    @cached_property
+    def assessment(self) -> Mapping[str, Any]:
+        """The survey's assessment beside the measured one, with definitions and totals."""
+        from benchmark import assessment  # noqa: PLC0415 - imports every implementation
+
+        return assessment.document(assessment.assess(self.directory))
+
+    @cached_property
+    def assessed_methods(self) -> tuple[str, ...]:
+        """Methods of the survey's assessment."""
+        return tuple(method["method"] for method in self.assessment["methods"])
 
     @cached_property
     def presets(self) -> Mapping[str, Preset]:

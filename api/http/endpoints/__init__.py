@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from api.http.endpoint import Endpoint
 from api.http.endpoints import (
+    assessment,
     flows,
     implementations,
     measured,
@@ -13,7 +14,7 @@ from api.http.endpoints import (
 )
 from api.http.knowledge import Knowledge
 
-SUBJECTS = (taxonomy, studies, flows, recommendations, implementations, measured)
+SUBJECTS = (taxonomy, studies, flows, recommendations, implementations, measured, assessment)
 
 
 def all_endpoints(knowledge: Knowledge) -> list[Endpoint]:
