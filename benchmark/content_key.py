@@ -144,8 +144,8 @@ def seed(*names: str) -> int:
 def cell_key(
     specification: str,
     data_hash: str | None,
-    extractor: Mapping[str, object],
-    model: Mapping[str, object],
+    extractor: str,
+    model: str,
     cell_seed: int,
 ) -> str:
     """Key of the result of one extractor and one model on one dataset and condition.
@@ -157,7 +157,7 @@ def cell_key(
     data_hash
         `joined_hash` of its splits; None where the data could not be generated.
     extractor, model
-        `implementation_key` of each.
+        `digest` of the `implementation_key` of each.
     cell_seed
         `seed` of the cell's names.
     """

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Hashable, Mapping
 from functools import cache, partial
 
+from algorithms.contract import Extractor, Model, SensorGeometry
 from benchmark.content_key import (
     HARNESS_VERSION,
     SCHEMA_VERSION,
     Specifications,
     cell_key,
+    digest,
     implementation_key,
     joined_hash,
     seed,
@@ -29,6 +31,8 @@ class Keys:
         self._parts = parts
         self._specifications = specifications or Specifications()
         self._code = cache(closure_digest)
+        self._implementations: dict[Hashable, str] = {}
+        self._geometries: dict[int, SensorGeometry] = {}
 
     def pinned_hash(self, cell: Cell, pins: Mapping[tuple[str, str, str], Pin]) -> str | None:
         """Hash of the cell's data, trusted because code and parameters are those it was pinned for.
@@ -55,21 +59,33 @@ class Keys:
         measured then is its failure.
         """
         geometry = self._parts.preset(cell.dataset).geometry_for(cell.condition)
-        extractor_class = self._parts.extractor(cell.extractor)
-        model_class = self._parts.model(cell.model)
+        extractor = self._parts.extractor(cell.extractor)
+        model = self._parts.model(cell.model)
+        self._geometries[id(geometry)] = geometry  # kept, so that no other takes its identity
+        place = (id(geometry), extractor)
         return cell_key(
             self._specification(cell.dataset, cell.condition),
             data_hash,
-            implementation_key(
-                extractor_class, partial(extractor_class.for_sensor, geometry), self._code
-            ),
-            implementation_key(
-                model_class,
-                partial(model_class.for_sensor, geometry, extractor_class.kind),
-                self._code,
+            self._implementation(place, extractor, partial(extractor.for_sensor, geometry)),
+            self._implementation(
+                (id(geometry), model, extractor.kind),
+                model,
+                partial(model.for_sensor, geometry, extractor.kind),
             ),
             seed(cell.dataset, cell.condition, cell.extractor, cell.model),
         )
+
+    def _implementation(
+        self,
+        place: Hashable,
+        implementation: type[Extractor | Model],
+        build: Callable[[], Extractor | Model],
+    ) -> str:
+        """Digest of an implementation as built for one geometry."""
+        if place not in self._implementations:
+            key = implementation_key(implementation, build, self._code)
+            self._implementations[place] = digest(key)
+        return self._implementations[place]
 
     def _specification(self, dataset: str, condition: str) -> str:
         return self._specifications.of(self._parts.preset(dataset), condition)

@@ -20,7 +20,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from benchmark.content_key import SCHEMA_VERSION, canonical_json
+from benchmark.content_key import SCHEMA_VERSION
 from benchmark.plan import Cell
 
 if TYPE_CHECKING:
@@ -193,7 +193,11 @@ def replace(path: Path, text: str) -> bool:
 
 
 def _text(rows: Iterable[Row]) -> str:
-    return "".join(canonical_json(row) + "\n" for row in rows)
+    """Spell rows as `canonical_json` does; their values are plain, and rounded when made."""
+    spell = json.JSONEncoder(
+        sort_keys=True, separators=(",", ":"), ensure_ascii=False, allow_nan=False
+    ).encode
+    return "".join(spell(row) + "\n" for row in rows)
 
 
 def _lines(path: Path) -> list[tuple[int, Row]]:
