@@ -10,6 +10,7 @@ from benchmark.datasets._full_frames import FullFramePreset, drawn
 from benchmark.datasets._pixel_conditions import CAREFUL, missing_apertures, pixel_conditions
 from benchmark.simulator.coded_masks import compound_eye
 from benchmark.simulator.detectors import DarkCurrent, PixelArray
+from benchmark.simulator.light import SolarDisc
 from benchmark.simulator.mask_errors import MaskErrors
 from benchmark.simulator.multi_spot_frames import MultiSpotSensor
 from benchmark.simulator.optics import fresnel_number
@@ -30,6 +31,7 @@ _SENSOR = MultiSpotSensor(
             focal_length_mm=_FOCAL_MM,
             thickness_mm=0.01,
         ),
+        sun=SolarDisc(spiral=256),
         assembly=replace(CAREFUL, focal_length_error_mm=0.024),
     ),
     detector=PixelArray(
@@ -76,7 +78,7 @@ PRESET = FullFramePreset(
         "growing outwards with the slant ray. A triangular lattice of 1.31 mm lets 1026 holes "
         "cover what a detector of 3.84 mm sees over the whole cone; each is moved by 50 um in a "
         "direction drawn for its sub-eye, so that the pattern seen tells the sub-eye. The Sun "
-        "is sampled at 108 points: ripples of 0.5 % of peak near the boresight, 2 % at 60 deg."
+        "is sampled at 256 points: pixels are within 0.5 % of peak of a finer sampling."
     ),
     regime={
         "propagation": "geometric",

@@ -10,6 +10,7 @@ from benchmark.datasets._pixel_conditions import CAREFUL, pixel_conditions
 from benchmark.datasets._preset import Preset
 from benchmark.simulator.detectors import DarkCurrent, PixelArray
 from benchmark.simulator.frames import FrameSensor
+from benchmark.simulator.light import SolarDisc
 from benchmark.simulator.masks import Aperture, Mask
 from benchmark.simulator.optics import fresnel_number
 from benchmark.simulator.projection import Camera
@@ -29,6 +30,7 @@ _SENSOR = FrameSensor(
             ),
             thickness_mm=0.01,
         ),
+        sun=SolarDisc(spiral=144),
         assembly=replace(CAREFUL, focal_length_error_mm=0.0024),
     ),
     detector=PixelArray(

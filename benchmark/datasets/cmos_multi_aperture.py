@@ -25,8 +25,8 @@ _SENSOR = MultiSpotSensor(
     camera=Camera(
         focal_length_mm=_FOCAL_MM,
         mask=grid(10, 10, _SPACING_MM, Aperture("round", _DIAMETER_MM, _DIAMETER_MM), 0.01),
-        # the Sun's image is one pixel wide at normal incidence: few points of it are enough
-        sun=SolarDisc(rings=(8, 12, 16)),
+        # the Sun's image is one pixel wide at normal incidence, seven at the field's corners
+        sun=SolarDisc(spiral=112),
         assembly=replace(CAREFUL, focal_length_error_mm=0.002),
     ),
     detector=PixelArray(
@@ -78,8 +78,8 @@ PRESET = FullFramePreset(
         "are whole on the detector up to 50 deg in either angle (S-FOV), 90 of 100 with one "
         "angle and 81 with both at 60 deg, the field's edge (X-FOV). Holes are off by 1 um in "
         "position, 1 um in size (the unit as a whole) and 0.5 um an edge. Few samples, because "
-        "a frame is 2 MB. The Sun is sampled at 36 points: pixels are within 0.5 % of peak of a "
-        "finer sampling with both angles up to 45 deg, 1.2 % at 60 deg."
+        "a frame is 2 MB. The Sun is sampled at 112 points: pixels are within 0.5 % of peak of a "
+        "finer sampling over the whole field."
     ),
     regime={
         "propagation": "geometric",

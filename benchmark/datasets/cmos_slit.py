@@ -10,6 +10,7 @@ from benchmark.datasets._pixel_conditions import CAREFUL, pixel_conditions
 from benchmark.datasets._preset import Condition, Preset
 from benchmark.simulator.detectors import DarkCurrent, PixelArray
 from benchmark.simulator.frames import FrameSensor
+from benchmark.simulator.light import SolarDisc
 from benchmark.simulator.mask_layouts import slit
 from benchmark.simulator.optics import fresnel_number
 from benchmark.simulator.projection import Camera
@@ -20,6 +21,7 @@ _SENSOR = FrameSensor(
     camera=Camera(
         focal_length_mm=_FOCAL_MM,
         mask=slit(_WIDTH_MM, _LENGTH_MM, rotation_deg=0.1, thickness_mm=0.01),
+        sun=SolarDisc(spiral=144),
         assembly=replace(CAREFUL, focal_length_error_mm=0.0024),
     ),
     detector=PixelArray(

@@ -13,4 +13,4 @@ from typing import Final
 
 #: Raised whenever a change makes the simulator return other numbers; part of every dataset's
 #: parameters, so that stored results know which simulator they came from.
-SIMULATOR_VERSION: Final = 1
+SIMULATOR_VERSION: Final = 2

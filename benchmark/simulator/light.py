@@ -24,12 +24,18 @@ class SolarDisc:
         Linear coefficient u in [0, 1]; 0.6 is the photosphere in the visible band.
     rings
         Directions on each ring of the quadrature, from the inside out. Multiples of four keep
-        the set symmetric about both tangent axes, so that it adds no bias of its own.
+        the set symmetric about both tangent axes, so that it adds no bias of its own. Gauss's
+        radii and weights: best for what changes smoothly over the disc, such as areas.
+    spiral
+        Where not 0, so many directions of equal light on a spiral take the place of the rings:
+        best for pixels smaller than the Sun's image, of which every single direction lights some
+        fully and some not at all. A multiple of four too: the set is the same turned by 90 deg.
     """
 
     diameter_deg: float = 0.533
     limb_darkening: float = 0.6
     rings: tuple[int, ...] = (8, 12, 16, 20, 24, 28)
+    spiral: int = 0
 
     def __post_init__(self) -> None:
         if not 0 <= self.diameter_deg < 90:
@@ -38,6 +44,8 @@ class SolarDisc:
             raise ValueError(f"limb_darkening must be in [0, 1]; got {self.limb_darkening}")
         if not self.rings or any(n < 4 or n % 4 for n in self.rings):
             raise ValueError(f"rings must be positive multiples of four; got {self.rings}")
+        if self.spiral < 0 or self.spiral % 4:
+            raise ValueError(f"spiral must be 0 or a positive multiple of four; got {self.spiral}")
 
     def quadrature(self) -> tuple[Floats, Floats]:
         """Tangent-plane offsets and weights of the quadrature.
@@ -67,6 +75,8 @@ class SolarDisc:
 def _quadrature(disc: SolarDisc) -> tuple[Floats, Floats]:
     if disc.diameter_deg == 0:
         return np.zeros((1, 2)), np.ones(1)
+    if disc.spiral:
+        return _spiral(disc)
     nodes, shares = np.polynomial.legendre.leggauss(len(disc.rings))
     area = (nodes + 1.0) / 2.0  # r^2 is uniform over the disc's area
     radiance = 1.0 - disc.limb_darkening * (1.0 - np.sqrt(1.0 - area))
@@ -83,6 +93,65 @@ def _quadrature(disc: SolarDisc) -> tuple[Floats, Floats]:
     points, shares_of_light = np.array(offsets), np.array(weights) / total
     points.flags.writeable = shares_of_light.flags.writeable = False
     return points, shares_of_light
+
+
+#: Golden section of a full turn: no two of its multiples come close.
+_GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
+
+
+def _spiral(disc: SolarDisc) -> tuple[Floats, Floats]:
+    """Place sets of four directions a quarter turn apart, each for an annulus of equal light.
+
+    Turned by golden sections from annulus to annulus, so that along any line through the disc the
+    projected points lie evenly. A set stands at its annulus' mean squared radius: the second
+    moments are the disc's to rounding, odd ones vanish.
+    """
+    annuli = disc.spiral // 4
+    reach = math.sin(math.radians(disc.diameter_deg / 2.0))
+    darkening = disc.limb_darkening
+    whole, _ = _light_within(1.0, darkening)
+    points = np.empty((disc.spiral, 2))
+    before = (0.0, 0.0)
+    for number in range(annuli):
+        edge = 1.0
+        if number + 1 < annuli:
+            edge = _radius2_holding(whole * (number + 1) / annuli, darkening)
+        within = _light_within(edge, darkening)
+        square = (within[1] - before[1]) / (within[0] - before[0])
+        before = within
+        radius = reach * math.sqrt(square)
+        turn = math.pi / 2.0 * ((number * _GOLDEN) % 1.0)
+        x, y = radius * math.cos(turn), radius * math.sin(turn)
+        points[4 * number : 4 * number + 4] = (x, y), (-y, x), (-x, -y), (y, -x)
+    shares = np.full(disc.spiral, 1.0 / disc.spiral)
+    points.flags.writeable = shares.flags.writeable = False
+    return points, shares
+
+
+def _light_within(square: float, darkening: float) -> tuple[float, float]:
+    """Integrals of the radiance, and of it times the squared radius, up to a squared radius.
+
+    Over the squared radius, relative to the disc's.
+    """
+    rest = 1.0 - square
+    root = rest * math.sqrt(rest)
+    plain, dimmed = 1.0 - darkening, darkening
+    light = plain * square + dimmed * 2.0 / 3.0 * (1.0 - root)
+    moment = plain * square**2 / 2.0
+    moment += dimmed * (4.0 / 15.0 - 2.0 / 3.0 * root + 2.0 / 5.0 * root * rest)
+    return light, moment
+
+
+def _radius2_holding(light: float, darkening: float) -> float:
+    """Return the squared radius within which there is so much light, by bisection."""
+    low, high = 0.0, 1.0
+    for _ in range(60):
+        middle = (low + high) / 2.0
+        if _light_within(middle, darkening)[0] < light:
+            low = middle
+        else:
+            high = middle
+    return (low + high) / 2.0
 
 
 def tangent_axes(sun: Floats) -> tuple[Floats, Floats]:

@@ -1,10 +1,9 @@
 """Compiled rendering of displaced apertures on a pixel grid (loaded on first use: Numba).
 
-Scan lines cross each row at Gauss nodes; along a line the two rims of an aperture give exact
-pixel coverage through an accumulation buffer (differences first, one running sum a row at the
-end). Where an outline starts or ends, nodes follow ``y = u^2``, which straightens a round rim's
-square-root start. An outline is a tuple ``(kind, cx, cy, ux, uy, a, b, c, s)``: centres of the
-lower and the upper rim, half sizes, cosine and sine of the rotation, pixels.
+What an aperture covers of every pixel follows exactly from its boundary: each piece of it between
+two grid lines adds the area on its right, in closed form, to an accumulation buffer (differences
+first, one running sum a row at the end). Boundaries are straight sides and arcs of circles; an
+aperture of two displaced round rims is bounded by one arc of each.
 """
 
 from __future__ import annotations
@@ -17,167 +16,258 @@ from numba import njit
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
-Outline = tuple[float, float, float, float, float, float, float, float, float]
-Interval = tuple[float, float]
+#: Centre and radius of a round rim.
+Circle = tuple[float, float, float]
+#: Where a piece of boundary starts and ends, upwards: x, y, x, y.
+Piece = tuple[float, float, float, float]
 
-_FEW_X, _FEW_W = np.polynomial.legendre.leggauss(3)
-_MANY_X, _MANY_W = np.polynomial.legendre.leggauss(8)
-#: Rows in which a rim runs over more pixels than this take the fine rule.
-_STEEP_PX = 0.75
-_INNER, _START, _END = 0, 1, 2
-
-
-def _box_chord_py(y: float, outline: Outline) -> Interval:
-    """``|c dx + s dy| <= a and |c dy - s dx| <= b`` solved for dx."""
-    _, cx, cy, _, _, a, b, c, s = outline
-    dy = y - cy
-    left, right = -1e300, 1e300
-    if abs(c) > 1e-15:
-        one, two = (-a - s * dy) / c, (a - s * dy) / c
-        left, right = max(left, min(one, two)), min(right, max(one, two))
-    if abs(s) > 1e-15:
-        one, two = (c * dy - b) / s, (c * dy + b) / s
-        left, right = max(left, min(one, two)), min(right, max(one, two))
-    return cx + left, cx + right
+#: Squared sines of half an arc below which a series, or its start, gives the area between arc and
+#: chord.
+_SHORT, _SHORTER = 0.04, 0.001
 
 
-_box_chord = njit(cache=True)(_box_chord_py)
+def _bulge_py(square: float) -> float:
+    """Area between an arc and its chord over the squared radius.
+
+    `square` is that of the sine of half the arc.
+    """
+    if square > _SHORT:
+        sine = math.sqrt(min(square, 1.0))
+        return math.asin(sine) - sine * math.sqrt(max(1.0 - square, 0.0))
+    # 2 C(2k, k) / 4^k / (2k + 3) at the power 2k + 3: what is left out is below 1e-12
+    series = 2.0 / 3.0 + square * (0.2 + square * (3.0 / 28.0))
+    if square > _SHORTER:
+        rest = 5.0 / 72.0 + square * (35.0 / 704.0 + square * (63.0 / 1664.0))
+        series += square * square * square * rest
+    return math.sqrt(square) * square * series
 
 
-def _chord_py(y: float, outline: Outline) -> Interval:
-    """Left and right end of the lit part of a scan line; left > right when there is none."""
-    kind, cx, cy, ux, uy, a, _, _, _ = outline
-    if kind > 0.5:
-        return _box_chord(y, outline)
-    half = math.sqrt(max(a * a - (y - cy) * (y - cy), 0.0))
-    left, right = cx - half, cx + half
-    if ux != cx or uy != cy:
-        half = math.sqrt(max(a * a - (y - uy) * (y - uy), 0.0))
-        left, right = max(left, ux - half), min(right, ux + half)
-    return left, right
+_bulge = njit(cache=True)(_bulge_py)
 
 
-_chord = njit(cache=True)(_chord_py)
+def _put_py(line: Floats, column: int, piece: Piece, extra: float, weight: float) -> None:
+    """Add a piece of boundary within one column to a row of differences (W + 2 long).
+
+    `extra` is the area between the piece and its chord, counted to the right.
+    """
+    if column >= line.shape[0] - 2:
+        return
+    x0, y0, x1, y1 = piece
+    height = y1 - y0
+    if column < 0:
+        line[0] += weight * height
+        return
+    area = ((x0 + x1) / 2.0 - column) * height + extra
+    line[column] += weight * (height - area)
+    line[column + 1] += weight * area
 
 
-def _outline_py(aperture: Floats, lower: Floats, upper: Floats, origin: Floats) -> Outline:
-    """Both rims of one aperture in window coordinates; boxes already intersected into one."""
-    kind, x, y, a, b, c, s = aperture
-    x, y = x - origin[0], y - origin[1]
-    cx, cy, ux, uy = x + lower[0], y + lower[1], x + upper[0], y + upper[1]
-    if kind > 0.5:
-        dx, dy = ux - cx, uy - cy
-        a = a - abs(c * dx + s * dy) / 2.0
-        b = b - abs(c * dy - s * dx) / 2.0
-        cx, cy = (cx + ux) / 2.0, (cy + uy) / 2.0
-        ux, uy = cx, cy
-    return kind, cx, cy, ux, uy, a, b, c, s
+_put = njit(cache=True)(_put_py)
 
 
-_outline = njit(cache=True)(_outline_py)
+def _cut_py(piece: Piece, x: float, y: float) -> tuple[Piece, Piece]:
+    """Split a piece at a point of it; rounding must not turn a part upside down."""
+    y = min(max(y, piece[1]), piece[3])
+    return (piece[0], piece[1], x, y), (x, y, piece[2], piece[3])
 
 
-def _lens_extent_py(outline: Outline) -> Interval:
-    """Lowest and highest y of the intersection of two equal discs; equal when it is empty."""
-    _, cx, cy, ux, uy, radius, _, _, _ = outline
-    dx, dy = ux - cx, uy - cy
+_cut = njit(cache=True)(_cut_py)
+
+
+def _first_column_py(piece: Piece) -> int:
+    """Column in which a piece starts; one that leaves to the left starts left of a grid line."""
+    column = math.floor(piece[0])
+    return column - 1 if piece[2] < piece[0] == column else column
+
+
+_first_column = njit(cache=True)(_first_column_py)
+
+
+def _beyond_py(column: int, piece: Piece) -> bool:
+    """Whether a piece goes on past the column it starts in."""
+    return piece[2] > column + 1.0 or piece[2] < column
+
+
+_beyond = njit(cache=True)(_beyond_py)
+
+
+def _row_of_side_py(line: Floats, piece: Piece, weight: float) -> None:
+    """Add a straight piece of boundary within one row."""
+    column = _first_column(piece)
+    turn = 1 if piece[2] > piece[0] else -1
+    slope = (piece[3] - piece[1]) / (piece[2] - piece[0]) if piece[2] != piece[0] else 0.0
+    while _beyond(column, piece):
+        edge = float(column + 1 if turn > 0 else column)
+        part, piece = _cut(piece, edge, piece[1] + slope * (edge - piece[0]))
+        _put(line, column, part, 0.0, weight)
+        column += turn
+    _put(line, column, piece, 0.0, weight)
+
+
+_row_of_side = njit(cache=True)(_row_of_side_py)
+
+
+def _side_py(differences: Floats, piece: Piece, weight: float) -> None:
+    """Add a straight side, upwards, to the rows of differences (H, W + 2)."""
+    low, high = max(piece[1], 0.0), min(piece[3], float(differences.shape[0]))
+    if low >= high:
+        return
+    slope = (piece[2] - piece[0]) / (piece[3] - piece[1])
+    for row in range(math.floor(low), math.ceil(high)):
+        y0, y1 = max(low, float(row)), min(high, row + 1.0)
+        x0, x1 = piece[0] + slope * (y0 - piece[1]), piece[0] + slope * (y1 - piece[1])
+        _row_of_side(differences[row], (x0, y0, x1, y1), weight)
+
+
+_side = njit(cache=True)(_side_py)
+
+
+def _box_py(differences: Floats, aperture: Floats, rims: Floats, weight: float) -> None:
+    """Add a box: what two displaced ones have in common is a box again."""
+    _, x, y, a, b, c, s = aperture
+    dx, dy = rims[1, 0] - rims[0, 0], rims[1, 1] - rims[0, 1]
+    a, b = a - abs(c * dx + s * dy) / 2.0, b - abs(c * dy - s * dx) / 2.0
+    if a <= 0.0 or b <= 0.0:
+        return
+    x, y = x + (rims[0, 0] + rims[1, 0]) / 2.0, y + (rims[0, 1] + rims[1, 1]) / 2.0
+    for p, q, r, t in ((a, -b, a, b), (a, b, -a, b), (-a, b, -a, -b), (-a, -b, a, -b)):
+        x0, y0, x1, y1 = c * p - s * q, s * p + c * q, c * r - s * t, s * r + c * t
+        # counterclockwise: what goes up bounds the box on the right
+        if y1 > y0:
+            _side(differences, (x + x0, y + y0, x + x1, y + y1), -weight)
+        elif y1 < y0:
+            _side(differences, (x + x1, y + y1, x + x0, y + y0), weight)
+
+
+_box = njit(cache=True)(_box_py)
+
+
+def _row_of_arc_py(
+    line: Floats, circle: Circle, ways: tuple[float, float], piece: Piece, weight: float
+) -> None:
+    """Add a piece of a quarter circle within one row; `ways` as in `_quarter`."""
+    x, y, radius = circle
+    column = _first_column(piece)
+    turn = 1 if piece[2] > piece[0] else -1
+    last = False
+    while not last:
+        last = not _beyond(column, piece)
+        part = piece
+        if not last:
+            edge = float(column + 1 if turn > 0 else column)
+            off = edge - x
+            height = math.sqrt(max((radius - off) * (radius + off), 0.0))
+            part, piece = _cut(piece, edge, y + ways[1] * height)
+        across, up = part[2] - part[0], part[3] - part[1]
+        square = (across * across + up * up) / (4.0 * radius * radius)
+        _put(line, column, part, ways[0] * radius * radius * _bulge(square), weight)
+        column += turn
+
+
+_row_of_arc = njit(cache=True)(_row_of_arc_py)
+
+
+def _quarter_py(
+    differences: Floats,
+    circle: Circle,
+    ways: tuple[float, float],
+    span: tuple[float, float],
+    weight: float,
+) -> None:
+    """Add a part of a quarter circle between two heights over its centre.
+
+    `ways` is on which side of the centre it lies in x and in y: 1 or -1.
+    """
+    x, y, radius = circle
+    low, high = max(y + span[0], 0.0), min(y + span[1], float(differences.shape[0]))
+    if low >= high:
+        return
+    right, upper = ways
+    square, width = radius * radius, float(differences.shape[1] - 2)
+    shrink, bulge = 0.25 / square, right * square
+    x1 = x + right * math.sqrt(max(square - (low - y) * (low - y), 0.0))
+    for row in range(math.floor(low), math.ceil(high)):
+        line = differences[row]
+        y0, y1, x0 = max(low, float(row)), min(high, row + 1.0), x1
+        x1 = x + right * math.sqrt(max(square - (y1 - y) * (y1 - y), 0.0))
+        if min(x0, x1) < 0.0 or max(x0, x1) >= width:
+            _row_of_arc(line, circle, ways, (x0, y0, x1, y1), weight)
+            continue
+        # the same within the window, free of its limits: most of the time goes here
+        column, last = math.floor(x0), math.floor(x1)
+        turn = 1 if last > column else -1
+        while True:
+            stop_x, stop_y = x1, y1
+            if column != last:
+                stop_x = float(max(column, column + turn))
+                edge = stop_x - x
+                stop_y = y + upper * math.sqrt(max(square - edge * edge, 0.0))
+                stop_y = min(max(stop_y, y0), y1)
+            across, up = stop_x - x0, stop_y - y0
+            area = ((x0 + stop_x) / 2.0 - column) * up
+            area += bulge * _bulge((across * across + up * up) * shrink)
+            line[column] += weight * (up - area)
+            line[column + 1] += weight * area
+            if column == last:
+                break
+            x0, y0 = stop_x, stop_y
+            column += turn
+
+
+_quarter = njit(cache=True)(_quarter_py)
+
+
+def _half_py(
+    differences: Floats, circle: Circle, way: float, span: tuple[float, float], weight: float
+) -> None:
+    """Add a part of the right (`way` 1) or left (-1) half of a circle."""
+    low, high = span
+    if low < 0.0:
+        _quarter(differences, circle, (way, -1.0), (low, min(high, 0.0)), -way * weight)
+    if high > 0.0:
+        _quarter(differences, circle, (way, 1.0), (max(low, 0.0), high), -way * weight)
+
+
+_half = njit(cache=True)(_half_py)
+
+
+def _arc_py(differences: Floats, circle: Circle, ends: Piece, weight: float) -> None:
+    """Add an arc of at most half a circle, counterclockwise between two points about its centre."""
+    x0, y0, x1, y1 = ends
+    radius = circle[2]
+    if x0 >= 0.0:
+        _half(differences, circle, 1.0, (y0, y1 if x1 >= 0.0 else radius), weight)
+    if x1 >= 0.0 > x0:
+        _half(differences, circle, 1.0, (-radius, y1), weight)
+    if x0 < 0.0:
+        _half(differences, circle, -1.0, (y1 if x1 < 0.0 else -radius, y0), weight)
+    if x1 < 0.0 <= x0:
+        _half(differences, circle, -1.0, (y1, radius), weight)
+
+
+_arc = njit(cache=True)(_arc_py)
+
+
+def _hole_py(differences: Floats, aperture: Floats, rims: Floats, weight: float) -> None:
+    """Add what two equal displaced discs have in common."""
+    x, y, radius = aperture[1], aperture[2], aperture[3]
+    lower = (x + rims[0, 0], y + rims[0, 1], radius)
+    upper = (x + rims[1, 0], y + rims[1, 1], radius)
+    dx, dy = upper[0] - lower[0], upper[1] - lower[1]
     apart = math.sqrt(dx * dx + dy * dy)
     if apart == 0.0:
-        return cy - radius, cy + radius
-    if apart >= 2.0 * radius:
-        return 0.0, 0.0
-    # corners of the lens end it, unless a disc's own extreme point lies inside the other
-    corner = abs(math.sqrt(radius * radius - apart * apart / 4.0) * dx / apart)
-    middle = (cy + uy) / 2.0
-    low, high = middle - corner, middle + corner
-    extreme = radius - abs(dy)
-    if extreme * extreme + dx * dx <= radius * radius:
-        low, high = max(cy, uy) - radius, min(cy, uy) + radius
-    return low, high
+        _half(differences, lower, 1.0, (-radius, radius), weight)
+        _half(differences, lower, -1.0, (-radius, radius), weight)
+    elif apart < 2.0 * radius:
+        # half the chord between the corners, which stand square to the line of centres
+        half = math.sqrt((radius - apart / 2.0) * (radius + apart / 2.0)) / apart
+        px, py = -half * dy, half * dx
+        dx, dy = dx / 2.0, dy / 2.0
+        _arc(differences, lower, (dx - px, dy - py, dx + px, dy + py), weight)
+        _arc(differences, upper, (px - dx, py - dy, -px - dx, -py - dy), weight)
 
 
-_lens_extent = njit(cache=True)(_lens_extent_py)
-
-
-def _extent_py(outline: Outline) -> Interval:
-    """Lowest and highest y of an outline; equal when it is empty."""
-    kind, _, cy, _, _, a, b, c, s = outline
-    if kind < 0.5:
-        return _lens_extent(outline)
-    if a <= 0.0 or b <= 0.0:
-        return 0.0, 0.0
-    reach = a * abs(s) + b * abs(c)
-    return cy - reach, cy + reach
-
-
-_extent = njit(cache=True)(_extent_py)
-
-
-def _edge_py(line: Floats, x: float, value: float) -> None:
-    """Add a step of `value` at `x` to a row of differences (W + 2 long)."""
-    x = min(max(x, 0.0), line.shape[0] - 2.0)
-    column = int(x)
-    share = x - column
-    line[column] += value * (1.0 - share)
-    line[column + 1] += value * share
-
-
-_edge = njit(cache=True)(_edge_py)
-
-
-def _strip_py(line: Floats, outline: Outline, span: Interval, end: int, weight: float) -> None:
-    """Add the part of an outline between two heights of one row.
-
-    `end` tells whether the outline starts at the lower (`_START`) or ends at the upper height
-    (`_END`); `weight` is the light of a fully lit pixel.
-    """
-    y0, length = span[0], span[1] - span[0]
-    fine = end != _INNER
-    if not fine:
-        left, right = _chord(span[0], outline)
-        other_left, other_right = _chord(span[1], outline)
-        fine = max(abs(left - other_left), abs(right - other_right)) > _STEEP_PX
-    nodes, shares = (_MANY_X, _MANY_W) if fine else (_FEW_X, _FEW_W)
-    for q in range(len(nodes)):
-        u, share = (nodes[q] + 1.0) / 2.0, shares[q] / 2.0
-        if end == _INNER:
-            y = y0 + length * u
-        elif end == _START:
-            y, share = y0 + length * u * u, share * 2.0 * u
-        else:
-            y, share = span[1] - length * u * u, share * 2.0 * u
-        left, right = _chord(y, outline)
-        if right > left:
-            value = weight * length * share
-            _edge(line, left, value)
-            _edge(line, right, -value)
-
-
-_strip = njit(cache=True)(_strip_py)
-
-
-def _shape_py(differences: Floats, outline: Outline, weight: float) -> None:
-    """Add an outline to the rows of differences, (H, W + 2)."""
-    low, high = _extent(outline)
-    height = differences.shape[0]
-    if high <= low or high <= 0.0 or low >= height:
-        return
-    for row in range(max(math.floor(low), 0), min(math.ceil(high), height)):
-        y0, y1 = max(low, float(row)), min(high, row + 1.0)
-        line = differences[row]
-        if y0 == low and y1 == high:
-            middle = (y0 + y1) / 2.0
-            _strip(line, outline, (y0, middle), _START, weight)
-            _strip(line, outline, (middle, y1), _END, weight)
-        elif y0 == low:
-            _strip(line, outline, (y0, y1), _START, weight)
-        elif y1 == high:
-            _strip(line, outline, (y0, y1), _END, weight)
-        else:
-            _strip(line, outline, (y0, y1), _INNER, weight)
-
-
-_shape = njit(cache=True)(_shape_py)
+_hole = njit(cache=True)(_hole_py)
 
 
 def _render_py(
@@ -201,14 +291,20 @@ def _render_py(
     """
     count, height, width = flux.shape
     differences = np.zeros((height, width + 2))
+    paths = np.empty((2, 2))
     for n in range(count):
         differences[:] = 0.0
         for k in range(light.shape[1]):
             if light[n, k] == 0.0:
                 continue
+            for rim in range(2):
+                for axis in range(2):
+                    paths[rim, axis] = rims[rim, n, k, axis] - origin[n, axis]
             for m in range(apertures.shape[0]):
-                outline = _outline(apertures[m], rims[0, n, k], rims[1, n, k], origin[n])
-                _shape(differences, outline, light[n, k])
+                if apertures[m, 0] > 0.5:
+                    _box(differences, apertures[m], paths, light[n, k])
+                else:
+                    _hole(differences, apertures[m], paths, light[n, k])
         for row in range(height):
             total = 0.0
             for column in range(width):

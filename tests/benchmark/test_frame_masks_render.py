@@ -160,9 +160,7 @@ def test_energy_is_area_times_cosine(name: str, theta: float) -> None:
     sensor = sensor_over(sun, MASKS[name], diameter_deg=0.0)
     area = sum(a.area_mm2 for a in MASKS[name].apertures) / PITCH_MM**2
     total = light(sensor, sun).sum()
-    # rows that hold a corner of a turned box are integrated numerically
-    exact = 2e-4 if "turned" in name else 1e-9
-    assert total == pytest.approx(area * math.cos(math.radians(theta)), rel=exact)
+    assert total == pytest.approx(area * math.cos(math.radians(theta)), rel=1e-9)
 
 
 def test_apertures_pass_their_share_and_light_beyond_the_edge_is_lost() -> None:

@@ -150,6 +150,32 @@ def test_v_slit_is_inverted_exactly() -> None:
     assert np.abs(degrees((slanted - 0.5) / 1.8 - tangent) - beta).max() < 1e-6
 
 
+def test_vernier_is_inverted_by_the_borders_that_cross_its_slits() -> None:
+    """Light left of a pixel border counts whole slits and a share of the one the border crosses.
+
+    Slits 3.2 pixels apart are crossed by a border each in its own place; every crossed one gives
+    the displacement, and which it is, missing ones included, follows from the count.
+    """
+    sensor = ideal("ccd-vernier")
+    scene, alpha, beta = scene_over(64.0)
+    pitch = sensor.detector.pitch_mm
+    slits = sorted(sensor.camera.mask.apertures, key=lambda a: a.x_mm)
+    assert len(slits) == 14
+    width = slits[0].width_mm / pitch
+    left = np.array([a.x_mm / pitch for a in slits]) - width / 2
+    profiles = sensor.lit(scene).reshape(len(scene), 2, sensor.detector.columns)
+    for n, axis in np.ndindex(profiles.shape[:2]):
+        before = np.concatenate([[0.0], np.cumsum(profiles[n, axis])])
+        counted = before / before[-1] * len(slits)
+        number = np.floor(counted).astype(int)
+        crossed = np.flatnonzero((counted - number > 1e-6) & (counted - number < 1 - 1e-6))
+        assert len(crossed) > len(slits)  # a slit is wider than a pixel
+        start = crossed - (counted - number)[crossed] * width - sensor.detector.columns / 2
+        tangent = (start - left[number[crossed]]) * pitch / sensor.camera.focal_length_mm
+        angle = (beta, alpha)[axis][n]
+        assert np.abs(degrees(tangent) - angle).max() < 1e-6
+
+
 def test_crossed_pairs_give_sum_and_difference_of_the_tangents() -> None:
     sensor = ideal("ccd-multi-slit")
     scene, alpha, beta = scene_over()

@@ -160,7 +160,7 @@ def test_light_through_a_thin_mask_is_aperture_area_times_cosine(shape: str, the
     sensor = sensor_with(APERTURES[shape], diameter_deg=0.0)
     frame = sensor.lit(scene_of(sensor, incident(theta, 20.0)))[0]
     area = APERTURES[shape].area_mm2 / PITCH_MM**2
-    assert frame.sum() == pytest.approx(area * math.cos(math.radians(theta)), rel=2e-4)
+    assert frame.sum() == pytest.approx(area * math.cos(math.radians(theta)), rel=1e-9)
     assert frame.max() <= math.cos(math.radians(theta)) * (1 + 1e-12)
 
 
@@ -175,7 +175,7 @@ def test_thick_round_mask_passes_the_intersection_of_two_discs(ratio: float) -> 
     r, d = diameter / 2, min(ratio, 1.0) * diameter
     lens = 2 * r * r * math.acos(d / (2 * r)) - d / 2 * math.sqrt(max(4 * r * r - d * d, 0.0))
     expected = lens / PITCH_MM**2 * math.cos(math.radians(theta))
-    assert frame.sum() == pytest.approx(expected, rel=2e-3, abs=1e-9)
+    assert frame.sum() == pytest.approx(expected, rel=1e-9, abs=1e-9)
     if ratio < 1:
         # the lens is centred on the ray through the middle of the aperture
         scene = scene_of(sensor, incident(theta, 50.0))
