@@ -156,12 +156,10 @@ def update(
                 warnings += [_failure(preset, condition, reason)] if reason else []
                 report(done, len(missing), f"{preset.name} {condition}")
         there = places(known)
-        store.write(
-            held.rows.values(),
-            held.runs.values(),
-            (pin for place, pin in held.pins.items() if place in there),
-        )
-        journal.remove()
+        current = [pin for place, pin in held.pins.items() if place in there]
+        if journal.exists() or len(current) != len(held.pins):
+            store.write(held.rows.values(), held.runs.values(), current)
+            journal.remove()
     return Pinned(
         store.directory,
         len(every) - len(missing),

@@ -228,23 +228,25 @@ def _cell(result: UnitResult, model: str) -> Cell:
 def _finalise(
     store: Store, journal: Journal, known: Progress, parts: Parts, keep: list[Cell] | None
 ) -> None:
+    """Write the store's files, where something was measured or is to be dropped."""
+    rows, pins = known.rows, known.pins
     if keep is not None:
         kept = frozenset(keep)
-        known.rows = {cell: row for cell, row in known.rows.items() if cell in kept}
+        rows = {cell: row for cell, row in rows.items() if cell in kept}
         # datasets that nothing can be measured on are pinned too (benchmark.data_pins)
         conditions = {name: preset.conditions for name, preset in parts.presets.items()}
-        known.pins = {
+        pins = {
             place: pin
-            for place, pin in known.pins.items()
+            for place, pin in pins.items()
             if place[1] in conditions.get(place[0], ()) and place[2] in SPLITS
         }
-    current = {row["key"] for row in known.rows.values()}
-    store.write(
-        known.rows.values(),
-        (run for key, run in known.runs.items() if key in current),
-        known.pins.values(),
-    )
-    journal.remove()
+    current = {row["key"] for row in rows.values()}
+    runs = [run for key, run in known.runs.items() if key in current]
+    counts = len(rows), len(pins), len(runs)
+    if journal.exists() or counts != (len(known.rows), len(known.pins), len(known.runs)):
+        store.write(rows.values(), runs, pins.values())
+        journal.remove()
+    known.rows, known.pins = rows, pins
 
 
 @cache

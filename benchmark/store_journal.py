@@ -83,6 +83,10 @@ class Journal:
             if len(whole) < len(content):
                 os.truncate(self.path, len(whole))
 
+    def exists(self) -> bool:
+        """Whether there is anything that the store's files do not hold yet."""
+        return self.path.is_file()
+
     def remove(self) -> None:
         """Forget the journal, once its content is in the store's files."""
         self.path.unlink(missing_ok=True)
