@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from algorithms.contract import FeatureKind, Floats, Observation, Origin, SensorGeometry
-from algorithms.extractors.profile_peaks import require_one_spot
-from algorithms.extractors.slit_lines import SlitLines, box_means, dark_level, edge_margin_px
+from algorithms.extractors.single_spot import require_one_spot, spot_size_px
+from algorithms.extractors.slit_lines import SlitLines, box_means, dark_level
 from algorithms.extractors.spot_spectra import SpotSpectra
 from algorithms.inputs import as_frames, require_positive
 
@@ -95,7 +95,7 @@ class FrameLinearPhase:
     Parameters
     ----------
     width_px : float
-        Width of the aperture's projection, px: diameter or side.
+        Width of the spot, px: the aperture's diameter or side, or more by diffraction.
     shape : {"round", "square"}
         Its shape; a square's sides lie along the pixels.
     margin_px : float
@@ -167,16 +167,11 @@ class FrameLinearPhase:
         """
         geometry.require(*cls.needs, by=cls.name)
         require_one_spot(geometry, cls.name)
-        height, pitch, width, shape, fov = (
-            geometry.focal_length_mm,
-            geometry.pixel_pitch_mm,
-            geometry.aperture_width_mm,
-            geometry.aperture_shape,
-            geometry.half_fov_deg,
-        )
-        if not (height and pitch and width and shape and fov):  # said above, but for zeros
-            raise ValueError(f"{cls.name} needs an aperture over pixels; got {geometry}")
-        return cls(width / pitch, shape, edge_margin_px(height / pitch, fov))
+        shape = geometry.aperture_shape
+        if shape is None:  # said above; for the type checker
+            raise ValueError(f"{cls.name} needs the sensor geometry's aperture_shape; got None")
+        width, margin = spot_size_px(geometry, cls.name)
+        return cls(width, shape, margin)
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Positions (N, 2) in frames (N, H, W); ValueError on wrong input."""

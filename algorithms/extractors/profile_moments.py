@@ -39,7 +39,7 @@ class ProfileCentroid(SlitLines):
 
     Notes
     -----
-    Implements: alg:BCM (fe:bcm, Enright2008b, Chum2003) on a line: ``u_c = sum(u I) / sum(I)``,
+    Implements: alg:BCM (fe:bcm, Enright2008b) on a line: ``u_c = sum(u I) / sum(I)``,
     less where the slits' own centroid is. Behind slits of two slants, whose spots move against
     each other, each spot is summed in its own window, found as PD finds it and moved onto the
     centroid twice.

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from algorithms.contract import FeatureKind, Floats, Observation, Origin, SensorGeometry
+from algorithms.extractors.single_spot import require_one_spot, spot_size_px
 from algorithms.extractors.slit_lines import SlitLines, dark_level
 from algorithms.inputs import as_frames, require_positive
 
@@ -73,7 +74,7 @@ class FramePeak:
     Parameters
     ----------
     width_px : float or None
-        Width of a spot: maxima further apart than this are two spots. None tells none apart.
+        Width of the widest spot: maxima further apart are two spots. None tells none apart.
 
     Notes
     -----
@@ -118,10 +119,11 @@ class FramePeak:
         ValueError where the mask has many apertures or slits: their spots are not one.
         """
         require_one_spot(geometry, cls.name)
-        width, pitch = geometry.aperture_width_mm, geometry.pixel_pitch_mm
-        if geometry.aperture_shape is None or width is None or pitch is None:
+        known = (geometry.focal_length_mm, geometry.pixel_pitch_mm, geometry.half_fov_deg)
+        if None in known or geometry.aperture_shape is None or geometry.aperture_width_mm is None:
             return cls()
-        return cls(width_px=width / pitch)
+        width, margin = spot_size_px(geometry, cls.name)
+        return cls(width_px=width + 2.0 * margin)
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Positions (N, 2) in frames (N, H, W); ValueError on wrong input."""
@@ -139,13 +141,3 @@ class FramePeak:
             unusable |= ((boxes[:, 2:] - boxes[:, :2]) > self.width_px).any(axis=1)
         found[unusable | ~(maxima.max(axis=1) > 0)] = np.nan
         return found
-
-
-def require_one_spot(geometry: SensorGeometry, by: str) -> None:
-    """Raise ValueError for a sensor whose mask casts many spots, or lines of light."""
-    if geometry.apertures is not None and len(geometry.apertures) > 1:
-        raise ValueError(
-            f"{by} reads one spot a frame; got a mask of {len(geometry.apertures)} apertures"
-        )
-    if geometry.slits is not None:
-        raise ValueError(f"{by} reads one spot a frame; got a mask of slits, which cast lines")

@@ -60,7 +60,9 @@ def design_for(geometry: SensorGeometry) -> Callable[[Any], SensorGeometry]:
         if implementation.name in {"panoramic", "pyramidal"}:  # three faces lit, whatever the Sun
             return replace(geometry, face_normals=PYRAMID)
         if implementation.name in MULTI_SPOT:
-            return replace(geometry, aperture_width_mm=0.05, apertures=HOLES)
+            return replace(
+                geometry, focal_length_mm=0.5, aperture_width_mm=0.05, apertures=HOLES
+            )
         if getattr(implementation, "observation", None) is Observation.PROFILES:
             return replace(
                 geometry,
@@ -70,7 +72,7 @@ def design_for(geometry: SensorGeometry) -> Callable[[Any], SensorGeometry]:
                 slits=((0.0, 0.0, 0.3),),
             )
         if implementation.name == "linear-phase-frame":  # its reference is the sample spots' width
-            return replace(geometry, aperture_width_mm=0.06)
+            return replace(geometry, aperture_width_mm=0.06, focal_length_mm=0.5)
         return geometry
 
     return make

@@ -443,6 +443,22 @@ def test_a_saturated_disc_peaks_in_its_middle_and_two_suns_do_not():
     assert np.isnan(found[1]).all()
 
 
+def test_a_spot_that_diffraction_widens_is_expected_as_wide_as_it_is():
+    """cmos-single-aperture-pinhole: 0.47 mm between the dark rings of a hole of 0.02 mm."""
+    pinhole = datasets.get("cmos-single-aperture-pinhole")
+    method = FrameLinearPhase.for_sensor(pinhole.geometry)
+    assert method.width_px == pytest.approx(0.47 / 2 / 0.024, rel=0.01)
+    assert method.width_px / 2 + method.margin_px > 0.47 / 2 / 0.024
+    samples = pinhole.generate("nominal", "test", 60)
+    geometry = pinhole.geometry
+    scale = geometry.focal_length_mm / geometry.pixel_pitch_mm
+    true = geometry.centre_px + scale * samples.sun[:, :2] / samples.sun[:, 2:]
+    found = method.extract(samples.observations) + samples.origin_px
+    assert np.abs(found - true).max() < 1.5
+    peaks = FramePeak.for_sensor(geometry).extract(samples.observations) + samples.origin_px
+    assert np.abs(peaks - true).max() < 5.0
+
+
 def test_linear_phase_of_frames_is_within_thrice_the_bound_wherever_the_spot_is():
     for name, width, times in (
         ("disc", 16.0, 3.0),
