@@ -62,6 +62,73 @@ def _offset(profile: Floats) -> float:
 
 
 @compiled
+def _cut(frame: NDArray[Any], floor: float, column: int, line: int, window: Floats) -> None:
+    """Write the light about a pixel to `window`; outside the frame there is none."""
+    height, width = frame.shape
+    reach = window.shape[0] // 2
+    for i in range(window.shape[0]):
+        for j in range(window.shape[1]):
+            r = line - reach + i
+            c = column - reach + j
+            inside = 0 <= r < height and 0 <= c < width
+            window[i, j] = frame[r, c] - floor if inside else 0.0
+
+
+@compiled
+def _sum_up(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    frame: NDArray[Any],
+    floor: float,
+    x: float,
+    y: float,
+    apertures: Floats,
+    templates: Floats,
+    kinds: NDArray[np.int64],
+    margin: float,
+    window: Floats,
+    total: Floats,
+    single: Floats,
+) -> tuple[float, float, float, int]:
+    """Sum the correlations in windows that stand at displacement (x, y).
+
+    Returns the displacement that the sum (`total`) gives, the light in it and the number of
+    apertures whose spot should be whole in the frame. `single` (A, 3) receives each spot's own
+    place and light, NaN for those that should not.
+    """
+    height, width = frame.shape
+    one = np.empty_like(total)
+    total[:] = 0.0
+    single[:] = np.nan
+    expected = 0
+    light = 0.0
+    away_x = 0.0
+    away_y = 0.0
+    for a in range(apertures.shape[0]):
+        at_x = apertures[a, 0] + x
+        at_y = apertures[a, 1] + y
+        half = 0.5 * apertures[a, 2] + margin
+        if not (half <= at_x < width - 1 - half and half <= at_y < height - 1 - half):
+            continue  # also where NaN
+        expected += 1
+        column = math.floor(at_x + 0.5)
+        line = math.floor(at_y + 0.5)
+        _cut(frame, floor, column, line, window)
+        _correlate(window, templates[kinds[a]], one)
+        total += one
+        weight = one.sum()
+        light += weight
+        away_x += weight * (column - apertures[a, 0])
+        away_y += weight * (line - apertures[a, 1])
+        single[a, 0] = column + _offset(one.sum(axis=0))
+        single[a, 1] = line + _offset(one.sum(axis=1))
+        single[a, 2] = weight
+    if not light > 0.0:
+        return np.nan, np.nan, 0.0, expected
+    moved_x = _offset(total.sum(axis=0))
+    moved_y = _offset(total.sum(axis=1))
+    return away_x / light + moved_x, away_y / light + moved_y, light, expected
+
+
+@compiled
 def correlate_spots(  # noqa: PLR0917 - Numba takes no keyword-only ones
     frames: NDArray[Any],
     floors: Floats,
@@ -103,84 +170,53 @@ def correlate_spots(  # noqa: PLR0917 - Numba takes no keyword-only ones
     int
         Frames done: N, or the first in which a sequence was lost.
     """
-    count, height, width = frames.shape
     least, share = limits
-    side = templates.shape[1]
-    reach = (side + lags) // 2 - 1  # of a window from its centre: side and lags are odd
+    reach = (templates.shape[1] + lags) // 2 - 1  # of a window: both are odd
     window = np.empty((2 * reach + 1, 2 * reach + 1))
-    one = np.empty((lags, lags))
     total = np.empty((lags, lags))
     single = np.empty((apertures.shape[0], 3))
     x = np.nan
     y = np.nan
-    for k in range(count):
+    for k in range(frames.shape[0]):
         found[k] = np.nan
         spots[k] = np.nan
         if k == 0 or not sequence:
             x, y = starts[k]
         settled = False
-        expected = 0
         light = 0.0
+        expected = 0
         for _ in range(_ROUNDS):
-            total[:] = 0.0
-            expected = 0
-            light = 0.0
-            away_x = 0.0
-            away_y = 0.0
-            single[:] = np.nan
-            for a in range(apertures.shape[0]):
-                at_x = apertures[a, 0] + x
-                at_y = apertures[a, 1] + y
-                half = 0.5 * apertures[a, 2] + margin
-                if not (
-                    half <= at_x < width - 1 - half and half <= at_y < height - 1 - half
-                ):  # also where NaN
-                    continue
-                expected += 1
-                column = math.floor(at_x + 0.5)
-                line = math.floor(at_y + 0.5)
-                for i in range(window.shape[0]):
-                    for j in range(window.shape[1]):
-                        r = line - reach + i
-                        c = column - reach + j
-                        inside = 0 <= r < height and 0 <= c < width
-                        window[i, j] = frames[k, r, c] - floors[k] if inside else 0.0
-                _correlate(window, templates[kinds[a]], one)
-                total += one
-                weight = one.sum()
-                light += weight
-                away_x += weight * (column - apertures[a, 0])
-                away_y += weight * (line - apertures[a, 1])
-                single[a, 0] = column + _offset(one.sum(axis=0))
-                single[a, 1] = line + _offset(one.sum(axis=1))
-                single[a, 2] = weight
-            if expected == 0 or not light > 0.0:
+            to_x, to_y, light, expected = _sum_up(
+                frames[k],
+                floors[k],
+                x,
+                y,
+                apertures,
+                templates,
+                kinds,
+                margin,
+                window,
+                total,
+                single,
+            )
+            if not (np.isfinite(to_x) and np.isfinite(to_y)):
                 break
-            moved_x = _offset(total.sum(axis=0))
-            moved_y = _offset(total.sum(axis=1))
-            to_x = away_x / light + moved_x
-            to_y = away_y / light + moved_y
-            near = abs(to_x - x) <= _STAY and abs(to_y - y) <= _STAY
+            settled = abs(to_x - x) <= _STAY and abs(to_y - y) <= _STAY
             # a hill whose top is outside the matrix gives a direction, no distance
-            far = 0.5 * lags
-            x += min(max(to_x - x, -far), far)
-            y += min(max(to_y - y, -far), far)
-            if not (np.isfinite(x) and np.isfinite(y)):
-                break
-            if near:
-                settled = True
+            x += min(max(to_x - x, -0.5 * lags), 0.5 * lags)
+            y += min(max(to_y - y, -0.5 * lags), 0.5 * lags)
+            if settled:
                 break
         present = 0
         for a in range(apertures.shape[0]):
             if settled and single[a, 2] >= least * light / expected:
                 present += 1
-                spots[k, a, 0] = single[a, 0]
-                spots[k, a, 1] = single[a, 1]
-        if not settled or present == 0 or present < share * expected:
+                spots[k, a] = single[a, :2]
+        if present > 0 and present >= share * expected:
+            found[k, 0] = x
+            found[k, 1] = y
+        else:
             spots[k] = np.nan
             if sequence:
                 return k
-            continue
-        found[k, 0] = x
-        found[k, 1] = y
-    return count
+    return int(frames.shape[0])

@@ -11,12 +11,14 @@ from numpy.typing import NDArray
 from algorithms.contract import Floats
 from algorithms.kernels.compilation import compiled
 
+Bins = NDArray[np.int64]
+
 _STEPS = 20  # of one spot, at most
 _ROUNDS = 3  # of leaving out spots that are not where the others say
 
 
 @compiled
-def _window(bins: NDArray[np.int64], x: float, y: float, radius: float, sums: Floats) -> float:
+def _window(bins: Bins, x: float, y: float, radius: float, sums: Floats) -> float:
     """Sum over the pixels within `radius` of (x, y), by the bin they are in.
 
     `sums` (m, 4) receives the Epanechnikov kernel, the number, and the offsets in x and y; the
@@ -36,7 +38,7 @@ def _window(bins: NDArray[np.int64], x: float, y: float, radius: float, sums: Fl
             sums[u, 1] += 1.0
             sums[u, 2] += dx
             sums[u, 3] += dy
-    return sums[:, 0].sum()
+    return float(sums[:, 0].sum())
 
 
 @compiled
@@ -68,7 +70,7 @@ def _shift(sums: Floats, total: float, goal: Floats) -> tuple[float, float]:
 
 @compiled
 def _climb(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    bins: NDArray[np.int64],
+    bins: Bins,
     x: float,
     y: float,
     radius: float,
@@ -136,6 +138,89 @@ def _agreed(
 
 
 @compiled
+def _cut(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    frame: NDArray[Any], level: float, step: float, bins: int, left: int, top: int, patch: Bins
+) -> None:
+    """Write the bins of the pixels from (left, top) on to `patch`; outside the frame 0."""
+    height, width = frame.shape
+    for i in range(patch.shape[0]):
+        for j in range(patch.shape[1]):
+            u = 0
+            if 0 <= top + i < height and 0 <= left + j < width:
+                light = frame[top + i, left + j] - level
+                if light > 0.0:
+                    u = min(1 + int(light / step), bins - 1)
+            patch[i, j] = u
+
+
+@compiled
+def _learn(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    frame: NDArray[Any],
+    level: float,
+    step: float,
+    seen: Floats,
+    radii: tuple[float, float],
+    patch: Bins,
+    goal: Floats,
+    sums: Floats,
+) -> float:
+    """Write the mean histogram of the spots seen (A, 2) to `goal`; return its own similarity.
+
+    That is the one of the same spots as candidates; zero where there is none.
+    """
+    bins = goal.size
+    reach = patch.shape[0] // 2
+    goal[:] = 0.0
+    own = np.zeros((bins, 4))
+    for a in range(seen.shape[0]):
+        if np.isnan(seen[a, 0]):
+            continue
+        left = round(seen[a, 0]) - reach
+        top = round(seen[a, 1]) - reach
+        _cut(frame, level, step, bins, left, top, patch)
+        _window(patch, seen[a, 0] - left, seen[a, 1] - top, radii[0], sums)
+        goal += sums[:, 0]
+        _window(patch, seen[a, 0] - left, seen[a, 1] - top, radii[1], sums)
+        own += sums
+    goal[0] = 0.0  # the goal is a spot, no background
+    total = goal.sum()
+    if not total > 0.0:
+        return 0.0
+    goal /= total
+    return _similarity(own, own[:, 0].sum(), goal)
+
+
+@compiled
+def _place(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    frame: NDArray[Any],
+    level: float,
+    step: float,
+    x: float,
+    y: float,
+    radius: float,
+    goal: Floats,
+    tolerance: float,
+    patch: Bins,
+    sums: Floats,
+) -> tuple[float, float, float]:
+    """Shift one spot from (x, y); return its place and similarity, which is 0 where it strays."""
+    reach = patch.shape[0] // 2
+    left = round(x) - reach
+    top = round(y) - reach
+    _cut(frame, level, step, goal.size, left, top, patch)
+    near_x, near_y, likeness = _climb(patch, x - left, y - top, radius, goal, tolerance, sums)
+    if math.hypot(near_x + left - x, near_y + top - y) >= radius:
+        likeness = 0.0
+    return near_x + left, near_y + top, likeness
+
+
+@compiled
+def _whole(x: float, y: float, half: float, height: int, width: int) -> bool:
+    """Whether a spot of this half width is whole in the frame; not where it is NaN."""
+    return half <= x < width - 1 - half and half <= y < height - 1 - half
+
+
+@compiled
 def shift_spots(  # noqa: PLR0917 - Numba takes no keyword-only ones
     frames: NDArray[Any],
     levels: Floats,
@@ -187,7 +272,6 @@ def shift_spots(  # noqa: PLR0917 - Numba takes no keyword-only ones
     patch = np.empty((2 * reach + 1, 2 * reach + 1), dtype=np.int64)
     sums = np.empty((bins, 4))
     goal = np.empty(bins)
-    own = np.empty(bins)
     reference = 0.0
     x = np.nan
     y = np.nan
@@ -198,67 +282,31 @@ def shift_spots(  # noqa: PLR0917 - Numba takes no keyword-only ones
         fresh = k == 0 or not sequence
         if fresh:
             x, y = starts[k]
-            goal[:] = 0.0
-            own[:] = 0.0
-        if np.isnan(x):
-            continue
-        # twice where there is a goal to learn: over the spots seen, then over all
-        for learning in range(1 if fresh else 0, -1, -1):
-            expected = 0
-            for a in range(apertures.shape[0]):
-                at_x = apertures[a, 0] + x
-                at_y = apertures[a, 1] + y
-                if learning == 1:
-                    at_x, at_y = seen[k, a]
-                elif sequence and k > 0 and not np.isnan(spots[k - 1, a, 0]):
-                    at_x, at_y = spots[k - 1, a]
-                half = 0.5 * apertures[a, 2] + margin
-                if not (
-                    half <= at_x < width - 1 - half and half <= at_y < height - 1 - half
-                ):  # also where NaN
-                    continue
-                expected += 1
-                left = round(at_x) - reach
-                top = round(at_y) - reach
-                for i in range(patch.shape[0]):
-                    for j in range(patch.shape[1]):
-                        u = 0
-                        if 0 <= top + i < height and 0 <= left + j < width:
-                            light = frames[k, top + i, left + j] - levels[k]
-                            if light > 0.0:
-                                u = min(1 + int(light / steps[k]), bins - 1)
-                        patch[i, j] = u
-                if learning == 1:
-                    _window(patch, at_x - left, at_y - top, radii[0], sums)
-                    goal += sums[:, 0]
-                    _window(patch, at_x - left, at_y - top, radii[1], sums)
-                    own += sums[:, 0]
-                    continue
-                px, py, likeness = _climb(
-                    patch, at_x - left, at_y - top, radii[1], goal, tolerance, sums
-                )
-                moved = math.hypot(px + left - at_x, py + top - at_y)
-                if likeness >= similar * reference and moved < radii[1]:
-                    spots[k, a, 0] = px + left
-                    spots[k, a, 1] = py + top
-                    weights[k, a] = likeness / reference
-            if learning == 1:
-                goal[0] = 0.0  # the goal is a spot, no background
-                total = goal.sum()
-                if not total > 0.0:
-                    break
-                goal /= total
-                reference = np.sqrt(goal * own / own.sum()).sum()
-        if not goal.sum() > 0.0:
-            continue
+            reference = _learn(frames[k], levels[k], steps[k], seen[k], radii, patch, goal, sums)
+        expected = 0
+        for a in range(apertures.shape[0]):
+            at_x = apertures[a, 0] + x
+            at_y = apertures[a, 1] + y
+            if not fresh and not np.isnan(spots[k - 1, a, 0]):
+                at_x, at_y = spots[k - 1, a]
+            if not _whole(at_x, at_y, 0.5 * apertures[a, 2] + margin, height, width):
+                continue
+            expected += 1
+            near_x, near_y, likeness = _place(
+                frames[k], levels[k], steps[k], at_x, at_y, radii[1], goal, tolerance, patch, sums
+            )
+            if likeness > 0.0 and likeness >= similar * reference:
+                spots[k, a, 0] = near_x
+                spots[k, a, 1] = near_y
+                weights[k, a] = likeness / reference
         near_x, near_y, number = _agreed(spots[k], weights[k], apertures, astray)
-        if number == 0 or number < share * expected:
+        if number > 0 and number >= share * expected:
+            x, y = near_x, near_y
+            found[k, 0] = x
+            found[k, 1] = y
+        else:
             spots[k] = np.nan
             weights[k] = 0.0
             if sequence:
                 return k
-            continue
-        x, y = near_x, near_y
-        found[k, 0] = x
-        found[k, 1] = y
-    return count
+    return int(count)
