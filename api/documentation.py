@@ -12,6 +12,7 @@ import sys
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
+from api import documentation_assessment as assessment
 from api.documentation_export import export_example
 from api.documentation_parts import (
     command_line,
@@ -31,6 +32,16 @@ Make = Callable[[], str]
 PAGES: Mapping[str, Mapping[str, Make]] = {
     "algorithms.md": {"extractors": extractors, "models": models, "missing": missing},
     "datasets.md": {"coverage": coverage, "example": export_example, "datasets": datasets},
+    "sweeps.md": {
+        "features": assessment.features,
+        "accuracy": assessment.accuracy,
+        "unmeasured": assessment.unmeasured,
+    },
+    "assessment.md": {
+        "definitions": assessment.definitions,
+        "outcomes": assessment.outcomes,
+        "values": assessment.values,
+    },
     "survey.md": {"findings": findings, "resolutions": resolutions},
     "http.md": {"endpoints": http_examples},
     "command-line.md": {"help": command_line},
@@ -75,7 +86,7 @@ def renewed(page: str, text: str, parts: Mapping[str, Make]) -> str:
 
 
 def regenerate(directory: Path = DIRECTORY, *, write: bool = True) -> list[str]:
-    """Renew every page; return the names of those that were behind.
+    """Renew every page and picture; return the names of those that were behind.
 
     Parameters
     ----------
@@ -95,6 +106,11 @@ def regenerate(directory: Path = DIRECTORY, *, write: bool = True) -> list[str]:
         new = renewed(page, text, parts)
         if new != text:
             behind[page] = new
+    for picture, make in assessment.PICTURES.items():
+        path = directory / picture
+        new = make()
+        if not path.is_file() or path.read_text("utf-8") != new:
+            behind[picture] = new
     if write:
         for page, new in behind.items():
             (directory / page).write_text(new, "utf-8", newline="\n")

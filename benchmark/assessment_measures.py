@@ -39,12 +39,12 @@ def _series(rows: Sequence[Row], sweep: str) -> Iterator[tuple[str, Points]]:
     """Give each series that has a sweep, with its points; Unmeasured where none has."""
     found: dict[str, dict[str, Row]] = {}
     for row in rows:
-        if row["sweep"] == sweep:
+        if row["sweep"] == sweep and row["n"]:  # without samples: the design was refused
             found.setdefault(row["series"], {})[row["point"]] = row
     if not found:
         refusals = [f"{r['series'] or 'any series'}: {r['reason']}" for r in rows if not r["sweep"]]
         why = f" ({'; '.join(refusals)})" if refusals else ""
-        measured = "no reference feature of its kind has" if rows else "no stored sweep; not in"
+        measured = "no reference feature of its kind has" if rows else "nothing is stored of"
         raise Unmeasured(f"{measured} the sweep `{sweep}`{why}")
     yield from found.items()
 
@@ -89,11 +89,15 @@ def _features(rows: Sequence[Row]) -> Values:
     for series, points in _series(rows, "features"):
         ordered = sorted(points.values(), key=lambda row: row["value"])
         one, most = ordered[0], ordered[-1]
-        if len(ordered) > 1 and one["value"] == 1.0 and one["rms"] and _good(most):
+        if one["value"] != 1.0:
+            continue  # does not read a single feature: no gain to speak of
+        if len(ordered) > 1 and one["rms"] and _good(most):
             ideal = math.sqrt(most["value"] / one["value"])
             found.append((one["rms"] / most["rms"] / ideal, series))
         else:
             found.append((math.nan, series))
+    if not found:
+        raise Unmeasured("does not read a single feature, so that no gain can be told")
     return found
 
 

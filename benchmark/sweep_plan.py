@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -64,14 +64,17 @@ class Point:
 
 @dataclass(frozen=True)
 class Planned:
-    """What is measured: settings by point, and why there is none on a series."""
+    """What is measured: settings by point, and why there is none; on a whole series in one line."""
 
     settings: Mapping[Point, Setting]
     refused: Mapping[Point, str]
 
 
 def planned(extractors: Mapping[str, type[Extractor]]) -> Planned:
-    """Return every point of every extractor; a refusal's point names series and extractor only."""
+    """Return every point of every extractor, and what is refused with the reason.
+
+    Where a method refuses a whole series, sweep and point of the refusal are empty.
+    """
     settings: dict[Point, Setting] = {}
     refused: dict[Point, str] = {}
     for extractor in extractors.values():
@@ -82,24 +85,33 @@ def planned(extractors: Mapping[str, type[Extractor]]) -> Planned:
             )
             refused[Point("", "", "", extractor.name)] = reason
         for series in (SERIES[name] for name in names):
-            found = dict(_accepted(series, extractor))
-            if not found:
-                first = series.settings()[0]
-                refused[Point(series.name, "", "", extractor.name)] = _refusal(
-                    series, first, extractor
-                )
-            settings |= found
+            accepted, left_out = _sorted_out(series, extractor)
+            settings |= accepted
+            if accepted:
+                refused |= left_out
+            else:  # one line instead of one a point
+                reason = next(iter(left_out.values()))
+                refused[Point(series.name, "", "", extractor.name)] = reason
     return Planned(dict(sorted(settings.items())), dict(sorted(refused.items())))
 
 
-def _accepted(series: Series, extractor: type[Extractor]) -> Iterable[tuple[Point, Setting]]:
+def _sorted_out(
+    series: Series, extractor: type[Extractor]
+) -> tuple[dict[Point, Setting], dict[Point, str]]:
+    """Return the points whose design a method accepts, and reasons for the others."""
     # a method for one spot meets the grid only to say what several features do for it
     visiting = series.name == "grid" and "grid" not in _FRAMES_OF.get(extractor.taxonomy, ())
+    accepted: dict[Point, Setting] = {}
+    left_out: dict[Point, str] = {}
     for setting in series.settings():
         if visiting and setting.sweep != "features":
             continue
-        if not _refusal(series, setting, extractor):
-            yield Point(series.name, setting.sweep, setting.point, extractor.name), setting
+        point = Point(series.name, setting.sweep, setting.point, extractor.name)
+        if reason := _refusal(series, setting, extractor):
+            left_out[point] = reason
+        else:
+            accepted[point] = setting
+    return accepted, left_out
 
 
 def _series_names(extractor: type[Extractor]) -> tuple[str, ...]:
