@@ -63,6 +63,12 @@ def design_for(geometry: SensorGeometry) -> Callable[[Any], SensorGeometry]:
             return replace(
                 geometry, focal_length_mm=0.5, aperture_width_mm=0.05, apertures=HOLES
             )
+        if "lens_distortion" in implementation.needs:
+            return replace(geometry, lens_distortion=(-0.1, 0.02))
+        if implementation.name == "hough-circle":
+            return replace(geometry, aperture_shape="round")
+        if getattr(implementation, "observation", None) is Observation.EVENTS:
+            return replace(geometry, aperture_width_mm=0.04)
         if getattr(implementation, "observation", None) is Observation.PROFILES:
             return replace(
                 geometry,
@@ -120,6 +126,40 @@ def _many_spots(geometry: SensorGeometry, count: int = 6) -> NDArray[np.uint8]:
     return (light + rng.integers(0, 12, light.shape)).astype(np.uint8)
 
 
+def _black_suns(count: int = 7) -> NDArray[np.uint8]:
+    """Black discs in saturated halos, with noise, whole numbers that every dtype holds."""
+    rng = np.random.default_rng(16)
+    y, x = np.mgrid[:40, :44]
+    frames = rng.integers(0, 12, (count, 40, 44)).astype(np.uint8)
+    for frame, (cx, cy) in zip(frames, rng.uniform(16.0, 24.0, (count, 2)), strict=True):
+        away = np.hypot(x - cx, y - cy)
+        frame[(away > 3.5) & (away < 9.0)] = 240
+    return frames
+
+
+def _blooming_suns(count: int = 7) -> NDArray[np.uint8]:
+    """Saturated discs in halos with lines along their columns, whole numbers for every dtype."""
+    rng = np.random.default_rng(17)
+    y, x = np.mgrid[:60, :44]
+    frames = np.empty((count, 60, 44))
+    for frame, (cx, cy) in zip(frames, rng.uniform((16, 26), (28, 34), (count, 2)), strict=True):
+        frame[:] = 1500.0 / (1.0 + ((x - cx) ** 2 + (y - cy) ** 2) / 4.0) ** 1.5
+        frame[(np.abs(x - cx) <= 1.5) & (np.abs(y - cy) <= 20.0)] = 240
+    return (np.minimum(frames, 240) + rng.integers(0, 6, frames.shape)).astype(np.uint8)
+
+
+def _spikes(count: int = 7) -> NDArray[np.uint8]:
+    """First events of a spot five pixels wide, whole numbers that every dtype holds."""
+    rng = np.random.default_rng(18)
+    y, x = np.mgrid[:40, :44]
+    events = np.empty((count, 24, 3), dtype=np.uint8)
+    for sample, (cx, cy) in zip(events, rng.uniform(10.0, 29.0, (count, 2)), strict=True):
+        times = 60.0 + (np.hypot(x - cx, y - cy) / 0.7) ** 4 + rng.uniform(0, 9, x.shape)
+        first = np.argsort(times, axis=None)[:24]
+        sample[:] = np.column_stack([x.flat[first], y.flat[first], times.flat[first].clip(0, 250)])
+    return events
+
+
 def _profiles(count: int = 9) -> NDArray[np.uint8]:
     """Noisy light of a slit six pixels wide on two lines, whole numbers that every dtype holds."""
     rng = np.random.default_rng(14)
@@ -153,6 +193,12 @@ def observations_for(geometry: SensorGeometry) -> Callable[[Any], NDArray[Any]]:
             return _squares(geometry)
         if extractor.name in MULTI_SPOT:
             return _many_spots(geometry)
+        if extractor.name == "bscm":
+            return _black_suns()
+        if extractor.name == "hough-lines":
+            return _blooming_suns()
+        if extractor.observation is Observation.EVENTS:
+            return _spikes()
         if extractor.observation is Observation.FRAMES:
             return _spots()
         if extractor.observation is Observation.PROFILES:
