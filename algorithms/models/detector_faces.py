@@ -41,3 +41,21 @@ def row_sums(columns: Floats, weights: Sequence[float] | Floats) -> Floats:
     for column, weight in zip(columns.T, weights, strict=True):
         total += weight * column
     return total
+
+
+def directions(half_fov_deg: float | None, count: int = 4000) -> Floats:
+    """Return unit vectors (N, 3) that fill the field of view around +z evenly, with its rim.
+
+    Parameters
+    ----------
+    half_fov_deg : float or None
+        Half the cone's angle; None for all directions.
+    count : int
+        Vectors inside, on a Fibonacci lattice; a tenth as many follow the rim.
+    """
+    lowest = -1.0 if half_fov_deg is None else float(np.cos(np.radians(half_fov_deg)))
+    steps = np.arange(count)
+    z = np.append(1.0 - (1.0 - lowest) * (steps + 0.5) / count, np.full(count // 10, lowest))
+    turn = np.append(np.pi * (3.0 - np.sqrt(5.0)) * steps, np.linspace(0, 2 * np.pi, count // 10))
+    radius = np.sqrt(np.maximum(1.0 - z**2, 0.0))
+    return np.column_stack([radius * np.cos(turn), radius * np.sin(turn), z])

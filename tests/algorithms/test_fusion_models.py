@@ -208,6 +208,40 @@ def test_panoramic_gives_nothing_where_too_few_cells_are_lit():
     assert np.isnan(model.predict(rows)).all(axis=1).tolist() == [False, True, True, True, True]
 
 
+@settings(deadline=None, derandomize=True, max_examples=50)
+@given(st.integers(0, 10_000))
+def test_lit_cells_in_a_plane_give_nothing_however_they_round(seed):
+    turned, _ = np.linalg.qr(np.random.default_rng(seed).standard_normal((3, 3)))
+    ring = np.radians([0, 25, 50, 70])
+    plane = np.column_stack([np.cos(ring), np.sin(ring), np.zeros(4)])
+    normals = np.vstack([plane, [[0, 0, 1]]]) @ turned
+    sun = np.array([np.cos(0.6), np.sin(0.6), 0.0]) @ turned
+    model = WeightedCells(as_design(normals)).fit(cosines(spread(200), normals), spread(200))
+    assert np.isnan(model.predict(cosines(sun[None], normals))).all()
+    two = np.array([[0.0, 0.8, 0.0, 0.0, 0.5]])
+    assert np.isnan(model.predict(two)).all()
+
+
+@pytest.mark.parametrize(
+    ("normals", "half_fov_deg", "fewest"),
+    [
+        (FACES, None, 1),  # the Sun on an axis
+        (survey_pyramid(4, 30.0), 55.0, 2),  # between two faces, far out
+        (survey_pyramid(6, 30.0), None, 0),
+        (survey_pyramid(4, 30.0), 30.0, None),
+        (survey_pyramid(6, 30.0), 55.0, None),
+    ],
+)
+def test_panoramic_refuses_bodies_that_leave_directions_unsolved(normals, half_fov_deg, fewest):
+    design = SensorGeometry(face_normals=as_design(normals), half_fov_deg=half_fov_deg)
+    if fewest is None:
+        model = WeightedCells.for_sensor(design, FeatureKind.SIGNALS)
+        assert model.face_normals == design.face_normals
+    else:
+        with pytest.raises(ValueError, match=f"faces leave {fewest}"):
+            WeightedCells.for_sensor(design, FeatureKind.SIGNALS)
+
+
 def test_a_cell_never_lit_in_calibration_takes_the_others_reference():
     normals = np.array(FACES)
     sun = spread(200)
