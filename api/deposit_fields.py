@@ -50,6 +50,18 @@ _FIELDS: dict[str, tuple[Type, str]] = {
     "bound_deg": ("number", "Root mean square of the Cramer-Rao bound, degrees."),
     "over_bound": ("number", "Root mean square error divided by the bound."),
     "over_bound_se": ("number", "Standard error of over_bound."),
+    # sweeps
+    "sweep_version": ("integer", "Version of the layout of a sweep."),
+    "series": ("string", "Reference feature; none where no feature fits the extractor."),
+    "sweep": ("string", "What is varied; none where the feature is not measured."),
+    "point": ("string", "Point of the sweep; none where the feature is not measured."),
+    "value": ("number", "Place of the point on the sweep's axis; empty where it is a word."),
+    "n": ("integer", "Samples at the point; 0 where the extractor's design refuses it."),
+    "unit": ("string", "Of rms, bias and bound."),
+    "kept_fraction": ("number", "Share of samples found within 3 px of the truth."),
+    "rms": ("number", "Root mean square error of one coordinate of the found samples."),
+    "bias": ("number", "Root mean square over the coordinates of the mean error."),
+    "bound": ("number", "Root mean square Cramer-Rao bound of one coordinate."),
     # provenance
     "data_hash": ("string", "Hash of the samples."),
     "harness_version": ("integer", "Version of how pipelines are run."),

@@ -12,7 +12,7 @@ from typing import Any
 
 from api.deposit_fields import schema
 from api.http.tables import cell
-from benchmark import datasets
+from benchmark import datasets, sweeps
 from benchmark.store import Store
 from registry.catalogue import catalogue
 
@@ -60,6 +60,7 @@ def measured_tables(published: Path) -> list[MeasuredTable]:
         raise NothingPublishedError(f"{missing} is missing or empty; run `sunatlas leaderboard`")
     names = {"extractor": ("algorithms", "name"), "model": ("algorithms", "name")}
     foreign = {"dataset": ("datasets", "name"), **names}
+    swept = sweeps.read(published)
     return [
         _algorithms(),
         _datasets(),
@@ -72,7 +73,24 @@ def measured_tables(published: Path) -> list[MeasuredTable]:
             foreign=foreign,
         ),
         _published(board, foreign),
+        *([_sweeps(swept)] if swept else []),
     ]
+
+
+def _sweeps(rows: Sequence[Mapping[str, Any]]) -> MeasuredTable:
+    # An empty cell is a missing value, which a key may not be: a refused series says so in words.
+    named = [
+        {**row, **{name: row[name] or "none" for name in ("series", "sweep", "point")}}
+        for row in rows
+    ]
+    return _table(
+        "sweeps",
+        "Sweeps",
+        "Error of every extractor on features in closed form, with the Cramer-Rao bound.",
+        named,
+        primary=("series", "sweep", "point", "extractor"),
+        foreign={"extractor": ("algorithms", "name")},
+    )
 
 
 def _algorithms() -> MeasuredTable:

@@ -31,7 +31,7 @@ from benchmark.reference_series import (
 )
 from benchmark.seeds import generator
 
-_PITCH_MM = 0.01
+_PITCH_MM, _FOCAL_MM = 0.05, 1.5
 #: Samples the bound is averaged over: it varies with the sub-pixel phase only.
 _BOUND_SAMPLES = 24
 
@@ -77,12 +77,12 @@ class DiscSeries:
         )
         middle = (self._side(setting) - 1) / 2.0
         return SensorGeometry(
-            focal_length_mm=1.0,
+            focal_length_mm=_FOCAL_MM,
             pixel_pitch_mm=_PITCH_MM,
             centre_px=(middle, middle),
             aperture_width_mm=2.0 * half * _PITCH_MM,
             aperture_shape="round",
-            half_fov_deg=math.degrees(math.atan(middle * _PITCH_MM)),
+            half_fov_deg=math.degrees(math.atan(middle * _PITCH_MM / _FOCAL_MM)),
         )
 
     def _side(self, setting: Setting) -> int:
@@ -159,17 +159,17 @@ class GridSeries:
         )
 
     def geometry(self, setting: Setting) -> SensorGeometry:
-        """Return a sensor whose round apertures cast these discs one to one."""
+        """Return a sensor whose round apertures cast these discs."""
         middle = (self.size_px - 1) / 2.0
         width = 2.0 * setting.size_px * _PITCH_MM
         return SensorGeometry(
-            focal_length_mm=1.0,
+            focal_length_mm=_FOCAL_MM,
             pixel_pitch_mm=_PITCH_MM,
             centre_px=(middle, middle),
             aperture_width_mm=width,
             aperture_shape="round",
             # half the spacing: which spot is which is known from the grid's place
-            half_fov_deg=math.degrees(math.atan(8.0 * _PITCH_MM)),
+            half_fov_deg=math.degrees(math.atan(8.0 * _PITCH_MM / _FOCAL_MM)),
             apertures=tuple(
                 (float(x) * _PITCH_MM, float(y) * _PITCH_MM, width) for x, y in self._grid(setting)
             ),
@@ -205,7 +205,7 @@ class GridSeries:
             # between the spots of a corner of the grid, where none of them ever is
             glint = np.array([[[119.0, 8.0]]])
             light[1:] += GLINT * peak * spots(self.size_px, glint, setting.size_px, "flat")
-        few = places[: _BOUND_SAMPLES // 3]
+        few = places[: _BOUND_SAMPLES // 6]
         bound = position_bound(
             mean,
             few,

@@ -59,7 +59,7 @@ class _Axis:
 def picture(rows: Sequence[Row], sweep: str) -> str:
     """Draw one sweep of every method: error (line and dots) and bound (dashed) by panel.
 
-    Dots are hollow where less than 90 % are found. ValueError for a sweep that is not drawn.
+    Dots are hollow where less than 90 % are found; an error of zero has no place on the axis. ValueError for a sweep that is not drawn.
     """
     if sweep not in DRAWN:
         raise ValueError(f"sweep must be one of {', '.join(DRAWN)}; got {sweep!r}")
@@ -152,6 +152,9 @@ def _drawn(
     parts += _curve(
         panel.places, panel.bounds, across, up, f'stroke="{_BOUND}" stroke-dasharray="5 3"'
     )
+    if not any(panel.errors):
+        middle = ((x + _LEFT + right) / 2.0, (y + _TOP + bottom) / 2.0)
+        parts.append(_text(middle, "nothing found", 10, _FAINT, anchor="middle"))
     parts += _curve(panel.places, panel.errors, across, up, f'stroke="{_ERROR}"')
     for place, error, whole in zip(panel.places, panel.errors, panel.complete, strict=True):
         if error:
