@@ -113,10 +113,13 @@ function leaves(value, name = "") {
   return Object.entries(value).flatMap(([k, v]) => leaves(v, name ? `${name}.${k}` : k));
 }
 
-/** Its picture, and what the numbers depend on: geometry, splits, regime, seeds, parameters. */
+/** Its picture, and what the numbers depend on: geometry, splits, regime, seeds, parameters,
+ * last those that the condition has instead. */
 function cardParts(card, condition, url) {
-  const { units, geometry, splits, regime, seeds } = card;
-  const facts = [...leaves({ units, geometry, splits, regime, seeds }), ...leaves(card.setups?.[condition]?.parameters, condition)];
+  const { units, splits, regime, seeds, parameters } = card;
+  const own = card.setups?.[condition] ?? {};
+  const geometry = own.geometry ?? card.geometry;
+  const facts = [...leaves({ units, geometry, splits, regime, seeds, parameters }), ...leaves(own.parameters, condition)];
   return [
     h("img", { class: "preview", src: card.preview, width: 1000, alt: `Nominal samples of ${card.name}: ${card.observation}` }),
     h("dl", { class: "facts card-facts" }, facts.filter(([name]) => !name.endsWith(".type")).map(([name, value]) =>

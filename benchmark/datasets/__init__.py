@@ -11,6 +11,7 @@ import importlib
 import pkgutil
 from functools import cache
 
+from benchmark.datasets._card import parameters_of
 from benchmark.datasets._preset import Condition, Preset, Samples, data_digest
 
 __all__ = [
@@ -21,6 +22,7 @@ __all__ = [
     "data_digest",
     "get",
     "names",
+    "parameters_of",
 ]
 
 

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from algorithms.contract import Observation, SensorGeometry
 from benchmark.bounds import STEP_RAD, Bound, cramer_rao
+from benchmark.datasets._card import differences
 from benchmark.datasets._field import Field, Split
 from benchmark.seeds import generator
 from benchmark.simulator import SIMULATOR_VERSION
@@ -264,15 +265,21 @@ class Preset:
         return plain
 
     def card(self) -> dict[str, Any]:
-        """Everything a reader of the dataset needs, as plain JSON values; renders nothing."""
-        conditions = {
-            name: {
-                "description": setup.description,
-                "geometry": _plain(self.geometry_for(name)),
-                "parameters": self.parameters(name),
-            }
-            for name, setup in self.setups.items()
-        }
+        """Everything a reader of the dataset needs, as plain JSON values; renders nothing.
+
+        ``parameters`` are those of the first condition. ``conditions`` have of their own only what
+        differs: members of ``parameters`` (an object that names its type stands whole) and, where
+        it is another, the geometry; `benchmark.datasets.parameters_of` puts them together.
+        """
+        geometry = _plain(self.geometry)
+        shared: dict[str, Any] | None = None
+        conditions = {}
+        for name, setup in self.setups.items():
+            own = self.parameters(name)
+            design = own.pop("geometry")
+            shared = own if shared is None else shared
+            about = {"description": setup.description, "parameters": differences(shared, own)}
+            conditions[name] = about if design == geometry else {**about, "geometry": design}
         return {
             "name": self.name,
             "version": self.version,
@@ -282,8 +289,9 @@ class Preset:
             "units": self.units,
             "description": self.description,
             "follows": list(self.follows),
-            "geometry": _plain(self.geometry),
+            "geometry": geometry,
             "splits": self.directions.card(),
+            "parameters": shared,
             "conditions": conditions,
             "regime": _plain(self.regime),
             "seeds": {

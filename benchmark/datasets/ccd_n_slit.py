@@ -46,7 +46,7 @@ PRESET = Preset(
     geometry=design(_SENSOR, _HALF_FOV_DEG),
     setups=conditions(_SENSOR, _HALF_FOV_DEG),
     directions=AngleField(_HALF_FOV_DEG),
-    follows=("Wei2011", "Maji2015", "Kohli2019", "Post2013"),
+    follows=("Wei2011", "Maji2015", "Kohli2019"),
     description=(
         "Both angles from one linear CCD, which lies along y: the middle slit is square to "
         "it and gives alpha, both outer ones are slanted and add beta (model:nslit as the "

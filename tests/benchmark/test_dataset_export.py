@@ -134,7 +134,7 @@ def test_the_card_says_geometry_seeds_studies_and_what_was_asked_for(made):
         "splits": ["calibration", "test"],
         "first_samples": FEW,
     }
-    assert card["conditions"]["nominal"]["parameters"] == preset.parameters("nominal")
+    assert datasets.parameters_of(card, "nominal") == preset.parameters("nominal")
     for name in ("geometry", "units", "seeds", "splits", "regime", "description"):
         assert card[name] == preset.card()[name]
     assert [study["key"] for study in card["studies"]] == list(preset.follows)

@@ -1,0 +1,51 @@
+"""Parameters of a dataset's conditions on its card: what they share is said once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+
+def differences(base: Mapping[str, Any], other: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the members of `other` that `base` does not have alike.
+
+    Objects of the same members are compared member by member; anything else stands whole. Both
+    are plain JSON objects of the same members, else ValueError.
+    """
+    if base.keys() != other.keys():
+        raise ValueError(
+            f"objects of the same members are compared; got {sorted(base)} and {sorted(other)}"
+        )
+    found: dict[str, Any] = {}
+    for name, value in other.items():
+        before = base[name]
+        if value == before:
+            continue
+        alike = isinstance(value, dict) and isinstance(before, dict)
+        alike = alike and value.keys() == before.keys() and value.get("type") == before.get("type")
+        found[name] = differences(before, value) if alike else value
+    return found
+
+
+def merged(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+    """Return `base` with what `differences` found in the place of what it has."""
+    whole = dict(base)
+    for name, value in changes.items():
+        before = base.get(name)
+        # a type among the changes says that the object stands whole
+        partly = isinstance(value, dict) and isinstance(before, dict) and "type" not in value
+        whole[name] = merged(before, value) if partly else value
+    return whole
+
+
+def parameters_of(card: Mapping[str, Any], condition: str) -> dict[str, Any]:
+    """Return the parameters of a condition from a dataset's card, as `Preset.parameters`.
+
+    Raises
+    ------
+    KeyError
+        When the card has no such condition.
+    """
+    about = card["conditions"][condition]
+    whole = merged(card["parameters"], about["parameters"])
+    return {**whole, "geometry": about.get("geometry", card["geometry"])}
