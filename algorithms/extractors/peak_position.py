@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from algorithms.contract import FeatureKind, Floats, Observation, Origin, SensorGeometry
-from algorithms.extractors.profile_peaks import require_one_spot
+from algorithms.extractors.single_spot import require_one_spot
 from algorithms.extractors.slit_lines import SlitLines, box_means, dark_level
 from algorithms.inputs import as_frames, require_positive
 
@@ -57,11 +57,11 @@ class PeakPositionEstimate(SlitLines):
     B the image about ``m_x`` and ``m_x + 2 L_x``, C and D about ``m_y`` and ``m_y + 2 L_y``, the
     image ``(c_1 u^4 + c_2 u^2 + c_3) / (c_4 u^4 + c_5 u^2 + c_6)``, Q its derivatives and
     ``(Q^T Q) d_lambda = Q^T d_beta``. Survey prints no update of the parameters; corrected
-    because they move by ``lambda + d_lambda``. The image types are read from the shifts, at
-    the start and once more when fitted: 0 where peaks are apart, 1 to 4 where A and C, B and C,
-    A and D, or B and D overlap, which then have one amplitude. Shifts are found to a pixel first, as the maxi-min of the
-    pattern; a step is held to half a half width. A line's median is taken off. Ours: any number
-    of slits a slant, and lines that see one slant only.
+    because they move by ``lambda + d_lambda``. The image types are read from the shifts, at the
+    start and once more when fitted: 0 where peaks are apart, 1 to 4 where A and C, B and C, A and
+    D, or B and D overlap, which then have one amplitude. Shifts are found to a pixel first, as
+    the maxi-min of the pattern; a step is held to half a half width. A line's median is taken
+    off. Ours: any number of slits a slant, and lines that see one slant only.
 
     Shapes: profiles (N, A L) of A lines, any unit, to ``(x_px, y_px)`` (N, 2), counted from the
     first pixel of a line whose middle is the sensor's.
