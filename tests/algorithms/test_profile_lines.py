@@ -407,8 +407,6 @@ def test_simulated_suns_are_found_where_light_falls(name):
     """To a few percent of the mask's height: assembly, or what a cubic leaves of the glass."""
     preset = datasets.get(name)
     design = preset.geometry
-    if design.slits is None:
-        pytest.skip(f"{name} has no slits")
     samples = preset.generate("nominal", "test", 60)
     tangents = samples.sun[:, :2] / samples.sun[:, 2:]
     true = where(design, design.focal_length_mm * tangents)
@@ -472,7 +470,7 @@ def test_linear_phase_of_frames_is_within_thrice_the_bound_wherever_the_spot_is(
         reference = REFERENCE_SETS[name]
         frames, centres = reference.frames(60)
         error = FrameLinearPhase(width).extract(frames) - centres
-        assert np.sqrt(np.mean(error**2)) < times * reference.bound_px(centres)
+        assert np.sqrt(np.mean(error**2)) < times * reference.bound_px(centres[:15])
         whole = PixelMax().extract(frames) - centres
         assert np.mean(error**2) < 0.05 * np.mean(whole**2) or name == "gaussian"
 
