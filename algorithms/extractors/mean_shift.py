@@ -49,7 +49,8 @@ class MeanShift:
         Upper end t_1 of the first bin, the background, as a fraction in (0, 1) of the spots'
         brightness above it.
     bins : int
-        Number m of bins, 3 to 256; all but the first are equally wide up to the brightness.
+        Number m of bins, 3 to 256; all but the first are equally wide up to the brightness. Ours:
+        of many bins some stay empty in the goal, and pixels in them are lost.
     convergence_px : float
         Step epsilon that ends the shift, px, positive.
     similarity : float
@@ -74,8 +75,9 @@ class MeanShift:
     without the background's bin: a goal that holds as much background as the candidates weights
     it alike, and nothing moves. Starts are the spots' places in the pattern, found as MCAM does.
 
-    A pixel enters with its bin's weight, not with its light, so that a spot's rim is resolved to
-    some twentieth of a pixel only, whatever the noise; the mean over spots is finer.
+    A pixel enters with its bin's weight, not with its light: a single spot is resolved to some
+    twentieth of a pixel only, and noise that moves pixels from bin to bin counts several times
+    what it does in a centroid. The mean over spots that fall differently on the pixels is finer.
 
     Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers: the
     spot of an aperture over the detector's middle, seen or not.
@@ -101,7 +103,7 @@ class MeanShift:
     bandwidth_px: float
     blur_px: float = 0.0
     threshold: float = 0.3
-    bins: int = 16
+    bins: int = 8
     convergence_px: float = 0.01
     similarity: float = 0.5
     tolerance_px: float = 0.75
