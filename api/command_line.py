@@ -26,7 +26,7 @@ COMMANDS: dict[str, str] = {
     "run": "Run a study's pipelines on the data of its architecture.",
     "benchmark": "Score pipelines on the standard datasets.",
     "leaderboard": "Bring the published leaderboard up to date, or check it.",
-    "assess": "Put the survey's assessment of extractors beside the measured one.",
+    "assess": "Show the survey's scores of extractors beside measured ones.",
     "dataset": "List, describe, export or verify the standard datasets.",
     "deposit": "Build or verify the bundle an archive takes.",
 }

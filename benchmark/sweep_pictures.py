@@ -59,7 +59,8 @@ class _Axis:
 def picture(rows: Sequence[Row], sweep: str) -> str:
     """Draw one sweep of every method: error (line and dots) and bound (dashed) by panel.
 
-    Dots are hollow where less than 90 % are found; an error of zero has no place on the axis. ValueError for a sweep that is not drawn.
+    Dots are hollow where less than 90 % are found; an error of zero has no place on the axis.
+    ValueError for a sweep that is not drawn.
     """
     if sweep not in DRAWN:
         raise ValueError(f"sweep must be one of {', '.join(DRAWN)}; got {sweep!r}")

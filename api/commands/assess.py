@@ -32,12 +32,12 @@ def assess(
     ] = None,
     form: FormatOption = Format.TABLE,
 ) -> None:
-    """Put the survey's assessment of 19 extractors in 21 properties beside what was measured.
+    """Show the survey's scores of extractors beside measured ones.
 
-    Both scores are 2 (provides), 1 (partly) or 0 (does not). A cell shows the survey's, a mark
-    and the measured one: = agrees, ~ one apart, x opposed; a dash where it is not measured. Read
-    from the published results, nothing is measured now; definitions and limits stand in
-    docs/assessment.md. CSV has a row a method and property.
+    19 methods in 21 properties, scored 2 (provides), 1 (partly) or 0 (does not). A cell shows the
+    survey's score, a mark and the measured one: = agrees, ~ one apart, x opposed; a dash where it
+    is not measured. Read from the published results, nothing is measured now; definitions and
+    limits stand in docs/assessment.md. CSV has a row a method and property.
     """
     answer = ask("assessment", {"method": method})
     document = answer.document

@@ -22,6 +22,8 @@ OPERATIONS = [
     ("GET", "/v1/leaderboard"),
     ("GET", "/v1/leaderboard/{dataset}"),
     ("GET", "/v1/results"),
+    ("GET", "/v1/sweeps"),
+    ("GET", "/v1/assessment"),
     ("GET", "/healthz"),
 ]
 PLAIN = {"/v1/taxonomy", "/v1/leaderboard", "/healthz"}

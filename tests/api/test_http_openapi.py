@@ -40,6 +40,8 @@ def test_every_endpoint_of_the_contract_is_documented(document):
         ("/v1/datasets/{name}/preview.png", "get"),
         ("/v1/leaderboard", "get"),
         ("/v1/leaderboard/{dataset}", "get"),
+        ("/v1/sweeps", "get"),
+        ("/v1/assessment", "get"),
         ("/v1/results", "get"),
         ("/healthz", "get"),
     }
@@ -70,7 +72,7 @@ def test_examples_are_what_is_answered(atlas, document):
                 assert answer.json() == example
                 validator(document, content[accept]["schema"]).validate(example)
             checked += 1
-    assert checked == 24
+    assert checked == 28
 
 
 def test_examples_of_refusals_are_what_is_refused(atlas, document):
@@ -92,7 +94,7 @@ def test_examples_of_refusals_are_what_is_refused(atlas, document):
                 wrong = example["errors"][0]["parameter"]
                 live = atlas.get(f"{example['instance']}?{wrong}=1").json()
                 assert live == example, path
-    assert checked == 26
+    assert checked == 30
 
 
 @pytest.mark.parametrize(
@@ -112,6 +114,8 @@ def test_examples_of_refusals_are_what_is_refused(atlas, document):
         "/v1/leaderboard",
         "/v1/leaderboard/qpd-single-aperture",
         "/v1/results",
+        "/v1/sweeps",
+        "/v1/assessment",
         "/healthz",
     ],
 )

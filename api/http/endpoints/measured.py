@@ -69,7 +69,7 @@ def endpoints(knowledge: Knowledge) -> list[Endpoint]:
         return listing(rows, SCORE_COLUMNS, "/v1/results", of_results, arguments)
 
     def build_leaderboard(_parts: Mapping[str, str], _arguments: Arguments) -> Answer:
-        board = measurements.leaderboard
+        board = {k: v for k, v in measurements.leaderboard.items() if k != "sweeps"}
         return Answer(board, RANK_COLUMNS, measurements.board_rows)
 
     def build_board(parts: Mapping[str, str], arguments: Arguments) -> Answer:
@@ -114,7 +114,8 @@ def endpoints(knowledge: Knowledge) -> list[Endpoint]:
             path="/v1/leaderboard",
             name="leaderboard",
             summary="The leaderboard",
-            description="The published leaderboard of every data set and condition.",
+            description="The published leaderboard of every data set and condition; sweeps are at "
+            "/v1/sweeps.",
             shape=Leaderboard,
             build=build_leaderboard,
         ),
