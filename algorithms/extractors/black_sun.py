@@ -118,14 +118,13 @@ class BlackSunCentroid:
         moments.unusable(frames, frames.dtype.kind == "f", unusable)
         reach = np.ceil(_REACH * self.blur_px)
         taps = np.exp(-0.5 * (np.arange(-reach, reach + 1) / self.blur_px) ** 2)
-        found = np.full((len(frames), 2), np.nan)
+        steps = np.arange(self.loops) + 0.5
+        found = np.empty((len(frames), 2))
         dark_holes.black_suns(
             frames,
             ~unusable,
             taps / taps.sum(),
-            self.highest,
-            self.lowest,
-            self.loops,
+            self.highest + steps * (self.lowest - self.highest) / self.loops,
             int(np.ceil(self.survival * self.loops)),
             self.radius_px,
             self.moved_px,

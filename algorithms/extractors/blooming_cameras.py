@@ -64,7 +64,7 @@ class LineCamera:
         )
 
     def directions(self, points_px: Floats) -> Floats:
-        """Unit vectors (N, 3) in the common frame of detector points (N, 2), undistorted."""
+        """Return unit vectors (N, 3) in the common frame of detector points (N, 2), undistorted."""
         k1, k2 = self.distortion
         scale = self.pixel_pitch_mm / self.focal_length_mm
         image = (points_px - np.asarray(self.centre_px)) * scale
@@ -79,7 +79,7 @@ class LineCamera:
             good = np.abs(radius * stretch - reach) <= 1e-9 * (1.0 + reach)
             tangents = np.where(good[:, None], image / stretch[:, None], np.nan)
         head = np.column_stack([tangents, np.ones(len(tangents))])
-        return normalised(head) @ np.asarray(self.rotation).T
+        return np.asarray(normalised(head) @ np.asarray(self.rotation).T)
 
     def points_px(self, directions: Floats) -> Floats:
         """Detector points (N, 2) of directions (N, 3) in the common frame; NaN from behind."""

@@ -166,9 +166,9 @@ class HoughCircle:
     Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers.
 
     Failure: a NaN row for a frame that is dark or without contrast or holds a NaN or infinity,
-    and where no circle has enough of its rim (noise, lines, a spot more than half cut). Of two
-    circles the one with the stronger edges wins unseen. A bright round cloud can beat a white
-    Sun, and blooming breaks its rim.
+    and where no circle has enough of its rim (noise, lines, a spot more than half cut) or another
+    one elsewhere has 0.8 of the best one's mean edge (two Suns). A bright round cloud can beat a
+    white Sun, and blooming breaks its rim.
 
     Cost: 30 operations a pixel for edges, 4 an edge and radius, 500 an edge for the candidates.
     """

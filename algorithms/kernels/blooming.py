@@ -70,7 +70,7 @@ def _peak(runs: Floats, count: int, turns: Floats, votes: Floats) -> tuple[float
         votes[:] = 0.0
         for n in range(count):
             r = runs[n, 0] * c + runs[n, 1] * s + shift
-            cell = int(math.floor(r))
+            cell = math.floor(r)
             votes[cell] += 1.0 - (r - cell)
             votes[cell + 1] += r - cell
         cell = np.argmax(votes)
@@ -84,7 +84,7 @@ def _peak(runs: Floats, count: int, turns: Floats, votes: Floats) -> tuple[float
 
 
 @compiled
-def _refined(
+def _refined(  # noqa: PLR0917 - Numba takes no keyword-only ones
     runs: Floats,
     count: int,
     r: float,
@@ -106,7 +106,65 @@ def _refined(
 
 
 @compiled
-def _meeting(
+def _slope(
+    frame: NDArray[Any], i: int, j: int, low: float, level: float
+) -> tuple[float, float, float]:
+    """Light of a pixel above `low` and the gradient (x, y) of its logarithm, which bends little.
+
+    Zeros where the pixel or a neighbour is saturated, or too different to be on the same slope.
+    """
+    here = float(frame[i, j])
+    left, right = float(frame[i, j - 1]), float(frame[i, j + 1])
+    above, below = float(frame[i - 1, j]), float(frame[i + 1, j])
+    if max(here, left, right, above, below) > level:
+        return 0.0, 0.0, 0.0
+    light = max(here - low, 1.0)  # what is about dark counts as one unit
+    left = math.log(max(left - low, 1.0) / light)
+    right = math.log(max(right - low, 1.0) / light)
+    above = math.log(max(above - low, 1.0) / light)
+    below = math.log(max(below - low, 1.0) / light)
+    if max(abs(left), abs(right), abs(above), abs(below)) > _STEEPEST:
+        return 0.0, 0.0, 0.0
+    return light, 0.5 * (right - left), 0.5 * (below - above)
+
+
+@compiled
+def _highest(votes: Floats) -> int:
+    """Cell with most votes after smoothing with (1, 2, 3, 2, 1); 0 where there are none."""
+    best = 0.0
+    highest = 0
+    for cell in range(2, votes.size - 2):
+        near = votes[cell - 2] + votes[cell + 2] + 3.0 * votes[cell]
+        near += 2.0 * (votes[cell - 1] + votes[cell + 1])
+        if near > best:
+            best = near
+            highest = cell
+    return highest
+
+
+@compiled
+def _agreement(places: Floats, count: int, place: float) -> tuple[float, float]:
+    """Weighted mean of the places near one, moved onto itself, and how its two sides differ.
+
+    NaN where one side has none.
+    """
+    sums = np.zeros((2, 2))
+    for _ in range(_MOVES):
+        sums[:] = 0.0
+        for n in range(count):
+            off = places[n, 0] - place
+            if abs(off) <= _CLOSE:
+                side = 1 if places[n, 2] > 0.0 else 0
+                sums[side, 0] += places[n, 1]
+                sums[side, 1] += places[n, 1] * off
+        if not (sums[0, 0] > 0.0 and sums[1, 0] > 0.0):
+            return np.nan, np.nan
+        place += (sums[0, 1] + sums[1, 1]) / (sums[0, 0] + sums[1, 0])
+    return place, sums[1, 1] / sums[1, 0] - sums[0, 1] / sums[0, 0]
+
+
+@compiled
+def _meeting(  # noqa: PLR0917 - Numba takes no keyword-only ones
     frame: NDArray[Any],
     low: float,
     level: float,
@@ -120,8 +178,8 @@ def _meeting(
     """Place along the line where the gradients on both sides meet it.
 
     Returns the place and the difference between what the two sides say; NaN where one of them
-    says nothing. `places` (n, 3) is room for the place, the
-    weight and the side of every intersection, `votes` for the accumulator along the line.
+    says nothing. `places` (n, 3) is room for the place, the weight and the side of every
+    intersection, `votes` for the accumulator along the line.
     """
     height, width = frame.shape
     c, s = math.cos(turn), math.sin(turn)
@@ -130,68 +188,70 @@ def _meeting(
     count = 0
     for i in range(1, height - 1):
         middle = (r - i * s) / c
-        for j in range(
-            max(int(middle - farthest / c), 1), min(int(middle + farthest / c) + 2, width - 1)
-        ):
+        first = max(int(middle - farthest / c), 1)
+        end = min(int(middle + farthest / c) + 2, width - 1)
+        for j in range(first, end):
             away = j * c + i * s - r
             if not nearest <= abs(away) <= farthest or count == len(places):
                 continue
-            here = float(frame[i, j])
-            left, right = float(frame[i, j - 1]), float(frame[i, j + 1])
-            above, below = float(frame[i - 1, j]), float(frame[i + 1, j])
-            if max(here, left, right, above, below) > level:
-                continue  # saturated: no gradient
-            # Of the logarithm, which bends less; what is about dark counts as one unit.
-            light = max(here - low, 1.0)
-            left = math.log(max(left - low, 1.0) / light)
-            right = math.log(max(right - low, 1.0) / light)
-            above = math.log(max(above - low, 1.0) / light)
-            below = math.log(max(below - low, 1.0) / light)
-            if max(abs(left), abs(right), abs(above), abs(below)) > _STEEPEST:
-                continue
-            across = 0.5 * ((right - left) * c + (below - above) * s)
-            along = 0.5 * ((below - above) * c - (right - left) * s)
+            light, x, y = _slope(frame, i, j, low, level)
+            across = x * c + y * s
+            along = y * c - x * s
             if across * away >= 0.0:
-                continue  # it falls towards the line
+                continue  # no slope, or down towards the line
             place = i * c - j * s - along / across * away
-            cell = int(math.floor(place + 0.5)) + shift
-            if not 2 <= cell < votes.size - 2:
-                continue
-            steep = (light * across) ** 2
-            votes[cell] += steep
-            places[count, 0] = place
-            places[count, 1] = steep / (1.0 + (along / across) ** 2)
-            places[count, 2] = away
-            count += 1
-    best = 0.0
-    place = np.nan
-    for cell in range(2, votes.size - 2):
-        near = votes[cell - 2] + votes[cell + 2] + 3.0 * votes[cell]
-        near += 2.0 * (votes[cell - 1] + votes[cell + 1])
-        if near > best:
-            best = near
-            place = float(cell - shift)
-    sums = np.zeros((2, 2))
-    for _ in range(_MOVES):
-        sums[:] = 0.0
-        for n in range(count):
-            off = places[n, 0] - place
-            if abs(off) <= _CLOSE:
-                side = 1 if places[n, 2] > 0.0 else 0
-                sums[side, 0] += places[n, 1]
-                sums[side, 1] += places[n, 1] * off
-        total = sums[0, 0] + sums[1, 0]
-        if not total > 0.0:
-            return np.nan, np.nan
-        place += (sums[0, 1] + sums[1, 1]) / total
-    if not (sums[0, 0] > 0.0 and sums[1, 0] > 0.0):
-        return np.nan, np.nan
-    apart = sums[1, 1] / sums[1, 0] - sums[0, 1] / sums[0, 0]
-    return place, apart
+            cell = math.floor(place + 0.5) + shift
+            if 2 <= cell < votes.size - 2:
+                steep = (light * across) ** 2
+                votes[cell] += steep
+                places[count, 0] = place
+                places[count, 1] = steep / (1.0 + (along / across) ** 2)
+                places[count, 2] = away
+                count += 1
+    return _agreement(places, count, float(_highest(votes) - shift))
 
 
 @compiled
-def blooming_lines(
+def _typical_width(runs: Floats, count: int, r: float, turn: float) -> float:
+    """Median width of the runs whose middle lies on a line."""
+    c, s = math.cos(turn), math.sin(turn)
+    widths = np.empty(count)
+    rows = 0
+    for n in range(count):
+        if abs(runs[n, 0] * c + runs[n, 1] * s - r) <= _NEAR:
+            widths[rows] = runs[n, 2]
+            rows += 1
+    return float(np.median(widths[:rows]))
+
+
+@compiled
+def _extent(
+    runs: Floats, count: int, r: float, turn: float, typical: float
+) -> tuple[float, float, float, float, bool]:
+    """First and last place of a line, its first and last row, and whether other light covers it."""
+    c, s = math.cos(turn), math.sin(turn)
+    first, last = np.inf, -np.inf
+    top, bottom = np.inf, -np.inf
+    covered = False
+    for n in range(count):
+        away = abs(runs[n, 0] * c + runs[n, 1] * s - r)
+        if away <= 0.5 * runs[n, 2]:
+            covered = covered or runs[n, 2] > _COVERED * typical + 1.0
+        if away <= _NEAR and runs[n, 2] <= _widest(typical):
+            place = runs[n, 1] * c - runs[n, 0] * s
+            first, last = min(first, place), max(last, place)
+            top, bottom = min(top, runs[n, 1]), max(bottom, runs[n, 1])
+    return first, last, top, bottom, covered
+
+
+@compiled
+def _widest(typical: float) -> float:
+    """Return the width up to which a run is the line's own and nothing else's."""
+    return 1.5 * typical + 1.0
+
+
+@compiled
+def blooming_lines(  # noqa: PLR0917 - Numba takes no keyword-only ones
     frames: NDArray[Any],
     usable: NDArray[np.bool_],
     turns: Floats,
@@ -225,25 +285,9 @@ def blooming_lines(
         if not most >= least:
             continue
         c, s = math.cos(turn), math.sin(turn)
-        widths = np.empty(found)
-        first, last = np.inf, -np.inf
-        rows = 0
-        for n in range(found):
-            if abs(runs[n, 0] * c + runs[n, 1] * s - r) <= _NEAR:
-                widths[rows] = runs[n, 2]
-                rows += 1
-        typical = np.median(widths[:rows])
-        widest = 1.5 * typical + 1.0
-        top, bottom = height, -1.0
-        covered = False
-        for n in range(found):
-            if abs(runs[n, 0] * c + runs[n, 1] * s - r) <= 0.5 * runs[n, 2]:
-                covered = covered or runs[n, 2] > _COVERED * typical + 1.0
-            near = abs(runs[n, 0] * c + runs[n, 1] * s - r) <= _NEAR
-            if near and runs[n, 2] <= widest:
-                place = runs[n, 1] * c - runs[n, 0] * s
-                first, last = min(first, place), max(last, place)
-                top, bottom = min(top, runs[n, 1]), max(bottom, runs[n, 1])
+        typical = _typical_width(runs, found, r, turn)
+        first, last, top, bottom, covered = _extent(runs, found, r, turn, typical)
+        widest = _widest(typical)
         if not last - first >= _LENGTH * typical:
             continue
         whole = _refined(runs, found, r, turn, widest, (first, last))

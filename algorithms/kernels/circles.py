@@ -22,6 +22,8 @@ _ASKEW = 0.35
 _BRIGHT = 0.5
 #: A dark circle counts from this share of the frame's steepest gradient, as a mean over sectors.
 _DARK = 0.2
+#: Another circle with this share of the best one's edge leaves open which is the Sun.
+_RIVAL = 0.8
 _MOVES = 12
 
 
@@ -96,8 +98,8 @@ def _vote(edges: Floats, count: int, smallest: float, largest: float, votes: Flo
         for way in (-1.0, 1.0):
             r = smallest
             while r <= largest:
-                a = int(math.floor(edges[n, 0] + way * r * edges[n, 2] + 0.5))
-                b = int(math.floor(edges[n, 1] + way * r * edges[n, 3] + 0.5))
+                a = math.floor(edges[n, 0] + way * r * edges[n, 2] + 0.5)
+                b = math.floor(edges[n, 1] + way * r * edges[n, 3] + 0.5)
                 if not (0 <= a < width and 0 <= b < height):
                     break
                 votes[b, a] += 1.0 / r
@@ -105,33 +107,26 @@ def _vote(edges: Floats, count: int, smallest: float, largest: float, votes: Flo
 
 
 @compiled
-def _candidates(votes: Floats, places: Floats) -> int:
-    """List the highest local maxima of the votes over 3 x 3 cells as (votes, x, y)."""
+def _candidates(votes: Floats, places: Floats) -> None:
+    """List the highest local maxima of 3 x 3 cells as (votes, x, y); zeros before."""
     height, width = votes.shape
-    found = 0
+    fewest = 0
     for i in range(1, height - 1):
         for j in range(1, width - 1):
-            if votes[i, j] == 0.0:
+            here = votes[i, j]
+            if 9.0 * here <= places[fewest, 0] or here == 0.0:
                 continue
             total = 0.0
-            highest = True
+            highest = here
             for a in range(-1, 2):
                 for b in range(-1, 2):
                     total += votes[i + a, j + b]
-                    highest = highest and votes[i, j] >= votes[i + a, j + b]
-            if not highest:
-                continue
-            place = found
-            if found == len(places):
-                place = np.argmin(places[:, 0])
-                if total <= places[place, 0]:
-                    continue
-            else:
-                found += 1
-            places[place, 0] = total
-            places[place, 1] = j
-            places[place, 2] = i
-    return found
+                    highest = max(highest, votes[i + a, j + b])
+            if here == highest and total > places[fewest, 0]:
+                places[fewest, 0] = total
+                places[fewest, 1] = j
+                places[fewest, 2] = i
+                fewest = int(np.argmin(places[:, 0]))
 
 
 @compiled
@@ -220,6 +215,52 @@ def _fit(
 
 
 @compiled
+def _best(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    edges: Floats,
+    count: int,
+    places: Floats,
+    way: float,
+    smallest: float,
+    largest: float,
+    least: float,
+    score: float,
+    sectors: Floats,
+    out: Floats,
+) -> bool:
+    """Write the circle (x, y, r) about one of `places` with most edge to `out`; False if none.
+
+    NaN is written where another one elsewhere has about as much. It must have more than `score`.
+    Places whose first column is zero are left out.
+    """
+    scores = np.zeros(len(places))
+    circles = np.empty((len(places), 3))
+    best = -1
+    for n in range(len(places)):
+        if places[n, 0] == 0.0:
+            continue
+        x, y = places[n, 1], places[n, 2]
+        found, radius = _radius(edges, count, x, y, way, smallest, largest, least, sectors)
+        if found <= score:
+            continue
+        circle = _fit(edges, count, way, (x, y, radius))
+        if not smallest <= circle[2] <= largest:
+            continue
+        scores[n] = found
+        circles[n, 0], circles[n, 1], circles[n, 2] = circle
+        if best < 0 or found > scores[best]:
+            best = n
+    if best < 0:
+        return False
+    out[:] = circles[best]
+    for n in range(len(places)):
+        apart = math.hypot(circles[n, 0] - circles[best, 0], circles[n, 1] - circles[best, 1])
+        if scores[n] > _RIVAL * scores[best] and apart > circles[best, 2]:
+            out[:] = np.nan
+            break
+    return True
+
+
+@compiled
 def best_circles(  # noqa: PLR0917 - Numba takes no keyword-only ones
     frames: NDArray[Any],
     usable: NDArray[np.bool_],
@@ -253,24 +294,24 @@ def best_circles(  # noqa: PLR0917 - Numba takes no keyword-only ones
             continue
         found = _edges(across, down, size, edge * steepest, edges)
         _vote(edges, found, smallest, largest, votes)
+        places[:] = 0.0
+        _candidates(votes, places)
+        if dark_first and _best(
+            edges,
+            found,
+            places,
+            1.0,
+            smallest,
+            largest,
+            least,
+            _DARK * steepest,
+            sectors,
+            out[k],
+        ):
+            continue
         low, high = float(frames[k].min()), float(frames[k].max())
-        candidates = _candidates(votes, places)
-        for way in (1.0, -1.0):
-            if way > 0.0 and not dark_first:
-                continue
-            best = _DARK * steepest if way > 0.0 else 0.0
-            for n in range(candidates):
-                x, y = places[n, 1], places[n, 2]
-                middle = float(frames[k, int(y), int(x)])
-                if way < 0.0 and not middle >= low + _BRIGHT * (high - low):
-                    continue
-                score, radius = _radius(edges, found, x, y, way, smallest, largest, least, sectors)
-                if score <= best:
-                    continue
-                circle = _fit(edges, found, way, (x, y, radius))
-                if not smallest <= circle[2] <= largest:
-                    continue
-                best = score
-                out[k, 0], out[k, 1], out[k, 2] = circle
-            if not math.isnan(out[k, 0]):
-                break
+        for n in range(_CANDIDATES):
+            middle = frames[k, int(places[n, 2]), int(places[n, 1])]
+            if not middle >= low + _BRIGHT * (high - low):
+                places[n, 0] = 0.0
+        _best(edges, found, places, -1.0, smallest, largest, least, 0.0, sectors, out[k])

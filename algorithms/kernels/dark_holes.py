@@ -47,7 +47,7 @@ def blurred(frame: NDArray[Any], taps: Floats, rows: Floats, out: Floats) -> Non
 
 
 @compiled
-def _fill(
+def _fill(  # noqa: PLR0917 - Numba takes no keyword-only ones
     image: Floats,
     level: float,
     start: int,
@@ -133,61 +133,7 @@ def _round(pixels: NDArray[np.int64], count: int, width: int) -> bool:
 
 
 @compiled
-def _seeds(
-    image: Floats,
-    level: float,
-    least: float,
-    marks: NDArray[np.int32],
-    pixels: NDArray[np.int64],
-    seeds: NDArray[np.int64],
-    sizes: NDArray[np.int64],
-) -> int:
-    """Find the holes of the mask above a level that have at least `least` pixels and are round.
-
-    Their darkest pixels go to `seeds`, their numbers of pixels to `sizes`, the largest first kept
-    where there are more than fit. Returns how many.
-    """
-    height, width = image.shape
-    found = 0
-    top, bottom, left, right = height, -1, width, -1
-    for i in range(height):
-        for j in range(width):
-            if image[i, j] > level:
-                top = min(top, i)
-                bottom = i
-                left = min(left, j)
-                right = max(right, j)
-    # the dark that surrounds everything: from any pixel of the edge of what is bright
-    for i in range(top, bottom + 1):
-        for j in range(left, right + 1):
-            outside = i in (top, bottom) or j in (left, right)
-            if outside and marks[i, j] != -1 and not image[i, j] > level:
-                _exterior(image, level, i, j, top, bottom, left, right, marks, pixels)
-    for i in range(top + 1, bottom):
-        for j in range(left + 1, right):
-            if marks[i, j] != 0 or image[i, j] > level:
-                continue
-            count = _fill(image, level, i * width + j, 1, pixels.size, marks, pixels)
-            if count < least or not _round(pixels, count, width):
-                continue
-            darkest = pixels[0]
-            for n in range(count):
-                if image.flat[pixels[n]] < image.flat[darkest]:
-                    darkest = pixels[n]
-            place = found
-            if found == seeds.size:
-                place = np.argmin(sizes)
-                if sizes[place] >= count:
-                    continue
-            else:
-                found += 1
-            seeds[place] = darkest
-            sizes[place] = count
-    return found
-
-
-@compiled
-def _exterior(
+def _exterior(  # noqa: PLR0917 - Numba takes no keyword-only ones
     image: Floats,
     level: float,
     i: int,
@@ -218,13 +164,119 @@ def _exterior(
 
 
 @compiled
-def black_suns(
+def _bright_box(image: Floats, level: float) -> tuple[int, int, int, int]:
+    """First and last row and column that hold a pixel above a level."""
+    height, width = image.shape
+    top, bottom, left, right = height, -1, width, -1
+    for i in range(height):
+        for j in range(width):
+            if image[i, j] > level:
+                top = min(top, i)
+                bottom = i
+                left = min(left, j)
+                right = max(right, j)
+    return top, bottom, left, right
+
+
+@compiled
+def _seeds(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    image: Floats,
+    level: float,
+    least: float,
+    marks: NDArray[np.int32],
+    pixels: NDArray[np.int64],
+    seeds: NDArray[np.int64],
+    sizes: NDArray[np.int64],
+) -> None:
+    """Find the holes of the mask above a level that have at least `least` pixels and are round.
+
+    Their darkest pixels go to `seeds`, their numbers of pixels to `sizes`; the largest are kept
+    where there are more than fit. `marks` and `sizes` are zero before.
+    """
+    width = image.shape[1]
+    top, bottom, left, right = _bright_box(image, level)
+    # The dark that surrounds everything hangs together with the edge of the box about all light.
+    for i in range(top, bottom + 1):
+        step = 1 if i in (top, bottom) else max(right - left, 1)
+        for j in range(left, right + 1, step):
+            if marks[i, j] != -1 and not image[i, j] > level:
+                _exterior(image, level, i, j, top, bottom, left, right, marks, pixels)
+    for i in range(top + 1, bottom):
+        for j in range(left + 1, right):
+            if marks[i, j] != 0 or image[i, j] > level:
+                continue
+            count = _fill(image, level, i * width + j, 1, pixels.size, marks, pixels)
+            if count < least or not _round(pixels, count, width):
+                continue
+            place = np.argmin(sizes)  # an empty one while there is any: their sizes are zero
+            if sizes[place] < count:
+                sizes[place] = count
+                seeds[place] = _darkest(image, pixels, count)
+
+
+@compiled
+def _darkest(image: Floats, pixels: NDArray[np.int64], count: int) -> int:
+    darkest = pixels[0]
+    for n in range(count):
+        if image.flat[pixels[n]] < image.flat[darkest]:
+            darkest = pixels[n]
+    return int(darkest)
+
+
+@compiled
+def _followed(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    image: Floats,
+    levels: Floats,
+    seed: int,
+    most: int,
+    survivals: int,
+    moved: float,
+    mark: int,
+    marks: NDArray[np.int32],
+    pixels: NDArray[np.int64],
+) -> tuple[float, float]:
+    """Mean (x, y) of a hole's corner over the longest run of levels that it survives.
+
+    NaN where these are fewer than `survivals`. Every level takes a mark of its own from `mark` on.
+    """
+    survived = 0
+    longest = 0
+    sum_x = 0.0
+    sum_y = 0.0
+    last_x = np.nan
+    last_y = np.nan
+    found_x = np.nan
+    found_y = np.nan
+    for n in range(levels.size):
+        size = 0
+        if not image.flat[seed] > levels[n]:
+            size = _fill(image, levels[n], seed, mark + n, most, marks, pixels)
+        if size == 0:
+            last_x = np.nan
+            continue
+        x, y = _corner(marks, mark + n, pixels, size)
+        if not math.hypot(x - last_x, y - last_y) <= moved:
+            survived = 0
+            sum_x = 0.0
+            sum_y = 0.0
+        survived += 1
+        sum_x += x
+        sum_y += y
+        last_x, last_y = x, y
+        if survived > longest:
+            longest = survived
+            found_x, found_y = sum_x / survived, sum_y / survived
+    if longest < survivals:
+        return np.nan, np.nan
+    return found_x, found_y
+
+
+@compiled
+def black_suns(  # noqa: PLR0917 - Numba takes no keyword-only ones
     frames: NDArray[Any],
     usable: NDArray[np.bool_],
     taps: Floats,
-    highest: float,
-    lowest: float,
-    loops: int,
+    parts: Floats,
     survivals: int,
     radius: float,
     moved: float,
@@ -232,9 +284,9 @@ def black_suns(
 ) -> None:
     """Write the centre (x, y) of each frame's black Sun to `out` (N, 2); NaN where there is none.
 
-    Only `usable` frames (N,), which must be finite, are looked at. Thresholds descend from `highest` to `lowest` of the range of the frame
-    blurred with `taps`; a corner survives a threshold when it is within `moved` px of where it was
-    at the one before.
+    Only `usable` frames (N,), which must be finite, are looked at. Thresholds descend through
+    `parts`, fractions of the range of the frame blurred with `taps`; a corner survives one
+    when it is within `moved` px of where it was at the one before.
     """
     count, height, width = frames.shape
     rows = np.empty((height, width))
@@ -243,7 +295,6 @@ def black_suns(
     pixels = np.empty(height * width, dtype=np.int64)
     seeds = np.empty(64, dtype=np.int64)
     sizes = np.empty(64, dtype=np.int64)
-    least = math.pi * radius * radius
     for k in range(count):
         out[k, 0] = np.nan
         out[k, 1] = np.nan
@@ -254,54 +305,29 @@ def black_suns(
         if not high > low:
             continue
         marks[:] = 0
-        middle = low + 0.5 * (highest + lowest) * (high - low)
-        holes = _seeds(image, middle, least, marks, pixels, seeds, sizes)
+        sizes[:] = 0
+        middle = low + 0.5 * (parts[0] + parts[-1]) * (high - low)
+        _seeds(image, middle, math.pi * radius * radius, marks, pixels, seeds, sizes)
         marks[:] = 0
-        mark = 1
-        best = 0.0
-        second = 0.0
-        for n in range(holes):
-            survived = 0
-            longest = 0
-            sum_x = 0.0
-            sum_y = 0.0
-            last_x = np.nan
-            last_y = np.nan
-            found_x = np.nan
-            found_y = np.nan
-            for loop in range(loops):
-                part = highest + (lowest - highest) * (loop + 0.5) / loops
-                level = low + part * (high - low)
-                mark += 1
-                start = seeds[n]
-                size = 0
-                if not image.flat[start] > level:
-                    size = _fill(image, level, start, mark, 4 * sizes[n] + 16, marks, pixels)
-                if size == 0:
-                    survived = 0
-                    last_x = np.nan
-                    continue
-                x, y = _corner(marks, mark, pixels, size)
-                if not math.hypot(x - last_x, y - last_y) <= moved:
-                    survived = 0
-                    sum_x = 0.0
-                    sum_y = 0.0
-                survived += 1
-                sum_x += x
-                sum_y += y
-                last_x, last_y = x, y
-                if survived > longest:
-                    longest = survived
-                    found_x, found_y = sum_x / survived, sum_y / survived
-            if longest < survivals:
+        levels = low + parts * (high - low)
+        best = 0
+        second = 0
+        for n in range(sizes.size):
+            if sizes[n] == 0:
+                continue
+            mark = 1 + n * levels.size
+            x, y = _followed(
+                image, levels, seeds[n], 4 * sizes[n] + 16, survivals, moved, mark, marks, pixels
+            )
+            if math.isnan(x):
                 continue
             if sizes[n] > best:
                 second = best
-                best = float(sizes[n])
-                out[k, 0] = found_x
-                out[k, 1] = found_y
+                best = sizes[n]
+                out[k, 0] = x
+                out[k, 1] = y
             else:
-                second = max(second, float(sizes[n]))
+                second = max(second, sizes[n])
         if second > _RIVAL * _RIVAL * best:
             out[k, 0] = np.nan
             out[k, 1] = np.nan

@@ -18,6 +18,8 @@ from algorithms.kernels.compilation import compiled
 _LARGEST = 65_536
 #: Window moves after which the last mean stands.
 _MOVES = 10
+#: Moves below which a mean has settled, px.
+_SETTLED = 1e-9
 #: Share of the weight that lines or spot must hold, else the events are not theirs.
 _LEAST_SHARE = 0.5
 #: Light of fully lit pixels is taken from this quantile of the weights.
@@ -92,7 +94,36 @@ def _winner(events: Floats, count: int, axis: int, weights: Floats, width: int) 
 
 
 @compiled
-def line_means(
+def _line_step(
+    events: Floats, count: int, weights: Floats, centre: tuple[float, float], reach: float
+) -> tuple[float, float, float]:
+    """Return the moves (x, y) of two lines onto their events' mean, and the share of light near.
+
+    NaN where a line has no events away from the other.
+    """
+    sums = np.zeros((2, 2))
+    both = 0.0
+    total = 0.0
+    for m in range(count):
+        w = weights[m]
+        x, y = events[m, 0] - centre[0], events[m, 1] - centre[1]
+        total += w
+        if abs(x) <= reach and abs(y) <= reach:
+            both += w
+        elif abs(x) <= reach:
+            sums[0, 0] += w
+            sums[0, 1] += w * x
+        elif abs(y) <= reach:
+            sums[1, 0] += w
+            sums[1, 1] += w * y
+    if not (sums[0, 0] > 0.0 and sums[1, 0] > 0.0):
+        return np.nan, np.nan, 0.0
+    share = (both + sums[0, 0] + sums[1, 0]) / total
+    return sums[0, 1] / sums[0, 0], sums[1, 1] / sums[1, 0], share
+
+
+@compiled
+def line_means(  # noqa: PLR0917 - Numba takes no keyword-only ones
     events: Floats,
     counts: NDArray[np.int64],
     width: float,
@@ -107,45 +138,21 @@ def line_means(
     than half of the light, or one of them nothing away from the other.
     """
     weights = np.empty(events.shape[1])
+    side = max(round(width), 1)
     for k in range(events.shape[0]):
         out[k, 0] = np.nan
         out[k, 1] = np.nan
         count = counts[k]
         if count < 1 or not _weights(events[k], count, hot, weights):
             continue
-        side = max(round(width), 1)
         x = _winner(events[k], count, 0, weights, side)
         y = _winner(events[k], count, 1, weights, side)
         share = 0.0
         for _ in range(_MOVES):
-            along_y = 0.0
-            along_x = 0.0
-            mean_x = 0.0
-            mean_y = 0.0
-            both = 0.0
-            total = 0.0
-            for m in range(count):
-                w = weights[m]
-                near_x = abs(events[k, m, 0] - x) <= reach
-                near_y = abs(events[k, m, 1] - y) <= reach
-                total += w
-                if near_x and near_y:
-                    both += w
-                elif near_x:
-                    along_y += w
-                    mean_x += w * (events[k, m, 0] - x)
-                elif near_y:
-                    along_x += w
-                    mean_y += w * (events[k, m, 1] - y)
-            share = 0.0
-            if not (along_y > 0.0 and along_x > 0.0):
-                break
-            share = (along_y + along_x + both) / total
-            move_x = mean_x / along_y
-            move_y = mean_y / along_x
+            move_x, move_y, share = _line_step(events[k], count, weights, (x, y), reach)
             x += move_x
             y += move_y
-            if abs(move_x) < 1e-9 and abs(move_y) < 1e-9:
+            if not (abs(move_x) >= _SETTLED or abs(move_y) >= _SETTLED):
                 break
         if share >= _LEAST_SHARE:
             out[k, 0] = x
@@ -153,7 +160,7 @@ def line_means(
 
 
 @compiled
-def spot_means(
+def spot_means(  # noqa: PLR0917 - Numba takes no keyword-only ones
     events: Floats,
     counts: NDArray[np.int64],
     width: float,
@@ -195,7 +202,7 @@ def spot_means(
                 break
             x += mean_x / near
             y += mean_y / near
-            if abs(mean_x) < 1e-9 * near and abs(mean_y) < 1e-9 * near:
+            if abs(mean_x) < _SETTLED * near and abs(mean_y) < _SETTLED * near:
                 break
         if share >= _LEAST_SHARE:
             out[k, 0] = x

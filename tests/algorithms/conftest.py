@@ -25,6 +25,15 @@ DIAL = {"code_bits": 5, "code_cell_mm": 0.15, "fine_period_mm": 0.3}
 LINE_PIXELS = 60
 HOLES = ((-0.08, -0.06, 0.05), (0.08, -0.05, 0.05), (-0.07, 0.07, 0.05), (0.09, 0.06, 0.05))
 MULTI_SPOT = {"mcam", "fmms", "feic"}
+#: Fields in which the sensor differs that one implementation is made for.
+OWN_DESIGN = {
+    "linear-phase-frame": {"aperture_width_mm": 0.06, "focal_length_mm": 0.5},  # as its samples
+    "bscm": {"lens_distortion": (-0.1, 0.02)},
+    "hough-lines": {"lens_distortion": (-0.1, 0.02)},
+    "hough-circle": {"aperture_shape": "round"},
+    "escm": {"aperture_width_mm": 0.04},
+    "escm-wta": {"aperture_width_mm": 0.04},
+}
 COMMON_SUITE = "test_common_suite.py::test_"
 
 
@@ -60,15 +69,7 @@ def design_for(geometry: SensorGeometry) -> Callable[[Any], SensorGeometry]:
         if implementation.name in {"panoramic", "pyramidal"}:  # three faces lit, whatever the Sun
             return replace(geometry, face_normals=PYRAMID)
         if implementation.name in MULTI_SPOT:
-            return replace(
-                geometry, focal_length_mm=0.5, aperture_width_mm=0.05, apertures=HOLES
-            )
-        if "lens_distortion" in implementation.needs:
-            return replace(geometry, lens_distortion=(-0.1, 0.02))
-        if implementation.name == "hough-circle":
-            return replace(geometry, aperture_shape="round")
-        if getattr(implementation, "observation", None) is Observation.EVENTS:
-            return replace(geometry, aperture_width_mm=0.04)
+            return replace(geometry, focal_length_mm=0.5, aperture_width_mm=0.05, apertures=HOLES)
         if getattr(implementation, "observation", None) is Observation.PROFILES:
             return replace(
                 geometry,
@@ -77,9 +78,7 @@ def design_for(geometry: SensorGeometry) -> Callable[[Any], SensorGeometry]:
                 line_pixels=LINE_PIXELS,
                 slits=((0.0, 0.0, 0.3),),
             )
-        if implementation.name == "linear-phase-frame":  # its reference is the sample spots' width
-            return replace(geometry, aperture_width_mm=0.06, focal_length_mm=0.5)
-        return geometry
+        return replace(geometry, **OWN_DESIGN.get(implementation.name, {}))
 
     return make
 
@@ -131,9 +130,9 @@ def _black_suns(count: int = 7) -> NDArray[np.uint8]:
     rng = np.random.default_rng(16)
     y, x = np.mgrid[:40, :44]
     frames = rng.integers(0, 12, (count, 40, 44)).astype(np.uint8)
-    for frame, (cx, cy) in zip(frames, rng.uniform(16.0, 24.0, (count, 2)), strict=True):
+    for n, (cx, cy) in enumerate(rng.uniform(16.0, 24.0, (count, 2))):
         away = np.hypot(x - cx, y - cy)
-        frame[(away > 3.5) & (away < 9.0)] = 240
+        frames[n, (away > 3.5) & (away < 9.0)] = 240
     return frames
 
 
@@ -184,6 +183,16 @@ def _dial_signals(geometry: SensorGeometry, tangents: Floats) -> Floats:
     return np.column_stack(parts).astype(np.float64)
 
 
+#: Makers of samples, by an implementation's name where it needs its own, else by observation.
+OWN_SAMPLES: dict[str, Callable[[], NDArray[Any]]] = {
+    "bscm": _black_suns,
+    "hough-lines": _blooming_suns,
+    Observation.FRAMES: _spots,
+    Observation.PROFILES: _profiles,
+    Observation.EVENTS: _spikes,
+}
+
+
 @pytest.fixture(scope="session")
 def observations_for(geometry: SensorGeometry) -> Callable[[Any], NDArray[Any]]:
     """Observations (N, ...) with something to find in every row, for one extractor class."""
@@ -193,16 +202,8 @@ def observations_for(geometry: SensorGeometry) -> Callable[[Any], NDArray[Any]]:
             return _squares(geometry)
         if extractor.name in MULTI_SPOT:
             return _many_spots(geometry)
-        if extractor.name == "bscm":
-            return _black_suns()
-        if extractor.name == "hough-lines":
-            return _blooming_suns()
-        if extractor.observation is Observation.EVENTS:
-            return _spikes()
-        if extractor.observation is Observation.FRAMES:
-            return _spots()
-        if extractor.observation is Observation.PROFILES:
-            return _profiles()
+        if make_own := OWN_SAMPLES.get(extractor.name, OWN_SAMPLES.get(extractor.observation)):
+            return make_own()
         if extractor.observation is Observation.CURRENTS:
             columns = {FeatureKind.BALANCE: 4, FeatureKind.SIGNALS: len(FACES)}[extractor.kind]
             if "code_bits" in extractor.needs:
