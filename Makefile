@@ -46,6 +46,7 @@ $(PEERS): $(STAMP) requirements-peers.lock
 
 bench: $(PEERS) ## speed and accuracy beside peers, as ratios measured in the same run
 	$(BIN)/python -m benchmark.speed
+	$(BIN)/python -m benchmark.speed_extractors
 	$(BIN)/python -m api.speed
 
 leaderboard: $(STAMP) ## bring scores and leaderboard up to date with code and data

@@ -72,12 +72,12 @@ def test_the_template_depends_little_on_noise():
 
 
 def test_the_table_and_its_json(capsys):
-    given = ["--sets", "gaussian", "--methods", "dbcm", "pm", "--frames", "40", "--repeats", "1"]
+    given = ["--sets", "gaussian", "--methods", "mt-acm", "tm", "--frames", "40", "--repeats", "1"]
     assert speed_extractors.main(given) == 0
-    assert "dbcm" in capsys.readouterr().out
+    assert "mt-acm" in capsys.readouterr().out
     assert speed_extractors.main([*given, "--format", "json"]) == 0
     rows = json.loads(capsys.readouterr().out)["measured"]
-    assert {row["method"] for row in rows} == {"dbcm", "pm"}
+    assert {row["method"] for row in rows} == {"mt-acm", "tm"}
     assert all(row["missing"] == 0 and row["us"] > 0 for row in rows)
 
 
