@@ -187,5 +187,5 @@ def regime(sensor: LineSensor) -> dict[str, Any]:
         "fresnel_number": round(fresnel_number(narrowest, sensor.camera.focal_length_mm), 2),
         "wavelength_nm": 550,
         "reason": "a^2 / (lambda h) of a slit at normal incidence is above 10; diffraction is "
-        "left out",
+        "left out (linear arrays with less are refused)",
     }

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 from algorithms.contract import Observation
 from benchmark.datasets._field import AngleField
 from benchmark.datasets._line_arrays import (
     ASSEMBLED,
+    LIGHT,
     SLITS_ASSEMBLED,
     SUN,
     ccd,
@@ -14,7 +17,8 @@ from benchmark.datasets._line_arrays import (
     regime,
     units,
 )
-from benchmark.datasets._preset import Preset
+from benchmark.datasets._preset import Condition, Preset
+from benchmark.simulator.blooming_lines import BloomingLineSensor
 from benchmark.simulator.lines import LineSensor
 from benchmark.simulator.projection import Camera
 from benchmark.simulator.slit_masks import slit_row
@@ -32,6 +36,18 @@ _SENSOR = LineSensor(
     errors=SLITS_ASSEMBLED,
 )
 
+_SATURATED = Condition(
+    "The nominal sensor exposed eight times as long, without anti-blooming drains: full pixels "
+    "spill their charge along the line, so that the spot is flat and wider on either side.",
+    BloomingLineSensor(
+        camera=_SENSOR.camera,
+        detector=dataclasses.replace(_SENSOR.detector, sunlit_e=8.0 * _SENSOR.detector.sunlit_e),
+        pixel_height_mm=_SENSOR.pixel_height_mm,
+        errors=_SENSOR.errors,
+    ),
+    LIGHT,
+)
+
 PRESET = Preset(
     name="ccd-slit",
     version=1,
@@ -40,7 +56,7 @@ PRESET = Preset(
     observation=Observation.PROFILES,
     units=units(_SENSOR),
     geometry=design(_SENSOR, _HALF_FOV_DEG),
-    setups=conditions(_SENSOR, _HALF_FOV_DEG),
+    setups={**conditions(_SENSOR, _HALF_FOV_DEG), "saturated": _SATURATED},
     directions=AngleField(_HALF_FOV_DEG),
     follows=("Chum2003", "KeQiang2020", "Godard2006", "Enright2008a", "Enright2008c"),
     description=(

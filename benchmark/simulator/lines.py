@@ -11,8 +11,10 @@ from numpy.typing import NDArray
 
 from benchmark.seeds import generator
 from benchmark.simulator.detectors import PixelArray
+from benchmark.simulator.diffraction import GEOMETRIC_FROM
 from benchmark.simulator.light_memory import memory
 from benchmark.simulator.noise import NoiseStreams, counted
+from benchmark.simulator.optics import fresnel_number
 from benchmark.simulator.projection import Camera
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
@@ -42,6 +44,14 @@ class LineSensor:
         Sensitive share of the pitch.
     errors
         How the plate with the slits stands over the arrays.
+    least_fresnel
+        Shadows are geometric, diffraction is left out: slits of a smaller Fresnel number at
+        normal incidence and 550 nm are refused. 0 takes any, for light that does not diffract.
+
+    Raises
+    ------
+    ValueError
+        On slits so narrow that their shadow is not geometric, among others.
     """
 
     camera: Camera
@@ -50,6 +60,7 @@ class LineSensor:
     axes: tuple[LineAxis, ...] = ("x", "y")
     fill_factor: float = 1.0
     errors: SlitErrors = field(default_factory=SlitErrors)
+    least_fresnel: float = GEOMETRIC_FROM
 
     def __post_init__(self) -> None:
         if self.detector.rows != 1:
@@ -62,6 +73,15 @@ class LineSensor:
             raise ValueError(f"fill_factor must be in (0, 1]; got {self.fill_factor}")
         if any(aperture.shape != "rectangle" for aperture in self.camera.mask.apertures):
             raise ValueError("linear arrays are simulated behind rectangular slits only")
+        mask = self.camera.mask
+        half = min(aperture.smallest_half_width_mm for aperture in mask.apertures)
+        number = fresnel_number(half, self.camera.focal_length_mm)
+        if number < self.least_fresnel:
+            raise ValueError(
+                "linear arrays are simulated in geometric shadow, Fresnel number of at least "
+                f"{self.least_fresnel:g}; slits of {2.0 * half:g} mm "
+                f"{self.camera.focal_length_mm:g} mm up have {number:.3g}"
+            )
 
     @property
     def width_px(self) -> int:

@@ -22,7 +22,9 @@ class TiltedDipole:
     ----------
     g11_nt, h11_nt, g10_nt
         Gauss coefficients: the dipole along Earth-fixed x (Greenwich), y and z. The defaults are
-        those of IGRF-13 for 2020: 29 806 nT at the magnetic equator, tilted by 9.4 deg.
+        those of IGRF-13 for the epoch 2020.0 (igrf13coeffs.txt; Alken et al. 2021,
+        doi:10.1186/s40623-020-01288-x): 29 806 nT at the magnetic equator, tilted by 9.4 deg.
+        IGRF-14 has -1410.3, 4545.5 and -29 350.0 for 2025.0.
     radius_km
         They refer to.
     greenwich_deg

@@ -43,7 +43,9 @@ def sensor_with(mask: Mask, **changes: Any) -> LineSensor:
     glass = changes.pop("glass", CoverGlass())
     sun = changes.pop("sun", nominal.camera.sun)
     camera = Camera(H_MM, mask, sun, glass)
-    return replace(nominal, camera=camera, **{"errors": SlitErrors(), **changes})
+    return replace(
+        nominal, camera=camera, **{"errors": SlitErrors(), "least_fresnel": 0.0, **changes}
+    )
 
 
 def scene_of(sun: np.ndarray) -> Scene:

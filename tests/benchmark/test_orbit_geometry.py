@@ -171,6 +171,22 @@ def test_rotations_keep_lengths() -> None:
     assert rotated(turn, vectors) == pytest.approx(np.einsum("nij,nj->ni", turn, vectors))
 
 
+def test_dipole_is_that_of_igrf_13_for_2020() -> None:
+    """Rows g 1 0, g 1 1 and h 1 1, column 2020.0, of igrf13coeffs.txt (nT)."""
+    dipole = TiltedDipole()
+    assert dipole.g10_nt == -29_404.8
+    assert dipole.g11_nt == -1450.9
+    assert dipole.h11_nt == 4652.5
+    assert dipole.radius_km == 6371.2
+    # the secular variation it states, nT a year, leads to IGRF-14's 2025.0 within its error
+    for now, rate, later in (
+        (dipole.g10_nt, 5.7, -29_350.0),
+        (dipole.g11_nt, 7.4, -1410.3),
+        (dipole.h11_nt, -25.9, 4545.5),
+    ):
+        assert now + 5 * rate == pytest.approx(later, abs=30)
+
+
 def test_field_at_the_pole_is_twice_that_at_the_equator() -> None:
     dipole = TiltedDipole()
     axis = np.array([-1450.9, 4652.5, -29_404.8])
