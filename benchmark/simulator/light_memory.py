@@ -7,7 +7,9 @@ stands in front of them; the bound moves the Sun alike under each. Nothing is ke
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable, Hashable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +19,9 @@ Floats = NDArray[np.float64]
 #: A worker's data and code take 600 MB; with this it stays below 1.5 GB.
 LIMIT_BYTES = 512 * 2**20
 
-#: Places of light other than 0 in the flattened array (None: everywhere), its values, its shape.
+#: Places of light other than 0 in a flattened array, and its values there.
+Places = tuple[NDArray[np.int32], Floats]
+#: Such places (None: everywhere), the values, the array's shape.
 _Kept = tuple[NDArray[np.int32] | None, Floats, tuple[int, ...]]
 
 
@@ -30,6 +34,7 @@ class LightMemory:
         self.hits = 0
         self._owner: Hashable = None
         self._kept: dict[Hashable, _Kept] = {}
+        self._places: dict[Hashable, Places] = {}
 
     def remember(self, owner: Hashable) -> None:
         """Keep light from now on; what was kept for another owner is let go."""
@@ -40,6 +45,7 @@ class LightMemory:
     def forget(self) -> None:
         """Let go of everything and keep nothing more."""
         self._kept.clear()
+        self._places.clear()
         self.kept_bytes = 0
         self._owner = None
 
@@ -61,11 +67,39 @@ class LightMemory:
             return light
         light = render()
         kept = _packed(light)
-        size = kept[1].nbytes + (0 if kept[0] is None else kept[0].nbytes)
-        if self.kept_bytes + size <= self.limit_bytes:
-            self.kept_bytes += size
+        if self._has_room(kept[1].nbytes + (0 if kept[0] is None else kept[0].nbytes)):
             self._kept[key] = kept
         return light
+
+    def places(self, key: Hashable, render: Callable[[], Places]) -> Places:
+        """Return what `render` makes, as `rendered`, for frames too large to be filled twice.
+
+        Not the caller's own: to be read only.
+        """
+        if self._owner is None:
+            return render()
+        if key in self._places:
+            self.hits += 1
+            return self._places[key]
+        found = render()
+        if self._has_room(found[0].nbytes + found[1].nbytes):
+            self._places[key] = found
+        return found
+
+    def _has_room(self, size: int) -> bool:
+        if self.kept_bytes + size > self.limit_bytes:
+            return False
+        self.kept_bytes += size
+        return True
+
+
+def digest_of(*arrays: NDArray[Any]) -> bytes:
+    """Name arrays by their content, for keys: shorter than their bytes."""
+    state = hashlib.blake2b(digest_size=16)
+    for array in arrays:
+        state.update(repr((array.dtype.str, array.shape)).encode())
+        state.update(np.ascontiguousarray(array).tobytes())
+    return state.digest()
 
 
 def _packed(light: Floats) -> _Kept:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmark.simulator.light_memory import memory
+from benchmark.simulator.light_memory import digest_of, memory
 from benchmark.simulator.multi_spot_frames import MultiSpotSensor
 from benchmark.simulator.noise import NoiseStreams
 from benchmark.simulator.scene import Scene
@@ -62,8 +62,8 @@ class LitPixels:
     def _rendered(self, sun: Floats) -> Floats:
         """(N, P) light of mean sunlight on the pixels."""
         detector = self.sensor.detector
-        mask = self.pattern["apertures"].tobytes(), self.pattern["transmission"].tobytes()
-        place = detector.rows, detector.columns, detector.pitch_mm, self._pixels.tobytes()
+        mask = digest_of(self.pattern["apertures"], self.pattern["transmission"], self._pixels)
+        place = detector.rows, detector.columns, detector.pitch_mm
         key = (type(self.sensor).__name__, self.sensor.camera, mask, place, sun.tobytes())
         return memory.rendered(key, lambda: self._from(sun))
 

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from benchmark.simulator.detectors import PixelArray
 from benchmark.simulator.frames import FrameSensor
+from benchmark.simulator.light_memory import Places, digest_of, memory
 from benchmark.simulator.mask_errors import MaskErrors
 from benchmark.simulator.noise import NoiseStreams
 from benchmark.simulator.projection import Camera
@@ -179,8 +181,15 @@ class MultiSpotSensor:
         )
         tables = (quantiles(), pattern["gain"], pattern["dark_e"])
         words = (shape[0] * shape[1] + 1) // 2
+        flat = light.reshape(-1)
+        mask = digest_of(pattern["apertures"], pattern["transmission"])
+        key = (type(self).__name__, self.camera, mask, shape, detector.pitch_mm)
         for n in range(len(scene)):
-            boxes = self.add_light(light, scene.part(n, n + 1), pattern)
+            one = Scene(scene.sun[n : n + 1], np.ones(1), np.zeros(1))
+            places, values = memory.places(
+                (*key, one.sun.tobytes()), partial(self._places, light, one, pattern)
+            )
+            flat[places] = values * scene.irradiance[n]
             digitise(
                 out[n],
                 light,
@@ -188,6 +197,14 @@ class MultiSpotSensor:
                 tables,
                 (float(scene.stray[n]), *numbers),
             )
-            for left, right, top, bottom in boxes:
-                light[top:bottom, left:right] = 0.0
+            flat[places] = 0.0
         return out
+
+    def _places(self, frame: Floats, one: Scene, pattern: FixedPattern) -> Places:
+        """Light of one sample, rendered in a dark frame that is dark again afterwards."""
+        boxes = self.add_light(frame, one, pattern)
+        places = np.flatnonzero(frame).astype(np.int32)
+        values = frame.reshape(-1)[places]
+        for left, right, top, bottom in boxes:
+            frame[top:bottom, left:right] = 0.0
+        return places, values

@@ -56,6 +56,23 @@ def test_nothing_is_kept_unasked_or_for_another_owner_or_beyond_the_limit():
     assert calls[-1] == 1
 
 
+def test_places_are_kept_alike():
+    kept = LightMemory(limit_bytes=100)
+    calls = []
+
+    def places(key, count):
+        found = np.arange(count, dtype=np.int32), np.ones(count)
+        return kept.places(key, lambda: calls.append(key) or found)
+
+    kept.remember("dataset")
+    places("small", 4), places("large", 9), places("small", 4), places("large", 9)
+    assert calls == ["small", "large", "large"]
+    assert kept.kept_bytes == 48
+    kept.forget()
+    places("small", 4)
+    assert calls[-1] == "small"
+
+
 @pytest.mark.parametrize(
     "name",
     [
