@@ -37,6 +37,9 @@ _CLEAR = 0.5
 SHARE = 0.3
 #: Pixels of a frame whose median is its background.
 _SAMPLE = 4096
+#: Least height of spots above the background, in its noise: what small frames of noise do not
+#: reach. Large ones do, but their lit pixels make no spots.
+_LEAST_SIGNAL = 5.0
 #: Spots kept of a frame, an aperture: stray lights may add to them.
 _SPOTS_PER_APERTURE = 4
 
@@ -190,12 +193,12 @@ def frame_levels(frames: NDArray[Any], apertures_px: Apertures, threshold: float
     unusable = np.empty(count, dtype=np.bool_)
     moments.unusable(frames, frames.dtype.kind == "f", unusable)
     maxima[unusable] = 0
-    floor = _sampled_median(frames)
+    floor, noise = _floor_and_noise(frames)
     narrowest = min(width for _, _, width in apertures_px)
     rank = height - min(max(round(narrowest / 2.0), 1), height)
     peak = np.partition(maxima, rank, axis=1)[:, rank].astype(np.float64)
-    unusable |= ~(peak > floor)
     with np.errstate(invalid="ignore", over="ignore"):  # infinite pixels: unusable
+        unusable |= ~((peak > floor) & (peak - floor >= _LEAST_SIGNAL * noise))
         level = floor + threshold * (peak - floor)
     level[unusable] = np.inf
     return Levels(maxima, floor, peak, level)
@@ -268,12 +271,19 @@ def without_gaps(
         k += max(follow(k, here.displacement, here.spots), 1)
 
 
-def _sampled_median(frames: NDArray[Any]) -> Floats:
-    """Median (N,) of every so many pixels, the step odd so that it meets every column."""
+def _floor_and_noise(frames: NDArray[Any]) -> tuple[Floats, Floats]:
+    """Median (N,) of some of the pixels, and their standard deviation (N,) to the dark side.
+
+    Spots that cover less than half raise neither.
+    """
     pixels = frames.reshape(len(frames), -1)
     step = max(pixels.shape[1] // _SAMPLE, 1)
     step += 1 - step % 2
-    while math.gcd(step, frames.shape[2]) > 1:
+    while math.gcd(step, frames.shape[2]) > 1:  # so that it meets every column
         step += 2
+    sample = pixels[:, ::step].astype(np.float64)
     with np.errstate(invalid="ignore", over="ignore"):
-        return np.asarray(np.median(pixels[:, ::step], axis=1), dtype=np.float64)
+        floor = np.asarray(np.median(sample, axis=1), dtype=np.float64)
+        darker = np.minimum(sample - floor[:, None], 0.0)
+        noise = np.sqrt(2.0 * np.mean(darker * darker, axis=1))
+    return floor, np.asarray(noise, dtype=np.float64)

@@ -56,10 +56,10 @@ class MultipleCentroids:
     Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers: the
     spot of an aperture over the detector's middle, seen or not.
 
-    Failure: a NaN row for a frame that is dark, without contrast or holds a NaN or infinity;
-    where fewer than 0.3 of the apertures that should be seen are; and where two displacements
-    explain the frame alike (two suns, part of a code that several sub-fields share, a window of
-    a grid that has no end in view).
+    Failure: a NaN row for a frame that is dark, without contrast, holds a NaN or infinity, or
+    whose spots rise less than five times its noise; where fewer than 0.3 of the apertures that
+    should be seen are; and where two displacements explain the frame alike (two suns, part of a
+    code that several sub-fields share, a window of a grid that has no end in view).
 
     Cost: 2 operations a pixel, 8 in rows with spots, and 20 a pair of spot and aperture.
     """

@@ -61,9 +61,7 @@ def _expected(apertures: Floats, x: float, y: float, frame: tuple[int, int], mar
 
 
 @compiled
-def _cast(
-    spots: Floats, apertures: Floats, cell: float, ballot: Votes, touched: Indices
-) -> int:
+def _cast(spots: Floats, apertures: Floats, cell: float, ballot: Votes, touched: Indices) -> int:
     """Add the vote of each pair of spot and aperture; write the cells voted for, return how many.
 
     A pair votes for its displacement; `ballot` starts one cell below the least there can be.

@@ -165,6 +165,16 @@ def test_what_is_no_pattern_is_not_found(which):
 
 
 @every_method
+@pytest.mark.parametrize("noise", [0.6, 5.0])
+def test_noise_alone_is_not_taken_for_a_spot(which, noise):
+    """Also where a digital number is more than the noise, and lit pixels come in clusters."""
+    rng = np.random.default_rng(12)
+    frames = np.rint(rng.normal(100, noise, (60, 48, 48))).astype(np.uint16)
+    for width in (6.0, 18.0):
+        assert np.isnan(methods(((0.0, 0.0, width),))[which].extract(frames)).all()
+
+
+@every_method
 def test_hot_pixels_and_dead_ones_cost_little(which):
     rng = np.random.default_rng(7)
     place = np.array([65.2, 61.4])
