@@ -97,6 +97,13 @@ def check(
                 specifications=specifications,
             )
             found += compare(store.rows(), fresh.rows())
+            sweeps.update(temporary, workers, progress, extractors=_extractors(parts))
+            found += [
+                Difference(sweeps.FILE, *difference)
+                for difference in sweeps.differences(
+                    sweeps.read(store.directory), sweeps.read(temporary)
+                )
+            ]
     return list(dict.fromkeys(found))
 
 
@@ -153,6 +160,12 @@ def _outdated(
     for cell in sorted(rows.keys() - set(planned)):
         yield Difference("scores.jsonl", f"{cell}/row", "present", "not planned")
     yield from _unpinned(store, parts, specifications)
+    for point, state in sweeps.outdated(store.directory, _extractors(parts)):
+        yield Difference(sweeps.FILE, f"{point}/row", state, "as the code now is")
+
+
+def _extractors(parts: Parts | None) -> sweeps.Extractors | None:
+    return parts.extractors if parts else None
 
 
 def _unpinned(

@@ -129,6 +129,7 @@ def test_data_that_cannot_be_made_are_told_and_the_rest_is_pinned(store):
     assert len(store.pins()) == 4
 
 
+@pytest.mark.usefixtures("readings_only")
 def test_the_leaderboard_names_what_is_not_pinned(store):
     there = parts(Diodes(), Unmeasurable())
     leaderboard.update(store.directory, progress=silent, parts=there)

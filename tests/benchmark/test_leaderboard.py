@@ -10,18 +10,20 @@ import fake_plan
 import pytest
 from fake_atlas import Broken, Diodes, LeastSquares
 
-from benchmark import leaderboard, runner_unit
+from benchmark import leaderboard, runner_unit, sweeps
+from benchmark.content_key import canonical_json
 from benchmark.leaderboard_check import compare
 from benchmark.leaderboard_formats import FORMATS, SHOWN
 from benchmark.store import Store
 
 BOARDS = sorted(set(FORMATS) - {"sweeps.csv"})
+pytestmark = pytest.mark.usefixtures("readings_only")
 CELL = "fake-diodes/noisy/fake-currents/fake-least-squares"
 PARTS = fake_plan.parts(presets=(Diodes(), Diodes(name="fake-second")))
 
 
 @pytest.fixture(scope="module")
-def made(tmp_path_factory):
+def made(tmp_path_factory, readings_only):
     runner_unit._kept.clear()
     directory = tmp_path_factory.mktemp("published")
     leaderboard.update(directory, parts=PARTS)
@@ -254,3 +256,41 @@ def test_accuracy_is_compared_within_a_thousandth_and_counts_within_a_sample(pub
     failed = [{**row, "status": "failed", "rms_deg": None} for row in committed[:1]]
     assert {d.cell.rpartition("/")[2] for d in compare(committed, failed)} == {"status", "rms_deg"}
     assert compare([], committed[:1])[0].committed == "absent"
+
+
+SWEPT = "faces/noise/50/fake-currents"
+
+
+def test_sweeps_stand_in_every_file(published):
+    stored = sweeps.read(published)
+    assert {row["series"] for row in stored} >= {"faces", "quadrants"}
+    assert json.loads((published / "leaderboard.json").read_text())["sweeps"] == stored
+    for name in ("leaderboard.json", "sweeps.csv", "leaderboard.md", "leaderboard.html"):
+        cells = FORMATS[name].read((published / name).read_text())
+        assert (SWEPT, "over_bound") in cells, name
+
+
+def test_a_changed_sweep_is_named_by_its_file_and_point(published):
+    path = published / "sweeps.jsonl"
+    lines = path.read_text().splitlines()
+    for number, line in enumerate(lines):
+        row = json.loads(line)
+        if "/".join(row[n] for n in ("series", "sweep", "point", "extractor")) == SWEPT:
+            lines[number] = canonical_json({**row, "rms": row["rms"] * 1.5})
+    path.write_text("\n".join(lines) + "\n")
+    (found,) = check(published, stored_only=True)
+    assert (found.file, found.cell) == ("sweeps.jsonl", f"{SWEPT}/rms")
+    leaderboard.write(published)
+    assert check(published, stored_only=True) == []  # files agree; only measuring tells
+    (found,) = check(published)
+    assert (found.file, found.cell) == ("sweeps.jsonl", f"{SWEPT}/rms")
+
+
+def test_a_changed_number_in_a_page_of_sweeps_is_named(published):
+    path = published / "sweeps.csv"
+    lines = path.read_text().splitlines(keepends=True)
+    place = next(n for n, line in enumerate(lines) if line.startswith("faces,noise,50,fake-curr"))
+    lines[place] = lines[place].replace(",300,", ",299,", 1)
+    path.write_text("".join(lines))
+    (found,) = check(published, stored_only=True)
+    assert (found.file, found.cell, found.committed) == ("sweeps.csv", f"{SWEPT}/n", "299")
