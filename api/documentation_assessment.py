@@ -137,8 +137,10 @@ def _value(verdict: Mapping[str, Any], source: str) -> str:
         return str(verdict["reason"])
     if verdict["value"] is None:
         return "too few found" if source == "sweeps" else "reads none of them"
-    # Times change with every measuring; the docs should not, but for what is published.
-    return f"{verdict['value']:.{1 if source == 'runs' else 3}g}"
+    # Of times one digit: more would say less about the method than about the machine.
+    digits = 1 if source == "runs" else 3
+    stated = float(f"{verdict['value']:.{digits}g}")
+    return f"{stated:g}"
 
 
 def _table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
