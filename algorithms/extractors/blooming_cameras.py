@@ -157,10 +157,11 @@ def _meeting(
     for _ in range(_STEPS):
         normals = []
         for n in range(2):
-            ends = [
-                cameras[n].directions(at[n] + step * along[n]) for step in (-_STEP_PX, _STEP_PX)
-            ]
-            normals.append(normalised(np.cross(ends[0], ends[1])))
+            before, here, after = (
+                cameras[n].directions(at[n] + step * along[n])
+                for step in (-_STEP_PX, 0.0, _STEP_PX)
+            )
+            normals.append(normalised(np.cross(here, after - before)))
         cross = np.cross(normals[0], normals[1])
         sine = np.nan_to_num(np.linalg.norm(cross, axis=1))
         towards = cameras[0].directions(at[0]) + cameras[1].directions(at[1])

@@ -161,7 +161,8 @@ class HoughCircle:
     gradient, both ways, instead of all of them; votes count 1/r, so that circles of every size
     compare. The accumulator's highest cells are looked at again with their edges: the circle
     with the strongest mean edge around its rim wins, fitted to edges at sub-pixel places by least
-    squares. Ours: a bright circle must have a bright middle, else it is a ghost.
+    squares. Ours: a bright circle must be bright inside its rim, else it is a ghost, and edges
+    that scatter by more than half a pixel about the fit are none.
 
     Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers.
 

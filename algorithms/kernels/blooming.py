@@ -15,6 +15,8 @@ from algorithms.kernels.compilation import compiled
 _NEAR = 1.5
 #: A line is at least this many times longer than wide; a disc is not.
 _LENGTH = 4.0
+#: Share of a line's rows that have full pixels on it; noise has fewer.
+_FILLED = 0.7
 #: Neighbours whose light differs by more than this logarithm are not one slope: dead pixels.
 _STEEPEST = 0.7
 #: Distance along the line within which intersections are averaged, px.
@@ -228,19 +230,26 @@ def _typical_width(runs: Floats, count: int, r: float, turn: float) -> float:
 def _extent(
     runs: Floats, count: int, r: float, turn: float, typical: float
 ) -> tuple[float, float, float, float, bool]:
-    """First and last place of a line, its first and last row, and whether other light covers it."""
+    """First and last place of a line, its first and last row, and whether other light covers it.
+
+    The places are not finite where too many rows in between have no run on the line.
+    """
     c, s = math.cos(turn), math.sin(turn)
     first, last = np.inf, -np.inf
     top, bottom = np.inf, -np.inf
     covered = False
+    rows = 0
     for n in range(count):
         away = abs(runs[n, 0] * c + runs[n, 1] * s - r)
         if away <= 0.5 * runs[n, 2]:
+            rows += 1
             covered = covered or runs[n, 2] > _COVERED * typical + 1.0
         if away <= _NEAR and runs[n, 2] <= _widest(typical):
             place = runs[n, 1] * c - runs[n, 0] * s
             first, last = min(first, place), max(last, place)
             top, bottom = min(top, runs[n, 1]), max(bottom, runs[n, 1])
+    if not rows >= _FILLED * (bottom - top + 1.0):
+        return np.nan, np.nan, top, bottom, covered
     return first, last, top, bottom, covered
 
 

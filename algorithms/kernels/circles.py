@@ -12,18 +12,25 @@ from algorithms.contract import Floats
 from algorithms.kernels.compilation import compiled
 
 #: Local maxima of the accumulator that are looked at more closely.
-_CANDIDATES = 12
+_CANDIDATES = 40
 _SECTORS = 16
 #: An edge belongs to a circle when it lies this close to it and points this close to its centre.
 _NEAR = 1.0
 #: Largest sine of the angle between an edge's direction and that of the centre.
 _ASKEW = 0.35
-#: A bright circle's middle is at least this far up the frame's range: fainter ones are ghosts.
+#: A bright circle is at least this far up the frame's range inside: fainter ones are ghosts.
 _BRIGHT = 0.5
+#: Where inside, in radii: within the rim's blur, outside a black Sun.
+_WITHIN = 0.7
+#: Edges this close to a circle, and whose direction has this cosine with it, take part in its fit.
+_REACH = 1.5
+_ALIGNED = 0.8
 #: A dark circle counts from this share of the frame's steepest gradient, as a mean over sectors.
 _DARK = 0.2
 #: Another circle with this share of the best one's edge leaves open which is the Sun.
 _RIVAL = 0.8
+#: Root mean square distance of a circle's edges from it, px; scattered edges are further.
+_SCATTER = 0.5
 _MOVES = 12
 
 
@@ -107,23 +114,35 @@ def _vote(edges: Floats, count: int, smallest: float, largest: float, votes: Flo
 
 
 @compiled
-def _candidates(votes: Floats, places: Floats) -> None:
-    """List the highest local maxima of 3 x 3 cells as (votes, x, y); zeros before."""
+def _candidates(votes: Floats, sums: Floats, places: Floats) -> None:
+    """List the highest local maxima of sums over 3 x 3 cells as (votes, x, y); zeros before.
+
+    `sums` (H, W) is room for them.
+    """
     height, width = votes.shape
+    sums[:] = 0.0
+    for i in range(1, height - 1):
+        for j in range(width):
+            sums[i, j] = votes[i - 1, j] + votes[i, j] + votes[i + 1, j]
+        before = sums[i, 0]
+        for j in range(1, width - 1):
+            here = sums[i, j]
+            sums[i, j] = before + here + sums[i, j + 1]
+            before = here
+        sums[i, 0] = 0.0
+        sums[i, width - 1] = 0.0
     fewest = 0
     for i in range(1, height - 1):
         for j in range(1, width - 1):
-            here = votes[i, j]
-            if 9.0 * here <= places[fewest, 0] or here == 0.0:
+            here = sums[i, j]
+            if here <= places[fewest, 0]:
                 continue
-            total = 0.0
             highest = here
             for a in range(-1, 2):
                 for b in range(-1, 2):
-                    total += votes[i + a, j + b]
-                    highest = max(highest, votes[i + a, j + b])
-            if here == highest and total > places[fewest, 0]:
-                places[fewest, 0] = total
+                    highest = max(highest, sums[i + a, j + b])
+            if here == highest:
+                places[fewest, 0] = here
                 places[fewest, 1] = j
                 places[fewest, 2] = i
                 fewest = int(np.argmin(places[:, 0]))
@@ -177,30 +196,50 @@ def _radius(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
+def _gathered(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    edges: Floats,
+    count: int,
+    way: float,
+    circle: tuple[float, float, float],
+    matrix: Floats,
+    side: Floats,
+) -> tuple[int, float]:
+    """Gather the normal equations of a circle's move towards the edges near it.
+
+    Returns how many edges these are, and the sum of their squared distances from the circle.
+    """
+    x, y, radius = circle
+    matrix[:] = 0.0
+    side[:] = 0.0
+    used = 0
+    scatter = 0.0
+    for n in range(count):
+        dx, dy = edges[n, 0] - x, edges[n, 1] - y
+        r = math.sqrt(dx * dx + dy * dy)
+        if abs(r - radius) > _REACH or r == 0.0:
+            continue
+        if way * (dx * edges[n, 2] + dy * edges[n, 3]) < _ALIGNED * r:
+            continue
+        row = (dx / r, dy / r, 1.0)
+        used += 1
+        scatter += (r - radius) ** 2
+        for a in range(3):
+            side[a] += row[a] * (r - radius)
+            for b in range(3):
+                matrix[a, b] += row[a] * row[b]
+    return used, scatter
+
+
+@compiled
 def _fit(
     edges: Floats, count: int, way: float, circle: tuple[float, float, float]
 ) -> tuple[float, float, float]:
-    """Fit a circle (x, y, r) to the edges near one by Gauss-Newton steps; NaN where it fails."""
+    """Fit a circle (x, y, r) to edges near one by Gauss-Newton steps; NaN where they scatter."""
     x, y, radius = circle
     matrix = np.empty((3, 3))
     side = np.empty(3)
     for _ in range(_MOVES):
-        matrix[:] = 0.0
-        side[:] = 0.0
-        used = 0
-        for n in range(count):
-            dx, dy = edges[n, 0] - x, edges[n, 1] - y
-            r = math.sqrt(dx * dx + dy * dy)
-            if abs(r - radius) > 1.5 or r == 0.0:
-                continue
-            if way * (dx * edges[n, 2] + dy * edges[n, 3]) < 0.8 * r:
-                continue
-            row = (dx / r, dy / r, 1.0)
-            used += 1
-            for a in range(3):
-                side[a] += row[a] * (r - radius)
-                for b in range(3):
-                    matrix[a, b] += row[a] * row[b]
+        used, scatter = _gathered(edges, count, way, (x, y, radius), matrix, side)
         if used < 6 or not abs(np.linalg.det(matrix)) > 1e-6 * used**3:
             return np.nan, np.nan, np.nan
         step = np.linalg.solve(matrix, side)
@@ -211,11 +250,30 @@ def _fit(
             return np.nan, np.nan, np.nan
         if abs(step[0]) + abs(step[1]) < 1e-9:
             break
+    used, scatter = _gathered(edges, count, way, (x, y, radius), matrix, side)
+    if scatter > _SCATTER * _SCATTER * used:
+        return np.nan, np.nan, np.nan
     return x, y, radius
 
 
 @compiled
+def _bright_inside(frame: NDArray[Any], circle: tuple[float, float, float], level: float) -> bool:
+    """Tell whether half of the pixels on a circle within this one are not below a level."""
+    height, width = frame.shape
+    bright = 0
+    for n in range(_SECTORS):
+        turn = 2.0 * math.pi * n / _SECTORS
+        j = math.floor(circle[0] + _WITHIN * circle[2] * math.cos(turn) + 0.5)
+        i = math.floor(circle[1] + _WITHIN * circle[2] * math.sin(turn) + 0.5)
+        if 0 <= i < height and 0 <= j < width and frame[i, j] >= level:
+            bright += 1
+    return 2 * bright >= _SECTORS
+
+
+@compiled
 def _best(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    frame: NDArray[Any],
+    level: float,
     edges: Floats,
     count: int,
     places: Floats,
@@ -229,21 +287,21 @@ def _best(  # noqa: PLR0917 - Numba takes no keyword-only ones
 ) -> bool:
     """Write the circle (x, y, r) about one of `places` with most edge to `out`; False if none.
 
-    NaN is written where another one elsewhere has about as much. It must have more than `score`.
-    Places whose first column is zero are left out.
+    NaN is written where another one elsewhere has about as much. It must have more than `score`
+    and, where it is bright, not be below `level` inside.
     """
     scores = np.zeros(len(places))
-    circles = np.empty((len(places), 3))
+    circles = np.zeros((len(places), 3))
     best = -1
     for n in range(len(places)):
-        if places[n, 0] == 0.0:
-            continue
         x, y = places[n, 1], places[n, 2]
         found, radius = _radius(edges, count, x, y, way, smallest, largest, least, sectors)
         if found <= score:
             continue
         circle = _fit(edges, count, way, (x, y, radius))
         if not smallest <= circle[2] <= largest:
+            continue
+        if way < 0.0 and not _bright_inside(frame, circle, level):
             continue
         scores[n] = found
         circles[n, 0], circles[n, 1], circles[n, 2] = circle
@@ -282,6 +340,7 @@ def best_circles(  # noqa: PLR0917 - Numba takes no keyword-only ones
     down = np.zeros((height, width))
     size = np.zeros((height, width))
     votes = np.empty((height, width))
+    sums = np.empty((height, width))
     edges = np.empty((height * width, 5))
     places = np.empty((_CANDIDATES, 3))
     sectors = np.empty((int(largest) + 2, _SECTORS))
@@ -295,23 +354,25 @@ def best_circles(  # noqa: PLR0917 - Numba takes no keyword-only ones
         found = _edges(across, down, size, edge * steepest, edges)
         _vote(edges, found, smallest, largest, votes)
         places[:] = 0.0
-        _candidates(votes, places)
-        if dark_first and _best(
-            edges,
-            found,
-            places,
-            1.0,
-            smallest,
-            largest,
-            least,
-            _DARK * steepest,
-            sectors,
-            out[k],
-        ):
-            continue
+        _candidates(votes, sums, places)
         low, high = float(frames[k].min()), float(frames[k].max())
-        for n in range(_CANDIDATES):
-            middle = frames[k, int(places[n, 2]), int(places[n, 1])]
-            if not middle >= low + _BRIGHT * (high - low):
-                places[n, 0] = 0.0
-        _best(edges, found, places, -1.0, smallest, largest, least, 0.0, sectors, out[k])
+        level = low + _BRIGHT * (high - low)
+        for way in (1.0, -1.0):
+            if way > 0.0 and not dark_first:
+                continue
+            score = _DARK * steepest if way > 0.0 else 0.0
+            if _best(
+                frames[k],
+                level,
+                edges,
+                found,
+                places,
+                way,
+                smallest,
+                largest,
+                least,
+                score,
+                sectors,
+                out[k],
+            ):
+                break
