@@ -38,19 +38,18 @@ _MOVES = 12
 def _gradient(frame: NDArray[Any], across: Floats, down: Floats, size: Floats) -> float:
     """Write Sobel's gradient, an eighth of its sums, and its size; return the largest size."""
     height, width = frame.shape
-    largest = 0.0
     for i in range(1, height - 1):
+        above, here, below = frame[i - 1], frame[i], frame[i + 1]
         for j in range(1, width - 1):
-            a, b, c = float(frame[i - 1, j - 1]), float(frame[i - 1, j]), float(frame[i - 1, j + 1])
-            d, e = float(frame[i, j - 1]), float(frame[i, j + 1])
-            f, g, h = float(frame[i + 1, j - 1]), float(frame[i + 1, j]), float(frame[i + 1, j + 1])
-            x = ((c + 2.0 * e + h) - (a + 2.0 * d + f)) / 8.0
-            y = ((f + 2.0 * g + h) - (a + 2.0 * b + c)) / 8.0
-            across[i, j] = x
-            down[i, j] = y
-            size[i, j] = math.sqrt(x * x + y * y)
-            largest = max(largest, size[i, j])
-    return largest
+            corner = float(below[j + 1]) - float(above[j - 1])
+            other = float(above[j + 1]) - float(below[j - 1])
+            side = 2.0 * (float(here[j + 1]) - float(here[j - 1]))
+            across[i, j] = 0.125 * (corner + other + side)
+            side = 2.0 * (float(below[j]) - float(above[j]))
+            down[i, j] = 0.125 * (corner - other + side)
+        for j in range(1, width - 1):  # by itself, and so by several pixels at a time
+            size[i, j] = math.sqrt(across[i, j] * across[i, j] + down[i, j] * down[i, j])
+    return float(size.max())
 
 
 @compiled
