@@ -145,12 +145,12 @@ def run_row(key: str, cell: Cell, result: UnitResult, outcome: Outcome, environm
         "time_ratio": None,
         "environment": environment,
     }
-    if result.extract is not None and outcome.predict is not None:
-        spent = result.extract.seconds + outcome.predict.seconds
-        reference = min(result.extract.reference_s, outcome.predict.reference_s)
+    if result.extract is not None and outcome.predict_s is not None:
+        spent = result.extract.seconds + outcome.predict_s
+        reference = result.extract.reference_s
         row |= {
             "extract_s": stored(result.extract.seconds),
-            "predict_s": stored(outcome.predict.seconds),
+            "predict_s": stored(outcome.predict_s),
             "reference_s": stored(reference),
             "latency_us": stored(1e6 * spent / result.n_test),
             "time_ratio": stored(spent / reference),

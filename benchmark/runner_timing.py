@@ -44,6 +44,16 @@ def best_of(call: Callable[[], T], reference: Callable[[], object]) -> tuple[T, 
     return result, Timing(best, best_reference)
 
 
+def best_time(call: Callable[[], T]) -> tuple[T, float]:
+    """Return the result of `call` and its best time in seconds of up to 3 runs, as `best_of`."""
+    result, timing = best_of(call, _nothing)
+    return result, timing.seconds
+
+
+def _nothing() -> None:
+    """Take no time: for what is timed beside a reference measured already."""
+
+
 def _timed(call: Callable[[], T]) -> tuple[float, T]:
     started = time.perf_counter()
     result = call()
