@@ -140,8 +140,16 @@ def update(
     with locked(store):
         journal = Journal(store)
         journal.cut_torn_line()
-        held = journal.progress()
         every = [(preset, condition) for preset in presets for condition in preset.conditions]
+        there = places(known)
+        if not journal.exists():
+            pins = store.pins()
+            if pins.keys() <= there and all(
+                _is_pinned(*one, pins, specifications) for one in every
+            ):
+                seconds = time.perf_counter() - started
+                return Pinned(store.directory, len(every), 0, (), seconds)
+        held = journal.progress()
         missing = [one for one in every if not _is_pinned(*one, held.pins, specifications)]
         warnings: list[str] = []
         renewed = 0
@@ -155,7 +163,6 @@ def update(
                 renewed += bool(pins)
                 warnings += [_failure(preset, condition, reason)] if reason else []
                 report(done, len(missing), f"{preset.name} {condition}")
-        there = places(known)
         current = [pin for place, pin in held.pins.items() if place in there]
         if journal.exists() or len(current) != len(held.pins):
             store.write(held.rows.values(), held.runs.values(), current)

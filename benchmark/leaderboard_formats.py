@@ -71,7 +71,17 @@ def shown(column: str, value: object) -> str:
 
 
 def _to_json(board: Board) -> str:
-    return json.dumps(board, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+    return _one_row_a_line(board) + "\n"
+
+
+def _one_row_a_line(value: object) -> str:
+    """JSON whose lists of objects have an item a line: to be compared line by line."""
+    if isinstance(value, list) and value and isinstance(value[0], Mapping):
+        return "[\n" + ",\n".join(_one_row_a_line(item) for item in value) + "\n]"
+    if isinstance(value, Mapping) and any(isinstance(item, list) for item in value.values()):
+        fields = (f"{json.dumps(name)}: {_one_row_a_line(item)}" for name, item in value.items())
+        return "{" + ", ".join(fields) + "}"
+    return json.dumps(value, ensure_ascii=False, allow_nan=False)
 
 
 def _from_json(text: str) -> Cells:

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TypeVar
 
 _REPEATS = 3
-_ENOUGH_S = 0.1
+_ENOUGH_S = 0.03
 
 T = TypeVar("T")
 
@@ -29,7 +29,7 @@ class Timing:
 def best_of(call: Callable[[], T], reference: Callable[[], object]) -> tuple[T, Timing]:
     """Return the result of `call` and its best time of up to 3 runs.
 
-    The reference runs before each. Slow calls run once: repeating stops when 0.1 s are spent.
+    The reference runs before each. Slow calls run once: repeating stops when 0.03 s are spent.
     """
     best = best_reference = float("inf")
     spent = 0.0

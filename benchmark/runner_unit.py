@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.contract import Extractor, Floats, Model, in_detector_coordinates
-from benchmark.content_key import data_specification, digest, samples_hash, seed
+from benchmark.content_key import Specifications, digest, samples_hash, seed
 from benchmark.plan_parts import SPLITS, Bound, Preset, Samples
 from benchmark.runner_timing import Timing, best_of, best_time, one_thread
 from benchmark.scoring import Score, score, stored
@@ -70,6 +70,7 @@ class UnitResult:
 
 @dataclass(frozen=True)
 class _Data:
+    preset: Preset
     calibration: Samples
     test: Samples
     bound: Bound
@@ -98,12 +99,16 @@ def generated_pins(preset: Preset, condition: str) -> tuple[Pin, ...]:
 
 
 def _data(preset: Preset, condition: str) -> _Data:
+    for place, data in _kept.items():
+        if data.preset is preset and place[:2] == (preset.name, condition):
+            _kept.move_to_end(place)
+            return data
     place = (preset.name, condition, digest(preset.parameters(condition)))
     if place not in _kept:
         _make_room()
         memory.remember(preset.name)  # the conditions of a dataset see the same Suns
         splits = {split: preset.generate(condition, split) for split in SPLITS}
-        specification = data_specification(preset, condition)
+        specification = _specifications_of(preset).of(preset, condition)
         bound = preset.bound(condition, "test")
         pins = tuple(
             Pin(
@@ -118,9 +123,19 @@ def _data(preset: Preset, condition: str) -> _Data:
             )
             for split, samples in splits.items()
         )
-        _kept[place] = _Data(splits["calibration"], splits["test"], bound, pins)
+        _kept[place] = _Data(preset, splits["calibration"], splits["test"], bound, pins)
     _kept.move_to_end(place)
     return _kept[place]
+
+
+_digested: list[tuple[Preset, Specifications]] = []
+
+
+def _specifications_of(preset: Preset) -> Specifications:
+    """Digests kept for as long as units of the same bundle, which share the object, come in."""
+    if not _digested or _digested[0][0] is not preset:
+        _digested[:] = [(preset, Specifications())]
+    return _digested[0][1]
 
 
 def _make_room() -> None:

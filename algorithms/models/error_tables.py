@@ -16,6 +16,10 @@ from numpy.typing import NDArray
 from algorithms.contract import Floats
 
 MAX_NODES = 250_000
+
+MAX_BAND = 16_000_000
+"""Most numbers (128 MB) of a system solved as a band, up to here the faster way; LAPACK's, not
+SuperLU's."""
 """Largest table solved for: half a thousand nodes an axis."""
 
 
@@ -91,12 +95,28 @@ def difference_matrix(nodes: int, order: int) -> Any:
 
 def solve_table(design: Any, roughness: list[Any], weight: float, errors: Floats) -> Floats:
     """Nodes (nodes, 2) that fit errors (n, 2) best, with `weight` times the squared roughness."""
-    from scipy.sparse import csc_array  # noqa: PLC0415 - SciPy, at the first fit only
-    from scipy.sparse.linalg import splu  # noqa: PLC0415
+    from scipy.linalg import solveh_banded  # noqa: PLC0415 - SciPy, at the first fit only
 
     normal = design.T @ design
     for differences in roughness:
         normal = normal + weight * (differences.T @ differences)
+    normal, wanted = normal.tocoo(), np.ascontiguousarray(design.T @ errors)
+    row, column = normal.coords
+    below = row - column
+    width = int(below.max())
+    if normal.shape[0] * (width + 1) > MAX_BAND:
+        return _solved_sparse(normal, wanted)
+    lower = below >= 0
+    band = np.zeros((width + 1, normal.shape[0]))
+    band[below[lower], column[lower]] = normal.data[lower]
+    solved = solveh_banded(band, wanted, overwrite_ab=True, lower=True, check_finite=False)
+    return np.asarray(solved, dtype=np.float64)
+
+
+def _solved_sparse(normal: Any, wanted: Floats) -> Floats:
+    from scipy.sparse import csc_array  # noqa: PLC0415 - SciPy, at the first fit only
+    from scipy.sparse.linalg import splu  # noqa: PLC0415
+
     # symmetric and positive definite: pivots stay on the diagonal, ordering keeps the symmetry
     factors = splu(
         csc_array(normal),
@@ -104,7 +124,7 @@ def solve_table(design: Any, roughness: list[Any], weight: float, errors: Floats
         diag_pivot_thresh=0.0,
         options={"SymmetricMode": True},
     )
-    return np.asarray(factors.solve(np.ascontiguousarray(design.T @ errors)), dtype=np.float64)
+    return np.asarray(factors.solve(wanted), dtype=np.float64)
 
 
 def row_products(left: Any, right: Any) -> Any:
