@@ -143,9 +143,9 @@ def update(
         every = [(preset, condition) for preset in presets for condition in preset.conditions]
         there = places(known)
         if not journal.exists():
-            pins = store.pins()
-            if pins.keys() <= there and all(
-                _is_pinned(*one, pins, specifications) for one in every
+            stored = store.pins()
+            if stored.keys() <= there and all(
+                _is_pinned(*one, stored, specifications) for one in every
             ):
                 seconds = time.perf_counter() - started
                 return Pinned(store.directory, len(every), 0, (), seconds)
