@@ -22,7 +22,7 @@ from benchmark.plan_parts import Parts
 from benchmark.runner import Summary, run
 from benchmark.runner_progress import ProgressCallback
 from benchmark.scoring import METRIC_VERSION
-from benchmark.store import PUBLISHED, Row, Store, cell_of, replace
+from benchmark.store import PUBLISHED, Row, Store, cell_of, collector_paused, replace
 
 __all__ = ["Difference", "build", "check", "update", "write"]
 
@@ -79,8 +79,9 @@ def build(
 
 def files(store: Store) -> dict[str, str]:
     """Make the text of every leaderboard file from what a store holds."""
-    board = build(store.rows(), store.runs(), sweeps.read(store.directory))
-    return {name: form.render(board) for name, form in FORMATS.items()}
+    with collector_paused():
+        board = build(store.rows(), store.runs(), sweeps.read(store.directory))
+        return {name: form.render(board) for name, form in FORMATS.items()}
 
 
 def write(directory: Path | str = PUBLISHED) -> list[Path]:

@@ -25,7 +25,7 @@ from benchmark.runner_backend import outcomes
 from benchmark.runner_progress import ProgressCallback, terminal_progress
 from benchmark.runner_rows import Keys, run_row, score_row
 from benchmark.runner_unit import Outcome, Unit, UnitResult
-from benchmark.store import Pin, Row, Store, cell_of
+from benchmark.store import Pin, Row, Store, cell_of, collector_paused
 from benchmark.store_journal import Journal, Progress, locked
 
 
@@ -99,8 +99,9 @@ def run(
     with locked(store):
         journal = Journal(store)
         journal.cut_torn_line()
-        known = journal.progress()
-        missing = [cell for cell in wanted if not _is_stored(cell, known, keys)]
+        with collector_paused():
+            known = journal.progress()
+            missing = [cell for cell in wanted if not _is_stored(cell, known, keys)]
         recorder = _Recorder(journal, known, keys)
         if missing:
             results = outcomes(_units(missing, parts), workers, scheduler)
