@@ -121,7 +121,7 @@ def _many_spots(geometry: SensorGeometry, count: int = 6) -> NDArray[np.uint8]:
     for frame, (left, top) in zip(light, rng.uniform((19, 17), (26, 22), (count, 2)), strict=True):
         for place_x, place_y, width in np.array(HOLES) / geometry.pixel_pitch_mm:
             away = np.maximum(np.abs(x - left - place_x), np.abs(y - top - place_y))
-            frame += 200 / (1 + np.exp(4 * (away - width / 2)))
+            frame[:] += 200 / (1 + np.exp(4 * (away - width / 2)))
     return (light + rng.integers(0, 12, light.shape)).astype(np.uint8)
 
 
