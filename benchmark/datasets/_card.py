@@ -33,8 +33,10 @@ def merged(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any
     for name, value in changes.items():
         before = base.get(name)
         # a type among the changes says that the object stands whole
-        partly = isinstance(value, dict) and isinstance(before, dict) and "type" not in value
-        whole[name] = merged(before, value) if partly else value
+        if isinstance(value, dict) and isinstance(before, dict) and "type" not in value:
+            whole[name] = merged(before, value)
+        else:
+            whole[name] = value
     return whole
 
 
