@@ -26,6 +26,8 @@ from benchmark.store import Pin
 _KEPT = 2
 #: Bytes of kept observations from which on only one dataset is: a worker stays below 1.5 GB.
 _KEPT_BYTES = 128 * 2**20
+#: Values the reference turns to floats at a time: 32 MB of them.
+_REFERENCE_VALUES = 2**22
 
 
 @dataclass(frozen=True)
@@ -99,11 +101,7 @@ def generated_pins(preset: Preset, condition: str) -> tuple[Pin, ...]:
 
 
 def _data(preset: Preset, condition: str) -> _Data:
-    for place, data in _kept.items():
-        if data.preset is preset and place[:2] == (preset.name, condition):
-            _kept.move_to_end(place)
-            return data
-    place = (preset.name, condition, digest(preset.parameters(condition)))
+    place = _place_of(preset, condition)
     if place not in _kept:
         _make_room()
         memory.remember(preset.name)  # the conditions of a dataset see the same Suns
@@ -126,6 +124,14 @@ def _data(preset: Preset, condition: str) -> _Data:
         _kept[place] = _Data(preset, splits["calibration"], splits["test"], bound, pins)
     _kept.move_to_end(place)
     return _kept[place]
+
+
+def _place_of(preset: Preset, condition: str) -> tuple[str, str, str]:
+    """Name and digest of a dataset's parameters, taken from what is kept of the same object."""
+    for place, data in _kept.items():
+        if data.preset is preset and place[:2] == (preset.name, condition):
+            return place
+    return preset.name, condition, digest(preset.parameters(condition))
 
 
 _digested: list[tuple[Preset, Specifications]] = []
@@ -217,7 +223,10 @@ def reference(observations: NDArray[Any]) -> object:
     samples = observations.reshape(len(observations), -1)
     if samples.dtype.names is not None:
         samples = samples.view(np.uint8).reshape(len(observations), -1)  # events: their bytes
-    return samples.astype(np.float64) @ np.linspace(0.0, 1.0, samples.shape[1])
+    weights = np.linspace(0.0, 1.0, samples.shape[1])
+    rows = max(_REFERENCE_VALUES // samples.shape[1], 1)
+    parts = range(0, len(samples), rows)
+    return [samples[start : start + rows].astype(np.float64) @ weights for start in parts]
 
 
 def reason_of(error: BaseException) -> str:

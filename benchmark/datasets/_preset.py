@@ -222,11 +222,12 @@ class Preset:
         scene = first(self.scene(condition, split), n)
         pattern = self.fixed_pattern(condition)
         streams = NoiseStreams.named(self.name, self.version, condition, split)
-        head = sensor.observe(scene.part(0, BATCH), pattern, streams)
+        batch = sensor.observe(scene.part(0, BATCH), pattern, streams)
         # filled batch by batch: joining a list of batches would hold everything twice
-        observations = np.empty((len(scene), *head.shape[1:]), head.dtype)
-        observations[: len(head)] = head
+        observations = np.empty((len(scene), *batch.shape[1:]), batch.dtype)
+        observations[: len(batch)] = batch
         for start in range(BATCH, len(scene), BATCH):
+            del batch  # or two would be held while the next is made
             batch = sensor.observe(scene.part(start, start + BATCH), pattern, streams)
             observations[start : start + BATCH] = batch
         return Samples(observations, scene.sun, scene.origin_px)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 
 #: A worker's data and code take 600 MB; with this it stays below 1.5 GB.
-LIMIT_BYTES = 512 * 2**20
+LIMIT_BYTES = 384 * 2**20
 
 #: Places of light other than 0 in a flattened array, and its values there.
 Places = tuple[NDArray[np.int32], Floats]
