@@ -45,6 +45,19 @@ class NotFittedError(ValueError, AttributeError):
     """A model was asked to predict before it was fitted."""
 
 
+class UnusableDataError(ValueError):
+    """Well-formed data that a method cannot work on: too few samples, or on one line.
+
+    What a model's ``fit`` raises for a calibration that does not settle it: a result of method
+    and data, as repeatable as a score. Any other error, a ValueError too, is a mistake: of the
+    caller (a wrong shape) or of the implementation.
+    """
+
+
+class UnsuitableDesignError(ValueError):
+    """A sensor's design that a method does not read; what ``for_sensor`` raises."""
+
+
 @dataclass(frozen=True)
 class SensorGeometry:
     """The sensor's nominal design: what its builder knows before any calibration.
@@ -88,10 +101,12 @@ class SensorGeometry:
     lens_distortion: tuple[float, float] | None = None
 
     def require(self, *fields: str, by: str) -> None:
-        """Raise ValueError naming the fields of this geometry that `by` needs and are None."""
+        """Raise UnsuitableDesignError naming the fields that `by` needs and that are None."""
         missing = [name for name in fields if getattr(self, name) is None]
         if missing:
-            raise ValueError(f"{by} needs the sensor geometry's {', '.join(missing)}; got None")
+            raise UnsuitableDesignError(
+                f"{by} needs the sensor geometry's {', '.join(missing)}; got None"
+            )
 
 
 @runtime_checkable
@@ -115,7 +130,10 @@ class Extractor(Protocol):
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
-        """Return the extractor with the parameters this sensor's design asks for."""
+        """Return the extractor with the parameters this sensor's design asks for.
+
+        UnsuitableDesignError where it does not read sensors of this design.
+        """
         ...
 
     def extract(self, observations: ArrayLike) -> Floats:
@@ -140,12 +158,15 @@ class Model(Protocol):
     def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
         """Return the unfitted model for this sensor's design and this kind of features.
 
-        ValueError where `kind` is not accepted or a field it takes is None.
+        UnsuitableDesignError where `kind` is not accepted or a field it takes is None.
         """
         ...
 
     def fit(self, features: ArrayLike, sun: ArrayLike) -> Self:
-        """Learn from features (N, F) and unit vectors (N, 3); NaN feature rows are left out."""
+        """Learn from features (N, F) and unit vectors (N, 3); NaN feature rows are left out.
+
+        UnusableDataError where they do not settle the model; ValueError on wrong input.
+        """
         ...
 
     def predict(self, features: ArrayLike) -> Floats:

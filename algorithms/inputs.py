@@ -1,7 +1,7 @@
 """Checks at the door: what an extractor or model was given, as an array it can work on.
 
-Every function raises ValueError saying what was expected and what came, and never changes the
-caller's array.
+Every function raises ValueError saying what was expected and what came (UnusableDataError where
+the form is right and the data are not enough), and never changes the caller's array.
 """
 
 from __future__ import annotations
@@ -12,7 +12,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from algorithms.contract import FeatureKind, Floats, NotFittedError
+from algorithms.contract import (
+    FeatureKind,
+    Floats,
+    NotFittedError,
+    UnsuitableDesignError,
+    UnusableDataError,
+)
 
 Frames = NDArray[Any]
 
@@ -121,7 +127,7 @@ def as_frontal_calibration(features: ArrayLike, sun: ArrayLike, by: str) -> tupl
     found, vectors = as_calibration(features, sun, 2, by)
     behind = vectors[:, 2] <= 0
     if behind.any():
-        raise ValueError(
+        raise UnusableDataError(
             f"{by} is a planar model: the Sun must be in front of the detector (s_z > 0); "
             f"{int(behind.sum())} calibration rows with features have s_z <= 0"
         )
@@ -129,9 +135,11 @@ def as_frontal_calibration(features: ArrayLike, sun: ArrayLike, by: str) -> tupl
 
 
 def require_samples(count: int, needed: int, by: str, why: str) -> None:
-    """Raise ValueError when fewer than `needed` samples with features are there to fit."""
+    """Raise UnusableDataError when fewer than `needed` samples with features are there to fit."""
     if count < needed:
-        raise ValueError(f"{by} needs at least {needed} samples with features ({why}); got {count}")
+        raise UnusableDataError(
+            f"{by} needs at least {needed} samples with features ({why}); got {count}"
+        )
 
 
 def require_fitted(model: object, attribute: str) -> None:
@@ -143,10 +151,10 @@ def require_fitted(model: object, attribute: str) -> None:
 
 
 def require_kind(kind: FeatureKind, accepts: Iterable[FeatureKind], by: str) -> None:
-    """Raise ValueError when `kind` is not one of the feature kinds `by` accepts."""
+    """Raise UnsuitableDesignError when `kind` is not one of the feature kinds `by` accepts."""
     kinds = sorted(accepts)
     if kind not in kinds:
-        raise ValueError(f"{by} accepts {', '.join(kinds)} features; got {kind}")
+        raise UnsuitableDesignError(f"{by} accepts {', '.join(kinds)} features; got {kind}")
 
 
 def require_positive(by: str, **parameters: float) -> None:

@@ -100,7 +100,7 @@ class BlackSunCentroid:
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
-        """Return the method for a camera; ValueError for designs without a lens.
+        """Return the method for a camera; UnsuitableDesignError for designs without a lens.
 
         Behind a mask a pixel never gets more than the bare Sun's light: nothing inverts. What a
         camera's detector does with too much light, the design does not say; behind a CCD nothing

@@ -53,7 +53,7 @@ class LineCamera:
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry, rotation: Matrix = _STRAIGHT) -> Self:
-        """Return the camera of a design; ValueError without focal length, pitch or centre."""
+        """Return the camera of a design; UnsuitableDesignError without its fields."""
         geometry.require("focal_length_mm", "pixel_pitch_mm", "centre_px", by=cls.__name__)
         return cls(
             geometry.focal_length_mm or 0.0,

@@ -88,7 +88,7 @@ class AdaptiveEnergyFilter:
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
-        """Return the filter; ValueError where the mask has many apertures or slits."""
+        """Return the filter; UnsuitableDesignError where the mask has many apertures or slits."""
         require_one_spot(geometry, cls.name)
         return cls()
 

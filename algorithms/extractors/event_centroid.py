@@ -8,7 +8,14 @@ from typing import ClassVar, Literal, Self, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
-from algorithms.contract import FeatureKind, Floats, Observation, Origin, SensorGeometry
+from algorithms.contract import (
+    FeatureKind,
+    Floats,
+    Observation,
+    Origin,
+    SensorGeometry,
+    UnsuitableDesignError,
+)
 from algorithms.inputs import as_frames, require_positive
 
 Layout = Literal["l-slit", "spot"]
@@ -89,7 +96,10 @@ class EventCentroid:
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
-        """Return the method for an L of two slits, or for one aperture; ValueError for others."""
+        """Return the method for an L of two slits, or for one aperture.
+
+        UnsuitableDesignError for other designs.
+        """
         layout, width_px, offset_px = _design(geometry, cls.name, cls.needs)
         return cls(width_px=width_px, layout=layout, offset_px=offset_px)
 
@@ -168,7 +178,10 @@ class EventWinner:
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
-        """Return the method for an L of two slits, or for one aperture; ValueError for others."""
+        """Return the method for an L of two slits, or for one aperture.
+
+        UnsuitableDesignError for other designs.
+        """
         layout, width_px, offset_px = _design(geometry, cls.name, cls.needs)
         if layout == "l-slit":
             # across the other line, whose edges light a pixel more than its width on either side
@@ -215,14 +228,18 @@ def _design(
     pitch = geometry.pixel_pitch_mm or 0.0
     if geometry.slits is not None:
         if len(geometry.slits) != 1 or sorted(geometry.line_axes or ()) != ["x", "y"]:
-            raise ValueError(
+            raise UnsuitableDesignError(
                 f"{by} reads an L of one slit along each axis; the sensor's design has "
                 f"{len(geometry.slits)} slits for lines along {geometry.line_axes}"
             )
         position, slant, width = geometry.slits[0]
         if slant != 0.0:
-            raise ValueError(f"{by} reads slits along the axes; got a slant of {slant} deg")
+            raise UnsuitableDesignError(
+                f"{by} reads slits along the axes; got a slant of {slant} deg"
+            )
         return "l-slit", width / pitch, position / pitch
     if geometry.aperture_width_mm is None or geometry.apertures is not None:
-        raise ValueError(f"{by} reads an L of two slits or one aperture; the design has neither")
+        raise UnsuitableDesignError(
+            f"{by} reads an L of two slits or one aperture; the design has neither"
+        )
     return "spot", geometry.aperture_width_mm / pitch, 0.0

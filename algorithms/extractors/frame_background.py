@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.contract import Floats
+from algorithms.row_arithmetic import medians
 
 Background = Literal["none", "border", "median"]
 """``none``: zero. ``border``: median of the outermost pixels, right while the spot keeps off the
@@ -33,4 +34,4 @@ def background_level(frames: NDArray[Any], background: Background) -> Floats:
     else:
         pixels = frames.reshape(len(frames), -1)
     with np.errstate(invalid="ignore", over="ignore"):
-        return np.asarray(np.median(pixels, axis=1), dtype=np.float64)
+        return medians(pixels)

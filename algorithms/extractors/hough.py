@@ -8,7 +8,14 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from algorithms.contract import FeatureKind, Floats, Observation, Origin, SensorGeometry
+from algorithms.contract import (
+    FeatureKind,
+    Floats,
+    Observation,
+    Origin,
+    SensorGeometry,
+    UnsuitableDesignError,
+)
 from algorithms.inputs import as_frames
 
 #: Step between the angles tried, degrees.
@@ -93,7 +100,7 @@ class HoughLines:
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
-        """Return the method for a camera; ValueError for designs without a lens.
+        """Return the method for a camera; UnsuitableDesignError for designs without a lens.
 
         Behind a mask no pixel overflows. Which cameras bloom, the design does not say; with a CMOS
         detector no line is found.
@@ -210,7 +217,7 @@ class HoughCircle:
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
-        """Return the method for a camera or one round aperture; ValueError for other designs.
+        """Return the method for a camera or one round aperture; others raise UnsuitableDesignError.
 
         In a camera's frames edges are weak beside those of saturated pixels: a tenth counts.
         """
@@ -219,9 +226,11 @@ class HoughCircle:
             return cls(edge=0.1, dark_first=True)
         for field in ("apertures", "slits", "code_bits"):
             if getattr(geometry, field) is not None:
-                raise ValueError(f"{cls.name} reads one circle; the sensor's design has {field}")
+                raise UnsuitableDesignError(
+                    f"{cls.name} reads one circle; the sensor's design has {field}"
+                )
         if geometry.aperture_shape != "round":
-            raise ValueError(
+            raise UnsuitableDesignError(
                 f"{cls.name} reads the circle of a round aperture or a camera's Sun; the sensor's "
                 f"aperture_shape is {geometry.aperture_shape}"
             )

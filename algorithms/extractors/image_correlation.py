@@ -10,7 +10,14 @@ from typing import Any, ClassVar, Literal, Self, get_args
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from algorithms.contract import FeatureKind, Floats, Observation, Origin, SensorGeometry
+from algorithms.contract import (
+    FeatureKind,
+    Floats,
+    Observation,
+    Origin,
+    SensorGeometry,
+    UnsuitableDesignError,
+)
 from algorithms.extractors.aperture_pattern import (
     PATTERN_NEEDS,
     SHARE,
@@ -131,15 +138,15 @@ class ImageCorrelation:
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
-        """Return the method with this sensor's mask; ValueError where its light is no spots.
+        """Return the method with this sensor's mask.
 
-        Correlations reach half a spot's width to each side, 8 px at most, less where the window
-        would hold light of a neighbour.
+        UnsuitableDesignError where its light is no spots. Correlations reach half a spot's width
+        to each side, 8 px at most, less where the window would hold light of a neighbour.
         """
         design = design_pattern(geometry, cls.name)
         shape = geometry.aperture_shape
         if shape is None:  # said above; for the type checker
-            raise ValueError(f"{cls.name} needs the sensor geometry's aperture_shape")
+            raise UnsuitableDesignError(f"{cls.name} needs the sensor geometry's aperture_shape")
         apertures = np.array(design["apertures_px"])
         width = float(apertures[:, 2].max()) + design["blur_px"]
         room = nearest_distance(apertures) - width - 1.0

@@ -9,7 +9,14 @@ from typing import ClassVar, Literal, Self, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
-from algorithms.contract import FeatureKind, Floats, Observation, Origin, SensorGeometry
+from algorithms.contract import (
+    FeatureKind,
+    Floats,
+    Observation,
+    Origin,
+    SensorGeometry,
+    UnsuitableDesignError,
+)
 from algorithms.extractors.single_spot import require_one_spot, spot_size_px
 from algorithms.extractors.slit_lines import SlitLines, box_means, dark_level
 from algorithms.extractors.spot_spectra import SpotSpectra
@@ -169,7 +176,9 @@ class FrameLinearPhase:
         require_one_spot(geometry, cls.name)
         shape = geometry.aperture_shape
         if shape is None:  # said above; for the type checker
-            raise ValueError(f"{cls.name} needs the sensor geometry's aperture_shape; got None")
+            raise UnsuitableDesignError(
+                f"{cls.name} needs the sensor geometry's aperture_shape; got None"
+            )
         width, margin = spot_size_px(geometry, cls.name)
         return cls(width, shape, margin)
 

@@ -8,7 +8,14 @@ from typing import ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from algorithms.contract import FeatureKind, Floats, Observation, Origin, SensorGeometry
+from algorithms.contract import (
+    FeatureKind,
+    Floats,
+    Observation,
+    Origin,
+    SensorGeometry,
+    UnsuitableDesignError,
+)
 from algorithms.inputs import as_frames, require_positive
 
 #: Mean squared distance of the lit pixels, over that of a disc, above which they are not one spot.
@@ -77,7 +84,7 @@ class MatchedProfile:
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
-        """Return the estimator; ValueError for designs without a single spot."""
+        """Return the estimator; UnsuitableDesignError for designs without a single spot."""
         require_one_spot(geometry, cls.name)
         return cls()
 
@@ -153,7 +160,7 @@ class GaussianFit:
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
-        """Return the fit; ValueError for designs without a single spot."""
+        """Return the fit; UnsuitableDesignError for designs without a single spot."""
         require_one_spot(geometry, cls.name)
         return cls()
 
@@ -179,7 +186,9 @@ class GaussianFit:
 
 
 def require_one_spot(geometry: SensorGeometry, by: str) -> None:
-    """Raise ValueError for a design whose frames hold several spots, or lines."""
+    """Raise UnsuitableDesignError for a design whose frames hold several spots, or lines."""
     for field in ("apertures", "slits", "code_bits"):
         if getattr(geometry, field) is not None:
-            raise ValueError(f"{by} reads a single spot; the sensor's design has {field}")
+            raise UnsuitableDesignError(
+                f"{by} reads a single spot; the sensor's design has {field}"
+            )

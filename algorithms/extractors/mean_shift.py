@@ -127,9 +127,10 @@ class MeanShift:
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
-        """Return the method with this sensor's mask; ValueError where its light is no spots.
+        """Return the method with this sensor's mask.
 
-        The bandwidth is a spot's width at normal incidence, or what neighbours leave of it.
+        UnsuitableDesignError where its light is no spots. The bandwidth is a spot's width at
+        normal incidence, or what neighbours leave of it.
         """
         design = design_pattern(geometry, cls.name)
         apertures = np.array(design["apertures_px"])

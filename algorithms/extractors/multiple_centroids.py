@@ -91,7 +91,10 @@ class MultipleCentroids:
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
-        """Return the method with this sensor's mask; ValueError where its light is no spots."""
+        """Return the method with this sensor's mask.
+
+        UnsuitableDesignError where its light is no spots.
+        """
         return cls(**design_pattern(geometry, cls.name))
 
     def extract(self, observations: ArrayLike) -> Floats:

@@ -61,7 +61,9 @@ class PeakPositionEstimate(SlitLines):
     start and once more when fitted: 0 where peaks are apart, 1 to 4 where A and C, B and C, A and
     D, or B and D overlap, which then have one amplitude. Shifts are found to a pixel first, as
     the maxi-min of the pattern; a step is held to half a half width. A line's median is taken
-    off. Ours: any number of slits a slant, and lines that see one slant only.
+    off. Ours: any number of slits a slant, lines that see one slant only, and two means to make
+    the steps end: which pixels count is told at the start and where they end, and steps that
+    shrink by a constant ratio are summed at once.
 
     Shapes: profiles (N, A L) of A lines, any unit, to ``(x_px, y_px)`` (N, 2), counted from the
     first pixel of a line whose middle is the sensor's.
@@ -79,7 +81,7 @@ class PeakPositionEstimate(SlitLines):
     studies: ClassVar[tuple[str, ...]] = ("Enright2007a",)
     labels: ClassVar[tuple[str, ...]] = ("fe:ppe", "alg:PPE")
     origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
+    version: ClassVar[int] = 2
     observation: ClassVar[Observation] = Observation.PROFILES
     kind: ClassVar[FeatureKind] = FeatureKind.SPOT
 
@@ -114,7 +116,8 @@ class PeakPositionEstimate(SlitLines):
         """Shifts (N A, G) of each line's slants, px, and its overlapping peaks (N A, 2)."""
         lines = self.lines(observations)
         floors = dark_level(lines)
-        halves = np.tile([slit[2] / 2.0 for slit in self.slits], (len(lines), 1))
+        # a pixel sees no image narrower than itself
+        halves = np.tile([max(slit[2], 1.0) / 2.0 for slit in self.slits], (len(lines), 1))
         return _fitted(
             lines,
             floors,
@@ -209,7 +212,7 @@ class FramePeakPositionEstimate:
     studies: ClassVar[tuple[str, ...]] = ("Enright2007a",)
     labels: ClassVar[tuple[str, ...]] = ("fe:ppe", "alg:PPE")
     origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
+    version: ClassVar[int] = 2
     observation: ClassVar[Observation] = Observation.FRAMES
     kind: ClassVar[FeatureKind] = FeatureKind.SPOT
     needs: ClassVar[tuple[str, ...]] = ()
@@ -233,7 +236,7 @@ class FramePeakPositionEstimate:
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
-        """Return the method; ValueError where the mask has many apertures or slits."""
+        """Return the method; UnsuitableDesignError where the mask has many apertures or slits."""
         require_one_spot(geometry, cls.name)
         return cls()
 

@@ -8,7 +8,14 @@ from typing import ClassVar, Literal, Self, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
-from algorithms.contract import FeatureKind, Floats, Observation, Origin, SensorGeometry
+from algorithms.contract import (
+    FeatureKind,
+    Floats,
+    Observation,
+    Origin,
+    SensorGeometry,
+    UnsuitableDesignError,
+)
 from algorithms.inputs import as_currents
 from algorithms.row_arithmetic import quotient_rows
 
@@ -175,14 +182,18 @@ class VoltageBalance:
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
         """Return the published method, readings in the order Q1 to Q4.
 
-        ValueError where the sensor has no detector plane but faces, and not four of them, or
-        where its elements lie behind a code dial.
+        UnsuitableDesignError where the sensor has no detector plane but faces, and not four of
+        them, or where its elements lie behind a code dial.
         """
         if geometry.code_bits is not None:
-            raise ValueError(f"{cls.name} reads four quadrants; the sensor has a code dial")
+            raise UnsuitableDesignError(
+                f"{cls.name} reads four quadrants; the sensor has a code dial"
+            )
         faces = geometry.face_normals
         if geometry.focal_length_mm is None and faces is not None and len(faces) != 4:
-            raise ValueError(f"{cls.name} reads four quadrants; the sensor has {len(faces)} faces")
+            raise UnsuitableDesignError(
+                f"{cls.name} reads four quadrants; the sensor has {len(faces)} faces"
+            )
         return cls()
 
     def extract(self, observations: ArrayLike) -> Floats:

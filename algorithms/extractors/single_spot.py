@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from algorithms.contract import SensorGeometry
+from algorithms.contract import SensorGeometry, UnsuitableDesignError
 from algorithms.extractors.slit_lines import edge_margin_px
 
 #: Middle of the light that silicon and sunlight make, mm: sets how far a small hole bends it.
@@ -10,13 +10,15 @@ _WAVELENGTH_MM = 5.5e-4
 
 
 def require_one_spot(geometry: SensorGeometry, by: str) -> None:
-    """Raise ValueError for a sensor whose mask casts many spots, or lines of light."""
+    """Raise UnsuitableDesignError for a sensor whose mask casts many spots, or lines of light."""
     if geometry.apertures is not None and len(geometry.apertures) > 1:
-        raise ValueError(
+        raise UnsuitableDesignError(
             f"{by} reads one spot a frame; got a mask of {len(geometry.apertures)} apertures"
         )
     if geometry.slits is not None:
-        raise ValueError(f"{by} reads one spot a frame; got a mask of slits, which cast lines")
+        raise UnsuitableDesignError(
+            f"{by} reads one spot a frame; got a mask of slits, which cast lines"
+        )
 
 
 def spot_size_px(geometry: SensorGeometry, by: str) -> tuple[float, float]:
@@ -28,7 +30,7 @@ def spot_size_px(geometry: SensorGeometry, by: str) -> tuple[float, float]:
 
     Raises
     ------
-    ValueError
+    UnsuitableDesignError
         If the design lacks a focal length, pixel pitch, aperture's width or field of view.
     """
     needed = ("focal_length_mm", "pixel_pitch_mm", "aperture_width_mm", "half_fov_deg")

@@ -15,8 +15,9 @@ from typing import Any, ClassVar, Literal, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from algorithms.contract import Floats, SensorGeometry
+from algorithms.contract import Floats, SensorGeometry, UnsuitableDesignError
 from algorithms.inputs import as_currents, require_positive
+from algorithms.row_arithmetic import medians
 
 LineAxis = Literal["x", "y"]
 Slit = tuple[float, float, float]
@@ -107,7 +108,9 @@ class SlitLines:
         )
         axes, pixels, slits = geometry.line_axes, geometry.line_pixels, geometry.slits
         if not (height and pitch and fov and axes and pixels and slits):
-            raise ValueError(f"{cls.name} needs lines of pixels behind slits; got {geometry}")
+            raise UnsuitableDesignError(
+                f"{cls.name} needs lines of pixels behind slits; got {geometry}"
+            )
         drawn = tuple(
             (
                 position / pitch,
@@ -267,7 +270,7 @@ def _edge_tangent(half_fov_deg: float) -> float:
 
 def dark_level(lines: Floats) -> Floats:
     """Median of each line (R,): dark while light covers less than half of it."""
-    return np.asarray(np.median(lines, axis=1), dtype=np.float64)
+    return medians(lines)
 
 
 def box_means(lines: Floats, width: int) -> Floats:

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from algorithms.contract import FeatureKind, Floats, Observation, Origin, SensorGeometry
 from algorithms.inputs import as_frames
+from algorithms.row_arithmetic import medians
 
 Crossing = Literal["pixel", "linear"]
 """``pixel``: the first entry above the threshold. ``linear``: interpolated to the entry before."""
@@ -111,7 +112,7 @@ class MultipleThresholdCentroid:
             usable = np.where(unusable[:, None], 0.0, profile)
             crossings.threshold_midpoints(
                 usable,
-                np.median(usable, axis=1),
+                medians(usable),
                 self.accuracy_px,
                 self.lowest,
                 self.highest,

@@ -24,6 +24,11 @@ _HALF_GAUSSIAN = math.log(2.0)
 _HALF_SINC = 1.3915573782515103  # sin(x)^2 / x^2 = 1/2
 #: Half widths beyond which an image is dark.
 _FAR = 8.0
+#: Ratios of a step to the one before from which on, and up to which, the rest of a series of such
+#: steps is taken at once.
+_SLOW, _SLOWEST = 0.3, 0.95
+#: Times that the pixels of a fit are told anew before it is taken as it is.
+_ROUNDS = 3
 #: Largest step of a shift, half widths: further out an image has no slope to go by.
 _STRIDE = 0.5
 _DEPENDENT = 1e-10  # pivot over diagonal below which a parameter is not determined
@@ -107,25 +112,35 @@ def normal_equations(  # noqa: PLR0917 - Numba takes no keyword-only ones
     column: Counts,
     kind: int,
     c: Floats,
+    around: Floats,
     found: Floats,
     matrix: Floats,
     right: Floats,
 ) -> None:
     """Fill ``Q^T Q`` (lower half) and ``Q^T d_beta`` at the parameters `found`.
 
-    Those are the amplitudes, spot i's at ``column[i]``, and then the groups' shifts.
+    Those are the amplitudes, spot i's at ``column[i]``, and then the groups' shifts. A spot's
+    pixels are those within `_FAR` of its place at the parameters `around`.
     """
     size = found.size
     matrix[:size, :size] = 0.0
     right[:size] = 0.0
     amplitudes = column.max() + 1
     q = np.zeros(size)
-    for n in range(row.size):
+    touched = np.empty(size, dtype=np.int64)
+    first = float(row.size)
+    last = -1.0
+    for i in range(places.size):
+        middle = places[i] + around[amplitudes + groups[i]]
+        first = min(first, middle - _FAR * halves[i])
+        last = max(last, middle + _FAR * halves[i])
+    for n in range(max(math.floor(first), 0), min(math.ceil(last) + 1, row.size)):
         model = 0.0
         lit = False
         for i in range(places.size):
-            u = (n - places[i] - found[amplitudes + groups[i]]) / halves[i]
-            if abs(u) <= _FAR:
+            group = amplitudes + groups[i]
+            if abs(n - places[i] - around[group]) <= _FAR * halves[i]:
+                u = (n - places[i] - found[group]) / halves[i]
                 if not lit:
                     q[:] = 0.0
                     lit = True
@@ -133,14 +148,35 @@ def normal_equations(  # noqa: PLR0917 - Numba takes no keyword-only ones
                 a = found[column[i]]
                 model += a * value
                 q[column[i]] += value
-                q[amplitudes + groups[i]] -= a * slope / halves[i]
+                q[group] -= a * slope / halves[i]
         if lit:
             beta = row[n] - floor - model
+            count = 0
             for i in range(size):
                 if q[i] != 0.0:
-                    right[i] += q[i] * beta
-                    for j in range(i + 1):
-                        matrix[i, j] += q[i] * q[j]
+                    touched[count] = i
+                    count += 1
+            for k in range(count):
+                i = touched[k]
+                right[i] += q[i] * beta
+                for m in range(k + 1):
+                    matrix[i, touched[m]] += q[i] * q[touched[m]]
+
+
+@compiled
+def same_pixels(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    places: Floats, groups: Counts, halves: Floats, amplitudes: int, one: Floats, other: Floats
+) -> bool:
+    """Whether all spots have the same pixels at two sets of parameters."""
+    for i in range(places.size):
+        first = places[i] + one[amplitudes + groups[i]]
+        second = places[i] + other[amplitudes + groups[i]]
+        far = _FAR * halves[i]
+        if math.ceil(first - far) != math.ceil(second - far):
+            return False
+        if math.floor(first + far) != math.floor(second + far):
+            return False
+    return True
 
 
 @compiled
@@ -159,15 +195,27 @@ def _iterate(  # noqa: PLR0917 - Numba takes no keyword-only ones
     matrix: Floats,
     right: Floats,
 ) -> bool:
-    """Move `found` by Gauss-Newton steps, and say whether they end near the start."""
+    """Move `found` by Gauss-Newton steps, and say whether they end near the start.
+
+    The pixels that count stay the same until the steps end, and are then told anew: told at every
+    step, one on the border may come and go for ever. Where the image is not quite the light's,
+    steps shrink by a constant ratio; once they do, the rest of their series is taken at once.
+    """
     count = column.max() + 1
     size = found.size
     start = found.copy()
+    around = found.copy()
     widest = halves.max()
+    before = np.zeros(size)
+    rounds = 0
     for _ in range(iterations):
-        normal_equations(row, floor, places, groups, halves, column, kind, c, found, matrix, right)
+        normal_equations(
+            row, floor, places, groups, halves, column, kind, c, around, found, matrix, right
+        )
         if not solve(matrix, right, size):
             return False
+        along = 0.0
+        square = 0.0
         ended = True
         for i in range(size):
             step = right[i]
@@ -175,12 +223,24 @@ def _iterate(  # noqa: PLR0917 - Numba takes no keyword-only ones
             if i >= count:
                 step = min(max(step, -_STRIDE * widest), _STRIDE * widest)
                 scale = widest
+                along += step * before[i]
+                square += before[i] * before[i]
             found[i] += step
+            before[i] = step
             ended = ended and abs(step) <= tolerance * scale
             if i >= count and not abs(found[i] - start[i]) <= 2.0 * widest:
                 return False
         if ended:
-            return True
+            rounds += 1
+            if rounds == _ROUNDS or same_pixels(places, groups, halves, count, around, found):
+                return True
+            around[:] = found
+            before[:] = 0.0
+        elif _SLOW * square < along < _SLOWEST * square:
+            more = along / (square - along)
+            for i in range(count, size):
+                found[i] += min(max(more * before[i], -_STRIDE * widest), _STRIDE * widest)
+            before[:] = 0.0
     return False
 
 

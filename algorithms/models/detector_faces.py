@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from algorithms.contract import Floats
+from algorithms.contract import Floats, UnsuitableDesignError
 
 Normals = tuple[tuple[float, float, float], ...]
 
@@ -19,7 +19,7 @@ def require_normals(face_normals: Normals, by: str) -> Floats:
 
     Raises
     ------
-    ValueError
+    UnsuitableDesignError
         Otherwise, naming `by`.
     """
     normals = np.asarray(face_normals, dtype=np.float64)
@@ -27,7 +27,7 @@ def require_normals(face_normals: Normals, by: str) -> Floats:
         unit = np.abs(np.linalg.norm(normals, axis=1) - 1.0) <= UNIT_TOLERANCE
         if unit.all() and np.linalg.svd(normals, compute_uv=False)[-1] > UNIT_TOLERANCE:
             return normals
-    raise ValueError(
+    raise UnsuitableDesignError(
         f"{by} needs at least three unit face normals that span space; got {face_normals!r}"
     )
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from algorithms.angles import sun_from_tangents, tangents_from_sun
-from algorithms.contract import FeatureKind, Floats, SensorGeometry
+from algorithms.contract import FeatureKind, Floats, SensorGeometry, UnusableDataError
 from algorithms.inputs import as_calibration, require_kind, require_positive
 
 FINE_TRACKS = 4
@@ -149,13 +149,13 @@ class DialCode:
 
         Raises
         ------
-        ValueError
+        UnusableDataError
             As `as_calibration` does, and for a Sun that is not in front of the detector.
         """
         found, vectors = as_calibration(features, sun, self.columns, by)
         behind = vectors[:, 2] <= 0
         if behind.any():
-            raise ValueError(
+            raise UnusableDataError(
                 f"{by} is a planar model: the Sun must be in front of the detector (s_z > 0); "
                 f"{int(behind.sum())} calibration rows with features have s_z <= 0"
             )
@@ -170,7 +170,7 @@ def dial_code(
     accepts: frozenset[FeatureKind],
     by: str,
 ) -> DialDesign:
-    """Return the design numbers of a code dial's models; ValueError naming what is None."""
+    """Return the design numbers of a dial's models; UnsuitableDesignError naming what is None."""
     require_kind(kind, accepts, by)
     geometry.require(*NEEDS, by=by)
     return DialDesign(
@@ -196,7 +196,7 @@ def fit_tangents(predictor: Predictor, start: Floats, sun: Floats, by: str) -> F
 
     Raises
     ------
-    ValueError
+    UnusableDataError
         Where the samples do not settle every parameter, or the fit does not converge.
     """
     from scipy.optimize import least_squares  # noqa: PLC0415 - SciPy, at the first fit only
@@ -217,7 +217,7 @@ def fit_tangents(predictor: Predictor, start: Floats, sun: Floats, by: str) -> F
 
     unsettled = f"{by}: the calibration samples do not settle the {len(start)} parameters; "
     if wanted.size < len(start):
-        raise ValueError(f"{unsettled}{len(wanted)} samples give {wanted.size} angles")
+        raise UnusableDataError(f"{unsettled}{len(wanted)} samples give {wanted.size} angles")
     solution = least_squares(
         residuals,
         start,
@@ -229,12 +229,12 @@ def fit_tangents(predictor: Predictor, start: Floats, sun: Floats, by: str) -> F
         max_nfev=MAX_EVALUATIONS,
     )
     if not solution.success or not np.isfinite(solution.x).all():
-        raise ValueError(f"{by}: the fit did not converge ({solution.message})")
+        raise UnusableDataError(f"{by}: the fit did not converge ({solution.message})")
     slopes = jacobian(solution.x)
     lengths = np.linalg.norm(slopes, axis=0)
     values = np.linalg.svd(slopes / np.where(lengths > 0, lengths, 1.0), compute_uv=False)
     if not values[-1] * WORST_CONDITION > values[0]:
-        raise ValueError(f"{unsettled}they must spread over the field of view")
+        raise UnusableDataError(f"{unsettled}they must spread over the field of view")
     return np.asarray(solution.x, dtype=np.float64)
 
 

@@ -7,20 +7,30 @@ the smoothest continuation fills it.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache, partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from algorithms.contract import Floats
+from algorithms.contract import Floats, UnusableDataError
+from algorithms.models.conditioning import WORST_CONDITION
+
+Solver = Callable[[Floats], Floats]
 
 MAX_NODES = 250_000
+"""Largest table solved for: half a thousand nodes an axis."""
 
 MAX_BAND = 16_000_000
 """Most numbers (128 MB) of a system solved as a band, up to here the faster way; LAPACK's, not
 SuperLU's."""
-"""Largest table solved for: half a thousand nodes an axis."""
+
+_INVERSE_ITERATIONS = 8
+
+_SAFE_PIVOT = 1e-3
+"""Smallest pivot of such equations from which on their condition is below the worst by far."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +61,7 @@ def convex_hull(points: Floats, by: str) -> Floats:
 
     Raises
     ------
-    ValueError
+    UnusableDataError
         If the points lie on one line.
     """
     from scipy.spatial import ConvexHull, QhullError  # noqa: PLC0415 - SciPy, at the first fit
@@ -59,7 +69,7 @@ def convex_hull(points: Floats, by: str) -> Floats:
     try:
         hull = ConvexHull(points)
     except QhullError as error:
-        raise ValueError(
+        raise UnusableDataError(
             f"{by} needs calibration samples that spread over both angles; they lie on one line"
         ) from error
     return np.asarray(hull.equations, dtype=np.float64)
@@ -86,34 +96,82 @@ def interpolation_matrix(axis: GridAxis, values: Floats) -> Any:
     )
 
 
-def difference_matrix(nodes: int, order: int) -> Any:
+@lru_cache(maxsize=16)
+def surface_roughness(rows: int, columns: int) -> Any:
+    """Sparse (nodes, nodes): the squared second differences of a table of rows x columns nodes.
+
+    Along either axis, and of both together.
+    """
+    from scipy.sparse import kron  # noqa: PLC0415 - SciPy, at the first fit only
+
+    parts = (
+        kron(_differences(rows, 1), _differences(columns, 1)),
+        kron(_differences(rows, 2), np.eye(columns)),
+        kron(np.eye(rows), _differences(columns, 2)),
+    )
+    return sum(part.T @ part for part in parts)
+
+
+@lru_cache(maxsize=16)
+def row_roughness(rows: int, terms: int) -> Any:
+    """Sparse (rows terms, rows terms): squared second differences of terms from row to row."""
+    from scipy.sparse import kron  # noqa: PLC0415 - SciPy, at the first fit only
+
+    part = kron(_differences(rows, 2), np.eye(terms))
+    return part.T @ part
+
+
+def _differences(nodes: int, order: int) -> Any:
     """Sparse (nodes - order, nodes): differences of the given order between neighbours."""
     from scipy.sparse import csr_array  # noqa: PLC0415 - SciPy, at the first fit only
 
     return csr_array(np.diff(np.eye(nodes), n=order, axis=0))
 
 
-def solve_table(design: Any, roughness: list[Any], weight: float, errors: Floats) -> Floats:
-    """Nodes (nodes, 2) that fit errors (n, 2) best, with `weight` times the squared roughness."""
-    from scipy.linalg import solveh_banded  # noqa: PLC0415 - SciPy, at the first fit only
+def solve_table(design: Any, roughness: Any, weight: float, errors: Floats, by: str) -> Floats:
+    """Nodes (nodes, 2) that fit errors (n, 2) best, with `weight` times their squared roughness.
 
-    normal = design.T @ design
-    for differences in roughness:
-        normal = normal + weight * (differences.T @ differences)
-    normal, wanted = normal.tocoo(), np.ascontiguousarray(design.T @ errors)
+    Raises
+    ------
+    UnusableDataError
+        If the samples settle the nodes so badly that rounding would show in them.
+    """
+    normal = (design.T @ design + weight * roughness).tocoo()
+    row, column = normal.coords
+    width = int((row - column).max())
+    if normal.shape[0] * (width + 1) > MAX_BAND:
+        solve, pivots = _factored_sparse(normal)
+    else:
+        solve, pivots = _factored_band(normal, width)
+    scale = np.sqrt(normal.diagonal())
+    # what the factor would be, were the diagonal brought to ones
+    pivot = float(np.min(pivots / scale**2))
+    if not (pivot > _SAFE_PIVOT or _condition(solve, scale) <= WORST_CONDITION):
+        raise UnusableDataError(
+            f"{by}: the samples settle the table too badly: its equations' condition is above "
+            f"{WORST_CONDITION:g}, so that rounding would show in its numbers"
+        )
+    return np.asarray(solve(design.T @ errors), dtype=np.float64)
+
+
+def _factored_band(normal: Any, width: int) -> tuple[Solver, Floats]:
+    """Solver of equations by a banded Cholesky factor, and the factor's squared pivots."""
+    from scipy.linalg import cho_solve_banded, cholesky_banded  # noqa: PLC0415 - at the first fit
+
     row, column = normal.coords
     below = row - column
-    width = int(below.max())
-    if normal.shape[0] * (width + 1) > MAX_BAND:
-        return _solved_sparse(normal, wanted)
     lower = below >= 0
     band = np.zeros((width + 1, normal.shape[0]))
     band[below[lower], column[lower]] = normal.data[lower]
-    solved = solveh_banded(band, wanted, overwrite_ab=True, lower=True, check_finite=False)
-    return np.asarray(solved, dtype=np.float64)
+    try:
+        factor = cholesky_banded(band, overwrite_ab=True, lower=True, check_finite=False)
+    except np.linalg.LinAlgError:  # singular but for rounding
+        return np.zeros_like, np.zeros(normal.shape[0])
+    return partial(cho_solve_banded, (factor, True), check_finite=False), factor[0] ** 2
 
 
-def _solved_sparse(normal: Any, wanted: Floats) -> Floats:
+def _factored_sparse(normal: Any) -> tuple[Solver, Floats]:
+    """`_factored_band` for equations whose band would be too wide."""
     from scipy.sparse import csc_array  # noqa: PLC0415 - SciPy, at the first fit only
     from scipy.sparse.linalg import splu  # noqa: PLC0415
 
@@ -124,7 +182,25 @@ def _solved_sparse(normal: Any, wanted: Floats) -> Floats:
         diag_pivot_thresh=0.0,
         options={"SymmetricMode": True},
     )
-    return np.asarray(factors.solve(wanted), dtype=np.float64)
+    return factors.solve, np.abs(factors.U.diagonal())[factors.perm_c]
+
+
+def _condition(solve: Solver, scale: Floats) -> float:
+    """Estimate the condition of equations brought to a diagonal of ones, by inverse iteration.
+
+    Infinite without a factor. `scale` are the roots of the diagonal. The largest eigenvalue is
+    between 1 and the number of terms a row; what decides is the smallest.
+    """
+    # a start with a share in every eigenvector, the same everywhere
+    vector = np.cos(np.arange(len(scale)) * 2.399963229728653)
+    growth = 0.0
+    for _ in range(_INVERSE_ITERATIONS):
+        vector /= np.sqrt(vector @ vector)
+        vector = scale * np.asarray(solve(scale * vector), dtype=np.float64)
+        growth = float(np.sqrt(vector @ vector))
+        if not (0.0 < growth < np.inf):
+            return np.inf
+    return growth
 
 
 def row_products(left: Any, right: Any) -> Any:
@@ -153,9 +229,9 @@ def row_products(left: Any, right: Any) -> Any:
 
 
 def require_size(unknowns: int, by: str, interval_deg: float) -> None:
-    """Raise ValueError when a table would have more than `MAX_NODES` unknowns."""
+    """Raise UnusableDataError when a table would have more than `MAX_NODES` unknowns."""
     if unknowns > MAX_NODES:
-        raise ValueError(
+        raise UnusableDataError(
             f"{by}: interval_deg={interval_deg!r} makes a table of {unknowns} unknowns over the "
             f"calibrated field; at most {MAX_NODES} are solved for"
         )

@@ -73,7 +73,7 @@ class FourierPhase:
 
     Failure: a NaN row for a NaN feature row, for fine rows without contrast, where cell and phase
     contradict each other, and where the direction would lie behind the detector. fit raises
-    ValueError where the samples do not settle every parameter.
+    UnusableDataError where the samples do not settle every parameter.
 
     Cost: 2 arc tangents, 4 sines a harmonic and 60 operations a sample.
     """
@@ -107,7 +107,7 @@ class FourierPhase:
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
-        """Return the model of the sensor's dials; ValueError where it has none."""
+        """Return the model of the sensor's dials; UnsuitableDesignError where it has none."""
         return cls(**dial_code(geometry, kind, cls.accepts, cls.name))
 
     def fit(self, features: ArrayLike, sun: ArrayLike) -> Self:

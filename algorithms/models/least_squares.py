@@ -9,13 +9,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from algorithms.angles import rotations_from_sun, sun_from_rotations
-from algorithms.contract import FeatureKind, Floats, Origin, SensorGeometry
+from algorithms.contract import FeatureKind, Floats, Origin, SensorGeometry, UnusableDataError
 from algorithms.inputs import (
     as_features,
     as_frontal_calibration,
     require_fitted,
     require_samples,
 )
+from algorithms.models.conditioning import WORST_CONDITION
 from algorithms.models.nominal_projection import (
     POSITIONS,
     nominal_projection,
@@ -26,9 +27,6 @@ TOLERANCE = 1e-15
 """Relative change of cost, step and gradient at which the fit stops: machine precision."""
 
 MAX_EVALUATIONS = 1000
-
-WORST_CONDITION = 1e10
-"""Scaled condition number of the Jacobian past which the data do not settle the parameters."""
 
 
 @dataclass
@@ -77,8 +75,8 @@ class LeastSquaresGeometry:
 
     Shapes: features ``(x, y)`` (N, 2), in px or dimensionless, to unit vectors (N, 3).
 
-    Failure: a NaN row for a NaN feature row. fit raises ValueError below 3 samples, where the
-    samples do not settle the five parameters (all in one place, or alpha swept alone), or where
+    Failure: a NaN row for a NaN feature row. fit raises UnusableDataError below 3 samples, where
+    the samples do not settle the five parameters (all in one place, or alpha swept alone), or where
     it does not converge.
 
     Cost: 5 transcendental functions and 20 operations a sample; the fit, some ten passes of
@@ -140,7 +138,7 @@ class LeastSquaresGeometry:
         )
         stretch, alpha_0, beta_0, x_zp, y_zp = solution.x
         if not solution.success or not np.isfinite(solution.x).all() or stretch <= -1:
-            raise ValueError(f"{self.name}: the fit did not converge ({solution.message})")
+            raise UnusableDataError(f"{self.name}: the fit did not converge ({solution.message})")
         _require_settled(jacobian(solution.x), self.name)
 
         self.focal_length_error_mm_ = float(stretch * self.focal_length_mm)
@@ -224,7 +222,7 @@ def _require_settled(jacobian: Floats, by: str) -> None:
         values = np.linalg.svd(jacobian / lengths, compute_uv=False)
         settled = bool(values[-1] * WORST_CONDITION > values[0])
     if not settled:
-        raise ValueError(
+        raise UnusableDataError(
             f"{by}: the calibration samples do not settle the five parameters; "
             "they must spread over the field of view"
         )

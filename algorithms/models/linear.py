@@ -54,7 +54,7 @@ class LinearFit:
     Shapes: features ``(x, y)`` (N, 2), in px or dimensionless, to unit vectors (N, 3).
 
     Failure: a NaN row for a NaN feature row or where an angle reaches 90 degrees. fit raises
-    ValueError below 2 samples or where all have the same feature.
+    UnusableDataError below 2 samples or where all have the same feature.
 
     Cost: 4 operations and 2 tangents a sample.
     """

@@ -10,7 +10,7 @@ from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
 
 from algorithms.angles import angles_from_sun, sun_from_angles
-from algorithms.contract import FeatureKind, Floats, Origin, SensorGeometry
+from algorithms.contract import FeatureKind, Floats, Origin, SensorGeometry, UnusableDataError
 from algorithms.inputs import (
     as_features,
     as_frontal_calibration,
@@ -18,15 +18,17 @@ from algorithms.inputs import (
     require_positive,
     require_samples,
 )
+from algorithms.models.conditioning import WORST_CONDITION
 from algorithms.models.error_tables import (
     GridAxis,
     convex_hull,
-    difference_matrix,
     distance_outside,
     interpolation_matrix,
     require_size,
     row_products,
+    row_roughness,
     solve_table,
+    surface_roughness,
 )
 from algorithms.models.nominal_projection import (
     POSITIONS,
@@ -79,7 +81,7 @@ class ErrorTable:
 
     Failure: a NaN row for a NaN feature row, for a nominal direction more than half an interval
     outside the convex hull of the calibration, or where an angle reaches 90 degrees. fit raises
-    ValueError below 3 samples, for samples on one line, or for a table past 250,000 nodes.
+    UnusableDataError below 3 samples, for samples on one line, or for a table past 250,000 nodes.
 
     Cost: 40 operations a sample, and 2 a facet of the hull; the fit solves one sparse system in
     A B unknowns.
@@ -116,8 +118,6 @@ class ErrorTable:
 
     def fit(self, features: ArrayLike, sun: ArrayLike) -> Self:
         """Solve for the table's nodes."""
-        from scipy.sparse import kron  # noqa: PLC0415 - SciPy, at the first fit only
-
         found, vectors = as_frontal_calibration(features, sun, self.name)
         require_samples(len(found), 3, self.name, "a region to interpolate in")
         nominal = self._nominal_deg(found)
@@ -130,14 +130,9 @@ class ErrorTable:
         across = interpolation_matrix(alpha, nominal[:, 0])
         along = interpolation_matrix(beta, nominal[:, 1])
         design = row_products(across, along)
-        every_alpha, every_beta = np.eye(alpha.nodes), np.eye(beta.nodes)
-        roughness = [
-            kron(difference_matrix(alpha.nodes, 1), difference_matrix(beta.nodes, 1)),
-            kron(difference_matrix(alpha.nodes, 2), every_beta),
-            kron(every_alpha, difference_matrix(beta.nodes, 2)),
-        ]
+        roughness = surface_roughness(alpha.nodes, beta.nodes)
         errors = angles_from_sun(vectors) - nominal
-        nodes = solve_table(design, roughness, self.smoothing, errors)
+        nodes = solve_table(design, roughness, self.smoothing, errors, self.name)
 
         self.alpha_axis_, self.beta_axis_, self.hull_ = alpha, beta, hull
         self.table_deg_ = nodes.reshape(alpha.nodes, beta.nodes, 2)
@@ -208,8 +203,8 @@ class BlendedPolynomials:
 
     Failure: a NaN row for a NaN feature row, for a nominal direction more than half an interval
     outside the convex hull of the calibration, or where an angle reaches 90 degrees. fit raises
-    ValueError below 2 (n + 1) samples, where they do not settle a polynomial on two rows, or past
-    250,000 coefficients.
+    UnusableDataError below 2 (n + 1) samples, where they do not settle a polynomial on two rows,
+    where they settle the rows so badly that rounding would show, or past 250,000 coefficients.
 
     Cost: 12 (n + 1) operations a sample, and 2 a facet of the hull; the fit solves one sparse
     system in A (n + 1) unknowns.
@@ -252,7 +247,7 @@ class BlendedPolynomials:
 
     def fit(self, features: ArrayLike, sun: ArrayLike) -> Self:
         """Solve for all rows' coefficients."""
-        from scipy.sparse import csr_array, kron  # noqa: PLC0415 - SciPy, at the first fit only
+        from scipy.sparse import csr_array  # noqa: PLC0415 - SciPy, at the first fit only
 
         found, vectors = as_frontal_calibration(features, sun, self.name)
         terms = self.degree + 1
@@ -269,18 +264,18 @@ class BlendedPolynomials:
         # Coefficients that change linearly from row to row are free of roughness: the samples
         # themselves must settle those.
         trend = np.hstack([basis, basis * nominal[:, :1] / np.abs(nominal[:, 0]).max()])
-        rank = int(np.linalg.matrix_rank(trend))
+        rank = int(np.linalg.matrix_rank(trend, rtol=1.0 / WORST_CONDITION))
         if rank < 2 * terms:
-            raise ValueError(
+            raise UnusableDataError(
                 f"{self.name} needs samples that settle {2 * terms} terms (degree {self.degree} "
                 f"on two rows); the {len(found)} given settle only {rank}"
             )
 
         across = interpolation_matrix(alpha, nominal[:, 0])
         design = row_products(across, csr_array(basis))
-        roughness = [kron(difference_matrix(alpha.nodes, 2), np.eye(terms))]
+        roughness = row_roughness(alpha.nodes, terms)
         errors = angles_from_sun(vectors) - nominal
-        solution = solve_table(design, roughness, self.smoothing, errors)
+        solution = solve_table(design, roughness, self.smoothing, errors, self.name)
 
         self.alpha_axis_, self.hull_ = alpha, hull
         self.beta_middle_deg_, self.beta_half_range_deg_ = middle, half

@@ -8,7 +8,7 @@ from typing import ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from algorithms.contract import FeatureKind, Floats, Origin, SensorGeometry
+from algorithms.contract import FeatureKind, Floats, Origin, SensorGeometry, UnsuitableDesignError
 from algorithms.inputs import as_calibration, as_features, require_fitted, require_kind
 from algorithms.row_arithmetic import normalised
 
@@ -92,7 +92,7 @@ class SixFaces:
             if (match.sum(axis=0) == 1).all() and (match.sum(axis=1) == 1).all():
                 columns = [int(column) for column in match.argmax(axis=1)]
                 return columns[:3], columns[3:]
-        raise ValueError(
+        raise UnsuitableDesignError(
             f"{self.name} needs six face normals, +-x, +-y and +-z each once; "
             f"got {self.face_normals!r}"
         )

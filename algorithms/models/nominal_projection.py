@@ -30,7 +30,7 @@ def nominal_projection(geometry: SensorGeometry, kind: FeatureKind, by: str) -> 
 
     Raises
     ------
-    ValueError
+    UnsuitableDesignError
         If `kind` is not a position or the geometry lacks a field it takes: ``focal_length_mm``
         always, ``pixel_pitch_mm`` and ``centre_px`` for spots, ``aperture_width_mm`` for balances.
     """

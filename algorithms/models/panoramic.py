@@ -8,7 +8,14 @@ from typing import ClassVar, Literal, Self, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
-from algorithms.contract import FeatureKind, Floats, Origin, SensorGeometry
+from algorithms.contract import (
+    FeatureKind,
+    Floats,
+    Origin,
+    SensorGeometry,
+    UnsuitableDesignError,
+    UnusableDataError,
+)
 from algorithms.inputs import (
     as_calibration,
     as_features,
@@ -64,8 +71,9 @@ class WeightedCells:
     Shapes: signals (N, K), in any common unit, to unit vectors (N, 3), all directions.
 
     Failure: a NaN row for a NaN feature row, and where fewer than three cells are lit or those lit
-    look along one plane. fit raises ValueError where no sample lights a cell. Albedo is taken for
-    Sun. for_sensor refuses bodies that leave directions of their field unsolved, as cubes do.
+    look along one plane. fit raises UnusableDataError where no sample lights a cell. Albedo is
+    taken for Sun. for_sensor refuses bodies that leave directions of their field unsolved, as
+    cubes do.
 
     Cost: 21 operations a cell, 30 a sample.
     """
@@ -102,7 +110,7 @@ class WeightedCells:
     def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
         """Return the model of the sensor's cells.
 
-        ValueError where, by the drawing, some direction of the field lights fewer than three.
+        UnsuitableDesignError where, by the drawing, a direction of the field lights fewer than 3.
         """
         require_kind(kind, cls.accepts, cls.name)
         geometry.require("face_normals", by=cls.name)
@@ -111,7 +119,7 @@ class WeightedCells:
         cosines = field_of_view @ np.asarray(model.face_normals, dtype=np.float64).T
         fewest = int((cosines >= model._smallest_cosine).sum(axis=1).min())
         if fewest < FEWEST_LIT:
-            raise ValueError(
+            raise UnsuitableDesignError(
                 f"{cls.name} needs three cells lit within {model.largest_incidence_deg:g} deg of "
                 f"incidence in every direction of the field; {len(model.face_normals)} faces "
                 f"leave {fewest}"
@@ -131,7 +139,7 @@ class WeightedCells:
         reference[lit] = (found * cosines).sum(axis=0)[lit] / squares[lit]
         reference[~lit] = reference[lit].mean()
         if not (reference > 0).all():
-            raise ValueError(
+            raise UnusableDataError(
                 f"{self.name}: cells turned to the Sun must have positive signals; the "
                 f"calibration gives a reference current of {reference.min():.6g}"
             )

@@ -70,7 +70,7 @@ class PeriodicCode:
     Failure: a NaN row for a NaN feature row, for fine rows without contrast, where cell and phase
     contradict each other, and where the direction would lie behind the detector. What couples the
     axes (dials turned against the reference, slits askew) is not in the equation and stays. fit
-    raises ValueError where the samples do not settle the ten parameters.
+    raises UnusableDataError where the samples do not settle the ten parameters.
 
     Cost: 2 arc tangents, 2 sines and 60 operations a sample.
     """
@@ -99,7 +99,10 @@ class PeriodicCode:
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
-        """Return the published model of the sensor's dials; ValueError where it has none."""
+        """Return the published model of the sensor's dials.
+
+        UnsuitableDesignError where it has none.
+        """
         return cls(**dial_code(geometry, kind, cls.accepts, cls.name))
 
     def fit(self, features: ArrayLike, sun: ArrayLike) -> Self:

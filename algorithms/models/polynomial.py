@@ -65,7 +65,7 @@ class AxisPolynomial:
     Shapes: features ``(x, y)`` (N, 2), in px or dimensionless, to unit vectors (N, 3).
 
     Failure: a NaN row for a NaN feature row, for one outside the calibrated range, or where an
-    angle reaches 90 degrees. fit raises ValueError below n + 1 different features an axis.
+    angle reaches 90 degrees. fit raises UnusableDataError below n + 1 different features an axis.
 
     Cost: 6 (n + 1) operations and 2 tangents a sample.
     """
@@ -162,7 +162,7 @@ class SurfacePolynomial:
     Shapes: features ``(x, y)`` (N, 2), in px or dimensionless, to unit vectors (N, 3).
 
     Failure: a NaN row for a NaN feature row, for one outside the calibrated range, or where an
-    angle reaches 90 degrees. fit raises ValueError below (n + 1)(n + 2) / 2 samples or where
+    angle reaches 90 degrees. fit raises UnusableDataError below (n + 1)(n + 2) / 2 samples or where
     they lie so that they do not settle every term.
 
     Cost: 2.5 (n + 1)(n + 2) operations and 2 tangents a sample.

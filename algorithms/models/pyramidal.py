@@ -8,7 +8,14 @@ from typing import ClassVar, Literal, Self, get_args
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from algorithms.contract import FeatureKind, Floats, Origin, SensorGeometry
+from algorithms.contract import (
+    FeatureKind,
+    Floats,
+    Origin,
+    SensorGeometry,
+    UnsuitableDesignError,
+    UnusableDataError,
+)
 from algorithms.inputs import (
     as_calibration,
     as_features,
@@ -60,7 +67,7 @@ class RegularPyramid:
 
     Failure: a NaN row for a NaN feature row, and where a face is dark: over some of the faces the
     three sums do not separate. A constant added to all faces pulls the vector towards +z. fit
-    raises ValueError where no sample lights all faces.
+    raises UnusableDataError where no sample lights all faces.
 
     Cost: 6 operations a face and one root a sample.
     """
@@ -94,7 +101,10 @@ class RegularPyramid:
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
-        """Return the published model of the sensor's pyramid; ValueError where it is none."""
+        """Return the published model of the sensor's pyramid.
+
+        UnsuitableDesignError where it is none.
+        """
         require_kind(kind, cls.accepts, cls.name)
         geometry.require("face_normals", by=cls.name)
         return cls(geometry.face_normals or ())
@@ -112,7 +122,7 @@ class RegularPyramid:
         else:
             coefficients = products / squares
         if not (coefficients > 0).all():
-            raise ValueError(
+            raise UnusableDataError(
                 f"{self.name}: the lit faces must look towards the Sun; the calibration gives "
                 f"coefficients of {coefficients.min():.6g} and more"
             )
@@ -133,7 +143,7 @@ class RegularPyramid:
         return np.asarray((signals > least[:, None]).all(axis=1))
 
     def _normals(self) -> Floats:
-        """(M, 3) normals, or ValueError unless they are a regular pyramid's."""
+        """(M, 3) normals, or UnsuitableDesignError unless they are a regular pyramid's."""
         normals = require_normals(self.face_normals, self.name)
         up = normals[:, 2]
         turns = np.sort(np.arctan2(normals[:, 1], normals[:, 0]))
@@ -141,7 +151,7 @@ class RegularPyramid:
         level = np.ptp(up) <= UNIT_TOLERANCE < up.min()
         even = np.allclose(steps, 2.0 * np.pi / len(normals), rtol=0, atol=10 * UNIT_TOLERANCE)
         if not (level and even):
-            raise ValueError(
+            raise UnsuitableDesignError(
                 f"{self.name} needs the faces of a regular pyramid around +z, equally tilted and "
                 f"evenly spaced; got {self.face_normals!r}"
             )

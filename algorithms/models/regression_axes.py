@@ -12,7 +12,8 @@ from algorithms.angles import (
     sun_from_tangents,
     tangents_from_sun,
 )
-from algorithms.contract import Floats
+from algorithms.contract import Floats, UnusableDataError
+from algorithms.models.conditioning import WORST_CONDITION
 
 Target = Literal["angle", "tangent"]
 
@@ -40,14 +41,14 @@ def feature_scaling(features: Floats, by: str) -> tuple[Floats, Floats]:
 
     Raises
     ------
-    ValueError
+    UnusableDataError
         If a column holds a single value, so that nothing can be learnt along it.
     """
     low, high = features.min(axis=0), features.max(axis=0)
     half = (high - low) / 2.0
     if not (half > 0).all():
         column = int(np.argmin(half))
-        raise ValueError(
+        raise UnusableDataError(
             f"{by} needs calibration samples that spread along both features; "
             f"all have {low[column]:.6g} in column {column}"
         )
@@ -59,13 +60,14 @@ def solve_regression(design: Floats, wanted: Floats, by: str) -> Floats:
 
     Raises
     ------
-    ValueError
-        If the samples do not settle every term (rank deficient), naming both numbers.
+    UnusableDataError
+        If the samples do not settle every term, or so badly that rounding would show, naming
+        both numbers.
     """
-    solution, _, rank, _ = np.linalg.lstsq(design, wanted)
+    solution, _, rank, _ = np.linalg.lstsq(design, wanted, rcond=1.0 / WORST_CONDITION)
     terms = design.shape[1]
     if rank < terms:
-        raise ValueError(
+        raise UnusableDataError(
             f"{by} needs at least {terms} samples at different features to fit {terms} terms; "
             f"the {len(design)} given settle only {int(rank)}"
         )

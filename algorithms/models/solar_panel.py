@@ -8,7 +8,7 @@ from typing import ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from algorithms.contract import FeatureKind, Floats, Origin, SensorGeometry
+from algorithms.contract import FeatureKind, Floats, Origin, SensorGeometry, UnsuitableDesignError
 from algorithms.inputs import as_calibration, as_features, require_fitted, require_kind
 from algorithms.models.detector_faces import UNIT_TOLERANCE, Normals, row_sums
 from algorithms.row_arithmetic import normalised
@@ -82,14 +82,14 @@ class SolarPanels:
         return normalised(np.column_stack([row_sums(lit, n) for n in self._normals().T]))
 
     def _normals(self) -> Floats:
-        """(6, 3) normals, or ValueError unless they are three square pairs."""
+        """(6, 3) normals, or UnsuitableDesignError unless they are three square pairs."""
         normals = np.asarray(self.face_normals, dtype=np.float64)
         if normals.shape == (6, 3):
             # row by row one opposite (-1), itself (1) and four at right angles (0)
             cosines = np.sort(normals @ normals.T, axis=1)
             if np.allclose(cosines, [-1.0, 0.0, 0.0, 0.0, 0.0, 1.0], rtol=0, atol=UNIT_TOLERANCE):
                 return normals
-        raise ValueError(
+        raise UnsuitableDesignError(
             f"{self.name} needs six panel normals, three opposite pairs square to each other; "
             f"got {self.face_normals!r}"
         )

@@ -103,6 +103,7 @@ def test_the_normal_equations_are_those_of_differenced_residuals(kind):
         peak_fit.numbered(kind),
         np.array(SLIT_IMAGE),
         truth,
+        truth,
         matrix,
         right,
     )
@@ -133,6 +134,38 @@ def test_the_fit_is_scipys_for_every_image_type(number, kind):
         lambda p: light - model(p, kind, shared), start, xtol=1e-14, ftol=1e-14, x_scale="jac"
     )
     np.testing.assert_allclose(shifts[0], expected.x[4:], rtol=0, atol=2e-5)
+
+
+@pytest.mark.parametrize("kind", IMAGES)
+@pytest.mark.parametrize("width", [2.0, 3.0, 5.0, 10.0])
+def test_spots_between_two_pixels_are_found_without_noise(width, kind):
+    """Two pixels tie, and one may lie on the border of those that count: the fit ends all the same.
+
+    A symmetric light about a shift that is a multiple of half a pixel is fitted at that shift.
+    """
+    slits = tuple((o, t, width) for o, t, _ in CROSSED.slits)
+    extractor = replace(CROSSED, slits=slits, image=kind)
+    steps = np.arange(-3.0, 3.1, 0.5)
+    spots = np.array([(x, y) for x in steps for y in steps])
+    n = np.arange(400)
+    lines = np.full((len(spots), 400), 25.0)
+    blur = 0.15 * width  # of the half width 0.3, as the rational image has it
+    for row, (x, y) in enumerate(spots):
+        for k, offset in enumerate(OFFSETS):
+            u = n - MIDDLE - offset - (x - y if k < 2 else x + y)
+            lines[row] += 2000.0 * (ndtr((u + width / 2) / blur) - ndtr((u - width / 2) / blur))
+    np.testing.assert_allclose(extractor.extract(lines) - MIDDLE, spots, rtol=0, atol=0.01)
+
+
+@pytest.mark.parametrize("kind", IMAGES)
+def test_a_slit_narrower_than_a_pixel_is_found_where_two_pixels_share_it(kind):
+    slits = tuple((o, t, 0.5) for o, t, _ in CROSSED.slits)
+    extractor = replace(CROSSED, slits=slits, image=kind)
+    line = np.full(400, 25.0)
+    for k, offset in enumerate(OFFSETS):  # D_x = 2, D_y = 1: half between two pixels
+        first = int(MIDDLE + offset + (1 if k < 2 else 3))
+        line[first : first + 2] += 1000.0
+    np.testing.assert_allclose(extractor.extract(line[None])[0] - MIDDLE, [2.0, 1.0], atol=1e-4)
 
 
 def test_image_type_three_is_a_and_d():

@@ -1,0 +1,25 @@
+"""Medians of rows against NumPy's own."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as arrays
+
+from algorithms.row_arithmetic import medians
+
+SHAPES = arrays.array_shapes(min_dims=2, max_dims=2, max_side=12)
+
+
+@settings(deadline=None, derandomize=True)
+@given(arrays.arrays(np.float64, SHAPES, elements=st.floats(-1e6, 1e6) | st.just(np.nan)))
+def test_medians_are_numpys_and_nan_where_a_row_holds_one(rows):
+    np.testing.assert_array_equal(medians(rows), np.median(rows, axis=1))
+
+
+@pytest.mark.parametrize("dtype", ["uint8", "uint16", "int64"])
+@pytest.mark.parametrize("columns", [1, 2, 7, 64])
+def test_the_mean_of_two_large_integers_does_not_overflow(dtype, columns):
+    top = np.iinfo(dtype).max
+    rows = np.random.default_rng(columns).integers(top - 9, top, (5, columns), dtype=dtype)
+    np.testing.assert_array_equal(medians(rows), np.median(rows.astype(float), axis=1))
