@@ -16,7 +16,7 @@ from algorithms.contract import Extractor, Floats
 from algorithms.extractors.centroid import ThresholdedCentroid
 from benchmark import datasets
 from benchmark.bounds import cramer_rao
-from benchmark.scoring import separation_deg
+from benchmark.metrics.score import separation_deg
 from benchmark.seeds import generator
 from benchmark.simulator.environment import Earth
 from benchmark.simulator.faces import FaceSensor

@@ -58,6 +58,7 @@ def cramer_rao(
     pattern: FixedPattern,
     irradiance: Irradiance,
     step_rad: float = STEP_RAD,
+    batch: int | None = None,
 ) -> Bound:
     """Bound of the direction with sunlight and stray light unknown, the unit itself known.
 
@@ -80,6 +81,8 @@ def cramer_rao(
         What is seen, by which unit, and the spread of the nuisances.
     step_rad
         Half step of the central differences.
+    batch
+        Samples evaluated together, `BATCH` by default; the numbers do not depend on it.
 
     Raises
     ------
@@ -94,9 +97,10 @@ def cramer_rao(
             "the bound needs irradiance.spread and irradiance.stray_spread above 0; got "
             f"{irradiance.spread} and {irradiance.stray_spread}"
         )
+    size = batch or BATCH
     parts = [
-        _batch(sensor, scene.part(start, start + BATCH), pattern, irradiance, step_rad)
-        for start in range(0, len(scene), BATCH)
+        _batch(sensor, scene.part(start, start + size), pattern, irradiance, step_rad)
+        for start in range(0, len(scene), size)
     ]
     covariance = np.concatenate([part[0] for part in parts])
     observable = np.concatenate([part[1] for part in parts])

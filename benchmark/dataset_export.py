@@ -33,14 +33,15 @@ from benchmark.checksums import (
     sha256,
     write_checksums,
 )
-from benchmark.content_key import samples_hash
 from benchmark.dataset_files import columns_of, read_archive, write_archive, write_table
 from benchmark.dataset_preview import preview_png
 from benchmark.datasets import Preset, Samples
+from benchmark.metrics.score import stored
 from benchmark.plan_parts import SPLITS, UnknownNameError
-from benchmark.runner_progress import ProgressCallback, silent
-from benchmark.scoring import stored
-from benchmark.store import PUBLISHED, Pin, Store
+from benchmark.results.digests import samples_hash
+from benchmark.results.pins import Pin
+from benchmark.results.store import PUBLISHED, Store
+from benchmark.running.progress import ProgressCallback, silent
 
 CARD = "card.json"
 #: Layout of an export; raised when a file or a field changes its meaning.

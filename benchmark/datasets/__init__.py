@@ -34,7 +34,7 @@ class UnknownDatasetError(LookupError, ValueError):
         self.name = name
         self.nearest = close[0] if close else None
         hint = f"; did you mean {self.nearest!r}?" if self.nearest else ""
-        super().__init__(f"no dataset {name!r}{hint} There are: {', '.join(known)}")
+        super().__init__(f"no dataset {name!r}{hint}; there are {', '.join(known)}")
 
 
 def names() -> tuple[str, ...]:

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmark.datasets._field import Split
-from benchmark.datasets._preset import SPLITS, Preset, Samples
+from benchmark.datasets._preset import DRAWN, Preset, Samples, drawn_split
+from benchmark.datasets._repeats import REPEAT
 from benchmark.seeds import generator
 from benchmark.simulator.attitude import Attitude, rotated, turned
 from benchmark.simulator.faces import Faces
@@ -139,7 +140,7 @@ class Flight:
     def card(self) -> dict[str, dict[str, Any]]:
         """By split: size, times and motion."""
         found: dict[str, dict[str, Any]] = {}
-        for split in SPLITS:
+        for split in DRAWN:
             span = self.span(split)
             orbit = self.orbit.after(span.start_day)
             sun = sun_direction(self.epoch_day + span.start_day)
@@ -185,13 +186,12 @@ class FlightPreset(Preset):
         """Where the satellite flies."""
         return cast("Flight", self.directions)
 
-    def scene(self, condition: str, split: str) -> TimedScene:
+    def _scene(self, condition: str, known: Split) -> TimedScene:
         """Return what a split looks at; no sunlight, direct or stray, reaches it in eclipse.
 
         There a window stays where it was when the Sun was last seen.
         """
         setup = self.condition(condition)
-        known = _known(split)
         leg = self.flight.leg(known)
         names = (self.name, self.version, known)
         _, stray = setup.irradiance.draw(len(leg.time_s), generator(*names, "irradiance"))
@@ -222,7 +222,11 @@ class FlightPreset(Preset):
 
     def context(self, condition: str, split: str) -> dict[str, NDArray[Any]]:
         """Return what else is known of each sample: the columns of the card's ``context``."""
-        known = _known(split)
+        if split == REPEAT:
+            test = self.context(condition, "test")
+            again = np.tile(self.repeats.chosen(len(test["time_s"])), self.repeats.passes)
+            return {name: column[again] for name, column in test.items()}
+        known = drawn_split(split)
         setup = self.condition(condition)
         leg = self.flight.leg(known)
         names = (self.name, self.version, known)
@@ -277,9 +281,3 @@ def _last_seen(lit: NDArray[np.bool_]) -> NDArray[np.int64]:
     """(N,) index of the last lit sample up to each one; of the first lit one before there is."""
     last = np.maximum.accumulate(np.where(lit, np.arange(len(lit)), -1))
     return np.asarray(np.where(last < 0, np.argmax(lit), last), dtype=np.int64)
-
-
-def _known(split: str) -> Split:
-    if split not in SPLITS:
-        raise ValueError(f"no split {split!r}; there are {', '.join(SPLITS)}")
-    return split

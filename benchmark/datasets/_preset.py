@@ -8,7 +8,7 @@ import json
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, get_args
+from typing import Any, Self, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,8 @@ from algorithms.contract import Observation, SensorGeometry
 from benchmark.bounds import STEP_RAD, Bound, cramer_rao
 from benchmark.datasets._card import differences
 from benchmark.datasets._field import Field, Split
+from benchmark.datasets._repeats import REPEAT, Repeats
+from benchmark.datasets._units import assembled, tolerances
 from benchmark.seeds import generator
 from benchmark.simulator import SIMULATOR_VERSION
 from benchmark.simulator.environment import Earth, Irradiance
@@ -27,7 +29,9 @@ from benchmark.simulator.sensor import FixedPattern, Sensor
 
 Floats = NDArray[np.float64]
 
-SPLITS: tuple[Split, ...] = get_args(Split)
+#: Splits that a field of directions is drawn for, and all there are.
+DRAWN: tuple[Split, ...] = get_args(Split)
+SPLITS: tuple[str, ...] = (*DRAWN, REPEAT)
 #: Fields of the geometry that are written even where they are None; later ones are not.
 _FIRST_GEOMETRY = frozenset(
     {
@@ -148,6 +152,13 @@ class Preset:
         In words: where the numbers come from; how light is propagated and why that is enough.
     bound_step_rad
         Half step of the bound's differences (see `benchmark.bounds.cramer_rao`).
+    repeats
+        Poses and passes of the split ``repeat``.
+    unit
+        Which unit of the sensor is seen; 0 is the standard one. `as_unit` gives the others.
+    batch
+        Samples simulated together, `BATCH` for None: memory and time only, the numbers do not
+        depend on it. Frames of a quarter megabyte are faster a few at a time.
     """
 
     name: str
@@ -163,6 +174,9 @@ class Preset:
     description: str
     regime: Mapping[str, Any] = field(default_factory=dict)
     bound_step_rad: float = STEP_RAD
+    repeats: Repeats = field(default_factory=Repeats)
+    unit: int = 0
+    batch: int | None = None
 
     @property
     def conditions(self) -> tuple[str, ...]:
@@ -182,14 +196,50 @@ class Preset:
         """Return the nominal design under this condition."""
         return self.condition(condition).geometry or self.geometry
 
+    def as_unit(self, number: int) -> Self:
+        """Return the dataset seen by another unit of its sensor; 0 is the standard one.
+
+        Its errors of assembly are others within the tolerances (`benchmark.datasets._units`), as
+        are its elements' own, and so is the noise. Suns and light are the same.
+
+        Raises
+        ------
+        ValueError
+            For a number below 0, and on a preset that is another unit already.
+        """
+        if number < 0:
+            raise ValueError(f"units are numbered from 0; got {number}")
+        if self.unit != 0:
+            raise ValueError(f"units are drawn from unit 0; this is unit {self.unit}")
+        if number == 0:
+            return self
+        names = (self.name, self.version, "unit", number)
+        setups = {
+            name: dataclasses.replace(setup, sensor=assembled(setup.sensor, *names))
+            for name, setup in self.setups.items()
+        }
+        return dataclasses.replace(self, setups=setups, unit=number)
+
+    def _of_unit(self, *names: str | int) -> tuple[str | int, ...]:
+        """Names of a random stream that every unit has of its own."""
+        return (*names, "unit", self.unit) if self.unit else names
+
     def fixed_pattern(self, condition: str) -> FixedPattern:
-        """Return the dataset's one unit as this condition shows it."""
-        return self.condition(condition).sensor.fixed_pattern(self.name, self.version, "unit")
+        """Return the unit as this condition shows it."""
+        names: tuple[str | int, ...] = (self.name, self.version, "unit")
+        if self.unit:
+            names = (*names, self.unit)
+        return self.condition(condition).sensor.fixed_pattern(*names)
 
     def scene(self, condition: str, split: str) -> Scene:
         """Sun, irradiance, stray light, windows and light from the Earth of a split."""
+        if split == REPEAT:
+            return self.repeats.scene(self._scene(condition, "test"))
+        return self._scene(condition, drawn_split(split))
+
+    def _scene(self, condition: str, known: Split) -> Scene:
+        """`scene` of a split that directions are drawn for."""
         setup = self.condition(condition)
-        known = _split(split)
         names = (self.name, self.version, known)
         sun = self.directions.sun(known, generator(*names, "sun"))
         light, stray = setup.irradiance.draw(len(sun), generator(*names, "irradiance"))
@@ -202,7 +252,7 @@ class Preset:
         return Scene(sun, light, stray, origin, albedo)
 
     def generate(self, condition: str, split: str, n: int | None = None) -> Samples:
-        """Simulate the samples of a split: ``calibration`` or ``test``.
+        """Simulate the samples of a split: ``calibration``, ``test`` or ``repeat``.
 
         Returns the same numbers whenever, wherever and beside whatever it is called.
 
@@ -219,17 +269,21 @@ class Preset:
             On an unknown condition or split, naming the known ones; on n below 1.
         """
         sensor = self.condition(condition).sensor
-        scene = first(self.scene(condition, split), n)
+        whole = self.scene(condition, split)
+        scene = first(whole, n)
         pattern = self.fixed_pattern(condition)
-        streams = NoiseStreams.named(self.name, self.version, condition, split)
-        batch = sensor.observe(scene.part(0, BATCH), pattern, streams)
+        names = self._of_unit(self.name, self.version, condition, split)
+        streams = NoiseStreams.named(*names)
+        # passes over the same poses share their light where light is remembered
+        size = len(whole) // self.repeats.passes if split == REPEAT else self.batch or BATCH
+        batch = sensor.observe(scene.part(0, size), pattern, streams)
         # filled batch by batch: joining a list of batches would hold everything twice
         observations = np.empty((len(scene), *batch.shape[1:]), batch.dtype)
         observations[: len(batch)] = batch
-        for start in range(BATCH, len(scene), BATCH):
+        for start in range(size, len(scene), size):
             del batch  # or two would be held while the next is made
-            batch = sensor.observe(scene.part(start, start + BATCH), pattern, streams)
-            observations[start : start + BATCH] = batch
+            batch = sensor.observe(scene.part(start, start + size), pattern, streams)
+            observations[start : start + size] = batch
         return Samples(observations, scene.sun, scene.origin_px)
 
     def bound(self, condition: str, split: str = "test", n: int | None = None) -> Bound:
@@ -244,6 +298,7 @@ class Preset:
             self.fixed_pattern(condition),
             setup.irradiance,
             self.bound_step_rad,
+            self.batch or BATCH,
         )
 
     def parameters(self, condition: str) -> dict[str, Any]:
@@ -261,6 +316,8 @@ class Preset:
                 "directions": self.directions,
                 "geometry": self.geometry_for(condition),
                 "bound_step_rad": self.bound_step_rad,
+                "repeats": self.repeats,
+                "unit": self.unit,
             }
         )
         return plain
@@ -272,14 +329,18 @@ class Preset:
         differs: members of ``parameters`` (an object that names its type stands whole) and, where
         it is another, the geometry; `benchmark.datasets.parameters_of` puts them together.
         """
-        geometry = _plain(self.geometry)
+        geometry, splits = _plain(self.geometry), self.directions.card()
         shared: dict[str, Any] | None = None
         conditions = {}
         for name, setup in self.setups.items():
             own = self.parameters(name)
             design = own.pop("geometry")
             shared = own if shared is None else shared
-            about = {"description": setup.description, "parameters": differences(shared, own)}
+            about = {
+                "description": setup.description,
+                "tolerances": _plain(tolerances(setup.sensor)),
+                "parameters": differences(shared, own),
+            }
             conditions[name] = about if design == geometry else {**about, "geometry": design}
         return {
             "name": self.name,
@@ -291,7 +352,7 @@ class Preset:
             "description": self.description,
             "follows": list(self.follows),
             "geometry": geometry,
-            "splits": self.directions.card(),
+            "splits": {**splits, REPEAT: self.repeats.card(splits["test"]["samples"])},
             "parameters": shared,
             "conditions": conditions,
             "regime": _plain(self.regime),
@@ -300,12 +361,14 @@ class Preset:
                 "unit": [self.name, self.version, "unit"],
                 "samples": [self.name, self.version, "<split>"],
                 "noise": [self.name, self.version, "<condition>", "<split>"],
+                "other_units": 'unit: [..., "unit", <number>]; noise: [..., "unit", <number>]',
             },
         }
 
 
-def _split(name: str) -> Split:
-    for split in SPLITS:
+def drawn_split(name: str) -> Split:
+    """Return the split of this name that directions are drawn for; ValueError otherwise."""
+    for split in DRAWN:
         if name == split:
             return split
     raise ValueError(f"no split {name!r}; there are {', '.join(SPLITS)}")

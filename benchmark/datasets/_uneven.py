@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from benchmark.datasets._field import Split
 from benchmark.datasets._preset import Preset
 from benchmark.seeds import generator
 from benchmark.simulator.scene import Scene
@@ -28,14 +29,11 @@ class UnevenPreset(Preset):
                     "does not see; it must be an UnevenFrameSensor"
                 )
 
-    def scene(self, condition: str, split: str) -> Scene:
-        """Sun, irradiance, stray light and windows of a split; slopes from a stream of their own.
-
-        ValueError on an unknown condition or split.
-        """
-        scene = super().scene(condition, split)
+    def _scene(self, condition: str, known: Split) -> Scene:
+        """Sun, irradiance, stray light and windows of a split; slopes from their own stream."""
+        scene = super()._scene(condition, known)
         irradiance = self.condition(condition).irradiance
         if not isinstance(irradiance, UnevenIrradiance):
             return scene
-        stream = generator(self.name, self.version, split, "stray-slope")
+        stream = generator(self.name, self.version, known, "stray-slope")
         return UnevenScene.of(scene, irradiance.draw_slopes(len(scene), stream))

@@ -8,6 +8,7 @@ from algorithms.contract import Observation, SensorGeometry
 from benchmark.bounds import LENS_STEP_RAD
 from benchmark.datasets._field import AngleField
 from benchmark.datasets._preset import Condition, Preset
+from benchmark.datasets._repeats import FEW
 from benchmark.simulator.assembly import Assembly
 from benchmark.simulator.blooming import BloomingSensor
 from benchmark.simulator.detectors import DarkCurrent, PixelArray
@@ -152,6 +153,8 @@ PRESET = Preset(
         ),
     },
     directions=AngleField(_HALF_FOV_DEG, steps=9, test_samples=80),
+    repeats=FEW,
+    batch=8,
     follows=("Liu2016", "Minor2010", "TrebiOllennu2001"),
     description=(
         "A webcam-like CCD camera behind a dark filter (Minor2010), without anti-blooming drains: "

@@ -8,6 +8,7 @@ from algorithms.contract import Observation, SensorGeometry
 from benchmark.datasets._field import AngleField
 from benchmark.datasets._full_frames import FullFramePreset, drawn
 from benchmark.datasets._pixel_conditions import CAREFUL, missing_apertures, pixel_conditions
+from benchmark.datasets._repeats import FEW
 from benchmark.simulator.detectors import DarkCurrent, PixelArray
 from benchmark.simulator.light import SolarDisc
 from benchmark.simulator.mask_errors import MaskErrors
@@ -67,6 +68,7 @@ PRESET = FullFramePreset(
         "missing-apertures": missing_apertures(_SENSOR),
     },
     directions=AngleField(_HALF_FOV_DEG, steps=6, test_samples=40),
+    repeats=FEW,
     follows=("Liebe2001", "Mobasser2001"),
     description=(
         "Full frames of 512 x 512 px behind 18 x 18 round holes. CCD, several hundred holes in "

@@ -44,7 +44,7 @@ _LIGHT = _GROUND.setups["nominal"].irradiance
 
 PRESET = FlightPreset(
     name="ccd-orbit",
-    version=1,
+    version=2,
     detector="CCD",
     mask="Single-Ap.",
     observation=_GROUND.observation,

@@ -8,6 +8,7 @@ from algorithms.contract import Observation, SensorGeometry
 from benchmark.datasets._cone import ConeField
 from benchmark.datasets._full_frames import FullFramePreset, drawn
 from benchmark.datasets._pixel_conditions import CAREFUL, missing_apertures, pixel_conditions
+from benchmark.datasets._repeats import FEW
 from benchmark.simulator.coded_masks import compound_eye
 from benchmark.simulator.detectors import DarkCurrent, PixelArray
 from benchmark.simulator.light import SolarDisc
@@ -70,6 +71,7 @@ PRESET = FullFramePreset(
     ),
     setups={**pixel_conditions(_SENSOR), "missing-apertures": missing_apertures(_SENSOR)},
     directions=ConeField(_HALF_FOV_DEG, calibration_samples=150, test_samples=150),
+    repeats=FEW,
     follows=("Zhang2021", "Zhang2022a"),
     description=(
         "A round pattern of 1026 holes of varying size in 37 sub-eyes over a cone of 120 deg, "

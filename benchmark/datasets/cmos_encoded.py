@@ -8,6 +8,7 @@ from algorithms.contract import Observation, SensorGeometry
 from benchmark.datasets._field import AngleField
 from benchmark.datasets._full_frames import FullFramePreset, drawn
 from benchmark.datasets._pixel_conditions import CAREFUL, missing_apertures, pixel_conditions
+from benchmark.datasets._repeats import FEW
 from benchmark.simulator.coded_masks import spacing_coded, subfield_pitch_mm
 from benchmark.simulator.detectors import DarkCurrent, PixelArray
 from benchmark.simulator.light import SolarDisc
@@ -70,6 +71,7 @@ PRESET = FullFramePreset(
     ),
     setups={**pixel_conditions(_SENSOR), "missing-apertures": missing_apertures(_SENSOR)},
     directions=AngleField(_HALF_FOV_DEG, steps=13, test_samples=150),
+    repeats=FEW,
     follows=("Wei2014", "Wang2015"),
     description=(
         "13 x 13 sub-fields over 105 x 105 deg, each with a group of three holes whose two "

@@ -8,6 +8,7 @@ from algorithms.contract import Observation, SensorGeometry
 from benchmark.bounds import LENS_STEP_RAD
 from benchmark.datasets._field import AngleField
 from benchmark.datasets._preset import Condition, Preset
+from benchmark.datasets._repeats import FEW
 from benchmark.simulator.assembly import Assembly
 from benchmark.simulator.black_sun import BlackSunSensor
 from benchmark.simulator.detectors import DarkCurrent, PixelArray
@@ -143,6 +144,8 @@ PRESET = Preset(
         ),
     },
     directions=AngleField(_HALF_FOV_DEG, steps=9, test_samples=80),
+    repeats=FEW,
+    batch=8,
     follows=("Saleem2017", "Saleem2019", "Kim2021"),
     description=(
         "A micro camera that looks into the Sun without a filter: the Sun's image is black within "

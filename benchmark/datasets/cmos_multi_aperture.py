@@ -8,6 +8,7 @@ from algorithms.contract import Observation, SensorGeometry
 from benchmark.datasets._field import AngleField
 from benchmark.datasets._full_frames import FullFramePreset, drawn
 from benchmark.datasets._pixel_conditions import CAREFUL, missing_apertures, pixel_conditions
+from benchmark.datasets._repeats import FEW
 from benchmark.simulator.detectors import DarkCurrent, PixelArray
 from benchmark.simulator.light import SolarDisc
 from benchmark.simulator.mask_errors import MaskErrors
@@ -69,6 +70,7 @@ PRESET = FullFramePreset(
         "missing-apertures": missing_apertures(_SENSOR),
     },
     directions=AngleField(_HALF_FOV_DEG, steps=9, test_samples=60),
+    repeats=FEW,
     follows=("Rufino2009b", "Rufino2012", "Mobasser2003"),
     description=(
         "Full frames of 1024 x 1024 px behind 10 x 10 round holes, the count of Rufino2009b, "

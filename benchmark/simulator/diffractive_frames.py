@@ -18,6 +18,7 @@ from benchmark.simulator.diffraction_tables import (
 )
 from benchmark.simulator.masks import Aperture
 from benchmark.simulator.optics import fresnel_number
+from benchmark.simulator.scene import Scene
 from benchmark.simulator.stray_light import UnevenFrameSensor
 
 Floats = NDArray[np.float64]
@@ -72,8 +73,9 @@ class DiffractiveFrameSensor(UnevenFrameSensor):
         far = self.window_jitter_px, self.widest_deg, self.nodes
         return (*super()._optics(), self.spectrum, far)
 
-    def _rendered(self, sun: Floats, origin_px: NDArray[np.int64]) -> Floats:
+    def _rendered(self, scene: Scene, origin_px: NDArray[np.int64]) -> Floats:
         """(N, H, W) as `FrameSensor._rendered`, diffracted."""
+        sun = scene.sun
         pitch = self.detector.pitch_mm
         columns, rows = self.window_px
         flux = np.zeros((len(sun), rows, columns))
@@ -85,7 +87,7 @@ class DiffractiveFrameSensor(UnevenFrameSensor):
             if aperture.shape == "round":
                 round_ones.setdefault(aperture.width_mm, []).append(aperture)
             else:
-                self._add_rectangle(flux, sun, corner, aperture)
+                self._add_rectangle(flux, scene, corner, aperture)
         for diameter, apertures in round_ones.items():
             self._add_round(flux, sun, corner, diameter, apertures)
         return flux
@@ -131,15 +133,17 @@ class DiffractiveFrameSensor(UnevenFrameSensor):
             ),
         )
 
-    def _add_rectangle(self, flux: Floats, sun: Floats, corner: Floats, aperture: Aperture) -> None:
+    def _add_rectangle(
+        self, flux: Floats, scene: Scene, corner: Floats, aperture: Aperture
+    ) -> None:
         from benchmark.simulator.diffraction_slit_kernels import (  # noqa: PLC0415 - Numba
             add_rectangle,
         )
 
-        projected = self.camera.project(sun)
+        projected = self.projected(scene)
         assembly = self.camera.assembly
         offset = np.array([assembly.offset_x_mm, assembly.offset_y_mm])
-        head = assembly.to_head(sun)
+        head = assembly.to_head(scene.sun)
         square = np.minimum(head[:, :2] ** 2, 1.0)
         sine2 = np.sum(square, axis=1)
         turn = np.where(sine2[:, None] > 0, square / np.where(sine2 > 0, sine2, 1.0)[:, None], 0.5)

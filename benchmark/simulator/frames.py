@@ -54,11 +54,16 @@ class FrameSensor:
         return self.camera.spot_mm(sun) / self.detector.pitch_mm + self.detector.centre_px
 
     def origins(self, sun: Floats, generator: np.random.Generator) -> NDArray[np.int64]:
-        """(N, 2) window origins: the rounded spot plus a uniform whole offset an axis."""
+        """(N, 2) window origins: the rounded spot plus a uniform whole offset an axis.
+
+        A window that would leave the detector stops at its edge.
+        """
         jitter = self.window_jitter_px
         offset = generator.integers(-jitter, jitter + 1, size=(len(sun), 2))
         half = np.array([size // 2 for size in self.window_px])
-        return np.asarray(np.rint(self.spot_px(sun)).astype(np.int64) + offset - half)
+        last = np.array([self.detector.columns, self.detector.rows]) - self.window_px
+        wanted = np.rint(self.spot_px(sun)).astype(np.int64) + offset - half
+        return np.asarray(np.clip(wanted, 0, last), dtype=np.int64)
 
     def projected(self, scene: Scene) -> ProjectedLight:
         """Where the mask's rims fall, and with how much light, before sunlight's own variation."""
@@ -76,8 +81,9 @@ class FrameSensor:
         """
         if scene.origin_px is None:
             raise ValueError("frames need the windows' origins; the scene's origin_px is None")
-        key = (*self._optics(), scene.sun.tobytes(), scene.origin_px.tobytes())
-        flux = memory.rendered(key, lambda: self._rendered(scene.sun, np.asarray(scene.origin_px)))
+        seen = scene.sun.tobytes(), scene.origin_px.tobytes()
+        key = (*self._optics(), *self._moment(scene), *seen)
+        flux = memory.rendered(key, lambda: self._rendered(scene, np.asarray(scene.origin_px)))
         flux *= scene.irradiance[:, None, None]
         return flux
 
@@ -87,14 +93,18 @@ class FrameSensor:
         size = detector.rows, detector.columns, detector.pitch_mm
         return type(self).__name__, self.camera, self.window_px, size
 
-    def _rendered(self, sun: Floats, origin_px: NDArray[np.int64]) -> Floats:
-        """(N, H, W) light of the mean sunlight from (N, 3) in windows at (N, 2)."""
+    def _moment(self, scene: Scene) -> tuple[Hashable, ...]:  # noqa: ARG002 - for sensors that drift
+        """Everything of a scene `_rendered` depends on but its Suns and windows."""
+        return ()
+
+    def _rendered(self, scene: Scene, origin_px: NDArray[np.int64]) -> Floats:
+        """(N, H, W) light of the mean sunlight in windows at (N, 2)."""
         from benchmark.simulator.rasteriser import render  # noqa: PLC0415 - Numba on demand
 
         pitch = self.detector.pitch_mm
-        light = self.camera.project(sun)
+        light = self.projected(scene)
         columns, rows = self.window_px
-        flux = np.empty((len(sun), rows, columns))
+        flux = np.empty((len(scene), rows, columns))
         render(
             flux,
             self.camera.mask.table(pitch),
@@ -125,8 +135,11 @@ class FrameSensor:
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, H, W) mean digital numbers before rounding."""
         detector = self.detector
-        electrons = np.minimum(self._electrons(scene, pattern), detector.full_well_e)
-        return np.asarray(detector.offset_dn + electrons / detector.gain_e_per_dn)
+        numbers = self._electrons(scene, pattern)
+        np.minimum(numbers, detector.full_well_e, out=numbers)
+        numbers /= detector.gain_e_per_dn
+        numbers += detector.offset_dn
+        return numbers
 
     def variance(self, expected: Floats) -> Floats:
         """Squared digital numbers: shot and read noise, and 1/12 for rounding."""

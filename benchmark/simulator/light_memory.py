@@ -57,9 +57,10 @@ class LightMemory:
         """
         if self._owner is None:
             return render()
-        if key in self._kept:
+        known = self._kept.get(key)  # asked for once: keys are long
+        if known is not None:
             self.hits += 1
-            places, values, shape = self._kept[key]
+            places, values, shape = known
             if places is None:
                 return values.reshape(shape).copy()
             light = np.zeros(shape)
@@ -78,9 +79,10 @@ class LightMemory:
         """
         if self._owner is None:
             return render()
-        if key in self._places:
+        known = self._places.get(key)
+        if known is not None:
             self.hits += 1
-            return self._places[key]
+            return known
         found = render()
         if self._has_room(found[0].nbytes + found[1].nbytes):
             self._places[key] = found

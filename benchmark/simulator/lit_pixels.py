@@ -35,6 +35,9 @@ class LitPixels:
     scene: Scene
     pattern: FixedPattern
     _pixels: NDArray[np.int64] = field(init=False)
+    _nowhere: NDArray[np.bool_] = field(init=False)
+    _gain: Floats = field(init=False)
+    _dark: Floats = field(init=False)
     _rest: Floats = field(init=False)
     _light: Floats = field(init=False)
 
@@ -56,6 +59,9 @@ class LitPixels:
         for row, mine in zip(pixels, chosen, strict=True):
             row[: len(mine)] = mine
         object.__setattr__(self, "_pixels", pixels)
+        object.__setattr__(self, "_nowhere", pixels < 0)
+        object.__setattr__(self, "_gain", detector.sunlit_e * gain[pixels])
+        object.__setattr__(self, "_dark", dark[pixels])
         object.__setattr__(self, "_rest", rest)
         object.__setattr__(self, "_light", self._rendered(self.scene.sun))
 
@@ -80,27 +86,29 @@ class LitPixels:
                 frame[top:bottom, left:right] = 0.0
         return out
 
-    def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
+    def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:  # noqa: ARG002 - the one it has
         """(N, P + 1) mean digital numbers before rounding; 0 where a row has no such pixel."""
         detector = self.sensor.detector
         same = np.array_equal(scene.sun, self.scene.sun)
         light = self._light if same else self._rendered(scene.sun)
-        electrons = np.empty((len(scene), light.shape[1] + 1))
-        stray = scene.stray[:, None]
-        electrons[:, :-1] = light * scene.irradiance[:, None] + stray
-        electrons[:, :-1] *= detector.sunlit_e * pattern["gain"].ravel()[self._pixels]
-        electrons[:, :-1] += pattern["dark_e"].ravel()[self._pixels]
-        electrons[:, -1] = scene.stray * detector.sunlit_e * self._rest[:, 1] + self._rest[:, 2]
-        np.minimum(electrons, detector.full_well_e, out=electrons)
-        numbers = detector.offset_dn + electrons / detector.gain_e_per_dn
-        numbers[:, :-1][self._pixels < 0] = 0.0
+        numbers = np.empty((len(scene), light.shape[1] + 1))
+        near = numbers[:, :-1]
+        np.multiply(light, scene.irradiance[:, None], out=near)
+        near += scene.stray[:, None]
+        near *= self._gain
+        near += self._dark
+        numbers[:, -1] = scene.stray * detector.sunlit_e * self._rest[:, 1] + self._rest[:, 2]
+        np.minimum(numbers, detector.full_well_e, out=numbers)
+        numbers /= detector.gain_e_per_dn
+        numbers += detector.offset_dn
+        near[self._nowhere] = 0.0
         numbers[self._rest[:, 0] == 0, -1] = 0.0
-        return np.asarray(numbers)
+        return numbers
 
     def variance(self, expected: Floats) -> Floats:
         """Squared digital numbers; 1 where a row has no such pixel."""
         variance = self.sensor.variance(expected)
-        variance[:, :-1][self._pixels < 0] = 1.0
+        variance[:, :-1][self._nowhere] = 1.0
         count = self._rest[:, 0]
         variance[:, -1] = np.where(count > 0, variance[:, -1] / np.maximum(count, 1.0), 1.0)
         return np.asarray(variance)

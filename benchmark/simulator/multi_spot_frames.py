@@ -121,7 +121,7 @@ class MultiSpotSensor:
         -------
         (B, 4) the boxes (as `boxes`) outside of which nothing was added.
         """
-        from benchmark.simulator.rasteriser import render  # noqa: PLC0415 - Numba on demand
+        from benchmark.simulator.rasteriser import add_apertures  # noqa: PLC0415 - Numba on demand
 
         projected = self.camera.project(one.sun)
         rims = np.ascontiguousarray(projected.rims_mm / self.detector.pitch_mm)
@@ -129,20 +129,9 @@ class MultiSpotSensor:
         if not light.any():
             return np.zeros((0, 4), dtype=np.int64)
         boxes = self._boxes(rims, pattern, 0)[0]
-        seen = np.flatnonzero((boxes[:, 1] > boxes[:, 0]) & (boxes[:, 3] > boxes[:, 2]))
-        half = np.array([self.detector.columns, self.detector.rows]) / 2.0
-        for m in seen:
-            left, right, top, bottom = (int(edge) for edge in boxes[m])
-            part = np.empty((1, bottom - top, right - left))
-            render(
-                part,
-                pattern["apertures"][m : m + 1],
-                rims,
-                light * pattern["transmission"][m],
-                np.array([[left, top]]) - half,
-            )
-            frame[top:bottom, left:right] += part[0]
-        return np.asarray(boxes[seen])
+        add_apertures(frame, (pattern["apertures"], pattern["transmission"]), rims, light, boxes)
+        lit = (boxes[:, 1] > boxes[:, 0]) & (boxes[:, 3] > boxes[:, 2])
+        return np.asarray(boxes[lit])
 
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, rows, columns) mean digital numbers before rounding."""
@@ -202,9 +191,10 @@ class MultiSpotSensor:
 
     def _places(self, frame: Floats, one: Scene, pattern: FixedPattern) -> Places:
         """Light of one sample, rendered in a dark frame that is dark again afterwards."""
+        from benchmark.simulator.rasteriser import take_light  # noqa: PLC0415 - Numba on demand
+
         boxes = self.add_light(frame, one, pattern)
-        places = np.flatnonzero(frame).astype(np.int32)
-        values = frame.reshape(-1)[places]
-        for left, right, top, bottom in boxes:
-            frame[top:bottom, left:right] = 0.0
-        return places, values
+        room = int(((boxes[:, 1] - boxes[:, 0]) * (boxes[:, 3] - boxes[:, 2])).sum())
+        places, values = np.empty(room, dtype=np.int32), np.empty(room)
+        count = take_light(frame, boxes, places, values)
+        return places[:count].copy(), values[:count].copy()

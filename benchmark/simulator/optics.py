@@ -35,6 +35,17 @@ class CoverGlass:
         """Of all plates together."""
         return float(sum(plate.thickness_mm for plate in self.plates))
 
+    def within(self, height_mm: float) -> CoverGlass:
+        """Return plates that fit under a plane `height_mm` up.
+
+        Where the mask lies on its glass and the gap is shorter than drawn, the glass is thinner.
+        """
+        share = height_mm / self.thickness_mm if self.plates else 1.0
+        if share >= 1.0:
+            return self
+        thinner = (Plate(plate.thickness_mm * share, plate.index) for plate in self.plates)
+        return CoverGlass(tuple(thinner))
+
     def displacement(self, directions: Floats, height_mm: float) -> Floats:
         """Where the ray through the origin of a plane `height_mm` up meets the detector.
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +39,12 @@ class Camera:
     sun: SolarDisc = field(default_factory=SolarDisc)
     glass: CoverGlass = field(default_factory=CoverGlass)
     assembly: Assembly = field(default_factory=Assembly)
+
+    def assembled(self, assembly: Assembly) -> Camera:
+        """Return the camera with other errors of assembly; glass yields where the gap shrinks."""
+        lowest = self.focal_length_mm + assembly.focal_length_error_mm
+        lowest -= self.mask.thickness_mm / 2.0
+        return replace(self, assembly=assembly, glass=self.glass.within(lowest))
 
     @property
     def height_mm(self) -> float:

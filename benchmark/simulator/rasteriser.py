@@ -16,6 +16,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
 #: Centre and radius of a round rim.
 Circle = tuple[float, float, float]
 #: Where a piece of boundary starts and ends, upwards: x, y, x, y.
@@ -313,3 +314,65 @@ def _render_py(
 
 
 render: Callable[[Floats, Floats, Floats, Floats, Floats], None] = njit(cache=True)(_render_py)
+
+
+def _add_apertures_py(
+    frame: Floats, mask: tuple[Floats, Floats], rims: Floats, light: Floats, boxes: Integers
+) -> None:
+    """Add the light of many apertures to a frame, each within its own box of pixels.
+
+    Parameters
+    ----------
+    frame
+        (H, W), added to.
+    mask
+        (A, 7) apertures in pixels about the frame's middle, and (A,) the light they pass.
+    rims, light
+        As of `render`, of one sample.
+    boxes
+        (A, 4) first and past-last column and row that each lights; empty ones are left out.
+    """
+    apertures, passed = mask
+    height, width = frame.shape
+    origin = np.empty((1, 2))
+    for m in range(boxes.shape[0]):
+        left, right, top, bottom = boxes[m]
+        if right <= left or bottom <= top:
+            continue
+        part = np.empty((1, bottom - top, right - left))
+        origin[0, 0], origin[0, 1] = left - width / 2.0, top - height / 2.0
+        render(part, apertures[m : m + 1], rims, light * passed[m], origin)
+        for row in range(bottom - top):
+            for column in range(right - left):
+                frame[top + row, left + column] += part[0, row, column]
+
+
+add_apertures: Callable[[Floats, tuple[Floats, Floats], Floats, Floats, Integers], None] = njit(
+    cache=True
+)(_add_apertures_py)
+
+
+def _take_light_py(
+    frame: Floats, boxes: Integers, places: NDArray[np.int32], values: Floats
+) -> int:
+    """Move what is lit within boxes (B, 4) out of a frame, which is dark there afterwards.
+
+    Writes places in the flattened frame and the light there, and returns how many.
+    """
+    width = frame.shape[1]
+    count = 0
+    for b in range(boxes.shape[0]):
+        for row in range(boxes[b, 2], boxes[b, 3]):
+            for column in range(boxes[b, 0], boxes[b, 1]):
+                light = frame[row, column]
+                if light != 0.0:
+                    places[count] = row * width + column
+                    values[count] = light
+                    frame[row, column] = 0.0
+                    count += 1
+    return count
+
+
+take_light: Callable[[Floats, Integers, NDArray[np.int32], Floats], int] = njit(cache=True)(
+    _take_light_py
+)

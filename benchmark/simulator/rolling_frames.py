@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmark.simulator.frames import FrameSensor
+from benchmark.simulator.scene import Scene
 
 Floats = NDArray[np.float64]
 
@@ -65,10 +66,10 @@ class RollingFrameSensor(FrameSensor):
         square = np.cross(axis, sun)[:, None, :]
         return np.asarray(c * sun[:, None, :] + s * square + (1.0 - c) * along * axis)
 
-    def _rendered(self, sun: Floats, origin_px: NDArray[np.int64]) -> Floats:
+    def _rendered(self, scene: Scene, origin_px: NDArray[np.int64]) -> Floats:
         """(N, H, W) as `FrameSensor._rendered`, every row at its own time."""
         if not any(self.rate_deg_s) or (self.row_time_s == 0.0 and self.instants == 1):
-            return super()._rendered(sun, origin_px)
+            return super()._rendered(scene, origin_px)
         from benchmark.simulator.rasteriser import render  # noqa: PLC0415 - Numba on demand
 
         detector, pitch = self.detector, self.detector.pitch_mm
@@ -77,12 +78,13 @@ class RollingFrameSensor(FrameSensor):
         middle = (row - detector.centre_px[1]) * self.row_time_s
         corner = np.stack([np.broadcast_to(origin_px[:, :1], row.shape), row], axis=2)
         corner = corner.reshape(-1, 2) - 0.5 - np.asarray(detector.centre_px)
-        flux = np.zeros((len(sun), rows, columns))
-        one = np.empty((len(sun) * rows, 1, columns))
+        flux = np.zeros((len(scene), rows, columns))
+        one = np.empty((len(scene) * rows, 1, columns))
+        even = np.ones(len(one)), np.zeros(len(one))
         nodes, shares = np.polynomial.legendre.leggauss(self.instants)
         for node, share in zip(nodes, shares / 2.0, strict=True):
-            seen = self.seen_at(sun, middle + node * detector.exposure_s / 2.0)
-            light = self.camera.project(seen.reshape(-1, 3))
+            seen = self.seen_at(scene.sun, middle + node * detector.exposure_s / 2.0)
+            light = self.projected(Scene(seen.reshape(-1, 3), *even))
             render(one, self.camera.mask.table(pitch), light.rims_mm / pitch, light.light, corner)
             flux += share * one.reshape(flux.shape)
         return flux

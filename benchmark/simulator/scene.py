@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,16 +41,16 @@ class Scene:
         """Return the number of samples."""
         return len(self.sun)
 
-    def part(self, start: int, stop: int) -> Scene:
+    def part(self, start: int, stop: int) -> Self:
         """Return samples `start` to `stop` (exclusive)."""
-        return Scene(
-            self.sun[start:stop],
-            self.irradiance[start:stop],
-            self.stray[start:stop],
-            None if self.origin_px is None else self.origin_px[start:stop],
-            None if self.albedo is None else self.albedo[start:stop],
-        )
+        return self.rows(slice(start, stop))
 
-    def seen_from(self, sun: Floats) -> Scene:
+    def rows(self, which: slice | NDArray[np.int64]) -> Self:
+        """Return these samples, in this order; of a kind of scene's own columns too."""
+        columns = {field.name: getattr(self, field.name) for field in fields(self)}
+        chosen = {name: column[which] for name, column in columns.items() if column is not None}
+        return replace(self, **chosen)
+
+    def seen_from(self, sun: Floats) -> Self:
         """Return the same scene with other Sun directions (N, 3)."""
         return replace(self, sun=sun)

@@ -61,11 +61,6 @@ class UnevenScene(Scene):
             scene.sun, scene.irradiance, scene.stray, scene.origin_px, scene.albedo, slope=slope
         )
 
-    def part(self, start: int, stop: int) -> UnevenScene:
-        """Return samples `start` to `stop` (exclusive)."""
-        slope = np.zeros((len(self), 2)) if self.slope is None else self.slope
-        return UnevenScene.of(super().part(start, stop), slope[start:stop])
-
 
 def add_slope(flux: Floats, scene: Scene, detector: PixelArray) -> None:
     """Add the uneven part of stray light to frames (N, H, W) in place; nothing in even scenes.

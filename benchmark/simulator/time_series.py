@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Hashable
 from dataclasses import dataclass, field, replace
 from typing import Protocol
 
@@ -37,19 +39,6 @@ class TimedScene(Scene):
 
     temperature_k: Floats
     age_years: Floats
-
-    def part(self, start: int, stop: int) -> TimedScene:
-        """Return samples `start` to `stop` (exclusive)."""
-        whole = super().part(start, stop)
-        return TimedScene(
-            whole.sun,
-            whole.irradiance,
-            whole.stray,
-            whole.origin_px,
-            whole.albedo,
-            temperature_k=self.temperature_k[start:stop],
-            age_years=self.age_years[start:stop],
-        )
 
 
 class DriftingSensor(Sensor, Protocol):
@@ -119,38 +108,40 @@ class DriftingFrameSensor(FrameSensor):
         still = FrameSensor(self.camera, replace(self.detector, dark=dark))
         return still.fixed_pattern(*names)
 
-    def assemblies(self, scene: TimedScene) -> list[Assembly]:
-        """How the head is assembled at each sample."""
+    def moved(self, scene: Scene) -> Floats:
+        """(N, 5) how the head stands at each sample beyond its design.
+
+        Tilts about x and y (deg), focal length and offsets x and y (mm): errors of assembly and
+        drift together. TypeError for a scene that is not a `TimedScene`.
+        """
+        at = timed(scene, self)
         built = self.camera.assembly
-        return [
-            replace(
-                built,
-                tilt_x_deg=built.tilt_x_deg + float(tilt_x),
-                tilt_y_deg=built.tilt_y_deg + float(tilt_y),
-                focal_length_error_mm=built.focal_length_error_mm + float(height),
-                offset_x_mm=built.offset_x_mm + float(x),
-                offset_y_mm=built.offset_y_mm + float(y),
-            )
-            for tilt_x, tilt_y, height, x, y in self.drift.moved(
-                scene.temperature_k, scene.age_years
-            )
-        ]
+        errors = (
+            built.tilt_x_deg,
+            built.tilt_y_deg,
+            built.focal_length_error_mm,
+            built.offset_x_mm,
+            built.offset_y_mm,
+        )
+        return np.asarray(errors + self.drift.moved(at.temperature_k, at.age_years))
 
     def projected(self, scene: Scene) -> ProjectedLight:
         """As `Camera.project`, every sample with its own assembly."""
         camera = self.camera
-        sun = np.empty_like(scene.sun)
-        moved = np.empty((len(scene), 3))  # offset x, y and height beyond the nominal one
-        for n, assembly in enumerate(self.assemblies(timed(scene, self))):
-            sun[n] = assembly.to_head(scene.sun[n : n + 1])[0]
-            moved[n] = assembly.offset_x_mm, assembly.offset_y_mm, assembly.focal_length_error_mm
+        moved = self.moved(scene)
+        sun = _turned_about(0, scene.sun, moved[:, 0])
+        sun = _turned_about(1, sun, moved[:, 1])
+        sun = Assembly(rotation_deg=camera.assembly.rotation_deg).to_head(sun)
         # projected by a camera at its nominal place; the rest is straight lines in the gap
         level = replace(camera, assembly=Assembly()).project(sun)
         points = camera.sun.directions(sun)
         front = points[..., 2:] > 0
         slope = np.where(front, points[..., :2] / np.where(front, points[..., 2:], 1.0), 0.0)
-        rims = level.rims_mm + moved[:, None, 2:] * slope + moved[:, None, :2]
+        rims = level.rims_mm + moved[:, None, 2:3] * slope + moved[:, None, 3:]
         return ProjectedLight(rims, level.light)
+
+    def _moment(self, scene: Scene) -> tuple[Hashable, ...]:
+        return (self.moved(scene).tobytes(),)
 
     def _electrons(self, scene: Scene, pattern: FixedPattern) -> Floats:
         electrons = super()._electrons(scene, pattern)
@@ -160,3 +151,16 @@ class DriftingFrameSensor(FrameSensor):
         for n, (x, y) in enumerate(np.asarray(scene.origin_px)):
             electrons[n] += warmer[n] * pattern["dark_e"][y : y + rows, x : x + columns]
         return electrons
+
+
+def _turned_about(axis: int, vectors: Floats, angle_deg: Floats) -> Floats:
+    """Vectors (N, 3), each turned about an axis by its own angle (N,)."""
+    angles = [math.radians(angle) for angle in angle_deg.tolist()]
+    # one by one: NumPy's cosine has other last bits on other processors
+    c = np.array([math.cos(angle) for angle in angles])
+    s = np.array([math.sin(angle) for angle in angles])
+    i, j = (axis + 1) % 3, (axis + 2) % 3
+    turned = vectors.copy()
+    turned[:, i] = c * vectors[:, i] - s * vectors[:, j]
+    turned[:, j] = s * vectors[:, i] + c * vectors[:, j]
+    return turned

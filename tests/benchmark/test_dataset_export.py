@@ -12,15 +12,15 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from benchmark.results.content_key import samples_hash
 
 from benchmark import dataset_export, datasets
 from benchmark.checksums import CHECKSUMS, ChecksumFileError, write_checksums
-from benchmark.content_key import samples_hash
 from benchmark.dataset_export import CARD, ExportError, export, verify
 from benchmark.dataset_files import read_archive, write_archive
 from benchmark.datasets import Samples, UnknownDatasetError
 from benchmark.plan_parts import UnknownNameError
-from benchmark.store import PUBLISHED, Store
+from benchmark.results.store import PUBLISHED, Store
 
 FEW = 5
 #: One of each kind of observation, with windows, several arrays, context, elements without frames.

@@ -7,13 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from benchmark.results.content_key import samples_hash
 
 from benchmark import datasets
 from benchmark.bounds import cramer_rao
-from benchmark.content_key import samples_hash
 from benchmark.datasets import Samples, data_digest
 from benchmark.datasets._flight import Flight, FlightPreset, Span
-from benchmark.scoring import score
+from benchmark.metrics.score import score
 from benchmark.simulator.environment import Earth
 from benchmark.simulator.faces import FaceSensor
 from benchmark.simulator.orbit import CircularOrbit

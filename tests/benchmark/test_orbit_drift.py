@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from benchmark import datasets
+from benchmark.simulator.assembly import Assembly
 from benchmark.simulator.drift import (
     REFERENCE_K,
     AssemblyDrift,
@@ -36,6 +37,13 @@ def ccd_sensor() -> DriftingFrameSensor:
     sensor = datasets.get("ccd-orbit").condition("nominal").sensor
     assert isinstance(sensor, DriftingFrameSensor)
     return sensor
+
+
+def assembly_at(sensor: DriftingFrameSensor, moved: np.ndarray) -> Assembly:
+    """The head of one sample, from its row of `moved`."""
+    tilt_x, tilt_y, height, x, y = map(float, moved)
+    turned = sensor.camera.assembly.rotation_deg
+    return Assembly(tilt_x, tilt_y, turned, height, x, y)
 
 
 def scene_at(sun: np.ndarray, temperature_k, age_years, origin=None) -> TimedScene:
@@ -146,10 +154,61 @@ def test_every_sample_is_projected_with_its_own_assembly() -> None:
     sun = from_angles(rng.uniform(-45, 45, 6), rng.uniform(-45, 45, 6))
     scene = scene_at(sun, rng.uniform(250, 340, 6), rng.uniform(0, 3, 6))
     light = sensor.projected(scene)
-    for n, assembly in enumerate(sensor.assemblies(scene)):
+    for n, moved in enumerate(sensor.moved(scene)):
+        assembly = assembly_at(sensor, moved)
         alone = replace(sensor.camera, assembly=assembly).project(sun[n : n + 1])
         assert light.rims_mm[:, n] == pytest.approx(alone.rims_mm[:, 0], abs=1e-12)
         assert light.light[n] == pytest.approx(alone.light[0], rel=1e-12)
+
+
+def snell_spot_mm(sun: np.ndarray, assembly: Assembly, focal_mm: float) -> np.ndarray:
+    """Where the chief ray lands behind 0.5 mm of glass (index 1.52), written out for the test."""
+    head = assembly.matrix() @ sun
+    sine = math.hypot(head[0], head[1])
+    bent = math.asin(sine / 1.52)
+    height = focal_mm + assembly.focal_length_error_mm
+    run = (height - 0.5) * sine / head[2] + 0.5 * math.tan(bent)
+    return run * head[:2] / sine + [assembly.offset_x_mm, assembly.offset_y_mm]
+
+
+def test_drift_moves_the_rendered_light_as_far_as_snell_says() -> None:
+    """Through what a data set renders: its own scene, centroids of `lit`, with and without drift.
+
+    A tenth of a pixel where drift is largest: tens of bounds.
+    """
+    preset = datasets.get("ccd-orbit")
+    sensors = [preset.condition(name).sensor for name in ("nominal", "stable")]
+    whole = preset.scene("nominal", "test")
+    lit = np.flatnonzero(whole.irradiance > 0)[::29]
+    scene = TimedScene(
+        whole.sun[lit],
+        whole.irradiance[lit],
+        whole.stray[lit],
+        np.asarray(whole.origin_px)[lit],
+        temperature_k=whole.temperature_k[lit],
+        age_years=whole.age_years[lit],
+    )
+    pixels = np.arange(64)
+    spots, expected = [], []
+    for sensor in sensors:
+        assert isinstance(sensor, DriftingFrameSensor)
+        light = sensor.lit(scene)
+        total = light.sum(axis=(1, 2))
+        x, y = light.sum(axis=1) @ pixels / total, light.sum(axis=2) @ pixels / total
+        spots.append(np.column_stack([x, y]))
+        expected.append(
+            [
+                snell_spot_mm(sun, assembly_at(sensor, moved), sensor.camera.focal_length_mm)
+                for sun, moved in zip(scene.sun, sensor.moved(scene), strict=True)
+            ]
+        )
+    seen = (spots[0] - spots[1]) * 0.013
+    told = np.asarray(expected[0]) - np.asarray(expected[1])
+    assert np.abs(told).max() > 0.1 * 0.013
+    assert np.abs(seen - told).max() < 1e-3 * 0.013
+    # the frames themselves, noise and all, differ too
+    frames = [preset.generate(name, "test", 40).observations for name in ("nominal", "stable")]
+    assert (frames[0] != frames[1]).mean() > 0.01
 
 
 def test_exact_geometry_inverts_the_drifting_assembly() -> None:
@@ -166,7 +225,8 @@ def test_exact_geometry_inverts_the_drifting_assembly() -> None:
     sun = from_angles(rng.uniform(-45, 45, 50), rng.uniform(-45, 45, 50))
     scene = scene_at(sun, rng.uniform(250, 340, 50), rng.uniform(0, 3, 50))
     spot = sensor.projected(scene).rims_mm[0, :, 0]
-    for n, assembly in enumerate(sensor.assemblies(scene)):
+    for n, moved in enumerate(sensor.moved(scene)):
+        assembly = assembly_at(sensor, moved)
         height = camera.focal_length_mm + assembly.focal_length_error_mm
         head = np.array(
             [spot[n, 0] - assembly.offset_x_mm, spot[n, 1] - assembly.offset_y_mm, height]
