@@ -1,7 +1,8 @@
 """The survey's assessment of its methods beside what was measured, property by property.
 
 Definitions and limits stand in `benchmark.assessment_definitions`; the numbers come from stored
-results alone (sweeps, scores and running times), so that asking measures nothing.
+results alone (sweeps and scores) and from running times of this machine where there are any, so
+that asking measures nothing.
 """
 
 from __future__ import annotations
@@ -16,17 +17,16 @@ from typing import TYPE_CHECKING, Any
 
 from algorithms.contract import Extractor
 from algorithms.discovery import discover_extractors
-from benchmark import sweeps
 from benchmark.assessment_definitions import DEFINITIONS, Definition
 from benchmark.assessment_measures import SCORED, SWEPT, Unmeasured
-from benchmark.scoring import stored
-from benchmark.store import PUBLISHED, Store
+from benchmark.metrics.score import stored
+from benchmark.results.store import PUBLISHED, Store
+from benchmark.results.tables import Row
+from benchmark.running.times import Pipeline, Time
 from survey_data.tables import load
 
 if TYPE_CHECKING:
     import pandas as pd
-
-Row = dict[str, Any]
 
 #: How far survey and measurement are apart, from the difference of their scores.
 AGREEMENTS = ("agrees", "near", "opposed")
@@ -89,6 +89,7 @@ class Assessed:
 def assess(
     directory: Path | str = PUBLISHED,
     extractors: Mapping[str, type[Extractor]] | None = None,
+    times: Mapping[Pipeline, Time] | None = None,
 ) -> list[Assessed]:
     """Assess every method of the survey's table from published results.
 
@@ -98,15 +99,17 @@ def assess(
         Of the published files.
     extractors
         Implementations by name; those installed by default.
+    times
+        Of this machine (`benchmark.running.times`); none by default.
 
     Raises
     ------
-    StoreError
-        When a stored line cannot be read.
+    StoreError, ComponentsError
+        When a stored file cannot be read.
     """
     known = discover_extractors() if extractors is None else extractors
     store = Store(directory)
-    evidence = _Evidence(sweeps.read(directory), store.rows(), store.runs())
+    evidence = _Evidence(store.swept(), store.rows(), list((times or {}).values()))
     tables = load()
     table = tables.feature_assessment
     methods = list(dict.fromkeys(zip(table["extractor"], table["case_study"], strict=True)))
@@ -178,7 +181,7 @@ def totals_of(assessed: Iterable[Assessed]) -> dict[str, int]:
 class _Evidence:
     swept: Sequence[Row]
     scores: Sequence[Row]
-    runs: Mapping[str, Row]
+    times: Sequence[Time]
 
 
 def _verdict(
@@ -219,20 +222,15 @@ def _values(definition: Definition, name: str, evidence: _Evidence) -> list[tupl
     if definition.source == "scores":
         rows = [row for row in evidence.scores if row["extractor"] == name]
         return SCORED[definition.name](rows)
-    return _cost([row for row in evidence.scores if row["extractor"] == name], evidence.runs)
+    return _cost([time for time in evidence.times if time.extractor == name])
 
 
-def _cost(scores: Sequence[Row], runs: Mapping[str, Row]) -> list[tuple[float, str]]:
-    """Return the median ratio of extraction to the reference over all cells with a time."""
-    timed = [runs[row["key"]] for row in scores if row["key"] in runs]
-    ratios = [
-        run["extract_s"] / run["reference_s"]
-        for run in timed
-        if run.get("extract_s") and run.get("reference_s")
-    ]
+def _cost(times: Sequence[Time]) -> list[tuple[float, str]]:
+    """Return the median ratio of extraction to the reference over the data sets with a time."""
+    ratios = {time.dataset: time.extract_ratio for time in times if time.extract_ratio is not None}
     if not ratios:
-        raise Unmeasured("no published running time")
-    return [(median(ratios), f"{len(ratios)} cells")]
+        raise Unmeasured("no times of this machine: `sunatlas leaderboard times`")
+    return [(median(ratios.values()), f"{len(ratios)} data sets")]
 
 
 def _taxonomy(method: str, aliases: pd.DataFrame) -> str:

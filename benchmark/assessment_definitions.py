@@ -27,8 +27,8 @@ class Definition:
     name
         Of the property, as in ``survey_data/feature_assessment.csv``.
     source
-        Stored results it is read from: ``sweeps``, ``scores`` or ``runs``; empty where it is not
-        measured.
+        What it is read from: stored ``sweeps`` or ``scores``, or ``times`` of the machine that
+        is asked; empty where it is not measured.
     measure
         The quantity in words; where it is not measured, the reason.
     unit
@@ -97,10 +97,11 @@ def _applies(name: str, which: str) -> Definition:
 _ALL = (
     Definition(
         "Computationally light",
-        "runs",
-        "median over the published cells of extraction time over the time of one weighted sum of "
-        "the same observations in NumPy, both measured side by side. A plain first moment is three "
-        "such sums. Machines and runs move the ratio by tens of per cent, the limits lie a factor "
+        "times",
+        "median over the data sets, in their first condition, of extraction time over the time of "
+        "one weighted sum of the same observations in NumPy, both measured side by side on the "
+        "machine that is asked (`sunatlas leaderboard times`). A plain first moment is three such "
+        "sums. Machines and runs move the ratio by tens of per cent, the limits lie a factor "
         "of ten apart",
         "weighted sums",
         3.0,

@@ -192,7 +192,8 @@ def _applies(wanted: Callable[[str, str, str], bool], rows: Sequence[Row]) -> Va
         if row["condition"] == CONDITION
         and row["status"] == "ok"
         and row["rms_deg"] is not None
-        and row["found_fraction"] >= FOUND
+        and row["availability"] is not None
+        and row["availability"] >= FOUND
         and wanted(row["dataset"], row["mask"], row["detector"])
     ]
     return [min(good)] if good else [(math.nan, "")]

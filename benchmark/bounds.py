@@ -52,7 +52,7 @@ class Bound:
         return float(np.sqrt(np.mean(seen**2))) if seen.size else math.nan
 
 
-def cramer_rao(
+def cramer_rao(  # noqa: PLR0917 - memory and time come last
     sensor: Sensor,
     scene: Scene,
     pattern: FixedPattern,

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import product
 
-from algorithms.contract import Extractor, Model
+from algorithms.contract import Extractor, Model, UnsuitableDesignError
 from benchmark.plan_parts import Parts, Preset, UnknownNameError, installed
 
 Names = str | Iterable[str] | None
@@ -14,15 +14,17 @@ Names = str | Iterable[str] | None
 
 @dataclass(frozen=True, order=True)
 class Cell:
-    """One thing to measure, by names."""
+    """One thing to measure, by names, and by the number of the sensor's unit."""
 
     dataset: str
     condition: str
     extractor: str
     model: str
+    unit: int = 0
 
     def __str__(self) -> str:
-        return f"{self.dataset}/{self.condition}/{self.extractor}/{self.model}"
+        name = f"{self.dataset}/{self.condition}/{self.extractor}/{self.model}"
+        return f"{name}/unit {self.unit}" if self.unit else name
 
 
 @dataclass(frozen=True, order=True)
@@ -156,7 +158,7 @@ def _refusal(build: Callable[[], object]) -> str:
     """Why an implementation does not fit a design that has all the fields it needs, or empty."""
     try:
         build()
-    except ValueError as error:  # what for_sensor raises for another architecture
+    except UnsuitableDesignError as error:
         return str(error)
     except Exception:  # noqa: BLE001 - a defect: planned, so that its row says what failed
         return ""

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from algorithms.contract import Extractor, Floats, Model, Observation, SensorGeometry
 
-SPLITS = ("calibration", "test")
+SPLITS = ("calibration", "test", "repeat")
 
 
 class Samples(Protocol):
@@ -48,6 +48,19 @@ class Bound(Protocol):
     @property
     def observable(self) -> NDArray[Any]:
         """Where (N,) the direction is observable at all."""
+        ...
+
+
+class Repeats(Protocol):
+    """How often the poses of the split ``repeat`` are observed."""
+
+    @property
+    def passes(self) -> int:
+        """Times every pose is observed, pass after pass."""
+        ...
+
+    def chosen(self, test_samples: int) -> NDArray[Any]:
+        """Places (P,) of the poses in a test split of so many samples."""
         ...
 
 
@@ -89,20 +102,29 @@ class Preset(Protocol):
         """Names of the conditions."""
         ...
 
+    @property
+    def repeats(self) -> Repeats:
+        """Poses and passes of the split ``repeat``."""
+        ...
+
     def geometry_for(self, condition: str) -> SensorGeometry:
         """Return the nominal design under one condition."""
         ...
 
-    def generate(self, condition: str, split: str) -> Samples:
-        """Generate the samples of one split."""
+    def as_unit(self, number: int) -> Preset:
+        """Return the dataset as another unit of its sensor sees it; 0 is the standard one."""
+        ...
+
+    def generate(self, condition: str, split: str, n: int | None = None) -> Samples:
+        """Generate the samples of one split, or the first n of them."""
         ...
 
     def parameters(self, condition: str) -> Mapping[str, Any]:
         """Everything the numbers depend on."""
         ...
 
-    def bound(self, condition: str, split: str = "test") -> Bound:
-        """Cramer-Rao bound of each sample of a split."""
+    def bound(self, condition: str, split: str = "test", n: int | None = None) -> Bound:
+        """Cramer-Rao bound of each sample of a split, or of the first n of them."""
         ...
 
 

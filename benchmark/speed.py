@@ -15,7 +15,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 
-from benchmark.runner_timing import one_thread
+from benchmark.running.threads import one_thread
 from benchmark.speed_frames import frames_of_a_coded_mask, frames_of_many_spots
 from benchmark.speed_light import diffracted_frames, light_of_frames
 from benchmark.speed_references import centroid_of_spots, rendering_of_frames

@@ -26,7 +26,7 @@ from algorithms.extractors.template import TemplateMatch
 from algorithms.extractors.threshold_average import MultipleThresholdCentroid
 from benchmark import datasets
 from benchmark.reference_frames import REFERENCE_SETS, ReferenceSet
-from benchmark.runner_timing import one_thread
+from benchmark.running.threads import one_thread
 from benchmark.speed_extractors_limits import (
     NOISE_RANGE_E,
     OPENCV,

@@ -1,0 +1,1 @@
+"""The leaderboard: what the results say, ranked, shown and checked."""

@@ -1,0 +1,14 @@
+"""Bring a record up to date: `python -m benchmark.leaderboard DIRECTORY WORKERS`.
+
+For processes that measure with other numerical kernels; people call `sunatlas leaderboard update`.
+"""
+
+from __future__ import annotations
+
+import sys
+
+from benchmark.leaderboard.update import update
+
+if __name__ == "__main__":
+    directory, workers = sys.argv[1:]
+    update(directory, int(workers))

@@ -1,0 +1,151 @@
+"""The leaderboard: every pipeline on every dataset and condition, best first, against the bound.
+
+All of it follows from stored scores: `build` renders nothing and gives the same for the same rows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from itertools import groupby
+from typing import Any
+
+from benchmark.leaderboard.ranking import UNITS, order, ranks, spreads
+from benchmark.metrics.rings import field_error
+from benchmark.metrics.score import METRIC_VERSION
+from benchmark.plan import Cell
+from benchmark.results.components import SCHEMA_VERSION
+from benchmark.results.store import Store
+
+Row = Mapping[str, Any]
+#: Times of one pipeline on a machine, by (dataset, extractor, model).
+Times = Mapping[tuple[str, str, str], Mapping[str, float | None]]
+
+UNTIMED: Mapping[str, float | None] = {"latency_us": None, "time_ratio": None}
+
+
+def build(
+    rows: Iterable[Row], times: Times | None = None, swept: Iterable[Row] = ()
+) -> dict[str, Any]:
+    """Rank stored rows within each dataset and condition.
+
+    Parameters
+    ----------
+    rows
+        Rows of all units, as `Store.rows(unit=None)` gives them.
+    times
+        Of this machine; none by default.
+    swept
+        Rows of sweeps as `Store.swept` gives them.
+
+    Returns
+    -------
+    dict
+        ``schema``, ``metric_version``, ``units`` (how many leading pipelines are scored on),
+        ``sweeps`` (as given) and ``datasets``: each with ``name``, ``version``, ``detector``,
+        ``mask``, ``conditions`` and ``rows``. A row is the score row of the standard unit with
+        ``rank`` (null where there is no error), ``tied`` (whether others share it), the errors of
+        all units ``unit_rms_deg`` and their range ``low_deg`` to ``high_deg`` (null where one unit
+        is scored), and times.
+    """
+    every = list(rows)
+    spread = spreads(every)
+    standard = sorted((row for row in every if row["unit"] == 0), key=_order)
+    datasets = []
+    for name, of_dataset in groupby(standard, key=lambda row: row["dataset"]):
+        listed: list[dict[str, Any]] = []
+        conditions = []
+        for condition, group in groupby(of_dataset, key=lambda row: row["condition"]):
+            conditions.append(condition)
+            board = list(group)
+            found = [spread.get(_cell(row)) for row in board]
+            for row, known, (rank, tied) in zip(board, found, ranks(board, found), strict=True):
+                errors = list(known.errors_deg) if known else None
+                complete = known is not None and None not in known.errors_deg
+                listed.append(
+                    {
+                        "rank": rank,
+                        "tied": tied,
+                        **row,
+                        "unit_rms_deg": errors,
+                        "low_deg": known.low_deg if known and complete else None,
+                        "high_deg": known.high_deg if known and complete else None,
+                        **_times(row, times),
+                    }
+                )
+        datasets.append(
+            {
+                "name": name,
+                "version": listed[0]["dataset_version"],
+                "detector": listed[0]["detector"],
+                "mask": listed[0]["mask"],
+                "conditions": conditions,
+                "rows": listed,
+            }
+        )
+    return {
+        "schema": SCHEMA_VERSION,
+        "metric_version": METRIC_VERSION,
+        "units": UNITS,
+        "datasets": datasets,
+        "sweeps": list(swept),
+    }
+
+
+def board_of(store: Store, times: Times | None = None) -> dict[str, Any]:
+    """Build the leaderboard of a store.
+
+    Raises
+    ------
+    StoreError, ComponentsError
+        For a file that cannot be read.
+    """
+    return build(store.rows(unit=None), times, store.swept())
+
+
+def at_field(rows: Iterable[Row], half_angle_deg: int) -> list[dict[str, Any]]:
+    """Rank rows of a leaderboard by their error over a cone about the boresight.
+
+    Rows get ``field_deg`` (the half angle) and ``field_rms_deg``
+    (`benchmark.metrics.rings.field_error`), and ranks by it within each dataset and condition.
+    Ranks are not shared: rings have no spread. Rows without an error over the field come last.
+
+    Raises
+    ------
+    ValueError
+        For an angle that is no ring's edge.
+    """
+    judged = [
+        {
+            **row,
+            "field_deg": half_angle_deg,
+            "field_rms_deg": field_error(row, half_angle_deg),
+            "tied": False,
+        }
+        for row in rows
+    ]
+    judged.sort(key=lambda row: (*_board(row), *_by_field(row)))
+    for _, group in groupby(judged, key=_board):
+        for place, row in enumerate(group, start=1):
+            row["rank"] = place if row["field_rms_deg"] is not None else None
+    return judged
+
+
+def _by_field(row: Row) -> tuple[Any, ...]:
+    return order({**row, "rms_deg": row["field_rms_deg"]}, (row["extractor"], row["model"]))
+
+
+def _order(row: Row) -> tuple[Any, ...]:
+    return (*_board(row), *order(row, (row["extractor"], row["model"])))
+
+
+def _board(row: Row) -> tuple[str, str]:
+    return row["dataset"], row["condition"]
+
+
+def _cell(row: Row) -> Cell:
+    return Cell(row["dataset"], row["condition"], row["extractor"], row["model"])
+
+
+def _times(row: Row, times: Times | None) -> Mapping[str, float | None]:
+    known = (times or {}).get((row["dataset"], row["extractor"], row["model"]), UNTIMED)
+    return {name: known.get(name) for name in UNTIMED}

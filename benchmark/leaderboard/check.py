@@ -1,0 +1,257 @@
+"""Is the committed record what its code and data give? Every difference named by its cell.
+
+First what needs no measuring: the page follows from the record, and the record is of the code as
+it is. Then everything is measured again from nothing, with this machine's numerical kernels and
+with those of an older processor.
+"""
+
+from __future__ import annotations
+
+import math
+import tempfile
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from benchmark.leaderboard import ranking
+from benchmark.leaderboard.board import board_of
+from benchmark.leaderboard.pages import PAGE, page
+from benchmark.leaderboard.update import update
+from benchmark.metrics.rings import RINGS
+from benchmark.metrics.score import METRICS, RING_DIGITS, SIGNIFICANT_DIGITS
+from benchmark.plan import Cell, cells
+from benchmark.plan_parts import Parts, installed
+from benchmark.results.components import current
+from benchmark.results.store import PUBLISHED, Store
+from benchmark.results.tables import Row
+from benchmark.running import pinning
+from benchmark.running.kernels import update_with_older_kernels
+from benchmark.running.progress import ProgressCallback
+from benchmark.sweeps import run as sweeps
+
+#: On the pinned environment scores are identical. Elsewhere another order of a sum changes last
+#: bits, which a fit may amplify a million times before it is refused.
+RELATIVE_TOLERANCE = 1e-4
+#: A share may differ by one sample at the edge of being found.
+_SAMPLES_TOLERANCE = 1.5
+
+_RING_COLUMNS = frozenset(ring.column for ring in RINGS)
+
+NATIVE, OLDER = "native", "older"
+KERNELS = (NATIVE, OLDER)
+
+
+@dataclass(frozen=True, order=True)
+class Difference:
+    """One place where the committed record is not what it should be.
+
+    Attributes
+    ----------
+    file
+        Name of the file.
+    cell
+        What it is about: ``dataset/condition/extractor/model/column`` and the like.
+    committed
+        What stands there.
+    measured
+        What should.
+    kernels
+        With which it was measured; empty where nothing was.
+    """
+
+    file: str
+    cell: str
+    committed: str
+    measured: str
+    kernels: str = ""
+
+    def __str__(self) -> str:
+        how = f" ({self.kernels} kernels)" if self.kernels else ""
+        return f"{self.file}: {self.cell} is {self.committed}, should be {self.measured}{how}"
+
+
+def check(
+    directory: Path | str = PUBLISHED,
+    workers: int = 1,
+    progress: ProgressCallback | None = None,
+    *,
+    stored_only: bool = False,
+    kernels: Collection[str] = KERNELS,
+    parts: Parts | None = None,
+) -> list[Difference]:
+    """Compare the committed record with what it follows from; an empty list is a pass.
+
+    Parameters
+    ----------
+    directory
+        Of the record.
+    workers, progress
+        As `benchmark.running.run.run`.
+    stored_only
+        Leave out measuring again: only whether the record is of the code as it is, and the page
+        of the record.
+    kernels
+        To measure with: ``native``, ``older`` or both.
+    parts
+        Datasets and implementations; what is installed by default, and what older kernels take.
+
+    Raises
+    ------
+    StoreError, ComponentsError
+        When a stored file cannot be read.
+    NoOlderKernelsError, OlderRunError
+        When there are no older kernels to measure with, or their process failed.
+    """
+    store = Store(directory)
+    known = parts or installed()
+    found = [*_outdated(store, known), *_derived(store)]
+    for kind in () if stored_only else kernels:
+        with tempfile.TemporaryDirectory() as temporary:
+            if kind == OLDER:
+                update_with_older_kernels(Path(temporary), workers)
+            else:
+                update(temporary, workers, progress, parts=parts)
+            found += compare(store, Store(temporary), kind)
+    return list(dict.fromkeys(found))
+
+
+def compare(committed: Store, measured: Store, kernels: str = "") -> list[Difference]:
+    """Compare two records: accuracy within the tolerance, all else that is no digest exactly."""
+    found = [
+        *_moved_data(committed, measured, kernels),
+        *compare_scores(committed.scores(), measured.scores(), _counts(measured), kernels),
+    ]
+    for place, one, other in sweeps.differences(committed.swept(), measured.swept()):
+        found.append(Difference(committed.sweeps_path.name, place, one, other, kernels))
+    return found
+
+
+def compare_scores(
+    committed: Mapping[Cell, Row],
+    measured: Mapping[Cell, Row],
+    samples: Mapping[tuple[str, str], int],
+    kernels: str = "",
+) -> list[Difference]:
+    """Compare scores by cell.
+
+    Parameters
+    ----------
+    committed, measured
+        Numbers by cell.
+    samples
+        Of the test split, by dataset and condition: what a share is of.
+    kernels
+        That were measured with.
+    """
+    found = []
+    for cell in sorted(committed.keys() | measured.keys()):
+        file = f"scores/{cell.dataset}.csv"
+        known, row = committed.get(cell), measured.get(cell)
+        if known is None or row is None:
+            states = ("absent", "measured") if known is None else ("present", "not measured")
+            found.append(Difference(file, f"{cell}/row", *states, kernels))
+            continue
+        count = samples.get((cell.dataset, cell.condition), 1)
+        for column, value in row.items():
+            if not _close(column, known.get(column), value, row, count):
+                told = str(known.get(column)), str(value)
+                found.append(Difference(file, f"{cell}/{column}", *told, kernels))
+    return found
+
+
+def _close(column: str, one: Any, other: Any, measured: Row, samples: int) -> bool:
+    if column not in METRICS or one is None or other is None or one == other:
+        return bool(one == other)
+    if column in ("availability", "false_sun"):
+        allowed = _SAMPLES_TOLERANCE / samples
+    elif column.startswith("bias_"):  # a mean near zero is as uncertain as the spread it averages
+        allowed = RELATIVE_TOLERANCE * (measured["rms_deg"] or 0.0)
+    else:
+        allowed = RELATIVE_TOLERANCE * abs(other)
+    return bool(abs(one - other) <= max(allowed, 1.01 * _last_digit(column, other)))
+
+
+def _last_digit(column: str, value: float) -> float:
+    """Return the step between neighbours of a number as it is stored."""
+    digits = RING_DIGITS if column in _RING_COLUMNS else SIGNIFICANT_DIGITS
+    return float(10.0 ** (math.floor(math.log10(abs(value))) + 1 - digits)) if value else 0.0
+
+
+def _counts(store: Store) -> dict[tuple[str, str], int]:
+    return {place[:2]: pin.n for place, pin in store.pins().items() if place[2] == "test"}
+
+
+def _moved_data(committed: Store, measured: Store, kernels: str) -> Iterator[Difference]:
+    """Find data and bounds that are not as pinned, each named by its dataset."""
+    pinned, made = committed.pins(), measured.pins()
+    file = committed.pins_path.name
+    for place in sorted(pinned.keys() | made.keys()):
+        one, other = pinned.get(place), made.get(place)
+        cell = "/".join(place)
+        if one is None or other is None:
+            states = ("absent", "pinned") if one is None else ("present", "no such data")
+            yield Difference(file, cell, *states, kernels)
+        elif said := one.difference(other):
+            version = one.version
+            told = (
+                f"{said}: the data changed and the version did not"
+                if version == other.version
+                else f"version {other.version}"
+            )
+            yield Difference(file, cell, f"version {version}", told, kernels)
+
+
+def _outdated(store: Store, parts: Parts) -> Iterator[Difference]:
+    """Find components of other code than there is, and what is stored too much or too little."""
+    stored = store.components()
+    now = current(parts, sweeps.series_digests())
+    for name, one, other in stored.differences(now):
+        if one or _is_used(name, store):
+            yield Difference(
+                store.components_path.name,
+                name,
+                one or "absent",
+                "another: code or parameters have changed" if other else "not installed",
+            )
+    scores = store.scores()
+    planned = cells(parts=parts)
+    held = {cell: scores[cell] for cell in planned if cell in scores}
+    wanted = {*planned, *ranking.leading(held, ranking.compared(parts))}
+    yield from _unlike("scores", {str(c) for c in scores}, {str(c) for c in wanted}, "planned")
+    pinned = {"/".join(place) for place in store.pins()}
+    there = {"/".join(place) for place in pinning.places(parts)}
+    yield from _unlike(store.pins_path.name, pinned, there, "pinned")
+    for point, state in sweeps.unplanned(store.swept(), parts.extractors):
+        told = ("absent", "planned") if state == "absent" else ("present", "not planned")
+        yield Difference(store.sweeps_path.name, f"{point}/row", *told)
+
+
+def _is_used(name: str, store: Store) -> bool:
+    """Say whether a component that is not stored should be; one that nothing reads need not."""
+    return not store.components_path.is_file() or name == "harness"
+
+
+def _unlike(
+    file: str, stored: Iterable[str], wanted: Iterable[str], word: str
+) -> Iterator[Difference]:
+    here, there = set(stored), set(wanted)
+    for name in sorted(here ^ there):
+        told = ("absent", word) if name in there else ("present", f"not {word}")
+        yield Difference(file, f"{name}/row", *told)
+
+
+def _derived(store: Store) -> Iterator[Difference]:
+    path = store.directory / PAGE
+    text = path.read_bytes().decode("utf-8", errors="replace") if path.is_file() else ""
+    expected = page(board_of(store))
+    if not text:
+        yield Difference(PAGE, "file", "absent", "written by `sunatlas leaderboard update`")
+        return
+    here, should = text.splitlines(), expected.splitlines()
+    for number, (one, other) in enumerate(zip(here, should, strict=False), start=1):
+        if one != other:
+            yield Difference(PAGE, f"line {number}", one, other)
+            return
+    if text != expected:
+        yield Difference(PAGE, "file", f"{len(here)} lines", f"{len(should)} lines")

@@ -1,0 +1,223 @@
+"""The leaderboard as files: JSON, CSV, Markdown and HTML of everything, and a page of the best.
+
+Only the page of the best is committed; the others are derived where they are wanted.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator, Mapping
+from itertools import groupby
+from pathlib import Path
+from typing import Any
+
+from benchmark.leaderboard.ranking import LEADING, UNITS
+from benchmark.results.files import replace
+from benchmark.results.tables import spelt, text_of
+from benchmark.sweeps import tables as sweep_tables
+
+Board = Mapping[str, Any]
+Row = Mapping[str, Any]
+
+#: Name of the committed page.
+PAGE = "leaderboard.md"
+
+_TEMPLATES = Path(__file__).parent / "templates"
+_SHARES = ("availability", "false_sun")
+
+#: Columns of the Markdown and HTML tables; the JSON and CSV files have all.
+SHOWN = {
+    "rank": "#",
+    "extractor": "Extractor",
+    "model": "Model",
+    "rms_deg": "RMS (deg)",
+    "units": f"{UNITS} units (deg)",
+    "median_deg": "Median (deg)",
+    "p997_deg": "99.7 % (deg)",
+    "repeatability_deg": "Repeatability (deg)",
+    "bound_deg": "Bound (deg)",
+    "over_bound": "RMS / bound",
+    "over_bound_se": "±",
+    "availability": "Answered",
+    "false_sun": "False Suns",
+}
+_BEST = ("rank", "rms_deg", "units", "over_bound", "repeatability_deg", *_SHARES)
+
+LEGEND = (
+    "Error is the angle between the predicted and the true direction of the Sun, over the test "
+    "samples whose direction is observable and that are answered; answered is the share of the "
+    "observable ones, false Suns that of the others that are answered all the same. Bound is the "
+    "Cramer-Rao lower bound of that angle (root mean square) over the same samples, ± the standard "
+    "error of the ratio to it. Repeatability is the standard deviation of answers to a pose held "
+    "still. Pipelines that answer less than 95 % rank behind all others. The first "
+    f"{LEADING} of a data set's nominal condition are scored on {UNITS} units built alike: where "
+    "their errors overlap those of the first of them they share its rank, marked =."
+)
+
+
+def shown(column: str, row: Row) -> str:
+    """Spell a column of a row for people: four significant digits, a dash for none."""
+    if column == "rank":
+        return "-" if row["rank"] is None else f"{row['rank']}{'=' if row['tied'] else ''}"
+    if column == "units":
+        if row["low_deg"] is None:
+            return "-"
+        return f"{_digits(row['low_deg'])} to {_digits(row['high_deg'])}"
+    value = row[column]
+    if value is None:
+        return "-"
+    if column in _SHARES:
+        return f"{value:.3f}"
+    return _digits(value) if isinstance(value, float) else str(value)
+
+
+def _digits(value: float) -> str:
+    return f"{value:#.4g}".rstrip(".")
+
+
+def page(board: Board) -> str:
+    """Write the best pipelines of each data set's first condition as one table in Markdown."""
+    names = [SHOWN[column] for column in _BEST]
+    about = (
+        "The first three of each data set's first condition, and who shares their rank. All "
+        "pipelines and conditions: `sunatlas leaderboard render --out DIRECTORY`, or the page and "
+        "the API of `sunatlas serve`."
+    )
+    lines = [
+        "# Leaderboard",
+        "",
+        LEGEND,
+        "",
+        about,
+        "",
+        f"| Data set | Pipeline | {' | '.join(names)} |",
+        "| --- | --- |" + " ---: |" * len(names),
+    ]
+    for dataset in board["datasets"]:
+        first = _first_condition(dataset)
+        for row in dataset["rows"]:
+            if row["condition"] == first and row["rank"] is not None and row["rank"] <= 3:
+                texts = (shown(column, row) for column in _BEST)
+                pipeline = f"{row['extractor']} + {row['model']}"
+                lines.append(f"| {dataset['name']} | {pipeline} | {' | '.join(texts)} |")
+    return "\n".join(lines) + "\n"
+
+
+def _first_condition(dataset: Mapping[str, Any]) -> str:
+    conditions: list[str] = dataset["conditions"]
+    return "nominal" if "nominal" in conditions else conditions[0]
+
+
+def to_json(board: Board) -> str:
+    """Write everything as JSON whose lists of objects have an item a line."""
+    return _one_row_a_line(board) + "\n"
+
+
+def _one_row_a_line(value: object) -> str:
+    if isinstance(value, list) and value and isinstance(value[0], Mapping):
+        return "[\n" + ",\n".join(_one_row_a_line(item) for item in value) + "\n]"
+    if isinstance(value, Mapping) and any(isinstance(item, list) for item in value.values()):
+        fields = (f"{json.dumps(name)}: {_one_row_a_line(item)}" for name, item in value.items())
+        return "{" + ", ".join(fields) + "}"
+    return json.dumps(value, ensure_ascii=False, allow_nan=False)
+
+
+def to_csv(board: Board) -> str:
+    """Write every row and column as CSV; errors of the units joined by semicolons."""
+    rows = [row for dataset in board["datasets"] for row in dataset["rows"]]
+    leading = ("rank", "tied", "dataset", "condition", "extractor", "model")
+    every = dict.fromkeys(column for row in rows for column in row)
+    columns = [*leading, *(column for column in every if column not in leading)]
+    return text_of(columns, ({**row, "unit_rms_deg": _joined(row)} for row in rows))
+
+
+def _joined(row: Row) -> str | None:
+    errors = row["unit_rms_deg"]
+    return None if errors is None else ";".join(spelt(error) for error in errors)
+
+
+def to_markdown(board: Board) -> str:
+    """Write every table as Markdown."""
+    lines = ["# Leaderboard", "", LEGEND, ""]
+    for dataset, conditions in _tables(board):
+        architecture = f"{dataset['detector']}, {dataset['mask']}; version {dataset['version']}"
+        lines += [f"## {dataset['name']}", "", architecture, ""]
+        for condition in conditions:
+            lines += [f"### {condition['name']}", "", f"| {' | '.join(SHOWN.values())} |"]
+            lines.append("|" + "|".join(_rule(column) for column in SHOWN) + "|")
+            for row in condition["rows"]:
+                lines.append(f"| {' | '.join(text for _, text in row['columns'])} |")
+            unscored = [row for row in condition["rows"] if row["reason"]]
+            lines += ["", *(f"No score: {row['cell']}: {row['reason']}" for row in unscored)]
+            lines += [""] if unscored else []
+    lines += sweep_tables.to_markdown(board["sweeps"])
+    return "\n".join(lines).rstrip("\n") + "\n"
+
+
+def _rule(column: str) -> str:
+    return " --- " if column in ("extractor", "model") else " ---: "
+
+
+def to_html(board: Board) -> str:
+    """Write every table as a page that needs nothing beside itself."""
+    import jinja2  # noqa: PLC0415 - only writing the page needs it
+
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(_TEMPLATES),
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        undefined=jinja2.StrictUndefined,
+        keep_trailing_newline=True,
+    )
+    template = environment.get_template("leaderboard.html")
+    return template.render(
+        tables=list(_tables(board)),
+        headings=SHOWN,
+        legend=LEGEND,
+        sweeps=sweep_tables.tables(board["sweeps"]),
+        unmeasured=sweep_tables.unmeasured(board["sweeps"]),
+        sweep_legend=sweep_tables.LEGEND,
+    )
+
+
+def _tables(board: Board) -> Iterator[tuple[Mapping[str, Any], list[dict[str, Any]]]]:
+    """Give each dataset with its conditions; of each, rows of (column, text) that share its id."""
+    for dataset in board["datasets"]:
+        conditions = [
+            {
+                "name": condition,
+                "rows": [
+                    {
+                        "cell": "/".join(
+                            str(row[name])
+                            for name in ("dataset", "condition", "extractor", "model")
+                        ),
+                        "reason": row["reason"],
+                        "columns": [(column, shown(column, row)) for column in SHOWN],
+                    }
+                    for row in rows
+                ],
+            }
+            for condition, rows in groupby(dataset["rows"], key=lambda row: row["condition"])
+        ]
+        yield dataset, conditions
+
+
+#: Files that can be derived, and how.
+FORMATS: Mapping[str, Callable[[Board], str]] = {
+    "leaderboard.json": to_json,
+    "leaderboard.csv": to_csv,
+    "leaderboard.md": to_markdown,
+    "leaderboard.html": to_html,
+    "sweeps.csv": lambda board: sweep_tables.to_csv(board["sweeps"]),
+}
+
+
+def render(board: Board, out: Path) -> list[Path]:
+    """Write every derived file to a directory, each whole or not at all; returns their paths."""
+    paths = []
+    for name, made in FORMATS.items():
+        replace(out / name, made(board))
+        paths.append(out / name)
+    return paths

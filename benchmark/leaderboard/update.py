@@ -1,0 +1,122 @@
+"""Bringing the published record up to date: scores, pins, sweeps, and the page beside them."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable
+from pathlib import Path
+
+from benchmark.leaderboard import ranking
+from benchmark.leaderboard.board import board_of
+from benchmark.leaderboard.pages import PAGE, page
+from benchmark.plan import Cell, cells
+from benchmark.plan_parts import Parts, installed
+from benchmark.results.components import Components, current
+from benchmark.results.files import replace
+from benchmark.results.record import opened
+from benchmark.results.store import PUBLISHED, Store
+from benchmark.running import pinning
+from benchmark.running.progress import ProgressCallback
+from benchmark.running.run import Summary, failures, measure_missing
+from benchmark.sweeps import run as sweeps
+
+
+def update(
+    directory: Path | str = PUBLISHED,
+    workers: int = 1,
+    progress: ProgressCallback | None = None,
+    *,
+    scheduler: str | None = None,
+    parts: Parts | None = None,
+) -> Summary:
+    """Measure what is missing or out of date, drop what is no longer planned, write the record.
+
+    Every planned pipeline is scored on the standard unit of every dataset, then the leading ones
+    of each dataset's first condition on other units; every dataset's data are pinned, whether
+    anything can be measured on them or not; every extractor is measured on the reference features
+    (`benchmark.sweeps`).
+
+    Parameters
+    ----------
+    directory
+        Of the record.
+    workers
+        Number of processes; the numbers do not depend on it.
+    progress, scheduler, parts
+        As `benchmark.running.run.run`.
+
+    Raises
+    ------
+    UnversionedChangeError
+        Where data or bounds changed while their dataset's version did not. The first samples are
+        looked at before anything is measured; nothing is written.
+    StoreLockedError, DaskMissingError, RunInterruptedError
+        As `benchmark.running.run.run`.
+    """
+    if workers < 1:
+        raise ValueError(f"workers must be at least 1; got {workers}")
+    started = time.perf_counter()
+    known = parts or installed()
+    components = current(known, sweeps.series_digests())
+    planned = cells(parts=known)
+    store = Store(directory)
+    with opened(store) as record:
+        pinned = store.pins()
+        _require_heads(store, known, components)
+
+        def measured(wanted: Iterable[Cell]) -> int:
+            return measure_missing(
+                wanted,
+                record,
+                components,
+                known,
+                workers=workers,
+                progress=progress,
+                scheduler=scheduler,
+            )
+
+        computed = measured(planned)
+        pins = pinning.pin_missing(record, components, known, workers=workers, progress=progress)
+        pinning.require_versions(pinned, record.pins.values())
+        others = ranking.leading(
+            {cell: record.scores[cell] for cell in planned}, ranking.compared(known)
+        )
+        computed += measured(others)
+        swept = sweeps.sweep_missing(
+            record, components, known.extractors, workers=workers, progress=progress
+        )
+        wanted = frozenset((*planned, *others))
+        record.drop(scores=wanted.__contains__, pins=frozenset(pinning.places(known)).__contains__)
+        record.write(components, sweeps.ordered)
+        failed = failures(sorted(wanted), record)
+    write_page(store)
+    return Summary(
+        store=store.directory,
+        planned=len(wanted),
+        already_stored=len(wanted) - computed,
+        computed=computed,
+        failed=failed,
+        warnings=(
+            *pins.warnings,
+            *(f"sweep {point} failed: {reason}" for point, reason in swept.failed),
+        ),
+        seconds=time.perf_counter() - started,
+    )
+
+
+def _require_heads(store: Store, parts: Parts, components: Components) -> None:
+    """Compare the first samples of datasets whose code has changed with what was pinned of them."""
+    stored = store.components().datasets
+    changed = [
+        preset
+        for name, preset in parts.presets.items()
+        if stored.get(name, {}).get("digest") != components.digest("datasets", name)
+    ]
+    heads = pinning.changed_heads(store.pins(), changed)
+    if heads:
+        raise pinning.UnversionedChangeError(heads)
+
+
+def write_page(store: Store) -> bool:
+    """Write the page of the best pipelines beside the record; True when it changed."""
+    return replace(store.directory / PAGE, page(board_of(store)))

@@ -1,0 +1,1 @@
+"""How good a prediction is: accuracy, repeatability, availability, distance from the bound."""

@@ -1,0 +1,195 @@
+"""What results are made of: data sets, extractors, models, series, harness; facts and digests.
+
+A stored number belongs to the components as they were when it was measured. One small file holds
+a line for each, so that a change of one component is a change of one line, and tells which of the
+numbers are out of date.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from benchmark.metrics.score import METRIC_VERSION
+from benchmark.plan import Cell
+from benchmark.plan_parts import Parts, Preset
+from benchmark.results.digests import dataset_digest, harness_digest, method_digest
+
+#: Layout of the stored files; raised when a field changes its meaning.
+SCHEMA_VERSION = 2
+
+Facts = Mapping[str, Any]
+_KINDS = ("datasets", "extractors", "models", "series")
+
+
+class ComponentsError(ValueError):
+    """The file of components cannot be read, or lacks one that a result names."""
+
+
+@dataclass(frozen=True)
+class Components:
+    """Facts by name; each has the ``digest`` of its code and parameters.
+
+    Attributes
+    ----------
+    harness
+        Digest of the code between data and numbers.
+    datasets
+        With version, detector, mask and half field of view.
+    extractors, models
+        With version and value of the taxonomy.
+    series
+        Of reference features.
+    """
+
+    harness: str = ""
+    datasets: Mapping[str, Facts] = field(default_factory=dict)
+    extractors: Mapping[str, Facts] = field(default_factory=dict)
+    models: Mapping[str, Facts] = field(default_factory=dict)
+    series: Mapping[str, Facts] = field(default_factory=dict)
+
+    def cell_key(self, cell: Cell) -> str:
+        """Everything a cell's numbers depend on, in one word; ComponentsError naming what lacks."""
+        return "-".join(
+            (
+                self.harness,
+                self.digest("datasets", cell.dataset),
+                self.digest("extractors", cell.extractor),
+                self.digest("models", cell.model),
+            )
+        )
+
+    def point_key(self, series: str, extractor: str) -> str:
+        """Return the same of a point of a sweep; what no series fits has the series `""`."""
+        return "-".join(
+            (
+                self.harness,
+                self.digest("series", series) if series else "",
+                self.digest("extractors", extractor),
+            )
+        )
+
+    def digest(self, kind: str, name: str) -> str:
+        """Return the digest of a component; ComponentsError where there is none."""
+        found: Mapping[str, Facts] = getattr(self, kind)
+        if name not in found:
+            raise ComponentsError(f"a result names {name!r}, which is not among the {kind}")
+        return str(found[name]["digest"])
+
+    def updated(self, other: Components) -> Components:
+        """Return these with what `other` has in their place."""
+        kinds = {kind: {**getattr(self, kind), **getattr(other, kind)} for kind in _KINDS}
+        return Components(other.harness, **kinds)
+
+    def only(self, cells: Iterable[Cell]) -> Components:
+        """Return what these cells are of."""
+        wanted = list(cells)
+        return Components(
+            self.harness,
+            datasets=_named(self.datasets, (cell.dataset for cell in wanted)),
+            extractors=_named(self.extractors, (cell.extractor for cell in wanted)),
+            models=_named(self.models, (cell.model for cell in wanted)),
+        )
+
+    def differences(self, other: Components) -> list[tuple[str, str, str]]:
+        """Return (component, digest here, digest there) of what is not alike; empty for none."""
+        found = [] if self.harness == other.harness else [("harness", self.harness, other.harness)]
+        for kind in _KINDS:
+            here, there = getattr(self, kind), getattr(other, kind)
+            for name in sorted(here.keys() | there.keys()):
+                one, two = (known.get(name, {}).get("digest", "") for known in (here, there))
+                if one != two:
+                    found.append((f"{kind}/{name}", one, two))
+        return found
+
+    def text(self) -> str:
+        """Spell these as the file has it: a line a component, sorted."""
+        lines = [
+            f'"schema": {SCHEMA_VERSION}',
+            f'"metric": {METRIC_VERSION}',
+            f'"harness": {json.dumps(self.harness)}',
+        ]
+        for kind in _KINDS:
+            facts = sorted(getattr(self, kind).items())
+            listed = ",\n".join(f"{json.dumps(name)}: {_spelt(one)}" for name, one in facts)
+            lines.append(f'"{kind}": {{\n{listed}\n}}' if listed else f'"{kind}": {{}}')
+        return "{\n" + ",\n".join(lines) + "\n}\n"
+
+    @classmethod
+    def read(cls, path: Path) -> Components:
+        """Return what a file holds; none where there is no file.
+
+        Raises
+        ------
+        ComponentsError
+            For another layout, or another version's.
+        """
+        if not path.is_file():
+            return cls()
+        try:
+            held = json.loads(path.read_bytes())
+        except ValueError as error:
+            raise ComponentsError(f"{path}: not JSON ({error})") from error
+        versions = (SCHEMA_VERSION, METRIC_VERSION)
+        if not isinstance(held, dict) or (held.get("schema"), held.get("metric")) != versions:
+            raise ComponentsError(
+                f"{path}: expected schema {SCHEMA_VERSION} and metric {METRIC_VERSION}; delete "
+                "the directory and run `sunatlas leaderboard update`"
+            )
+        kinds: dict[str, Any] = {kind: held.get(kind) for kind in _KINDS}
+        for kind, facts in kinds.items():
+            if not isinstance(facts, dict) or not all(
+                isinstance(one, dict) and isinstance(one.get("digest"), str)
+                for one in facts.values()
+            ):
+                raise ComponentsError(f"{path}: expected an object of components in {kind!r}")
+        return cls(harness=str(held.get("harness", "")), **kinds)
+
+
+def current(parts: Parts, series: Mapping[str, str] | None = None) -> Components:
+    """Return the components as the code is now.
+
+    Parameters
+    ----------
+    parts
+        Data sets and implementations.
+    series
+        Digest of each series of reference features; none by default.
+    """
+    return Components(
+        harness=harness_digest(),
+        datasets={name: _of_dataset(preset) for name, preset in parts.presets.items()},
+        extractors={name: _of_method(method) for name, method in parts.extractors.items()},
+        models={name: _of_method(method) for name, method in parts.models.items()},
+        series={name: {"digest": digest} for name, digest in (series or {}).items()},
+    )
+
+
+def _of_dataset(preset: Preset) -> Facts:
+    return {
+        "version": preset.version,
+        "detector": preset.detector,
+        "mask": preset.mask,
+        "half_fov_deg": preset.geometry.half_fov_deg,
+        "digest": dataset_digest(preset),
+    }
+
+
+def _of_method(method: Any) -> Facts:
+    return {
+        "version": method.version,
+        "taxonomy": method.taxonomy,
+        "digest": method_digest(method),
+    }
+
+
+def _named(facts: Mapping[str, Facts], names: Iterable[str]) -> dict[str, Facts]:
+    wanted = set(names)
+    return {name: known for name, known in facts.items() if name in wanted}
+
+
+def _spelt(facts: Facts) -> str:
+    return json.dumps(facts, sort_keys=False, ensure_ascii=False, allow_nan=False)

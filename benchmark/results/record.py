@@ -1,0 +1,235 @@
+"""A store open for writing: everything it holds, and a journal of what is measured.
+
+What is measured is in the journal before more is awaited, so that a killed run loses only what
+was in flight; the store's files are written once, at the end. A line torn by a kill is dropped
+when the journal is read and cut off before more is appended. One process writes at a time.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import os
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from benchmark.plan import Cell
+from benchmark.results.components import Components
+from benchmark.results.pins import Pin, Place
+from benchmark.results.store import Store
+from benchmark.results.tables import Row, StoreError
+
+Point = tuple[str, str, str, str]  # (series, sweep, point, extractor)
+
+
+class StoreLockedError(RuntimeError):
+    """Another runner is writing to the store."""
+
+
+def _everything(_what: object) -> bool:
+    return True
+
+
+class Record:
+    """Numbers by what they are of, each with the key of the components it was measured with.
+
+    Attributes
+    ----------
+    scores, pins, swept
+        All that is known, journal included.
+    """
+
+    def __init__(self, store: Store) -> None:
+        self.store = store
+        self.journal = store.work_directory / "journal.jsonl"
+        self._components = store.components()
+        self.scores: dict[Cell, Row] = store.scores()
+        self.pins: dict[Place, Pin] = store.pins()
+        self.swept: dict[Point, Row] = {point_of(row): row for row in store.swept()}
+        known = self._components
+        self._score_keys = {cell: known.cell_key(cell) for cell in self.scores}
+        self._pin_keys = {place: known.digest("datasets", place[0]) for place in self.pins}
+        self._swept_keys = {point: known.point_key(point[0], point[3]) for point in self.swept}
+        self._read_journal()
+
+    def is_scored(self, cell: Cell, components: Components) -> bool:
+        """Say whether a cell's score is of these components, and no failure."""
+        return (
+            self._score_keys.get(cell) == components.cell_key(cell)
+            and self.scores[cell]["status"] != "failed"
+        )
+
+    def is_pinned(self, place: Place, components: Components) -> bool:
+        """Say whether a split's pin is of these components."""
+        return self._pin_keys.get(place) == components.digest("datasets", place[0])
+
+    def is_swept(self, point: Point, components: Components) -> bool:
+        """Say whether a point of a sweep is of these components, and no failure."""
+        return (
+            self._swept_keys.get(point) == components.point_key(point[0], point[3])
+            and self.swept[point]["status"] != "failed"
+        )
+
+    def keep(
+        self,
+        components: Components,
+        *,
+        pins: Iterable[Pin] = (),
+        scores: Mapping[Cell, Row] | None = None,
+        swept: Iterable[Row] = (),
+    ) -> None:
+        """Take in what was measured with these components; on return it survives a power cut."""
+        records: list[Row] = [
+            {"pin": asdict(pin), "key": components.digest("datasets", pin.dataset)} for pin in pins
+        ]
+        records += [
+            {"cell": asdict(cell), "score": row, "key": components.cell_key(cell)}
+            for cell, row in (scores or {}).items()
+        ]
+        records += [
+            {"swept": row, "key": components.point_key(row["series"], row["extractor"])}
+            for row in swept
+        ]
+        if not records:
+            return
+        text = "".join(json.dumps(record, allow_nan=False) + "\n" for record in records)
+        self.journal.parent.mkdir(parents=True, exist_ok=True)
+        with self.journal.open("ab") as file:
+            file.write(text.encode())
+            file.flush()
+            os.fsync(file.fileno())
+        for record in records:
+            self._take(record, str(self.journal))
+
+    def drop(
+        self,
+        *,
+        scores: Callable[[Cell], bool] = _everything,
+        pins: Callable[[Place], bool] = _everything,
+        swept: Callable[[Point], bool] = _everything,
+    ) -> None:
+        """Forget what is no longer wanted: each function says what is, everything by default."""
+        self.scores = {cell: row for cell, row in self.scores.items() if scores(cell)}
+        self.pins = {place: pin for place, pin in self.pins.items() if pins(place)}
+        self.swept = {point: row for point, row in self.swept.items() if swept(point)}
+
+    def write(
+        self, components: Components, order: Callable[[Iterable[Row]], list[Row]] | None = None
+    ) -> None:
+        """Write the store's files and forget the journal.
+
+        What was measured with other components than these is left out, where these say anything
+        of it: code that has changed since cannot vouch for it.
+
+        Parameters
+        ----------
+        components
+            Of what was measured now; the others stay as they were.
+        order
+            Sorts rows of sweeps; as they are by default.
+        """
+        known = self._components.updated(components)
+        scores = {
+            cell: row
+            for cell, row in self.scores.items()
+            if self._score_keys[cell] == known.cell_key(cell)
+        }
+        pins = [
+            pin
+            for place, pin in self.pins.items()
+            if self._pin_keys[place] == known.digest("datasets", place[0])
+        ]
+        swept = [
+            row
+            for point, row in self.swept.items()
+            if self._swept_keys[point] == known.point_key(point[0], point[3])
+        ]
+        used = Components(
+            harness=known.harness,
+            datasets=_used(known.datasets, [c.dataset for c in scores] + [p.dataset for p in pins]),
+            extractors=_used(
+                known.extractors,
+                [c.extractor for c in scores] + [row["extractor"] for row in swept],
+            ),
+            models=_used(known.models, [cell.model for cell in scores]),
+            series=_used(known.series, [row["series"] for row in swept]),
+        )
+        self.store.write(scores, pins, order(swept) if order else swept, used)
+        self.journal.unlink(missing_ok=True)
+
+    def _read_journal(self) -> None:
+        whole = _whole_lines(self.journal)
+        for number, line in enumerate(whole.splitlines(), start=1):
+            where = f"{self.journal}, line {number}"
+            try:
+                record = json.loads(line)
+            except ValueError as error:
+                raise StoreError(f"{where}: not JSON ({error})") from error
+            self._take(record, where)
+
+    def _take(self, record: Any, where: str) -> None:
+        try:
+            fields, key = set(record), record["key"]
+            if fields == {"pin", "key"}:
+                pin = Pin(**record["pin"])
+                self.pins[pin.place], self._pin_keys[pin.place] = pin, key
+            elif fields == {"cell", "score", "key"}:
+                cell = Cell(**record["cell"])
+                self.scores[cell], self._score_keys[cell] = record["score"], key
+            elif fields == {"swept", "key"}:
+                point = point_of(record["swept"])
+                self.swept[point], self._swept_keys[point] = record["swept"], key
+            else:
+                raise StoreError(f"{where}: not a record of the journal; fields {sorted(fields)}")
+        except (TypeError, KeyError) as error:
+            raise StoreError(f"{where}: not a record of the journal ({error!r})") from error
+
+
+def point_of(row: Mapping[str, Any]) -> Point:
+    """Return the point a row of a sweep is of."""
+    return (row["series"], row["sweep"], row["point"], row["extractor"])
+
+
+@contextmanager
+def opened(store: Store) -> Iterator[Record]:
+    """Hold a store for writing; released by the system when the process ends, however it ends.
+
+    Raises
+    ------
+    StoreLockedError
+        At once, when another process holds it.
+    StoreError, ComponentsError
+        For a file that cannot be read.
+    """
+    path: Path = store.work_directory / "lock"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with path.open("a+") as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError as error:
+            file.seek(0)
+            raise StoreLockedError(
+                f"another runner (process {file.read().strip() or 'unknown'}) is writing to "
+                f"{store.directory}; wait for it or use another store"
+            ) from error
+        file.seek(0)
+        file.truncate()
+        file.write(str(os.getpid()))
+        file.flush()
+        record = Record(store)
+        if record.journal.is_file():
+            os.truncate(record.journal, len(_whole_lines(record.journal)))
+        yield record
+
+
+def _whole_lines(path: Path) -> bytes:
+    content = path.read_bytes() if path.is_file() else b""
+    return content[: content.rfind(b"\n") + 1]
+
+
+def _used(facts: Mapping[str, Any], names: Iterable[str]) -> dict[str, Any]:
+    wanted = set(names)
+    return {name: known for name, known in facts.items() if name in wanted}

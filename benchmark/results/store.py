@@ -1,0 +1,314 @@
+"""Results as plain files that live in git, compact and compared line by line.
+
+A store is a directory:
+
+- ``scores/<dataset>.csv``: one row a pipeline, condition and unit; numbers only.
+- ``sweeps.csv``: one row an extractor and point of a sweep (`benchmark.sweeps`).
+- ``pins.csv``: hash and bound of each generated split (`benchmark.results.pins`).
+- ``components.json``: facts and digests of what the numbers are of.
+
+All depend on code and data only, never on time or machine. A running runner keeps its progress in
+``.sunatlas/journal.jsonl`` (`benchmark.results.record`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping
+from difflib import get_close_matches
+from functools import cached_property
+from itertools import groupby
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from benchmark.metrics.score import METRIC_VERSION, METRICS
+from benchmark.plan import Cell
+from benchmark.results.components import Components, ComponentsError, Facts
+from benchmark.results.files import replace
+from benchmark.results.pins import Pin, Place, pins_text, read_pins
+from benchmark.results.tables import Reader, Row, StoreError, number, read, text_of, whole, word
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Filter = str | Collection[str] | None
+
+PUBLISHED = Path(__file__).parents[1] / "published"
+
+STATUSES = ("ok", "refused", "failed")
+
+
+def _status(text: str) -> str:
+    if text not in STATUSES:
+        raise ValueError(f"expected one of {', '.join(STATUSES)}, got {text!r}")
+    return text
+
+
+#: What a score says, beside which cell it is of.
+NUMBERS = ("status", *METRICS, "reason")
+_SCORE_COLUMNS: Mapping[str, Reader] = {
+    "condition": word,
+    "extractor": word,
+    "model": word,
+    "unit": whole,
+    "status": _status,
+    **dict.fromkeys(METRICS, number),
+    "reason": str,
+}
+#: Numbers of a row of a sweep.
+SWEPT = ("found_fraction", "kept_fraction", "rms", "bias", "bound", "over_bound")
+_SWEEP_COLUMNS: Mapping[str, Reader] = {
+    "series": str,
+    "sweep": str,
+    "point": str,
+    "extractor": word,
+    "status": _status,
+    "value": number,
+    "n": whole,
+    "unit": str,
+    **dict.fromkeys(SWEPT, number),
+    "reason": str,
+}
+
+
+class UnknownFieldError(LookupError):
+    """A query names a field that results do not have; the message names the nearest."""
+
+
+class Store:
+    """Results in a directory; made on the first write.
+
+    Parameters
+    ----------
+    directory
+        Where the files are; the published results by default.
+    """
+
+    def __init__(self, directory: Path | str = PUBLISHED) -> None:
+        self.directory = Path(directory)
+
+    @property
+    def scores_directory(self) -> Path:
+        """Where the tables of scores are."""
+        return self.directory / "scores"
+
+    @property
+    def sweeps_path(self) -> Path:
+        """Of the table of sweeps."""
+        return self.directory / "sweeps.csv"
+
+    @property
+    def pins_path(self) -> Path:
+        """Of the table of pins."""
+        return self.directory / "pins.csv"
+
+    @property
+    def components_path(self) -> Path:
+        """Of the components' facts and digests."""
+        return self.directory / "components.json"
+
+    @property
+    def work_directory(self) -> Path:
+        """Where a runner keeps its progress and its lock; not part of the results."""
+        return self.directory / ".sunatlas"
+
+    def components(self) -> Components:
+        """Return what the stored numbers are of; ComponentsError for a file that is none."""
+        return Components.read(self.components_path)
+
+    def scores(self) -> dict[Cell, Row]:
+        """Return stored numbers by cell, sorted; nothing where there are no files.
+
+        Raises
+        ------
+        StoreError
+            For a line that is no row of scores, or one that is there twice.
+        """
+        found: dict[Cell, Row] = {}
+        for path in sorted(self.scores_directory.glob("*.csv")):
+            for line, row in read(path, _SCORE_COLUMNS):
+                if row["unit"] is None:
+                    raise StoreError(f"{path}, line {line}: expected a number in unit")
+                names = (row.pop(name) for name in ("condition", "extractor", "model", "unit"))
+                cell = Cell(path.stem, *names)
+                if cell in found:
+                    raise StoreError(f"{path}, line {line}: {cell} is there twice")
+                found[cell] = row
+        return {cell: found[cell] for cell in sorted(found)}
+
+    def rows(self, unit: int | None = 0) -> list[Row]:
+        """Return scores with all that is known of what they are of, sorted.
+
+        Parameters
+        ----------
+        unit
+            Of the sensor; the standard one by default, all units for None.
+
+        Raises
+        ------
+        StoreError, ComponentsError
+            For a file that cannot be read, or names what the others lack.
+        """
+        context = _Context(self.components(), self.pins())
+        return [
+            context.row(cell, numbers)
+            for cell, numbers in self.scores().items()
+            if unit is None or cell.unit == unit
+        ]
+
+    def pins(self) -> dict[Place, Pin]:
+        """Pinned data by (dataset, condition, split); StoreError for a line that is no pin."""
+        return read_pins(self.pins_path)
+
+    def swept(self) -> list[Row]:
+        """Return rows of sweeps in the order of the file; StoreError for a line that is none."""
+        components = self.components()
+        rows = []
+        for line, row in read(self.sweeps_path, _SWEEP_COLUMNS):
+            known = components.extractors.get(row["extractor"])
+            if known is None:
+                raise StoreError(
+                    f"{self.sweeps_path}, line {line}: {row['extractor']!r} is not in "
+                    f"{self.components_path.name}"
+                )
+            rows.append(
+                {
+                    **row,
+                    "extractor_taxonomy": known["taxonomy"],
+                    "extractor_version": known["version"],
+                }
+            )
+        return rows
+
+    def query(self, **where: Filter) -> list[Row]:
+        """Return the rows whose fields have one of the wanted values.
+
+        ``query(dataset="x", model=["a", "b"])``; a filter of None is no filter. Of the standard
+        unit.
+
+        Raises
+        ------
+        UnknownFieldError
+            For a field that no row has.
+        """
+        rows = self.rows()
+        known = {name for row in rows for name in row} or set(_IDENTITY)
+        wanted = {}
+        for field, values in where.items():
+            if field not in known:
+                close = get_close_matches(field, sorted(known), n=1)
+                hint = f"did you mean {close[0]!r}?" if close else f"known: {sorted(known)}"
+                raise UnknownFieldError(f"results have no field {field!r}; {hint}")
+            if values is not None:
+                wanted[field] = {values} if isinstance(values, str) else set(values)
+        return [row for row in rows if all(row.get(f) in some for f, some in wanted.items())]
+
+    def frame(self, **where: Filter) -> pd.DataFrame:
+        """`query(**where)` as a pandas frame."""
+        import pandas as pd  # noqa: PLC0415 - half a second that most readers do not need
+
+        return pd.DataFrame(self.query(**where))
+
+    def write(
+        self,
+        scores: Mapping[Cell, Row],
+        pins: Iterable[Pin],
+        swept: Iterable[Row],
+        components: Components,
+    ) -> None:
+        """Replace the files, each whole or not at all; unchanged ones are left alone.
+
+        Components come last: numbers that a crash leaves beside the digests of older code are
+        measured again.
+
+        Parameters
+        ----------
+        scores
+            Numbers (`NUMBERS`) by cell.
+        pins
+            In any order.
+        swept
+            Rows of sweeps in the order of the file.
+        components
+            What all that is of.
+        """
+        tables = {}
+        for dataset, group in groupby(sorted(scores), key=lambda cell: cell.dataset):
+            rows = [
+                {
+                    "condition": cell.condition,
+                    "extractor": cell.extractor,
+                    "model": cell.model,
+                    "unit": cell.unit,
+                    **scores[cell],
+                }
+                for cell in group
+            ]
+            tables[dataset] = text_of(list(_SCORE_COLUMNS), rows)
+        for name, text in tables.items():
+            replace(self.scores_directory / f"{name}.csv", text)
+        for path in self.scores_directory.glob("*.csv"):
+            if path.stem not in tables:
+                path.unlink()
+        replace(self.pins_path, pins_text(pins))
+        replace(self.sweeps_path, text_of(list(_SWEEP_COLUMNS), swept))
+        replace(self.components_path, components.text())
+
+
+_IDENTITY = ("dataset", "condition", "extractor", "model", "unit", "status")
+
+
+class _Context:
+    """Facts that rows share."""
+
+    def __init__(self, components: Components, pins: Mapping[Place, Pin]) -> None:
+        self._components = components
+        self._pins = pins
+
+    def row(self, cell: Cell, numbers: Row) -> Row:
+        dataset = self._facts("datasets", cell.dataset, cell)
+        extractor = self._facts("extractors", cell.extractor, cell)
+        model = self._facts("models", cell.model, cell)
+        samples = self._samples(cell.dataset, cell.condition)
+        return {
+            "dataset": cell.dataset,
+            "dataset_version": dataset["version"],
+            "condition": cell.condition,
+            "unit": cell.unit,
+            "detector": dataset["detector"],
+            "mask": dataset["mask"],
+            "half_fov_deg": dataset["half_fov_deg"],
+            "extractor": cell.extractor,
+            "extractor_taxonomy": extractor["taxonomy"],
+            "extractor_version": extractor["version"],
+            "model": cell.model,
+            "model_taxonomy": model["taxonomy"],
+            "model_version": model["version"],
+            "status": numbers["status"],
+            "reason": numbers["reason"],
+            **samples,
+            **{name: numbers[name] for name in METRICS},
+            "metric_version": METRIC_VERSION,
+        }
+
+    def _facts(self, kind: str, name: str, cell: Cell) -> Facts:
+        known: Mapping[str, Facts] = getattr(self._components, kind)
+        if name not in known:
+            raise ComponentsError(f"the score of {cell} names {name!r}, unknown among the {kind}")
+        return known[name]
+
+    @cached_property
+    def _counted(self) -> dict[tuple[str, str], Row]:
+        return {}
+
+    def _samples(self, dataset: str, condition: str) -> Row:
+        place = dataset, condition
+        if place not in self._counted:
+            calibration, test = (
+                self._pins.get((dataset, condition, split)) for split in ("calibration", "test")
+            )
+            self._counted[place] = {
+                "n_calibration": calibration.n if calibration else None,
+                "n_test": test.n if test else None,
+                "n_observable": test.observable if test else None,
+            }
+        return self._counted[place]

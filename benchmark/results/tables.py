@@ -1,0 +1,103 @@
+"""Tables of numbers as CSV that compares line by line: rows sorted, digits few, empty for none."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+Row = dict[str, Any]
+Reader = Callable[[str], Any]
+
+
+class StoreError(ValueError):
+    """A stored file cannot be read; the message names file and line."""
+
+
+def number(text: str) -> float | None:
+    """Read a number, None from an empty cell; ValueError for anything else."""
+    return float(text) if text else None
+
+
+def whole(text: str) -> int | None:
+    """Read a whole number, None from an empty cell; ValueError for anything else."""
+    return int(text) if text else None
+
+
+def word(text: str) -> str:
+    """Read text as it is; ValueError where there is none."""
+    if not text:
+        raise ValueError("expected a word, got an empty cell")
+    return text
+
+
+def spelt(value: object) -> str:
+    """Spell a cell: the fewest digits that read back alike, empty for None."""
+    if value is None:
+        return ""
+    if isinstance(value, float):
+        # as short as repr, without a point that says nothing
+        return repr(int(value)) if value.is_integer() and abs(value) < 1e15 else repr(value)
+    return str(value)
+
+
+def text_of(columns: Sequence[str], rows: Iterable[Mapping[str, Any]]) -> str:
+    """Write rows as CSV under a header; columns a row lacks are empty."""
+    stream = io.StringIO(newline="")
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(columns)
+    writer.writerows([spelt(row.get(name)) for name in columns] for row in rows)
+    return stream.getvalue()
+
+
+def read(path: Path, columns: Mapping[str, Reader]) -> list[tuple[int, Row]]:
+    """Read (line number, row) of a table; nothing where there is no file.
+
+    Parameters
+    ----------
+    path
+        Of the file.
+    columns
+        What each column holds, in the order of the header.
+
+    Raises
+    ------
+    StoreError
+        For another header, a line of other cells than columns, or a cell that cannot be read.
+    """
+    if not path.is_file():
+        return []
+    try:
+        text = path.read_bytes().decode()
+    except UnicodeDecodeError as error:
+        raise StoreError(f"{path}: not text ({error})") from error
+    lines = csv.reader(io.StringIO(text, newline=""), strict=True)
+    readers = list(columns.items())
+    found: list[tuple[int, Row]] = []
+    try:
+        header = next(lines, [])
+        if header != list(columns):
+            raise StoreError(
+                f"{path}, line 1: expected the columns {', '.join(columns)}; "
+                f"got {', '.join(header) or 'none'}"
+            )
+        for cells in lines:
+            where = f"{path}, line {lines.line_num}"
+            if len(cells) != len(readers):
+                raise StoreError(f"{where}: expected {len(readers)} cells, got {len(cells)}")
+            found.append((lines.line_num, _row(cells, readers, where)))
+    except csv.Error as error:
+        raise StoreError(f"{path}, line {lines.line_num}: not CSV ({error})") from error
+    return found
+
+
+def _row(cells: Sequence[str], readers: Sequence[tuple[str, Reader]], where: str) -> Row:
+    row = {}
+    for cell, (name, reader) in zip(cells, readers, strict=True):
+        try:
+            row[name] = reader(cell)
+        except ValueError as error:
+            raise StoreError(f"{where}, column {name}: {error}") from error
+    return row

@@ -1,0 +1,124 @@
+"""Where tasks are measured: in this process, in others, or on a Dask cluster. Same numbers."""
+
+from __future__ import annotations
+
+import os
+import platform
+import threading
+import time
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack
+from functools import cache
+from importlib import import_module
+from importlib.util import find_spec
+
+from joblib import Parallel, delayed, parallel_config
+
+from benchmark.running.task import Task, TaskResult, measure
+
+#: Tasks a worker takes at once when there is too little to give each a whole dataset.
+_BUNDLE = 4
+#: Datasets for every worker from which on each is done by one worker.
+_DATASETS_A_WORKER = 4
+
+
+class DaskMissingError(ImportError):
+    """A Dask scheduler was named and its client is not installed."""
+
+
+def outcomes(
+    tasks: Sequence[Task], workers: int, scheduler: str | None = None
+) -> Iterator[TaskResult]:
+    """Measure tasks and give each result as soon as it is there, in any order.
+
+    Parameters
+    ----------
+    tasks
+        What to measure.
+    workers
+        Processes to use; with 1 everything happens in this one.
+    scheduler
+        Address of a Dask scheduler, e.g. ``tcp://127.0.0.1:8786``; `workers` is not read then.
+
+    Raises
+    ------
+    DaskMissingError
+        When `scheduler` is given without the ``distributed`` package.
+    """
+    if scheduler is None and (workers == 1 or len(tasks) == 1):
+        yield from map(measure, tasks)
+        return
+    with ExitStack() as stack:
+        if scheduler is None:
+            stack.enter_context(parallel_config("loky", n_jobs=workers, inner_max_num_threads=1))
+        else:
+            _connect(stack, scheduler)
+        coordinator = (platform.node(), os.getpid())
+        parallel = Parallel(return_as="generator_unordered", batch_size=1, pre_dispatch="2*n_jobs")
+        measured = parallel(
+            delayed(_measure_for)(coordinator, bundle) for bundle in bundles(tasks, workers)
+        )
+        try:
+            for results in measured:
+                yield from results
+        finally:
+            with warnings.catch_warnings():
+                # joblib's advice on what was in flight: the runner has said what is kept
+                warnings.filterwarnings("ignore", ".*tasks which were still being processed.*")
+                measured.close()
+
+
+def bundles(tasks: Sequence[Task], workers: int = 1) -> list[list[Task]]:
+    """Group tasks that follow each other and share samples or light, for one worker to do.
+
+    Generating samples and their bound often costs more than the rest. With many datasets to do, a
+    bundle is a unit of a dataset, whose conditions see the same light (see
+    `benchmark.simulator.light_memory`); else at most four tasks of a dataset, unit and condition.
+    """
+    many = len({_sensor(task) for task in tasks}) >= _DATASETS_A_WORKER * workers
+    found: list[list[Task]] = []
+    for task in tasks:
+        last = found[-1] if found else []
+        if (
+            last
+            and _sensor(last[0]) == _sensor(task)
+            and (many or (len(last) < _BUNDLE and last[0].condition == task.condition))
+        ):
+            last.append(task)
+        else:
+            found.append([task])
+    return found
+
+
+def _sensor(task: Task) -> tuple[str, int]:
+    return task.preset.name, task.unit
+
+
+def _measure_for(coordinator: tuple[str, int], bundle: Sequence[Task]) -> list[TaskResult]:
+    """Measure in a worker process, which ends when the coordinator does, even by a kill."""
+    host, process = coordinator
+    if (host, os.getppid()) == (platform.node(), process):
+        _end_with(process)
+    return [measure(task) for task in bundle]
+
+
+@cache
+def _end_with(parent: int) -> None:
+    def watch() -> None:
+        while os.getppid() == parent:
+            time.sleep(0.5)
+        os._exit(1)
+
+    threading.Thread(target=watch, daemon=True, name="end with the coordinator").start()
+
+
+def _connect(stack: ExitStack, scheduler: str) -> None:
+    if find_spec("distributed") is None:
+        raise DaskMissingError(
+            f"measuring on the Dask scheduler {scheduler} needs the package 'distributed'; "
+            "install it beside this one (pip install distributed) or leave the scheduler out"
+        )
+    distributed = import_module("distributed")
+    stack.enter_context(distributed.Client(scheduler))
+    stack.enter_context(parallel_config("dask", n_jobs=-1))

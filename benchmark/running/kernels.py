@@ -1,0 +1,88 @@
+"""Measuring with the numerical kernels of an older processor, in a process of their own.
+
+NumPy, OpenBLAS, OpenCV and Numba choose code by the processor they find, and sums in another
+order have other last bits. What is published must not hang on them: a check measures once as this
+machine does, and once as a processor of 2013 would (AVX2 and FMA, no AVX-512).
+"""
+
+from __future__ import annotations
+
+import os
+import platform
+import signal
+import subprocess
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+#: What limits each library; read by it when it is loaded, so it takes a new process.
+OLDER: Mapping[str, str] = {
+    "OPENBLAS_CORETYPE": "Haswell",
+    "NPY_DISABLE_CPU_FEATURES": "",  # filled in by `older_environment`
+    "NUMBA_CPU_NAME": "haswell",
+    "OPENCV_CPU_DISABLE": "AVX512_COMMON,AVX512_SKX,AVX512_CNL,AVX512_CLX,AVX512_ICL",
+}
+
+
+_INTERRUPTED = 130
+
+
+class NoOlderKernelsError(RuntimeError):
+    """There are no older kernels on this machine to measure with; the message says why."""
+
+
+class OlderRunError(RuntimeError):
+    """The process with older kernels failed; what it said stands on standard error."""
+
+
+def older_environment() -> dict[str, str]:
+    """Return this process's environment with every library held to an older processor's code.
+
+    Raises
+    ------
+    NoOlderKernelsError
+        On a processor of another family.
+    """
+    if platform.machine().lower() not in {"x86_64", "amd64"}:
+        raise NoOlderKernelsError(
+            f"older kernels are those of x86-64; this machine is {platform.machine()}"
+        )
+    return {**os.environ, **OLDER, "NPY_DISABLE_CPU_FEATURES": " ".join(_beyond_avx2())}
+
+
+def update_with_older_kernels(directory: Path, workers: int) -> None:
+    """Bring a record up to date (`benchmark.leaderboard.update`) with an older processor's code.
+
+    Parameters
+    ----------
+    directory
+        Of the record; an empty one is measured from nothing.
+    workers
+        Number of processes.
+
+    Raises
+    ------
+    NoOlderKernelsError
+        On a processor of another family.
+    OlderRunError
+        When the process ends otherwise than well.
+    KeyboardInterrupt
+        When it was broken off.
+    """
+    call = [sys.executable, "-m", "benchmark.leaderboard", str(directory), str(workers)]
+    # this program with a directory and a number: nothing of it comes from outside
+    done = subprocess.run(call, env=older_environment(), check=False)  # noqa: S603
+    if done.returncode in (-signal.SIGINT, _INTERRUPTED):
+        raise KeyboardInterrupt
+    if done.returncode != 0:
+        raise OlderRunError(f"measuring with older kernels ended with code {done.returncode}")
+
+
+def _beyond_avx2() -> list[str]:
+    """Names of the groups of instructions that NumPy found here and that came after AVX2."""
+    config: Any = np.show_config(mode="dicts")
+    found: list[str] = config["SIMD Extensions"].get("found", [])
+    return [name for name in found if name == "X86_V4" or name.startswith("AVX512")]

@@ -1,0 +1,90 @@
+"""What one worker does: draw a point's observations, extract with every method, compare."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from algorithms.contract import Extractor, Floats, UnusableDataError
+from benchmark.metrics.score import stored
+from benchmark.reference_series import KEPT_PX, Drawn, Series, Setting
+from benchmark.results.digests import seed
+from benchmark.results.store import SWEPT
+from benchmark.running.threads import one_thread
+from benchmark.sweeps.plan import SERIES, Point
+
+Row = dict[str, Any]
+
+
+def refused_row(point: Point, extractor: type[Extractor], reason: str) -> Row:
+    """Return the row of a series that a method is not measured on."""
+    return _row(point, None, extractor) | {"reason": reason}
+
+
+def measure(work: Sequence[tuple[Point, Setting, type[Extractor]]]) -> list[Row]:
+    """Measure methods at one point: all of `work` is of the same series and setting."""
+    (first, setting, _), *_ = work
+    series = SERIES[first.series]
+    with one_thread():
+        drawn = series.draw(setting)
+        return [_measured(series, drawn, *one) for one in work]
+
+
+def _measured(
+    series: Series, drawn: Drawn, point: Point, setting: Setting, extractor: type[Extractor]
+) -> Row:
+    row = _row(point, setting, extractor)
+    try:
+        _seed_opencv(seed(*str(point).split("/")))
+        method = extractor.for_sensor(series.geometry(setting))
+        # a method with a memory of frames is run with it where there is a sequence
+        extract: Callable[..., Floats] = method.extract
+        if setting.tracking:
+            extract = getattr(method, "track", extract)
+        features = extract(drawn.observations.copy())
+        errors = series.estimates(features) - drawn.truth
+    except UnusableDataError as error:
+        return row | {"status": "refused", "reason": _reason(error)}
+    except Exception as error:  # noqa: BLE001 - any other error is told with its name
+        return row | {"status": "failed", "reason": _reason(error)}
+    return row | {"status": "ok"} | _numbers(errors, drawn.bound, series.unit)
+
+
+def _numbers(errors: Floats, bound: float, unit: str) -> Row:
+    """Return the metrics of errors (N, K); those of an axis are over two, whatever K."""
+    found = np.isfinite(errors).all(axis=1)
+    good = errors[found]
+    squared = np.sum(good**2, axis=1)
+    rms = float(np.sqrt(squared.mean() / 2.0)) if len(good) else np.nan
+    bias = float(np.sqrt(np.sum(good.mean(axis=0) ** 2) / 2.0)) if len(good) else np.nan
+    kept = float((squared <= KEPT_PX**2).sum() / len(errors)) if unit == "px" else np.nan
+    values = (found.mean(), kept, rms, bias, bound, rms / bound)
+    return {name: stored(float(v)) for name, v in zip(SWEPT, values, strict=True)}
+
+
+def _row(point: Point, setting: Setting | None, extractor: type[Extractor]) -> Row:
+    series = SERIES.get(point.series)
+    return {
+        "series": point.series,
+        "sweep": point.sweep,
+        "point": point.point,
+        "extractor": extractor.name,
+        "status": "refused",
+        "value": setting.value if setting else None,
+        "n": setting.frames if setting else 0,
+        "unit": series.unit if series else "",
+        **dict.fromkeys(SWEPT),
+        "reason": "",
+    }
+
+
+def _reason(error: Exception) -> str:
+    return f"{type(error).__name__}: {' '.join(str(error).split())}"
+
+
+def _seed_opencv(value: int) -> None:
+    import cv2  # noqa: PLC0415 - only the process that measures needs OpenCV
+
+    cv2.setRNGSeed(value)

@@ -1,0 +1,137 @@
+"""Which reference series each extractor is measured on, and why not on the others."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+from algorithms.contract import Extractor, FeatureKind, Observation, UnsuitableDesignError
+from benchmark.reference_cameras import BLACK_SUN, BLOOMING
+from benchmark.reference_events import EVENTS
+from benchmark.reference_lines import SLIT, SLITS
+from benchmark.reference_readings import FacesSeries, QuadrantSeries
+from benchmark.reference_series import Series, Setting
+from benchmark.reference_spots import DiscSeries, GridSeries
+
+_ALL: tuple[Series, ...] = (
+    DiscSeries(),
+    GridSeries(),
+    SLIT,
+    SLITS,
+    QuadrantSeries(),
+    FacesSeries(),
+    EVENTS,
+    BLOOMING,
+    BLACK_SUN,
+)
+
+#: By name, in the order of the tables.
+SERIES: Mapping[str, Series] = MappingProxyType({series.name: series for series in _ALL})
+
+#: Methods whose feature is not one disc in a frame.
+_FRAMES_OF: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {
+        **dict.fromkeys(("MCAM", "FEIC", "FMMS"), ("grid",)),
+        "BSCM": ("black-sun",),
+        "HT": ("disc", "blooming", "black-sun"),
+    }
+)
+_SERIES_OF: Mapping[Observation, tuple[str, ...]] = MappingProxyType(
+    {
+        Observation.FRAMES: ("disc", "grid"),
+        Observation.PROFILES: ("slit", "slits"),
+        Observation.EVENTS: ("event-l-slit",),
+    }
+)
+_READINGS_OF: Mapping[FeatureKind, tuple[str, ...]] = MappingProxyType(
+    {FeatureKind.BALANCE: ("quadrants",), FeatureKind.SIGNALS: ("faces",)}
+)
+
+
+@dataclass(frozen=True, order=True)
+class Point:
+    """One extractor at one point of a series, by names."""
+
+    series: str
+    sweep: str
+    point: str
+    extractor: str
+
+    def __str__(self) -> str:
+        return f"{self.series}/{self.sweep}/{self.point}/{self.extractor}"
+
+
+@dataclass(frozen=True)
+class Planned:
+    """What is measured: settings by point, and why there is none; on a whole series in one line."""
+
+    settings: Mapping[Point, Setting]
+    refused: Mapping[Point, str]
+
+
+def planned(extractors: Mapping[str, type[Extractor]]) -> Planned:
+    """Return every point of every extractor, and what is refused with the reason.
+
+    Where a method refuses a whole series, sweep and point of the refusal are empty.
+    """
+    settings: dict[Point, Setting] = {}
+    refused: dict[Point, str] = {}
+    for extractor in extractors.values():
+        names = _series_names(extractor)
+        if not names:
+            reason = (
+                f"no reference series of {extractor.observation} that are read as {extractor.kind}"
+            )
+            refused[Point("", "", "", extractor.name)] = reason
+        for series in (SERIES[name] for name in names):
+            accepted, left_out = _sorted_out(series, extractor)
+            settings |= accepted
+            if accepted:
+                refused |= left_out
+            else:  # one line instead of one a point
+                reason = next(iter(left_out.values()))
+                refused[Point(series.name, "", "", extractor.name)] = reason
+    return Planned(dict(sorted(settings.items())), dict(sorted(refused.items())))
+
+
+def _sorted_out(
+    series: Series, extractor: type[Extractor]
+) -> tuple[dict[Point, Setting], dict[Point, str]]:
+    """Return the points whose design a method accepts, and reasons for the others."""
+    # a method for one spot meets the grid only to say what several features do for it
+    visiting = series.name == "grid" and "grid" not in _FRAMES_OF.get(extractor.taxonomy, ())
+    accepted: dict[Point, Setting] = {}
+    left_out: dict[Point, str] = {}
+    for setting in series.settings():
+        if visiting and setting.sweep != "features":
+            continue
+        point = Point(series.name, setting.sweep, setting.point, extractor.name)
+        if reason := _refusal(series, setting, extractor):
+            left_out[point] = reason
+        else:
+            accepted[point] = setting
+    return accepted, left_out
+
+
+def _series_names(extractor: type[Extractor]) -> tuple[str, ...]:
+    if extractor.observation is Observation.FRAMES and extractor.taxonomy in _FRAMES_OF:
+        return _FRAMES_OF[extractor.taxonomy]
+    if extractor.observation is Observation.CURRENTS:
+        return _READINGS_OF.get(extractor.kind, ())
+    return _SERIES_OF[extractor.observation]
+
+
+def _refusal(series: Series, setting: Setting, extractor: type[Extractor]) -> str:
+    """Why a method does not fit the design of a point, or empty."""
+    geometry = series.geometry(setting)
+    missing = [name for name in extractor.needs if getattr(geometry, name) is None]
+    if missing:
+        return f"needs {', '.join(missing)}; the series has none"
+    try:
+        extractor.for_sensor(geometry)
+    except UnsuitableDesignError as error:
+        return str(error)
+    except Exception:  # noqa: BLE001 - a defect: planned, so that its row says what failed
+        return ""
+    return ""
