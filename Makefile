@@ -29,7 +29,7 @@ $(STAMP): requirements.lock pyproject.toml
 	touch $@
 
 serve: $(STAMP) ## serve the page and the API on http://127.0.0.1:8000
-	$(BIN)/sunatlas serve --port $(PORT)
+	$(BIN)/sunatlas serve --port $(PORT) --times
 
 test: $(STAMP) ## run the tests
 	$(BIN)/python -m pytest -n $(WORKERS)
@@ -50,7 +50,7 @@ bench: $(PEERS) ## speed and accuracy beside peers, as ratios measured in the sa
 	$(BIN)/python -m api.speed
 
 leaderboard: $(STAMP) ## bring scores and leaderboard up to date with code and data
-	$(BIN)/sunatlas leaderboard --workers $(WORKERS)
+	$(BIN)/sunatlas leaderboard update --workers $(WORKERS)
 
 docs: $(STAMP) ## regenerate the generated parts of docs/
 	$(BIN)/python -m api.documentation

@@ -1,8 +1,10 @@
 """`sunatlas`: the command line.
 
 Each command lives in its own module of `api.commands`, imported only when it is asked for, so that
-`sunatlas --help` costs no more than Typer itself. What goes wrong ends here, in one line on stderr:
-exit code 2 for a wrong call, 1 for a refused or failed one, 130 after Ctrl-C.
+`sunatlas --help` costs no more than Typer itself. What is known to go wrong ends here, in one line
+on stderr: exit code 2 for a wrong call, 1 for a refused or failed one, 130 after Ctrl-C. Known are
+errors of the file system and the classes of error this project defines; anything else is a mistake
+in a program, and ends with its traceback.
 """
 
 from __future__ import annotations
@@ -11,7 +13,6 @@ import importlib
 import os
 import sys
 from collections.abc import Sequence
-from types import TracebackType
 from typing import Annotated, Any
 
 import typer
@@ -25,13 +26,14 @@ COMMANDS: dict[str, str] = {
     "recommend": "Rank the sensors and calibrations that meet requirements.",
     "run": "Run a study's pipelines on the data of its architecture.",
     "benchmark": "Score pipelines on the standard datasets.",
-    "leaderboard": "Bring the published leaderboard up to date, or check it.",
+    "leaderboard": "Show the leaderboard, bring it up to date or check it.",
     "assess": "Show the survey's scores of extractors beside measured ones.",
     "dataset": "List, describe, export or verify the standard datasets.",
     "deposit": "Build or verify the bundle an archive takes.",
 }
 DEBUG = "SUNATLAS_DEBUG"
 INTERRUPTED = 130
+_OURS = frozenset({"algorithms", "api", "benchmark", "registry", "survey_data"})
 
 
 class LazyCommands(TyperGroup):
@@ -66,11 +68,20 @@ class LazyCommands(TyperGroup):
         except OSError as error:
             where = f"{error.filename}: " if error.filename else ""
             _stop(error, 1, f"{where}{error.strerror or error}")
-        except LookupError as error:
-            _stop(error, 1, str(error.args[0]) if error.args else repr(error))
-        except ValueError as error:
-            _stop(error, 1, str(error))
+        except Exception as error:
+            if not is_known(error):
+                raise
+            quoted = isinstance(error, LookupError) and error.args  # str() would quote the message
+            _stop(error, 1, str(error.args[0] if quoted else error))
         sys.exit(status if isinstance(status, int) else 0)
+
+
+def is_known(error: BaseException) -> bool:
+    """Say whether an error is foreseen: of the file system, or of a class defined in this project.
+
+    A ValueError, KeyError or the like that NumPy or the interpreter raised is not.
+    """
+    return isinstance(error, OSError) or type(error).__module__.partition(".")[0] in _OURS
 
 
 def load(name: str) -> Any:
@@ -117,19 +128,8 @@ def sunatlas(
     """
 
 
-def _unexpected(
-    kind: type[BaseException], error: BaseException, trace: TracebackType | None
-) -> None:
-    if os.environ.get(DEBUG):
-        sys.__excepthook__(kind, error, trace)
-        return
-    message = " ".join(str(error).split())
-    typer.echo(f"sunatlas: {kind.__name__}: {message} (traceback with {DEBUG}=1)", err=True)
-
-
 def main() -> None:
     """Entry point of the console script."""
-    sys.excepthook = _unexpected
     typer.main.get_command(app).main(prog_name="sunatlas")
 
 

@@ -31,7 +31,7 @@ from benchmark.checksums import (
     read_checksums,
     write_checksums,
 )
-from benchmark.store import PUBLISHED
+from benchmark.results.store import PUBLISHED
 
 DESCRIPTOR = "datapackage.json"
 SURVEY = Path(survey_data.__file__).parent

@@ -8,15 +8,20 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, Literal
 
+from benchmark.metrics.rings import RINGS
+
 Type = Literal["string", "integer", "number", "boolean"]
 
 TABLE_SCHEMA = "https://datapackage.org/profiles/2.0/tableschema.json"
 
 _FIELDS: dict[str, tuple[Type, str]] = {
     # what was measured
-    "key": ("string", "Digest of everything the score depends on: code, data, parameters, seed."),
-    "schema": ("integer", "Version of the layout of a score."),
-    "rank": ("integer", "Place in the data set's condition, best first."),
+    "rank": (
+        "integer",
+        "Place in the data set's condition, best first; those that answer less than 95 % last.",
+    ),
+    "tied": ("boolean", "Whether others share the rank: errors on units built alike overlap."),
+    "unit": ("integer", "Unit of the sensor; 0 is the standard one."),
     "dataset": ("string", "Name of the standard data set."),
     "dataset_version": ("integer", "Version of the data set."),
     "condition": ("string", "Named condition of the data set."),
@@ -36,39 +41,58 @@ _FIELDS: dict[str, tuple[Type, str]] = {
     "reason": ("string", "Why there is no score; empty where there is one."),
     "n_calibration": ("integer", "Samples of the calibration split."),
     "n_test": ("integer", "Samples of the test split."),
+    "n_observable": ("integer", "Test samples whose direction is observable."),
     # accuracy
-    "found_fraction": ("number", "Share of test samples with a prediction."),
-    "observable_fraction": ("number", "Share of test samples whose direction is observable."),
-    "rms_deg": ("number", "Root mean square separation angle of found samples, degrees."),
+    "availability": ("number", "Answered share of the observable test samples."),
+    "false_sun": ("number", "Answered share of the test samples that are not observable."),
+    "rms_deg": (
+        "number",
+        "Root mean square separation angle of observable samples with an answer, degrees.",
+    ),
     "median_deg": ("number", "Median separation angle, degrees."),
     "p95_deg": ("number", "95th percentile of the separation angle, degrees."),
+    "p997_deg": ("number", "99.7th percentile of the separation angle, degrees."),
     "max_deg": ("number", "Largest separation angle, degrees."),
     "bias_alpha_deg": ("number", "Mean error of alpha, degrees."),
     "bias_beta_deg": ("number", "Mean error of beta, degrees."),
     "rms_alpha_deg": ("number", "Root mean square error of alpha, degrees."),
     "rms_beta_deg": ("number", "Root mean square error of beta, degrees."),
+    "repeatability_deg": (
+        "number",
+        "Standard deviation of answers to a pose held still, over both axes, degrees.",
+    ),
     "bound_deg": ("number", "Root mean square of the Cramer-Rao bound, degrees."),
     "over_bound": ("number", "Root mean square error divided by the bound."),
     "over_bound_se": ("number", "Standard error of over_bound."),
+    **{
+        ring.column: (
+            "number",
+            f"Root mean square error {ring.inner_deg} to {ring.outer_deg} degrees off the axis.",
+        )
+        for ring in RINGS
+    },
+    "low_deg": ("number", "Smallest root mean square error of a unit, degrees."),
+    "high_deg": ("number", "Largest root mean square error of a unit, degrees."),
+    "unit_rms_deg": ("string", "Root mean square error of each unit, separated by semicolons."),
     # sweeps
-    "sweep_version": ("integer", "Version of the layout of a sweep."),
     "series": ("string", "Reference feature; none where no feature fits the extractor."),
     "sweep": ("string", "What is varied; none where the feature is not measured."),
     "point": ("string", "Point of the sweep; none where the feature is not measured."),
     "value": ("number", "Place of the point on the sweep's axis; empty where it is a word."),
     "n": ("integer", "Samples at the point; 0 where the extractor's design refuses it."),
-    "unit": ("string", "Of rms, bias and bound."),
+    "measured_in": ("string", "Unit of rms, bias and bound."),
     "kept_fraction": ("number", "Share of samples found within 3 px of the truth."),
     "rms": ("number", "Root mean square error of one coordinate of the found samples."),
     "bias": ("number", "Root mean square over the coordinates of the mean error."),
     "bound": ("number", "Root mean square Cramer-Rao bound of one coordinate."),
+    "found_fraction": ("number", "Share of samples with a feature found."),
     # provenance
+    "split": ("string", "calibration, test or repeat."),
+    "observable": ("integer", "Samples of the test split whose direction is observable."),
+    "head_bound_deg": ("number", "Bound of the first samples, degrees."),
     "data_hash": ("string", "Hash of the samples."),
-    "harness_version": ("integer", "Version of how pipelines are run."),
+    "head_hash": ("string", "Hash of the first samples."),
     "metric_version": ("integer", "Version of how errors become numbers."),
-    # time, measured where and when the results were published
-    "latency_us": ("number", "Time of one test sample in a batch, microseconds."),
-    "time_ratio": ("number", "The same time divided by a reference on the same samples."),
     # algorithms and data sets
     "name": ("string", "Unique name."),
     "role": ("string", "extractor or model."),

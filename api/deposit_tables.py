@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import dataclasses
 import io
 import json
 from collections.abc import Mapping, Sequence
@@ -12,15 +13,23 @@ from typing import Any
 
 from api.deposit_fields import schema
 from api.http.tables import cell
-from benchmark import datasets, sweeps
-from benchmark.store import Store
+from benchmark import datasets
+from benchmark.leaderboard.board import build
+from benchmark.results.store import Store
 from registry.catalogue import catalogue
 
+#: Columns of sweeps that stand in the bundle under another name or value.
+_RENAMED = frozenset({"series", "sweep", "point", "unit"})
 _PIPELINE = ("dataset", "condition", "extractor", "model")
+_RANKED = ("rank", "tied", *_PIPELINE, "rms_deg", "low_deg", "high_deg", "unit_rms_deg")
 
 
 class NothingPublishedError(FileNotFoundError):
     """There are no published results to deposit."""
+
+
+class DescriptorError(ValueError):
+    """A file is no descriptor of a data package; the message names it."""
 
 
 @dataclass(frozen=True)
@@ -48,39 +57,75 @@ def measured_tables(published: Path) -> list[MeasuredTable]:
     Raises
     ------
     NothingPublishedError
-        Where it holds no scores or no leaderboard.
+        Where it holds no scores.
     ValueError
         Where a file cannot be read, or has a column nothing is known of.
     """
     store = Store(published)
-    scores = store.rows()
-    board = published / "leaderboard.csv"
-    if not scores or not board.is_file():
-        missing = store.scores_path if not scores else board
-        raise NothingPublishedError(f"{missing} is missing or empty; run `sunatlas leaderboard`")
+    scores = store.rows(unit=None)
+    if not scores:
+        raise NothingPublishedError(
+            f"{store.scores_directory} is missing or empty; run `sunatlas leaderboard update`"
+        )
     names = {"extractor": ("algorithms", "name"), "model": ("algorithms", "name")}
     foreign = {"dataset": ("datasets", "name"), **names}
-    swept = sweeps.read(published)
+    swept = store.swept()
     return [
         _algorithms(),
         _datasets(),
         _table(
             "scores",
             "Scores",
-            "One row a pipeline on a data set in a condition; a pure function of code and data.",
+            "One row a pipeline on a data set in a condition and a unit of the sensor; a pure "
+            "function of code and data.",
             scores,
-            primary=("key",),
+            primary=(*_PIPELINE, "unit"),
             foreign=foreign,
         ),
-        _published(board, foreign),
+        _leaderboard(scores, foreign),
+        _pins(store),
         *([_sweeps(swept)] if swept else []),
     ]
+
+
+def _leaderboard(
+    scores: Sequence[Mapping[str, Any]], foreign: Mapping[str, tuple[str, str]]
+) -> MeasuredTable:
+    board = build(scores)
+    rows = [
+        {name: row[name] for name in _RANKED}
+        for dataset in board["datasets"]
+        for row in dataset["rows"]
+    ]
+    return _table(
+        "leaderboard",
+        "Leaderboard",
+        "Pipelines ranked in each data set and condition; numbers of every row stand in scores.",
+        rows,
+        primary=_PIPELINE,
+        foreign=foreign,
+    )
+
+
+def _pins(store: Store) -> MeasuredTable:
+    return _table(
+        "data",
+        "Generated data",
+        "Hash of every generated split of every data set, and its Cramer-Rao bound.",
+        [dataclasses.asdict(pin) for _, pin in sorted(store.pins().items())],
+        primary=("dataset", "condition", "split"),
+        foreign={"dataset": ("datasets", "name")},
+    )
 
 
 def _sweeps(rows: Sequence[Mapping[str, Any]]) -> MeasuredTable:
     # An empty cell is a missing value, which a key may not be: a refused series says so in words.
     named = [
-        {**row, **{name: row[name] or "none" for name in ("series", "sweep", "point")}}
+        {
+            **{name: row[name] or "none" for name in ("series", "sweep", "point")},
+            **{name: value for name, value in row.items() if name not in _RENAMED},
+            "measured_in": row["unit"],
+        }
         for row in rows
     ]
     return _table(
@@ -145,25 +190,12 @@ def _table(
     return MeasuredTable(name, title, description, stream.getvalue(), described)
 
 
-def _published(path: Path, foreign: Mapping[str, tuple[str, str]]) -> MeasuredTable:
-    text = path.read_text("utf-8").replace("\r\n", "\n")
-    header = next(csv.reader(io.StringIO(text)), [])
-    described = schema(header, str(path), primary=_PIPELINE, foreign=foreign)
-    return MeasuredTable(
-        "leaderboard",
-        "Leaderboard",
-        "Pipelines ranked in each data set and condition.",
-        text,
-        described,
-    )
-
-
 def read_descriptor(path: Path) -> dict[str, Any]:
-    """Read a datapackage.json; ValueError naming the file where it is none."""
+    """Read a datapackage.json; DescriptorError naming the file where it is none."""
     try:
         found = json.loads(path.read_text("utf-8"))
     except ValueError as error:
-        raise ValueError(f"{path}: not JSON ({error})") from error
+        raise DescriptorError(f"{path}: not JSON ({error})") from error
     if isinstance(found, dict) and isinstance(found.get("resources"), list):
         return found
-    raise ValueError(f"{path}: expected an object with a list of resources")
+    raise DescriptorError(f"{path}: expected an object with a list of resources")

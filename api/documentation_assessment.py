@@ -6,10 +6,13 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache, partial
 from typing import Any
 
-from benchmark import assessment, sweep_pictures, sweep_tables, sweeps
+from benchmark import assessment
 from benchmark.assessment_definitions import DEFINITIONS
-from benchmark.sweep_plan import SERIES
-from benchmark.sweeps import Row
+from benchmark.results.store import Store
+from benchmark.results.tables import Row
+from benchmark.sweeps import pictures as sweep_pictures
+from benchmark.sweeps import tables as sweep_tables
+from benchmark.sweeps.plan import SERIES
 
 _MARKS = {"agrees": "=", "near": "~", "opposed": "x", "not measured": ""}
 
@@ -114,7 +117,7 @@ PICTURES: Mapping[str, Callable[[], str]] = {
 
 @cache
 def _rows() -> list[Row]:
-    return sweeps.read()
+    return Store().swept()
 
 
 @cache
@@ -137,10 +140,7 @@ def _value(verdict: Mapping[str, Any], source: str) -> str:
         return str(verdict["reason"])
     if verdict["value"] is None:
         return "too few found" if source == "sweeps" else "reads none of them"
-    # Of times one digit: more would say less about the method than about the machine.
-    digits = 1 if source == "runs" else 3
-    stated = float(f"{verdict['value']:.{digits}g}")
-    return f"{stated:g}"
+    return f"{verdict['value']:.3g}"
 
 
 def _table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:

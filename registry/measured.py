@@ -7,7 +7,10 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-_NUMBERS = ("rms_deg", "bound_deg", "over_bound", "half_fov_deg", "latency_us")
+_NUMBERS = (
+    *("rms_deg", "bound_deg", "over_bound", "half_fov_deg", "latency_us"),
+    *("availability", "false_sun"),
+)
 
 Route = tuple[str, str, str, str]  # (detector, mask, extractor value, model value)
 
@@ -16,8 +19,16 @@ Route = tuple[str, str, str, str]  # (detector, mask, extractor value, model val
 class Measured:
     """The score of one pipeline on one dataset under one condition.
 
-    Numbers are None where not measured; NaN and infinities are taken as None. ``half_fov_deg`` is
-    half the field of view of the dataset.
+    Numbers are None where not measured; NaN and infinities are taken as None.
+
+    Attributes
+    ----------
+    half_fov_deg
+        Half the field of view of the dataset.
+    availability, false_sun
+        Answered shares of the samples whose direction is observable, and of the others.
+    available
+        Whether it answers often enough to be judged by its error.
     """
 
     dataset: str
@@ -33,6 +44,9 @@ class Measured:
     over_bound: float | None = None
     half_fov_deg: float | None = None
     latency_us: float | None = None
+    availability: float | None = None
+    false_sun: float | None = None
+    available: bool = True
 
     def __post_init__(self) -> None:
         for name in _NUMBERS:
@@ -52,11 +66,15 @@ class Measured:
             "over_bound": self.over_bound,
             "half_fov_deg": self.half_fov_deg,
             "latency_us": self.latency_us,
+            "availability": self.availability,
+            "false_sun": self.false_sun,
         }
 
 
 class Measurements:
-    """Rows by route, the most accurate first; build once and hand in many times.
+    """Rows by route, best first; build once and hand in many times.
+
+    Best is the most accurate; those that do not answer often enough come behind all others.
 
     Parameters
     ----------
@@ -65,18 +83,18 @@ class Measurements:
     """
 
     def __init__(self, rows: Iterable[Measured] = ()) -> None:
-        by_route: dict[Route, list[tuple[float, Measured]]] = {}
+        by_route: dict[Route, list[tuple[bool, float, Measured]]] = {}
         for row in rows:
             if row.rms_deg is not None:
                 route = (row.detector, row.mask, row.extractor_taxonomy, row.model_taxonomy)
-                by_route.setdefault(route, []).append((row.rms_deg, row))
+                by_route.setdefault(route, []).append((not row.available, row.rms_deg, row))
         self._by_route: dict[Route, tuple[Measured, ...]] = {}
         for route, found in by_route.items():
-            found.sort(key=lambda item: (item[0], _identity(item[1])))
-            self._by_route[route] = tuple(row for _, row in found)
+            found.sort(key=lambda item: (*item[:2], _identity(item[2])))
+            self._by_route[route] = tuple(row for *_, row in found)
 
     def on(self, route: Route) -> tuple[Measured, ...]:
-        """Return the rows of a route, the most accurate first."""
+        """Return the rows of a route, best first."""
         return self._by_route.get(route, ())
 
 

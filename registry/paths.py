@@ -7,6 +7,7 @@ is an intersection and a count.
 from __future__ import annotations
 
 import itertools
+import math
 import weakref
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple, TypeVar
@@ -260,9 +261,12 @@ def positions(bits: int) -> Iterator[int]:
 
 
 def measured_number(limit: str, row: Measured) -> float | None:
-    """Return what a row measured of the quantity a limit is about."""
+    """Return what a row measured of the quantity a limit is about.
+
+    Of a pipeline that does not answer often enough the error keeps no limit: it is infinite.
+    """
     if limit == "max_error_deg":
-        return row.rms_deg
+        return row.rms_deg if row.available else math.inf
     if limit == "min_fov_deg":
         return None if row.half_fov_deg is None else 2 * row.half_fov_deg
     return row.latency_us

@@ -185,8 +185,9 @@ def recommend(
 
 def _rank(answer: Answer) -> tuple[int, float, int]:
     error = float("inf")
-    if answer.measured is not None and answer.measured.rms_deg is not None:
-        error = answer.measured.rms_deg
+    if answer.measured is not None:
+        number = measured_number("max_error_deg", answer.measured)
+        error = error if number is None else number
     return (-answer.backing, error, answer.path)
 
 

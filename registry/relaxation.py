@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
@@ -208,7 +209,7 @@ def _nearest_limit(
                 continue
             number = None if row is None else measured_number(limit, row)
             if number is not None:
-                numbers.append(number)
+                numbers += [number] if math.isfinite(number) else []
             else:
                 told = (table.numbers[limit][study] for study in positions(kept))
                 numbers += [n for n in told if n is not None]

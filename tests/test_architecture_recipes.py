@@ -18,8 +18,9 @@ RECIPE = re.compile(r"```python file=(\S+)\n(.*?)```", re.DOTALL)
 
 MEASURE = """
 import json, sys
-from benchmark import datasets, plan, runner
-from benchmark.store import Store
+from benchmark import datasets, plan
+from benchmark.running import run as runner
+from benchmark.results.store import Store
 from registry.catalogue import catalogue
 
 found = catalogue()

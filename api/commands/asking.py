@@ -8,10 +8,12 @@ from typing import Any
 
 import typer
 
+from api.commands.working import working_directory
 from api.http.answers import Answer
 from api.http.endpoint import Endpoint
 from api.http.endpoints import all_endpoints
 from api.http.knowledge import Knowledge
+from api.http.measurements import Measurements
 from api.http.problems import Problem, Violation
 
 
@@ -49,8 +51,8 @@ def ask(name: str, arguments: Mapping[str, Any], parts: Mapping[str, str] | None
 
 @cache
 def knowledge() -> Knowledge:
-    """Return what is known, loaded on first use."""
-    return Knowledge()
+    """Return what is known, with the times of this machine, loaded on first use."""
+    return Knowledge(Measurements(times_directory=working_directory()))
 
 
 @cache

@@ -8,19 +8,18 @@ import typer
 
 from api.commands.measuring import AVAILABLE_WORKERS, ManyWorkersOption, StoreOption, scored
 from api.commands.tables import Format, FormatOption, emit
+from benchmark.metrics.score import METRICS
 from benchmark.plan import cells
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
 COLUMNS = (
     *("dataset", "condition", "extractor", "model", "rms_deg", "bound_deg", "over_bound"),
-    *("found_fraction", "latency_us", "status"),
+    *("availability", "false_sun", "latency_us", "status"),
 )
 CSV_COLUMNS = (
     *("dataset", "condition", "detector", "mask", "extractor", "model", "status", "reason"),
-    *("n_calibration", "n_test", "found_fraction", "rms_deg", "median_deg", "p95_deg", "max_deg"),
-    *("bias_alpha_deg", "bias_beta_deg", "rms_alpha_deg", "rms_beta_deg", "bound_deg"),
-    *("over_bound", "over_bound_se", "latency_us", "time_ratio", "key"),
+    *("n_calibration", "n_test", "n_observable", *METRICS, "latency_us", "time_ratio"),
 )
 
 

@@ -11,9 +11,10 @@ from api.commands.asking import knowledge
 from api.commands.measuring import AVAILABLE_WORKERS, ManyWorkersOption
 from api.commands.tables import Format, FormatOption, emit
 from benchmark import coverage as covered
-from benchmark import data_pins, dataset_export, datasets
-from benchmark.runner_progress import terminal_progress
-from benchmark.store import PUBLISHED, Store
+from benchmark import dataset_export, datasets
+from benchmark.results.store import PUBLISHED, Store
+from benchmark.running import pinning
+from benchmark.running.progress import terminal_progress
 
 app = typer.Typer(
     help="List, describe, export or verify the standard datasets.",
@@ -146,15 +147,16 @@ def pin(
 ) -> None:
     """Pin the hashes and bounds of the data that changed code makes anew, or check the pins.
 
-    `sunatlas leaderboard` does it too. With --check a pin that is missing, of other code or of
-    other data is named, and the exit code is 1.
+    `sunatlas leaderboard update` does it too. Data that changed while the version of their data
+    set did not are refused. With --check a pin that is missing or does not hold is named, and the
+    exit code is 1.
     """
     store = Store(PUBLISHED)
     if check:
         _check(store, names, workers)
         return
     with terminal_progress() as progress:
-        done = data_pins.update(store, workers, progress, datasets=names or None)
+        done = pinning.update(store, workers, progress, datasets=names or None)
     for warning in done.warnings:
         typer.echo(f"warning: {warning}", err=True)
     typer.echo(
@@ -166,7 +168,7 @@ def pin(
 
 def _check(store: Store, names: list[str] | None, workers: int) -> None:
     with terminal_progress() as progress:
-        wrong = data_pins.differences(store, workers, progress, datasets=names or None)
+        wrong = pinning.differences(store, workers, progress, datasets=names or None)
     for line in wrong:
         typer.echo(line)
     if wrong:

@@ -1,75 +1,127 @@
-"""`sunatlas leaderboard`: the published results, brought up to date or checked."""
+"""`sunatlas leaderboard`: the published results shown, brought up to date, checked or rendered."""
 
 from __future__ import annotations
 
-import json
-from typing import Annotated
+from collections.abc import Iterable, Mapping
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated, Any
 
 import typer
 
-from api.commands.asking import WrongCallError
-from api.commands.measuring import AVAILABLE_WORKERS, ManyWorkersOption, interruptible
+from api.commands.asking import WrongCallError, knowledge
+from api.commands.measuring import (
+    AVAILABLE_WORKERS,
+    ManyWorkersOption,
+    StoreOption,
+    interruptible,
+)
 from api.commands.tables import Format, FormatOption, emit
-from benchmark import leaderboard as published
-from benchmark.store import PUBLISHED
+from api.commands.working import working_directory
+from benchmark.leaderboard import check as checking
+from benchmark.leaderboard import pages
+from benchmark.leaderboard import update as updating
+from benchmark.leaderboard.board import at_field
+from benchmark.metrics.rings import EDGES_DEG
+from benchmark.plan_parts import UnknownNameError
+from benchmark.results.store import PUBLISHED
+from benchmark.running import times as running_times
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
 COLUMNS = (
-    *("dataset", "condition", "rank", "extractor", "model", "rms_deg", "bound_deg", "over_bound"),
-    *("found_fraction", "time_ratio"),
+    *("rank", "tied", "dataset", "condition", "extractor", "model", "rms_deg", "low_deg"),
+    *("high_deg", "over_bound", "availability", "false_sun"),
 )
-DIFFERENCES = ("file", "cell", "committed", "measured")
+FIELD_COLUMNS = (
+    *("rank", "dataset", "condition", "extractor", "model", "field_deg", "field_rms_deg"),
+    *("rms_deg", "availability", "false_sun"),
+)
+DIFFERENCES = ("file", "cell", "committed", "measured", "kernels")
+
+Row = Mapping[str, Any]
 
 
-@app.command()
+class Kernels(StrEnum):
+    """Numerical kernels that a check measures with."""
+
+    NATIVE = checking.NATIVE
+    OLDER = checking.OLDER
+    BOTH = "both"
+
+    @property
+    def chosen(self) -> tuple[str, ...]:
+        """Names that `benchmark.leaderboard.check.check` takes."""
+        return checking.KERNELS if self is Kernels.BOTH else (self.value,)
+
+
+@app.callback(invoke_without_command=True)
 def leaderboard(
+    context: typer.Context,
     *,
+    dataset: Annotated[
+        list[str] | None,
+        typer.Option(help="All pipelines of this data set; may be repeated.", show_default=False),
+    ] = None,
+    condition: Annotated[
+        list[str] | None,
+        typer.Option(help="Only this condition; may be repeated.", show_default=False),
+    ] = None,
+    field: Annotated[
+        int | None,
+        typer.Option(
+            help="Judge by the error within this angle of the boresight, degrees: one of "
+            f"{', '.join(map(str, EDGES_DEG[1:]))}.",
+            show_default=False,
+        ),
+    ] = None,
     check: Annotated[
         bool,
-        typer.Option("--check", help="Write nothing; measure everything again and compare."),
+        typer.Option("--check", help="Measure everything again and compare; write nothing."),
     ] = False,
     stored: Annotated[
         bool,
-        typer.Option("--stored", help="With --check: compare what is stored, measure nothing."),
+        typer.Option("--stored", help="With --check: measure nothing, compare what is stored."),
     ] = False,
+    kernels: Annotated[
+        Kernels | None,
+        typer.Option(
+            help="With --check: measure as this machine does, as an older processor would, or "
+            "first so and then so (both, the default).",
+            show_default=False,
+        ),
+    ] = None,
     workers: ManyWorkersOption = AVAILABLE_WORKERS,
     form: FormatOption = Format.TABLE,
 ) -> None:
-    """Bring the published leaderboard up to date, or check it.
+    """Show the leaderboard, bring it up to date or check it.
 
-    Measures the cells whose code or data have changed, and only those, then writes the results
-    and leaderboard.{json,csv,md,html} beside them and prints the best of each data set and
-    condition. With --check every committed number is compared with what the code gives now, a
-    difference is printed with its file and cell, and the exit code is 1; times are not compared.
+    Without a command the published results are shown: the best of each data set in its first
+    condition, or in those asked for, or all pipelines of a data set. With --field an error is
+    that over a part of the field, where rings count by their solid angle: the best of each data
+    set then compare at an equal field.
+    With --check every committed number is compared with what the code gives now; a difference is
+    printed with its file and cell, and the exit code is 1.
     """
+    if context.invoked_subcommand is not None:
+        return
     if check:
-        _check(workers, form, stored_only=stored)
-    elif stored:
-        raise WrongCallError("--stored goes with --check")
+        _check(workers, form, (kernels or Kernels.BOTH).chosen, stored_only=stored)
+    elif stored or kernels:
+        raise WrongCallError(f"{'--stored' if stored else '--kernels'} goes with --check")
     else:
-        _update(workers, form)
+        _show(dataset or [], condition or [], field, form)
 
 
-def _check(workers: int, form: Format, *, stored_only: bool) -> None:
+@app.command()
+def update(workers: ManyWorkersOption = AVAILABLE_WORKERS) -> None:
+    """Measure what code or data have changed of, and write the published results.
+
+    Only the cells whose code or data have changed are measured. Data that changed while the
+    version of their data set did not are refused, with the data sets named.
+    """
     with interruptible():
-        found = published.check(PUBLISHED, workers, stored_only=stored_only)
-    rows = [{name: getattr(difference, name) for name in DIFFERENCES} for difference in found]
-    if rows or form is not Format.TABLE:
-        emit(rows, DIFFERENCES, form, title=f"{len(rows)} differences")
-    if found:
-        typer.echo(f"sunatlas: {len(found)} differences, the first: {found[0]}", err=True)
-        raise typer.Exit(1)
-    how = "the files agree with each other and the code" if stored_only else "measured again"
-    typer.echo(f"every published number holds: {how}", err=True)
-
-
-def _update(workers: int, form: Format) -> None:
-    with interruptible():
-        summary = published.update(PUBLISHED, workers)
-    board = json.loads((PUBLISHED / "leaderboard.json").read_text())
-    best = [row for dataset in board["datasets"] for row in dataset["rows"] if row["rank"] == 1]
-    emit(best, COLUMNS, form, document=board, title="Best of each data set and condition")
+        summary = updating.update(PUBLISHED, workers)
     for cell, reason in summary.failed:
         typer.echo(f"failed: {cell}: {reason}", err=True)
     for warning in summary.warnings:
@@ -79,3 +131,102 @@ def _update(workers: int, form: Format) -> None:
         f"{summary.already_stored} stored before; in {summary.store}",
         err=True,
     )
+
+
+@app.command()
+def render(
+    out: Annotated[Path, typer.Option(help="Directory to write to.", show_default=False)],
+) -> None:
+    """Write the whole leaderboard as leaderboard.{json,csv,md,html} and sweeps.csv.
+
+    Files of the same name are replaced. Nothing is measured; times of this machine are those that
+    `sunatlas leaderboard times` has kept.
+    """
+    board = knowledge().measurements.leaderboard
+    if not board["datasets"]:
+        raise WrongCallError(f"nothing is published in {PUBLISHED}; `sunatlas leaderboard update`")
+    for path in pages.render(board, out):
+        typer.echo(str(path))
+
+
+@app.command()
+def times(store: StoreOption = None, form: FormatOption = Format.TABLE) -> None:
+    """Time every pipeline on this machine, where that is not done yet.
+
+    On the first condition of each data set, in one thread, the best of three beside a reference.
+    Times belong to a machine: they are kept in the working store and shown by the page, by
+    recommendations and by `sunatlas assess`, and are never published.
+    """
+    directory = working_directory(store)
+    with interruptible():
+        timed = running_times.update(directory)
+    kept = running_times.times_of_code(directory)
+    columns = ("dataset", "extractor", "model", "latency_us", "time_ratio", "extract_ratio")
+    rows = [{name: getattr(time, name) for name in columns} for time in kept.values()]
+    emit(rows, columns, form, title=f"{len(rows)} pipelines")
+    typer.echo(f"{timed} timed now, {len(rows) - timed} before; in {directory}", err=True)
+
+
+def _check(workers: int, form: Format, kernels: tuple[str, ...], *, stored_only: bool) -> None:
+    with interruptible():
+        found = checking.check(PUBLISHED, workers, stored_only=stored_only, kernels=kernels)
+    rows = [{name: getattr(difference, name) for name in DIFFERENCES} for difference in found]
+    if rows or form is not Format.TABLE:
+        emit(rows, DIFFERENCES, form, title=f"{len(rows)} differences")
+    if found:
+        typer.echo(f"sunatlas: {len(found)} differences, the first: {found[0]}", err=True)
+        raise typer.Exit(1)
+    how = (
+        "the files agree with each other and the code"
+        if stored_only
+        else f"measured again with {' and '.join(kernels)} kernels"
+    )
+    typer.echo(f"every published number holds: {how}", err=True)
+
+
+def _show(datasets: list[str], conditions: list[str], field: int | None, form: Format) -> None:
+    measurements = knowledge().measurements
+    _require("dataset", datasets, measurements.dataset_names)
+    _require("condition", conditions, measurements.conditions)
+    if field is not None and field not in EDGES_DEG[1:]:
+        edges = ", ".join(map(str, EDGES_DEG[1:]))
+        raise WrongCallError(f"--field: no {field}; expected one of {edges}")
+    rows: Iterable[Row] = measurements.board_rows()
+    if field is not None:
+        rows = at_field(rows, field)
+    first = {
+        board["name"]: board["conditions"][0] for board in measurements.leaderboard["datasets"]
+    }
+    if datasets:
+        title = ", ".join(datasets)
+        chosen = [row for row in rows if row["dataset"] in datasets]
+    else:
+        title = "Best of each data set"
+        chosen = [row for row in rows if row["rank"] == 1]
+    chosen = [
+        row
+        for row in chosen
+        if row["condition"] in (conditions or [first[row["dataset"]]])
+        or (datasets and not conditions)
+    ]
+    if field is not None:
+        title = f"{title}, within {field} deg of the boresight"
+        chosen.sort(key=lambda row: (row["field_rms_deg"] is None, row["field_rms_deg"] or 0.0))
+    emit(
+        chosen,
+        COLUMNS if field is None else FIELD_COLUMNS,
+        form,
+        document={"items": chosen, "total": len(chosen)},
+        title=title,
+    )
+    if not chosen:
+        typer.echo("sunatlas: no pipeline has an error there", err=True)
+        raise typer.Exit(1)
+
+
+def _require(what: str, names: Iterable[str], known: Iterable[str]) -> None:
+    """Raise UnknownNameError for a name that is not among the known ones."""
+    there = tuple(known)
+    for name in names:
+        if name not in there:
+            raise UnknownNameError(what, name, there)

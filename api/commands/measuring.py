@@ -1,8 +1,8 @@
 """Measuring cells for a command: where results are looked up, where new ones go.
 
 A cell that the published results hold for the code and data as they are is read there. Any other
-is measured once into the working store, a directory of the same files, and read from it the next
-time: $SUNATLAS_STORE, else sunatlas/ in the user's cache directory ($XDG_CACHE_HOME or ~/.cache).
+is measured once into the working store (`api.commands.working`), a directory of the same files,
+and read from it the next time.
 """
 
 from __future__ import annotations
@@ -16,9 +16,11 @@ from typing import Annotated, Any
 
 import typer
 
+from api.commands.working import working_directory
 from benchmark.plan import Cell
-from benchmark.runner import RunInterruptedError, run, stale
-from benchmark.store import PUBLISHED, Store, cell_of
+from benchmark.results.store import PUBLISHED, Store
+from benchmark.running.run import RunInterruptedError, run, stale
+from benchmark.running.times import times_of_code
 
 Row = dict[str, Any]
 
@@ -58,7 +60,8 @@ class Scored:
 
     Attributes
     ----------
-    rows : score rows with latency_us and time_ratio where known, in the order of the cells
+    rows : score rows in the order of the cells, with latency_us and time_ratio where this machine
+        has timed the pipeline
     published, kept, measured : how many were read from the published results, how many from the
         working store, how many measured now
     directory : the working store
@@ -82,15 +85,6 @@ class Scored:
         }
 
 
-def working_directory(given: Path | None = None) -> Path:
-    """Return the directory of the working store."""
-    named = os.environ.get("SUNATLAS_STORE")
-    if given is not None or named:
-        return given or Path(str(named))
-    cache = os.environ.get("XDG_CACHE_HOME")
-    return (Path(cache) if cache else Path.home() / ".cache") / "sunatlas"
-
-
 def scored(cells: Iterable[Cell], workers: int, directory: Path | None) -> Scored:
     """Read what is known of the cells and measure the rest.
 
@@ -99,7 +93,7 @@ def scored(cells: Iterable[Cell], workers: int, directory: Path | None) -> Score
     typer.Exit
         With 130 on Ctrl-C, after saying what is kept.
     StoreLockedError, StoreError
-        As `benchmark.runner.run`.
+        As `benchmark.running.run.run`.
     """
     wanted = sorted(set(cells))
     shipped, work = Store(PUBLISHED), Store(working_directory(directory))
@@ -110,6 +104,11 @@ def scored(cells: Iterable[Cell], workers: int, directory: Path | None) -> Score
         with interruptible():
             warnings = run(missing, work, workers).warnings
     found = {**_rows(shipped, set(wanted) - set(elsewhere)), **_rows(work, set(elsewhere))}
+    times = times_of_code(work.directory)
+    for cell, row in found.items():
+        time = times.get((cell.dataset, cell.extractor, cell.model))
+        row["latency_us"] = time.latency_us if time else None
+        row["time_ratio"] = time.time_ratio if time else None
     return Scored(
         rows=[found[cell] for cell in wanted],
         published=len(wanted) - len(elsewhere),
@@ -133,10 +132,8 @@ def interruptible() -> Iterator[None]:
 def _rows(store: Store, cells: set[Cell]) -> dict[Cell, Row]:
     if not cells:
         return {}
-    runs = store.runs()
-    timed = ("latency_us", "time_ratio")
-    return {
-        cell: {**row, **{name: runs.get(row["key"], {}).get(name) for name in timed}}
-        for row in store.rows()
-        if (cell := cell_of(row)) in cells
-    }
+    return {cell: row for row in store.rows() if (cell := _cell(row)) in cells}
+
+
+def _cell(row: Row) -> Cell:
+    return Cell(row["dataset"], row["condition"], row["extractor"], row["model"], row["unit"])

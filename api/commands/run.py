@@ -10,6 +10,7 @@ import typer
 from api.commands.asking import ask, knowledge
 from api.commands.measuring import Scored, StoreOption, WorkersOption, scored
 from api.commands.tables import Format, FormatOption, emit
+from benchmark.metrics.score import METRICS
 from benchmark.plan import Cell, cells, datasets_for
 from benchmark.plan_parts import UnknownNameError
 from registry.resolution import Resolution
@@ -18,12 +19,11 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
 COLUMNS = (
     *("dataset", "condition", "extractor", "model", "rms_deg", "bound_deg", "over_bound"),
-    *("found_fraction", "status", "assumed"),
+    *("availability", "false_sun", "status", "assumed"),
 )
 CSV_COLUMNS = (
     *("study", "dataset", "condition", "detector", "mask", "extractor", "model", "status"),
-    *("reason", "n_calibration", "n_test", "found_fraction", "rms_deg", "median_deg", "p95_deg"),
-    *("max_deg", "bound_deg", "over_bound", "over_bound_se", "latency_us", "assumed", "key"),
+    *("reason", "n_calibration", "n_test", "n_observable", *METRICS, "latency_us", "assumed"),
 )
 
 

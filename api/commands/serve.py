@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+import contextlib
 import socket
+from functools import partial
 from typing import Annotated
 
 import typer
 import uvicorn
+from fastapi import FastAPI
 
+from api.commands.working import working_directory
+from api.http.knowledge import Knowledge
+from api.http.measurements import Measurements
+from api.renewal import Renewed, renewed_with_times
 from api.service import create_app
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
@@ -19,17 +26,39 @@ def serve(
     port: Annotated[
         int, typer.Option(min=0, max=65535, help="Port to listen on; 0 takes a free one.")
     ] = 8000,
+    times: Annotated[
+        bool,
+        typer.Option(
+            "--times",
+            help="Time every pipeline on this machine meanwhile, where that is not done yet, and "
+            "serve the times as soon as they are there.",
+        ),
+    ] = False,
 ) -> None:
     """Serve the page and the HTTP interface.
 
     The page is at /, the API under /v1, its description at /openapi.json. Ctrl-C stops.
     """
     listener = listen(host, port)
-    with listener:
-        application = create_app()
-        typer.echo(f"Sun Sensor Atlas: {address(host, listener.getsockname()[1])} (Ctrl-C stops)")
+    with listener, contextlib.ExitStack() as stack:
+        application = Renewed(_application())
         config = uvicorn.Config(application, log_level="warning")
+        if times:
+            stack.enter_context(
+                renewed_with_times(
+                    application, working_directory(), partial(_application, loaded=True)
+                )
+            )
+        typer.echo(f"Sun Sensor Atlas: {address(host, listener.getsockname()[1])} (Ctrl-C stops)")
         uvicorn.Server(config).run(sockets=[listener])
+
+
+def _application(*, loaded: bool = False) -> FastAPI:
+    """Make the service with what is known now, times of this machine included."""
+    known = Knowledge(Measurements(times_directory=working_directory()))
+    if loaded:
+        known.load_all()
+    return create_app(known)
 
 
 def listen(host: str, port: int) -> socket.socket:

@@ -72,6 +72,6 @@ class Knowledge:
         ValueError
             Where a file of facts or of published results cannot be read.
         """
-        _ = self.resolutions, self.measurements.scores, self.measurements.runs
+        _ = self.resolutions, self.measurements.scores, self.measurements.times
         _ = self._measured, self.measurements.leaderboard, self.measurements.cards
         _ = self.measurements.sweeps, self.measurements.assessment

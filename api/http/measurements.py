@@ -1,22 +1,26 @@
-"""The published measurements: scores, running times, leaderboard and the standard data sets."""
+"""The published measurements: scores, leaderboard, sweeps and the standard data sets."""
 
 from __future__ import annotations
 
 import dataclasses
-import json
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from benchmark import sweeps
-from benchmark.store import PUBLISHED, Pin, Store, StoreError
+from benchmark.leaderboard.board import build
+from benchmark.metrics.score import is_available
+from benchmark.results.pins import Pin
+from benchmark.results.store import PUBLISHED, Store
 from registry.measured import Measured
 
 if TYPE_CHECKING:
     from benchmark.datasets import Preset
+    from benchmark.running.times import Pipeline, Time
 
-_TAKEN = tuple(f.name for f in dataclasses.fields(Measured) if f.name != "latency_us")
+_TAKEN = tuple(
+    f.name for f in dataclasses.fields(Measured) if f.name not in {"latency_us", "available"}
+)
 
 Row = Mapping[str, Any]
 
@@ -27,20 +31,31 @@ class Measurements:
     Parameters
     ----------
     directory : of the published files
+    times_directory : of running times of this machine (`benchmark.running.times`), which are no
+        part of what is published; None for none
     """
 
-    def __init__(self, directory: Path = PUBLISHED) -> None:
+    def __init__(self, directory: Path = PUBLISHED, times_directory: Path | None = None) -> None:
         self.directory = directory
+        self.times_directory = times_directory
+
+    @cached_property
+    def _every_unit(self) -> Sequence[Row]:
+        return Store(self.directory).rows(unit=None)
 
     @cached_property
     def scores(self) -> Sequence[Row]:
-        """Score rows, sorted by data set, condition, extractor and model."""
-        return Store(self.directory).rows()
+        """Score rows of the standard unit, sorted by data set, condition, extractor and model."""
+        return [row for row in self._every_unit if row["unit"] == 0]
 
     @cached_property
-    def runs(self) -> Mapping[str, Row]:
-        """Running times by key of the score they belong to."""
-        return Store(self.directory).runs()
+    def times(self) -> Mapping[Pipeline, Time]:
+        """Times of this machine that are of the code as it is."""
+        if self.times_directory is None:
+            return {}
+        from benchmark.running import times  # noqa: PLC0415 - slow, and of no use without times
+
+        return times.times_of_code(self.times_directory)
 
     def comparable(self, condition: str) -> list[Measured]:
         """Return the scores of a condition as recommendations take them, failures left out."""
@@ -48,38 +63,37 @@ class Measurements:
         for row in self.scores:
             if row["condition"] == condition and row["status"] == "ok":
                 taken: dict[str, Any] = {name: row[name] for name in _TAKEN}
-                latency_us = self.runs.get(row["key"], {}).get("latency_us")
-                found.append(Measured(**taken, latency_us=latency_us))
+                time = self.times.get((row["dataset"], row["extractor"], row["model"]))
+                found.append(
+                    Measured(
+                        **taken,
+                        available=is_available(row),
+                        latency_us=time.latency_us if time else None,
+                    )
+                )
         return found
 
     @cached_property
     def leaderboard(self) -> Mapping[str, Any]:
-        """The published leaderboard; without data sets where none is published.
-
-        Raises
-        ------
-        StoreError
-            Where the file is not a JSON object.
-        """
-        path = self.directory / "leaderboard.json"
-        if not path.is_file():
-            return {"schema": None, "datasets": []}
-        board = json.loads(path.read_bytes())
-        if not isinstance(board, dict):
-            raise StoreError(f"{path}: expected a JSON object, got {type(board).__name__}")
-        return board
+        """The leaderboard of the published scores; without data sets where there are none."""
+        times = {
+            pipeline: {"latency_us": time.latency_us, "time_ratio": time.time_ratio}
+            for pipeline, time in self.times.items()
+        }
+        board = build(self._every_unit, times, self.sweeps)
+        return board if board["datasets"] else {"schema": None, "datasets": []}
 
     @cached_property
     def sweeps(self) -> Sequence[Row]:
         """Rows of the sweeps on reference features, in order."""
-        return sweeps.read(self.directory)
+        return Store(self.directory).swept()
 
     @cached_property
     def assessment(self) -> Mapping[str, Any]:
         """The survey's assessment beside the measured one, with definitions and totals."""
         from benchmark import assessment  # noqa: PLC0415 - imports every implementation
 
-        return assessment.document(assessment.assess(self.directory))
+        return assessment.document(assessment.assess(self.directory, times=self.times))
 
     @cached_property
     def assessed_methods(self) -> tuple[str, ...]:
@@ -152,26 +166,16 @@ class Measurements:
         return pin if pin and pin.version == self.presets[dataset].version else None
 
     def bounds(self, dataset: str) -> dict[str, float]:
-        """Return the bound (rms, degrees) of each condition of a data set that has one published.
+        """Return the bound (rms, degrees) of each condition of a data set that has one pinned.
 
-        Over all samples of the test split where the direction is observable. Where the data are
-        not pinned, that of the pipeline that found most: a score's bound is over the samples its
-        pipeline found.
+        Over all samples of the test split where the direction is observable; a score's bound is
+        over those of them that its pipeline answered.
         """
-        pinned = {
+        return {
             condition: pin.bound_deg
             for condition in self.presets[dataset].conditions
             if (pin := self._pin(dataset, condition, "test")) and pin.bound_deg is not None
         }
-        return {**self._scored_bounds(dataset), **pinned}
-
-    def _scored_bounds(self, dataset: str) -> dict[str, float]:
-        best: dict[str, tuple[float, float]] = {}
-        for row in self.scores:
-            if row["dataset"] == dataset and row["status"] == "ok" and row["bound_deg"] is not None:
-                found = (row["found_fraction"], row["bound_deg"])
-                best[row["condition"]] = max(best.get(row["condition"], found), found)
-        return {condition: bound for condition, (_, bound) in best.items()}
 
     def board_rows(self, dataset: str | None = None) -> Sequence[Row]:
         """Rows of the leaderboard, of one data set or of all."""

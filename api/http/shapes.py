@@ -177,7 +177,13 @@ class Measured(Shape):
     bound_deg: float | None
     over_bound: float | None
     half_fov_deg: float | None
-    latency_us: float | None
+    latency_us: float | None = Field(
+        description="Of one sample on this machine, microseconds; null where it is not timed."
+    )
+    availability: float | None = Field(
+        description="Answered share of the samples whose direction is observable."
+    )
+    false_sun: float | None = Field(description="Answered share of the other samples.")
 
 
 class Literature(Shape):
@@ -301,35 +307,48 @@ class Datasets(Listing):
 
 
 class Score(OpenShape):
-    """What a pipeline achieves on a data set in a condition. Numbers are null where undefined."""
+    """What a pipeline achieves on a data set in a condition. Numbers are null where undefined.
 
-    key: str = Field(description="Digest of all that the numbers depend on.")
+    Errors, the bound and their ratio are over the same samples: observable and answered.
+    """
+
     dataset: str
     dataset_version: int
     condition: str
+    unit: int = Field(description="Which unit of the sensor; 0 is the standard one.")
     detector: str
     mask: str
     half_fov_deg: float | None
     extractor: str
     extractor_taxonomy: str
+    extractor_version: int
     model: str
     model_taxonomy: str
+    model_version: int
     status: Literal["ok", "refused", "failed"]
     reason: str = Field(description="Why there is no score; empty where there is one.")
     n_calibration: int | None
     n_test: int | None
-    found_fraction: float | None
+    n_observable: int | None = Field(description="Test samples whose direction is observable.")
+    availability: float | None = Field(description="Answered share of the observable samples.")
+    false_sun: float | None = Field(
+        description="Answered share of the samples that are not observable; null without any."
+    )
     rms_deg: float | None
     median_deg: float | None
     p95_deg: float | None
+    p997_deg: float | None
     max_deg: float | None
     bias_alpha_deg: float | None
     bias_beta_deg: float | None
     rms_alpha_deg: float | None
     rms_beta_deg: float | None
-    bound_deg: float | None = Field(description="Cramer-Rao bound, rms over the found samples.")
+    repeatability_deg: float | None = Field(
+        description="Standard deviation of answers to a pose held still, over both axes."
+    )
+    bound_deg: float | None = Field(description="Cramer-Rao bound, rms.")
     over_bound: float | None = Field(description="RMS error over the bound.")
-    data_hash: str | None
+    over_bound_se: float | None = Field(description="Standard error of that ratio.")
 
 
 class Scores(Listing):
@@ -339,12 +358,24 @@ class Scores(Listing):
 
 
 class LeaderboardRow(Score):
-    """A score with its place."""
+    """A score with its place. Members `rms_<inner>_<outer>_deg` are errors by off-axis angle."""
 
     rank: int | None = Field(
-        description="Place by RMS error in the condition; null without a score."
+        description="Place in the condition by RMS error, or by that over the field asked for. "
+        "Pipelines that answer less than 95 % come behind all others; null without an error."
     )
-    time_ratio: float | None = Field(description="Time over that of a reference.")
+    tied: bool = Field(description="Whether units built alike disagree, so that others share it.")
+    unit_rms_deg: list[float | None] | None = Field(
+        description="RMS error on each unit of the sensor, the standard one first; null where one "
+        "unit is scored."
+    )
+    low_deg: float | None = Field(description="Smallest RMS error of a unit.")
+    high_deg: float | None = Field(description="Largest RMS error of a unit.")
+    latency_us: float | None = Field(
+        description="Extraction and prediction of one sample on this machine, microseconds; null "
+        "where it is not timed."
+    )
+    time_ratio: float | None = Field(description="The same over the time of a reference.")
 
 
 class LeaderboardDataset(OpenShape):

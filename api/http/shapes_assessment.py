@@ -14,7 +14,6 @@ Agreement = Literal["agrees", "near", "opposed", "not measured"]
 class Sweep(OpenShape):
     """Error of an extractor at a point of a sweep. Numbers are null where undefined."""
 
-    key: str = Field(description="Digest of all that the numbers depend on.")
     series: str = Field(description="Name of the reference feature.")
     sweep: str = Field(description="What is varied; empty where the feature is not measured.")
     point: str

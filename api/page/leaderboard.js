@@ -5,14 +5,31 @@ import { address, getAll, getJson, saveCsv } from "./service.js";
 import { show, state } from "./state.js";
 import { degrees, number, percent, plural, times } from "./wording.js";
 
-const COLUMNS = [
-  { field: "extractor", name: "Extractor", text: true },
-  { field: "model", name: "Model", text: true },
-  { field: "rms_deg", name: "RMS error", write: degrees },
-  { field: "over_bound", name: "× bound", title: "RMS error over the Cramér–Rao bound of the samples found", write: times },
-  { field: "found_fraction", name: "Found", write: percent },
-  { field: "time_ratio", name: "Time ratio", write: times, title: "Time of extraction and prediction over that of a reference on the same observations" },
+const RANK = { field: "rank", name: "Rank", write: (rank, row) => (rank === null ? "–" : `${rank}${row.tied ? "=" : ""}`), title: "By error; pipelines that answer less than 95 % come behind all others. 2= shares its rank: units built alike disagree" };
+const NAMES = [{ field: "extractor", name: "Extractor", text: true }, { field: "model", name: "Model", text: true }];
+const ERROR = { field: "rms_deg", name: "RMS error", write: (value, row) => [degrees(value), units(row)] };
+const BOUND = { field: "over_bound", name: "× bound", title: "RMS error over the Cramér–Rao bound of the same samples", write: times };
+const SHARES = [
+  { field: "availability", name: "Answered", write: percent, title: "Share of the samples whose direction is observable" },
+  { field: "false_sun", name: "False Suns", write: percent, title: "Answered share of the samples whose direction is not observable, such as those in eclipse" },
 ];
+const TIME = { field: "time_ratio", name: "Time ratio", write: times, title: "Time of extraction and prediction on this machine over that of a reference on the same observations" };
+const WHOLE = "";
+const FIELDS = [10, 20, 30, 40, 50, 60, 70, 90, 180];
+
+/** The columns that say something of what is shown. */
+function columns() {
+  const { rows, field } = shown;
+  const errors = field === WHOLE ? [ERROR, BOUND]
+    : [{ field: "field_rms_deg", name: `RMS within ${field}°`, write: degrees, title: "Rings of the field count by their solid angle" }, ERROR];
+  return [RANK, ...NAMES, ...errors, ...SHARES, ...(rows.some((r) => r.time_ratio > 0) ? [TIME] : [])];
+}
+
+/** Smallest and largest error of the units a pipeline was scored on. */
+const units = (row) => row.low_deg > 0 && h("div", { class: "below", title: `On ${row.unit_rms_deg.length} units built alike` },
+  `${number(row.low_deg)} to ${degrees(row.high_deg)}`);
+const errorOf = (row) => (row.field_deg ? row.field_rms_deg : row.rms_deg);
+
 const SCALE = "Error, log scale";
 const FIRST = 16;
 const MOST_ENTRIES = 8; // of a list of lists, such as the apertures of a mask
@@ -20,9 +37,12 @@ const MOST_ENTRIES = 8; // of a list of lists, such as the apertures of a mask
 let shown = null; // what the rows on screen belong to
 let turn = 0;
 
+/** What stands beside an error on the scale: over the whole field only. */
+const limits = (row) => (row.field_deg ? [] : [row.bound_deg, row.low_deg, row.high_deg]);
+
 /** A logarithmic scale that all rows share: position of a number from 0 to 1, and its ticks. */
 const scaleOf = (rows) => {
-  const values = rows.flatMap((r) => [r.rms_deg, r.bound_deg]).filter((x) => x > 0 && Number.isFinite(x));
+  const values = rows.flatMap((r) => [errorOf(r), ...limits(r)]).filter((x) => x > 0 && Number.isFinite(x));
   if (!values.length) return null;
   const low = Math.floor(Math.log10(Math.min(...values) * 0.999));
   const high = Math.max(low + 1, Math.ceil(Math.log10(Math.max(...values))));
@@ -33,15 +53,18 @@ const scaleOf = (rows) => {
 };
 
 function bar(row, scale) {
-  if (!scale || !(row.rms_deg > 0)) return h("span", { class: "muted" }, "–");
-  const error = scale.at(row.rms_deg);
-  const bound = row.bound_deg > 0 ? scale.at(row.bound_deg) : null;
-  const from = bound ?? error;
-  return h("div", { class: "scale", role: "img", "aria-label": `${degrees(row.rms_deg)} against a bound of ${degrees(row.bound_deg)}` },
+  const value = errorOf(row);
+  if (!scale || !(value > 0)) return h("span", { class: "muted" }, "–");
+  const error = scale.at(value);
+  const [limit = null, low = null, high = null] = limits(row).map((x) => (x > 0 ? scale.at(x) : null));
+  const from = limit ?? error;
+  const told = row.field_deg ? "" : ` against a bound of ${degrees(row.bound_deg)}`;
+  return h("div", { class: "scale", role: "img", "aria-label": `${degrees(value)}${told}` },
     scale.ticks.map((t) => h("i", { class: "tick", css: { "--at": scale.at(t) } })),
     h("i", { class: "span", css: { "--from": Math.min(from, error), "--to": Math.max(from, error) } }),
+    low !== null && high !== null && h("i", { class: "units", css: { "--from": low, "--to": high } }),
     h("i", { class: "dot", css: { "--at": error } }),
-    bound !== null && h("i", { class: "limit", css: { "--at": bound } }));
+    limit !== null && h("i", { class: "limit", css: { "--at": limit } }));
 }
 
 function sorted(rows) {
@@ -74,24 +97,25 @@ function evidence(row) {
     h("p", { class: "links" }, h("a", { href: address_of }, "Score row (JSON)")));
 }
 
-function tableRow(row, scale, i) {
+function tableRow(row, shownColumns, scale, i) {
   const id = `score-${i}`;
   const detail = h("tr", { class: "detail", id, role: "row", hidden: true });
   const expand = h("button", {
     type: "button", class: "expand", "aria-expanded": false, "aria-controls": id, "aria-label": `Score of ${row.extractor} with ${row.model}`,
     onclick: () => {
-      if (!detail.firstChild) detail.append(h("td", { colspan: String(COLUMNS.length + 2), role: "cell" }, evidence(row)));
+      if (!detail.firstChild) detail.append(h("td", { colspan: String(shownColumns.length + 2), role: "cell" }, evidence(row)));
       detail.hidden = !detail.hidden;
       expand.setAttribute("aria-expanded", String(!detail.hidden));
     },
   }, "Score");
   const failed = row.status !== "ok";
   const taxonomy = (field) => row[`${field}_taxonomy`] && row[`${field}_taxonomy`].toLowerCase() !== row[field].toLowerCase() && row[`${field}_taxonomy`];
-  const cell = (c) => h("td", { role: "cell", "data-label": c.name, class: c.text ? "word" : "number" },
-    c.text ? h("span", { title: taxonomy(c.field) || null }, row[c.field]) : c.write(row[c.field]));
-  const numbers = COLUMNS.filter((c) => !c.text);
+  const cell = (c) => h("td", { role: "cell", "data-label": c.name, class: c.text ? "word" : c === RANK ? "number rank" : "number" },
+    c.text ? h("span", { title: taxonomy(c.field) || null }, row[c.field]) : c.write(row[c.field], row));
+  const leading = shownColumns.filter((c) => c.text || c === RANK);
+  const numbers = shownColumns.filter((c) => !leading.includes(c));
   return [h("tr", { role: "row", class: "score" },
-    COLUMNS.filter((c) => c.text).map(cell),
+    leading.map(cell),
     failed
       ? h("td", { role: "cell", class: "wide failed note", colspan: String(numbers.length + 1), "aria-colspan": numbers.length + 1 },
         `${row.status}: ${row.reason || "no reason stored"}`)
@@ -146,10 +170,12 @@ function cardOf(card, condition) {
 }
 
 function draw() {
-  const { rows, dataset, condition, card } = shown;
+  const { rows, dataset, condition, card, field } = shown;
+  const shownColumns = columns();
+  const ranged = rows.some((r) => r.low_deg > 0);
   const scale = scaleOf(rows);
   const bound = rows.find((r) => r.bound_deg > 0)?.bound_deg ?? card?.bounds?.[condition];
-  const url = address(`/v1/leaderboard/${encodeURIComponent(dataset)}`, { condition, limit: 500 });
+  const url = address(`/v1/leaderboard/${encodeURIComponent(dataset)}`, { condition, field_deg: field || null, limit: 500 });
   byId("board-card").replaceChildren(h("div", { class: "dataset-card" },
     card && h("p", {}, card.description),
     card?.setups?.[condition]?.description && h("p", {}, h("strong", {}, condition), `: ${card.setups[condition].description}`),
@@ -163,21 +189,23 @@ function draw() {
   const listed = sorted(rows).slice(0, shown.all ? rows.length : FIRST);
   if (!rows.length) {
     body.replaceChildren(h("div", { class: "notice" }, h("p", {}, "No pipeline is scored on this data set in this condition yet. ",
-      h("code", {}, "sunatlas leaderboard"), " computes what is missing.")));
+      h("code", {}, "sunatlas leaderboard update"), " computes what is missing.")));
     return;
   }
   body.replaceChildren(
     h("div", { class: "legend" },
-      h("span", {}, h("i", { class: "key-dot" }), "RMS error, on a logarithmic scale"),
-      h("span", {}, h("i", { class: "key-limit" }), "Cramér–Rao bound"),
-      h("span", {}, "Time ratio: against a reference on the same observations")),
-    h("div", { class: "sort-narrow" }, choice("Sort by", "sort-narrow", COLUMNS.map((c) => [c.field, c.name]), state.sort, (sort) => show({ sort, order: "ascending" }))),
+      h("span", {}, h("i", { class: "key-dot" }), field === WHOLE ? "RMS error, on a logarithmic scale" : `RMS error within ${field}° of the boresight, on a logarithmic scale`),
+      field === WHOLE && h("span", {}, h("i", { class: "key-limit" }), "Cramér–Rao bound"),
+      field === WHOLE && ranged && h("span", {}, h("i", { class: "key-units" }), "range over five units built alike; = marks a rank that the range does not tell apart"),
+      field === WHOLE && !ranged && h("span", {}, "Ranks of this condition rest on one unit of the sensor"),
+      shownColumns.includes(TIME) && h("span", {}, "Time ratio: against a reference on the same observations")),
+    h("div", { class: "sort-narrow" }, choice("Sort by", "sort-narrow", shownColumns.map((c) => [c.field, c.name]), state.sort, (sort) => show({ sort, order: "ascending" }))),
     h("table", { class: "stacks board", role: "table", "aria-labelledby": "leaderboard-title" },
-      h("thead", { role: "rowgroup" }, h("tr", { role: "row" }, COLUMNS.map(heading),
+      h("thead", { role: "rowgroup" }, h("tr", { role: "row" }, shownColumns.map(heading),
         h("th", { scope: "col", role: "columnheader" }, SCALE, scale && h("span", { class: "scale-head", "aria-hidden": true },
           scale.labelled.map((t) => h("span", { css: { "--at": scale.at(t) } }, `${number(t, 1)}°`)))),
         h("th", { scope: "col", role: "columnheader" }, h("span", { class: "visually-hidden" }, "Score")))),
-      h("tbody", { role: "rowgroup" }, listed.map((r, i) => tableRow(r, scale, i)))),
+      h("tbody", { role: "rowgroup" }, listed.map((r, i) => tableRow(r, shownColumns, scale, i)))),
     listed.length < rows.length
       ? h("button", {
         type: "button", class: "more",
@@ -196,7 +224,7 @@ export function resort() {
   const focused = document.activeElement?.dataset?.sort;
   draw();
   if (focused) byId("board-body").querySelector(`[data-sort="${focused}"]`)?.focus();
-  const column = COLUMNS.find((c) => c.field === state.sort);
+  const column = columns().find((c) => c.field === state.sort);
   byId("board-status").textContent = `Sorted by ${column?.name ?? state.sort}, ${state.order}.`;
 }
 
@@ -211,17 +239,19 @@ export async function showLeaderboard(datasets) {
   const card = datasets.find((d) => d.name === state.dataset) ?? datasets[0];
   const condition = card.conditions.includes(state.board_condition) ? state.board_condition
     : card.conditions.includes("nominal") ? "nominal" : card.conditions[0];
+  const field = FIELDS.includes(Number(state.board_field)) ? state.board_field : WHOLE;
   byId("board-controls").replaceChildren(
     choice("Data set", "dataset", datasets.map((d) => [d.name, d.name]), card.name, (dataset) => show({ dataset })),
-    choice("Condition", "board-condition", card.conditions.map((c) => [c, c]), condition, (c) => show({ board_condition: c })));
+    choice("Condition", "board-condition", card.conditions.map((c) => [c, c]), condition, (c) => show({ board_condition: c })),
+    choice("Field", "board-field", [[WHOLE, "whole"], ...FIELDS.map((f) => [String(f), `within ${f}°`])], field, (f) => show({ board_field: f })));
   body.setAttribute("aria-busy", "true");
   if (shown) body.classList.add("stale");
   else body.replaceChildren(h("p", { class: "loading" }, "Loading the leaderboard…"));
   try {
-    const rows = await getAll(`/v1/leaderboard/${encodeURIComponent(card.name)}`, { condition, limit: 500 });
+    const rows = await getAll(`/v1/leaderboard/${encodeURIComponent(card.name)}`, { condition, field_deg: field || null, limit: 500 });
     if (mine !== turn) return;
     const named = rows.map((row) => ({ dataset: card.name, condition, ...row }));
-    shown = { rows: named.filter((row) => row.condition === condition), dataset: card.name, condition, card };
+    shown = { rows: named.filter((row) => row.condition === condition), dataset: card.name, condition, card, field };
     draw();
     byId("board-status").textContent = `${plural(shown.rows.length, "pipeline")} on ${card.name}, ${condition}.`;
   } catch (problem) {

@@ -63,7 +63,7 @@ function redrawFlow() {
   if (answer) showFlow(answer, known.vocabulary, known.studies.size, asking?.signal);
 }
 
-const BOARD = ["dataset", "board_condition"];
+const BOARD = ["dataset", "board_condition", "board_field"];
 const FLOW = ["chart", "counting", "detail", "view"];
 const any = (changed, names) => names.some((n) => changed.has(n));
 
@@ -82,7 +82,7 @@ function follow(changed) {
   if (any(changed, BOARD)) {
     const focused = document.activeElement?.id;
     showLeaderboard(known.datasets);
-    if (["dataset", "board-condition"].includes(focused)) byId(focused)?.focus();
+    if (["dataset", "board-condition", "board-field"].includes(focused)) byId(focused)?.focus();
   } else if (any(changed, ["sort", "order"])) resort();
 }
 

@@ -4,7 +4,7 @@ import { byId, choice, copyable, h } from "./dom.js";
 import { address } from "./service.js";
 import { show, standing, state } from "./state.js";
 import { studyEntry } from "./studies.js";
-import { degrees, LIMIT_NAMES, number, plural, times } from "./wording.js";
+import { degrees, LIMIT_NAMES, number, percent, plural, times } from "./wording.js";
 
 const FIRST = 12;
 const COLUMNS = ["Rank", "Path", "Literature support", "Measured here", ""]; // the last holds buttons
@@ -39,6 +39,7 @@ function measuredEvidence(m) {
     ["Data set", h("a", { href: address("/v1/datasets"), title: "Its card" }, m.dataset)],
     ["Condition", m.condition], ["Pipeline", `${m.extractor} → ${m.model}`],
     ["RMS error", degrees(m.rms_deg)], ["Cramér–Rao bound", degrees(m.bound_deg)], ["Times the bound", times(m.over_bound)],
+    ["Answered", percent(m.availability)], ["False Suns", percent(m.false_sun)],
     ["Half field of view", degrees(m.half_fov_deg)],
     ["Latency a sample", number(m.latency_us) === "–" ? "–" : `${number(m.latency_us)} µs`],
   ].map(([term, value]) => h("div", {}, h("dt", {}, term), h("dd", {}, value)))),

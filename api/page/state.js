@@ -4,7 +4,7 @@ export const ATTRIBUTES = ["task", "accuracy", "error", "detector", "mask", "mod
 export const LIMITS = ["max_error_deg", "min_fov_deg", "max_latency_us"];
 const VIEW = {
   chart: "cross-analysis", counting: "studies", detail: "grouped", view: "diagram",
-  condition: "nominal", dataset: "", board_condition: "", sort: "rms_deg", order: "ascending",
+  condition: "nominal", dataset: "", board_condition: "", board_field: "", sort: "rank", order: "ascending",
 };
 
 const listeners = new Set();

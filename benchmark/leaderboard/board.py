@@ -20,6 +20,8 @@ Row = Mapping[str, Any]
 #: Times of one pipeline on a machine, by (dataset, extractor, model).
 Times = Mapping[tuple[str, str, str], Mapping[str, float | None]]
 
+NOMINAL = "nominal"
+
 UNTIMED: Mapping[str, float | None] = {"latency_us": None, "time_ratio": None}
 
 
@@ -42,8 +44,8 @@ def build(
     dict
         ``schema``, ``metric_version``, ``units`` (how many leading pipelines are scored on),
         ``sweeps`` (as given) and ``datasets``: each with ``name``, ``version``, ``detector``,
-        ``mask``, ``conditions`` and ``rows``. A row is the score row of the standard unit with
-        ``rank`` (null where there is no error), ``tied`` (whether others share it), the errors of
+        ``mask``, ``conditions`` (the nominal one first) and ``rows``. A row is the score row of
+        the standard unit with ``rank`` (null where there is no error), ``tied`` (whether others share it), the errors of
         all units ``unit_rms_deg`` and their range ``low_deg`` to ``high_deg`` (null where one unit
         is scored), and times.
     """
@@ -138,8 +140,8 @@ def _order(row: Row) -> tuple[Any, ...]:
     return (*_board(row), *order(row, (row["extractor"], row["model"])))
 
 
-def _board(row: Row) -> tuple[str, str]:
-    return row["dataset"], row["condition"]
+def _board(row: Row) -> tuple[str, bool, str]:
+    return row["dataset"], row["condition"] != NOMINAL, row["condition"]
 
 
 def _cell(row: Row) -> Cell:

@@ -192,14 +192,12 @@ def _moved_data(committed: Store, measured: Store, kernels: str) -> Iterator[Dif
         if one is None or other is None:
             states = ("absent", "pinned") if one is None else ("present", "no such data")
             yield Difference(file, cell, *states, kernels)
+        elif one.version != other.version:
+            told = f"version {one.version}", f"version {other.version}"
+            yield Difference(file, cell, *told, kernels)
         elif said := one.difference(other):
-            version = one.version
-            told = (
-                f"{said}: the data changed and the version did not"
-                if version == other.version
-                else f"version {other.version}"
-            )
-            yield Difference(file, cell, f"version {version}", told, kernels)
+            told = f"version {one.version}", f"{said}: the data changed and the version did not"
+            yield Difference(file, cell, *told, kernels)
 
 
 def _outdated(store: Store, parts: Parts) -> Iterator[Difference]:

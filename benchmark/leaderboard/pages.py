@@ -94,18 +94,13 @@ def page(board: Board) -> str:
         "| --- | --- |" + " ---: |" * len(names),
     ]
     for dataset in board["datasets"]:
-        first = _first_condition(dataset)
+        first = dataset["conditions"][0]
         for row in dataset["rows"]:
             if row["condition"] == first and row["rank"] is not None and row["rank"] <= 3:
                 texts = (shown(column, row) for column in _BEST)
                 pipeline = f"{row['extractor']} + {row['model']}"
                 lines.append(f"| {dataset['name']} | {pipeline} | {' | '.join(texts)} |")
     return "\n".join(lines) + "\n"
-
-
-def _first_condition(dataset: Mapping[str, Any]) -> str:
-    conditions: list[str] = dataset["conditions"]
-    return "nominal" if "nominal" in conditions else conditions[0]
 
 
 def to_json(board: Board) -> str:

@@ -60,6 +60,14 @@ class Client:
         self._runner.close()
 
 
+@pytest.fixture(scope="session", autouse=True)
+def _own_working_store(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """Neither read nor touch what this user measured and timed."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("SUNATLAS_STORE", str(tmp_path_factory.mktemp("working")))
+        yield
+
+
 @pytest.fixture(scope="session")
 def atlas() -> Iterator[Client]:
     """The service as it is served."""

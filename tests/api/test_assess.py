@@ -16,8 +16,10 @@ from api.command_line import app
 from api.http.knowledge import Knowledge
 from api.http.measurements import Measurements
 from api.service import create_app
-from benchmark import assessment, sweeps
+from benchmark import assessment
 from benchmark.assessment_definitions import DEFINITIONS
+from benchmark.results.store import Store
+from benchmark.sweeps import run as sweeps
 
 PROPERTIES = tuple(DEFINITIONS)
 
@@ -88,7 +90,7 @@ def test_answers_revalidate_and_refusals_name_the_nearest(swept):
 
 
 def test_sweeps_are_served_page_by_page_and_filtered(swept, published):
-    stored = sweeps.read(published)
+    stored = Store(published).swept()
     assert swept.walk("/v1/sweeps?limit=7") == stored
     noise = swept.walk("/v1/sweeps?sweep=noise&extractor=direct")
     assert [row["value"] for row in noise] == [5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0]
@@ -110,7 +112,7 @@ def test_what_is_measured_reaches_the_answer(swept):
 
 
 def test_the_page_prints_the_definitions_and_outcomes(published, monkeypatch):
-    rows = sweeps.read(published)
+    rows = Store(published).swept()
     document = assessment.document(assessment.assess(published))
     monkeypatch.setattr(pages, "_rows", lambda: rows)
     monkeypatch.setattr(pages, "_document", lambda: document)

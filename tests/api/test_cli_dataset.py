@@ -11,10 +11,12 @@ from typer.testing import CliRunner
 
 from api.command_line import app
 from api.commands import dataset
-from benchmark import data_pins, datasets
+from benchmark import datasets
 from benchmark.coverage import coverage
-from benchmark.data_pins import Pinned
-from benchmark.store import Store
+from benchmark.plan_parts import SPLITS
+from benchmark.results.store import Store
+from benchmark.running import pinning
+from benchmark.running.pinning import Pinned
 
 CUBE = "pd-maskless-cube"
 
@@ -39,7 +41,10 @@ def test_export_writes_what_was_asked_for_and_lists_it(made):
     expected = {"card.json", "checksums-sha256.txt"} | {
         f"{condition}/{name}"
         for condition in ("nominal", "albedo")
-        for name in ("preview.png", "calibration.npz", "calibration.csv", "test.npz", "test.csv")
+        for name in (
+            "preview.png",
+            *(f"{split}.{kind}" for split in SPLITS for kind in ("npz", "csv")),
+        )
     }
     assert {row["file"] for row in listed["files"]} == expected
     assert {p.relative_to(out).as_posix() for p in out.rglob("*") if p.is_file()} == expected
@@ -161,7 +166,7 @@ def test_pin_pins_what_is_named_and_check_tells_what_does_not_hold(published):
     }
     held = sunatlas("pin", "oi-maskless-pyramid", "--check", "--workers", 1)
     assert (held.exit_code, held.stderr) == (0, "every pin holds: generated again\n")
-    path = published.data_path
+    path = published.pins_path
     first = next(iter(published.pins().values()))
     path.write_text(path.read_text().replace(first.data_hash, "0" * 32))
     shown = sunatlas("pin", "oi-maskless-pyramid", "--check", "--workers", 1)
@@ -177,7 +182,7 @@ def test_pin_takes_every_data_set_by_default(published, monkeypatch):
         asked.append((store.directory, workers, datasets))
         return Pinned(store.directory, 3, 2, ("one that fails",), 1.5)
 
-    monkeypatch.setattr(data_pins, "update", update)
+    monkeypatch.setattr(pinning, "update", update)
     shown = sunatlas("pin", "--workers", 2)
     assert asked == [(published.directory, 2, None)]
     assert shown.stderr.splitlines() == [

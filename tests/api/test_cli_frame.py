@@ -1,6 +1,7 @@
 """What every command of `sunatlas` keeps: quick help, one-line errors, exit codes, quiet pipes."""
 
 import importlib
+import json
 import os
 import re
 import resource
@@ -8,11 +9,15 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
 from api import command_line
 from api.command_line import COMMANDS, DEBUG, app
+from api.deposit import DepositError
+from benchmark.plan_parts import UnknownNameError
+from benchmark.results.tables import StoreError
 
 ROOT = Path(__file__).resolve().parents[2]
 SUNATLAS = (sys.executable, "-m", "api.command_line")
@@ -153,13 +158,23 @@ def test_tracebacks_are_kept_for_those_who_ask():
     assert "Traceback" in shown.stderr
 
 
-def test_a_failure_nobody_foresaw_is_one_line(capsys, monkeypatch):
-    monkeypatch.delenv(DEBUG, raising=False)
-    error = RuntimeError("two\nlines")
-    command_line._unexpected(RuntimeError, error, None)
-    assert (
-        capsys.readouterr().err == f"sunatlas: RuntimeError: two lines (traceback with {DEBUG}=1)\n"
-    )
+@pytest.mark.parametrize(
+    "error", [ValueError("shapes (3,) (2,)"), np.linalg.LinAlgError("singular"), KeyError("rms")]
+)
+def test_a_mistake_of_the_program_shows_as_one(monkeypatch, error):
+    def mistaken(*_arguments, **_options):
+        raise error
+
+    monkeypatch.setattr(importlib.import_module("api.commands.dataset"), "emit", mistaken)
+    with pytest.raises(type(error), match=re.escape(str(error))):
+        invoke("dataset", "list")
+
+
+def test_errors_of_ours_and_of_the_file_system_are_known():
+    ours = [UnknownNameError("dataset", "x", ["y"]), StoreError("line 1"), DepositError("no")]
+    assert all(map(command_line.is_known, [*ours, FileNotFoundError("x"), PermissionError("y")]))
+    theirs = [ValueError("x"), LookupError("x"), json.JSONDecodeError("x", "", 0), ImportError("x")]
+    assert not any(map(command_line.is_known, theirs))
 
 
 @pytest.mark.parametrize("form", ["table", "json"])

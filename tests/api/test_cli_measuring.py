@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import re
 import shutil
 from pathlib import Path
 
@@ -10,10 +11,13 @@ import pytest
 from typer.testing import CliRunner
 
 from api.command_line import app
-from api.commands import leaderboard, measuring
-from benchmark.plan import cells, datasets_for
-from benchmark.runner import RunInterruptedError, stale
-from benchmark.store import PUBLISHED, Store, cell_of
+from api.commands import asking, leaderboard, measuring, working
+from benchmark.leaderboard.pages import FORMATS
+from benchmark.plan import Cell, cells, datasets_for
+from benchmark.plan_parts import Parts, installed
+from benchmark.results.store import PUBLISHED, Store
+from benchmark.running import times
+from benchmark.running.run import RunInterruptedError
 from registry.catalogue import catalogue
 from registry.resolution import resolve
 
@@ -56,11 +60,11 @@ def test_a_study_s_pipelines_are_scored_against_the_bound_and_its_gaps_listed():
     }
     for row in found["scores"]:
         assert row["condition"] == "nominal"
-        if not row["found_fraction"]:  # nothing found, nothing to compare: TM on the pinhole
+        if not row["availability"]:  # nothing found, nothing to compare: TM on the pinhole
             assert row["rms_deg"] is row["bound_deg"] is row["over_bound"] is None
             continue
         assert row["bound_deg"] > 0
-        # Root mean squares over the same samples: 6 digits each.
+        # Root mean squares over the same samples: 5 digits each.
         assert row["over_bound"] == pytest.approx(row["rms_deg"] / row["bound_deg"], rel=1e-4)
     assert {gap["value"] for gap in found["gaps"]} == {
         gap.value
@@ -75,7 +79,8 @@ def test_a_run_that_finds_nothing_published_measures_once(unpublished):
     measured = json.loads(first.stdout)
     assert measured["sources"]["measured"] == len(measured["scores"]) > 0
     assert measured["sources"]["directory"] == str(unpublished / "working")
-    assert (unpublished / "working" / "scores.jsonl").is_file()
+    written = {path.stem for path in (unpublished / "working" / "scores").iterdir()}
+    assert written == {row["dataset"] for row in measured["scores"]}
     again = json.loads(sunatlas(*arguments).stdout)
     assert again["sources"]["measured"] == 0
     assert again["sources"]["kept"] == len(again["scores"])
@@ -84,9 +89,11 @@ def test_a_run_that_finds_nothing_published_measures_once(unpublished):
 
 def test_what_is_published_is_read_there():
     found = json.loads(sunatlas("benchmark", *CHEAP, "--format", "json").stdout)
-    keys = {row["key"] for row in Store(PUBLISHED).rows()}
+    published = Store(PUBLISHED).scores()
     assert found["scores"]
-    assert {row["key"] for row in found["scores"]} <= keys
+    for row in found["scores"]:
+        cell = Cell(row["dataset"], row["condition"], row["extractor"], row["model"])
+        assert {name: row[name] for name in published[cell]} == published[cell]
     assert found["sources"]["published"] == len(found["scores"])
     assert found["sources"]["measured"] == 0
 
@@ -148,8 +155,8 @@ def test_the_working_store_is_where_it_is_said_to_be(monkeypatch, environment, e
         monkeypatch.delenv(name, raising=False)
     for name, value in environment.items():
         monkeypatch.setenv(name, value)
-    assert measuring.working_directory() == expected
-    assert measuring.working_directory(Path("given")) == Path("given")
+    assert working.working_directory() == expected
+    assert working.working_directory(Path("given")) == Path("given")
 
 
 # ---- leaderboard
@@ -164,43 +171,136 @@ def published(tmp_path, monkeypatch):
     return directory
 
 
+@pytest.fixture
+def untimed(tmp_path, monkeypatch):
+    """Nothing is timed on this machine."""
+    monkeypatch.setenv("SUNATLAS_STORE", str(tmp_path / "working"))
+    asking.knowledge.cache_clear()
+    yield tmp_path / "working"
+    asking.knowledge.cache_clear()
+
+
+def listed(*arguments):
+    shown = sunatlas("leaderboard", *arguments, "--format", "json")
+    assert shown.exit_code == 0, shown.stderr
+    return json.loads(shown.stdout)["items"]
+
+
+def test_the_leaderboard_is_shown_and_nothing_is_measured(untimed):
+    best = listed()
+    assert {row["rank"] for row in best} == {1}
+    assert {row["condition"] for row in best} == {"nominal"}
+    assert {row["dataset"] for row in best} == set(installed().presets)
+    assert all(row["latency_us"] is None for row in best)
+    whole = listed("--dataset", "ccd-orbit", "--condition", "stable")
+    assert {(row["dataset"], row["condition"]) for row in whole} == {("ccd-orbit", "stable")}
+    assert [row["rank"] for row in whole if row["rank"]] == sorted(
+        row["rank"] for row in whole if row["rank"]
+    )
+    assert not untimed.exists()
+
+
+def test_architectures_are_compared_at_an_equal_field(untimed):
+    within = listed("--field", "20")
+    errors = [row["field_rms_deg"] for row in within]
+    assert errors == sorted(errors)
+    assert {row["field_deg"] for row in within} == {20}
+    for row in within:
+        # two rings by their solid angle: between the errors of both
+        rings = sorted((row["rms_0_10_deg"], row["rms_10_20_deg"]))
+        assert rings[0] <= row["field_rms_deg"] <= rings[1]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "says"),
+    [
+        (["--field", "25"], 2, "--field: no 25; expected one of 10, 20"),
+        (["--dataset", "ccd-orbt"], 1, "did you mean 'ccd-orbit'?"),
+        (["--condition", "nominl"], 1, "did you mean 'nominal'?"),
+        (["--stored"], 2, "--stored goes with --check"),
+        (["--kernels", "older"], 2, "--kernels goes with --check"),
+        (["--kernels", "new"], 2, "'new'"),
+    ],
+)
+def test_a_wrong_call_of_leaderboard_is_a_line(arguments, code, says):
+    shown = sunatlas("leaderboard", *arguments)
+    assert shown.exit_code == code
+    assert shown.stderr.startswith("sunatlas: ")
+    assert says in shown.stderr
+    assert shown.stderr.count("\n") == 1
+
+
 def test_the_committed_leaderboard_is_what_its_code_gives(published):
     shown = sunatlas("leaderboard", "--check", "--stored")
     assert (shown.exit_code, shown.stdout) == (0, ""), shown.stdout
 
 
-def test_one_altered_number_is_named_by_its_cell(published):
-    path = published / "leaderboard.json"
-    board = json.loads(path.read_text("utf-8"))
-    row = next(r for r in board["datasets"][0]["rows"] if r["rms_deg"] is not None)
-    old = json.dumps(row["rms_deg"])
+def test_what_is_not_of_the_code_is_named(published):
+    path = published / "components.json"
     text = path.read_text("utf-8")
-    at = text.index(f'"rms_deg": {old}', text.index(row["key"]))
-    path.write_text(text[:at] + '"rms_deg": 123.456' + text[at + len(f'"rms_deg": {old}') :])
+    name, digest = re.search(r'"(lsq)": .*"digest": "(\w+)"', text).groups()
+    path.write_text(text.replace(digest, "0" * 16), "utf-8")
+    page = published / "leaderboard.md"
+    page.write_text(page.read_text("utf-8").replace("| 1 |", "| 2 |", 1), "utf-8")
     shown = sunatlas("leaderboard", "--check", "--stored", "--format", "json")
     assert shown.exit_code == 1
-    names = ("dataset", "condition", "extractor", "model")
-    cell = "/".join([*(row[name] for name in names), "rms_deg"])
-    assert json.loads(shown.stdout) == [
-        {"file": "leaderboard.json", "cell": cell, "committed": "123.456", "measured": old}
-    ]
-    assert cell in shown.stderr
+    found = {row["file"]: row for row in json.loads(shown.stdout)}
+    assert set(found) == {"components.json", "leaderboard.md"}
+    assert found["components.json"]["cell"] == f"models/{name}"
+    assert "the first: " in shown.stderr
 
 
-def test_an_up_to_date_leaderboard_is_left_as_it_is(published):
-    # What failed is tried again, and only that.
-    failed = {cell_of(row) for row in Store(published).rows() if row["status"] == "failed"}
-    assert set(stale(cells(), Store(published))) <= failed, "run `make leaderboard`"
-    before = {path.name: path.read_bytes() for path in published.iterdir() if path.is_file()}
-    shown = sunatlas("leaderboard", "--workers", 1, "--format", "json")
+def test_an_up_to_date_record_is_left_as_it_is(published):
+    before = {path: path.read_bytes() for path in published.rglob("*") if path.is_file()}
+    shown = sunatlas("leaderboard", "update", "--workers", 1)
     assert shown.exit_code == 0, shown.stderr
-    after = {path.name: path.read_bytes() for path in published.iterdir() if path.is_file()}
-    assert after == before
-    assert f" {len(failed)} measured" in shown.stderr
-    assert json.loads(shown.stdout) == json.loads(before["leaderboard.json"])
+    assert " 0 measured" in shown.stderr
+    after = {path: path.read_bytes() for path in published.rglob("*") if path.is_file()}
+    assert {path: after[path] for path in before} == before
+    assert {path.name for path in after.keys() - before.keys()} <= {"lock", "journal.jsonl"}
 
 
-def test_stored_goes_with_check():
-    shown = sunatlas("leaderboard", "--stored")
-    assert shown.exit_code == 2
-    assert shown.stderr == "sunatlas: --stored goes with --check\n"
+def test_everything_else_is_derived(tmp_path, untimed):
+    shown = sunatlas("leaderboard", "render", "--out", tmp_path / "out")
+    assert shown.exit_code == 0, shown.stderr
+    written = {path.name: path for path in (tmp_path / "out").iterdir()}
+    assert set(written) == set(FORMATS)
+    board = json.loads(written["leaderboard.json"].read_text("utf-8"))
+    rows = [row for dataset in board["datasets"] for row in dataset["rows"]]
+    standard = [cell for cell in Store(PUBLISHED).scores() if cell.unit == 0]
+    assert len(rows) == len(standard)
+    with written["leaderboard.csv"].open(encoding="utf-8", newline="") as file:
+        table = list(csv.DictReader(file))
+    assert [float(row["rms_deg"]) if row["rms_deg"] else None for row in table] == [
+        row["rms_deg"] for row in rows
+    ]
+
+
+def test_times_are_of_this_machine_and_kept_beside_the_record(untimed, monkeypatch):
+    known = installed()
+    few = Parts(
+        {"pd-maskless-cube": known.presets["pd-maskless-cube"]}, known.extractors, known.models
+    )
+    monkeypatch.setattr(times, "installed", lambda: few)
+    first = sunatlas("leaderboard", "times", "--format", "json")
+    assert first.exit_code == 0, first.stderr
+    rows = json.loads(first.stdout)
+    planned = cells("pd-maskless-cube", "nominal")
+    assert {(r["extractor"], r["model"]) for r in rows} == {
+        (cell.extractor, cell.model) for cell in planned
+    }
+    ok = {
+        (cell.extractor, cell.model)
+        for cell, row in Store(PUBLISHED).scores().items()
+        if cell in planned and row["status"] == "ok"
+    }
+    assert {(r["extractor"], r["model"]) for r in rows if r["latency_us"] is not None} == ok
+    assert all(r["time_ratio"] >= r["extract_ratio"] > 0 for r in rows if r["latency_us"])
+    again = sunatlas("leaderboard", "times", "--format", "json")
+    assert json.loads(again.stdout) == rows
+    assert again.stderr.startswith("0 timed now")
+    monkeypatch.undo()
+    monkeypatch.setenv("SUNATLAS_STORE", str(untimed))
+    asking.knowledge.cache_clear()
+    shown = listed("--dataset", "pd-maskless-cube", "--condition", "nominal")
+    assert {(r["extractor"], r["model"]) for r in shown if r["latency_us"] is not None} == ok

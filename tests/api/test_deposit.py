@@ -2,7 +2,6 @@
 
 import csv
 import hashlib
-import io
 import json
 import os
 import shutil
@@ -18,7 +17,7 @@ import survey_data
 from api import deposit
 from api.deposit_tables import NothingPublishedError
 from benchmark.checksums import CHECKSUMS, ChecksumFileError, read_checksums
-from benchmark.store import PUBLISHED, Store
+from benchmark.results.store import PUBLISHED, Store
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -46,7 +45,7 @@ def files(directory):
 def test_the_data_package_is_valid(built):
     report = Package(str(built.directory / "datapackage.json")).validate()
     assert report.valid, report.flatten(["place", "rowNumber", "fieldName", "message"])
-    assert report.stats["tasks"] == 13 + 5  # the survey's tables and the measured ones
+    assert report.stats["tasks"] == 13 + 6  # the survey's tables and the measured ones
     assert deposit.verify(built.directory) == []
 
 
@@ -149,7 +148,7 @@ def test_the_tables_hold_what_their_sources_hold(built):
         ours = Path(survey_data.__file__).parent / f"{name}.csv"
         assert (built.directory / "survey" / f"{name}.csv").read_bytes() == ours.read_bytes()
     measured = [dict(row) for row in package.get_resource("scores").read_rows()]
-    for row, stored in zip(measured, Store(PUBLISHED).rows(), strict=True):
+    for row, stored in zip(measured, Store(PUBLISHED).rows(unit=None), strict=True):
         assert set(row) == set(stored)
         for column, value in stored.items():
             found = row[column]
@@ -287,15 +286,11 @@ def test_without_published_results_there_is_nothing_to_deposit(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_column_nobody_described_does_not_go_out(tmp_path):
-    published = Path(shutil.copytree(PUBLISHED, tmp_path / "published"))
-    with (published / "leaderboard.csv").open(encoding="utf-8", newline="") as file:
-        header, *rows = csv.reader(file)
-    stream = io.StringIO(newline="")
-    csv.writer(stream).writerows([[*header, "mystery"], *([*row, "1"] for row in rows)])
-    (published / "leaderboard.csv").write_text(stream.getvalue(), "utf-8", newline="")
+def test_a_column_nobody_described_does_not_go_out(tmp_path, monkeypatch):
+    rows = [{**row, "mystery": 1} for row in Store(PUBLISHED).swept()]
+    monkeypatch.setattr(Store, "swept", lambda _store: rows)
     with pytest.raises(ValueError, match="no description of column mystery"):
-        deposit.build(tmp_path / "bundle", published=published)
+        deposit.build(tmp_path / "bundle")
     assert not (tmp_path / "bundle").exists()
 
 

@@ -8,7 +8,9 @@ from api.http.knowledge import Knowledge
 from api.http.measurements import Measurements
 from api.service import create_app
 from benchmark import dataset_preview, datasets
-from benchmark.store import PUBLISHED, Pin, Store
+from benchmark.results.components import Components
+from benchmark.results.pins import Pin
+from benchmark.results.store import PUBLISHED, Store
 
 NAME = "cmos-single-aperture"
 
@@ -18,10 +20,10 @@ def pinned(tmp_path_factory, client_of):
     """A service whose published pins are two, one of them of another version."""
     directory = tmp_path_factory.mktemp("published")
     pins = [
-        Pin(NAME, "nominal", "test", 1, "s", "a" * 32, 1000, 0.25),
-        Pin(NAME, "hot", "test", 99, "s", "b" * 32, 1000, 0.5),
+        Pin(NAME, "nominal", "test", 1, 1000, "a" * 32, "c" * 32, 1000, 0.25, 0.25),
+        Pin(NAME, "hot", "test", 99, 1000, "b" * 32, "c" * 32, 1000, 0.5, 0.5),
     ]
-    Store(directory).write([], [], pins)
+    Store(directory).write({}, pins, [], Components())
     return client_of(create_app(Knowledge(Measurements(directory))))
 
 
@@ -37,7 +39,9 @@ def test_the_card_is_the_preset_s_with_bounds_hashes_and_the_picture(atlas):
     assert atlas.get(card["preview"]).headers["content-type"] == "image/png"
     pins = Store(PUBLISHED).pins()
     assert [(row["condition"], row["split"]) for row in card["data"]] == [
-        (condition, split) for condition in preset.conditions for split in ("calibration", "test")
+        (condition, split)
+        for condition in preset.conditions
+        for split in ("calibration", "test", "repeat")
     ]
     for row in card["data"]:
         assert row["data_hash"] == pins[NAME, row["condition"], row["split"]].data_hash

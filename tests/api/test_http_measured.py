@@ -1,87 +1,98 @@
 """Scores, leaderboard and data sets, from a hand-made store whose every number is known."""
 
-import json
-
 import jsonschema
 import pytest
 
 from api.http.knowledge import Knowledge
 from api.http.measurements import Measurements
 from api.service import create_app
-from benchmark import leaderboard
-from benchmark.scoring import METRICS
-from benchmark.store import Store, StoreError
+from benchmark.metrics.score import METRICS
+from benchmark.plan import Cell
+from benchmark.plan_parts import installed
+from benchmark.results.components import Components, ComponentsError, current
+from benchmark.results.pins import Pin
+from benchmark.results.store import Store, StoreError
+from benchmark.results.tables import text_of
+from benchmark.running import times
 
-CMOS = ("cmos-single-aperture", "CMOS", "Single-Ap.", 60.0)
-QPD = ("qpd-single-aperture", "QPD", "Single-Ap.", 50.0)
-TAXONOMY = {
-    "bctm": "BCTM",
-    "bcm": "BCM",
-    "voltage-balance": "Voltage balance",
-    "spm": "SPM",
-    "lsq": "LSQ",
-    "linear": "Linear",
-}
+CMOS = "cmos-single-aperture"
+QPD = "qpd-single-aperture"
+HALF_FOV = {CMOS: 60.0, QPD: 40.0}
 CELLS = [
-    # data set, condition, extractor, model, rms, bound, latency
-    (CMOS, "nominal", "bctm", "spm", 0.02, 0.001, 5.0),
-    (CMOS, "nominal", "bctm", "lsq", 0.01, 0.001, 9.0),
-    (CMOS, "nominal", "bcm", "spm", 0.5, 0.002, 3.0),
-    (CMOS, "nominal", "bcm", "lsq", None, None, None),
-    (CMOS, "misaligned", "bctm", "spm", 2.0, 0.001, 5.0),
-    (QPD, "nominal", "voltage-balance", "linear", 1.5, 0.05, 1.0),
+    # data set, condition, extractor, model, rms, bound, availability, latency
+    (CMOS, "nominal", "bctm", "spm", 0.02, 0.001, 1.0, 5.0),
+    (CMOS, "nominal", "bctm", "lsq", 0.01, 0.001, 1.0, 9.0),
+    (CMOS, "nominal", "bcm", "spm", 0.5, 0.002, 0.98, 3.0),
+    (CMOS, "nominal", "bcm", "lsq", None, None, None, None),
+    (CMOS, "nominal", "ifm", "spm", 0.005, 0.001, 0.94, 3.0),
+    (CMOS, "misaligned", "bctm", "spm", 2.0, 0.001, 1.0, 5.0),
+    (QPD, "nominal", "voltage-balance", "linear", 1.5, 0.05, 1.0, 1.0),
 ]
+#: Errors of bctm's pipelines on units 1 to 4: spm's overlap those of lsq.
+UNITS = {"spm": (0.009, 0.03, 0.02, 0.02), "lsq": (0.011, 0.012, 0.01, 0.01)}
 
 
-def score_row(number, cell):
-    (dataset, detector, mask, half_fov), condition, extractor, model, rms, bound, _ = cell
-    metrics = dict.fromkeys(METRICS)
-    if rms is not None:
-        metrics |= dict.fromkeys(METRICS, 0.25)
-        metrics |= {"rms_deg": rms, "bound_deg": bound, "over_bound": rms / bound}
-        metrics |= {"found_fraction": 1.0 if extractor == "bctm" else 0.9}
-    return {
-        "schema": 1,
-        "key": f"{number:064x}",
-        "dataset": dataset,
-        "dataset_version": 1,
-        "condition": condition,
-        "detector": detector,
-        "mask": mask,
-        "half_fov_deg": half_fov,
-        "extractor": extractor,
-        "extractor_taxonomy": TAXONOMY[extractor],
-        "extractor_version": 1,
-        "model": model,
-        "model_taxonomy": TAXONOMY[model],
-        "model_version": 1,
-        "status": "failed" if rms is None else "ok",
-        "reason": "fit: too few samples" if rms is None else "",
-        "n_calibration": 100,
-        "n_test": 200,
-        **metrics,
-        "data_hash": "0" * 64,
-        "harness_version": 1,
-        "metric_version": 1,
-    }
+def numbers_of(rms, bound, availability):
+    if rms is None:
+        return {"status": "failed", **dict.fromkeys(METRICS), "reason": "fit: too few samples"}
+    metrics = dict.fromkeys(METRICS, 0.25) | {"false_sun": None, "availability": availability}
+    metrics |= {"rms_deg": rms, "bound_deg": bound, "over_bound": rms / bound}
+    metrics |= {"rms_0_10_deg": 2.0 * rms, "rms_10_20_deg": None}
+    return {"status": "ok", **metrics, "reason": ""}
 
 
-def run_row(row, cell):
-    named = {name: row[name] for name in ("key", "dataset", "condition", "extractor", "model")}
-    return {**named, "latency_us": cell[-1], "time_ratio": None if cell[-1] is None else 2.0}
+def stored_scores():
+    scores = {Cell(*cell[:4]): numbers_of(*cell[4:7]) for cell in CELLS}
+    for model, errors in UNITS.items():
+        for unit, rms in enumerate(errors, start=1):
+            scores[Cell(CMOS, "nominal", "bctm", model, unit)] = numbers_of(rms, 0.001, 1.0)
+    return scores
+
+
+def stored_pins():
+    def pin(dataset, condition, bound):
+        sizes = {"n": 200, "data_hash": "d" * 32, "head_hash": "h" * 32}
+        told = {"observable": 190, "bound_deg": bound, "head_bound_deg": bound}
+        return Pin(
+            dataset, condition, "test", installed().presets[dataset].version, **sizes, **told
+        )
+
+    return [pin(CMOS, "nominal", 0.0015), pin(CMOS, "misaligned", 0.001), pin(QPD, "nominal", 0.05)]
 
 
 @pytest.fixture(scope="module")
-def rows():
-    return [score_row(number, cell) for number, cell in enumerate(CELLS)]
+def components():
+    return current(installed()).only(stored_scores())
 
 
 @pytest.fixture(scope="module")
-def measured(tmp_path_factory, client_of, rows):
+def published(tmp_path_factory, components):
     directory = tmp_path_factory.mktemp("published")
-    Store(directory).write(rows, [run_row(r, c) for r, c in zip(rows, CELLS, strict=True)], [])
-    leaderboard.write(directory)
-    return client_of(create_app(Knowledge(Measurements(directory))))
+    Store(directory).write(stored_scores(), stored_pins(), [], components)
+    return directory
+
+
+@pytest.fixture(scope="module")
+def measured(tmp_path_factory, client_of, published, components):
+    """A service with those scores, and with times that one pipeline has outlived."""
+    directory = tmp_path_factory.mktemp("working")
+    rows = [
+        {
+            "dataset": dataset,
+            "extractor": extractor,
+            "model": model,
+            "latency_us": latency,
+            "time_ratio": 2.0,
+            "extract_ratio": 1.0,
+            "digest": times._digest((dataset, extractor, model), components),
+        }
+        for dataset, condition, extractor, model, *_, latency in CELLS
+        if condition == "nominal" and latency is not None
+    ]
+    rows[0] |= {"latency_us": 5.0}
+    rows[2] |= {"digest": "of-older-code"}
+    (directory / times.TIMES).write_text(text_of(list(rows[0]), rows))
+    return client_of(create_app(Knowledge(Measurements(published, directory))))
 
 
 @pytest.fixture(scope="module")
@@ -93,10 +104,16 @@ def cells_of(items):
     return {(i["dataset"], i["condition"], i["extractor"], i["model"]) for i in items}
 
 
-def test_results_are_the_stored_rows(measured, rows):
+def test_results_are_the_stored_numbers_of_the_standard_unit(measured):
     served = measured.walk("/v1/results?limit=4")
-    assert sorted(served, key=lambda row: row["key"]) == rows
-    assert measured.get("/healthz").json()["scores"] == len(CELLS)
+    known = {cell: numbers for cell, numbers in stored_scores().items() if cell.unit == 0}
+    assert measured.get("/healthz").json()["scores"] == len(CELLS) == len(known)
+    for row in served:
+        cell = Cell(row["dataset"], row["condition"], row["extractor"], row["model"], row["unit"])
+        assert {name: row[name] for name in known.pop(cell)} == stored_scores()[cell]
+        assert row["half_fov_deg"] == HALF_FOV[cell.dataset]
+        assert (row["n_test"], row["n_observable"], row["n_calibration"]) == (200, 190, None)
+    assert known == {}
 
 
 @pytest.mark.parametrize(
@@ -109,7 +126,8 @@ def test_results_are_the_stored_rows(measured, rows):
         ("dataset=pd-maskless-cube", lambda r: False),
     ],
 )
-def test_results_narrow_by_their_fields(measured, rows, query, kept):
+def test_results_narrow_by_their_fields(measured, query, kept):
+    rows = measured.walk("/v1/results")
     assert cells_of(measured.walk(f"/v1/results?{query}")) == cells_of(filter(kept, rows))
 
 
@@ -124,19 +142,39 @@ def test_results_as_csv_are_the_same_numbers(measured):
 
 
 def test_the_leaderboard_ranks_by_error_within_a_condition(measured):
-    board = measured.walk("/v1/leaderboard/cmos-single-aperture?condition=nominal&limit=1")
-    assert [(r["rank"], r["extractor"], r["model"]) for r in board] == [
-        (1, "bctm", "lsq"),
-        (2, "bctm", "spm"),
-        (3, "bcm", "spm"),
-        (None, "bcm", "lsq"),
+    board = measured.walk(f"/v1/leaderboard/{CMOS}?condition=nominal&limit=1")
+    assert [(r["rank"], r["tied"], r["extractor"], r["model"]) for r in board] == [
+        (1, True, "bctm", "lsq"),
+        (1, True, "bctm", "spm"),
+        (3, False, "bcm", "spm"),
+        (4, False, "ifm", "spm"),  # the smallest error, of too few answers
+        (None, False, "bcm", "lsq"),
     ]
-    assert board[0]["time_ratio"] == 2.0
+    assert (board[0]["low_deg"], board[0]["high_deg"]) == (0.01, 0.012)
+    assert board[1]["unit_rms_deg"] == [0.02, *UNITS["spm"]]
+    assert board[2]["unit_rms_deg"] is board[2]["low_deg"] is None
+    assert (board[0]["time_ratio"], board[0]["latency_us"]) == (2.0, 9.0)
+    assert board[2]["time_ratio"] is board[2]["latency_us"] is None  # timed with other code
     assert board[-1]["status"] == "failed"
     assert board[-1]["reason"] == "fit: too few samples"
     whole = measured.get("/v1/leaderboard").json()
-    assert [d["name"] for d in whole["datasets"]] == [CMOS[0], QPD[0]]
+    assert [d["name"] for d in whole["datasets"]] == [CMOS, QPD]
+    assert whole["datasets"][0]["conditions"] == ["nominal", "misaligned"]
     assert len(measured.table("/v1/leaderboard")) == len(CELLS)
+
+
+def test_the_leaderboard_ranks_by_the_error_over_a_part_of_the_field(measured):
+    address = f"/v1/leaderboard/{CMOS}?condition=nominal&field_deg="
+    board = measured.walk(f"{address}10")
+    assert [(r["rank"], r["model"], r["field_deg"], r["field_rms_deg"]) for r in board][:2] == [
+        (1, "lsq", 10, 0.02),
+        (2, "spm", 10, 0.04),
+    ]
+    beyond = measured.walk(f"{address}20")  # a ring without an error: no such field
+    assert {(r["rank"], r["field_rms_deg"]) for r in beyond} == {(None, None)}
+    refused = measured.get(f"{address}25")
+    assert refused.status_code == 422
+    assert "20" in refused.json()["errors"][0]["expected"]
 
 
 def test_measured_answers_fit_their_schemas(measured):
@@ -144,18 +182,18 @@ def test_measured_answers_fit_their_schemas(measured):
     for template in ("/v1/leaderboard", "/v1/leaderboard/{dataset}", "/v1/results", "/v1/datasets"):
         content = document["paths"][template]["get"]["responses"]["200"]["content"]
         schema = {**content["application/json"]["schema"], "components": document["components"]}
-        answer = measured.get(template.format(dataset=CMOS[0])).json()
+        answer = measured.get(template.format(dataset=CMOS)).json()
         jsonschema.Draft202012Validator(schema).validate(answer)
         assert answer.get("items", answer.get("datasets"))
 
 
 def test_cards_name_conditions_and_published_bounds(measured):
     cards = {card["name"]: card for card in measured.walk("/v1/datasets")}
-    cmos = cards[CMOS[0]]
+    cmos = cards[CMOS]
     assert cmos["conditions"][0] == "nominal"
     assert set(cmos["setups"]) == set(cmos["conditions"])
-    # Of the pipeline that found most: bctm found everything, bcm nine tenths.
-    assert cmos["bounds"] == {"nominal": 0.001, "misaligned": 0.001}
+    # over all observable samples, not over those a pipeline answered
+    assert cmos["bounds"] == {"nominal": 0.0015, "misaligned": 0.001}
     assert cards["pd-maskless-cube"]["bounds"] == {}
 
 
@@ -165,7 +203,7 @@ def test_recommendations_carry_what_is_measured_in_the_condition(measured):
     assert nominal
     for path in nominal:
         assert path["measured"] == {
-            "dataset": CMOS[0],
+            "dataset": CMOS,
             "condition": "nominal",
             "extractor": "bctm",
             "model": "spm",
@@ -174,6 +212,8 @@ def test_recommendations_carry_what_is_measured_in_the_condition(measured):
             "over_bound": pytest.approx(20.0),
             "half_fov_deg": 60.0,
             "latency_us": 5.0,
+            "availability": 1.0,
+            "false_sun": None,
         }
     other = measured.get(f"/v1/recommendations?{query}&condition=misaligned").json()["paths"]
     assert {path["measured"]["rms_deg"] for path in other} == {2.0}
@@ -227,11 +267,26 @@ def test_where_nothing_is_published_the_rest_is_served(unmeasured):
     assert unmeasured.get("/v1/datasets").json()["total"] >= 3
 
 
-def test_a_published_file_that_cannot_be_read_stops_the_start(tmp_path):
-    (tmp_path / "leaderboard.json").write_text("[]")
-    with pytest.raises(StoreError, match=r"leaderboard\.json: expected a JSON object"):
+def test_an_error_of_too_few_answers_keeps_no_limit(measured):
+    query = "detector=CMOS&mask=Single-Ap.&model=SPM&extractor=IFM"
+    answer = measured.get(f"/v1/recommendations?{query}").json()
+    assert {path["measured"]["availability"] for path in answer["paths"]} == {0.94}
+    limited = measured.get(f"/v1/recommendations?{query}&max_error_deg=0.01").json()
+    assert limited["count"] == 0
+
+
+def test_a_published_file_that_cannot_be_read_stops_the_start(tmp_path, components):
+    (tmp_path / "components.json").write_text("[]")
+    with pytest.raises(ComponentsError, match=r"components\.json: expected schema"):
         Knowledge(Measurements(tmp_path)).load_all()
-    (tmp_path / "leaderboard.json").unlink()
-    (tmp_path / "scores.jsonl").write_text(json.dumps({"key": "x"}) + "\n")
-    with pytest.raises(StoreError, match=r"scores\.jsonl, line 1"):
+    (tmp_path / "components.json").write_text(components.text())
+    (tmp_path / "scores").mkdir()
+    (tmp_path / "scores" / "cmos-single-aperture.csv").write_text("condition,extractor\n")
+    with pytest.raises(StoreError, match=r"cmos-single-aperture\.csv, line 1"):
+        Knowledge(Measurements(tmp_path)).load_all()
+
+
+def test_a_score_of_something_unknown_stops_the_start(tmp_path):
+    Store(tmp_path).write(stored_scores(), [], [], Components("h"))
+    with pytest.raises(ComponentsError, match="cmos-single-aperture"):
         Knowledge(Measurements(tmp_path)).load_all()

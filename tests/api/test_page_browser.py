@@ -267,8 +267,10 @@ def test_a_refusal_is_shown_as_the_service_words_it(wide: Visit) -> None:
 def test_the_keyboard_alone_requires_a_value_opens_evidence_and_sorts(wide: Visit) -> None:
     rows = [
         {"extractor": name, "model": "m", "status": "ok", "rms_deg": rms, "bound_deg": 0.01,
-         "over_bound": rms / 0.01, "found_fraction": found, "time_ratio": 1.0}
-        for name, rms, found in (("a", 0.02, 0.5), ("b", 0.03, 1.0), ("c", 0.04, 0.75))
+         "over_bound": rms / 0.01, "availability": found, "false_sun": None, "time_ratio": 1.0,
+         "rank": rank, "tied": False}
+        for rank, (name, rms, found) in enumerate((("a", 0.02, 0.5), ("b", 0.03, 1.0),
+                                                   ("c", 0.04, 0.75)))
     ]  # fmt: skip
 
     def board(route: Route) -> None:
@@ -288,13 +290,44 @@ def test_the_keyboard_alone_requires_a_value_opens_evidence_and_sorts(wide: Visi
     page.keyboard.press("Enter")
     assert page.evaluate("document.activeElement.getAttribute('aria-expanded')") == "true"
     assert page.locator(".study").first.is_visible()
-    _tab_to(page, '[data-sort="found_fraction"]')
+    _tab_to(page, '[data-sort="availability"]')
     page.keyboard.press("Enter")
     page.keyboard.press("Enter")  # the focus stays on the heading: a second press turns the order
-    heading = page.locator("th", has=page.locator('[data-sort="found_fraction"]'))
+    heading = page.locator("th", has=page.locator('[data-sort="availability"]'))
     assert heading.get_attribute("aria-sort") == "descending"
-    assert [t.split()[0] for t in page.locator(".score").all_inner_texts()] == ["b", "c", "a"]
-    assert "Found, descending" in page.locator("#board-status").inner_text()
+    assert [t.split()[1] for t in page.locator(".score").all_inner_texts()] == ["b", "c", "a"]
+    assert "Answered, descending" in page.locator("#board-status").inner_text()
+
+
+def test_ranks_that_units_do_not_tell_apart_are_shown_as_ties(wide: Visit) -> None:
+    page = wide.go("/?dataset=ccd-orbit")
+    board = wide.page.request.get(f"{wide.address}/v1/leaderboard/ccd-orbit?condition=nominal")
+    rows = board.json()["items"]
+    tied = [row for row in rows if row["tied"]]
+    assert tied  # or there is nothing to see
+    texts = page.locator(".score").all_inner_texts()
+    for row, text in zip(rows, texts, strict=False):
+        mark = "=" if row["tied"] else ""
+        assert text.split()[0] == f"{row['rank']}{mark}"
+        assert (" to " in text) == (row["low_deg"] is not None)
+    assert page.locator(".key-units").count() == 1
+    page.select_option("#board-condition", "stable")
+    wide.settle()
+    assert page.locator(".key-units").count() == 0
+    assert "rest on one unit" in page.locator("#board-body .legend").inner_text()
+
+
+def test_the_leaderboard_is_judged_over_a_part_of_the_field(wide: Visit) -> None:
+    page = wide.go("/?dataset=cmos-single-aperture")
+    page.select_option("#board-field", "20")
+    wide.settle()
+    assert wide.query()["board_field"] == ["20"]
+    assert page.get_by_role("columnheader", name="RMS within 20°").count() == 1
+    asked = "/v1/leaderboard/cmos-single-aperture?condition=nominal&field_deg=20"
+    first = wide.page.request.get(f"{wide.address}{asked}").json()["items"][0]
+    best = page.locator(".score").first.inner_text().split()
+    assert best[:3] == ["1", first["extractor"], first["model"]]
+    assert float(best[3].rstrip("°")) == pytest.approx(first["field_rms_deg"], rel=0.01)
 
 
 def test_a_value_of_the_table_is_required_and_keeps_the_focus(wide: Visit) -> None:

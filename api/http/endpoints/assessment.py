@@ -13,7 +13,7 @@ from api.http.parameters import Arguments, Parameter, Parameters
 from api.http.shapes_assessment import Assessment, Sweeps
 from api.http.values import Choice
 from benchmark.reference_series import SWEEPS
-from benchmark.sweep_plan import SERIES
+from benchmark.sweeps.plan import SERIES
 
 VERDICT_COLUMNS = ("method", "property", "survey", "measured", "agreement", "value", "reason")
 SWEEP_COLUMNS = ("series", "sweep", "point", "extractor", "rms", "bound", "over_bound")

@@ -12,11 +12,17 @@ from api.http.pagination import CURSOR, LIMIT, page
 from api.http.parameters import Arguments, Parameter, Parameters
 from api.http.shapes import DatasetDetail, Datasets, Leaderboard, LeaderboardRows, Scores
 from api.http.values import Choice
+from benchmark.leaderboard.board import at_field
+from benchmark.metrics.rings import EDGES_DEG
 
 DATASET_COLUMNS = ("name", "version", "detector", "mask", "observation", "conditions")
 DATA_COLUMNS = ("condition", "split", "samples", "data_hash", "bound_deg")
 SCORE_COLUMNS = ("dataset", "condition", "extractor", "model", "status", "rms_deg", "bound_deg")
-RANK_COLUMNS = ("rank", "dataset", "condition", "extractor", "model", "rms_deg", "bound_deg")
+RANK_COLUMNS = (
+    *("rank", "tied", "dataset", "condition", "extractor", "model", "rms_deg", "bound_deg"),
+    *("low_deg", "high_deg", "availability", "false_sun"),
+)
+FIELDS = tuple(str(edge) for edge in EDGES_DEG[1:])
 
 
 def endpoints(knowledge: Knowledge) -> list[Endpoint]:
@@ -44,7 +50,13 @@ def endpoints(knowledge: Knowledge) -> list[Endpoint]:
     )
     of_list = Parameters([LIMIT, CURSOR])
     of_results = Parameters([dataset, *narrowing, LIMIT, CURSOR])
-    of_board = Parameters([*narrowing, LIMIT, CURSOR])
+    field = Parameter(
+        "field_deg",
+        Choice(lambda: FIELDS),
+        "Rank by the error within this angle of the boresight, degrees: rings of the field count "
+        "by their solid angle, so that sensors compare at an equal field.",
+    )
+    of_board = Parameters([*narrowing, field, LIMIT, CURSOR])
 
     def listing(
         rows: Sequence[Mapping[str, Any]],
@@ -74,7 +86,10 @@ def endpoints(knowledge: Knowledge) -> list[Endpoint]:
 
     def build_board(parts: Mapping[str, str], arguments: Arguments) -> Answer:
         name = parts["dataset"]
-        rows = [row for row in measurements.board_rows(name) if _wanted(row, arguments)]
+        ranked = measurements.board_rows(name)
+        if arguments["field_deg"]:
+            ranked = at_field(ranked, int(arguments["field_deg"]))
+        rows = [row for row in ranked if _wanted(row, arguments)]
         return listing(rows, RANK_COLUMNS, f"/v1/leaderboard/{name}", of_board, arguments)
 
     return [
@@ -114,8 +129,9 @@ def endpoints(knowledge: Knowledge) -> list[Endpoint]:
             path="/v1/leaderboard",
             name="leaderboard",
             summary="The leaderboard",
-            description="The published leaderboard of every data set and condition; sweeps are at "
-            "/v1/sweeps.",
+            description="Every data set and condition: pipelines ranked by error, those that "
+            "answer less than 95 % behind all others; a rank is shared where errors on five units "
+            "built alike overlap. Sweeps are at /v1/sweeps.",
             shape=Leaderboard,
             build=build_leaderboard,
         ),
@@ -123,7 +139,8 @@ def endpoints(knowledge: Knowledge) -> list[Endpoint]:
             path="/v1/leaderboard/{dataset}",
             name="leaderboard_of_dataset",
             summary="The leaderboard of a data set",
-            description="Rows of one data set's leaderboard, best first within a condition.",
+            description="Rows of one data set's leaderboard, best first within a condition; with "
+            "`field_deg` by the error over a part of the field.",
             shape=LeaderboardRows,
             build=build_board,
             parameters=of_board,
