@@ -9,11 +9,11 @@ const RANK = { field: "rank", name: "Rank", write: (rank, row) => (rank === null
 const NAMES = [{ field: "extractor", name: "Extractor", text: true }, { field: "model", name: "Model", text: true }];
 const ERROR = { field: "rms_deg", name: "RMS error", write: (value, row) => [degrees(value), units(row)] };
 const BOUND = { field: "over_bound", name: "× bound", title: "RMS error over the Cramér–Rao bound of the same samples", write: times };
-const SHARES = [
-  { field: "availability", name: "Answered", write: percent, title: "Share of the samples whose direction is observable" },
-  { field: "false_sun", name: "False Suns", write: percent, title: "Answered share of the samples whose direction is not observable, such as those in eclipse" },
-];
-const TIME = { field: "time_ratio", name: "Time ratio", write: times, title: "Time of extraction and prediction on this machine over that of a reference on the same observations" };
+const ANSWERED = {
+  field: "availability", name: "Answered", title: "Share of the samples whose direction is observable; false Suns: answered share of the others, such as those in eclipse",
+  write: (share, row) => [percent(share), row.false_sun > 0 && h("div", { class: "below" }, `${percent(row.false_sun)} false Suns`)],
+};
+const TIME = { field: "time_ratio", name: "Time", write: times, title: "Time of extraction and prediction on this machine over that of a reference on the same observations" };
 const WHOLE = "";
 const FIELDS = [10, 20, 30, 40, 50, 60, 70, 90, 180];
 
@@ -22,12 +22,12 @@ function columns() {
   const { rows, field } = shown;
   const errors = field === WHOLE ? [ERROR, BOUND]
     : [{ field: "field_rms_deg", name: `RMS within ${field}°`, write: degrees, title: "Rings of the field count by their solid angle" }, ERROR];
-  return [RANK, ...NAMES, ...errors, ...SHARES, ...(rows.some((r) => r.time_ratio > 0) ? [TIME] : [])];
+  return [RANK, ...NAMES, ...errors, ANSWERED, ...(rows.some((r) => r.time_ratio > 0) ? [TIME] : [])];
 }
 
 /** Smallest and largest error of the units a pipeline was scored on. */
 const units = (row) => row.low_deg > 0 && h("div", { class: "below", title: `On ${row.unit_rms_deg.length} units built alike` },
-  `${number(row.low_deg)} to ${degrees(row.high_deg)}`);
+  `${number(row.low_deg)}–${degrees(row.high_deg)}`);
 const errorOf = (row) => (row.field_deg ? row.field_rms_deg : row.rms_deg);
 
 const SCALE = "Error, log scale";
@@ -48,7 +48,7 @@ const scaleOf = (rows) => {
   const high = Math.max(low + 1, Math.ceil(Math.log10(Math.max(...values))));
   const at = (x) => Math.min(1, Math.max(0, (Math.log10(x) - low) / (high - low)));
   const ticks = Array.from({ length: high - low + 1 }, (_, i) => 10 ** (low + i));
-  const step = Math.ceil((high - low) / 3); // labels of more decades than three would run together
+  const step = Math.ceil((high - low) / 2); // labels of more decades than two would run together
   return { at, ticks, labelled: ticks.filter((_, i) => (high - low - i) % step === 0) };
 };
 
@@ -198,7 +198,7 @@ function draw() {
       field === WHOLE && h("span", {}, h("i", { class: "key-limit" }), "Cramér–Rao bound"),
       field === WHOLE && ranged && h("span", {}, h("i", { class: "key-units" }), "range over five units built alike; = marks a rank that the range does not tell apart"),
       field === WHOLE && !ranged && h("span", {}, "Ranks of this condition rest on one unit of the sensor"),
-      shownColumns.includes(TIME) && h("span", {}, "Time ratio: against a reference on the same observations")),
+      shownColumns.includes(TIME) && h("span", {}, "Time: over that of a reference on the same observations")),
     h("div", { class: "sort-narrow" }, choice("Sort by", "sort-narrow", shownColumns.map((c) => [c.field, c.name]), state.sort, (sort) => show({ sort, order: "ascending" }))),
     h("table", { class: "stacks board", role: "table", "aria-labelledby": "leaderboard-title" },
       h("thead", { role: "rowgroup" }, h("tr", { role: "row" }, shownColumns.map(heading),

@@ -45,9 +45,9 @@ def build(
         ``schema``, ``metric_version``, ``units`` (how many leading pipelines are scored on),
         ``sweeps`` (as given) and ``datasets``: each with ``name``, ``version``, ``detector``,
         ``mask``, ``conditions`` (the nominal one first) and ``rows``. A row is the score row of
-        the standard unit with ``rank`` (null where there is no error), ``tied`` (whether others share it), the errors of
-        all units ``unit_rms_deg`` and their range ``low_deg`` to ``high_deg`` (null where one unit
-        is scored), and times.
+        the standard unit with ``rank`` (null where there is no error), ``tied`` (whether others
+        share it), the errors of all units ``unit_rms_deg`` and their range ``low_deg`` to
+        ``high_deg`` (null where one unit is scored), and times.
     """
     every = list(rows)
     spread = spreads(every)

@@ -23,7 +23,6 @@ from benchmark.results.record import Record, opened
 from benchmark.results.store import Store
 from benchmark.results.tables import Row
 from benchmark.running.backend import outcomes
-from benchmark.running.pinning import require_versions
 from benchmark.running.progress import ProgressCallback, terminal_progress
 from benchmark.running.task import Outcome, Task, TaskResult
 
@@ -57,7 +56,9 @@ def run(
     """Measure the cells that the store does not hold yet; what else it holds stays.
 
     Scores of components that have changed and are measured here are dropped: those of other cells
-    too, which their code no longer vouches for.
+    too, which their code no longer vouches for. Data that changed are taken as they are, whatever
+    their version: a dataset in the making changes often. What is published is guarded by
+    `benchmark.leaderboard.update`.
 
     Parameters
     ----------
@@ -83,8 +84,6 @@ def run(
         When another runner writes to the store.
     DaskMissingError
         When a scheduler is given and ``distributed`` is not installed.
-    UnversionedChangeError
-        Where data differ from the store's pins though their dataset's version does not.
     RunInterruptedError
         On Ctrl-C; what was measured is kept and not measured again.
     """
@@ -104,7 +103,6 @@ def run(
             progress=progress,
             scheduler=scheduler,
         )
-        require_versions(store.pins(), record.pins.values())
         record.write(components.only(wanted))
     return Summary(
         store=store.directory,

@@ -309,7 +309,8 @@ def test_ranks_that_units_do_not_tell_apart_are_shown_as_ties(wide: Visit) -> No
     for row, text in zip(rows, texts, strict=False):
         mark = "=" if row["tied"] else ""
         assert text.split()[0] == f"{row['rank']}{mark}"
-        assert (" to " in text) == (row["low_deg"] is not None)
+        assert ("–" in text) == (row["low_deg"] is not None)
+        assert ("false Suns" in text) == bool(row["false_sun"])
     assert page.locator(".key-units").count() == 1
     page.select_option("#board-condition", "stable")
     wide.settle()

@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 
 from algorithms.contract import Observation
-from benchmark import sweep_plan
+from benchmark.running import task
+from benchmark.sweeps import plan as sweep_plan
 
 FAKES = Path(__file__).parent / "fakes"
 
@@ -21,3 +22,12 @@ def readings_only():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(sweep_plan, "_SERIES_OF", dict.fromkeys(Observation, ()))
         yield
+
+
+@pytest.fixture
+def log(tmp_path, monkeypatch):
+    """Lines of what implementations really did, whichever process did it."""
+    path = tmp_path / "log.txt"
+    monkeypatch.setenv("FAKE_ATLAS_LOG", str(path))
+    task._kept.clear()
+    return lambda: path.read_text().splitlines() if path.exists() else []

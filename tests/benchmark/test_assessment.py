@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-import json
 import math
 
 import pytest
 
-from benchmark import assessment, sweeps
+from algorithms.discovery import discover_extractors
+from benchmark import assessment
+from benchmark.assessment import assess
 from benchmark.assessment_definitions import DEFINITIONS
 from benchmark.assessment_measures import SCORED, SWEPT, Unmeasured
-from benchmark.store import Store
+from benchmark.results.store import Store
+from benchmark.running.times import Time
+from benchmark.sweeps.run import components_of
 from survey_data.tables import load
 
 
@@ -26,7 +29,7 @@ def row(sweep, point, value=None, **numbers):
 def score(**fields):
     return {
         "dataset": "d", "condition": "nominal", "mask": "Single-Ap.", "detector": "CMOS",
-        "model": "m", "status": "ok", "rms_deg": 0.1, "found_fraction": 1.0, **fields,
+        "model": "m", "status": "ok", "rms_deg": 0.1, "availability": 1.0, **fields,
     }  # fmt: skip
 
 
@@ -122,7 +125,7 @@ def test_applicability_takes_the_best_of_its_group_in_the_nominal_condition():
         score(rms_deg=0.4),
         score(rms_deg=0.2, dataset="e", mask="Multi-Ap."),
         score(rms_deg=0.01, condition="low-noise"),
-        score(rms_deg=0.01, found_fraction=0.5),
+        score(rms_deg=0.01, availability=0.5),
         score(rms_deg=3.0, mask="L-Slit", detector="Event"),
         score(rms_deg=0.1, mask="Lens", detector="CCD", dataset="ccd-lens"),
     ]
@@ -136,7 +139,7 @@ def test_applicability_takes_the_best_of_its_group_in_the_nominal_condition():
 
 
 def test_without_results_nothing_is_measured_and_every_reason_is_given(tmp_path):
-    assessed = assessment.assess(tmp_path)
+    assessed = assess(tmp_path)
     assert len(assessed) == 19
     verdicts = [verdict for one in assessed for verdict in one.verdicts]
     assert len(verdicts) == 19 * 21
@@ -148,40 +151,35 @@ def test_without_results_nothing_is_measured_and_every_reason_is_given(tmp_path)
 
 
 def test_hough_transforms_are_told_apart_by_their_study(tmp_path):
-    from algorithms.discovery import discover_extractors
-
     known = discover_extractors()
-    found = {one.method: set(one.extractors) for one in assessment.assess(tmp_path)}
+    found = {one.method: set(one.extractors) for one in assess(tmp_path)}
     hough = {n for n, e in known.items() if e.taxonomy == "HT" and e.origin == "survey"}
     assert found["BHT"] | found["CHT"] <= hough
     assert all("Liu2016" in known[name].studies for name in found["BHT"])
     assert all("Adatrao2016" in known[name].studies for name in found["CHT"])
-    for one in assessment.assess(tmp_path):
+    for one in assess(tmp_path):
         assert all(known[n].origin == "survey" for n in one.extractors)
 
 
 def test_verdicts_compare_with_the_survey_and_costs_are_medians(tmp_path):
-    lines = [row("reference", "disc", over_bound=ratio) for ratio in (1.2,)]
-    keys = {"sweep_version": 1, "key": "k"}
-    (tmp_path / sweeps.FILE).write_text(
-        "".join(json.dumps({**line, **keys}) + "\n" for line in lines)
-    )
-    stored = [
-        score(schema=1, key=str(n), dataset=f"d{n}", extractor="bctm", model="m") for n in range(3)
-    ]
-    store = Store(tmp_path)
-    cell = {"condition": "nominal", "extractor": "bctm", "model": "m"}
-    runs = [
-        {"key": str(n), "dataset": f"d{n}", **cell, "extract_s": ratio, "reference_s": 1.0}
-        for n, ratio in enumerate((0.1, 40.0, 20.0))
-    ]
-    store.write(stored, runs, [])
-    bctm = next(one for one in assessment.assess(tmp_path) if one.method == "BCTM")
+    known = {"bctm": discover_extractors()["bctm"]}
+    swept = [row("reference", "disc", over_bound=1.2)]
+    Store(tmp_path).write({}, [], [{**one, "unit": "px"} for one in swept], components_of(known))
+    times = {
+        (name, "bctm", model): Time(name, "bctm", model, 1.0, ratio, ratio, "")
+        for name, ratio in (("d0", 0.1), ("d1", 40.0), ("d2", 20.0), ("d3", None))
+        for model in ("lut", "linear")
+    }
+    bctm = next(one for one in assess(tmp_path, known, times) if one.method == "BCTM")
     found = {verdict.name: verdict for verdict in bctm.verdicts}
     precise = found["High precision"]  # the survey says 0
     assert (precise.measured, precise.value, precise.agreement) == (2, 1.2, "opposed")
     light = found["Computationally light"]  # the survey says 1
     assert (light.measured, light.value, light.series, light.agreement) == (
-        1, 20.0, "3 cells", "agrees",
+        1, 20.0, "3 data sets", "agrees",
     )  # fmt: skip
     assert sum(bctm.counts.values()) == 21
+    untimed = next(one for one in assess(tmp_path, known) if one.method == "BCTM")
+    (light,) = (v for v in untimed.verdicts if v.name == "Computationally light")
+    assert light.measured is None
+    assert "sunatlas leaderboard times" in light.reason

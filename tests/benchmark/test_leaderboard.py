@@ -1,98 +1,301 @@
-"""The leaderboard follows from the results; a changed number is named by file and cell."""
+"""The leaderboard follows from the results: brought up to date, ranked, shown in every form."""
 
 import csv
+import dataclasses
 import io
 import json
-import re
+import os
+import sys
 from html.parser import HTMLParser
 
 import fake_plan
 import pytest
-from fake_atlas import Broken, Diodes, LeastSquares
+from fake_atlas import Broken, Diodes, Gaps, LeastSquares
 
-from benchmark import leaderboard, runner_unit, sweeps
-from benchmark.content_key import canonical_json
-from benchmark.leaderboard_check import compare
-from benchmark.leaderboard_formats import FORMATS, SHOWN
-from benchmark.store import Store
+from benchmark.leaderboard import ranking
+from benchmark.leaderboard.board import board_of
+from benchmark.leaderboard.pages import FORMATS, PAGE, page, render
+from benchmark.leaderboard.ranking import UNITS
+from benchmark.leaderboard.update import update, write_page
+from benchmark.results.store import Store
+from benchmark.running import task
+from benchmark.running.pinning import UnversionedChangeError
+from benchmark.running.progress import silent
 
-BOARDS = sorted(set(FORMATS) - {"sweeps.csv"})
-pytestmark = pytest.mark.usefixtures("readings_only")
+pytestmark = pytest.mark.usefixtures("readings_only", "log")
 CELL = "fake-diodes/noisy/fake-currents/fake-least-squares"
-PARTS = fake_plan.parts(presets=(Diodes(), Diodes(name="fake-second")))
+PRESETS = (Diodes(), Diodes(name="fake-second"))
+PARTS = fake_plan.parts(presets=PRESETS)
+
+
+def copied(source, target):
+    for path in source.rglob("*.*"):
+        if path.is_file() and path.parent.name != ".sunatlas":
+            (target / path.relative_to(source)).parent.mkdir(parents=True, exist_ok=True)
+            (target / path.relative_to(source)).write_bytes(path.read_bytes())
+    return target
 
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory, readings_only):
-    runner_unit._kept.clear()
+    task._kept.clear()
     directory = tmp_path_factory.mktemp("published")
-    leaderboard.update(directory, parts=PARTS)
+    update(directory, progress=silent, parts=PARTS)
     return directory
 
 
 @pytest.fixture
 def published(made, tmp_path):
-    """A copy that a test may damage."""
-    for path in made.glob("*.*"):
-        if path.is_file():
-            (tmp_path / path.name).write_bytes(path.read_bytes())
-    return tmp_path
+    """A copy that a test may change."""
+    return copied(made, tmp_path / "published")
 
 
-def check(directory, **options):
-    return leaderboard.check(directory, parts=PARTS, **options)
+def states(directory):
+    return {
+        str(path.relative_to(directory)): (path.read_bytes(), path.stat().st_mtime_ns)
+        for path in directory.rglob("*.*")
+        if path.is_file() and path.parent.name != ".sunatlas"
+    }
 
 
-def change(path, old, new):
-    text = path.read_text()
-    assert text.count(old) >= 1, (path, old)
-    path.write_text(text.replace(old, new, 1))
+def changed_lines(before, after):
+    """Count lines by file that are not in the other version of it."""
+    found = {}
+    for name in before.keys() | after.keys():
+        one, two = (
+            state[name][0].decode().splitlines() if name in state else []
+            for state in (before, after)
+        )
+        if one != two:
+            found[name] = [line for line in two if line not in one]
+    return found
 
 
-def test_rows_are_ranked_by_error_within_dataset_and_condition():
-    def row(model, rms, condition="c", dataset="d"):
-        return {
-            "dataset": dataset, "condition": condition, "extractor": "e", "model": model,
-            "key": model, "rms_deg": rms, "dataset_version": 1, "detector": "PD", "mask": "M",
-        }  # fmt: skip
-
-    rows = [
-        row("a", 2.0),
-        row("b", None),
-        row("c", 1.0),
-        row("d", 3.0, "b"),
-        row("e", 9.0, "b", "a"),
-    ]
-    board = leaderboard.build(rows, {"a": {"time_ratio": 4.0}})
-    assert [d["name"] for d in board["datasets"]] == ["a", "d"]
-    assert board["datasets"][1]["conditions"] == ["b", "c"]
-    ranked = [(r["condition"], r["rank"], r["model"]) for r in board["datasets"][1]["rows"]]
-    assert ranked == [("b", 1, "d"), ("c", 1, "c"), ("c", 2, "a"), ("c", None, "b")]
-    assert board["datasets"][1]["rows"][2]["time_ratio"] == 4.0
+def test_everything_planned_is_measured_and_the_leading_on_other_units(made):
+    store = Store(made)
+    rows = store.rows(unit=None)
+    assert len(store.rows()) == 2 * 2 * 2
+    assert {row["status"] for row in rows} == {"ok"}
+    others = {(row["dataset"], row["condition"], row["unit"]) for row in rows if row["unit"]}
+    assert others == {
+        (preset.name, "quiet", unit) for preset in PRESETS for unit in range(1, UNITS)
+    }
+    assert len(rows) == 8 + 2 * 2 * (UNITS - 1)
+    assert {row["series"] for row in store.swept()} >= {"faces", "quadrants"}
+    assert {place[0] for place in store.pins()} == {preset.name for preset in PRESETS}
 
 
-def test_all_files_are_written_and_nothing_changes_the_second_time(published):
-    assert {path.name for path in published.iterdir()} == {
-        *FORMATS, "scores.jsonl", "runs.jsonl", "data.jsonl", "sweeps.jsonl",
+def test_what_is_committed_is_tables_pins_digests_and_one_page(made):
+    assert set(states(made)) == {
+        "scores/fake-diodes.csv", "scores/fake-second.csv", "sweeps.csv", "pins.csv",
+        "components.json", PAGE,
     }  # fmt: skip
-    before = {path: path.stat().st_mtime_ns for path in published.iterdir() if path.is_file()}
-    assert leaderboard.write(published) == []
-    assert leaderboard.update(published, parts=PARTS).computed == 0
-    after = {path: path.stat().st_mtime_ns for path in published.iterdir() if path.is_file()}
-    assert after == before
 
 
-def test_json_and_csv_hold_every_stored_number(published):
-    stored = {row["key"]: row for row in Store(published).rows()}
-    as_json = json.loads((published / "leaderboard.json").read_text())
+def test_bringing_up_to_date_what_is_up_to_date_writes_and_generates_nothing(published, log):
+    before = states(published)
+    summary = update(published, progress=silent, parts=PARTS)
+    assert (summary.computed, summary.failed, summary.warnings) == (0, (), ())
+    assert summary.planned == summary.already_stored == 8 + 4 * (UNITS - 1)
+    assert states(published) == before
+    assert log() == []
+    assert not write_page(Store(published))
+
+
+def test_two_workers_give_the_same_record(published, tmp_path):
+    again = tmp_path / "again"
+    update(again, 2, progress=silent, parts=PARTS)
+    assert {name: content for name, (content, _) in states(again).items()} == {
+        name: content for name, (content, _) in states(published).items()
+    }
+
+
+@pytest.fixture
+def plug_in(tmp_path, monkeypatch):
+    """An extractor kept in a file of its own, and how to rewrite that file."""
+    path = tmp_path / "plugged_in.py"
+    text = (
+        '"""A plug-in."""\n\nfrom fake_atlas import Currents\n\n\n'
+        "class Plugged(Currents):\n"
+        '    """Adds nothing."""\n\n'
+        '    name = "fake-plugged"\n\n'
+        "    def extract(self, observations):\n"
+        "        return super().extract(observations) + 0.0\n"
+    )
+    path.write_text(text)
+    monkeypatch.syspath_prepend(tmp_path)
+    from plugged_in import Plugged
+
+    def rewrite(old, new):
+        assert old in text
+        path.write_text(text.replace(old, new))
+        later = path.stat().st_mtime_ns + 1_000_000
+        os.utime(path, ns=(later, later))
+
+    parts = fake_plan.parts(presets=PRESETS)
+    extractors = {"fake-gaps": Gaps, "fake-plugged": Plugged}
+    yield dataclasses.replace(parts, extractors=extractors), rewrite
+    del sys.modules["plugged_in"]
+
+
+def test_an_extractor_s_new_code_renews_its_own_rows_and_its_digest_alone(tmp_path, plug_in, log):
+    """A comment or a docstring renews nothing; a plus that becomes a minus does."""
+    parts, rewrite = plug_in
+    record = tmp_path / "record"
+    update(record, progress=silent, parts=parts)
+    before, done = states(record), len(log())
+    rewrite('"""Adds nothing."""', '"""Adds nothing at all."""  # or so they say')
+    assert update(record, progress=silent, parts=parts).computed == 0
+    assert states(record) == before
+    assert len(log()) == done
+
+    rewrite("(observations) + 0.0", "(observations) - 0.0")
+    assert update(record, progress=silent, parts=parts).computed == 2 * (2 + UNITS - 1)
+    assert {line.split()[1] for line in log()[done:] if line.startswith("extract")} == {
+        "fake-plugged"
+    }
+    moved = changed_lines(before, states(record))
+    assert list(moved) == ["components.json"], "the numbers are what they were"
+    (line,) = moved["components.json"]
+    assert line.startswith('"fake-plugged": ')
+
+
+def test_a_changed_model_or_harness_renews_what_they_are_in(published, monkeypatch):
+    newer = type("Newer", (LeastSquares,), {"version": 2, "__module__": "fake_atlas"})
+    parts = fake_plan.parts(newer, presets=PRESETS)
+    before = states(published)
+    done = update(published, progress=silent, parts=parts)
+    assert done.computed == done.planned
+    assert list(changed_lines(before, states(published))) == ["components.json"]
+    monkeypatch.setattr("benchmark.results.components.harness_digest", lambda: "another")
+    done = update(published, progress=silent, parts=parts)
+    assert done.computed == done.planned
+    (line,) = changed_lines(before, states(published))["components.json"][:1]
+    assert line == '"harness": "another",'
+
+
+def test_data_that_change_in_silence_are_an_error_before_anything_is_measured(published, log):
+    before = states(published)
+    silent_change = fake_plan.parts(presets=(Diodes(), Diodes(name="fake-second", seed=8)))
+    with pytest.raises(UnversionedChangeError, match="fake-second") as caught:
+        update(published, progress=silent, parts=silent_change)
+    assert list(caught.value.changes) == ["fake-second"]
+    assert states(published) == before
+    assert not [line for line in log() if line.startswith("extract")]
+    assert all(" first " in line for line in log() if line.startswith("generate"))
+    assert {line.split()[1] for line in log()} == {"fake-second"}, "the other's code is as it was"
+
+
+@pytest.mark.parametrize("changed", [{"late": 0.1}, {"looseness": 1.01}, {"seed": 8}])
+def test_a_change_of_data_or_bound_needs_a_new_version(published, changed):
+    before = states(published)
+    second = Diodes(name="fake-second", **changed)
+    with pytest.raises(UnversionedChangeError, match="fake-second"):
+        update(published, progress=silent, parts=fake_plan.parts(presets=(Diodes(), second)))
+    assert states(published) == before
+    newer = fake_plan.parts(presets=(Diodes(), dataclasses.replace(second, version=2)))
+    assert update(published, progress=silent, parts=newer).computed > 0
+    moved = changed_lines(before, states(published))
+    assert set(moved) <= {"scores/fake-second.csv", "pins.csv", "components.json", PAGE}
+    assert {pin.version for pin in Store(published).pins().values()} == {1, 2}
+
+
+def test_what_is_no_longer_planned_goes(published):
+    update(published, progress=silent, parts=fake_plan.parts())
+    store = Store(published)
+    assert {row["dataset"] for row in store.rows(unit=None)} == {"fake-diodes"}
+    assert {place[0] for place in store.pins()} == {"fake-diodes"}
+    assert list(store.components().datasets) == ["fake-diodes"]
+    assert "fake-second" not in (published / PAGE).read_text()
+
+
+def test_units_that_lead_no_more_go(published, monkeypatch):
+    monkeypatch.setattr(ranking, "LEADING", 1)
+    update(published, progress=silent, parts=PARTS)
+    others = Store(published).rows(unit=1)
+    assert {row["extractor"] for row in others} == {"fake-currents"}
+
+
+def test_a_pipeline_that_is_silent_too_often_does_not_lead(made):
+    """The gaps' errors are those of the other: half of the boards would have it first."""
+    for dataset in board_of(Store(made))["datasets"]:
+        found = [(row["condition"], row["rank"], row["extractor"]) for row in dataset["rows"]]
+        assert found == [
+            (condition, rank, name)
+            for condition in ("noisy", "quiet")
+            for rank, name in ((1, "fake-currents"), (2, "fake-gaps"))
+        ]
+
+
+def test_pipelines_that_differ_less_than_units_share_a_rank_in_every_form(tmp_path):
+    class Alike(LeastSquares):
+        """Turns what the other finds by a thousandth of a degree."""
+
+        name = "fake-alike"
+
+        def predict(self, features):
+            found = super().predict(features)
+            found[:, 0] += 2e-5
+            return found / (found**2).sum(axis=1, keepdims=True) ** 0.5
+
+    preset = Diodes(conditions=("nominal", "noisy"))
+    parts = fake_plan.parts(LeastSquares, Alike, presets=(preset,))
+    update(tmp_path, progress=silent, parts=parts)
+    board = board_of(Store(tmp_path))
+    rows = [row for row in board["datasets"][0]["rows"] if row["condition"] == "nominal"]
+    assert [(row["rank"], row["tied"], row["extractor"]) for row in rows] == [
+        (1, True, "fake-currents"),
+        (1, True, "fake-currents"),
+        (3, True, "fake-gaps"),
+        (3, True, "fake-gaps"),
+    ]
+    first = rows[0]
+    assert len(first["unit_rms_deg"]) == UNITS
+    assert first["unit_rms_deg"][0] == first["rms_deg"]
+    assert first["low_deg"] == min(first["unit_rms_deg"]) < first["high_deg"]
+    noisy = [row for row in board["datasets"][0]["rows"] if row["condition"] == "noisy"]
+    assert [row["rank"] for row in noisy] == [1, 2, 3, 4], "scored on one unit alone"
+    assert (tmp_path / PAGE).read_text().count("| 1= |") == 2
+    assert FORMATS["leaderboard.html"](board).count(">1=<") == 2
+    assert FORMATS["leaderboard.md"](board).count("| 1= |") == 2
+
+
+def test_json_and_csv_hold_every_stored_number(made):
+    store = Store(made)
+    board = board_of(store)
+    stored = {
+        tuple(row[n] for n in ("dataset", "condition", "extractor", "model")): row
+        for row in store.rows()
+    }
+    as_json = json.loads(FORMATS["leaderboard.json"](board))
+    assert as_json == board
     rows = [row for dataset in as_json["datasets"] for row in dataset["rows"]]
     assert len(rows) == len(stored) == 8
     for row in rows:
-        assert row.items() >= stored[row["key"]].items()
-        assert row["time_ratio"] > 0
-    as_csv = list(csv.DictReader(io.StringIO((published / "leaderboard.csv").read_text())))
+        cell = tuple(row[n] for n in ("dataset", "condition", "extractor", "model"))
+        assert row.items() >= stored[cell].items()
+        assert row["time_ratio"] is None
+    as_csv = list(csv.DictReader(io.StringIO(FORMATS["leaderboard.csv"](board))))
     for line, row in zip(as_csv, rows, strict=True):
-        assert line == {name: "" if value is None else str(value) for name, value in row.items()}
+        assert set(line) == set(row)
+        for name, value in row.items():
+            if value is None:
+                assert line[name] == ""
+            elif isinstance(value, list):
+                assert [float(part) for part in line[name].split(";")] == value
+            elif isinstance(value, float):
+                assert float(line[name]) == value
+            else:
+                assert line[name] == str(value)
+
+
+def test_times_of_this_machine_stand_beside_the_numbers(made):
+    times = {("fake-diodes", "fake-gaps", "fake-least-squares"): {"latency_us": 7.5}}
+    rows = board_of(Store(made), times)["datasets"][0]["rows"]
+    assert {(row["extractor"], row["latency_us"]) for row in rows} == {
+        ("fake-currents", None),
+        ("fake-gaps", 7.5),
+    }
 
 
 class Tags(HTMLParser):
@@ -109,8 +312,10 @@ class Tags(HTMLParser):
         assert self.open.pop() == tag
 
 
-def test_the_page_is_well_formed_and_needs_nothing_from_elsewhere(published):
-    text = (published / "leaderboard.html").read_text()
+def test_all_forms_are_written_and_the_page_needs_nothing_from_elsewhere(made, tmp_path):
+    paths = render(board_of(Store(made)), tmp_path)
+    assert {path.name for path in paths} == {path.name for path in tmp_path.iterdir()} - {"log.txt"}
+    text = (tmp_path / "leaderboard.html").read_text()
     reader = Tags()
     reader.feed(text)
     assert reader.open == []
@@ -119,178 +324,42 @@ def test_the_page_is_well_formed_and_needs_nothing_from_elsewhere(published):
     assert "url(" not in text
 
 
-def test_a_reason_cannot_break_the_page_and_failures_are_shown(tmp_path, monkeypatch):
+def test_a_reason_cannot_break_the_page_and_failures_are_shown(tmp_path):
     class Sly(Broken):
         def fit(self, features, sun):
             raise ValueError('<script>"x"</script> | y')
 
-    leaderboard.update(tmp_path, parts=fake_plan.parts(LeastSquares, Sly))
-    text = (tmp_path / "leaderboard.html").read_text()
-    assert "<script>" not in text
-    assert "&lt;script&gt;" in text
-    assert (
-        "No score: fake-diodes/quiet/fake-gaps/fake-broken: ValueError"
-        in (tmp_path / "leaderboard.md").read_text()
-    )
+    done = update(tmp_path, progress=silent, parts=fake_plan.parts(LeastSquares, Sly))
+    assert len(done.failed) == 4
+    board = board_of(Store(tmp_path))
+    assert "<script>" not in FORMATS["leaderboard.html"](board)
+    assert "&lt;script&gt;" in FORMATS["leaderboard.html"](board)
+    said = "No score: fake-diodes/quiet/fake-gaps/fake-broken: ValueError"
+    assert said in FORMATS["leaderboard.md"](board)
 
 
-def test_what_is_committed_passes_with_and_without_measuring_again(published):
-    assert check(published, stored_only=True) == []
-    assert check(published) == []
+def test_the_committed_page_has_the_first_three_of_the_first_condition(made):
+    """Of the nominal one where there is one; here the first by name."""
+    text = (made / PAGE).read_text()
+    assert text == page(board_of(Store(made)))
+    rows = [line for line in text.splitlines() if line.startswith("| fake-")]
+    assert [line.split(" | ")[:2] for line in rows] == [
+        [f"| {name}", f"{extractor} + fake-least-squares"]
+        for name in ("fake-diodes", "fake-second")
+        for extractor in ("fake-currents", "fake-gaps")
+    ]
+    row = Store(made).query(dataset="fake-diodes", condition="noisy", extractor="fake-currents")[0]
+    assert f"| {row['rms_deg']:#.4g} |" in rows[0]
 
 
-@pytest.mark.parametrize("name", BOARDS)
-@pytest.mark.parametrize("column", ["rms_deg", "found_fraction", "time_ratio", "rank"])
-def test_one_number_changed_in_a_derived_file_is_named(published, name, column):
-    path = published / name
-    right = FORMATS[name].read(path.read_text())[CELL, column]
-    wrong = {"rank": "7"}.get(column, "0.123")
-    texts = {
-        "leaderboard.json": (rf'("{column}": )[^,\n]+', rf"\g<1>{wrong}"),
-        "leaderboard.html": (
-            rf'(data-cell="{CELL}".*?data-column="{column}">)[^<]+', rf"\g<1>{wrong}",
-        ),
-    }  # fmt: skip
-    text = path.read_text()
-    if name == "leaderboard.json":
-        board = json.loads(text)
-        for row in board["datasets"][0]["rows"]:
-            if "/".join(row[n] for n in ("dataset", "condition", "extractor", "model")) == CELL:
-                row[column] = json.loads(wrong)
-        path.write_text(json.dumps(board, indent=1) + "\n")
-    elif name == "leaderboard.html":
-        path.write_text(re.sub(*texts[name], text, count=1, flags=re.DOTALL))
-    else:
-        separator = "," if name.endswith("csv") else " | "
-        lines, parts = text.splitlines(), CELL.split("/")
-        heads = lines[0].split(",") if separator == "," else list(SHOWN)
-        start = 0 if separator == "," else lines.index("### noisy", lines.index("## fake-diodes"))
-        wanted = parts if separator == "," else parts[2:]
-        for number in range(start, len(lines)):
-            values = lines[number].strip("| ").split(separator)
-            if all(part in values for part in wanted):
-                values[heads.index(column)] = wrong
-                line = separator.join(values)
-                lines[number] = line if separator == "," else f"| {line} |"
-                break
-        path.write_text("\n".join(lines) + "\n")
-    [difference] = check(published, stored_only=True)
-    assert (difference.file, difference.cell) == (name, f"{CELL}/{column}")
-    assert (difference.committed, difference.measured) == (wrong, right)
+def test_sweeps_stand_in_every_form(made):
+    board = board_of(Store(made))
+    assert json.loads(FORMATS["leaderboard.json"](board))["sweeps"] == Store(made).swept()
+    for name in ("leaderboard.md", "leaderboard.html"):
+        assert "fake-currents" in FORMATS[name](board).partition("Sweeps")[2], name
+    assert "faces,noise,50,fake-currents" in FORMATS["sweeps.csv"](board)
 
 
-def test_one_number_changed_in_the_scores_is_named_there(published):
-    row = next(r for r in Store(published).rows() if r["condition"] == "noisy")
-    cell = "/".join(row[n] for n in ("dataset", "condition", "extractor", "model"))
-    for column in ("rms_deg", "bias_alpha_deg"):
-        old = f'"{column}":{json.dumps(row[column])}'
-        change(published / "scores.jsonl", old, f'"{column}":0.5')
-        [difference] = check(published, stored_only=True)
-        assert (difference.file, difference.cell) == ("scores.jsonl", f"{cell}/{column}")
-        assert (difference.committed, difference.measured) == ("0.5", str(row[column]))
-        change(published / "scores.jsonl", f'"{column}":0.5', old)
-    assert check(published, stored_only=True) == []
-
-
-def test_a_number_changed_everywhere_is_found_by_measuring_again(published):
-    row = Store(published).query(condition="noisy")[0]
-    cell = "/".join(row[n] for n in ("dataset", "condition", "extractor", "model"))
-    change(published / "scores.jsonl", f'"p95_deg":{row["p95_deg"]}', '"p95_deg":0.5')
-    leaderboard.write(published)
-    assert check(published, stored_only=True) == []
-    [difference] = check(published)
-    assert (difference.file, difference.cell) == ("scores.jsonl", f"{cell}/p95_deg")
-    assert (difference.committed, difference.measured) == ("0.5", str(row["p95_deg"]))
-
-
-def test_a_row_taken_out_or_a_file_missing_is_named(published):
-    lines = (published / "scores.jsonl").read_text().splitlines(keepends=True)
-    (published / "scores.jsonl").write_text("".join(lines[1:]))
-    (published / "leaderboard.md").unlink()
-    found = {
-        (d.file, d.cell.rpartition("/")[2], d.committed) for d in check(published, stored_only=True)
-    }
-    assert ("scores.jsonl", "row", "absent") in found
-    assert ("leaderboard.md", "file", "absent") in found
-
-
-def test_other_bytes_without_another_number_are_a_named_line(published):
-    change(published / "leaderboard.md", "# Leaderboard", "# Leader board")
-    [difference] = check(published, stored_only=True)
-    assert (difference.file, difference.cell) == ("leaderboard.md", "line 1")
-
-
-def test_an_unreadable_leaderboard_is_named(published):
-    (published / "leaderboard.json").write_text("{")
-    [difference] = check(published, stored_only=True)
-    assert difference.file == "leaderboard.json"
-    assert "unreadable" in difference.committed
-
-
-def test_results_of_other_code_are_named_without_measuring(published):
-    newer = type("Newer", (LeastSquares,), {"version": 2, "__module__": "fake_atlas"})
-    parts = fake_plan.parts(newer, presets=(Diodes(), Diodes(name="fake-second")))
-    found = leaderboard.check(published, stored_only=True, parts=parts)
-    assert len(found) == 8
-    assert all(d.cell.endswith("/key") for d in found)
-    fewer = leaderboard.check(published, stored_only=True, parts=fake_plan.parts())
-    assert {(d.cell.split("/")[0], d.measured) for d in fewer} == {
-        ("fake-second", "not planned"),
-        ("fake-second", "no such data"),
-    }
-
-
-def test_accuracy_is_compared_within_a_thousandth_and_counts_within_a_sample(published):
-    committed = Store(published).rows()
-
-    def differences(column, factor):
-        measured = [{**row} for row in committed]
-        measured[0][column] = committed[0][column] * factor
-        return [d.cell.rpartition("/")[2] for d in compare(committed, measured)]
-
-    assert differences("rms_deg", 1.0005) == []
-    assert differences("rms_deg", 1.002) == ["rms_deg"]
-    assert differences("found_fraction", 1 - 1 / 400) == []
-    assert differences("found_fraction", 1 - 2 / 400) == ["found_fraction"]
-    assert differences("n_test", 2) == ["n_test"]
-    failed = [{**row, "status": "failed", "rms_deg": None} for row in committed[:1]]
-    assert {d.cell.rpartition("/")[2] for d in compare(committed, failed)} == {"status", "rms_deg"}
-    assert compare([], committed[:1])[0].committed == "absent"
-
-
-SWEPT = "faces/noise/50/fake-currents"
-
-
-def test_sweeps_stand_in_every_file(published):
-    stored = sweeps.read(published)
-    assert {row["series"] for row in stored} >= {"faces", "quadrants"}
-    assert json.loads((published / "leaderboard.json").read_text())["sweeps"] == stored
-    for name in ("leaderboard.json", "sweeps.csv", "leaderboard.md", "leaderboard.html"):
-        cells = FORMATS[name].read((published / name).read_text())
-        assert (SWEPT, "over_bound") in cells, name
-
-
-def test_a_changed_sweep_is_named_by_its_file_and_point(published):
-    path = published / "sweeps.jsonl"
-    lines = path.read_text().splitlines()
-    for number, line in enumerate(lines):
-        row = json.loads(line)
-        if "/".join(row[n] for n in ("series", "sweep", "point", "extractor")) == SWEPT:
-            lines[number] = canonical_json({**row, "rms": row["rms"] * 1.5})
-    path.write_text("\n".join(lines) + "\n")
-    (found,) = check(published, stored_only=True)
-    assert (found.file, found.cell) == ("sweeps.jsonl", f"{SWEPT}/rms")
-    leaderboard.write(published)
-    assert check(published, stored_only=True) == []  # files agree; only measuring tells
-    (found,) = check(published)
-    assert (found.file, found.cell) == ("sweeps.jsonl", f"{SWEPT}/rms")
-
-
-def test_a_changed_number_in_a_page_of_sweeps_is_named(published):
-    path = published / "sweeps.csv"
-    lines = path.read_text().splitlines(keepends=True)
-    place = next(n for n, line in enumerate(lines) if line.startswith("faces,noise,50,fake-curr"))
-    lines[place] = lines[place].replace(",300,", ",299,", 1)
-    path.write_text("".join(lines))
-    (found,) = check(published, stored_only=True)
-    assert (found.file, found.cell, found.committed) == ("sweeps.csv", f"{SWEPT}/n", "299")
+def test_no_workers_is_refused(tmp_path):
+    with pytest.raises(ValueError, match="workers must be at least 1; got 0"):
+        update(tmp_path, 0, parts=PARTS)

@@ -6,6 +6,7 @@ import fake_atlas
 import fake_plan
 import pytest
 
+from algorithms.contract import UnsuitableDesignError
 from benchmark import plan
 from benchmark.plan import Cell
 from benchmark.plan_parts import UnknownNameError
@@ -51,14 +52,14 @@ def test_a_design_that_an_implementation_refuses_is_not_planned_and_says_why():
 
         @classmethod
         def for_sensor(cls, geometry, kind):
-            raise ValueError(f"needs two faces; got {len(geometry.face_normals)}")
+            raise UnsuitableDesignError(f"needs two faces; got {len(geometry.face_normals)}")
 
     class Halves(fake_atlas.Currents):
         name = "fake-halves"
 
         @classmethod
         def for_sensor(cls, geometry):
-            raise ValueError("needs halves")
+            raise UnsuitableDesignError("needs halves")
 
     parts = fake_plan.parts(fake_atlas.LeastSquares, Pairs)
     parts = dataclasses.replace(parts, extractors={**parts.extractors, "fake-halves": Halves})
@@ -68,6 +69,39 @@ def test_a_design_that_an_implementation_refuses_is_not_planned_and_says_why():
     refused = {(r.extractor, r.model): r.reason for r in plan.incompatible(parts=parts)}
     assert refused["fake-currents", "fake-pairs"] == f"needs two faces; got {faces}"
     assert refused["fake-halves", ""] == "needs halves"
+
+
+@pytest.mark.parametrize("error", [ValueError, RuntimeError, TypeError])
+def test_a_defect_of_an_implementation_is_planned_so_that_its_row_says_what_failed(error):
+    """Only the contract's own word for a design is a refusal; a plain ValueError is none."""
+
+    class Defective(fake_atlas.LeastSquares):
+        name = "fake-defective"
+
+        @classmethod
+        def for_sensor(cls, geometry, kind):
+            raise error("typo")
+
+    class Blind(fake_atlas.Currents):
+        name = "fake-blind"
+
+        @classmethod
+        def for_sensor(cls, geometry):
+            raise error("typo")
+
+    parts = fake_plan.parts(fake_atlas.LeastSquares, Defective)
+    parts = dataclasses.replace(parts, extractors={**parts.extractors, "fake-blind": Blind})
+    planned = {(cell.extractor, cell.model) for cell in plan.cells(parts=parts)}
+    assert {("fake-currents", "fake-defective"), ("fake-blind", "fake-least-squares")} <= planned
+    refused = {(one.extractor, one.model) for one in plan.incompatible(parts=parts)}
+    assert refused == {("fake-balanced", ""), ("fake-framed", "")}
+
+
+def test_planned_are_cells_of_the_standard_unit_and_others_name_theirs(parts):
+    found = plan.cells(parts=parts)
+    assert {cell.unit for cell in found} == {0}
+    assert str(found[0]) == "fake-diodes/noisy/fake-currents/fake-least-squares"
+    assert str(dataclasses.replace(found[0], unit=3)) == f"{found[0]}/unit 3"
 
 
 def test_filters_narrow_the_plan(parts):

@@ -10,16 +10,17 @@ from pathlib import Path
 
 import pytest
 
-from benchmark.store import Store
-from benchmark.store_journal import Journal
+from benchmark.results.record import Record
+from benchmark.results.store import Store
 
 ROOT = Path(__file__).parents[2]
 PROGRAM = """
 import sys
 import fake_atlas
 import fake_plan
-from benchmark import plan, runner
-from benchmark.store import Store
+from benchmark import plan
+from benchmark.running import run as runner
+from benchmark.results.store import Store
 
 second = fake_atlas.Diodes(name="fake-second")
 parts = fake_plan.parts(presets=(fake_atlas.Diodes(), second))
@@ -50,10 +51,19 @@ def finish(process):
     return [int(number) for number in out.split()]
 
 
+def contents(store):
+    return {
+        path.relative_to(store.directory): path.read_bytes()
+        for path in [*store.directory.glob("*.*"), *store.scores_directory.glob("*.*")]
+        if path.is_file()
+    }
+
+
 @pytest.fixture(scope="module")
 def uninterrupted(tmp_path_factory):
     directory = tmp_path_factory.mktemp("whole")
-    assert finish(start(directory, 1, directory / "log", 0)) == [8, 8]
+    log = tmp_path_factory.mktemp("log") / "log"
+    assert finish(start(directory, 1, log, 0)) == [8, 8]
     return Store(directory)
 
 
@@ -62,33 +72,29 @@ def test_a_killed_run_is_finished_by_the_next_with_identical_bytes(
     uninterrupted, tmp_path, workers
 ):
     store = Store(tmp_path / "store")
-    journal = Journal(store)
+    journal = Record(store).journal
     process = start(store.directory, workers, tmp_path / "log", 0.15)
     deadline = time.monotonic() + 60
-    while not (journal.path.is_file() and journal.path.read_bytes().count(b'"score"') >= 2):
+    while not (journal.is_file() and journal.read_bytes().count(b'"score"') >= 2):
         assert process.poll() is None, "the run ended before it could be killed"
         assert time.monotonic() < deadline
         time.sleep(0.01)
     process.send_signal(signal.SIGKILL)
     process.communicate()
-    assert not store.scores_path.exists(), "killed mid-way, not after the end"
-    kept = [json.loads(line) for line in journal.path.read_text().splitlines()]
-    stored = {record["run"]["key"]: record["run"] for record in kept if "run" in record}
+    assert not store.components_path.exists(), "killed mid-way, not after the end"
+    kept = [json.loads(line) for line in journal.read_text().splitlines()]
+    stored = [record for record in kept if "score" in record]
     assert 2 <= len(stored) < 8
 
-    with journal.path.open("a") as file:  # as if killed while writing a line
+    with journal.open("a") as file:  # as if killed while writing a line
         file.write('{"score":{"key"')
     assert finish(start(store.directory, workers, tmp_path / "log2", 0)) == [8, 8 - len(stored)]
 
-    assert store.scores_path.read_bytes() == uninterrupted.scores_path.read_bytes()
-    assert store.data_path.read_bytes() == uninterrupted.data_path.read_bytes()
-    runs = store.runs()
-    assert len(runs) == 8
-    for key, run in stored.items():
-        assert runs[key] == run, "a stored cell keeps its first time: it was not measured again"
-    calibrations = [
+    assert contents(store) == contents(uninterrupted)
+    assert len(store.rows()) == 8
+    extractions = [
         line for line in (tmp_path / "log2").read_text().splitlines() if line.startswith("extract")
     ]
-    # one model a unit: each missing cell extracts calibration once and test one to three times
-    assert 2 * (8 - len(stored)) <= len(calibrations) <= 4 * (8 - len(stored))
-    assert not journal.path.exists()
+    # one model a task: each missing cell extracts from the three splits once
+    assert len(extractions) == 3 * (8 - len(stored))
+    assert not journal.exists()

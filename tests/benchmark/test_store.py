@@ -1,36 +1,22 @@
 """Results on disk: sorted, canonical, whole or not at all, and clear about what is broken."""
 
-import json
 import os
-import subprocess
-import sys
 
 import pytest
+from fake_results import cell, components, numbers, pin, swept
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
-from benchmark.content_key import SCHEMA_VERSION
-from benchmark.store import Pin, Store, StoreError, UnknownFieldError, replace
-from benchmark.store_journal import Journal, StoreLockedError, locked
+from benchmark.metrics.score import METRICS
+from benchmark.results.components import ComponentsError
+from benchmark.results.files import replace
+from benchmark.results.pins import alike
+from benchmark.results.store import NUMBERS, Store, UnknownFieldError
+from benchmark.results.tables import StoreError, number, read, text_of
 
-
-def row(model="m", dataset="d", **more):
-    base = {
-        "schema": SCHEMA_VERSION, "key": f"key-{dataset}-{model}", "dataset": dataset,
-        "condition": "c", "extractor": "e", "model": model, "status": "ok", "rms_deg": 0.5,
-    }  # fmt: skip
-    return {**base, **more}
-
-
-def run_of(score):
-    names = ("key", "dataset", "condition", "extractor", "model")
-    return {**{name: score[name] for name in names}, "latency_us": 2.0, "time_ratio": 3.0}
-
-
-def pin(split="test", **more):
-    base = {
-        "dataset": "d", "condition": "c", "split": split, "version": 1,
-        "specification": "s", "data_hash": "h", "n": 3,
-    }  # fmt: skip
-    return Pin(**{**base, **more})
+TEXT = st.text(st.characters(exclude_categories=("Cc", "Cs", "Zl", "Zp"))).map(
+    lambda text: " ".join(text.split())
+)
 
 
 @pytest.fixture
@@ -38,68 +24,216 @@ def store(tmp_path):
     return Store(tmp_path / "results")
 
 
+def write(store, scores=None, pins=(), rows=(), known=None):
+    store.write(scores or {}, pins, rows, known or components())
+
+
+def files(store):
+    return {
+        path.relative_to(store.directory): path.read_bytes()
+        for path in store.directory.rglob("*.*")
+        if path.is_file()
+    }
+
+
 def test_what_is_written_is_read_back_sorted_whatever_the_order(store, tmp_path):
-    rows = [row("b"), row("a"), row("a", "c")]
-    store.write(rows, map(run_of, rows), [pin(), pin("calibration")])
-    assert [(r["dataset"], r["model"]) for r in store.rows()] == [
-        ("c", "a"),
-        ("d", "a"),
-        ("d", "b"),
-    ]
-    assert set(store.runs()) == {r["key"] for r in rows}
-    assert store.pins()["d", "c", "test"] == pin()
+    scores = {
+        cell("b"): numbers(0.25, reason='said "no", twice'),
+        cell("a"): numbers(1.0, max_deg=12345.0, p95_deg=1e-7),
+        cell("a", "c"): numbers(None, status="failed", reason="RuntimeError: é"),
+        cell("a", unit=10): numbers(0.1),
+        cell("a", unit=2): numbers(0.2),
+    }
+    pins, rows = [pin(), pin("calibration")], [swept("50"), swept("5", value=None, rms=None)]
+    write(store, scores, pins, rows)
+    assert store.scores() == scores
+    found = [(one.dataset, one.model, one.unit) for one in store.scores()]
+    assert found == [("c", "a", 0), ("d", "a", 0), ("d", "a", 2), ("d", "a", 10), ("d", "b", 0)]
+    assert store.pins() == {one.place: one for one in pins}
+    assert [row["point"] for row in store.swept()] == ["50", "5"]
+    assert store.components() == components()
     other = Store(tmp_path / "other")
-    other.write(rows[::-1], map(run_of, rows[::-1]), [pin("calibration"), pin()])
-    for name in ("scores_path", "runs_path", "data_path"):
-        assert getattr(other, name).read_bytes() == getattr(store, name).read_bytes()
+    write(other, dict(reversed(scores.items())), pins[::-1], rows)
+    assert files(other) == files(store)
+    assert {str(path) for path in files(store)} == {
+        "scores/c.csv", "scores/d.csv", "pins.csv", "sweeps.csv", "components.json",
+    }  # fmt: skip
+
+
+@settings(deadline=None, derandomize=True)
+@given(
+    rows=st.lists(
+        st.fixed_dictionaries(
+            {
+                "a": st.none() | st.floats(allow_nan=False, allow_infinity=False),
+                "b": st.integers(-(10**9), 10**9).map(float),
+                "text": TEXT,
+            }
+        ),
+        max_size=5,
+    )
+)
+def test_a_table_reads_back_every_number_and_word(rows, tmp_path_factory):
+    path = tmp_path_factory.mktemp("table") / "t.csv"
+    path.write_text(text_of(["a", "b", "text"], rows), encoding="utf-8", newline="")
+    assert [row for _, row in read(path, {"a": number, "b": number, "text": str})] == rows
+
+
+def test_rows_of_numbers_are_short(store):
+    write(store, {cell("m"): numbers(0.5, max_deg=2.0, p95_deg=None)})
+    header, line = (store.scores_directory / "d.csv").read_text().splitlines()
+    assert header == ",".join(("condition", "extractor", "model", "unit", *NUMBERS))
+    values = dict(zip(header.split(","), line.split(","), strict=True))
+    assert {name: value for name, value in values.items() if value} == {
+        "condition": "c", "extractor": "e", "model": "m", "unit": "0", "status": "ok",
+        "rms_deg": "0.5", "max_deg": "2", "availability": "1",
+    }  # fmt: skip
+
+
+def test_a_data_set_without_scores_has_no_file_any_more(store):
+    write(store, {cell("a"): numbers(), cell("a", "c"): numbers()})
+    write(store, {cell("a"): numbers()})
+    assert [path.name for path in store.scores_directory.iterdir()] == ["d.csv"]
+
+
+def test_writing_the_same_again_touches_no_file(store):
+    scores, pins = {cell("a"): numbers()}, [pin()]
+    write(store, scores, pins, [swept()])
+    before = {path: path.stat().st_mtime_ns for path in store.directory.rglob("*.*")}
+    write(store, scores, pins, [swept()])
+    assert {path: path.stat().st_mtime_ns for path in store.directory.rglob("*.*")} == before
+    write(store, scores, [pin(n=4)], [swept()])
+    changed = {path for path, then in before.items() if path.stat().st_mtime_ns != then}
+    assert changed == {store.pins_path}
 
 
 def test_a_new_store_is_empty(store):
     assert store.rows() == []
     assert store.query(dataset="x") == []
     assert store.frame().empty
+    assert (store.scores(), store.pins(), store.swept()) == ({}, {}, [])
+    assert store.components().harness == ""
+
+
+def test_rows_carry_what_is_known_of_what_they_are_of(store):
+    write(store, {cell("a"): numbers(0.5), cell("a", unit=1): numbers(0.6)}, [pin()], [swept()])
+    (row,) = store.rows()
+    assert row["unit"] == 0
+    assert (row["detector"], row["mask"], row["half_fov_deg"]) == ("PD", "Slit", 30.0)
+    assert (row["extractor_taxonomy"], row["model_taxonomy"]) == ("BCM", "LSQ")
+    assert (row["n_test"], row["n_observable"], row["n_calibration"]) == (3, 2, None)
+    assert {name: row[name] for name in METRICS} == {
+        **dict.fromkeys(METRICS),
+        "rms_deg": 0.5,
+        "availability": 1.0,
+    }
+    assert [one["rms_deg"] for one in store.rows(unit=None)] == [0.5, 0.6]
+    assert [one["rms_deg"] for one in store.rows(unit=1)] == [0.6]
+    assert store.swept()[0]["extractor_taxonomy"] == "BCM"
+
+
+def test_a_score_of_something_unknown_is_an_error_that_names_it(store):
+    write(store, {cell("a"): numbers()}, rows=[swept()])
+    store.components_path.write_text(components().only([]).text())
+    with pytest.raises(ComponentsError, match="score of d/c/e/a names 'd', unknown"):
+        store.rows()
+    with pytest.raises(StoreError, match=r"line 2: 'e' is not in components\.json"):
+        store.swept()
 
 
 def test_queries_filter_and_name_the_nearest_field(store):
-    rows = [row("a"), row("b"), row("b", "other", status="failed")]
-    store.write(rows, map(run_of, rows[:2]), [])
+    scores = {
+        cell("a"): numbers(),
+        cell("b"): numbers(0.25),
+        cell("b", "other"): numbers(None, status="failed"),
+        cell("b", unit=1): numbers(),
+    }
+    write(store, scores)
     assert [r["dataset"] for r in store.query(model=["b", "z"])] == ["d", "other"]
-    assert store.query(model="b", status="ok", condition=None) == [rows[1]]
+    (row,) = store.query(model="b", status="ok", condition=None)
+    assert (row["dataset"], row["rms_deg"]) == ("d", 0.25)
     frame = store.frame(model="b")
     assert list(frame["dataset"]) == ["d", "other"]
-    assert frame["time_ratio"][0] == 3.0
-    assert frame["time_ratio"].isna()[1]
+    assert frame["rms_deg"][0] == 0.25
+    assert frame["rms_deg"].isna()[1]
     with pytest.raises(UnknownFieldError, match="did you mean 'dataset'"):
         store.query(datasett="d")
+
+
+GOOD = "c,e,a,0,ok" + "," * len(METRICS) + ","
 
 
 @pytest.mark.parametrize(
     ("line", "message"),
     [
-        ('{"schema": 1, "key"', "line 2: not JSON"),
-        ("[1]", "line 2: expected a JSON object, got list"),
-        (json.dumps({"schema": SCHEMA_VERSION}), "line 2: expected text in key, dataset"),
-        (json.dumps(row("z", schema=0)), "line 2: written under schema 0"),
-        (json.dumps(row("a")), "line 2: d/c/e/a is there twice"),
+        (GOOD, "line 3: d/c/e/a is there twice"),
+        (GOOD + ",", f"line 3: expected {6 + len(METRICS)} cells, got {7 + len(METRICS)}"),
+        ("c,e,a", f"line 3: expected {6 + len(METRICS)} cells, got 3"),
+        (GOOD.replace("c,e,a", "c,e,"), "line 3, column model: expected a word"),
+        (GOOD.replace(",0,", ",,"), "line 3: expected a number in unit"),
+        (GOOD.replace(",0,", ",one,"), "line 3, column unit: invalid literal"),
+        (GOOD.replace("ok", "fine"), "line 3, column status: expected one of ok, refused, failed"),
+        (GOOD.replace("ok,", "ok,x"), "line 3, column availability: could not convert"),
+        (GOOD.replace("ok", '"o"k'), "line 3: not CSV"),
     ],
 )
 def test_a_corrupt_line_is_named_by_file_and_number(store, line, message):
-    store.write([row("a")], [], [])
-    with store.scores_path.open("a") as file:
+    write(store, {cell("a"): numbers()})
+    path = store.scores_directory / "d.csv"
+    with path.open("a") as file:
         file.write(line + "\n")
     with pytest.raises(StoreError, match=message) as caught:
-        store.rows()
-    assert str(store.scores_path) in str(caught.value)
+        store.scores()
+    assert str(path) in str(caught.value)
 
 
-def test_a_corrupt_pin_or_run_is_named_too(store):
-    store.write([], [], [pin()])
-    store.data_path.write_text('{"dataset":"d"}\n')
-    store.runs_path.write_text("{}\n")
-    with pytest.raises(StoreError, match="line 1: not a pin"):
+def test_a_file_of_other_columns_or_no_text_is_named(store):
+    write(store, {cell("a"): numbers()}, [pin()])
+    store.pins_path.write_text("dataset,condition\n")
+    with pytest.raises(StoreError, match="line 1: expected the columns dataset, condition, split"):
         store.pins()
-    with pytest.raises(StoreError, match="line 1: expected a field 'key'"):
-        store.runs()
+    store.pins_path.write_bytes(b"\xff\xfe\xff")
+    with pytest.raises(StoreError, match=r"pins\.csv: not text"):
+        store.pins()
+    (store.scores_directory / "d.csv").write_text("")
+    with pytest.raises(StoreError, match=r"line 1: expected the columns .*; got none"):
+        store.scores()
+
+
+def test_a_corrupt_pin_is_named_too(store):
+    write(store, pins=[pin()])
+    right = store.pins_path.read_text()
+    store.pins_path.write_text(right + right.splitlines()[1] + "\n")
+    with pytest.raises(StoreError, match="line 3: d/c/test is there twice"):
+        store.pins()
+    store.pins_path.write_text(right.replace("test,1,3", "test,1,"))
+    with pytest.raises(StoreError, match="line 2: expected a number in n"):
+        store.pins()
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        ({}, ""),
+        ({"n": 4}, "n 4, pinned 3"),
+        ({"data_hash": "x"}, "data_hash x, pinned h"),
+        ({"head_hash": "x"}, "head_hash x, pinned hh"),
+        ({"observable": 1}, "observable 1, pinned 2"),
+        ({"bound_deg": 0.25 * (1 + 5e-5)}, ""),
+        ({"bound_deg": 0.25 * (1 + 2e-4)}, "bound_deg 0.25005, pinned 0.25"),
+        ({"bound_deg": None}, "bound_deg None, pinned 0.25"),
+        ({"head_bound_deg": 0.3}, "head_bound_deg 0.3, pinned 0.2"),
+        ({"version": 2}, ""),
+    ],
+)
+def test_pins_differ_in_hashes_exactly_and_in_bounds_beyond_rounding(changed, said):
+    assert pin().difference(pin(**changed)) == said
+
+
+def test_no_bound_is_like_no_bound_alone():
+    assert alike(None, None)
+    assert not alike(None, 0.0)
+    assert not alike(0.0, None)
 
 
 def test_a_failed_write_leaves_the_old_file_and_no_temporary_one(tmp_path, monkeypatch):
@@ -115,52 +249,3 @@ def test_a_failed_write_leaves_the_old_file_and_no_temporary_one(tmp_path, monke
         replace(path, "new")
     assert path.read_text() == "old"
     assert [p.name for p in tmp_path.iterdir()] == ["file"]
-
-
-def test_the_journal_adds_to_the_store_and_loses_only_a_torn_last_line(store):
-    store.write([row("a")], [run_of(row("a"))], [])
-    journal = Journal(store)
-    journal.append([pin()], [(row("b"), run_of(row("b")))])
-    journal.append([], [(row("a", key="newer"), run_of(row("a", key="newer")))])
-    whole = journal.path.read_bytes()
-    journal.path.write_bytes(whole[:-7])
-    progress = journal.progress()
-    assert {str(cell): r["key"] for cell, r in progress.rows.items()} == {
-        "d/c/e/a": "key-d-a", "d/c/e/b": "key-d-b",
-    }  # fmt: skip
-    assert progress.pins == {pin().place: pin()}
-    journal.cut_torn_line()
-    journal.append([], [(row("z"), run_of(row("z")))])
-    assert {cell.model for cell in journal.progress().rows} == {"a", "b", "z"}
-
-
-def test_a_journal_line_that_is_not_a_record_is_an_error(store):
-    journal = Journal(store)
-    journal.append([pin()], [])
-    for line, message in [
-        ('{"other":1}', "line 2: not a journal record"),
-        ("{", "line 2: not JSON"),
-    ]:
-        text = journal.path.read_text().splitlines()[0]
-        journal.path.write_text(f"{text}\n{line}\n")
-        with pytest.raises(StoreError, match=message):
-            journal.progress()
-
-
-def test_a_second_runner_is_refused_with_the_first_ones_process(store):
-    hold = (
-        "import sys, time; from benchmark.store import Store; "
-        "from benchmark.store_journal import locked\n"
-        "with locked(Store(sys.argv[1])): print('held', flush=True); sys.stdin.read()"
-    )
-    with subprocess.Popen(
-        [sys.executable, "-c", hold, str(store.directory)],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-    ) as other:
-        assert other.stdout.readline() == b"held\n"
-        with pytest.raises(StoreLockedError, match=f"process {other.pid}"), locked(store):
-            pass
-        other.kill()
-    with locked(store):
-        pass  # the lock went with its process

@@ -15,7 +15,7 @@ from benchmark.reference_frames import REFERENCE_SETS
 from benchmark.reference_lines import SLIT, SLITS
 from benchmark.reference_series import SNRS, SWEEPS
 from benchmark.reference_spots import DiscSeries, GridSeries
-from benchmark.sweep_plan import SERIES
+from benchmark.sweeps.plan import SERIES
 
 DISC, GRID = DiscSeries(), GridSeries()
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-import json
+import csv
+import dataclasses
+import io
 from dataclasses import dataclass
 from typing import ClassVar
 from xml.etree import ElementTree as ET
@@ -12,9 +14,13 @@ import pytest
 
 from algorithms.contract import FeatureKind, Observation
 from algorithms.discovery import discover_extractors
-from benchmark import sweep_pictures, sweep_plan, sweep_tables, sweeps
 from benchmark.reference_series import SWEEPS
-from benchmark.store import StoreError
+from benchmark.results.record import point_of
+from benchmark.results.store import Store
+from benchmark.sweeps import pictures as sweep_pictures
+from benchmark.sweeps import plan as sweep_plan
+from benchmark.sweeps import run as sweeps
+from benchmark.sweeps import tables as sweep_tables
 
 
 @dataclass(frozen=True)
@@ -61,6 +67,14 @@ def quiet(*_):
     pass
 
 
+def rows_of(directory):
+    return Store(directory).swept()
+
+
+def table(directory):
+    return Store(directory).sweeps_path.read_bytes()
+
+
 @pytest.fixture
 def made(tmp_path):
     return tmp_path, sweeps.update(tmp_path, 1, quiet, extractors=FEW)
@@ -68,7 +82,7 @@ def made(tmp_path):
 
 def test_points_are_measured_failures_named_and_misfits_listed(made):
     directory, swept = made
-    rows = sweeps.read(directory)
+    rows = rows_of(directory)
     states = {name: {r["status"] for r in rows if r["extractor"] == name} for name in FEW}
     assert states == {"plain": {"ok"}, "broken": {"failed"}, "spots-of-readings": {"refused"}}
     assert swept.planned == swept.computed == 2 * len(sweep_plan.SERIES["quadrants"].settings())
@@ -82,7 +96,7 @@ def test_points_are_measured_failures_named_and_misfits_listed(made):
 def test_the_closed_form_of_balances_is_at_the_bound(made):
     found = [
         row["over_bound"]
-        for row in sweeps.read(made[0])
+        for row in rows_of(made[0])
         if row["extractor"] == "plain" and row["sweep"] == "noise"
     ]
     assert len(found) == 7
@@ -91,14 +105,49 @@ def test_the_closed_form_of_balances_is_at_the_bound(made):
 
 def test_what_is_current_stays_and_failures_are_tried_again(made):
     directory, swept = made
-    before = (directory / sweeps.FILE).read_bytes()
+    before = table(directory)
     again = sweeps.update(directory, 1, quiet, extractors=FEW)
     assert again.computed == swept.computed // 2 == len(again.failed)
-    assert (directory / sweeps.FILE).read_bytes() == before
-    assert sweeps.outdated(directory, FEW) == []
+    assert table(directory) == before
+    assert list(sweeps.unplanned(rows_of(directory), FEW)) == []
     less = sweeps.update(directory, 1, quiet, extractors={"plain": Plain})
     assert less.computed == 0
-    assert {row["extractor"] for row in sweeps.read(directory)} == {"plain"}
+    assert {row["extractor"] for row in rows_of(directory)} == {"plain"}
+    assert list(Store(directory).components().extractors) == ["plain"]
+
+
+def test_a_method_of_other_code_is_measured_again_alone(tmp_path):
+    second = type("Second", (Plain,), {"name": "second"})
+    both = {"plain": Plain, "second": second}
+    first = sweeps.update(tmp_path, 1, quiet, extractors=both)
+    before = rows_of(tmp_path)
+    newer = type("Newer", (second,), {"version": 2})
+    again = sweeps.update(tmp_path, 1, quiet, extractors={"plain": Plain, "second": newer})
+    assert again.computed == first.computed // 2
+    version = "extractor_version"
+    assert [{**row, version: 0} for row in rows_of(tmp_path)] == [
+        {**row, version: 0} for row in before
+    ]
+    assert {row[version] for row in rows_of(tmp_path) if row["extractor"] == "second"} == {2}
+
+
+@pytest.mark.parametrize("name", ["quadrants", "faces"])
+def test_a_series_of_other_code_is_measured_again_alone(made, monkeypatch, name):
+    directory, swept = made
+    digests = sweeps.series_digests()
+    monkeypatch.setattr(sweeps, "series_digests", lambda: {**digests, name: "0" * 16})
+    again = sweeps.update(directory, 1, quiet, extractors={"plain": Plain})
+    assert again.computed == (swept.computed // 2 if name == "quadrants" else 0)
+
+
+def test_a_reason_that_changes_is_renewed(made, monkeypatch):
+    """What a method is refused for is the plan's to say, whatever code stood there before."""
+    monkeypatch.setattr(Spots, "observation", Observation.EVENTS)
+    monkeypatch.setattr(sweep_plan, "_SERIES_OF", dict.fromkeys(Observation, ()))
+    sweeps.update(made[0], 1, quiet, extractors=FEW)
+    assert sweep_tables.unmeasured(rows_of(made[0])) == [
+        ("", "spots-of-readings", "no reference series of events that are read as spot")
+    ]
 
 
 def test_workers_and_what_was_there_before_do_not_change_a_byte(tmp_path):
@@ -109,76 +158,60 @@ def test_workers_and_what_was_there_before_do_not_change_a_byte(tmp_path):
     sweeps.update(two, 2, quiet, extractors=some)
     sweeps.update(grown, 1, quiet, extractors={"direct": some["direct"]})
     assert sweeps.update(grown, 1, quiet, extractors=some).computed < 60
-    text = (one / sweeps.FILE).read_bytes()
-    assert (two / sweeps.FILE).read_bytes() == text
-    assert (grown / sweeps.FILE).read_bytes() == text
+    assert table(two) == table(one)
+    assert table(grown) == table(one)
 
 
-def test_a_changed_key_and_a_missing_point_are_named(made):
-    directory, _ = made
-    path = directory / sweeps.FILE
-    lines = path.read_text().splitlines()
-    row = json.loads(lines[0]) | {"key": "0" * 32}
-    path.write_text("\n".join([json.dumps(row), *lines[2:]]) + "\n")
-    found = sweeps.outdated(directory, FEW)
-    assert sorted(state for _, state in found) == ["absent", "of other code"]
+def test_a_missing_point_and_one_too_much_are_named(made):
+    rows = rows_of(made[0])
+    gone, *rest = rows
+    found = list(sweeps.unplanned([*rest, {**gone, "point": "else"}], FEW))
+    assert sorted((dataclasses.astuple(point), state) for point, state in found) == sorted(
+        [
+            (point_of(gone), "absent"),
+            (point_of({**gone, "point": "else"}), "not planned"),
+        ]
+    )
 
 
 def test_a_number_that_moved_is_told_beyond_the_tolerance_only(made):
-    rows = [row for row in sweeps.read(made[0]) if row["status"] == "ok"]
-    near = [{**row, "rms": row["rms"] * 1.0005, "key": "other"} for row in rows]
+    rows = [row for row in rows_of(made[0]) if row["status"] == "ok"]
+    near = [{**row, "rms": row["rms"] * 1.00005} for row in rows]
     assert list(sweeps.differences(rows, near)) == []
-    far = [{**rows[0], "rms": rows[0]["rms"] * 1.01}, *rows[1:]]
+    far = [{**rows[0], "rms": rows[0]["rms"] * 1.001}, *rows[1:]]
     (found,) = sweeps.differences(rows, far)
-    assert found[0] == f"{sweeps.point_of(rows[0])}/rms"
+    assert found[0] == f"{'/'.join(point_of(rows[0]))}/rms"
     assert [place for place, *_ in sweeps.differences(rows[1:], rows)] == [
-        f"{sweeps.point_of(rows[0])}/row"
+        f"{'/'.join(point_of(rows[0]))}/row"
     ]
 
 
-@pytest.mark.parametrize(
-    ("line", "says"),
-    [
-        ("{", "not JSON"),
-        ("[]", "not a row"),
-        ('{"series":"a"}', "not a row"),
-    ],
-)
-def test_a_line_that_is_no_row_is_named(tmp_path, line, says):
-    (tmp_path / sweeps.FILE).write_text(line + "\n")
-    with pytest.raises(StoreError, match=rf"line 1: {says}"):
-        sweeps.read(tmp_path)
-
-
-def test_a_row_of_another_version_or_there_twice_is_refused(made):
-    path = made[0] / sweeps.FILE
-    line = path.read_text().splitlines()[0]
-    path.write_text(f"{line}\n{line}\n")
-    with pytest.raises(StoreError, match="there twice"):
-        sweeps.read(made[0])
-    path.write_text(json.dumps(json.loads(line) | {"sweep_version": 0}) + "\n")
-    with pytest.raises(StoreError, match="written under version 0"):
-        sweeps.read(made[0])
-
-
-def test_tables_are_read_back_cell_by_cell(made):
-    rows = sweeps.read(made[0])
-    as_csv = sweep_tables.from_csv(sweep_tables.to_csv(rows))
-    assert as_csv == sweep_tables.cells(rows)
-    as_markdown = sweep_tables.from_markdown("\n".join(sweep_tables.to_markdown(rows)))
+def test_tables_show_what_is_stored_cell_by_cell(made):
+    rows = rows_of(made[0])
     shown = {
         (cell, column): text
-        for table in sweep_tables.tables(rows)
-        for _, values in table.rows
+        for one in sweep_tables.tables(rows)
+        for _, values in one.rows
         for cell, column, text in values
     }
-    assert as_markdown == shown
-    assert ("quadrants/noise/50/plain", "over_bound") in shown
     assert shown["quadrants/noise/50/broken", "over_bound"] == "-"
+    row = next(r for r in rows if point_of(r) == ("quadrants", "noise", "50", "plain"))
+    assert shown["quadrants/noise/50/plain", "over_bound"] == f"{row['over_bound']:#.4g}"
+    text = "\n".join(sweep_tables.to_markdown(rows))
+    assert f"| {shown['quadrants/noise/50/plain', 'over_bound']} |" in text
+    assert "- spots-of-readings on any: no reference series" in text
+    as_csv = list(csv.DictReader(io.StringIO(sweep_tables.to_csv(rows))))
+    assert len(as_csv) == len(rows)
+    for line, stored in zip(as_csv, rows, strict=True):
+        for name, value in stored.items():
+            if isinstance(value, float):
+                assert float(line[name]) == value
+            else:
+                assert line[name] == ("" if value is None else str(value))
 
 
 def test_pictures_are_the_same_every_time_and_well_formed(made):
-    rows = sweeps.read(made[0])
+    rows = rows_of(made[0])
     for sweep in sweep_pictures.DRAWN:
         text = sweep_pictures.picture(rows, sweep)
         assert text == sweep_pictures.picture(rows, sweep)

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import os
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
 
-from algorithms.contract import FeatureKind, Observation, SensorGeometry
+from algorithms.contract import FeatureKind, Observation, SensorGeometry, UnusableDataError
 
 _TILT = np.deg2rad(30.0)
 NORMALS = np.array(
@@ -48,7 +48,23 @@ class FakeBound:
 
 
 @dataclass(frozen=True)
+class FakeRepeats:
+    """Every twentieth pose of the test split, four times."""
+
+    passes: int = 4
+
+    def chosen(self, test_samples: int) -> Any:
+        return np.arange(0, test_samples, 20)
+
+
+@dataclass(frozen=True)
 class Diodes:
+    """The data set; what a test changes of it is a field.
+
+    `late` is a current added to one diode from the tenth sample on, `looseness` a factor of the
+    bound, `dark` a share of the test samples that no direction can be told of.
+    """
+
     name: str = "fake-diodes"
     version: int = 1
     detector: str = "PD"
@@ -57,6 +73,11 @@ class Diodes:
     conditions: tuple[str, ...] = ("quiet", "noisy")
     n: int = 400
     seed: int = 7
+    late: float = 0.0
+    looseness: float = 1.0
+    dark: float = 0.0
+    unit: int = 0
+    repeats: FakeRepeats = FakeRepeats()
 
     @property
     def geometry(self) -> SensorGeometry:
@@ -67,33 +88,50 @@ class Diodes:
     def geometry_for(self, condition: str) -> SensorGeometry:
         return self.geometry
 
+    def as_unit(self, number: int) -> Diodes:
+        return replace(self, unit=number)
+
     def noise(self, condition: str) -> float:
-        return {"quiet": 1e-3, "noisy": 1e-2}[condition]
+        return {"quiet": 1e-3, "nominal": 1e-3, "noisy": 1e-2}[condition]
 
     def parameters(self, condition: str) -> dict[str, Any]:
-        return {"noise": self.noise(condition), "n": self.n, "seed": self.seed}
+        return {
+            "version": self.version,
+            "noise": self.noise(condition),
+            "n": self.n,
+            "seed": self.seed,
+            "late": self.late,
+            "looseness": self.looseness,
+            "dark": self.dark,
+            "unit": self.unit,
+        }
 
-    def truth(self, condition: str, split: str) -> tuple[Any, Any]:
-        names = [self.seed, *self.name.encode(), *condition.encode(), *split.encode()]
-        rng = np.random.default_rng(names)
+    def truth(self, condition: str, split: str) -> Any:
+        if split == "repeat":
+            test = self.truth(condition, "test")
+            return np.tile(test[self.repeats.chosen(self.n)], (self.repeats.passes, 1))
+        rng = np.random.default_rng([self.seed, *f"{self.name} {condition} {split}".encode()])
         off = np.deg2rad(25.0) * np.sqrt(rng.random(self.n))
         around = 2 * np.pi * rng.random(self.n)
-        sun = np.stack(
+        return np.stack(
             [np.sin(off) * np.cos(around), np.sin(off) * np.sin(around), np.cos(off)], axis=1
         )
-        return sun, rng
 
-    def generate(self, condition: str, split: str) -> FakeSamples:
-        log(f"generate {self.name} {condition} {split}")
-        sun, rng = self.truth(condition, split)
-        currents = sun @ NORMALS.T
-        return FakeSamples(
-            currents + self.noise(condition) * rng.standard_normal(currents.shape), sun
-        )
+    def generate(self, condition: str, split: str, n: int | None = None) -> FakeSamples:
+        unit, first = f" unit {self.unit}" if self.unit else "", f" first {n}" if n else ""
+        log(f"generate {self.name} {condition} {split}{unit}{first}")
+        sun = self.truth(condition, split)
+        names = f"noise {self.name} {condition} {split} {self.unit}"
+        noise = np.random.default_rng([self.seed, *names.encode()]).standard_normal((len(sun), 4))
+        gain = np.random.default_rng(self.unit).uniform(-0.01, 0.01, 4) if self.unit else 0.0
+        currents = (1.0 + gain) * (sun @ NORMALS.T) + self.noise(condition) * noise
+        currents[10:, 0] += self.late
+        return FakeSamples(currents[:n], sun[:n])
 
-    def bound(self, condition: str, split: str = "test") -> FakeBound:
+    def bound(self, condition: str, split: str = "test", n: int | None = None) -> FakeBound:
         """Known amplitude, white noise: covariance of the tangent plane is sigma^2 (J^T J)^-1."""
-        sun, _ = self.truth(condition, split)
+        log(f"bound {self.name} {condition} {split}")
+        sun = self.truth(condition, split)[:n]
         helper = np.where(np.abs(sun[:, :1]) < 0.9, [[1.0, 0.0, 0.0]], [[0.0, 1.0, 0.0]])
         first = np.cross(sun, helper)
         first /= np.linalg.norm(first, axis=1, keepdims=True)
@@ -101,7 +139,9 @@ class Diodes:
         jacobian = NORMALS @ tangents
         information = np.swapaxes(jacobian, 1, 2) @ jacobian / self.noise(condition) ** 2
         variance = np.trace(np.linalg.inv(information), axis1=1, axis2=2)
-        return FakeBound(np.rad2deg(np.sqrt(variance)), np.ones(self.n, dtype=bool))
+        observable = np.arange(len(sun)) >= self.dark * self.n
+        angle = self.looseness * np.rad2deg(np.sqrt(variance))
+        return FakeBound(np.where(observable, angle, np.inf), observable)
 
 
 class _Extractor:
@@ -158,6 +198,12 @@ class Balanced(_Extractor):
     taxonomy: ClassVar[str] = "Voltage balance"
     kind: ClassVar[FeatureKind] = FeatureKind.BALANCE
     needs: ClassVar[tuple[str, ...]] = ("aperture_width_mm",)
+    features = ("s_a", "s_b")
+
+    def extract(self, observations: Any) -> Any:
+        q1, q2, q3, q4 = super().extract(observations).T
+        both = np.column_stack([q2 + q3 - q1 - q4, q1 + q2 - q3 - q4])
+        return both / observations.sum(axis=1, keepdims=True)
 
 
 @dataclass
@@ -208,8 +254,21 @@ class Unbuildable(LeastSquares):
 
 @dataclass
 class Choosy(LeastSquares):
+    """Cannot work on any data, and says so in its contract's words."""
+
     name: ClassVar[str] = "fake-choosy"
 
     def fit(self, features: Any, sun: Any) -> Any:
         log("fit fake-choosy")
-        raise ValueError("needs other samples")
+        raise UnusableDataError("needs other samples")
+
+
+@dataclass
+class Singular(LeastSquares):
+    """Its linear algebra gives up: a ValueError like a refusal, and none."""
+
+    name: ClassVar[str] = "fake-singular"
+
+    def fit(self, features: Any, sun: Any) -> Any:
+        log("fit fake-singular")
+        np.linalg.inv(np.zeros((2, 2)))

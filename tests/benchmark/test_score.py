@@ -1,14 +1,18 @@
 """Metrics against closed forms, brute force and simulated estimators of known quality."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from benchmark.scoring import METRICS, score, separation_deg, stored
+from benchmark.metrics.score import METRICS, is_available, score, separation_deg, stored
 
 ANGLES = st.floats(1e-9, 179.0)
+NAN = float("nan")
+STATISTICS = ("rms_deg", "median_deg", "p95_deg", "p997_deg", "max_deg")
 
 
 def rotated(sun, axis, angle_deg):
@@ -50,22 +54,56 @@ def test_a_constant_rotation_about_y_is_a_bias_in_beta_alone():
         assert getattr(result, name) == pytest.approx(2.0), name
 
 
-def test_statistics_agree_with_brute_force_over_the_found_samples():
+SAMPLES = st.lists(
+    st.tuples(st.booleans(), st.booleans(), st.floats(1e-6, 170.0), st.floats(0.0, 6.28)),
+    min_size=1,
+    max_size=60,
+)
+
+
+@settings(deadline=None, derandomize=True)
+@given(samples=SAMPLES)
+def test_errors_are_of_answers_to_observable_samples_and_shares_count_the_rest(samples):
+    """Whatever is answered, observable or not: NumPy over the samples picked one by one."""
+    seen = np.array([one for one, *_ in samples])
+    answered = np.array([two for _, two, *_ in samples])
+    angles = np.array([angle for *_, angle, _ in samples])
+    axes = np.array([[np.cos(around), np.sin(around), 0.0] for *_, around in samples])
+    sun = np.tile([0.0, 0.0, 1.0], (len(samples), 1))
+    predicted = Rotation.from_rotvec(np.deg2rad(angles)[:, None] * axes).apply(sun)
+    predicted[~answered] = np.nan
+    result = score(predicted, sun, None, seen)
+
+    def share(of):
+        return pytest.approx(np.mean(of) if of.size else NAN, nan_ok=True)
+
+    assert result.availability == share(answered[seen])
+    assert result.false_sun == share(answered[~seen])
+    judged = angles[seen & answered]
+    expected = {
+        "rms_deg": np.sqrt(np.mean(judged**2)),
+        "median_deg": np.median(judged),
+        "p95_deg": np.percentile(judged, 95),
+        "p997_deg": np.percentile(judged, 99.7),
+        "max_deg": judged.max(),
+    } if judged.size else dict.fromkeys(STATISTICS, NAN)  # fmt: skip
+    for name, value in expected.items():
+        assert getattr(result, name) == pytest.approx(value, rel=1e-6, nan_ok=True), name
+
+
+def test_an_unobservable_sample_moves_no_error_however_wrong_its_answer():
     rng = np.random.default_rng(1)
     sun = cone(rng, 200)
     predicted = tangent_noise(rng, sun, 0.3)
-    predicted[::5] = np.nan
-    result = score(predicted, sun, np.full(200, 0.4), np.ones(200, bool))
-    errors = [
-        np.rad2deg(np.arccos(np.clip(p @ s, -1, 1)))
-        for p, s in zip(predicted, sun, strict=True)
-        if np.isfinite(p).all()
-    ]
-    assert result.found_fraction == 0.8
-    assert result.rms_deg == pytest.approx(np.sqrt(np.mean(np.square(errors))), rel=1e-6)
-    assert result.median_deg == pytest.approx(np.median(errors), rel=1e-6)
-    assert result.p95_deg == pytest.approx(np.percentile(errors, 95), rel=1e-6)
-    assert result.max_deg == pytest.approx(max(errors), rel=1e-6)
+    seen = np.arange(200) % 4 != 0
+    plain = score(predicted, sun, np.full(200, 0.4), seen)
+    predicted[~seen] = -sun[~seen]
+    wrong = score(predicted, sun, np.full(200, 0.4), seen)
+    assert wrong == plain
+    predicted[~seen] = np.nan
+    silent = score(predicted, sun, np.full(200, 0.4), seen)
+    assert (plain.false_sun, silent.false_sun) == (1.0, 0.0)
+    assert silent == replace(plain, false_sun=0.0)
 
 
 def test_axis_errors_leave_out_directions_behind_the_detector():
@@ -85,7 +123,14 @@ def test_the_bound_is_taken_over_samples_both_found_and_observable():
     result = score(predicted, sun, bound, np.array([True, True, True, False]))
     assert result.bound_deg == pytest.approx(np.sqrt((1 + 4) / 2))
     assert result.over_bound == pytest.approx(3 / np.sqrt(2.5))
-    assert result.observable_fraction == 0.75
+    assert (result.availability, result.false_sun) == (pytest.approx(2 / 3), 1.0)
+
+
+def test_without_a_bound_the_errors_stand_and_nothing_is_compared():
+    sun = np.array([[0.0, 0.0, 1.0]] * 4)
+    row = score(rotated(sun, [1, 0, 0], 3.0), sun, None, np.ones(4, bool)).row()
+    assert row["rms_deg"] == 3.0
+    assert [row[name] for name in ("bound_deg", "over_bound", "over_bound_se")] == [None] * 3
 
 
 def test_an_efficient_estimator_scores_one_and_the_standard_error_covers_it():
@@ -111,16 +156,30 @@ def test_a_leak_of_the_truth_falls_below_the_bound_by_many_standard_errors():
     assert result.over_bound + 5 * result.over_bound_se < 1
 
 
-def test_nothing_found_is_undefined_and_never_a_number():
+def test_nothing_answered_is_undefined_and_never_a_number():
     sun = np.array([[0.0, 0.0, 1.0]] * 3)
-    row = score(np.full((3, 3), np.nan), sun, np.ones(3), np.ones(3, bool)).row()
-    assert set(row) == set(METRICS)
-    assert row["found_fraction"] == 0.0
-    assert row["observable_fraction"] == 1.0
-    assert [name for name, value in row.items() if value is not None] == [
-        "found_fraction",
-        "observable_fraction",
-    ]
+    row = score(np.full((3, 3), np.nan), sun, np.ones(3), np.array([True, True, False])).row()
+    assert tuple(row) == METRICS
+    assert {name: value for name, value in row.items() if value is not None} == {
+        "availability": 0.0,
+        "false_sun": 0.0,
+    }
+
+
+def test_nothing_observable_leaves_only_false_suns():
+    sun = np.array([[0.0, 0.0, 1.0]] * 4)
+    predicted = sun.copy()
+    predicted[0] = np.nan
+    row = score(predicted, sun, np.full(4, np.inf), np.zeros(4, bool)).row()
+    assert {name: value for name, value in row.items() if value is not None} == {"false_sun": 0.75}
+    assert not is_available(row)
+
+
+@pytest.mark.parametrize(
+    ("share", "enough"), [(1.0, True), (0.95, True), (0.9499, False), (None, False)]
+)
+def test_a_pipeline_is_available_from_95_percent_on(share, enough):
+    assert is_available({"availability": share}) is enough
 
 
 def test_a_bound_of_zero_gives_no_ratio():
@@ -128,10 +187,13 @@ def test_a_bound_of_zero_gives_no_ratio():
     assert score(sun, sun, np.zeros(3), np.ones(3, bool)).row()["over_bound"] is None
 
 
-def test_numbers_are_stored_with_six_significant_digits():
-    assert stored(0.000123456789) == 0.000123457
-    assert stored(123456789.0) == 123457000.0
+def test_numbers_are_stored_with_five_significant_digits_and_rings_with_four():
+    assert stored(0.000123456789) == 0.00012346
+    assert stored(123456789.0) == 123460000.0
     assert stored(float("inf")) is None
+    sun = np.array([[0.0, 0.0, 1.0]] * 5)
+    row = score(rotated(sun, [1, 0, 0], 1.23456789), sun, None, np.ones(5, bool)).row()
+    assert (row["rms_deg"], row["rms_0_10_deg"]) == (1.2346, 1.235)
 
 
 @pytest.mark.parametrize(

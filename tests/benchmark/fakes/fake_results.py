@@ -1,0 +1,55 @@
+"""Rows, pins and components as a store holds them, with numbers made up."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from benchmark.metrics.score import METRICS
+from benchmark.plan import Cell
+from benchmark.results.components import Components
+from benchmark.results.pins import Pin
+from benchmark.results.store import SWEPT
+
+
+def numbers(rms: float | None = 0.5, **more: Any) -> dict[str, Any]:
+    """Return a score: nothing but an error and full availability."""
+    plain = {**dict.fromkeys(METRICS), "rms_deg": rms, "availability": 1.0}
+    return {"status": "ok", **plain, "reason": "", **more}
+
+
+def cell(model: str = "m", dataset: str = "d", condition: str = "c", unit: int = 0) -> Cell:
+    return Cell(dataset, condition, "e", model, unit)
+
+
+def pin(split: str = "test", **more: Any) -> Pin:
+    base: dict[str, Any] = {
+        "dataset": "d", "condition": "c", "split": split, "version": 1, "n": 3,
+        "data_hash": "h", "head_hash": "hh",
+    }  # fmt: skip
+    if split == "test":
+        base |= {"observable": 2, "bound_deg": 0.25, "head_bound_deg": 0.2}
+    return Pin(**{**base, **more})
+
+
+def swept(point: str = "50", **more: Any) -> dict[str, Any]:
+    return {
+        "series": "s", "sweep": "noise", "point": point, "extractor": "e", "status": "ok",
+        "value": float(point), "n": 300, "unit": "px", **dict.fromkeys(SWEPT, 0.5), "reason": "",
+        **more,
+    }  # fmt: skip
+
+
+def components(*, harness: str = "hh", **digests: str) -> Components:
+    """Return what `cell`, `pin` and `swept` name; keywords give other digests by name."""
+
+    def facts(name: str, **more: Any) -> dict[str, Any]:
+        return {"version": 1, **more, "digest": digests.get(name, f"digest-{name}")}
+
+    sensor: dict[str, Any] = {"detector": "PD", "mask": "Slit", "half_fov_deg": 30.0}
+    return Components(
+        harness,
+        datasets={name: facts(name, **sensor) for name in ("c", "d", "other")},
+        extractors={"e": facts("e", taxonomy="BCM")},
+        models={name: facts(name, taxonomy="LSQ") for name in ("a", "b", "m", "z")},
+        series={"s": {"digest": digests.get("s", "digest-s")}},
+    )

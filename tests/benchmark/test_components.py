@@ -1,0 +1,105 @@
+"""What results are of: one line a component, and the key that tells what is out of date."""
+
+import json
+from dataclasses import replace
+
+import fake_plan
+import pytest
+from fake_atlas import Diodes
+from fake_results import cell, components
+
+from benchmark.results.components import SCHEMA_VERSION, Components, ComponentsError, current
+
+
+def test_components_are_read_back_as_they_were_written(tmp_path):
+    path = tmp_path / "components.json"
+    path.write_text(components().text())
+    assert Components.read(path) == components()
+    path.write_text(Components().text())
+    assert Components.read(path) == Components()
+    assert Components.read(tmp_path / "nothing.json") == Components()
+
+
+def test_a_component_is_a_line_so_that_a_change_of_one_is_a_change_of_one():
+    before, after = components().text().splitlines(), components(e="other").text().splitlines()
+    assert len(before) == len(after)
+    changed = [(one, two) for one, two in zip(before, after, strict=True) if one != two]
+    assert [one.partition(":")[0] for one, _ in changed] == ['"e"']
+    assert json.loads("\n".join(before))["schema"] == SCHEMA_VERSION
+
+
+@pytest.mark.parametrize("changed", ["harness", "d", "e", "m"])
+def test_a_score_s_key_depends_on_all_it_was_measured_with(changed):
+    before = components().cell_key(cell())
+    assert components(**{changed: "other"}).cell_key(cell()) != before
+    assert components(other="other", a="other", s="other").cell_key(cell()) == before
+
+
+def test_a_point_s_key_depends_on_harness_series_and_extractor():
+    keys = [
+        known.point_key("s", "e")
+        for known in (components(), *(components(**{n: "x"}) for n in ("harness", "s", "e")))
+    ]
+    assert len(set(keys)) == 4
+    assert components(d="x", m="x").point_key("s", "e") == keys[0]
+    assert components(s="x").point_key("", "e") == components().point_key("", "e")
+
+
+def test_a_component_that_is_not_there_is_named():
+    with pytest.raises(ComponentsError, match="'nobody', which is not among the models"):
+        components().cell_key(cell("nobody"))
+
+
+def test_differences_name_kind_and_component():
+    one, two = components(), components(harness="x", e="y")
+    assert one.differences(one) == []
+    assert one.differences(two) == [("harness", "hh", "x"), ("extractors/e", "digest-e", "y")]
+    fewer = replace(one, models={})
+    assert fewer.differences(one)[0] == ("models/a", "", "digest-a")
+    assert one.differences(fewer)[0] == ("models/a", "digest-a", "")
+
+
+def test_some_are_renewed_and_the_others_stay():
+    known = components().updated(replace(components(harness="x", d="y"), models={}))
+    assert known.harness == "x"
+    assert known.datasets["d"]["digest"] == "y"
+    assert known.models == components().models
+
+
+def test_only_what_cells_are_of_is_taken():
+    known = components().only([cell("a"), cell("b")])
+    assert [list(kind) for kind in (known.datasets, known.extractors, known.models)] == [
+        ["d"], ["e"], ["a", "b"],
+    ]  # fmt: skip
+
+
+def test_current_components_are_of_the_code_as_it_is():
+    parts = fake_plan.parts()
+    now = current(parts, {"s": "digest"})
+    assert now == current(parts, {"s": "digest"})
+    assert set(now.extractors) == set(parts.extractors)
+    assert now.datasets["fake-diodes"].items() >= {
+        "version": 1, "detector": "PD", "mask": "Maskless", "half_fov_deg": 25.0,
+    }.items()  # fmt: skip
+    newer = current(fake_plan.parts(presets=(Diodes(seed=8),)), {"s": "digest"})
+    assert [name for name, *_ in now.differences(newer)] == ["datasets/fake-diodes"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("{", "[", "not JSON"),
+        (f'"schema": {SCHEMA_VERSION}', '"schema": 1', "expected schema .* and metric .*; delete"),
+        ('"metric": ', '"metric": 9', "expected schema"),
+        ('"extractors": {', '"extractor": {', "object of components in 'extractors'"),
+        ('"digest": "digest-e"', '"digest": 5', "object of components in 'extractors'"),
+    ],
+)
+def test_a_file_of_something_else_is_an_error_that_names_it(tmp_path, old, new, message):
+    path = tmp_path / "components.json"
+    text = components().text()
+    assert old in text
+    path.write_text(text.replace(old, new, 1))
+    with pytest.raises(ComponentsError, match=message) as caught:
+        Components.read(path)
+    assert str(path) in str(caught.value)

@@ -1,0 +1,134 @@
+"""Measuring as an older processor would: what the limited process is told, and what it finds."""
+
+import json
+import os
+import platform
+import signal
+import subprocess
+import sys
+from types import SimpleNamespace
+
+import pytest
+
+from benchmark.running import kernels
+from benchmark.running.kernels import (
+    NoOlderKernelsError,
+    OlderRunError,
+    older_environment,
+    update_with_older_kernels,
+)
+
+# What each library makes of its environment, in its own words.
+FOUND = """
+import ctypes, json, sys
+from importlib.util import find_spec
+from pathlib import Path
+import cv2, numba, numpy
+from numpy._core._multiarray_umath import __cpu_features__ as features
+
+cores = set()
+for path in Path(find_spec("numpy").origin).parents[1].glob("*.libs/*openblas*"):
+    library = ctypes.CDLL(str(path))
+    for name in ("scipy_openblas_get_corename64_", "scipy_openblas_get_corename"):
+        if hasattr(library, name):
+            call = getattr(library, name)
+            call.restype = ctypes.c_char_p
+            cores.add(call().decode())
+            break
+opencv = {cv2.getHardwareFeatureName(n) for n in range(512) if cv2.checkHardwareSupport(n)}
+print(json.dumps({
+    "numpy": sorted(name for name, on in features.items() if on),
+    "openblas": sorted(cores),
+    "opencv": sorted(opencv),
+    "numba": numba.config.CPU_NAME,
+}))
+"""
+
+
+@pytest.fixture
+def x86(monkeypatch):
+    monkeypatch.setattr(platform, "machine", lambda: "x86_64")
+
+
+@pytest.fixture
+def called(monkeypatch):
+    """Processes that would have been started; nothing is measured."""
+    calls, answer = [], SimpleNamespace(returncode=0)
+
+    def run(call, **options):
+        calls.append((call, options))
+        return answer
+
+    monkeypatch.setattr(subprocess, "run", run)
+    return calls, answer
+
+
+@pytest.mark.usefixtures("x86")
+def test_every_library_is_told_and_the_rest_of_the_environment_stays(monkeypatch):
+    monkeypatch.setenv("FAKE_ATLAS_LOG", "somewhere")
+    monkeypatch.setattr(kernels, "_beyond_avx2", lambda: ["X86_V4", "AVX512_ICL"])
+    told = older_environment()
+    assert told["NPY_DISABLE_CPU_FEATURES"] == "X86_V4 AVX512_ICL"
+    assert told["OPENBLAS_CORETYPE"] == "Haswell"
+    assert told["NUMBA_CPU_NAME"] == "haswell"
+    assert "AVX512-SKX" in told["OPENCV_CPU_DISABLE"].split(",")
+    rest = {name: value for name, value in os.environ.items() if name not in kernels.OLDER}
+    assert {name: value for name, value in told.items() if name not in kernels.OLDER} == rest
+
+
+def test_every_library_does_as_it_is_told():
+    """A new process: none finds code of a later processor than one of 2013, and none complains."""
+    if platform.machine().lower() not in {"x86_64", "amd64"}:
+        with pytest.raises(NoOlderKernelsError):
+            older_environment()
+        return
+    done = subprocess.run(
+        [sys.executable, "-c", FOUND],
+        env=older_environment(),
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stderr == "", "a name that a library does not know switches nothing off"
+    found = json.loads(done.stdout)
+    assert found["openblas"] == ["Haswell"]
+    assert found["numba"] == "haswell"
+    later = set(kernels._beyond_avx2())
+    assert not later & set(found["numpy"])
+    assert not [name for name in found["opencv"] if name.startswith("AVX512-")]
+
+
+@pytest.mark.usefixtures("x86")
+@pytest.mark.parametrize("workers", [1, 3])
+def test_the_record_is_updated_by_a_process_with_that_environment(tmp_path, called, workers):
+    update_with_older_kernels(tmp_path, workers)
+    [(call, options)] = called[0]
+    assert call == [sys.executable, "-m", "benchmark.leaderboard", str(tmp_path), str(workers)]
+    assert options["env"] == older_environment()
+
+
+@pytest.mark.usefixtures("x86")
+@pytest.mark.parametrize(
+    ("code", "error"),
+    [(1, OlderRunError), (-signal.SIGKILL, OlderRunError), (-signal.SIGINT, KeyboardInterrupt),
+     (130, KeyboardInterrupt)],
+)  # fmt: skip
+def test_a_process_that_ends_badly_is_an_error(tmp_path, called, code, error):
+    called[1].returncode = code
+    with pytest.raises(error):
+        update_with_older_kernels(tmp_path, 1)
+
+
+def test_another_family_of_processors_is_told_before_anything_starts(tmp_path, called, monkeypatch):
+    monkeypatch.setattr(platform, "machine", lambda: "aarch64")
+    with pytest.raises(NoOlderKernelsError, match="this machine is aarch64"):
+        update_with_older_kernels(tmp_path, 1)
+    assert called[0] == []
+
+
+def test_only_what_came_after_avx2_is_switched_off(monkeypatch):
+    found = {"SIMD Extensions": {"found": ["X86_V3", "AVX512_SPR", "X86_V4", "ASIMD"]}}
+    monkeypatch.setattr(kernels.np, "show_config", lambda mode: found)
+    assert kernels._beyond_avx2() == ["AVX512_SPR", "X86_V4"]
+    monkeypatch.setattr(kernels.np, "show_config", lambda mode: {"SIMD Extensions": {}})
+    assert kernels._beyond_avx2() == []

@@ -1,0 +1,201 @@
+"""A store open for writing: what is measured survives a kill, and one process writes at a time."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+from fake_results import cell, components, numbers, pin, swept
+
+from benchmark.results.record import Record, StoreLockedError, opened, point_of
+from benchmark.results.store import Store
+from benchmark.results.tables import StoreError
+
+POINT = point_of(swept())
+
+
+@pytest.fixture
+def store(tmp_path):
+    return Store(tmp_path / "results")
+
+
+def keep_all(record, known=None):
+    record.keep(
+        known or components(),
+        pins=[pin()],
+        scores={cell("a"): numbers(), cell("b"): numbers()},
+        swept=[swept()],
+    )
+
+
+def test_what_is_kept_is_known_to_the_next_before_anything_is_written(store):
+    keep_all(Record(store))
+    assert not store.components_path.exists()
+    record = Record(store)
+    assert record.scores == {cell("a"): numbers(), cell("b"): numbers()}
+    assert (record.pins, record.swept) == ({pin().place: pin()}, {POINT: swept()})
+    assert record.is_scored(cell("a"), components())
+    assert record.is_pinned(pin().place, components())
+    assert record.is_swept(POINT, components())
+
+
+def test_what_was_measured_with_other_code_is_not_of_the_code_as_it_is(store):
+    record = Record(store)
+    keep_all(record)
+    for name, scored, pinned, point in (
+        ("harness", False, True, False),
+        ("d", False, False, True),
+        ("e", False, True, False),
+        ("a", False, True, True),
+        ("s", True, True, False),
+        ("z", True, True, True),
+    ):
+        other = components(**{name: "x"})
+        assert record.is_scored(cell("a"), other) is scored, name
+        assert record.is_pinned(pin().place, other) is pinned, name
+        assert record.is_swept(POINT, other) is point, name
+
+
+def test_a_failure_is_never_what_need_not_be_measured_again_and_a_refusal_is(store):
+    record = Record(store)
+    record.keep(
+        components(),
+        scores={
+            cell("a"): numbers(None, status="failed", reason="x"),
+            cell("b"): numbers(None, status="refused", reason="x"),
+        },
+        swept=[swept("5", status="failed"), swept("50", status="refused")],
+    )
+    for one in (record, Record(store)):
+        assert not one.is_scored(cell("a"), components())
+        assert one.is_scored(cell("b"), components())
+        assert not one.is_swept(point_of(swept("5")), components())
+        assert one.is_swept(POINT, components())
+
+
+def test_what_was_never_measured_is_not_known(store):
+    record = Record(store)
+    assert not record.is_scored(cell("a"), components())
+    assert not record.is_pinned(pin().place, components())
+    assert not record.is_swept(POINT, components())
+
+
+def test_writing_makes_files_of_the_journal_and_forgets_it(store):
+    with opened(store) as record:
+        keep_all(record)
+        record.write(components())
+        assert not record.journal.exists()
+    assert set(store.scores()) == {cell("a"), cell("b")}
+    assert store.pins() == {pin().place: pin()}
+    assert [point_of(row) for row in store.swept()] == [POINT]
+    known = store.components()
+    assert list(known.models) == ["a", "b"], "what nothing names is left out"
+    assert list(known.datasets) == ["d"]
+
+
+def test_rows_of_sweeps_are_written_in_the_order_asked_for(store):
+    with opened(store) as record:
+        record.keep(components(), swept=[swept("50"), swept("5"), swept("500")])
+        record.write(components(), lambda rows: sorted(rows, key=lambda row: row["value"]))
+    assert [row["point"] for row in store.swept()] == ["5", "50", "500"]
+
+
+def test_what_other_code_measured_is_left_out_where_the_new_one_says_anything_of_it(store):
+    """One model's code changed and one of its cells was measured again: the other is of neither."""
+    with opened(store) as record:
+        record.keep(
+            components(),
+            scores={cell("a"): numbers(), cell("a", "other"): numbers(), cell("b"): numbers()},
+            pins=[pin()],
+        )
+        record.write(components())
+    newer = components(a="newer")
+    with opened(store) as record:
+        record.keep(newer, scores={cell("a"): numbers(0.1)})
+        record.write(newer.only([cell("a")]))
+    assert {one: row["rms_deg"] for one, row in store.scores().items()} == {
+        cell("a"): 0.1,
+        cell("b"): 0.5,
+    }
+    assert store.pins() == {pin().place: pin()}
+
+
+def test_what_is_dropped_is_what_is_not_wanted(store):
+    with opened(store) as record:
+        keep_all(record)
+        record.drop(scores=lambda one: one.model == "a", pins=lambda place: False)
+        record.write(components())
+    assert set(store.scores()) == {cell("a")}
+    assert store.pins() == {}
+    assert len(store.swept()) == 1
+
+
+def test_the_journal_adds_to_the_store_and_loses_only_a_torn_last_line(store):
+    with opened(store) as record:
+        record.keep(components(), scores={cell("a"): numbers()})
+        record.write(components())
+    record = Record(store)
+    record.keep(components(), pins=[pin()], scores={cell("b"): numbers()})
+    record.keep(components(), scores={cell("a"): numbers(0.1)})
+    whole = record.journal.read_bytes()
+    record.journal.write_bytes(whole[:-7])
+    torn = Record(store)
+    assert {one: row["rms_deg"] for one, row in torn.scores.items()} == {
+        cell("a"): 0.5,
+        cell("b"): 0.5,
+    }
+    assert torn.pins == {pin().place: pin()}
+    with opened(store) as record:
+        record.keep(components(), scores={cell("z"): numbers()})
+    assert {one.model for one in Record(store).scores} == {"a", "b", "z"}
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ("{", "line 2: not JSON"),
+        ('{"key": "k", "other": 1}', r"line 2: not a record of the journal; fields \['key'"),
+        ("[1]", "line 2: not a record of the journal"),
+        ('{"pin": {"dataset": "d"}, "key": "k"}', "line 2: not a record of the journal"),
+        ('{"cell": {"datset": "d"}, "score": {}, "key": "k"}', "line 2: not a record"),
+        ('{"swept": {}, "key": "k"}', "line 2: not a record of the journal"),
+    ],
+)
+def test_a_journal_line_that_is_not_a_record_is_an_error(store, line, message):
+    record = Record(store)
+    record.keep(components(), pins=[pin()])
+    with record.journal.open("a") as file:
+        file.write(line + "\n")
+    with pytest.raises(StoreError, match=message):
+        Record(store)
+
+
+def test_every_line_is_json_of_its_own(store):
+    record = Record(store)
+    keep_all(record)
+    kept = [json.loads(line) for line in record.journal.read_text().splitlines()]
+    assert [sorted(one) for one in kept] == [
+        ["key", "pin"],
+        ["cell", "key", "score"],
+        ["cell", "key", "score"],
+        ["key", "swept"],
+    ]
+
+
+def test_a_second_runner_is_refused_with_the_first_ones_process(store):
+    hold = (
+        "import sys; from benchmark.results.store import Store; "
+        "from benchmark.results.record import opened\n"
+        "with opened(Store(sys.argv[1])): print('held', flush=True); sys.stdin.read()"
+    )
+    with subprocess.Popen(
+        [sys.executable, "-c", hold, str(store.directory)],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+    ) as other:
+        assert other.stdout.readline() == b"held\n"
+        with pytest.raises(StoreLockedError, match=f"process {other.pid}"), opened(store):
+            pass
+        other.kill()
+    with opened(store) as record:
+        assert record.scores == {}, "the lock went with its process"
