@@ -103,6 +103,19 @@ def image_type(
 
 
 @compiled
+def _reach(
+    places: Floats, groups: Counts, halves: Floats, amplitudes: int, around: Floats
+) -> tuple[float, float]:
+    """Return where the first and the last pixel of any spot may lie; nothing for no spots."""
+    first, last = math.inf, -1.0
+    for i in range(places.size):
+        middle = places[i] + around[amplitudes + groups[i]]
+        first = min(first, middle - _FAR * halves[i])
+        last = max(last, middle + _FAR * halves[i])
+    return min(first, last + 1.0), last
+
+
+@compiled
 def normal_equations(  # noqa: PLR0917 - Numba takes no keyword-only ones
     row: Floats,
     floor: float,
@@ -128,12 +141,7 @@ def normal_equations(  # noqa: PLR0917 - Numba takes no keyword-only ones
     amplitudes = column.max() + 1
     q = np.zeros(size)
     touched = np.empty(size, dtype=np.int64)
-    first = float(row.size)
-    last = -1.0
-    for i in range(places.size):
-        middle = places[i] + around[amplitudes + groups[i]]
-        first = min(first, middle - _FAR * halves[i])
-        last = max(last, middle + _FAR * halves[i])
+    first, last = _reach(places, groups, halves, amplitudes, around)
     for n in range(max(math.floor(first), 0), min(math.ceil(last) + 1, row.size)):
         model = 0.0
         lit = False

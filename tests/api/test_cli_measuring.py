@@ -17,7 +17,7 @@ from benchmark.plan import Cell, cells, datasets_for
 from benchmark.plan_parts import Parts, installed
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import times
-from benchmark.running.run import RunInterruptedError
+from benchmark.running.run import RunInterruptedError, stale
 from registry.catalogue import catalogue
 from registry.resolution import resolve
 
@@ -251,6 +251,7 @@ def test_what_is_not_of_the_code_is_named(published):
 
 
 def test_an_up_to_date_record_is_left_as_it_is(published):
+    assert stale(cells(), Store(published)) == [], "run `make leaderboard`"
     before = {path: path.read_bytes() for path in published.rglob("*") if path.is_file()}
     shown = sunatlas("leaderboard", "update", "--workers", 1)
     assert shown.exit_code == 0, shown.stderr

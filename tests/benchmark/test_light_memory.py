@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from benchmark.results.content_key import samples_hash
 
 from benchmark.datasets import get
+from benchmark.results.digests import samples_hash
 from benchmark.simulator.light_memory import LightMemory, memory
 
 

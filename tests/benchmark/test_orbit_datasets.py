@@ -7,13 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from benchmark.results.content_key import samples_hash
 
 from benchmark import datasets
 from benchmark.bounds import cramer_rao
 from benchmark.datasets import Samples, data_digest
 from benchmark.datasets._flight import Flight, FlightPreset, Span
 from benchmark.metrics.score import score
+from benchmark.results.digests import samples_hash
 from benchmark.simulator.environment import Earth
 from benchmark.simulator.faces import FaceSensor
 from benchmark.simulator.orbit import CircularOrbit
@@ -109,20 +109,20 @@ def test_the_direction_is_not_observable_in_eclipse(made, name: str) -> None:
 
 
 def test_eclipse_is_scored_as_not_observable() -> None:
-    """NaN in eclipse costs nothing but the found fraction; a made-up direction is an error."""
+    """NaN in eclipse costs nothing; a made-up direction is a false Sun and no error."""
     sun = np.tile([0.0, 0.0, 1.0], (4, 1))
     seen = np.array([True, True, False, False])
     bound = np.where(seen, 0.01, np.inf)
     silent = sun.copy()
     silent[~seen] = np.nan
     honest = score(silent, sun, bound, seen)
-    assert (honest.found_fraction, honest.observable_fraction, honest.rms_deg) == (0.5, 0.5, 0.0)
+    assert (honest.availability, honest.false_sun, honest.rms_deg) == (1.0, 0.0, 0.0)
     assert honest.bound_deg == pytest.approx(0.01)
     made_up = sun.copy()
     made_up[~seen] = [1.0, 0.0, 0.0]
     wrong = score(made_up, sun, bound, seen)
-    assert wrong.max_deg == pytest.approx(90.0)
-    assert wrong.over_bound == honest.over_bound == 0.0
+    assert (wrong.availability, wrong.false_sun) == (1.0, 1.0)
+    assert wrong.max_deg == wrong.over_bound == honest.over_bound == 0.0
 
 
 @pytest.mark.parametrize("name", NAMES)
