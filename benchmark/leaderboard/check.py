@@ -1,8 +1,9 @@
 """Is the committed record what its code and data give? Every difference named by its cell.
 
 First what needs no measuring: the page follows from the record, and the record is of the code as
-it is. Then everything is measured again from nothing, with this machine's numerical kernels and
-with those of an older processor.
+it is. Where code of datasets has changed their first samples are compared, and where those moved
+under the same version that is the answer. Else everything is measured again from nothing, with this
+machine's numerical kernels and with those of an older processor.
 """
 
 from __future__ import annotations
@@ -89,8 +90,8 @@ def check(
     workers, progress
         As `benchmark.running.run.run`.
     stored_only
-        Leave out measuring again: only whether the record is of the code as it is, and the page
-        of the record.
+        Leave out generating and measuring: only whether the record is of the code as it is, and
+        the page of the record.
     kernels
         To measure with: ``native``, ``older`` or both.
     parts
@@ -106,7 +107,12 @@ def check(
     store = Store(directory)
     known = parts or installed()
     found = [*_outdated(store, known), *_derived(store)]
-    for kind in () if stored_only else kernels:
+    if stored_only:
+        return found
+    moved = list(_moved_heads(store, known))
+    if moved:  # every number of these datasets is another: there is no point in measuring it
+        return [*moved, *found]
+    for kind in kernels:
         with tempfile.TemporaryDirectory() as temporary:
             if kind == OLDER:
                 update_with_older_kernels(Path(temporary), workers)
@@ -180,6 +186,20 @@ def _last_digit(column: str, value: float) -> float:
 
 def _counts(store: Store) -> dict[tuple[str, str], int]:
     return {place[:2]: pin.n for place, pin in store.pins().items() if place[2] == "test"}
+
+
+def _moved_heads(store: Store, parts: Parts) -> Iterator[Difference]:
+    """Find datasets whose first samples are not as pinned, in seconds."""
+    components = current(parts, sweeps.series_digests())
+    changed = pinning.presets_of_other_code(store, parts, components)
+    for name, lines in pinning.changed_heads(store.pins(), changed).items():
+        for line in lines:
+            yield Difference(
+                store.pins_path.name,
+                f"{name}/{'/'.join(line.partition(':')[0].split())}",
+                f"version {parts.presets[name].version}",
+                f"{line.partition(': ')[2]}: the data changed and the version did not",
+            )
 
 
 def _moved_data(committed: Store, measured: Store, kernels: str) -> Iterator[Difference]:

@@ -106,12 +106,7 @@ def update(
 
 def _require_heads(store: Store, parts: Parts, components: Components) -> None:
     """Compare the first samples of datasets whose code has changed with what was pinned of them."""
-    stored = store.components().datasets
-    changed = [
-        preset
-        for name, preset in parts.presets.items()
-        if stored.get(name, {}).get("digest") != components.digest("datasets", name)
-    ]
+    changed = pinning.presets_of_other_code(store, parts, components)
     heads = pinning.changed_heads(store.pins(), changed)
     if heads:
         raise pinning.UnversionedChangeError(heads)

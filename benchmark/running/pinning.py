@@ -115,6 +115,16 @@ def changed_heads(pinned: Mapping[Place, Pin], presets: Iterable[Preset]) -> dic
     return found
 
 
+def presets_of_other_code(store: Store, parts: Parts, components: Components) -> list[Preset]:
+    """List the datasets whose code or parameters are not those that the store was written with."""
+    stored = store.components().datasets
+    return [
+        preset
+        for name, preset in parts.presets.items()
+        if stored.get(name, {}).get("digest") != components.digest("datasets", name)
+    ]
+
+
 def _changed_head(pin: Pin, preset: Preset) -> str:
     hashed = head_hash(preset.generate(pin.condition, pin.split, HEAD))
     if hashed != pin.head_hash:

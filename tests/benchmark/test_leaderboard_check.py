@@ -186,6 +186,20 @@ def test_results_of_other_code_are_named_without_measuring(published, log):
     assert log() == []
 
 
+def test_data_that_moved_under_their_version_are_told_before_anything_is_measured(published, log):
+    parts = fake_plan.parts(presets=(Diodes(seed=8), Diodes(name="fake-second")))
+    found = check(published, parts=parts)
+    moved = [d for d in found if d.file == "pins.csv"]
+    assert {d.cell for d in moved} == {
+        f"fake-diodes/{condition}/{split}"
+        for condition in Diodes().conditions
+        for split in ("calibration", "test", "repeat")
+    }
+    assert all("the data changed and the version did not" in d.measured for d in moved)
+    assert moved == found[: len(moved)]
+    assert not [line for line in log() if line.startswith(("extract", "fit"))]
+
+
 def test_a_stale_harness_is_named(published):
     path = published / "components.json"
     path.write_text(re.sub(r'"harness": "\w+"', '"harness": "0"', path.read_text()))
