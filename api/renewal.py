@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import subprocess
-import sys
 import threading
-from collections.abc import Callable, Iterator
-from pathlib import Path
+from collections.abc import Callable, Iterator, Sequence
 
 from starlette.types import ASGIApp, Receive, Scope, Send
 
@@ -31,34 +29,36 @@ class Renewed:
 
 
 @contextlib.contextmanager
-def renewed_with_times(
-    service: Renewed, directory: Path, renew: Callable[[], ASGIApp]
-) -> Iterator[None]:
-    """Time every pipeline in a process beside, and renew the service when that is done.
+def renewed_after(
+    command: Sequence[str], service: Renewed, renew: Callable[[], ASGIApp]
+) -> Iterator[threading.Thread]:
+    """Run a command beside the service, and renew the service when it has ended well.
 
-    The process ends with the context.
+    The command ends with the context. What it prints is dropped, errors excepted.
 
     Parameters
     ----------
+    command : to run
     service : to renew
-    directory : where times are kept
-    renew : makes the application that knows the times
+    renew : makes the application that takes over
+
+    Yields
+    ------
+    threading.Thread
+        That waits for the command.
     """
-    call = [sys.executable, "-m", "api.command_line", "leaderboard", "times"]
-    process = subprocess.Popen(  # noqa: S603 - this program, and a directory the user named
-        [*call, "--store", str(directory), "--format", "json"],
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.DEVNULL,
+    process = subprocess.Popen(  # noqa: S603 - the caller's own program
+        command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL
     )
 
     def wait() -> None:
         if process.wait() == 0:
             service.app = renew()
 
-    waiting = threading.Thread(target=wait, name="times", daemon=True)
+    waiting = threading.Thread(target=wait, name="renewal", daemon=True)
     waiting.start()
     try:
-        yield
+        yield waiting
     finally:
         process.terminate()
         waiting.join()

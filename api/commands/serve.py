@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import socket
+import sys
 from functools import partial
 from typing import Annotated
 
@@ -14,10 +15,12 @@ from fastapi import FastAPI
 from api.commands.working import working_directory
 from api.http.knowledge import Knowledge
 from api.http.measurements import Measurements
-from api.renewal import Renewed, renewed_with_times
+from api.renewal import Renewed, renewed_after
 from api.service import create_app
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
+
+_TIMES = (sys.executable, "-m", "api.command_line", "leaderboard", "times", "--format", "json")
 
 
 @app.command()
@@ -44,11 +47,8 @@ def serve(
         application = Renewed(_application())
         config = uvicorn.Config(application, log_level="warning")
         if times:
-            stack.enter_context(
-                renewed_with_times(
-                    application, working_directory(), partial(_application, loaded=True)
-                )
-            )
+            renew = partial(_application, loaded=True)
+            stack.enter_context(renewed_after(_TIMES, application, renew))
         typer.echo(f"Sun Sensor Atlas: {address(host, listener.getsockname()[1])} (Ctrl-C stops)")
         uvicorn.Server(config).run(sockets=[listener])
 
