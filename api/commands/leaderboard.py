@@ -21,7 +21,7 @@ from api.commands.working import working_directory
 from benchmark.leaderboard import check as checking
 from benchmark.leaderboard import pages
 from benchmark.leaderboard import update as updating
-from benchmark.leaderboard.board import at_field
+from benchmark.leaderboard.board import at_field, within_error
 from benchmark.metrics.rings import EDGES_DEG
 from benchmark.plan_parts import UnknownNameError
 from benchmark.results.store import PUBLISHED
@@ -35,6 +35,10 @@ COLUMNS = (
 )
 FIELD_COLUMNS = (
     *("rank", "dataset", "condition", "extractor", "model", "field_deg", "field_rms_deg"),
+    *("rms_deg", "availability", "false_sun"),
+)
+WIDEST_COLUMNS = (
+    *("rank", "dataset", "condition", "extractor", "model", "widest_field_deg", "half_fov_deg"),
     *("rms_deg", "availability", "false_sun"),
 )
 DIFFERENCES = ("file", "cell", "committed", "measured", "kernels")
@@ -75,6 +79,15 @@ def leaderboard(
             show_default=False,
         ),
     ] = None,
+    max_error: Annotated[
+        float | None,
+        typer.Option(
+            min=0.0,
+            help="Judge by the field about the boresight in whose every ring the error stays "
+            "within this, degrees.",
+            show_default=False,
+        ),
+    ] = None,
     check: Annotated[
         bool,
         typer.Option("--check", help="Measure everything again and compare; write nothing."),
@@ -99,7 +112,7 @@ def leaderboard(
     Without a command the published results are shown: the best of each data set in its first
     condition, or in those asked for, or all pipelines of a data set. With --field an error is
     that over a part of the field, where rings count by their solid angle: the best of each data
-    set then compare at an equal field.
+    set then compare at an equal field. With --max-error they compare by the field they cover.
     With --check every committed number is compared with what the code gives now; a difference is
     printed with its file and cell, and the exit code is 1.
     """
@@ -109,8 +122,10 @@ def leaderboard(
         _check(workers, form, (kernels or Kernels.BOTH).chosen, stored_only=stored)
     elif stored or kernels:
         raise WrongCallError(f"{'--stored' if stored else '--kernels'} goes with --check")
+    elif field is not None and max_error is not None:
+        raise WrongCallError("--field and --max-error are two questions; ask one at a time")
     else:
-        _show(dataset or [], condition or [], field, form)
+        _show(dataset or [], condition or [], field, max_error, form)
 
 
 @app.command()
@@ -184,44 +199,53 @@ def _check(workers: int, form: Format, kernels: tuple[str, ...], *, stored_only:
     typer.echo(f"every published number holds: {how}", err=True)
 
 
-def _show(datasets: list[str], conditions: list[str], field: int | None, form: Format) -> None:
+def _show(
+    datasets: list[str],
+    conditions: list[str],
+    field: int | None,
+    max_error: float | None,
+    form: Format,
+) -> None:
     measurements = knowledge().measurements
     _require("dataset", datasets, measurements.dataset_names)
     _require("condition", conditions, measurements.conditions)
-    if field is not None and field not in EDGES_DEG[1:]:
-        edges = ", ".join(map(str, EDGES_DEG[1:]))
-        raise WrongCallError(f"--field: no {field}; expected one of {edges}")
-    rows: Iterable[Row] = measurements.board_rows()
-    if field is not None:
-        rows = at_field(rows, field)
     first = {
         board["name"]: board["conditions"][0] for board in measurements.leaderboard["datasets"]
     }
-    if datasets:
-        title = ", ".join(datasets)
-        chosen = [row for row in rows if row["dataset"] in datasets]
-    else:
-        title = "Best of each data set"
-        chosen = [row for row in rows if row["rank"] == 1]
+    rows, columns, judged = _judged(measurements.board_rows(), field, max_error)
     chosen = [
         row
-        for row in chosen
-        if row["condition"] in (conditions or [first[row["dataset"]]])
-        or (datasets and not conditions)
+        for row in rows
+        if (row["dataset"] in datasets if datasets else row["rank"] == 1)
+        and (
+            row["condition"] in (conditions or [first[row["dataset"]]])
+            or (datasets and not conditions)
+        )
     ]
-    if field is not None:
-        title = f"{title}, within {field} deg of the boresight"
-        chosen.sort(key=lambda row: (row["field_rms_deg"] is None, row["field_rms_deg"] or 0.0))
-    emit(
-        chosen,
-        COLUMNS if field is None else FIELD_COLUMNS,
-        form,
-        document={"items": chosen, "total": len(chosen)},
-        title=title,
-    )
+    if judged == "field_rms_deg":
+        chosen.sort(key=lambda row: (row[judged] is None, row[judged] or 0.0))
+    elif judged == "widest_field_deg":
+        chosen.sort(key=lambda row: (-(row[judged] or 0), row["rms_deg"] or 0.0))
+    title = ", ".join(datasets) if datasets else "Best of each data set"
+    document = {"items": chosen, "total": len(chosen)}
+    emit(chosen, columns, form, document=document, title=title)
     if not chosen:
-        typer.echo("sunatlas: no pipeline has an error there", err=True)
+        typer.echo("sunatlas: no pipeline has such an error there", err=True)
         raise typer.Exit(1)
+
+
+def _judged(
+    rows: Iterable[Row], field: int | None, max_error: float | None
+) -> tuple[Iterable[Row], tuple[str, ...], str]:
+    """Rank rows as asked; return them with the columns to show and the one they are judged by."""
+    if field is not None:
+        if field not in EDGES_DEG[1:]:
+            edges = ", ".join(map(str, EDGES_DEG[1:]))
+            raise WrongCallError(f"--field: no {field}; expected one of {edges}")
+        return at_field(rows, field), FIELD_COLUMNS, "field_rms_deg"
+    if max_error is not None:
+        return within_error(rows, max_error), WIDEST_COLUMNS, "widest_field_deg"
+    return rows, COLUMNS, "rank"
 
 
 def _require(what: str, names: Iterable[str], known: Iterable[str]) -> None:

@@ -10,8 +10,8 @@ from itertools import groupby
 from typing import Any
 
 from benchmark.leaderboard.ranking import UNITS, order, ranks, spreads
-from benchmark.metrics.rings import field_error
-from benchmark.metrics.score import METRIC_VERSION
+from benchmark.metrics.rings import EDGES_DEG, field_error, widest_field
+from benchmark.metrics.score import METRIC_VERSION, is_available
 from benchmark.plan import Cell
 from benchmark.results.components import SCHEMA_VERSION
 from benchmark.results.store import Store
@@ -109,7 +109,8 @@ def at_field(rows: Iterable[Row], half_angle_deg: int) -> list[dict[str, Any]]:
 
     Rows get ``field_deg`` (the half angle) and ``field_rms_deg``
     (`benchmark.metrics.rings.field_error`), and ranks by it within each dataset and condition.
-    Ranks are not shared: rings have no spread. Rows without an error over the field come last.
+    Ranks are not shared: rings have no spread. Rows without an error over the field come last, and
+    a sensor has none over a wider field than its own: its outermost ring lies in the corners.
 
     Raises
     ------
@@ -120,7 +121,9 @@ def at_field(rows: Iterable[Row], half_angle_deg: int) -> list[dict[str, Any]]:
         {
             **row,
             "field_deg": half_angle_deg,
-            "field_rms_deg": field_error(row, half_angle_deg),
+            "field_rms_deg": (
+                field_error(row, half_angle_deg) if half_angle_deg <= _field(row) else None
+            ),
             "tied": False,
         }
         for row in rows
@@ -132,12 +135,52 @@ def at_field(rows: Iterable[Row], half_angle_deg: int) -> list[dict[str, Any]]:
     return judged
 
 
+def within_error(rows: Iterable[Row], largest_deg: float) -> list[dict[str, Any]]:
+    """Rank rows of a leaderboard by the field in which their error stays within a limit.
+
+    Rows get ``widest_field_deg`` (half angle of the widest cone about the boresight in whose every
+    ring it does, `benchmark.metrics.rings.widest_field`, as far as the sensor's own field goes)
+    and ranks by it within each dataset and condition, the smaller error first among equals. Ranks
+    are not shared. Rows without such a field, and pipelines that do not answer often enough, come
+    last and have no rank.
+    """
+    judged = [
+        {
+            **row,
+            "widest_field_deg": _kept_field(row, largest_deg),
+            "tied": False,
+        }
+        for row in rows
+    ]
+    judged.sort(key=lambda row: (*_board(row), -(row["widest_field_deg"] or 0), *_by_error(row)))
+    for _, group in groupby(judged, key=_board):
+        for place, row in enumerate(group, start=1):
+            row["rank"] = place if row["widest_field_deg"] is not None else None
+    return judged
+
+
+def _field(row: Row) -> float:
+    """Half the field of view that a row's sensor has all around, degrees."""
+    half: float | None = row["half_fov_deg"]
+    return EDGES_DEG[-1] if half is None else half
+
+
+def _kept_field(row: Row, largest_deg: float) -> int | None:
+    widest = widest_field(row, largest_deg) if is_available(row) else None
+    reached = [edge for edge in EDGES_DEG[1:] if edge <= min(widest or 0, _field(row))]
+    return max(reached, default=None)
+
+
 def _by_field(row: Row) -> tuple[Any, ...]:
     return order({**row, "rms_deg": row["field_rms_deg"]}, (row["extractor"], row["model"]))
 
 
+def _by_error(row: Row) -> tuple[Any, ...]:
+    return order(row, (row["extractor"], row["model"]))
+
+
 def _order(row: Row) -> tuple[Any, ...]:
-    return (*_board(row), *order(row, (row["extractor"], row["model"])))
+    return (*_board(row), *_by_error(row))
 
 
 def _board(row: Row) -> tuple[str, bool, str]:

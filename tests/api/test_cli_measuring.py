@@ -205,10 +205,30 @@ def test_architectures_are_compared_at_an_equal_field(untimed):
     errors = [row["field_rms_deg"] for row in within]
     assert errors == sorted(errors)
     assert {row["field_deg"] for row in within} == {20}
+    assert all((row["half_fov_deg"] or 180) >= 20 for row in within)
     for row in within:
         # two rings by their solid angle: between the errors of both
         rings = sorted((row["rms_0_10_deg"], row["rms_10_20_deg"]))
         assert rings[0] <= row["field_rms_deg"] <= rings[1]
+
+
+def test_a_field_of_view_can_be_read_off(untimed):
+    wide = listed("--max-error", "0.01")
+    fields = [row["widest_field_deg"] for row in wide]
+    assert fields == sorted(fields, reverse=True)
+    for row in wide:
+        assert row["widest_field_deg"] <= (row["half_fov_deg"] or 180)
+        rings = [
+            value
+            for name, value in row.items()
+            if (edges := re.fullmatch(r"rms_(\d+)_(\d+)_deg", name))
+            and int(edges[2]) <= row["widest_field_deg"]
+        ]
+        assert rings
+        assert max(rings) <= 0.01
+    every = listed("--dataset", wide[0]["dataset"], "--condition", "nominal", "--max-error", "0.01")
+    assert every[0]["widest_field_deg"] == fields[0]
+    assert {row["rank"] for row in every if row["widest_field_deg"] is None} <= {None}
 
 
 @pytest.mark.parametrize(
@@ -219,6 +239,7 @@ def test_architectures_are_compared_at_an_equal_field(untimed):
         (["--condition", "nominl"], 1, "did you mean 'nominal'?"),
         (["--stored"], 2, "--stored goes with --check"),
         (["--kernels", "older"], 2, "--kernels goes with --check"),
+        (["--field", "20", "--max-error", "1"], 2, "one at a time"),
         (["--kernels", "new"], 2, "'new'"),
     ],
 )

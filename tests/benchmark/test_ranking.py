@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from benchmark.leaderboard import ranking
-from benchmark.leaderboard.board import at_field, build
+from benchmark.leaderboard.board import at_field, build, within_error
 from benchmark.leaderboard.ranking import LEADING, UNITS, Spread
 from benchmark.metrics.rings import RINGS
 from benchmark.metrics.score import METRICS
@@ -17,7 +17,7 @@ from benchmark.plan import Cell
 def row(model, rms, *, unit=0, condition="c", dataset="d", **more):
     return {
         "dataset": dataset, "condition": condition, "extractor": "e", "model": model, "unit": unit,
-        "dataset_version": 1, "detector": "PD", "mask": "M",
+        "dataset_version": 1, "detector": "PD", "mask": "M", "half_fov_deg": None,
         **dict.fromkeys(METRICS), "rms_deg": rms, "availability": 1.0, **more,
     }  # fmt: skip
 
@@ -246,4 +246,34 @@ def test_ranks_at_a_field_are_of_each_board_and_not_shared():
         ("c", 1, False, "b"),
         ("c", 2, False, "a"),
         ("other", 1, False, "z"),
+    ]
+
+
+def test_a_sensor_has_no_error_over_a_wider_field_than_its_own():
+    """Directions drawn over a square of two angles reach further in its corners alone."""
+    rings = {"rms_0_10_deg": 0.1, "rms_10_20_deg": 0.1, "rms_20_30_deg": 0.1}
+    rows = [row("square", 0.1, half_fov_deg=20.0, **rings), row("sphere", 0.1, **rings)]
+    assert [r["field_rms_deg"] for r in at_field(rows, 20)] == pytest.approx([0.1, 0.1])
+    at_thirty = {r["model"]: (r["field_rms_deg"], r["rank"]) for r in at_field(rows, 30)}
+    assert at_thirty["square"] == (None, None)
+    assert at_thirty["sphere"] == (pytest.approx(0.1), 1)
+    found = {r["model"]: r["widest_field_deg"] for r in within_error(rows, 0.1)}
+    assert found == {"square": 20, "sphere": 30}
+
+
+def test_ranks_by_the_field_that_keeps_an_error():
+    rows = [
+        row("wide", 0.4, rms_0_10_deg=0.4, rms_10_20_deg=0.4),
+        row("sharp", 0.1, rms_0_10_deg=0.1, rms_10_20_deg=0.6),
+        row("sharper", 0.05, rms_0_10_deg=0.05, rms_10_20_deg=0.7),
+        row("silent", 0.01, rms_0_10_deg=0.01, rms_10_20_deg=0.01, availability=0.9),
+        row("off", 3.0, rms_0_10_deg=3.0, rms_10_20_deg=0.1),
+    ]
+    found = [(r["rank"], r["model"], r["widest_field_deg"]) for r in within_error(rows, 0.5)]
+    assert found == [
+        (1, "wide", 20),
+        (2, "sharper", 10),
+        (3, "sharp", 10),
+        (None, "off", None),
+        (None, "silent", None),
     ]

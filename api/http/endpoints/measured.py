@@ -11,8 +11,8 @@ from api.http.knowledge import Knowledge
 from api.http.pagination import CURSOR, LIMIT, page
 from api.http.parameters import Arguments, Parameter, Parameters
 from api.http.shapes import DatasetDetail, Datasets, Leaderboard, LeaderboardRows, Scores
-from api.http.values import Choice
-from benchmark.leaderboard.board import at_field
+from api.http.values import Choice, PositiveNumber
+from benchmark.leaderboard.board import at_field, within_error
 from benchmark.metrics.rings import EDGES_DEG
 
 DATASET_COLUMNS = ("name", "version", "detector", "mask", "observation", "conditions")
@@ -56,7 +56,12 @@ def endpoints(knowledge: Knowledge) -> list[Endpoint]:
         "Rank by the error within this angle of the boresight, degrees: rings of the field count "
         "by their solid angle, so that sensors compare at an equal field.",
     )
-    of_board = Parameters([*narrowing, field, LIMIT, CURSOR])
+    largest = Parameter(
+        "max_error_deg",
+        PositiveNumber(180.0),
+        "Rank by the widest field in whose every ring the RMS error stays within this, degrees.",
+    )
+    of_board = Parameters([*narrowing, field, largest, LIMIT, CURSOR])
 
     def listing(
         rows: Sequence[Mapping[str, Any]],
@@ -89,6 +94,8 @@ def endpoints(knowledge: Knowledge) -> list[Endpoint]:
         ranked = measurements.board_rows(name)
         if arguments["field_deg"]:
             ranked = at_field(ranked, int(arguments["field_deg"]))
+        if arguments["max_error_deg"]:
+            ranked = within_error(ranked, arguments["max_error_deg"])
         rows = [row for row in ranked if _wanted(row, arguments)]
         return listing(rows, RANK_COLUMNS, f"/v1/leaderboard/{name}", of_board, arguments)
 
@@ -140,7 +147,8 @@ def endpoints(knowledge: Knowledge) -> list[Endpoint]:
             name="leaderboard_of_dataset",
             summary="The leaderboard of a data set",
             description="Rows of one data set's leaderboard, best first within a condition; with "
-            "`field_deg` by the error over a part of the field.",
+            "`field_deg` by the error over a part of the field, with `max_error_deg` by the field "
+            "that keeps an error.",
             shape=LeaderboardRows,
             build=build_board,
             parameters=of_board,
