@@ -197,6 +197,7 @@ function draw() {
       h("span", {}, h("i", { class: "key-dot" }), field === WHOLE ? "RMS error, on a logarithmic scale" : `RMS error within ${field}° of the boresight, on a logarithmic scale`),
       field === WHOLE && h("span", {}, h("i", { class: "key-limit" }), "Cramér–Rao bound"),
       field === WHOLE && ranged && h("span", {}, h("i", { class: "key-units" }), "range over five units built alike; = marks a rank that the range does not tell apart"),
+      field !== WHOLE && rows[0].half_fov_deg !== null && rows[0].half_fov_deg < Number(field) && h("span", {}, `The sensor’s own field ends at ${degrees(rows[0].half_fov_deg)}`),
       field === WHOLE && !ranged && h("span", {}, "Ranks of this condition rest on one unit of the sensor"),
       shownColumns.includes(TIME) && h("span", {}, "Time: over that of a reference on the same observations")),
     h("div", { class: "sort-narrow" }, choice("Sort by", "sort-narrow", shownColumns.map((c) => [c.field, c.name]), state.sort, (sort) => show({ sort, order: "ascending" }))),

@@ -329,6 +329,10 @@ def test_the_leaderboard_is_judged_over_a_part_of_the_field(wide: Visit) -> None
     best = page.locator(".score").first.inner_text().split()
     assert best[:3] == ["1", first["extractor"], first["model"]]
     assert float(best[3].rstrip("°")) == pytest.approx(first["field_rms_deg"], rel=0.01)
+    page.select_option("#board-field", "90")  # wider than the sensor's own
+    wide.settle()
+    assert "own field ends at 60" in page.locator("#board-body .legend").inner_text()
+    assert page.locator(".score").first.inner_text().split()[0] == "–"
 
 
 def test_a_value_of_the_table_is_required_and_keeps_the_focus(wide: Visit) -> None:
