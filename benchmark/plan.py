@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product
 
-from algorithms.contract import Extractor, Model, UnsuitableDesignError
+from algorithms.contract import Extractor, FeatureKind, Model, UnsuitableDesignError
 from benchmark.plan_parts import Parts, Preset, UnknownNameError, installed
 
 Names = str | Iterable[str] | None
@@ -60,12 +60,24 @@ def cells(
     chosen = _Choice.of(parts or installed(), datasets, conditions, extractors, models)
     return sorted(
         Cell(preset.name, condition, extractor.name, model.name)
-        for preset, extractor, model in product(chosen.presets, chosen.extractors, chosen.models)
-        if not _why_not_extractor(preset, extractor)
-        and not _why_not_model(preset, extractor, model)
+        for preset in chosen.presets
+        for extractor, model in _compatible(preset, chosen)
         for condition in preset.conditions
         if chosen.conditions is None or condition in chosen.conditions
     )
+
+
+def _compatible(preset: Preset, chosen: _Choice) -> Iterator[tuple[type[Extractor], type[Model]]]:
+    """Give the extractors that fit a dataset with each model that fits them and it."""
+    fitting: dict[FeatureKind, list[type[Model]]] = {}  # models see the kind of feature alone
+    for extractor in chosen.extractors:
+        if _why_not_extractor(preset, extractor):
+            continue
+        if extractor.kind not in fitting:
+            fitting[extractor.kind] = [
+                model for model in chosen.models if not _why_not_model(preset, extractor, model)
+            ]
+        yield from ((extractor, model) for model in fitting[extractor.kind])
 
 
 def incompatible(

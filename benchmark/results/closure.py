@@ -20,6 +20,9 @@ FIRST_PARTY = ("survey_data", "algorithms", "registry", "benchmark", "api")
 _NOT_CODE = frozenset({"ctx", "kind", "type_comment", "type_ignores"})
 
 
+Import = ast.Import | ast.ImportFrom
+
+
 class ClosureError(ValueError):
     """A module whose source is needed for a digest was not found or cannot be read."""
 
@@ -65,7 +68,7 @@ def closure_digest(*modules: str) -> str:
 
 def syntax_digest(path: Path) -> str:
     """Digest of one file's code: equal for files that differ in comments or formatting only."""
-    return _syntax_digest(path, path.stat().st_mtime_ns)
+    return _read(path, path.stat().st_mtime_ns)[0]
 
 
 def module_path(name: str) -> Path | None:
@@ -97,19 +100,22 @@ def _tree(path: Path, modified_ns: int) -> ast.Module:  # noqa: ARG001 - the tim
 
 
 @lru_cache(maxsize=1024)
-def _syntax_digest(path: Path, modified_ns: int) -> str:
-    text = "".join(_canonical(_tree(path, modified_ns)))
-    return hashlib.sha256(text.encode()).hexdigest()
+def _read(path: Path, modified_ns: int) -> tuple[str, tuple[Import, ...]]:
+    """Return the digest of a file's syntax, and its imports, in one walk."""
+    pieces: list[str] = []
+    imports: list[Import] = []
+    _spell(_tree(path, modified_ns), pieces, imports)
+    return hashlib.sha256("".join(pieces).encode()).hexdigest(), tuple(imports)
 
 
 @lru_cache(maxsize=1024)
 def _imports(path: Path, modified_ns: int, name: str) -> tuple[str, ...]:
     package = name if path.name == "__init__.py" else name.rpartition(".")[0]
     found: list[str] = []
-    for node in ast.walk(_tree(path, modified_ns)):
+    for node in _read(path, modified_ns)[1]:
         if isinstance(node, ast.Import):
             found.extend(alias.name for alias in node.names)
-        elif isinstance(node, ast.ImportFrom):
+        else:
             found.extend(_imported_from(node, package))
     return tuple(dict.fromkeys(found))
 
@@ -125,24 +131,30 @@ def _imported_from(node: ast.ImportFrom, package: str) -> Iterator[str]:
         yield submodule if alias.name != "*" and module_path(submodule) else base
 
 
-def _canonical(node: object) -> Iterator[str]:
-    """Pieces of text that spell a syntax tree, the same under every Python version."""
+def _spell(node: object, pieces: list[str], imports: list[Import]) -> None:
+    """Append pieces of text that spell a syntax tree, the same under every Python version.
+
+    And the imports that are met.
+    """
     if isinstance(node, ast.AST):
-        yield f"({type(node).__name__}"
-        for field, value in ast.iter_fields(node):
-            if field in _NOT_CODE or value is None or value == []:
+        if isinstance(node, Import):
+            imports.append(node)
+        pieces.append(f"({type(node).__name__}")
+        for field in node._fields:
+            value = getattr(node, field, None)
+            if value is None or value == [] or field in _NOT_CODE:
                 continue
-            yield f" {field}="
-            yield from _canonical(_without_docstring(node, field, value))
-        yield ")"
+            pieces.append(f" {field}=")
+            _spell(_without_docstring(node, field, value), pieces, imports)
+        pieces.append(")")
     elif isinstance(node, list):
-        yield "["
+        pieces.append("[")
         for item in node:
-            yield from _canonical(item)
-            yield ","
-        yield "]"
+            _spell(item, pieces, imports)
+            pieces.append(",")
+        pieces.append("]")
     else:
-        yield f"{type(node).__name__}:{node!r}"
+        pieces.append(f"{type(node).__name__}:{node!r}")
 
 
 def _without_docstring(node: ast.AST, field: str, value: object) -> object:
