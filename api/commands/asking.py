@@ -6,21 +6,14 @@ from collections.abc import Mapping
 from functools import cache
 from typing import Any
 
-import typer
-
 from api.commands.working import working_directory
+from api.commands.wrong_call import WrongCallError
 from api.http.answers import Answer
 from api.http.endpoint import Endpoint
 from api.http.endpoints import all_endpoints
 from api.http.knowledge import Knowledge
 from api.http.measurements import Measurements
 from api.http.problems import Problem, Violation
-
-
-class WrongCallError(typer.TyperException):
-    """The call is wrong: exit code 2."""
-
-    exit_code = 2
 
 
 def ask(name: str, arguments: Mapping[str, Any], parts: Mapping[str, str] | None = None) -> Answer:

@@ -9,7 +9,6 @@ from typing import Annotated, Any
 
 import typer
 
-from api.commands.asking import WrongCallError, knowledge
 from api.commands.measuring import (
     AVAILABLE_WORKERS,
     ManyWorkersOption,
@@ -18,6 +17,7 @@ from api.commands.measuring import (
 )
 from api.commands.tables import Format, FormatOption, emit
 from api.commands.working import working_directory
+from api.commands.wrong_call import WrongCallError
 from benchmark.leaderboard import check as checking
 from benchmark.leaderboard import pages
 from benchmark.leaderboard import update as updating
@@ -157,6 +157,8 @@ def render(
     Files of the same name are replaced. Nothing is measured; times of this machine are those that
     `sunatlas leaderboard times` has kept.
     """
+    from api.commands.asking import knowledge  # noqa: PLC0415 - slow; measuring does without it
+
     board = knowledge().measurements.leaderboard
     if not board["datasets"]:
         raise WrongCallError(f"nothing is published in {PUBLISHED}; `sunatlas leaderboard update`")
@@ -206,6 +208,8 @@ def _show(
     max_error: float | None,
     form: Format,
 ) -> None:
+    from api.commands.asking import knowledge  # noqa: PLC0415 - slow; measuring does without it
+
     measurements = knowledge().measurements
     _require("dataset", datasets, measurements.dataset_names)
     _require("condition", conditions, measurements.conditions)

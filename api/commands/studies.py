@@ -9,8 +9,9 @@ from typing import Annotated, Any
 import typer
 
 from api.commands import attributes
-from api.commands.asking import WrongCallError, ask
+from api.commands.asking import ask
 from api.commands.tables import Format, FormatOption, emit, emit_json
+from api.commands.wrong_call import WrongCallError
 from api.http.pagination import LARGEST_PAGE
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)

@@ -9,8 +9,8 @@ from typing import Annotated
 import typer
 
 import survey_data
-from api.commands.asking import WrongCallError
 from api.commands.tables import Format, FormatOption, emit, emit_json
+from api.commands.wrong_call import WrongCallError
 from survey_data import ImportPlan
 
 CELLS = ("study", "attribute", "kind", "ours", "theirs", "basis", "row", "column")

@@ -53,6 +53,7 @@ class Record:
         self._score_keys = {cell: known.cell_key(cell) for cell in self.scores}
         self._pin_keys = {place: known.digest("datasets", place[0]) for place in self.pins}
         self._swept_keys = {point: known.point_key(point[0], point[3]) for point in self.swept}
+        self._changed = False
         self._read_journal()
 
     def is_scored(self, cell: Cell, components: Components) -> bool:
@@ -112,9 +113,11 @@ class Record:
         swept: Callable[[Point], bool] = _everything,
     ) -> None:
         """Forget what is no longer wanted: each function says what is, everything by default."""
+        before = len(self.scores), len(self.pins), len(self.swept)
         self.scores = {cell: row for cell, row in self.scores.items() if scores(cell)}
         self.pins = {place: pin for place, pin in self.pins.items() if pins(place)}
         self.swept = {point: row for point, row in self.swept.items() if swept(point)}
+        self._changed |= before != (len(self.scores), len(self.pins), len(self.swept))
 
     def write(
         self, components: Components, order: Callable[[Iterable[Row]], list[Row]] | None = None
@@ -157,7 +160,8 @@ class Record:
             models=_used(known.models, [cell.model for cell in scores]),
             series=_used(known.series, [row["series"] for row in swept]),
         )
-        self.store.write(scores, pins, order(swept) if order else swept, used)
+        if self._changed or used != self._components:
+            self.store.write(scores, pins, order(swept) if order else swept, used)
         self.journal.unlink(missing_ok=True)
 
     def _read_journal(self) -> None:
@@ -171,6 +175,7 @@ class Record:
             self._take(record, where)
 
     def _take(self, record: Any, where: str) -> None:
+        self._changed = True
         try:
             fields, key = set(record), record["key"]
             if fields == {"pin", "key"}:

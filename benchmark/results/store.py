@@ -148,12 +148,7 @@ class Store:
         StoreError, ComponentsError
             For a file that cannot be read, or names what the others lack.
         """
-        context = _Context(self.components(), self.pins())
-        return [
-            context.row(cell, numbers)
-            for cell, numbers in self.scores().items()
-            if unit is None or cell.unit == unit
-        ]
+        return described(self.scores(), self.components(), self.pins(), unit)
 
     def pins(self) -> dict[Place, Pin]:
         """Pinned data by (dataset, condition, split); StoreError for a line that is no pin."""
@@ -252,6 +247,21 @@ class Store:
         replace(self.pins_path, pins_text(pins))
         replace(self.sweeps_path, text_of(list(_SWEEP_COLUMNS), swept))
         replace(self.components_path, components.text())
+
+
+def described(
+    scores: Mapping[Cell, Row],
+    components: Components,
+    pins: Mapping[Place, Pin],
+    unit: int | None = None,
+) -> list[Row]:
+    """Return scores with all that is known of what they are of, as `Store.rows`."""
+    context = _Context(components, pins)
+    return [
+        context.row(cell, scores[cell])
+        for cell in sorted(scores)
+        if unit is None or cell.unit == unit
+    ]
 
 
 _IDENTITY = ("dataset", "condition", "extractor", "model", "unit", "status")
