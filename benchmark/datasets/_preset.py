@@ -135,30 +135,26 @@ class Preset:
     Attributes
     ----------
     name, version
-        ``<detector>-<mask>[-variant]``; the version is raised when the data change on purpose.
+        ``<detector>-<mask>[-variant]``; raised when the data change on purpose.
     detector, mask
         Values of the survey's taxonomy.
     observation, units
         What `Samples.observations` holds.
     geometry
         Nominal design; `geometry_for` gives a condition's own.
-    setups
-        The conditions by name.
-    directions
-        Sun directions of the splits.
+    setups, directions
+        The conditions by name; Sun directions of the splits.
     follows
         Study keys whose architecture the dataset follows.
     description, regime
         In words: where the numbers come from; how light is propagated and why that is enough.
     bound_step_rad
         Half step of the bound's differences (see `benchmark.bounds.cramer_rao`).
-    repeats
-        Poses and passes of the split ``repeat``.
-    unit
-        Which unit of the sensor is seen; 0 is the standard one. `as_unit` gives the others.
+    repeats, unit
+        Poses and passes of the split ``repeat``; which unit of the sensor is seen (`as_unit`).
     batch
-        Samples simulated together, `BATCH` for None: memory and time only, the numbers do not
-        depend on it. Frames of a quarter megabyte are faster a few at a time.
+        Samples simulated together, `BATCH` for None; the numbers do not depend on it. Frames of a
+        quarter megabyte are faster a few at a time.
     """
 
     name: str

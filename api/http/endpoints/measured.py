@@ -10,7 +10,7 @@ from api.http.endpoint import Endpoint, PathPart
 from api.http.knowledge import Knowledge
 from api.http.pagination import CURSOR, LIMIT, page
 from api.http.parameters import Arguments, Parameter, Parameters
-from api.http.shapes import DatasetDetail, Datasets, Leaderboard, LeaderboardRows, Scores
+from api.http.shapes_measured import DatasetDetail, Datasets, Leaderboard, LeaderboardRows, Scores
 from api.http.values import Choice, PositiveNumber
 from benchmark.leaderboard.board import at_field, within_error
 from benchmark.metrics.rings import EDGES_DEG
