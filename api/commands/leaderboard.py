@@ -117,6 +117,7 @@ def leaderboard(
     printed with its file and cell, and the exit code is 1.
     """
     if context.invoked_subcommand is not None:
+        _require_no_options(context)
         return
     if check:
         _check(workers, form, (kernels or Kernels.BOTH).chosen, stored_only=stored)
@@ -126,6 +127,20 @@ def leaderboard(
         raise WrongCallError("--field and --max-error are two questions; ask one at a time")
     else:
         _show(dataset or [], condition or [], field, max_error, form)
+
+
+def _require_no_options(context: typer.Context) -> None:
+    """Refuse options before a command, which would be passed over in silence."""
+    given = [
+        f"--{name.replace('_', '-')}"
+        for name in context.params
+        if (source := context.get_parameter_source(name)) and source.name == "COMMANDLINE"
+    ]
+    if given:
+        raise WrongCallError(
+            f"{', '.join(given)} before `{context.invoked_subcommand}`: options of a command "
+            "stand behind it"
+        )
 
 
 @app.command()

@@ -8,7 +8,11 @@ from __future__ import annotations
 import sys
 
 from benchmark.leaderboard.update import update
+from benchmark.running.kernels import INTERRUPTED
 
 if __name__ == "__main__":
     directory, workers = sys.argv[1:]
-    update(directory, int(workers))
+    try:
+        update(directory, int(workers))
+    except KeyboardInterrupt:  # the process that started this one says so
+        sys.exit(INTERRUPTED)

@@ -29,6 +29,7 @@ from benchmark.results.tables import Row
 from benchmark.running import pinning
 from benchmark.running.kernels import update_with_older_kernels
 from benchmark.running.progress import ProgressCallback
+from benchmark.running.run import RunInterruptedError
 from benchmark.sweeps import run as sweeps
 
 #: On the pinned environment scores are identical. Elsewhere another order of a sum changes last
@@ -103,6 +104,8 @@ def check(
         When a stored file cannot be read.
     NoOlderKernelsError, OlderRunError
         When there are no older kernels to measure with, or their process failed.
+    RunInterruptedError
+        On Ctrl-C; nothing is kept.
     """
     store = Store(directory)
     known = parts or installed()
@@ -112,13 +115,18 @@ def check(
     moved = list(_moved_heads(store, known))
     if moved:  # every number of these datasets is another: there is no point in measuring it
         return [*moved, *found]
-    for kind in kernels:
-        with tempfile.TemporaryDirectory() as temporary:
-            if kind == OLDER:
-                update_with_older_kernels(Path(temporary), workers)
-            else:
-                update(temporary, workers, progress, parts=parts)
-            found += compare(store, Store(temporary), kind)
+    try:
+        for kind in kernels:
+            with tempfile.TemporaryDirectory() as temporary:
+                if kind == OLDER:
+                    update_with_older_kernels(Path(temporary), workers)
+                else:
+                    update(temporary, workers, progress, parts=parts)
+                found += compare(store, Store(temporary), kind)
+    except KeyboardInterrupt as interrupted:
+        raise RunInterruptedError(
+            "interrupted; a check keeps nothing of what it measured"
+        ) from interrupted
     return list(dict.fromkeys(found))
 
 

@@ -26,8 +26,8 @@ OLDER: Mapping[str, str] = {
     "OPENCV_CPU_DISABLE": "AVX512-COMMON,AVX512-SKX,AVX512-CNL,AVX512-CLX,AVX512-ICL",
 }
 
-
-_INTERRUPTED = 130
+#: Exit code of a process that was broken off.
+INTERRUPTED = 130
 
 
 class NoOlderKernelsError(RuntimeError):
@@ -75,7 +75,7 @@ def update_with_older_kernels(directory: Path, workers: int) -> None:
     call = [sys.executable, "-m", "benchmark.leaderboard", str(directory), str(workers)]
     # this program with a directory and a number: nothing of it comes from outside
     done = subprocess.run(call, env=older_environment(), check=False)  # noqa: S603
-    if done.returncode in (-signal.SIGINT, _INTERRUPTED):
+    if done.returncode in (-signal.SIGINT, INTERRUPTED):
         raise KeyboardInterrupt
     if done.returncode != 0:
         raise OlderRunError(f"measuring with older kernels ended with code {done.returncode}")

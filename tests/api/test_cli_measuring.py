@@ -240,6 +240,8 @@ def test_a_field_of_view_can_be_read_off(untimed):
         (["--stored"], 2, "--stored goes with --check"),
         (["--kernels", "older"], 2, "--kernels goes with --check"),
         (["--field", "20", "--max-error", "1"], 2, "one at a time"),
+        (["--dataset", "ccd-orbit", "update"], 2, "--dataset before `update`"),
+        (["--workers", "1", "render"], 2, "--workers before `render`"),
         (["--kernels", "new"], 2, "'new'"),
     ],
 )

@@ -11,6 +11,7 @@ from html.parser import HTMLParser
 import fake_plan
 import pytest
 from fake_atlas import Broken, Diodes, Gaps, LeastSquares
+from fake_results import copied
 
 from benchmark.leaderboard import ranking
 from benchmark.leaderboard.board import board_of
@@ -26,14 +27,6 @@ pytestmark = pytest.mark.usefixtures("readings_only", "log")
 CELL = "fake-diodes/noisy/fake-currents/fake-least-squares"
 PRESETS = (Diodes(), Diodes(name="fake-second"))
 PARTS = fake_plan.parts(presets=PRESETS)
-
-
-def copied(source, target):
-    for path in source.rglob("*.*"):
-        if path.is_file() and path.parent.name != ".sunatlas":
-            (target / path.relative_to(source)).parent.mkdir(parents=True, exist_ok=True)
-            (target / path.relative_to(source)).write_bytes(path.read_bytes())
-    return target
 
 
 @pytest.fixture(scope="module")

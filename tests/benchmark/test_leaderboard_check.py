@@ -6,6 +6,7 @@ import re
 import fake_plan
 import pytest
 from fake_atlas import Diodes, LeastSquares
+from fake_results import copied
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -19,6 +20,7 @@ from benchmark.plan import Cell
 from benchmark.results.store import Store
 from benchmark.running import task
 from benchmark.running.progress import silent
+from benchmark.running.run import RunInterruptedError
 
 pytestmark = pytest.mark.usefixtures("readings_only", "log")
 PARTS = fake_plan.parts(presets=(Diodes(), Diodes(name="fake-second")))
@@ -37,12 +39,7 @@ def made(tmp_path_factory, readings_only):
 @pytest.fixture
 def published(made, tmp_path):
     """A copy that a test may damage."""
-    target = tmp_path / "published"
-    for path in made.rglob("*.*"):
-        if path.is_file() and path.parent.name != ".sunatlas":
-            (target / path.relative_to(made)).parent.mkdir(parents=True, exist_ok=True)
-            (target / path.relative_to(made)).write_bytes(path.read_bytes())
-    return target
+    return copied(made, tmp_path / "published")
 
 
 def check(directory, **options):
@@ -282,6 +279,17 @@ def test_both_kernels_are_measured_with_and_each_difference_says_with_which(publ
         Difference(SCORES, f"{CELL}/rms_deg", right, "0.123", OLDER)
     ]
     assert check(published, kernels=(NATIVE,)) == []
+
+
+@pytest.mark.parametrize("kernels", [NATIVE, OLDER])
+def test_a_check_that_is_broken_off_says_that_nothing_is_kept(published, monkeypatch, kernels):
+    def interrupted(*_arguments, **_options):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(checking, "update", interrupted)
+    monkeypatch.setattr(checking, "update_with_older_kernels", interrupted)
+    with pytest.raises(RunInterruptedError, match="keeps nothing"):
+        check(published, kernels=(kernels,))
 
 
 def differences(column, value, measured, **row):

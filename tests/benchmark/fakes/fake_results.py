@@ -53,3 +53,12 @@ def components(*, harness: str = "hh", **digests: str) -> Components:
         models={name: facts(name, taxonomy="LSQ") for name in ("a", "b", "m", "z")},
         series={"s": {"digest": digests.get("s", "digest-s")}},
     )
+
+
+def copied(source, target):
+    """Copy a record without the files of a run; return where it is."""
+    for path in source.rglob("*.*"):
+        if path.is_file() and path.parent.name != ".sunatlas":
+            (target / path.relative_to(source)).parent.mkdir(parents=True, exist_ok=True)
+            (target / path.relative_to(source)).write_bytes(path.read_bytes())
+    return target
