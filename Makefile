@@ -45,15 +45,15 @@ $(PEERS): $(STAMP) requirements-peers.lock
 	touch $@
 
 bench: $(PEERS) ## speed and accuracy beside peers, as ratios measured in the same run
-	$(BIN)/python -m benchmark.speed
-	$(BIN)/python -m benchmark.speed_extractors
-	$(BIN)/python -m api.speed
+	$(BIN)/python -m tests.speed.simulator
+	$(BIN)/python -m tests.speed.extractors
+	$(BIN)/python -m tests.speed.service
 
 leaderboard: $(STAMP) ## bring scores and leaderboard up to date with code and data
 	$(BIN)/sunatlas leaderboard update --workers $(WORKERS)
 
 docs: $(STAMP) ## regenerate the generated parts of docs/
-	$(BIN)/python -m api.documentation
+	$(BIN)/python -m api.docs.documentation
 
 lock: $(STAMP) ## renew both lock files from pyproject.toml (needs uv on the PATH)
 	uv pip compile --universal --python-version 3.11 --extra dev --generate-hashes \

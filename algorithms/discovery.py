@@ -1,7 +1,8 @@
 """Every extractor and model there is, found by walking the modules that hold them.
 
 A class counts when it is public, is written in the module walked (not imported into it), and has
-the contract's method. Modules and classes with a leading underscore are skipped.
+the contract's method. Modules and classes with a leading underscore are skipped, and modules of
+compiled loops (``*_kernel``), which load Numba: their users import them at first use.
 """
 
 from __future__ import annotations
@@ -104,7 +105,8 @@ def _members(contract: type) -> set[str]:
 def _public_classes(package: ModuleType) -> Iterator[type]:
     prefix = f"{package.__name__}."
     for info in sorted(pkgutil.walk_packages(package.__path__, prefix), key=lambda i: i.name):
-        if any(part.startswith("_") for part in info.name.removeprefix(prefix).split(".")):
+        parts = info.name.removeprefix(prefix).split(".")
+        if parts[-1].endswith("_kernel") or any(part.startswith("_") for part in parts):
             continue
         module = importlib.import_module(info.name)
         for name, member in inspect.getmembers(module, inspect.isclass):

@@ -10,15 +10,15 @@ import importlib
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from survey_data.fidelity_report import FidelityReport, fidelity
-    from survey_data.findings import FindingVerdict
-    from survey_data.import_columns import ColumnMapping, match_columns
-    from survey_data.import_plan import Difference, ImportPlan, differences, plan_import
-    from survey_data.import_reading import read_table
+    from survey_data.findings.checks import FindingVerdict
+    from survey_data.findings.report import FidelityReport, fidelity
+    from survey_data.importing.columns import ColumnMapping, match_columns
+    from survey_data.importing.plan import Difference, ImportPlan, differences, plan_import
+    from survey_data.importing.reading import read_table
+    from survey_data.importing.table_import import apply_import, import_table
     from survey_data.problems import Problem, SurveyDataError, SurveyImportError
-    from survey_data.table_import import apply_import, import_table
     from survey_data.tables import SurveyTables, load
-    from survey_data.validation import validate
+    from survey_data.validation.validate import validate
 
 __all__ = [
     "ColumnMapping",
@@ -42,24 +42,24 @@ __all__ = [
 ]
 
 _HOMES = {
-    "ColumnMapping": "import_columns",
-    "Difference": "import_plan",
-    "FidelityReport": "fidelity_report",
-    "FindingVerdict": "findings",
-    "ImportPlan": "import_plan",
+    "ColumnMapping": "importing.columns",
+    "Difference": "importing.plan",
+    "FidelityReport": "findings.report",
+    "FindingVerdict": "findings.checks",
+    "ImportPlan": "importing.plan",
     "Problem": "problems",
     "SurveyDataError": "problems",
     "SurveyImportError": "problems",
     "SurveyTables": "tables",
-    "apply_import": "table_import",
-    "differences": "import_plan",
-    "fidelity": "fidelity_report",
-    "import_table": "table_import",
+    "apply_import": "importing.table_import",
+    "differences": "importing.plan",
+    "fidelity": "findings.report",
+    "import_table": "importing.table_import",
     "load": "tables",
-    "match_columns": "import_columns",
-    "plan_import": "import_plan",
-    "read_table": "import_reading",
-    "validate": "validation",
+    "match_columns": "importing.columns",
+    "plan_import": "importing.plan",
+    "read_table": "importing.reading",
+    "validate": "validation.validate",
 }
 
 

@@ -18,7 +18,8 @@ RECIPE = re.compile(r"```python file=(\S+)\n(.*?)```", re.DOTALL)
 
 MEASURE = """
 import json, sys
-from benchmark import datasets, plan
+from benchmark import datasets
+from benchmark.plan import combinations as plan
 from benchmark.running import run as runner
 from benchmark.results.store import Store
 from registry.catalogue import catalogue

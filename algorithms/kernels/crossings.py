@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
+from algorithms.compiled import compiled
 from algorithms.contract import Floats
-from algorithms.kernels.compilation import compiled
 
 
 @compiled

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from algorithms.compiled import compiled
 from algorithms.contract import Floats
-from algorithms.kernels.compilation import compiled
 
 Sums = NDArray[Any]
 Windows = NDArray[np.int64]

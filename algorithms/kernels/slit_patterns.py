@@ -11,8 +11,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from algorithms.compiled import compiled
 from algorithms.contract import Floats
-from algorithms.kernels.compilation import compiled
 
 Counts = NDArray[np.int64]
 

@@ -91,7 +91,7 @@ class Measurements:
     @cached_property
     def assessment(self) -> Mapping[str, Any]:
         """The survey's assessment beside the measured one, with definitions and totals."""
-        from benchmark import assessment  # noqa: PLC0415 - imports every implementation
+        from benchmark.assessment import assess as assessment  # noqa: PLC0415 - imports every implementation
 
         return assessment.document(assessment.assess(self.directory, times=self.times))
 

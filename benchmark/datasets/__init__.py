@@ -1,7 +1,7 @@
 """Standard datasets: `names`, `get`.
 
-A dataset is one module of this package that defines ``PRESET``; nothing else registers it.
-Modules whose name starts with an underscore hold what the datasets share.
+A dataset is one module of `benchmark.datasets.standard` that defines ``PRESET``; nothing else
+registers it.
 """
 
 from __future__ import annotations
@@ -11,8 +11,9 @@ import importlib
 import pkgutil
 from functools import cache
 
-from benchmark.datasets._card import parameters_of
-from benchmark.datasets._preset import Condition, Preset, Samples, data_digest
+from benchmark.datasets import standard
+from benchmark.datasets.card import parameters_of
+from benchmark.datasets.preset import Condition, Preset, Samples, data_digest
 
 __all__ = [
     "Condition",
@@ -59,10 +60,8 @@ def get(name: str) -> Preset:
 @cache
 def _presets() -> dict[str, Preset]:
     found: dict[str, Preset] = {}
-    for module in pkgutil.iter_modules(__path__):
-        if module.name.startswith("_"):
-            continue
-        loaded = importlib.import_module(f"{__name__}.{module.name}")
+    for module in pkgutil.iter_modules(standard.__path__):
+        loaded = importlib.import_module(f"{standard.__name__}.{module.name}")
         preset = getattr(loaded, "PRESET", None)
         if not isinstance(preset, Preset):
             raise TypeError(f"{loaded.__name__} must define PRESET, a Preset; got {preset!r}")

@@ -21,8 +21,8 @@ from benchmark.leaderboard.pages import PAGE, page
 from benchmark.leaderboard.update import update
 from benchmark.metrics.rings import RINGS
 from benchmark.metrics.score import METRICS, RING_DIGITS, SIGNIFICANT_DIGITS
-from benchmark.plan import Cell, cells
-from benchmark.plan_parts import Parts, installed
+from benchmark.plan.combinations import Cell, cells
+from benchmark.plan.parts import Parts, installed
 from benchmark.results.components import current
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.results.tables import Row

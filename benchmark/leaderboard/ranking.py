@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from benchmark.metrics.score import is_available
-from benchmark.plan import Cell
-from benchmark.plan_parts import Parts
+from benchmark.plan.combinations import Cell
+from benchmark.plan.parts import Parts
 
 Row = Mapping[str, Any]
 

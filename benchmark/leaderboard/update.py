@@ -9,8 +9,8 @@ from pathlib import Path
 from benchmark.leaderboard import ranking
 from benchmark.leaderboard.board import board_of, build
 from benchmark.leaderboard.pages import PAGE, page
-from benchmark.plan import Cell, cells
-from benchmark.plan_parts import Parts, installed
+from benchmark.plan.combinations import Cell, cells
+from benchmark.plan.parts import Parts, installed
 from benchmark.results.components import Components, current
 from benchmark.results.files import replace
 from benchmark.results.record import opened

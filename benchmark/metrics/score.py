@@ -1,7 +1,7 @@
 """How good predictions are: errors where a direction can be told, and whether any is given.
 
-A sample is *observable* where its direction can be told at all (`benchmark.bounds`). Errors are
-those of the answers to observable samples; that an observable sample has no answer lowers the
+A sample is *observable* where its direction can be told at all (`benchmark.metrics.bounds`). Errors
+are those of the answers to observable samples; that an observable sample has no answer lowers the
 availability, and that an unobservable one has is a false Sun.
 """
 

@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import Any
 
 from benchmark.metrics.score import METRIC_VERSION
-from benchmark.plan import Cell
-from benchmark.plan_parts import Parts, Preset
+from benchmark.plan.combinations import Cell
+from benchmark.plan.parts import Parts, Preset
 from benchmark.results.digests import dataset_digest, harness_digest, method_digest
 
 #: Layout of the stored files; raised when a field changes its meaning.

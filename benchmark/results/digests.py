@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.contract import Extractor, Model
-from benchmark.plan_parts import Preset, Samples
+from benchmark.plan.parts import Preset, Samples
 from benchmark.results.closure import closure_digest, module_path, syntax_digest
 
 _DIGITS = 32  # hexadecimal, 16 bytes

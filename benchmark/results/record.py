@@ -16,7 +16,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from benchmark.plan import Cell
+from benchmark.plan.combinations import Cell
 from benchmark.results.components import Components
 from benchmark.results.pins import Pin, Place
 from benchmark.results.store import Store

@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from benchmark.metrics.score import METRIC_VERSION, METRICS
-from benchmark.plan import Cell
+from benchmark.plan.combinations import Cell
 from benchmark.results.components import Components, ComponentsError, Facts
 from benchmark.results.files import replace
 from benchmark.results.pins import Pin, Place, pins_text, read_pins

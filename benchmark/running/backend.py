@@ -74,7 +74,7 @@ def bundles(tasks: Sequence[Task], workers: int = 1) -> list[list[Task]]:
 
     Generating samples and their bound often costs more than the rest. With many datasets to do, a
     bundle is a unit of a dataset, whose conditions see the same light (see
-    `benchmark.simulator.light_memory`); else at most four tasks of a dataset, unit and condition.
+    `benchmark.simulator.light.memory`); else at most four tasks of a dataset, unit and condition.
     """
     many = len({_sensor(task) for task in tasks}) >= _DATASETS_A_WORKER * workers
     found: list[list[Task]] = []

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from joblib import Parallel, delayed
 
-from benchmark.plan_parts import SPLITS, Parts, Preset, UnknownNameError, installed
+from benchmark.plan.parts import SPLITS, Parts, Preset, UnknownNameError, installed
 from benchmark.results.components import Components, current
 from benchmark.results.digests import HEAD, head_hash
 from benchmark.results.pins import Pin, Place, alike

@@ -16,8 +16,8 @@ from itertools import groupby
 from pathlib import Path
 
 from benchmark.metrics.score import METRICS
-from benchmark.plan import Cell
-from benchmark.plan_parts import Parts, installed
+from benchmark.plan.combinations import Cell
+from benchmark.plan.parts import Parts, installed
 from benchmark.results.components import Components, current
 from benchmark.results.record import Record, opened
 from benchmark.results.store import Store
@@ -63,7 +63,7 @@ def run(
     Parameters
     ----------
     cells
-        What to measure, as planned by `benchmark.plan.cells`.
+        What to measure, as planned by `benchmark.plan.combinations.cells`.
     store
         Where results go.
     workers

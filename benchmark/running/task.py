@@ -21,11 +21,11 @@ from algorithms.contract import (
     in_detector_coordinates,
 )
 from benchmark.metrics.score import Score, score, stored
-from benchmark.plan_parts import SPLITS, Bound, Preset, Samples
+from benchmark.plan.parts import SPLITS, Bound, Preset, Samples
 from benchmark.results.digests import HEAD, digest, head_hash, samples_hash, seed
 from benchmark.results.pins import Pin
 from benchmark.running.threads import one_thread
-from benchmark.simulator.light_memory import memory
+from benchmark.simulator.light.memory import memory
 
 #: Datasets under one condition kept per process: the plan hands out a dataset's tasks in a row.
 _KEPT = 2

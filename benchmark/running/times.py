@@ -25,8 +25,8 @@ from algorithms.contract import (
     SensorGeometry,
     in_detector_coordinates,
 )
-from benchmark.plan import Cell, cells
-from benchmark.plan_parts import Parts, Preset, Samples, installed
+from benchmark.plan.combinations import Cell, cells
+from benchmark.plan.parts import Parts, Preset, Samples, installed
 from benchmark.results import files
 from benchmark.results.components import Components, current
 from benchmark.results.tables import number, read, text_of, word

@@ -8,7 +8,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmark.simulator.noise import NoiseStreams
+from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.scene import Scene
 
 Floats = NDArray[np.float64]

@@ -9,7 +9,7 @@ import numpy as np
 
 from algorithms.contract import Extractor, Floats, UnusableDataError
 from benchmark.metrics.score import stored
-from benchmark.reference_series import KEPT_PX, Drawn, Series, Setting
+from benchmark.reference.series import KEPT_PX, Drawn, Series, Setting
 from benchmark.results.digests import seed
 from benchmark.results.store import SWEPT
 from benchmark.running.threads import one_thread

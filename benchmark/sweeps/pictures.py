@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 from xml.sax.saxutils import escape
 
-from benchmark.reference_series import SWEEPS
+from benchmark.reference.series import SWEEPS
 from benchmark.sweeps.plan import SERIES
 
 Row = Mapping[str, Any]

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from algorithms.contract import Extractor, FeatureKind, Observation, UnsuitableDesignError
-from benchmark.reference_cameras import BLACK_SUN, BLOOMING
-from benchmark.reference_events import EVENTS
-from benchmark.reference_lines import SLIT, SLITS
-from benchmark.reference_readings import FacesSeries, QuadrantSeries
-from benchmark.reference_series import Series, Setting
-from benchmark.reference_spots import DiscSeries, GridSeries
+from benchmark.reference.cameras import BLACK_SUN, BLOOMING
+from benchmark.reference.events import EVENTS
+from benchmark.reference.lines import SLIT, SLITS
+from benchmark.reference.readings import FacesSeries, QuadrantSeries
+from benchmark.reference.series import Series, Setting
+from benchmark.reference.spots import DiscSeries, GridSeries
 
 _ALL: tuple[Series, ...] = (
     DiscSeries(),

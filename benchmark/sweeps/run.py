@@ -20,8 +20,8 @@ from joblib import Parallel, delayed, parallel_config
 
 from algorithms.contract import Extractor
 from algorithms.discovery import discover_extractors
-from benchmark.plan_parts import Parts
-from benchmark.reference_series import SWEEPS, Setting
+from benchmark.plan.parts import Parts
+from benchmark.reference.series import SWEEPS, Setting
 from benchmark.results.components import Components, current
 from benchmark.results.digests import module_digest
 from benchmark.results.record import Record, opened, point_of

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from itertools import groupby
 from typing import Any
 
-from benchmark.reference_series import SWEEPS
+from benchmark.reference.series import SWEEPS
 from benchmark.results.tables import text_of
 from benchmark.sweeps.plan import SERIES
 

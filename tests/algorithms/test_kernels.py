@@ -12,8 +12,12 @@ import numpy as np
 import pytest
 
 import algorithms
-from algorithms.extractors.centroid import BasicCentroid, FilteredCentroid, ThresholdedCentroid
-from algorithms.extractors.peak import PixelMax
+from algorithms.extractors.frames.centroid import (
+    BasicCentroid,
+    FilteredCentroid,
+    ThresholdedCentroid,
+)
+from algorithms.extractors.frames.peak import PixelMax
 
 ROOT = Path(algorithms.__file__).parent.parent
 
@@ -64,7 +68,7 @@ def test_kernels_work_where_nothing_can_be_cached():
         "        raise RuntimeError('cannot cache function: no locator available')\n"
         "    return real(*args, **kwargs)\n"
         "numba.njit = lambda *a, **k: (lambda f: without_cache(*a, **k)(f))\n"
-        "from algorithms.extractors.peak import PixelMax\n"
+        "from algorithms.extractors.frames.peak import PixelMax\n"
         "frames = np.zeros((1, 4, 5), np.uint16); frames[0, 2, 3] = 7\n"
         "assert PixelMax().extract(frames).tolist() == [[3.0, 2.0]]\n"
     )
@@ -80,7 +84,7 @@ def test_numba_itself_refuses_to_cache_as_expected(tmp_path):
         "from numba.core import caching\n"
         "caching.CacheImpl._locator_classes = []\n"
         "import frozen\n"
-        "from algorithms.kernels.compilation import compiled\n"
+        "from algorithms.compiled import compiled\n"
         "assert compiled(frozen.twice)(21) == 42\n"
     )
     command = [sys.executable, "-c", code, str(tmp_path)]

@@ -12,7 +12,7 @@ import httpx
 import pytest
 from fastapi import FastAPI
 
-from api.service import create_app
+from api.http.service import create_app
 
 
 class Client:

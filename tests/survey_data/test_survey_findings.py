@@ -11,7 +11,7 @@ import pytest
 
 import survey_data
 from survey_data.descriptor import DATA_DIRECTORY
-from survey_data.findings import (
+from survey_data.findings.checks import (
     KINDS,
     FindingSyntaxError,
     Vocabulary,

@@ -7,8 +7,8 @@ import pytest
 
 import survey_data
 from survey_data import SurveyImportError, match_columns
-from survey_data.import_studies import StudyFinder, StudyNotFoundError
-from survey_data.import_values import UnreadableValueError, ValueReader, column_unit
+from survey_data.importing.studies import StudyFinder, StudyNotFoundError
+from survey_data.importing.values import UnreadableValueError, ValueReader, column_unit
 
 
 def frame(**columns: list[str | None]) -> pd.DataFrame:

@@ -15,7 +15,7 @@ import pytest
 import survey_data
 from survey_data.csv_reading import format_records, read_records
 from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name, table_names
-from survey_data.fidelity_report import accuracy_class
+from survey_data.findings.report import accuracy_class
 
 
 def test_the_package_passes_frictionless_from_its_files() -> None:

@@ -9,7 +9,7 @@ import pytest
 
 import survey_data
 from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name, primary_key, table_names
-from survey_data.rules import check_rules
+from survey_data.validation.rules import check_rules
 
 ALL = table_names()
 

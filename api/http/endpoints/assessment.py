@@ -12,7 +12,7 @@ from api.http.pagination import CURSOR, LIMIT, page
 from api.http.parameters import Arguments, Parameter, Parameters
 from api.http.shapes_assessment import Assessment, Sweeps
 from api.http.values import Choice
-from benchmark.reference_series import SWEEPS
+from benchmark.reference.series import SWEEPS
 from benchmark.sweeps.plan import SERIES
 
 VERDICT_COLUMNS = ("method", "property", "survey", "measured", "agreement", "value", "reason")

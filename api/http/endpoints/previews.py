@@ -13,7 +13,7 @@ def pictures(knowledge: Knowledge) -> list[Picture]:
     """Return the pictures there are."""
 
     def draw(parts: Mapping[str, str]) -> bytes:
-        from benchmark.dataset_preview import preview_png  # noqa: PLC0415 - renders, so on demand
+        from benchmark.datasets.preview import preview_png  # noqa: PLC0415 - renders, so on demand
 
         return preview_png(knowledge.measurements.presets[parts["name"]])
 

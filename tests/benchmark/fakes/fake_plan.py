@@ -6,7 +6,7 @@ from typing import Any
 
 from fake_atlas import Balanced, Currents, Diodes, Framed, Gaps, LeastSquares
 
-from benchmark.plan_parts import Parts
+from benchmark.plan.parts import Parts
 
 
 def parts(*models: Any, presets: tuple[Any, ...] = (Diodes(),)) -> Parts:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from benchmark.metrics.score import METRICS
-from benchmark.plan import Cell
+from benchmark.plan.combinations import Cell
 from benchmark.results.components import Components
 from benchmark.results.pins import Pin
 from benchmark.results.store import SWEPT

@@ -1,0 +1,1 @@
+"""Extractors of currents and voltages of a few photodiodes."""

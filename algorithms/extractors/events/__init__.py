@@ -1,0 +1,1 @@
+"""Extractors of spikes of event sensors."""

@@ -1,0 +1,251 @@
+"""Lines and spots from the first spikes of an event sensor: weighted mean (ESCM) and winners."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, Literal, Self, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from algorithms.contract import (
+    FeatureKind,
+    Floats,
+    Observation,
+    Origin,
+    SensorGeometry,
+    UnsuitableDesignError,
+)
+from algorithms.inputs import as_frames, require_positive
+
+Layout = Literal["l-slit", "spot"]
+"""``l-slit``: a line along y tells x, one along x tells y. ``spot``: one spot tells both."""
+
+
+@dataclass(frozen=True)
+class EventCentroid:
+    """Mean address of the events, each weighted by the light that its time tells.
+
+    A pixel fires when its charge reaches a threshold, so that the inverse of its time since the
+    reset is the light on it: the times rebuild the profile across a line, whose mean resolves
+    fractions of a pixel.
+
+    Parameters
+    ----------
+    width_px : float
+        Width of a line or of the spot, px.
+    layout : {"l-slit", "spot"}
+        What the events show.
+    offset_px : float
+        Where a line falls from the detector's middle when the Sun is on the boresight, px; taken
+        off both coordinates, so that they are those of a spot behind the mask's origin.
+    margin_px : float
+        Events count up to half the width and this far from the line's middle, px. Ours: 1.5 holds
+        the pixels that a line touches, penumbra included, wherever it falls on them.
+    hot : float
+        Events with more than this many times the light of a lit pixel are left out: hot pixels.
+
+    Notes
+    -----
+    Implements: alg:ECM (fe:escm, Farian2022): ``X = sum(x / (t - t_reset)) / sum(1 / (t -
+    t_reset))``, for each line over the events near it and away from the other line. Times count
+    from the reset (t_reset = 0). Survey prints one axis of a profile sensor and no way to tell
+    the L's lines apart; here the column and the row with most light start a window of the
+    line's width that is moved onto its own mean until it stays. A lit pixel's light is the third
+    quartile of all. Pixels in little light at a line's edge that have not fired when the array
+    is reset are missing in the mean; taking the last event's light off all others, as thresholded
+    centroids do, doubled the error.
+
+    Shapes: events (N, M, 3) ``x_px, y_px, t_us``, rows of NaN after the last, to
+    ``(x_px, y_px)`` (N, 2), pixel centres at integers.
+
+    Failure: a NaN row without events, where an event is incomplete, infinite or at an address
+    below 0, and where lines or spot hold less than half of the light (no lines, scattered events)
+    or, with an L, where one line has no events away from the other. Of two spots the one with
+    more light is found if it has more than half.
+
+    Cost: 40 operations an event, in 3 to 5 moves, and the sorting of the times.
+    """
+
+    name: ClassVar[str] = "escm"
+    taxonomy: ClassVar[str] = "ESCM"
+    studies: ClassVar[tuple[str, ...]] = ("Farian2022",)
+    labels: ClassVar[tuple[str, ...]] = ("fe:escm", "alg:ECM")
+    origin: ClassVar[Origin] = "survey"
+    version: ClassVar[int] = 1
+    observation: ClassVar[Observation] = Observation.EVENTS
+    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
+    needs: ClassVar[tuple[str, ...]] = ("pixel_pitch_mm",)
+
+    width_px: float
+    layout: Layout = "l-slit"
+    offset_px: float = 0.0
+    margin_px: float = 1.5
+    hot: float = 2.0
+
+    def __post_init__(self) -> None:
+        _require_design(self.name, self.width_px, self.layout, self.offset_px)
+        require_positive(self.name, margin_px=self.margin_px)
+        if not self.hot > 1.0:
+            raise ValueError(f"{self.name}: hot must be above 1; got {self.hot!r}")
+
+    @property
+    def features(self) -> tuple[str, ...]:
+        """Names of the two output columns."""
+        return ("x_px", "y_px")
+
+    @classmethod
+    def for_sensor(cls, geometry: SensorGeometry) -> Self:
+        """Return the method for an L of two slits, or for one aperture.
+
+        UnsuitableDesignError for other designs.
+        """
+        layout, width_px, offset_px = _design(geometry, cls.name, cls.needs)
+        return cls(width_px=width_px, layout=layout, offset_px=offset_px)
+
+    def extract(self, observations: ArrayLike) -> Floats:
+        """Positions (N, 2) from events (N, M, 3); ValueError on wrong input."""
+        from algorithms.extractors.events import first_spikes_kernel  # noqa: PLC0415 - Numba, at first use
+
+        events = first_spikes_kernel.as_events(_events(observations, self.name))
+        means = (
+            first_spikes_kernel.line_means
+            if self.layout == "l-slit"
+            else first_spikes_kernel.spot_means
+        )
+        found = np.empty((len(events), 2))
+        means(
+            events,
+            first_spikes_kernel.counted(events),
+            self.width_px,
+            self.width_px / 2.0 + self.margin_px,
+            self.hot,
+            found,
+        )
+        return found - self.offset_px
+
+
+@dataclass(frozen=True)
+class EventWinner:
+    """Column and row that are the first to gather a number of events: winners take all.
+
+    What an array does that puts out its first spikes alone, without their times: whole pixels,
+    for comparison with the mean. A single hot pixel does not win where several events are asked.
+
+    Parameters
+    ----------
+    winners : int
+        Events that a column or row must gather, at least 1. Ours: along an L's line more than the
+        other line is wide, for a spot half of its width.
+    offset_px : float
+        Where a line falls from the detector's middle when the Sun is on the boresight, px; taken
+        off both coordinates.
+
+    Notes
+    -----
+    Implements: fe:escm without its mean (Farian2018): the survey compares ESCM with the address
+    of the winning pixel; it prints no pseudocode for it. Several winners in one column make it
+    usable on an L, where one alone does not say which line it lies on.
+
+    Shapes: events (N, M, 3) ``x_px, y_px, t_us``, rows of NaN after the last, to
+    ``(x_px, y_px)`` (N, 2), whole pixels less the offset.
+
+    Failure: a NaN row without events, where an event is incomplete, infinite or at an address
+    below 0, and where no column or no row gathers `winners` events. More hot pixels than that
+    in one column win unseen.
+
+    Cost: 4 operations an event.
+    """
+
+    name: ClassVar[str] = "escm-wta"
+    taxonomy: ClassVar[str] = "ESCM"
+    studies: ClassVar[tuple[str, ...]] = ("Farian2018",)
+    labels: ClassVar[tuple[str, ...]] = ("fe:escm",)
+    origin: ClassVar[Origin] = "survey"
+    version: ClassVar[int] = 1
+    observation: ClassVar[Observation] = Observation.EVENTS
+    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
+    needs: ClassVar[tuple[str, ...]] = ("pixel_pitch_mm",)
+
+    winners: int = 8
+    offset_px: float = 0.0
+
+    def __post_init__(self) -> None:
+        if self.winners < 1:
+            raise ValueError(f"{self.name}: winners must be at least 1; got {self.winners!r}")
+        _require_design(self.name, 1.0, "spot", self.offset_px)
+
+    @property
+    def features(self) -> tuple[str, ...]:
+        """Names of the two output columns."""
+        return ("x_px", "y_px")
+
+    @classmethod
+    def for_sensor(cls, geometry: SensorGeometry) -> Self:
+        """Return the method for an L of two slits, or for one aperture.
+
+        UnsuitableDesignError for other designs.
+        """
+        layout, width_px, offset_px = _design(geometry, cls.name, cls.needs)
+        if layout == "l-slit":
+            # across the other line, whose edges light a pixel more than its width on either side
+            return cls(winners=2 * (round(width_px) + 1), offset_px=offset_px)
+        return cls(winners=max(round(width_px / 2.0), 1), offset_px=offset_px)
+
+    def extract(self, observations: ArrayLike) -> Floats:
+        """Positions (N, 2) from events (N, M, 3); ValueError on wrong input."""
+        from algorithms.extractors.events import first_spikes_kernel  # noqa: PLC0415 - Numba, at first use
+
+        events = first_spikes_kernel.as_events(_events(observations, self.name))
+        found = np.empty((len(events), 2))
+        first_spikes_kernel.first_addresses(
+            events, first_spikes_kernel.counted(events), self.winners, found
+        )
+        found[np.isnan(found).any(axis=1)] = np.nan
+        return found - self.offset_px
+
+
+def _events(observations: ArrayLike, by: str) -> Floats:
+    """Events (N, M, 3) as float64; ValueError for anything else."""
+    events = as_frames(observations)
+    if events.shape[2] != 3:
+        raise ValueError(
+            f"{by} reads observations of shape (N, M, 3), x_px, y_px and t_us an event; "
+            f"got {events.shape}"
+        )
+    return events.astype(np.float64, copy=False)
+
+
+def _require_design(by: str, width_px: float, layout: str, offset_px: float) -> None:
+    require_positive(by, width_px=width_px)
+    if layout not in get_args(Layout):
+        raise ValueError(
+            f"{by}: layout must be one of {', '.join(get_args(Layout))}; got {layout!r}"
+        )
+    if not np.isfinite(offset_px):
+        raise ValueError(f"{by}: offset_px must be finite; got {offset_px!r}")
+
+
+def _design(
+    geometry: SensorGeometry, by: str, needs: tuple[str, ...]
+) -> tuple[Layout, float, float]:
+    """Layout, width and offset, px, of the L or the aperture that a design has."""
+    geometry.require(*needs, by=by)
+    pitch = geometry.pixel_pitch_mm or 0.0
+    if geometry.slits is not None:
+        if len(geometry.slits) != 1 or sorted(geometry.line_axes or ()) != ["x", "y"]:
+            raise UnsuitableDesignError(
+                f"{by} reads an L of one slit along each axis; the sensor's design has "
+                f"{len(geometry.slits)} slits for lines along {geometry.line_axes}"
+            )
+        position, slant, width = geometry.slits[0]
+        if slant != 0.0:
+            raise UnsuitableDesignError(
+                f"{by} reads slits along the axes; got a slant of {slant} deg"
+            )
+        return "l-slit", width / pitch, position / pitch
+    if geometry.aperture_width_mm is None or geometry.apertures is not None:
+        raise UnsuitableDesignError(
+            f"{by} reads an L of two slits or one aperture; the design has neither"
+        )
+    return "spot", geometry.aperture_width_mm / pitch, 0.0

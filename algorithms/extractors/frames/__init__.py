@@ -1,0 +1,1 @@
+"""Extractors of frames: the position of one spot."""

@@ -1,0 +1,81 @@
+"""Position where the light on either side of a spot's middle balances (DBCM)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from algorithms.contract import FeatureKind, Floats, Observation, Origin, SensorGeometry
+from algorithms.inputs import as_frames
+
+#: Window moves after which a spot is given up: a whole spot settles in two or three.
+_MOVES = 10
+
+
+@dataclass(frozen=True)
+class DoubleBalance:
+    """Balance of five areas in a window of 21 x 21 pixels around the brightest pixel.
+
+    The window is found by winner-takes-it-all and moved until the light left and right of its
+    centre column, above and below its centre row, differs by less than that column or row would
+    change it: the spot's median, found with additions and one division.
+
+    Notes
+    -----
+    Implements: alg:DBCM (fe:dbcm, Xie2014, deBoer2013): with S_A ... S_E the sums of the window's
+    columns 1 | 9 | 1 | 9 | 1, ``x_c = x_ROI + (S_D - S_B) / (2 (S_C - S_A))``; y with the rows.
+    Printed on the assumption S_A = S_E; their mean is taken here, which is that on a dark
+    background and halves its noise. Survey counts the columns from 2; corrected because the five
+    areas fill 21. The printed threshold moves no maximum and is left out. Of equal brightest
+    pixels the first starts. Survey leaves the spot off-centre; here the window is moved by the
+    rounded offset until it stays. Pixels of the window outside the frame count as the mean of
+    the rim inside.
+
+    Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers.
+
+    Failure: a NaN row for a frame that is dark (maximum not positive), without contrast (all dark
+    or all saturated) or holds a NaN or infinity, where the window does not settle, and where its
+    outermost columns or rows differ by half of the centre's light (spot cut by the edge or far
+    larger than the window). A spot a little larger than the window is biased unseen; so is one
+    with another beside it in the window. A second spot outside is ignored.
+
+    Cost: 1 operation a pixel for the maxima, 3 a pixel of the window and move.
+    """
+
+    name: ClassVar[str] = "dbcm"
+    taxonomy: ClassVar[str] = "DBCM"
+    studies: ClassVar[tuple[str, ...]] = ("Xie2014", "deBoer2013")
+    labels: ClassVar[tuple[str, ...]] = ("fe:dbcm", "alg:DBCM")
+    origin: ClassVar[Origin] = "survey"
+    version: ClassVar[int] = 1
+    observation: ClassVar[Observation] = Observation.FRAMES
+    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
+    needs: ClassVar[tuple[str, ...]] = ()
+
+    @property
+    def features(self) -> tuple[str, ...]:
+        """Names of the two output columns."""
+        return ("x_px", "y_px")
+
+    @classmethod
+    def for_sensor(cls, geometry: SensorGeometry) -> Self:  # noqa: ARG003 - nothing to choose
+        """Return the published method, whatever the sensor."""
+        return cls()
+
+    def extract(self, observations: ArrayLike) -> Floats:
+        """Positions (N, 2) in frames (N, H, W); ValueError on wrong input."""
+        from algorithms.extractors.frames import balance_kernel  # noqa: PLC0415 - Numba, at first use
+        from algorithms.kernels import moments  # noqa: PLC0415 - Numba, at first use
+
+        frames = as_frames(observations)
+        maxima = np.empty(frames.shape[:2], dtype=frames.dtype)
+        moments.row_maxima(frames, maxima)
+        unusable = np.empty(len(frames), dtype=np.bool_)
+        moments.unusable(frames, frames.dtype.kind == "f", unusable)
+        found = np.empty((len(frames), 2))
+        balance_kernel.five_areas(frames, moments.first_brightest(frames, maxima), _MOVES, found)
+        found[unusable | ~(maxima.max(axis=1) > 0)] = np.nan
+        return found

@@ -1,0 +1,1 @@
+"""Extractors of frames: the Sun as cameras with a lens show it."""

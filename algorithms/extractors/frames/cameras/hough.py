@@ -1,0 +1,269 @@
+"""Votes of edges for a shape: the blooming line of a CCD camera (BHT) and circles (CHT)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from algorithms.contract import (
+    FeatureKind,
+    Floats,
+    Observation,
+    Origin,
+    SensorGeometry,
+    UnsuitableDesignError,
+)
+from algorithms.inputs import as_frames
+
+#: Step between the angles tried, degrees.
+_TURN_DEG = 0.25
+
+
+@dataclass(frozen=True)
+class HoughLines:
+    """Blooming line of a saturated Sun, and the place on it that the light around points to.
+
+    Charge that a CCD's pixels cannot hold runs up and down their columns: a line through the Sun,
+    far longer than its image and symmetric across it. Where on the line the Sun is, a second line
+    must tell: here every pixel of the halo gives one, along its gradient, and in
+    `sun_from_blooming_lines` other cameras do.
+
+    Parameters
+    ----------
+    saturated : float
+        Fraction of the frame's range, in (0, 1), above which a pixel is taken to be full. Ours.
+    tilt_deg : float
+        Largest angle between line and columns that is tried, in steps of 0.25 deg, at most 45.
+        Zero, as charge runs along the columns, unless the frames were turned since.
+    least_votes : int
+        The accumulator threshold tau, at least 2: rows that must vote for a line.
+    reach_px : float
+        Gradients count up to this far from the line. Ours.
+
+    Notes
+    -----
+    Implements: alg:BHT (fe:ht, Liu2016): edges; ``r = x cos(theta) + y sin(theta)``; accumulator
+    ``H[r, theta]``; peak above tau; intersections of all pairs of lines, averaged with weights.
+    The middle between the edges of a row's full pixels votes for both of them, so that the line
+    has one peak, not one a side. The peak is a parabola's, then the mean of the line's pixels:
+    columns end where their overflow does, and their lengths weigh them; a half that the frame
+    cuts is left out. One camera's lines are parallel; they are intersected with the lines along
+    the gradients of the halo on both sides, voting along the blooming line, weighted by the
+    inverse variance of each intersection. Coordinates are those of the detector, before any
+    distortion correction (a window's origin is unknown here, and the correction of the meeting
+    point is the meeting point of the corrected lines); models, and `sun_from_blooming_lines`, do
+    the correction.
+
+    Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers.
+
+    Failure: a NaN row for a frame that is dark or without contrast or holds a NaN or infinity,
+    without a line of `least_votes` rows that is four times longer than wide (no blooming: a disc,
+    noise), and where the line is found and the Sun on it not: other saturated light covers it
+    (cloud), or the two sides' gradients meet the line in places 1 px apart. `lines` has the line
+    then. Of two Suns the longer line wins unseen.
+
+    Cost: 3 operations a pixel for the runs, 4 a run and angle, and 40 a pixel within reach.
+    """
+
+    name: ClassVar[str] = "hough-lines"
+    taxonomy: ClassVar[str] = "HT"
+    studies: ClassVar[tuple[str, ...]] = ("Liu2016",)
+    labels: ClassVar[tuple[str, ...]] = ("fe:ht", "alg:BHT")
+    origin: ClassVar[Origin] = "survey"
+    version: ClassVar[int] = 1
+    observation: ClassVar[Observation] = Observation.FRAMES
+    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
+    needs: ClassVar[tuple[str, ...]] = ("lens_distortion",)
+
+    saturated: float = 0.8
+    tilt_deg: float = 0.0
+    least_votes: int = 20
+    reach_px: float = 24.0
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.saturated < 1.0:
+            raise ValueError(f"{self.name}: saturated must be in (0, 1); got {self.saturated!r}")
+        if not 0.0 <= self.tilt_deg <= 45.0:
+            raise ValueError(f"{self.name}: tilt_deg must be in [0, 45]; got {self.tilt_deg!r}")
+        if self.least_votes < 2:
+            raise ValueError(f"{self.name}: least_votes must be 2 or more; got {self.least_votes}")
+        if not 1.0 <= self.reach_px <= 1e4:
+            raise ValueError(f"{self.name}: reach_px must be in [1, 1e4]; got {self.reach_px!r}")
+
+    @property
+    def features(self) -> tuple[str, ...]:
+        """Names of the two output columns."""
+        return ("x_px", "y_px")
+
+    @classmethod
+    def for_sensor(cls, geometry: SensorGeometry) -> Self:
+        """Return the method for a camera; UnsuitableDesignError for designs without a lens.
+
+        Behind a mask no pixel overflows. Which cameras bloom, the design does not say; with a CMOS
+        detector no line is found.
+        """
+        geometry.require(*cls.needs, by=cls.name)
+        return cls()
+
+    def extract(self, observations: ArrayLike) -> Floats:
+        """Places of the Sun (N, 2) in frames (N, H, W); ValueError on wrong input."""
+        return self._found(observations)[:, 5:].copy()
+
+    def lines(self, observations: ArrayLike) -> Floats:
+        """Blooming lines (N, 5) of frames (N, H, W): ends ``x, y, x, y``, px, and votes.
+
+        NaN rows without a line. ValueError on wrong input.
+        """
+        return self._found(observations)[:, :5].copy()
+
+    def _found(self, observations: ArrayLike) -> Floats:
+        from algorithms.extractors.frames.cameras import blooming_kernel  # noqa: PLC0415 - Numba, at the first frame only
+
+        frames = as_frames(observations)
+        steps = round(self.tilt_deg / _TURN_DEG)
+        found = np.empty((len(frames), 7))
+        blooming_kernel.blooming_lines(
+            frames,
+            _usable(frames),
+            np.radians(_TURN_DEG * np.arange(-steps, steps + 1)),
+            self.saturated,
+            self.least_votes,
+            self.reach_px,
+            found,
+        )
+        return found
+
+
+@dataclass(frozen=True)
+class HoughCircle:
+    """Circle of unknown radius that most edges agree on.
+
+    Every edge pixel votes for the centres that lie along its gradient, one for each radius; the
+    circle's centre gathers the votes of its whole rim, whatever else the frame holds and though
+    parts of the rim are missing.
+
+    Parameters
+    ----------
+    edge : float
+        Gradients above this fraction of the frame's largest are edges, in (0, 1). Ours.
+    threshold : float
+        The accumulator threshold tau, in (0, 1]: the share of the rim, in 16 sectors, that must
+        have edges.
+    smallest_px : float
+        Least radius, at least 1.
+    largest_px : float or None
+        Largest radius; None is half of the frame's smaller side. The survey goes on to the
+        frame's diagonal, whose circles do not fit into it.
+    dark_first : bool
+        Whether a dark circle is sought first, for cameras whose Sun may be black, and a bright
+        one only where there is none.
+
+    Notes
+    -----
+    Implements: alg:CHT (fe:ht, Adatrao2016): edges, accumulator ``H[a, b, r]``, ``a = x - r
+    cos(theta)``, ``b = y - r sin(theta)``, its maximum above tau. The angle is that of the edge's
+    gradient, both ways, instead of all of them; votes count 1/r, so that circles of every size
+    compare. The accumulator's highest cells are looked at again with their edges: the circle
+    with the strongest mean edge around its rim wins, fitted to edges at sub-pixel places by least
+    squares. Ours: a bright circle must be bright inside its rim, else it is a ghost, and edges
+    that scatter by more than half a pixel about the fit are none.
+
+    Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers.
+
+    Failure: a NaN row for a frame that is dark or without contrast or holds a NaN or infinity,
+    and where no circle has enough of its rim (noise, lines, a spot more than half cut) or another
+    one elsewhere has 0.8 of the best one's mean edge (two Suns). A bright round cloud can beat a
+    white Sun, and blooming breaks its rim.
+
+    Cost: 30 operations a pixel for edges, 4 an edge and radius, 500 an edge for the candidates.
+    """
+
+    name: ClassVar[str] = "hough-circle"
+    taxonomy: ClassVar[str] = "HT"
+    studies: ClassVar[tuple[str, ...]] = ("Adatrao2016",)
+    labels: ClassVar[tuple[str, ...]] = ("fe:ht", "alg:CHT")
+    origin: ClassVar[Origin] = "survey"
+    version: ClassVar[int] = 1
+    observation: ClassVar[Observation] = Observation.FRAMES
+    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
+    needs: ClassVar[tuple[str, ...]] = ("pixel_pitch_mm",)
+
+    edge: float = 0.3
+    threshold: float = 0.5
+    smallest_px: float = 2.0
+    largest_px: float | None = None
+    dark_first: bool = False
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.edge < 1.0:
+            raise ValueError(f"{self.name}: edge must be in (0, 1); got {self.edge!r}")
+        if not 0.0 < self.threshold <= 1.0:
+            raise ValueError(f"{self.name}: threshold must be in (0, 1]; got {self.threshold!r}")
+        if not 1.0 <= self.smallest_px < np.inf:
+            raise ValueError(f"{self.name}: smallest_px must be 1 or more; got {self.smallest_px}")
+        if self.largest_px is not None and not self.smallest_px < self.largest_px <= 1e4:
+            raise ValueError(
+                f"{self.name}: largest_px must be None or in (smallest_px, 1e4]; "
+                f"got {self.largest_px!r}"
+            )
+
+    @property
+    def features(self) -> tuple[str, ...]:
+        """Names of the two output columns."""
+        return ("x_px", "y_px")
+
+    @classmethod
+    def for_sensor(cls, geometry: SensorGeometry) -> Self:
+        """Return the method for a camera or one round aperture; others raise UnsuitableDesignError.
+
+        In a camera's frames edges are weak beside those of saturated pixels: a tenth counts.
+        """
+        geometry.require(*cls.needs, by=cls.name)
+        if geometry.lens_distortion is not None:
+            return cls(edge=0.1, dark_first=True)
+        for field in ("apertures", "slits", "code_bits"):
+            if getattr(geometry, field) is not None:
+                raise UnsuitableDesignError(
+                    f"{cls.name} reads one circle; the sensor's design has {field}"
+                )
+        if geometry.aperture_shape != "round":
+            raise UnsuitableDesignError(
+                f"{cls.name} reads the circle of a round aperture or a camera's Sun; the sensor's "
+                f"aperture_shape is {geometry.aperture_shape}"
+            )
+        return cls()
+
+    def extract(self, observations: ArrayLike) -> Floats:
+        """Centres (N, 2) in frames (N, H, W); ValueError on wrong input."""
+        return self.circles(observations)[:, :2].copy()
+
+    def circles(self, observations: ArrayLike) -> Floats:
+        """Circles (N, 3), centre ``x, y`` and radius, px; NaN rows without one."""
+        from algorithms.extractors.frames.cameras import circles_kernel  # noqa: PLC0415 - Numba, at the first frame only
+
+        frames = as_frames(observations)
+        largest = self.largest_px or 0.5 * min(frames.shape[1:])
+        found = np.empty((len(frames), 3))
+        circles_kernel.best_circles(
+            frames,
+            _usable(frames),
+            self.edge,
+            self.smallest_px,
+            largest,
+            self.threshold,
+            self.dark_first,
+            found,
+        )
+        return found
+
+
+def _usable(frames: NDArray[Any]) -> NDArray[np.bool_]:
+    """Frames (N,) with some contrast and only finite pixels."""
+    from algorithms.kernels import moments  # noqa: PLC0415 - Numba, at the first frame only
+
+    unusable = np.empty(len(frames), dtype=np.bool_)
+    moments.unusable(frames, frames.dtype.kind == "f", unusable)
+    return ~unusable

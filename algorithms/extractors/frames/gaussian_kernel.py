@@ -1,0 +1,212 @@
+"""Least-squares fit of a Gaussian spot to whole frames, by separable sums.
+
+Model and derivatives are products of a function of x and one of y, so the normal matrix needs
+sums over one axis only, and the frame is read once an iteration.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.compiled import compiled
+from algorithms.contract import Floats
+
+_PARAMETERS = 6  # amplitude, x, y, sigma x, sigma y, background
+
+
+@compiled
+def _start(frame: NDArray[Any], p: Floats) -> bool:
+    """Guess the parameters from the pixels brighter than half; False where there is no spot."""
+    height, width = frame.shape
+    border = 0.0
+    for j in range(width):
+        border += float(frame[0, j]) + float(frame[height - 1, j])
+    for i in range(height):
+        border += float(frame[i, 0]) + float(frame[i, width - 1])
+    border /= 2 * (height + width)
+    peak = -np.inf
+    for i in range(height):
+        for j in range(width):
+            peak = max(peak, float(frame[i, j]))
+    if not peak > border:
+        return False
+    cut = border + 0.5 * (peak - border)
+    pixels = 0
+    sum_x = 0.0
+    sum_y = 0.0
+    for i in range(height):
+        for j in range(width):
+            if frame[i, j] > cut:
+                pixels += 1
+                sum_x += j
+                sum_y += i
+    p[0] = peak - border
+    p[1] = sum_x / pixels
+    p[2] = sum_y / pixels
+    # Brighter than half: an ellipse of radius sigma sqrt(2 ln 2).
+    p[3] = max(math.sqrt(pixels / (math.pi * 2 * math.log(2.0))), 0.5)
+    p[4] = p[3]
+    p[5] = border
+    return True
+
+
+@compiled
+def _factors(p: Floats, axis: int, f: Floats) -> None:
+    """Write the Gaussian along an axis and its derivatives by centre and sigma (3, L)."""
+    centre, sigma = p[1 + axis], p[3 + axis]
+    for j in range(f.shape[1]):
+        t = (j - centre) / sigma
+        g = math.exp(-0.5 * t * t)
+        f[0, j] = g
+        f[1, j] = g * t / sigma
+        f[2, j] = g * t * t / sigma
+
+
+@compiled
+def _residual_sums(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    frame: NDArray[Any], p: Floats, x: Floats, y: Floats, along: Floats, projected: Floats
+) -> float:
+    """Return the sum of squared residuals; `projected` (6,) their products with derivatives."""
+    height, width = frame.shape
+    for m in range(4):
+        for j in range(width):
+            along[m, j] = 0.0
+    squares, light, light_x, light_y = along[0], along[1], along[2], along[3]
+    for i in range(height):
+        row = frame[i]
+        scale = p[0] * y[0, i]
+        g0, g1, g2 = y[0, i], y[1, i], y[2, i]
+        for j in range(width):
+            e = row[j] - p[5] - scale * x[0, j]
+            squares[j] += e * e
+            light[j] += g0 * e
+            light_x[j] += g1 * e
+            light_y[j] += g2 * e
+            along[4, j] += e
+    total = 0.0
+    for m in range(_PARAMETERS):
+        projected[m] = 0.0
+    for j in range(width):
+        total += squares[j]
+        projected[0] += x[0, j] * light[j]
+        projected[1] += p[0] * x[1, j] * light[j]
+        projected[2] += p[0] * x[0, j] * light_x[j]
+        projected[3] += p[0] * x[2, j] * light[j]
+        projected[4] += p[0] * x[0, j] * light_y[j]
+        projected[5] += along[4, j]
+        along[4, j] = 0.0
+    return total
+
+
+@compiled
+def _normal_matrix(p: Floats, x: Floats, y: Floats, matrix: Floats) -> None:
+    """Products of the six derivatives summed over the frame, from sums along each axis."""
+    # Which factor of each axis a derivative holds; the background's is one.
+    of_x = (0, 1, 0, 2, 0, 3)
+    of_y = (0, 0, 1, 0, 2, 3)
+    gram_x = np.empty((4, 4))
+    gram_y = np.empty((4, 4))
+    for f, gram in ((x, gram_x), (y, gram_y)):
+        for a in range(4):
+            for b in range(a, 4):
+                total = 0.0
+                for j in range(f.shape[1]):
+                    left = f[a, j] if a < 3 else 1.0
+                    total += left * (f[b, j] if b < 3 else 1.0)
+                gram[a, b] = total
+                gram[b, a] = total
+    for a in range(_PARAMETERS):
+        for b in range(_PARAMETERS):
+            scale = (p[0] if 0 < a < 5 else 1.0) * (p[0] if 0 < b < 5 else 1.0)
+            matrix[a, b] = scale * gram_x[of_x[a], of_x[b]] * gram_y[of_y[a], of_y[b]]
+
+
+@compiled
+def _dot(a: Floats, b: Floats, count: int) -> float:
+    total = 0.0
+    for c in range(count):
+        total += a[c] * b[c]
+    return total
+
+
+@compiled
+def _solved(matrix: Floats, right: Floats, damping: float, step: Floats) -> bool:
+    """Solve (matrix + damping diagonal) step = right by Cholesky; False where not definite."""
+    size = len(right)
+    lower = np.zeros((size, size))
+    for a in range(size):
+        for b in range(a):
+            lower[a, b] = (matrix[a, b] - _dot(lower[a], lower[b], b)) / lower[b, b]
+        total = (1.0 + damping) * matrix[a, a] - _dot(lower[a], lower[a], a)
+        if not total > 1e-14 * matrix[a, a]:
+            return False
+        lower[a, a] = math.sqrt(total)
+    for a in range(size):
+        step[a] = (right[a] - _dot(lower[a], step, a)) / lower[a, a]
+    for a in range(size - 1, -1, -1):
+        step[a] /= lower[a, a]
+        for c in range(a):
+            step[c] -= lower[a, c] * step[a]
+    return True
+
+
+@compiled
+def fit_gaussians(  # noqa: C901 - one loop, its kernel's steps in order
+    frames: NDArray[Any], tolerance: float, limit: int, out: Floats
+) -> None:
+    """Write amplitude, x, y, sigma x, sigma y, background to `out` (N, 6), by Levenberg-Marquardt.
+
+    Converged when a step moves the centre and both widths by less than `tolerance` px. NaN rows
+    where there is no spot or no convergence within `limit` steps.
+    """
+    count, height, width = frames.shape
+    x = np.empty((3, width))
+    y = np.empty((3, height))
+    along = np.zeros((5, width))
+    p = np.empty(_PARAMETERS)
+    tried = np.empty(_PARAMETERS)
+    right = np.empty(_PARAMETERS)
+    tried_right = np.empty(_PARAMETERS)
+    step = np.empty(_PARAMETERS)
+    matrix = np.empty((_PARAMETERS, _PARAMETERS))
+    for k in range(count):
+        frame = frames[k]
+        out[k] = np.nan
+        if not _start(frame, p):
+            continue
+        _factors(p, 0, x)
+        _factors(p, 1, y)
+        error = _residual_sums(frame, p, x, y, along, right)
+        _normal_matrix(p, x, y, matrix)
+        damping = 1e-3
+        for _ in range(limit):
+            if not _solved(matrix, right, damping, step):
+                damping = max(10 * damping, 1e-6)
+                continue
+            for m in range(_PARAMETERS):
+                tried[m] = p[m] + step[m]
+            largest = max(abs(step[1]), abs(step[2]), abs(step[3]), abs(step[4]))
+            better = False
+            if tried[3] > 0.05 and tried[4] > 0.05:
+                _factors(tried, 0, x)
+                _factors(tried, 1, y)
+                found = _residual_sums(frame, tried, x, y, along, tried_right)
+                better = found <= error
+            if better:
+                error = found
+                for m in range(_PARAMETERS):
+                    p[m] = tried[m]
+                    right[m] = tried_right[m]
+                damping *= 0.1
+            if largest < tolerance:
+                for m in range(_PARAMETERS):
+                    out[k, m] = p[m]
+                break
+            if better:
+                _normal_matrix(p, x, y, matrix)
+            else:
+                damping *= 10

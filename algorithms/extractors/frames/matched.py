@@ -1,0 +1,196 @@
+"""Beyond the survey: estimators matched to the spot's image, by likelihood or by a Gaussian."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from algorithms.contract import (
+    FeatureKind,
+    Floats,
+    Observation,
+    Origin,
+    SensorGeometry,
+    UnsuitableDesignError,
+)
+from algorithms.inputs import as_frames, require_positive
+
+#: Mean squared distance of the lit pixels, over that of a disc, above which they are not one spot.
+_SPREAD = 3.0
+
+
+@dataclass(frozen=True)
+class MatchedProfile:
+    """Maximum-likelihood centre of a round spot whose profile is taken from the frame itself.
+
+    A thresholded centroid starts it. The light is averaged in rings around that start, and
+    Gauss-Newton steps move the centre to where the frame fits this profile best, each pixel
+    weighted by its variance, which the frame shows too. Ours: the ceiling other extractors are
+    held against.
+
+    Parameters
+    ----------
+    threshold : float
+        Fraction of the peak above the background, in (0, 1), for the start.
+    steps : int
+        Gauss-Newton steps, at least 1, each with the profile about the last centre.
+
+    Notes
+    -----
+    Implements: nothing printed in the survey. With p(r) the profile, c = (cos, sin) of a pixel's
+    direction and v its variance, the step d solves ``sum(c c^T p'^2 / v) d = -sum(c p' (I - p)
+    / v)``. The slope of p is that of a line through the seven rings about a pixel's, its bend
+    that of the slopes beside; a ring is as wide as the contrast to the power -1/3. The background
+    and its variance are those of the frame's border; a lit pixel has more variance in proportion
+    to its light, by the factor that explains the scatter within the rings. Of the slope squared,
+    what noise explains is taken off.
+
+    Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers.
+
+    Failure: a NaN row for a frame that is dark (maximum not above the border), without contrast
+    (all dark or all saturated) or holds a NaN or infinity, and where the lit pixels are not one
+    compact spot (two spots, a line, noise) or touch the edge (a spot cut by it). A spot that is
+    not round is found without bias where it is symmetric, above the bound.
+
+    Cost: 2 operations a pixel, 45 a pixel of the spot's surroundings and step.
+    """
+
+    name: ClassVar[str] = "matched-profile"
+    taxonomy: ClassVar[str] = "None"
+    studies: ClassVar[tuple[str, ...]] = ()
+    labels: ClassVar[tuple[str, ...]] = ()
+    origin: ClassVar[Origin] = "ours"
+    version: ClassVar[int] = 2
+    observation: ClassVar[Observation] = Observation.FRAMES
+    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
+    needs: ClassVar[tuple[str, ...]] = ()
+
+    threshold: float = 0.3
+    steps: int = 1
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.threshold < 1.0:
+            raise ValueError(f"{self.name}: threshold must be in (0, 1); got {self.threshold!r}")
+        if self.steps < 1:
+            raise ValueError(f"{self.name}: steps must be at least 1; got {self.steps!r}")
+
+    @property
+    def features(self) -> tuple[str, ...]:
+        """Names of the two output columns."""
+        return ("x_px", "y_px")
+
+    @classmethod
+    def for_sensor(cls, geometry: SensorGeometry) -> Self:
+        """Return the estimator; UnsuitableDesignError for designs without a single spot."""
+        require_one_spot(geometry, cls.name)
+        return cls()
+
+    def extract(self, observations: ArrayLike) -> Floats:
+        """Centres (N, 2) in frames (N, H, W); ValueError on wrong input."""
+        from algorithms.extractors.frames import radial_kernel  # noqa: PLC0415 - Numba, at first use
+        from algorithms.kernels import moments  # noqa: PLC0415 - Numba, at first use
+
+        frames = as_frames(observations)
+        maxima = np.empty(frames.shape[:2], dtype=frames.dtype)
+        moments.row_maxima(frames, maxima)
+        unusable = np.empty(len(frames), dtype=np.bool_)
+        moments.unusable(frames, frames.dtype.kind == "f", unusable)
+        maxima[unusable] = 0
+        found = np.empty((len(frames), 2))
+        radial_kernel.matched_centres(frames, maxima, self.threshold, _SPREAD, self.steps, found)
+        found[unusable] = np.nan
+        return found
+
+
+@dataclass(frozen=True)
+class GaussianFit:
+    """Least-squares fit of a Gaussian on a background to the whole frame.
+
+    What astronomers' libraries offer as their precise centroid: six parameters, amplitude,
+    centre, a width along each axis and background, every pixel of equal weight. On spots that
+    are no Gaussian it is still centred, but above the bound.
+
+    Parameters
+    ----------
+    tolerance_px : float
+        The fit ends when a step moves centre and widths by less.
+    iterations : int
+        Steps, at least 1, after which the fit is given up.
+
+    Notes
+    -----
+    Implements: nothing printed in the survey: ``min sum (I - b - A exp(-(x - x_c)^2 / 2 s_x^2 -
+    (y - y_c)^2 / 2 s_y^2))^2`` by Levenberg-Marquardt, from the pixels brighter than half. The
+    axes of the ellipse are those of the frame.
+
+    Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers.
+
+    Failure: a NaN row for a frame that is dark (maximum not above the border), without contrast
+    (all dark or all saturated) or holds a NaN or infinity, where the fit does not converge, to a
+    light above the background, to a centre inside the frame and to widths below its sides. A
+    second spot draws it unseen; one cut by the edge is fitted as such.
+
+    Cost: 10 operations a pixel and step, some 8 steps.
+    """
+
+    name: ClassVar[str] = "gaussian-fit"
+    taxonomy: ClassVar[str] = "None"
+    studies: ClassVar[tuple[str, ...]] = ()
+    labels: ClassVar[tuple[str, ...]] = ()
+    origin: ClassVar[Origin] = "ours"
+    version: ClassVar[int] = 1
+    observation: ClassVar[Observation] = Observation.FRAMES
+    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
+    needs: ClassVar[tuple[str, ...]] = ()
+
+    tolerance_px: float = 1e-6
+    iterations: int = 50
+
+    def __post_init__(self) -> None:
+        require_positive(self.name, tolerance_px=self.tolerance_px)
+        if self.iterations < 1:
+            raise ValueError(f"{self.name}: iterations must be at least 1; got {self.iterations!r}")
+
+    @property
+    def features(self) -> tuple[str, ...]:
+        """Names of the two output columns."""
+        return ("x_px", "y_px")
+
+    @classmethod
+    def for_sensor(cls, geometry: SensorGeometry) -> Self:
+        """Return the fit; UnsuitableDesignError for designs without a single spot."""
+        require_one_spot(geometry, cls.name)
+        return cls()
+
+    def extract(self, observations: ArrayLike) -> Floats:
+        """Centres (N, 2) in frames (N, H, W); ValueError on wrong input."""
+        from algorithms.extractors.frames import gaussian_kernel  # noqa: PLC0415 - Numba, at first use
+        from algorithms.kernels import moments  # noqa: PLC0415 - Numba, at first use
+
+        frames = as_frames(observations)
+        _, height, width = frames.shape
+        unusable = np.empty(len(frames), dtype=np.bool_)
+        moments.unusable(frames, frames.dtype.kind == "f", unusable)
+        fitted = np.full((len(frames), 6), np.nan)
+        usable = frames[~unusable] if unusable.any() else frames
+        fits = np.empty((len(usable), 6))
+        if len(usable):
+            usable.flags.writeable = False
+            gaussian_kernel.fit_gaussians(usable, self.tolerance_px, self.iterations, fits)
+        fitted[~unusable] = fits
+        light, x, y, s_x, s_y, _ = fitted.T
+        found = (light > 0) & (s_x < width) & (s_y < height)
+        found &= (x > -0.5) & (x < width - 0.5) & (y > -0.5) & (y < height - 0.5)
+        return np.where(found[:, None], fitted[:, 1:3], np.nan)
+
+
+def require_one_spot(geometry: SensorGeometry, by: str) -> None:
+    """Raise UnsuitableDesignError for a design whose frames hold several spots, or lines."""
+    for field in ("apertures", "slits", "code_bits"):
+        if getattr(geometry, field) is not None:
+            raise UnsuitableDesignError(
+                f"{by} reads a single spot; the sensor's design has {field}"
+            )

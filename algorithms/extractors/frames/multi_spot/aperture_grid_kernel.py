@@ -1,0 +1,324 @@
+"""Match spots to the apertures that cast them: the displacement that explains most of them."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.compiled import compiled
+from algorithms.contract import Floats
+
+Indices = NDArray[np.int64]
+Votes = NDArray[np.int32]
+
+#: Displacements tried, those that most pairs of a spot and an aperture vote for.
+_CANDIDATES = 64
+#: Rounds of matching and averaging; the first reaches further, by _REACH tolerances.
+_ROUNDS = 4
+_REACH = 2.0
+
+
+@compiled
+def _nearest(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    table: Indices, corner: Floats, cell: float, apertures: Floats, x: float, y: float, reach: float
+) -> tuple[int, float]:
+    """Aperture nearest to a point within `reach`, and its squared distance; -1 for none.
+
+    `table` (R, C) holds the aperture in each cell of a lattice from `corner`, or -1.
+    """
+    best = -1
+    least = reach * reach
+    top = max(math.floor((y - reach - corner[1]) / cell), 0)
+    bottom = min(math.floor((y + reach - corner[1]) / cell) + 1, table.shape[0])
+    left = max(math.floor((x - reach - corner[0]) / cell), 0)
+    right = min(math.floor((x + reach - corner[0]) / cell) + 1, table.shape[1])
+    for i in range(top, bottom):
+        for j in range(left, right):
+            a = table[i, j]
+            if a >= 0:
+                dx = x - apertures[a, 0]
+                dy = y - apertures[a, 1]
+                distance = dx * dx + dy * dy
+                if distance < least:
+                    least = distance
+                    best = a
+    return best, least
+
+
+@compiled
+def _expected(apertures: Floats, x: float, y: float, frame: tuple[int, int], margin: float) -> int:
+    """How many apertures cast a spot that is whole in the frame (height, width)."""
+    found = 0
+    for a in range(apertures.shape[0]):
+        half = 0.5 * apertures[a, 2] + margin
+        px = apertures[a, 0] + x
+        py = apertures[a, 1] + y
+        if half <= px < frame[1] - 1 - half and half <= py < frame[0] - 1 - half:
+            found += 1
+    return found
+
+
+@compiled
+def _cast(spots: Floats, apertures: Floats, cell: float, ballot: Votes, touched: Indices) -> int:
+    """Add the vote of each pair of spot and aperture; write the cells voted for, return how many.
+
+    A pair votes for its displacement; `ballot` starts one cell below the least there can be.
+    """
+    flat = ballot.ravel()
+    low_x = apertures[:, 0].max()
+    low_y = apertures[:, 1].max()
+    cells = 0
+    for s in range(spots.shape[0]):
+        for a in range(apertures.shape[0]):
+            j = int((spots[s, 0] - apertures[a, 0] + low_x) / cell) + 1
+            i = int((spots[s, 1] - apertures[a, 1] + low_y) / cell) + 1
+            at = i * ballot.shape[1] + j
+            if flat[at] == 0:
+                touched[cells] = at
+                cells += 1
+            flat[at] += 1
+    return cells
+
+
+@compiled
+def _around(ballot: Votes, at: int) -> int:
+    """Votes of a cell and its eight neighbours."""
+    i, j = at // ballot.shape[1], at % ballot.shape[1]
+    votes = 0
+    for line in range(i - 1, i + 2):
+        for column in range(j - 1, j + 2):
+            votes += ballot[line, column]
+    return votes
+
+
+@compiled
+def _is_peak(ballot: Votes, at: int) -> bool:
+    """Whether no neighbour of a cell has more votes, and none before it as many."""
+    i, j = at // ballot.shape[1], at % ballot.shape[1]
+    for line in range(i - 1, i + 2):
+        for column in range(j - 1, j + 2):
+            other = ballot[line, column]
+            before = line < i or (line == i and column < j)
+            if other > ballot[i, j] or (before and other == ballot[i, j]):
+                return False
+    return True
+
+
+@compiled
+def _rank(ballot: Votes, touched: Indices, best: Indices, votes: Indices) -> int:
+    """Write the peaks of the ballot with most votes around them to `best`; return how many.
+
+    Those with less than a third of the most are chance pairs.
+    """
+    most = 0
+    for at in touched:
+        most = max(most, _around(ballot, at))
+    kept = 0
+    for at in touched:
+        around = _around(ballot, at)
+        full = kept == best.size
+        if around < max(most // 3, 1) or (full and around <= votes[kept - 1]):
+            continue
+        if not _is_peak(ballot, at):
+            continue
+        place = kept - 1 if full else kept
+        while place > 0 and votes[place - 1] < around:
+            votes[place] = votes[place - 1]
+            best[place] = best[place - 1]
+            place -= 1
+        votes[place] = around
+        best[place] = at
+        kept = min(kept + 1, best.size)
+    return kept
+
+
+@compiled
+def _fit(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    spots: Floats,
+    apertures: Floats,
+    table: Indices,
+    corner: Floats,
+    cell: float,
+    x: float,
+    y: float,
+    tolerance: float,
+    partner: Indices,
+    distance: Floats,
+) -> tuple[float, float, float, int]:
+    """Displacement near (x, y) under which spots lie on apertures, its quality and their number.
+
+    `partner` (A,) receives the spot of each aperture, or -1. The quality is the sum over the
+    matched of one less their squared distance in tolerances.
+    """
+    matched = 0
+    quality = 0.0
+    for turn in range(_ROUNDS):
+        reach = tolerance * (_REACH if turn == 0 else 1.0)
+        partner[:] = -1
+        for s in range(spots.shape[0]):
+            a, squared = _nearest(
+                table, corner, cell, apertures, spots[s, 0] - x, spots[s, 1] - y, reach
+            )
+            if a >= 0 and (partner[a] < 0 or squared < distance[a]):
+                partner[a] = s
+                distance[a] = squared
+        matched = 0
+        quality = 0.0
+        sum_x = 0.0
+        sum_y = 0.0
+        for a in range(apertures.shape[0]):
+            s = partner[a]
+            if s >= 0:
+                matched += 1
+                quality += 1.0 - distance[a] / (reach * reach)
+                sum_x += spots[s, 0] - apertures[a, 0]
+                sum_y += spots[s, 1] - apertures[a, 1]
+        if matched == 0:
+            break
+        if turn < _ROUNDS - 1:
+            x = sum_x / matched
+            y = sum_y / matched
+    return x, y, quality, matched
+
+
+@compiled
+def _explain(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    spots: Floats,
+    apertures: Floats,
+    table: Indices,
+    corner: Floats,
+    cell: float,
+    frame: tuple[int, int],
+    margin: float,
+    tolerance: float,
+    prices: tuple[float, float, float],
+    places: Floats,
+    votes: Indices,
+    partner: Indices,
+    partners: Indices,
+) -> tuple[float, float]:
+    """Best displacement near one of `places` (C, 2), and the spot of each aperture under it.
+
+    NaN where none is clear. `votes` (C,) are the most spots that a place can explain.
+    """
+    absent, clear, share = prices
+    distance = np.empty(apertures.shape[0])
+    first = -np.inf
+    first_x = np.nan
+    first_y = np.nan
+    second = -np.inf
+    enough = False
+    for c in range(votes.size):
+        # No spot adds more than one: this one can neither win nor be near to it.
+        price = absent * _expected(apertures, places[c, 0], places[c, 1], frame, margin)
+        if votes[c] - price < first - 2.0 * clear:
+            continue
+        x, y, quality, matched = _fit(
+            spots,
+            apertures,
+            table,
+            corner,
+            cell,
+            places[c, 0],
+            places[c, 1],
+            tolerance,
+            partner,
+            distance,
+        )
+        expected = _expected(apertures, x, y, frame, margin)
+        score = quality - absent * expected
+        same = abs(x - first_x) < tolerance and abs(y - first_y) < tolerance
+        if score > first:
+            if not same:
+                second = first
+            first, first_x, first_y = score, x, y
+            enough = matched >= share * expected
+            partners[:] = partner
+        elif not same:
+            second = max(second, score)
+    if enough and first - second >= clear:
+        return first_x, first_y
+    partners[:] = -1
+    return np.nan, np.nan
+
+
+@compiled
+def match(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    spots: Floats,
+    counts: Indices,
+    apertures: Floats,
+    table: Indices,
+    corner: Floats,
+    cell: float,
+    frame: tuple[int, int],
+    margin: float,
+    tolerance: float,
+    prices: tuple[float, float, float],
+    displacement: Floats,
+    partners: Indices,
+) -> None:
+    """Find the displacement (x, y) of the apertures that explains each frame's spots.
+
+    A displacement scores by its quality (see `_fit`), less a price for each aperture whose spot
+    would be whole in the frame: so a grid is not taken for the one shifted by a hole.
+
+    Parameters
+    ----------
+    spots, counts
+        (N, S, 3) and (N,) as `spots.segment` writes them.
+    apertures, table, corner, cell
+        (A, 3) x, y, width; the lattice of `_nearest`.
+    frame, margin
+        Height and width; px that a spot reaches beyond its aperture.
+    tolerance
+        Largest distance of a spot from its place, px.
+    prices
+        The price ``absent``; by how much the best displacement must beat every other; the least
+        share of the expected spots that must be there.
+    displacement, partners
+        (N, 2) and (N, A): receive the displacement, NaN where none is found, and the spot of
+        each aperture, -1 for none.
+    """
+    height, width = frame
+    low_x = apertures[:, 0].max()
+    low_y = apertures[:, 1].max()
+    wide = width + low_x - apertures[:, 0].min()
+    high = height + low_y - apertures[:, 1].min()
+    ballot = np.zeros((int(high / tolerance) + 4, int(wide / tolerance) + 4), dtype=np.int32)
+    touched = np.empty(max(counts.max(), 1) * apertures.shape[0], dtype=np.int64)
+    best = np.empty(_CANDIDATES, dtype=np.int64)
+    votes = np.empty(_CANDIDATES, dtype=np.int64)
+    places = np.empty((_CANDIDATES, 2))
+    partner = np.empty(apertures.shape[0], dtype=np.int64)
+    for k in range(spots.shape[0]):
+        displacement[k] = np.nan
+        partners[k] = -1
+        if counts[k] < 1:
+            continue
+        seen = spots[k, : counts[k]]
+        cells = _cast(seen, apertures, tolerance, ballot, touched)
+        candidates = _rank(ballot, touched[:cells], best, votes)
+        for at in touched[:cells]:
+            ballot.ravel()[at] = 0
+        for c in range(candidates):
+            places[c, 0] = (best[c] % ballot.shape[1] - 0.5) * tolerance - low_x
+            places[c, 1] = (best[c] // ballot.shape[1] - 0.5) * tolerance - low_y
+        x, y = _explain(
+            seen,
+            apertures,
+            table,
+            corner,
+            cell,
+            frame,
+            margin,
+            tolerance,
+            prices,
+            places,
+            votes[:candidates],
+            partner,
+            partners[k],
+        )
+        displacement[k, 0] = x
+        displacement[k, 1] = y

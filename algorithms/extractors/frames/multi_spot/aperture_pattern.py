@@ -1,0 +1,300 @@
+"""Find a mask's pattern of apertures in a frame: whole spots, and which aperture cast each."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.contract import Floats, SensorGeometry, UnsuitableDesignError
+from algorithms.inputs import require_positive
+from algorithms.row_arithmetic import medians
+
+Apertures = tuple[tuple[float, float, float], ...]
+"""A row an aperture: x, y from the middle of the mask, and width, px."""
+
+PATTERN_NEEDS = ("focal_length_mm", "pixel_pitch_mm", "aperture_width_mm", "aperture_shape")
+"""Fields of a sensor's design that `design_pattern` reads; slits have no shape there."""
+
+#: Angular diameter of the Sun, rad: its image behind a hole is this times the distance.
+SOLAR_DIAMETER = 0.0093
+#: Middle of the light that silicon sees.
+_WAVELENGTH_MM = 550e-6
+#: Pixels of a spot above its threshold, over those of its aperture: the least of the smallest,
+#: the most of the largest with the Sun's image, which grows with incidence.
+_AREAS = (0.4, 6.0)
+#: Least pixels of a spot: fewer are hot pixels.
+_LEAST_PIXELS = 4.0
+#: Price of an aperture that should be seen and is not, in spots found.
+_ABSENT = 0.15
+#: Spots by which the best displacement must be ahead of every other.
+_CLEAR = 0.5
+#: Least share of the expected spots.
+SHARE = 0.3
+#: Pixels of a frame whose median is its background.
+_SAMPLE = 4096
+#: Least height of spots above the background, in its noise: what small frames of noise do not
+#: reach. Large ones do, but their lit pixels make no spots.
+_LEAST_SIGNAL = 5.0
+#: Spots kept of a frame, an aperture: stray lights may add to them.
+_SPOTS_PER_APERTURE = 4
+
+
+@dataclass(frozen=True, eq=False)
+class Lattice:
+    """The apertures of a mask, and which of them is near a point."""
+
+    apertures: Floats  # (A, 3)
+    table: NDArray[np.int64]  # (R, C) the aperture in a cell, -1 for none
+    corner: Floats  # (2,) of the table's first cell
+    cell_px: float
+
+
+@dataclass(frozen=True, eq=False)
+class Levels:
+    """Gray levels of frames (N, H, W).
+
+    Attributes
+    ----------
+    maxima
+        (N, H) largest value of each row, in the frames' type.
+    floor, peak
+        (N,) background, and brightness of the spots.
+    threshold
+        (N,) level above which a pixel is lit; infinite for a frame that cannot be used.
+    """
+
+    maxima: NDArray[Any]
+    floor: Floats
+    peak: Floats
+    threshold: Floats
+
+    def part(self, start: int, end: int | None = None) -> Levels:
+        """Levels of the frames ``start .. end - 1``."""
+        rows = slice(start, end)
+        return Levels(self.maxima[rows], self.floor[rows], self.peak[rows], self.threshold[rows])
+
+
+@dataclass(frozen=True, eq=False)
+class Pattern:
+    """What was found in frames (N, H, W) of a mask of A apertures.
+
+    Attributes
+    ----------
+    displacement
+        (N, 2) of the mask's middle on the detector; NaN where the pattern was not found.
+    spots
+        (N, A, 2) position of each aperture's spot; NaN where it is not seen whole.
+    """
+
+    displacement: Floats
+    spots: Floats
+
+
+def design_pattern(geometry: SensorGeometry, by: str) -> dict[str, Any]:
+    """Parameters ``apertures_px`` and ``blur_px`` of a sensor's mask.
+
+    A sensor without a list of apertures has one, over the detector's middle.
+
+    Raises
+    ------
+    UnsuitableDesignError
+        Where a field needed is None, or the design's light is no image of apertures.
+    """
+    geometry.require(*PATTERN_NEEDS, by=by)
+    for field in ("slits", "code_bits", "lens_distortion"):
+        if getattr(geometry, field) is not None:
+            raise UnsuitableDesignError(
+                f"{by} reads spots behind apertures; the sensor's design has {field}"
+            )
+    pitch, width = geometry.pixel_pitch_mm, geometry.aperture_width_mm
+    focal = geometry.focal_length_mm
+    if pitch is None or width is None or focal is None:
+        raise UnsuitableDesignError(
+            f"{by} needs pixel_pitch_mm, aperture_width_mm and focal_length_mm"
+        )
+    apertures = geometry.apertures or ((0.0, 0.0, width),)
+    fresnel = min(w for _, _, w in apertures) ** 2 / (4.0 * _WAVELENGTH_MM * focal)
+    if fresnel < 1.0:
+        raise UnsuitableDesignError(
+            f"{by} reads images of apertures; the sensor's are of Fresnel number {fresnel:.2g}: "
+            "diffraction makes their spots, at least 1 is needed"
+        )
+    return {
+        # a thousandth of a pixel is a fraction of what masks are made to
+        "apertures_px": tuple(tuple(round(v / pitch, 6) for v in row) for row in apertures),
+        "blur_px": round(SOLAR_DIAMETER * focal / pitch, 6),
+    }
+
+
+def require_pattern(
+    by: str, apertures_px: Apertures, blur_px: float, threshold: float, tolerance_px: float
+) -> None:
+    """Raise ValueError naming the first parameter of a pattern that is out of range."""
+    rows = np.array(apertures_px, dtype=np.float64) if apertures_px else np.empty((0, 3))
+    if rows.ndim != 2 or rows.shape[1] != 3 or len(rows) == 0 or not np.isfinite(rows).all():
+        raise ValueError(f"{by}: apertures_px must be rows of finite x, y, width; got {rows.shape}")
+    if not (rows[:, 2] > 0).all():
+        raise ValueError(f"{by}: widths in apertures_px must be positive; got {rows[:, 2].min()}")
+    if not (math.isfinite(blur_px) and blur_px >= 0):
+        raise ValueError(f"{by}: blur_px must be finite and not negative; got {blur_px!r}")
+    if not 0.0 < threshold < 1.0:
+        raise ValueError(f"{by}: threshold must be in (0, 1); got {threshold!r}")
+    require_positive(by, tolerance_px=tolerance_px)
+    nearest = nearest_distance(rows)
+    if not tolerance_px < nearest / 4.0:
+        raise ValueError(
+            f"{by}: tolerance_px must be below a quarter of the least distance of two apertures, "
+            f"{nearest:.4g} px; got {tolerance_px!r}"
+        )
+
+
+def nearest_distance(apertures: Floats) -> float:
+    """Least distance of two apertures (A, 3); infinite for one alone."""
+    if len(apertures) == 1:
+        return math.inf
+    order = np.lexsort(apertures.T[1::-1])
+    x, y = apertures[order, 0], apertures[order, 1]
+    least = math.inf
+    for step in range(1, len(x)):
+        apart = x[step:] - x[:-step]
+        if apart.min() >= least:  # sorted by x: those further on are no nearer
+            break
+        least = min(least, float(np.hypot(apart, y[step:] - y[:-step]).min()))
+    return least
+
+
+@lru_cache(maxsize=8)
+def lattice(apertures_px: Apertures) -> Lattice:
+    """Return the apertures sorted into cells so small that none holds two."""
+    apertures = np.array(apertures_px, dtype=np.float64)
+    corner = apertures[:, :2].min(axis=0)
+    span = apertures[:, :2].max(axis=0) - corner
+    cell = 0.7 * min(nearest_distance(apertures), float(span.max()) + 1.0)
+    j, i = np.floor((apertures[:, :2] - corner) / cell).astype(np.int64).T
+    table = np.full((i.max() + 1, j.max() + 1), -1, dtype=np.int64)
+    table[i, j] = np.arange(len(apertures))
+    for array in (apertures, table, corner):
+        array.flags.writeable = False
+    return Lattice(apertures, table, corner, cell)
+
+
+def frame_levels(frames: NDArray[Any], apertures_px: Apertures, threshold: float) -> Levels:
+    """Levels of the frames (N, H, W) of `as_frames`, each by itself.
+
+    The floor is the median of some of the pixels. The peak is not the frame's brightest pixel,
+    which may be a hot one, but the value that half as many rows exceed as an aperture is wide.
+    """
+    from algorithms.kernels import moments  # noqa: PLC0415 - Numba, at the first frame only
+
+    count, height, _ = frames.shape
+    maxima = np.empty((count, height), dtype=frames.dtype)
+    moments.row_maxima(frames, maxima)
+    unusable = np.empty(count, dtype=np.bool_)
+    moments.unusable(frames, frames.dtype.kind == "f", unusable)
+    maxima[unusable] = 0
+    floor, noise = _floor_and_noise(frames)
+    narrowest = min(width for _, _, width in apertures_px)
+    rank = height - min(max(round(narrowest / 2.0), 1), height)
+    peak = np.partition(maxima, rank, axis=1)[:, rank].astype(np.float64)
+    with np.errstate(invalid="ignore", over="ignore"):  # infinite pixels: unusable
+        unusable |= ~((peak > floor) & (peak - floor >= _LEAST_SIGNAL * noise))
+        level = floor + threshold * (peak - floor)
+    level[unusable] = np.inf
+    return Levels(maxima, floor, peak, level)
+
+
+def find_pattern(
+    frames: NDArray[Any],
+    levels: Levels,
+    apertures_px: Apertures,
+    blur_px: float,
+    tolerance_px: float,
+) -> Pattern:
+    """Find the pattern in each of the frames (N, H, W) of `as_frames`, by itself.
+
+    The spots are centroids of the light above the threshold.
+    """
+    from algorithms.extractors.frames.multi_spot import (  # noqa: PLC0415 - Numba on first use
+        aperture_grid_kernel,
+        spots_kernel,
+    )
+
+    count, height, width = frames.shape
+    known = lattice(apertures_px)
+    widths = known.apertures[:, 2]
+    least = max(_AREAS[0] * math.pi / 4.0 * float(widths.min()) ** 2, _LEAST_PIXELS)
+    most = max(_AREAS[1] * (float(widths.max()) + blur_px) ** 2, 2.0 * least)
+    room = min(_SPOTS_PER_APERTURE * len(widths) + 16, int(height * width / least) + 1)
+    seen = np.empty((count, room, 3))
+    counts = np.empty(count, dtype=np.int64)
+    spots_kernel.segment(frames, levels.maxima, levels.threshold, least, most, seen, counts)
+
+    displacement = np.empty((count, 2))
+    partners = np.empty((count, len(widths)), dtype=np.int64)
+    aperture_grid_kernel.match(
+        seen,
+        counts,
+        known.apertures,
+        known.table,
+        known.corner,
+        known.cell_px,
+        (height, width),
+        margin_px(blur_px),
+        tolerance_px,
+        (_ABSENT, _CLEAR, SHARE),
+        displacement,
+        partners,
+    )
+    positions = np.take_along_axis(seen, np.maximum(partners, 0)[:, :, None], axis=1)[:, :, :2]
+    positions[partners < 0] = np.nan
+    return Pattern(displacement, positions)
+
+
+def margin_px(blur_px: float) -> float:
+    """How far a spot reaches beyond its aperture: half the Sun's image, and a pixel cut."""
+    return blur_px / 2.0 + 1.0
+
+
+def without_gaps(
+    follow: Callable[[int, Floats, Floats], int], pattern: Callable[[int], Pattern], count: int
+) -> None:
+    """Follow spots through `count` frames, finding the pattern anew wherever they are lost.
+
+    ``pattern(k)`` finds it in frame k alone, with a first axis of one; ``follow(k, displacement,
+    spots)`` goes on from there and returns how many frames it did before it lost the spots.
+    """
+    k = 0
+    while k < count:
+        here = pattern(k)
+        if np.isnan(here.displacement).any():
+            k += 1
+            continue
+        # a frame in which the pattern is found but not followed is passed over
+        k += max(follow(k, here.displacement, here.spots), 1)
+
+
+def _floor_and_noise(frames: NDArray[Any]) -> tuple[Floats, Floats]:
+    """Median (N,) of some of the pixels, and their standard deviation (N,) to the dark side.
+
+    Spots that cover less than half raise neither.
+    """
+    pixels = frames.reshape(len(frames), -1)
+    step = max(pixels.shape[1] // _SAMPLE, 1)
+    step += 1 - step % 2
+    while math.gcd(step, frames.shape[2]) > 1:  # so that it meets every column
+        step += 2
+    sample = pixels[:, ::step]
+    if sample.dtype.kind == "f":
+        sample = sample.astype(np.float64)
+    with np.errstate(invalid="ignore", over="ignore"):
+        # selecting among short integers takes a fraction of the time
+        floor = medians(sample)
+        darker = np.minimum(sample - floor[:, None], 0.0)
+        noise = np.sqrt(2.0 * np.mean(darker * darker, axis=1))
+    return floor, np.asarray(noise, dtype=np.float64)

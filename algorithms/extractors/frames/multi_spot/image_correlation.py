@@ -1,0 +1,242 @@
+"""Correlation of many spots with templates, summed over the spots, with prediction (FEIC)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import lru_cache
+from typing import Any, ClassVar, Literal, Self, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from algorithms.contract import (
+    FeatureKind,
+    Floats,
+    Observation,
+    Origin,
+    SensorGeometry,
+    UnsuitableDesignError,
+)
+from algorithms.extractors.frames.multi_spot.aperture_pattern import (
+    PATTERN_NEEDS,
+    SHARE,
+    Apertures,
+    Levels,
+    Pattern,
+    design_pattern,
+    find_pattern,
+    frame_levels,
+    lattice,
+    margin_px,
+    nearest_distance,
+    require_pattern,
+    without_gaps,
+)
+from algorithms.inputs import as_frames
+
+Shape = Literal["round", "square"]
+
+#: Points an axis of a pixel at which a template's coverage is sampled.
+_SAMPLES = 16
+#: Longest correlation to each side, px: cost grows with its square, accuracy no more.
+_LONGEST = 8.0
+
+
+@dataclass(frozen=True)
+class ImageCorrelation:
+    """Middle of the summed correlations of all spots with their templates.
+
+    Windows stand where the spots are predicted. Each is correlated with the image its aperture
+    should cast, and because all spots move alike, the sum of the correlations is one hill with
+    the noise of one measurement of all the light. A missing spot adds next to nothing to it.
+
+    Parameters
+    ----------
+    apertures_px : tuple of (x, y, width)
+        The mask's apertures, px from its middle; one at least.
+    shape : {"round", "square"}
+        Of the apertures; a square's sides lie along the pixels.
+    correlations : int
+        N_c, even and at least 2: correlations are taken up to ``N_c / 2`` px to each side.
+    blur_px : float
+        Width of the Sun's image behind a hole, px, not negative: the template is as much
+        larger than the aperture, and its rim as wide.
+    presence : float
+        Light of a spot in its window, over the mean of all, below which it is missing; in (0, 1).
+    threshold : float
+        The fraction, in (0, 1), of the spots' brightness that makes a spot when the pattern is
+        searched for.
+    tolerance_px : float
+        Largest distance of a spot from its aperture's place, px, in that search; below a quarter
+        of the least distance of two apertures.
+
+    Notes
+    -----
+    Implements: alg:FEIC (fe:feic, Xing2008): ``x_s = int(Dx + x_s + 0.5)``, ``C_s(m, n) = sum_ij
+    P_s(m + i, n + j) T_s(i, j)``, ``x_c = Dx + sum C_s (m - N_c / 2) / sum C_s``. Survey prints
+    (m - 4); corrected because the middle of 0..N_c is N_c / 2. Survey adds to Dx what windows at
+    whole pixels give; corrected because their fractions do not cancel: the windows' own mean
+    distance from the apertures, weighted by the light in them, takes its place. Survey takes the
+    centroid of all of C; corrected because of a hill cut off by the matrix it moves less than
+    the hill: the lowest value is taken off, and the gain is what leaving out the first or the
+    last column, known to be a pixel, changes. Windows are moved until they stand within half a
+    pixel of the result. Survey prints m with x, over rows; corrected because x runs along
+    columns here.
+
+    The study's templates are images of an earlier frame; here they are drawn from the design.
+    The prediction is the previous frame's result in `track`; in `extract`, which does not depend
+    on order, it is the pattern found in the same frame as MCAM does.
+
+    Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers: the
+    spot of an aperture over the detector's middle, seen or not.
+
+    Failure: a NaN row where the pattern is not found, as for MCAM, where the windows do not come
+    to rest, and where fewer than 0.3 of the spots that should be whole in the frame are there.
+
+    Cost: as MCAM, and ``2 (N_c + 1)^2`` operations a pixel of the template and spot.
+    """
+
+    name: ClassVar[str] = "feic"
+    taxonomy: ClassVar[str] = "FEIC"
+    studies: ClassVar[tuple[str, ...]] = ("Xing2008",)
+    labels: ClassVar[tuple[str, ...]] = ("fe:feic", "alg:FEIC")
+    origin: ClassVar[Origin] = "survey"
+    version: ClassVar[int] = 1
+    observation: ClassVar[Observation] = Observation.FRAMES
+    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
+    needs: ClassVar[tuple[str, ...]] = PATTERN_NEEDS
+
+    apertures_px: Apertures = field(repr=False)
+    shape: Shape = "round"
+    correlations: int = 8
+    blur_px: float = 0.0
+    presence: float = 0.3
+    threshold: float = 0.3
+    tolerance_px: float = 0.75
+
+    def __post_init__(self) -> None:
+        require_pattern(
+            self.name, self.apertures_px, self.blur_px, self.threshold, self.tolerance_px
+        )
+        if self.shape not in get_args(Shape):
+            raise ValueError(
+                f"{self.name}: shape must be one of {', '.join(get_args(Shape))}; "
+                f"got {self.shape!r}"
+            )
+        if self.correlations < 2 or self.correlations % 2:
+            raise ValueError(
+                f"{self.name}: correlations must be even and at least 2; got {self.correlations!r}"
+            )
+        if not 0.0 < self.presence < 1.0:
+            raise ValueError(f"{self.name}: presence must be in (0, 1); got {self.presence!r}")
+
+    @property
+    def features(self) -> tuple[str, ...]:
+        """Names of the two output columns."""
+        return ("x_px", "y_px")
+
+    @classmethod
+    def for_sensor(cls, geometry: SensorGeometry) -> Self:
+        """Return the method with this sensor's mask.
+
+        UnsuitableDesignError where its light is no spots. Correlations reach half a spot's width
+        to each side, 8 px at most, less where the window would hold light of a neighbour.
+        """
+        design = design_pattern(geometry, cls.name)
+        shape = geometry.aperture_shape
+        if shape is None:  # said above; for the type checker
+            raise UnsuitableDesignError(f"{cls.name} needs the sensor geometry's aperture_shape")
+        apertures = np.array(design["apertures_px"])
+        width = float(apertures[:, 2].max()) + design["blur_px"]
+        room = nearest_distance(apertures) - width - 1.0
+        reach = max(int(min(math.ceil(width / 2.0), room, _LONGEST)), 1)
+        return cls(shape=shape, correlations=2 * reach, **design)
+
+    def extract(self, observations: ArrayLike) -> Floats:
+        """Positions (N, 2) in frames (N, H, W); ValueError on wrong input."""
+        return self._correlated(observations)[0]
+
+    def spots(self, observations: ArrayLike) -> Floats:
+        """Positions (N, A, 2) of each aperture's spot in frames (N, H, W), px; NaN for none.
+
+        Each from its own correlation. ValueError on wrong input.
+        """
+        return self._correlated(observations)[1]
+
+    def track(self, observations: ArrayLike) -> Floats:
+        """Positions (N, 2) in successive frames (N, H, W) of one sequence.
+
+        The windows stand where the spots of the frame before were, as published, so that no
+        pattern is searched for and the mask's code is read once; the Sun may move the spots by
+        half of N_c px from frame to frame. A frame in which the spots are lost is searched as by
+        `extract`. ValueError on wrong input.
+        """
+        frames = as_frames(observations)
+        levels = frame_levels(frames, self.apertures_px, self.threshold)
+        found = np.full((len(frames), 2), np.nan)
+
+        def follow(k: int, start: Floats, seen: Floats) -> int:  # noqa: ARG001 - the caller's
+            done, part, _ = self._correlate(frames[k:], levels.part(k), start, sequence=True)
+            found[k : k + done] = part[:done]
+            return done
+
+        def pattern(k: int) -> Pattern:
+            return self._pattern(frames[k : k + 1], levels.part(k, k + 1))
+
+        without_gaps(follow, pattern, len(frames))
+        return found
+
+    def _pattern(self, frames: NDArray[Any], levels: Levels) -> Pattern:
+        return find_pattern(frames, levels, self.apertures_px, self.blur_px, self.tolerance_px)
+
+    def _correlated(self, observations: ArrayLike) -> tuple[Floats, Floats]:
+        frames = as_frames(observations)
+        levels = frame_levels(frames, self.apertures_px, self.threshold)
+        starts = self._pattern(frames, levels).displacement
+        _, found, spots = self._correlate(frames, levels, starts, sequence=False)
+        return found, spots
+
+    def _correlate(
+        self, frames: NDArray[Any], levels: Levels, starts: Floats, *, sequence: bool
+    ) -> tuple[int, Floats, Floats]:
+        from algorithms.extractors.frames.multi_spot import correlation_kernel  # noqa: PLC0415 - Numba, at first use
+
+        known = lattice(self.apertures_px).apertures
+        widths, kinds = np.unique(known[:, 2], return_inverse=True)
+        found = np.empty((len(frames), 2))
+        spots = np.empty((len(frames), len(known), 2))
+        floors = np.where(np.isfinite(levels.threshold), levels.floor, np.nan)
+        done = correlation_kernel.correlate_spots(
+            frames,
+            floors,
+            starts,
+            known,
+            drawn_templates(tuple(widths), self.blur_px, self.shape == "square"),
+            kinds.astype(np.int64),
+            self.correlations + 1,
+            margin_px(self.blur_px),
+            (self.presence, SHARE),
+            sequence,
+            found,
+            spots,
+        )
+        return done, found, spots
+
+
+@lru_cache(maxsize=8)
+def drawn_templates(widths: tuple[float, ...], blur_px: float, square: bool) -> Floats:
+    """Images (K, T, T) of apertures of these widths, px, centred, between 0 and 1.
+
+    A rim of width `blur_px` falls off linearly about the aperture's own; pixels hold its mean.
+    """
+    half = math.ceil((max(widths) + blur_px) / 2.0 + 0.5)
+    steps = (np.arange((2 * half + 1) * _SAMPLES) + 0.5) / _SAMPLES - half - 0.5
+    x, y = np.meshgrid(steps, steps)
+    away = np.maximum(np.abs(x), np.abs(y)) if square else np.hypot(x, y)
+    rim = max(blur_px, 1.0 / _SAMPLES)
+    shape = (len(widths), 2 * half + 1, _SAMPLES, 2 * half + 1, _SAMPLES)
+    light = np.stack([np.clip((width / 2.0 - away) / rim + 0.5, 0.0, 1.0) for width in widths])
+    templates: Floats = light.reshape(shape).mean(axis=(2, 4))
+    templates.flags.writeable = False
+    return templates

@@ -1,0 +1,128 @@
+"""Spots of a frame: connected pixels above a level, with the first moments of their light."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.compiled import compiled
+from algorithms.contract import Floats
+
+Runs = NDArray[np.int32]
+"""(R, 5) lit pixels side by side: a run of the same spot before it or itself, first column, past
+the last, number of pixels, whether the frame's edge cuts it."""
+
+
+@compiled
+def _root(runs: Runs, run: int) -> int:
+    """First run of the spot that a run belongs to, with the way there halved."""
+    while runs[run, 0] != run:
+        runs[run, 0] = runs[runs[run, 0], 0]
+        run = runs[run, 0]
+    return run
+
+
+@compiled
+def _add_runs(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    row: NDArray[Any], level: float, line: int, outermost: bool, runs: Runs, light: Floats, end: int
+) -> int:
+    """Append the runs of one row and their moments from index `end` on; return the new end."""
+    j = 0
+    while j < row.size:
+        if not row[j] > level:
+            j += 1
+            continue
+        first = j
+        total = 0.0
+        moment = 0.0
+        while j < row.size and row[j] > level:
+            u = row[j] - level
+            total += u
+            moment += (j - first) * u
+            j += 1
+        runs[end, 0] = end
+        runs[end, 1] = first
+        runs[end, 2] = j
+        runs[end, 3] = j - first
+        runs[end, 4] = outermost or first == 0 or j == row.size
+        light[end, 0] = total
+        light[end, 1] = moment + first * total
+        light[end, 2] = line * total
+        end += 1
+    return end
+
+
+@compiled
+def _join(runs: Runs, above: int, here: int, end: int) -> None:
+    """Join the runs ``here .. end - 1`` of a row to those above, ``above .. here - 1``."""
+    for run in range(here, end):
+        # those that end before this one begins touch none to come
+        while above < here and runs[above, 2] < runs[run, 1]:
+            above += 1
+        other = above
+        while other < here and runs[other, 1] <= runs[run, 2]:
+            a = _root(runs, other)
+            b = _root(runs, run)
+            runs[max(a, b), 0] = min(a, b)
+            other += 1
+
+
+@compiled
+def _keep(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    runs: Runs, light: Floats, end: int, least: float, most: float, spots: Floats
+) -> int:
+    """Sum the runs of each spot and write the whole ones of right size; return how many."""
+    for run in range(end - 1, -1, -1):  # a root comes before all of its runs
+        root = _root(runs, run)
+        if root != run:
+            runs[root, 3] += runs[run, 3]
+            runs[root, 4] |= runs[run, 4]
+            light[root] += light[run]
+    found = 0
+    for run in range(end):
+        if runs[run, 0] != run or runs[run, 4] or not least <= runs[run, 3] <= most:
+            continue
+        if found == spots.shape[0]:
+            return -1
+        spots[found, 0] = light[run, 1] / light[run, 0]
+        spots[found, 1] = light[run, 2] / light[run, 0]
+        spots[found, 2] = runs[run, 3]
+        found += 1
+    return found
+
+
+@compiled
+def segment(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    frames: NDArray[Any],
+    maxima: NDArray[Any],
+    levels: Floats,
+    least: float,
+    most: float,
+    spots: Floats,
+    counts: NDArray[np.int64],
+) -> None:
+    """Write the whole spots of each frame, in the order their first pixels are read.
+
+    A spot is a set of pixels above the frame's level (N,) that touch at sides or corners. Kept
+    are those of `least` to `most` pixels that do not touch the frame's edge: `spots` (N, S, 3)
+    receives the mean x and y, weighted by the light above the level, and the number of pixels.
+    `counts` (N,) is how many there are, -1 where more than S. `maxima` (N, H) are the rows'
+    largest values: rows that hold no pixel above the level are not read.
+    """
+    count, height, width = frames.shape
+    room = height * (width // 2 + 1)  # at most every other pixel starts a run
+    runs = np.empty((room, 5), dtype=np.int32)
+    light = np.empty((room, 3))
+    for k in range(count):
+        above = 0
+        here = 0
+        end = 0
+        for i in range(height):
+            above, here = here, end
+            if maxima[k, i] > levels[k]:
+                outermost = i == 0 or i == height - 1
+                end = _add_runs(frames[k, i], levels[k], i, outermost, runs, light, end)
+                _join(runs, above, here, end)
+        counts[k] = _keep(runs, light, end, least, most, spots[k])

@@ -1,0 +1,1 @@
+"""Extractors of lines of pixels behind slits, and the same methods on frames."""

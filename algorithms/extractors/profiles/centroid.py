@@ -1,0 +1,243 @@
+"""Classical middles of the light on lines behind slits: BCM, BCTM and MT-ACM of profiles."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from algorithms.contract import FeatureKind, Floats, Observation, Origin
+from algorithms.extractors.frames.centroid import BasicCentroid, ThresholdedCentroid
+from algorithms.extractors.frames.threshold_average import Crossing, MultipleThresholdCentroid
+from algorithms.extractors.profiles.slit_lines import SlitLines, dark_level
+
+Middles = Callable[[Floats, Floats], Floats]
+
+#: Window moves after the first: a window that its own middle moves settles in one or two.
+_MOVES = 2
+
+
+@dataclass(frozen=True)
+class ProfileCentroid(SlitLines):
+    """Intensity-weighted mean position of all light on each line.
+
+    Simple and sub-pixel, but dark signal counts with the light and pulls the result towards the
+    line's middle, in proportion to its distance and more where light is weak.
+
+    Parameters
+    ----------
+    line_axes, line_pixels, slits
+        The lines and what is before them: see `SlitLines`.
+    reach_px, margin_px
+        Largest displacement, and how much a spot is wider than its slit: see `SlitLines`.
+    subtract_dark : bool
+        Whether the line's median is taken off first; residuals below it count negative. The
+        published method subtracts nothing.
+
+    Notes
+    -----
+    Implements: alg:BCM (fe:bcm, Enright2008b) on a line: ``u_c = sum(u I) / sum(I)``,
+    less where the slits' own centroid is. Behind slits of two slants, whose spots move against
+    each other, each spot is summed in its own window, found as PD finds it and moved onto the
+    centroid twice.
+
+    Shapes: profiles (N, A L) of A lines, any unit, to ``(x_px, y_px)`` (N, 2), counted from the
+    first pixel of a line whose middle is the sensor's.
+
+    Failure: a NaN row for a profile without light (sum not positive), without contrast (all dark
+    or all saturated) or with a NaN or infinity. Behind slits of one slant a missing or cut spot, a
+    second Sun and noise alone are averaged in unseen; behind two slants they give NaN.
+
+    Cost: 4 operations a pixel.
+    """
+
+    name: ClassVar[str] = "bcm-profile"
+    taxonomy: ClassVar[str] = "BCM"
+    studies: ClassVar[tuple[str, ...]] = ("Enright2008b",)
+    labels: ClassVar[tuple[str, ...]] = ("fe:bcm", "alg:BCM")
+    origin: ClassVar[Origin] = "survey"
+    version: ClassVar[int] = 1
+    observation: ClassVar[Observation] = Observation.PROFILES
+    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
+
+    subtract_dark: bool = False
+
+    def extract(self, observations: ArrayLike) -> Floats:
+        """Centroids (N, 2) of profiles (N, A L); ValueError on wrong input."""
+        centroid = BasicCentroid()
+
+        def middles(lines: Floats, floors: Floats) -> Floats:
+            above = lines - floors[:, None] if self.subtract_dark else lines
+            return centroid.extract(above[:, None, :])[:, 0]
+
+        return self.spots(_shifts(self, self.lines(observations), _light_middle(self), middles))
+
+
+@dataclass(frozen=True)
+class ProfileThresholdedCentroid(SlitLines):
+    """Intensity-weighted mean position of the light above a fraction of each line's maximum.
+
+    The threshold is subtracted and everything below it set to zero, so that dark signal and
+    noise under it add nothing.
+
+    Parameters
+    ----------
+    line_axes, line_pixels, slits
+        The lines and what is before them: see `SlitLines`.
+    reach_px, margin_px
+        Largest displacement, and how much a spot is wider than its slit: see `SlitLines`.
+    threshold : float
+        The fraction mu of the maximum, in [0, 1). The survey gives no value; 0.3 is ours, as on
+        frames.
+
+    Notes
+    -----
+    Implements: alg:BCTM (fe:bctm, He2005) on a line: ``I' = max(I - mu I_max, 0)``, ``u_c =
+    sum(u I') / sum(I')``, less where the slits' own centroid is. Behind slits of two slants,
+    whose spots move against each other, each spot is summed in its own window, found as PD finds
+    it and moved onto the centroid twice.
+
+    Shapes: profiles (N, A L) of A lines, any unit, to ``(x_px, y_px)`` (N, 2), counted from the
+    first pixel of a line whose middle is the sensor's.
+
+    Failure: a NaN row for a profile without light (maximum not positive), without contrast (all
+    dark or all saturated) or with a NaN or infinity. Behind slits of one slant a missing or cut
+    spot, a second Sun and noise alone are averaged in unseen; behind two slants they give NaN.
+
+    Cost: 5 operations a pixel.
+    """
+
+    name: ClassVar[str] = "bctm-profile"
+    taxonomy: ClassVar[str] = "BCTM"
+    studies: ClassVar[tuple[str, ...]] = ("He2005",)
+    labels: ClassVar[tuple[str, ...]] = ("fe:bctm", "alg:BCTM")
+    origin: ClassVar[Origin] = "survey"
+    version: ClassVar[int] = 1
+    observation: ClassVar[Observation] = Observation.PROFILES
+    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
+
+    threshold: float = 0.3
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not 0.0 <= self.threshold < 1.0:
+            raise ValueError(f"{self.name}: threshold must be in [0, 1); got {self.threshold!r}")
+
+    def extract(self, observations: ArrayLike) -> Floats:
+        """Centroids (N, 2) of profiles (N, A L); ValueError on wrong input."""
+        centroid = ThresholdedCentroid(self.threshold)
+
+        def middles(lines: Floats, floors: Floats) -> Floats:  # noqa: ARG001 - as published
+            return centroid.extract(lines[:, None, :])[:, 0]
+
+        return self.spots(_shifts(self, self.lines(observations), _light_middle(self), middles))
+
+
+@dataclass(frozen=True)
+class ProfileThresholdAverage(SlitLines):
+    """Midpoint between the outermost flanks of each line's light, averaged over many thresholds.
+
+    Where slits share a slant their light is one pattern, whose first and last flanks move with
+    it; averaging thresholds resolves fractions of a pixel.
+
+    Parameters
+    ----------
+    line_axes, line_pixels, slits
+        The lines and what is before them: see `SlitLines`.
+    reach_px, margin_px
+        Largest displacement, and how much a spot is wider than its slit: see `SlitLines`.
+    accuracy_px : float
+        Wanted accuracy dx of a position, at least 1e-4 px: sets the number of thresholds.
+    lowest, highest : float
+        Fractions of the light's height above dark between which thresholds lie, as on frames.
+    crossing : {"pixel", "linear"}
+        Whether a rise counts at its pixel, as published, or is interpolated to the pixel before.
+
+    Notes
+    -----
+    Implements: alg:MTACM1, alg:MTACM2 (fe:mtacm, Massari2004) on a line: ``N_TH > sigma sqrt(e) /
+    dx``, ``u_l = (h_l + k_l) / 2``, ``u_c = mean_l u_l``, less where the middle between the
+    pattern's outer edges is. The kernel is that of the frames' sums. Behind slits of two
+    slants, whose spots move against each other, each spot is taken in its own window, found as
+    PD finds it and moved onto the midpoint twice.
+
+    Shapes: profiles (N, A L) of A lines, any unit, to ``(x_px, y_px)`` (N, 2), counted from the
+    first pixel of a line whose middle is the sensor's.
+
+    Failure: a NaN row for a profile without contrast (all dark or all saturated), with a NaN or
+    infinity, or whose light is cut by both ends of the line or one so that no threshold has a rise
+    from both sides. Behind slits of one slant a missing outer spot, a second Sun and noise alone
+    give the middle between the outermost flanks unseen; behind two slants they give NaN.
+
+    Cost: the median of each line, 2 operations a pixel and 4 a threshold.
+    """
+
+    name: ClassVar[str] = "mt-acm-profile"
+    taxonomy: ClassVar[str] = "MT-ACM"
+    studies: ClassVar[tuple[str, ...]] = ("Massari2004",)
+    labels: ClassVar[tuple[str, ...]] = ("fe:mtacm", "alg:MTACM1", "alg:MTACM2")
+    origin: ClassVar[Origin] = "survey"
+    version: ClassVar[int] = 1
+    observation: ClassVar[Observation] = Observation.PROFILES
+    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
+
+    accuracy_px: float = 0.01
+    lowest: float = 0.25
+    highest: float = 0.9
+    crossing: Crossing = "pixel"
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        # The same rules as on frames.
+        MultipleThresholdCentroid(self.accuracy_px, self.lowest, self.highest, self.crossing)
+
+    def extract(self, observations: ArrayLike) -> Floats:
+        """Positions (N, 2) in profiles (N, A L); ValueError on wrong input."""
+        from algorithms.kernels import crossings  # noqa: PLC0415 - Numba, at first use
+
+        def middles(lines: Floats, floors: Floats) -> Floats:
+            found = np.empty(len(lines))
+            inside = np.isfinite(lines[:, 0])  # windows are NaN as a whole, or not at all
+            crossings.threshold_midpoints(
+                np.where(inside[:, None], lines, 0.0),
+                floors,
+                self.accuracy_px,
+                self.lowest,
+                self.highest,
+                self.crossing == "linear",
+                found,
+            )
+            return np.where(inside, found, np.nan)
+
+        edges = [
+            middle + side * slit[2] / 2.0
+            for slit, middle in zip(self.slits, self.pattern(), strict=True)
+            for side in (-1, 1)
+        ]
+        middle = float(min(edges) + max(edges)) / 2.0
+        return self.spots(_shifts(self, self.lines(observations), middle, middles))
+
+
+def _light_middle(slits: SlitLines) -> float:
+    """Centroid of the slits' light on the line at zero shift, px."""
+    return float(np.average(slits.pattern(), weights=[slit[2] for slit in slits.slits]))
+
+
+def _shifts(slits: SlitLines, lines: Floats, middle: float, middles: Middles) -> Floats:
+    """Shifts (N A, G): of whole lines from `middle`, or of each spot in its window.
+
+    `middles` gives the positions (R,) of the light in lines (R, L) of dark level (R,).
+    """
+    floors = dark_level(lines)
+    if len(slits.tangents) == 1:
+        return (middles(lines, floors) - middle)[:, None]
+    shifts = slits.locate(lines, floors, smooth=True)
+    spots = len(slits.slits)
+    for _ in range(_MOVES + 1):
+        windows, starts = slits.windows(lines, shifts)
+        found = middles(windows.reshape(-1, windows.shape[2]), np.repeat(floors, spots))
+        shifts = slits.grouped(starts + found.reshape(-1, spots) - slits.pattern())
+    return shifts

@@ -1,0 +1,98 @@
+"""Shift of a spot from the noise subspace of its spectrum's covariance (eigen-analysis)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from algorithms.contract import FeatureKind, Floats, Observation, Origin
+from algorithms.extractors.profiles.slit_lines import SlitLines, dark_level
+from algorithms.extractors.profiles.spot_spectra import SpotSpectra
+from algorithms.inputs import require_positive
+
+#: Searches in turn, each in windows about the shift found before: the second already stays.
+_PASSES = 2
+
+
+@dataclass(frozen=True)
+class EigenAnalysis(SlitLines):
+    """Shift whose model spectrum has the least part in the noise subspace.
+
+    The cross-spectrum of a shifted spot with its reference is a tone along frequency. The
+    eigenvectors of its covariance but the strongest span what is noise only, and the tone of the
+    right shift has the least projection on them.
+
+    Parameters
+    ----------
+    line_axes, line_pixels, slits
+        The lines and what is before them: see `SlitLines`.
+    reach_px, margin_px
+        Largest displacement, and how much a spot is wider than its slit: see `SlitLines`.
+    lobes : float
+        Frequencies are used up to this many times the first zero of the slit's spectrum. Ours:
+        the published series has them all, of which those above hold little but noise.
+
+    Notes
+    -----
+    Implements: alg:eigen (fe:eigena, Enright2006b): zero-padding of the N pixels to ``K_x = 2 N -
+    1``; cross-spectrum ``R_r12[k]`` of the light with its reference; its own correlation over
+    frequency ``R_x[l]``; the Toeplitz covariance of its first lags; ``b(tau) = |S[k]|^2 exp(-2
+    pi j k tau / K_x)``, as many entries; ``tau = argmin |b^H E_n|^2`` over the noise eigenvectors
+    E_n, one spot leaving all but one. Survey prints argmax; corrected because the model of the
+    right shift is orthogonal to noise. Survey prints the correlation's exponent without its j;
+    corrected because the transform has one. ``R_x`` is summed directly: the printed detour over
+    a padded transform gives the same lags. The shift is first found to about a pixel as the
+    place where the pattern of slits is brightest (as PD does, on means over a slit's width), and
+    the N pixels are those of a window about each spot; the cross-spectra of slits of one slant
+    are summed. The minimum is searched on a grid and then off it, by Newton's method.
+
+    Shapes: profiles (N, A L) of A lines, any unit, to ``(x_px, y_px)`` (N, 2), counted from the
+    first pixel of a line whose middle is the sensor's.
+
+    Failure: a NaN row for a profile without contrast (all dark or all saturated), one that holds
+    a NaN or infinity, where a slit's spot is missing, cut by the line's end or covered by
+    another's, and where light elsewhere is half as bright (a second Sun, noise alone).
+
+    Cost: 2 operations a pixel and slit, the median of each line, 8 a frequency and pixel of the
+    windows, the eigenvectors of a small matrix, some 5 a side, and its side times 2 tries a pixel.
+    """
+
+    name: ClassVar[str] = "eigen-analysis"
+    taxonomy: ClassVar[str] = "Eigen-analysis"
+    studies: ClassVar[tuple[str, ...]] = ("Enright2006b",)
+    labels: ClassVar[tuple[str, ...]] = ("fe:eigena", "alg:eigen")
+    origin: ClassVar[Origin] = "survey"
+    version: ClassVar[int] = 1
+    observation: ClassVar[Observation] = Observation.PROFILES
+    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
+
+    lobes: float = 1.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        require_positive(self.name, lobes=self.lobes)
+
+    def extract(self, observations: ArrayLike) -> Floats:
+        """Positions (N, 2) in profiles (N, A L); ValueError on wrong input."""
+        from algorithms.kernels import slit_patterns  # noqa: PLC0415 - Numba, at first use
+
+        lines = self.lines(observations)
+        floors = dark_level(lines)
+        spectra = SpotSpectra.behind(self, padded=True, lobes=self.lobes)
+        shifts = self.locate(lines, floors, smooth=True)
+        size = spectra.reference.shape[1]
+        covariance = np.empty((*shifts.shape, size, size), dtype=np.complex128)
+        step = np.empty(shifts.shape)
+        reach = max(slit[2] for slit in self.slits) / 2.0 + 1.0
+        for _ in range(_PASSES):
+            cross = spectra.cross(lines, floors, shifts)
+            slit_patterns.frequency_correlations(cross, covariance)
+            # LAPACK takes one matrix at a time, so each profile's result is its own.
+            strongest = np.ascontiguousarray(np.linalg.eigh(covariance)[1][..., -1])
+            slit_patterns.least_projections(strongest, spectra.powers, spectra.period, reach, step)
+            step[~np.isfinite(cross).all(axis=-1)] = np.nan
+            shifts = shifts + step
+        return self.spots(shifts)

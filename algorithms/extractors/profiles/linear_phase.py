@@ -1,0 +1,255 @@
+"""Shift of a spot from the slope of its spectrum's phase (linear-phase)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar, Literal, Self, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from algorithms.contract import (
+    FeatureKind,
+    Floats,
+    Observation,
+    Origin,
+    SensorGeometry,
+    UnsuitableDesignError,
+)
+from algorithms.extractors.profiles.single_spot import require_one_spot, spot_size_px
+from algorithms.extractors.profiles.slit_lines import SlitLines, box_means, dark_level
+from algorithms.extractors.profiles.spot_spectra import SpotSpectra
+from algorithms.inputs import as_frames, require_positive
+
+Shape = Literal["round", "square"]
+
+#: Fits in turn, each in windows about the shift found before: the second already stays.
+_PASSES = 2
+
+
+@dataclass(frozen=True)
+class LinearPhase(SlitLines):
+    """Shift of the slits' light by the slope of its phase against a reference's.
+
+    A shift multiplies a spectrum by a phase that grows linearly with frequency. Light blurred or
+    narrowed evenly on both sides keeps its phase, so the reference need not have its width right.
+
+    Parameters
+    ----------
+    line_axes, line_pixels, slits
+        The lines and what is before them: see `SlitLines`.
+    reach_px, margin_px
+        Largest displacement, and how much a spot is wider than its slit: see `SlitLines`.
+    lobes : float
+        Frequencies are fitted up to this many times the first zero of the slit's spectrum.
+        Ours: the study gives no limit. Above, light is as weak as its noise, and blur turns signs.
+
+    Notes
+    -----
+    Implements: alg:linearphase (fe:linearphase, Enright2007b): ``Y[k] = S_a[k] / S_0[k]``, its
+    phase ``Psi[k] = -2 pi a k / N``, the slope a by least squares, ``tau = a`` in pixels (Delta X
+    = 1). Survey prints a plain fit over all k; corrected because bins without signal hold phases
+    of noise only: each counts by ``|S_0[k]|^2``, and only low ones do. The reference S_0 is
+    the spectrum of even light over the slit's width, known from the design; ``S_a conj(S_0)``
+    has the phase of the ratio and no division. The shift is first found to about a pixel as the
+    place where the pattern of slits is brightest (as PD does, on means over a slit's width), and
+    the transform is that of a window about each spot, whose phases are summed over the slits of
+    one slant: what is left to unwrap is a fraction of a turn, and the other spots stay out.
+
+    Shapes: profiles (N, A L) of A lines, any unit, to ``(x_px, y_px)`` (N, 2), counted from the
+    first pixel of a line whose middle is the sensor's.
+
+    Failure: a NaN row for a profile without contrast (all dark or all saturated), one that holds
+    a NaN or infinity, where a slit's spot is missing, cut by the line's end or covered by
+    another's, and where light elsewhere is half as bright (a second Sun, noise alone).
+
+    Cost: 2 operations a pixel and slit, the median of each line, and 8 a frequency and pixel of
+    the windows, of which there are some 2 and 50.
+    """
+
+    name: ClassVar[str] = "linear-phase"
+    taxonomy: ClassVar[str] = "Linear-phase"
+    studies: ClassVar[tuple[str, ...]] = ("Enright2007b",)
+    labels: ClassVar[tuple[str, ...]] = ("fe:linearphase", "alg:linearphase")
+    origin: ClassVar[Origin] = "survey"
+    version: ClassVar[int] = 1
+    observation: ClassVar[Observation] = Observation.PROFILES
+    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
+
+    lobes: float = 1.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        require_positive(self.name, lobes=self.lobes)
+
+    def extract(self, observations: ArrayLike) -> Floats:
+        """Positions (N, 2) in profiles (N, A L); ValueError on wrong input."""
+        lines = self.lines(observations)
+        floors = dark_level(lines)
+        spectra = SpotSpectra.behind(self, padded=False, lobes=self.lobes)
+        shifts = self.locate(lines, floors, smooth=True)
+        return self.spots(_refined(spectra, lines, floors, shifts))
+
+
+@dataclass(frozen=True)
+class FrameLinearPhase:
+    """Position of a spot by the slopes of the phases of its column and row sums.
+
+    As `LinearPhase`, once for each axis. The sums of a symmetric spot, blurred or not, have the
+    phase of their shift alone.
+
+    Parameters
+    ----------
+    width_px : float
+        Width of the spot, px: the aperture's diameter or side, or more by diffraction.
+    shape : {"round", "square"}
+        Its shape; a square's sides lie along the pixels.
+    margin_px : float
+        What the spot is wider than that on each side.
+    lobes : float
+        Frequencies are fitted up to this many times the first zero of the aperture's spectrum.
+
+    Notes
+    -----
+    Implements: alg:linearphase (fe:linearphase, Enright2007b) on the sums by columns and rows.
+    Survey prints a plain fit over all k; corrected because bins without signal hold phases of
+    noise only: each counts by ``|S_0[k]|^2``, and only low ones do. The reference S_0 is the
+    spectrum of the aperture's even light, summed. The spot is first found to about a pixel where
+    the sums over half of its width are largest; the transform is that of the sums over a square
+    window about it, so that pixels without light add no noise.
+
+    Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers.
+
+    Failure: a NaN row for a frame without contrast (all dark or all saturated), one that holds a
+    NaN or infinity, where the window leaves the frame (spot cut by the edge), and where sums
+    elsewhere are half as large as the spot's (a second Sun, noise alone).
+
+    Cost: 2 operations a pixel for the sums, 4 a pixel of the window and 16 a frequency and
+    column of it, of which there are some 3.
+    """
+
+    name: ClassVar[str] = "linear-phase-frame"
+    taxonomy: ClassVar[str] = "Linear-phase"
+    studies: ClassVar[tuple[str, ...]] = ("Enright2007b",)
+    labels: ClassVar[tuple[str, ...]] = ("fe:linearphase", "alg:linearphase")
+    origin: ClassVar[Origin] = "survey"
+    version: ClassVar[int] = 1
+    observation: ClassVar[Observation] = Observation.FRAMES
+    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
+    needs: ClassVar[tuple[str, ...]] = (
+        "focal_length_mm",
+        "pixel_pitch_mm",
+        "aperture_width_mm",
+        "aperture_shape",
+        "half_fov_deg",
+    )
+
+    width_px: float
+    shape: Shape = "round"
+    margin_px: float = 3.0
+    lobes: float = 1.0
+
+    def __post_init__(self) -> None:
+        require_positive(
+            self.name, width_px=self.width_px, margin_px=self.margin_px, lobes=self.lobes
+        )
+        if self.shape not in get_args(Shape):
+            raise ValueError(
+                f"{self.name}: shape must be one of {', '.join(get_args(Shape))}; "
+                f"got {self.shape!r}"
+            )
+
+    @property
+    def features(self) -> tuple[str, ...]:
+        """Names of the two output columns."""
+        return ("x_px", "y_px")
+
+    @classmethod
+    def for_sensor(cls, geometry: SensorGeometry) -> Self:
+        """Return the method with this sensor's aperture as its reference.
+
+        ValueError where a field of `needs` is None, or where the mask has many apertures or
+        slits: their spots are not one.
+        """
+        geometry.require(*cls.needs, by=cls.name)
+        require_one_spot(geometry, cls.name)
+        shape = geometry.aperture_shape
+        if shape is None:  # said above; for the type checker
+            raise UnsuitableDesignError(
+                f"{cls.name} needs the sensor geometry's aperture_shape; got None"
+            )
+        width, margin = spot_size_px(geometry, cls.name)
+        return cls(width, shape, margin)
+
+    def extract(self, observations: ArrayLike) -> Floats:
+        """Positions (N, 2) in frames (N, H, W); ValueError on wrong input."""
+        from algorithms.kernels import moments, slit_patterns, window_sums  # noqa: PLC0415 - Numba
+
+        frames = as_frames(observations)
+        count, height, width = frames.shape
+        columns = np.empty((count, width), dtype=moments.zero_of(frames).dtype)
+        rows = np.empty((count, height), dtype=columns.dtype)
+        moments.profiles(frames, moments.zero_of(frames), rows, columns)
+        unusable = np.empty(count, dtype=np.bool_)
+        moments.unusable(frames, frames.dtype.kind == "f", unusable)
+        columns[unusable] = 0
+        rows[unusable] = 0
+        half = math.ceil(self.width_px / 2.0 + self.margin_px)
+        found = np.column_stack(
+            [self._near(sums.astype(np.float64), half) for sums in (columns, rows)]
+        )
+        spectra = SpotSpectra.of(
+            np.array([float(half)]),
+            np.zeros(1, dtype=np.int64),
+            [self.width_px],
+            self.shape,
+            half,
+            padded=False,
+            lobes=self.lobes,
+        )
+        windows = np.empty((count, 2, 2 * half + 1))
+        step = np.empty((2 * count, 1))
+        none = np.zeros(2 * count)
+        for _ in range(_PASSES):
+            unseen = np.isnan(found).any(axis=1)
+            found[unseen] = -1.0  # a window about no pixel leaves the frame
+            centres = np.rint(found).astype(np.int64)
+            window_sums.window_profiles(frames, centres, half, windows)
+            cross = spectra.cross(windows.reshape(2 * count, -1), none, none[:, None])
+            slit_patterns.phase_slopes(cross, spectra.powers, spectra.period, step)
+            found = np.asarray(centres + step.reshape(count, 2), dtype=np.float64)
+        found[~np.isfinite(found).all(axis=1)] = np.nan
+        return found
+
+    def _near(self, sums: Floats, half: int) -> Floats:
+        """Positions (N,) in sums (N, L) to about a pixel; NaN where no one spot stands out."""
+        from algorithms.kernels import slit_patterns  # noqa: PLC0415 - Numba, at first use
+
+        box = 2 * int(self.width_px / 4.0) + 1
+        near = np.empty((len(sums), 1))
+        slit_patterns.match(
+            box_means(sums, box),
+            sums.min(axis=1),
+            np.zeros(1, dtype=np.int64),
+            np.zeros(1, dtype=np.int64),
+            np.zeros(1),
+            0.0,
+            0.0,
+            half + box // 2,
+            0,
+            near,
+        )
+        return near[:, 0]
+
+
+def _refined(spectra: SpotSpectra, lines: Floats, floors: Floats, shifts: Floats) -> Floats:
+    """Shifts (R, G) moved by what is left of the phase's slope there."""
+    from algorithms.kernels import slit_patterns  # noqa: PLC0415 - Numba, at first use
+
+    step = np.empty(shifts.shape)
+    for _ in range(_PASSES):
+        cross = spectra.cross(lines, floors, shifts)
+        slit_patterns.phase_slopes(cross, spectra.powers, spectra.period, step)
+        shifts = shifts + step
+    return shifts

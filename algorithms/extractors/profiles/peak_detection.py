@@ -1,0 +1,143 @@
+"""Whole-pixel positions of the brightest light: on lines behind slits and on frames (PD)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from algorithms.contract import FeatureKind, Floats, Observation, Origin, SensorGeometry
+from algorithms.extractors.profiles.single_spot import require_one_spot, spot_size_px
+from algorithms.extractors.profiles.slit_lines import SlitLines, dark_level
+from algorithms.inputs import as_frames, require_positive
+
+
+@dataclass(frozen=True)
+class PeakDetection(SlitLines):
+    """Brightest pixel of a line behind one slit; behind several, their pattern's brightest place.
+
+    The pattern is where its darkest pixel is brightest: one slit missed by a wrong place darkens
+    that place, so equal and equally spaced slits are not taken for each other. No finer than
+    a pixel, and within a spot of even light wherever noise is largest.
+
+    Parameters
+    ----------
+    line_axes, line_pixels, slits
+        The lines and what is before them: see `SlitLines`.
+    reach_px, margin_px
+        Largest displacement, and how much a spot is wider than its slit: see `SlitLines`.
+
+    Notes
+    -----
+    Implements: alg:PDsp, alg:PDmp (fe:peak, Enright2006b): ``n_peak = argmax_n I[n]``, and
+    ``n_peak = argmax_n min_i I[n + d_i]`` with the offsets d_i of the slits, to whole pixels;
+    ``tau = n_peak`` in pixels (Delta X = 1). Slits of one slant are one pattern; with two slants,
+    whose patterns shift against each other, the two maxima with the largest sum count among
+    those that a Sun in the field explains and that keep all spots apart. Of maxima that are
+    equal within a slit's width (a saturated spot) the middle of the first and the last counts.
+
+    Shapes: profiles (N, A L) of A lines, any unit, to ``(x_px, y_px)`` (N, 2), counted from the
+    first pixel of a line whose middle is the sensor's.
+
+    Failure: a NaN row for a profile without contrast (all dark or all saturated), one that holds
+    a NaN or infinity, where a slit's spot is missing, off the line or covered by another's, and
+    where light elsewhere is half as bright as the pattern's darkest pixel (a second Sun, noise
+    alone, a hot pixel).
+
+    Cost: 1 operation a pixel and slit, and the median of each line.
+    """
+
+    name: ClassVar[str] = "pd"
+    taxonomy: ClassVar[str] = "PD"
+    studies: ClassVar[tuple[str, ...]] = ("Enright2006b",)
+    labels: ClassVar[tuple[str, ...]] = ("fe:peak", "alg:PDsp", "alg:PDmp")
+    origin: ClassVar[Origin] = "survey"
+    version: ClassVar[int] = 1
+    observation: ClassVar[Observation] = Observation.PROFILES
+    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
+
+    def extract(self, observations: ArrayLike) -> Floats:
+        """Positions (N, 2) in profiles (N, A L); ValueError on wrong input."""
+        lines = self.lines(observations)
+        return self.spots(self.locate(lines, dark_level(lines), smooth=False))
+
+
+@dataclass(frozen=True)
+class FramePeak:
+    """Brightest pixel of a frame with one spot.
+
+    The simplest feature there is, and the baseline of the others: within a spot of even light it
+    stops wherever noise is largest, so it is no finer than the spot.
+
+    Parameters
+    ----------
+    width_px : float or None
+        Width of the widest spot: maxima further apart are two spots. None tells none apart.
+
+    Notes
+    -----
+    Implements: alg:PDsp (fe:peak, Enright2006b) on both axes at once: ``(x_c, y_c) = argmax
+    I(x, y)``. Of several equal maxima the middle of the box around them counts, so that a
+    saturated spot gives its centre.
+
+    Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers.
+
+    Failure: a NaN row for a frame that is dark (maximum not positive), without contrast (all
+    dark or all saturated) or holds a NaN or infinity, and where equal maxima are further apart
+    than `width_px`. A second spot that is darker, a hot pixel and noise alone cannot be told.
+
+    Cost: 1 operation a pixel, and a second look at rows that hold the maximum.
+    """
+
+    name: ClassVar[str] = "pd-frame"
+    taxonomy: ClassVar[str] = "PD"
+    studies: ClassVar[tuple[str, ...]] = ("Enright2006b",)
+    labels: ClassVar[tuple[str, ...]] = ("fe:peak", "alg:PDsp")
+    origin: ClassVar[Origin] = "survey"
+    version: ClassVar[int] = 1
+    observation: ClassVar[Observation] = Observation.FRAMES
+    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
+    needs: ClassVar[tuple[str, ...]] = ()
+
+    width_px: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.width_px is not None:
+            require_positive(self.name, width_px=self.width_px)
+
+    @property
+    def features(self) -> tuple[str, ...]:
+        """Names of the two output columns."""
+        return ("x_px", "y_px")
+
+    @classmethod
+    def for_sensor(cls, geometry: SensorGeometry) -> Self:
+        """Return the method for this sensor's aperture.
+
+        ValueError where the mask has many apertures or slits: their spots are not one.
+        """
+        require_one_spot(geometry, cls.name)
+        known = (geometry.focal_length_mm, geometry.pixel_pitch_mm, geometry.half_fov_deg)
+        if None in known or geometry.aperture_shape is None or geometry.aperture_width_mm is None:
+            return cls()
+        width, margin = spot_size_px(geometry, cls.name)
+        return cls(width_px=width + 2.0 * margin)
+
+    def extract(self, observations: ArrayLike) -> Floats:
+        """Positions (N, 2) in frames (N, H, W); ValueError on wrong input."""
+        from algorithms.kernels import moments, window_sums  # noqa: PLC0415 - Numba, at first use
+
+        frames = as_frames(observations)
+        maxima = np.empty(frames.shape[:2], dtype=frames.dtype)
+        moments.row_maxima(frames, maxima)
+        boxes = np.empty((len(frames), 4), dtype=np.int64)
+        window_sums.boxes_of_maxima(frames, maxima, boxes)
+        unusable = np.empty(len(frames), dtype=np.bool_)
+        moments.unusable(frames, frames.dtype.kind == "f", unusable)
+        found = (boxes[:, :2] + boxes[:, 2:]) / 2.0
+        if self.width_px is not None:
+            unusable |= ((boxes[:, 2:] - boxes[:, :2]) > self.width_px).any(axis=1)
+        found[unusable | ~(maxima.max(axis=1) > 0)] = np.nan
+        return found

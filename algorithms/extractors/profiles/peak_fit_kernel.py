@@ -1,0 +1,334 @@
+"""Least-squares fit of a row of equal images at known distances to a line of pixels.
+
+An image is a function of ``u``, the distance from its middle in half widths: one in the middle,
+about a half at ``u = 1``, and zero beyond `_FAR`. Lines are (R, L) float64; S spots belong to G
+groups that shift together.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.compiled import compiled
+from algorithms.contract import Floats
+
+Counts = NDArray[np.int64]
+
+#: Images by number, and what gives them their half at u = 1.
+RATIONAL, GAUSSIAN, DIFFRACTION = 0, 1, 2
+_HALF_GAUSSIAN = math.log(2.0)
+_HALF_SINC = 1.3915573782515103  # sin(x)^2 / x^2 = 1/2
+#: Half widths beyond which an image is dark.
+_FAR = 8.0
+#: Ratios of a step to the one before from which on, and up to which, the rest of a series of such
+#: steps is taken at once.
+_SLOW, _SLOWEST = 0.3, 0.95
+#: Times that the pixels of a fit are told anew before it is taken as it is.
+_ROUNDS = 3
+#: Largest step of a shift, half widths: further out an image has no slope to go by.
+_STRIDE = 0.5
+_DEPENDENT = 1e-10  # pivot over diagonal below which a parameter is not determined
+
+
+@compiled
+def image_of(u: float, kind: int, c: Floats) -> tuple[float, float]:
+    """Value and slope of an image; `c` (6,) are the rational one's coefficients."""
+    if kind == RATIONAL:
+        w = u * u
+        top = (c[0] * w + c[1]) * w + c[2]
+        bottom = (c[3] * w + c[4]) * w + c[5]
+        value = top / bottom
+        slope = 2.0 * u * ((2.0 * c[0] * w + c[1]) - value * (2.0 * c[3] * w + c[4])) / bottom
+        return value, slope
+    if kind == GAUSSIAN:
+        value = math.exp(-_HALF_GAUSSIAN * u * u)
+        return value, -2.0 * _HALF_GAUSSIAN * u * value
+    x = _HALF_SINC * u
+    if abs(x) < 1e-4:
+        return 1.0 - x * x / 3.0, -2.0 * x / 3.0 * _HALF_SINC
+    sinc = math.sin(x) / x
+    return sinc * sinc, 2.0 * sinc * (math.cos(x) - sinc) / x * _HALF_SINC
+
+
+@compiled
+def solve(matrix: Floats, right: Floats, size: int) -> bool:
+    """Solve ``matrix x = right`` in place by Cholesky; False where it is not positive definite."""
+    for i in range(size):
+        for j in range(i + 1):
+            total = matrix[i, j]
+            for k in range(j):
+                total -= matrix[i, k] * matrix[j, k]
+            if i == j:
+                if not total > _DEPENDENT * matrix[i, i]:
+                    return False
+                matrix[i, i] = math.sqrt(total)
+            else:
+                matrix[i, j] = total / matrix[j, j]
+    for i in range(size):
+        total = right[i]
+        for k in range(i):
+            total -= matrix[i, k] * right[k]
+        right[i] = total / matrix[i, i]
+    for m in range(size):
+        i = size - 1 - m
+        total = right[i]
+        for k in range(i + 1, size):
+            total -= matrix[k, i] * right[k]
+        right[i] = total / matrix[i, i]
+    return True
+
+
+@compiled
+def image_type(
+    places: Floats, groups: Counts, halves: Floats, shifts: Floats, overlap: float
+) -> tuple[int, int]:
+    """Spots of the two groups that overlap most, as indices; -1 where none do."""
+    closest = overlap
+    first = -1
+    second = -1
+    for i in range(places.size):
+        for j in range(i + 1, places.size):
+            if groups[i] != groups[j]:
+                away = abs(places[i] + shifts[groups[i]] - places[j] - shifts[groups[j]])
+                away /= 0.5 * (halves[i] + halves[j])
+                if away < closest:
+                    closest = away
+                    first = i
+                    second = j
+    return first, second
+
+
+@compiled
+def _reach(
+    places: Floats, groups: Counts, halves: Floats, amplitudes: int, around: Floats
+) -> tuple[float, float]:
+    """Return where the first and the last pixel of any spot may lie; nothing for no spots."""
+    first, last = math.inf, -1.0
+    for i in range(places.size):
+        middle = places[i] + around[amplitudes + groups[i]]
+        first = min(first, middle - _FAR * halves[i])
+        last = max(last, middle + _FAR * halves[i])
+    return min(first, last + 1.0), last
+
+
+@compiled
+def normal_equations(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    row: Floats,
+    floor: float,
+    places: Floats,
+    groups: Counts,
+    halves: Floats,
+    column: Counts,
+    kind: int,
+    c: Floats,
+    around: Floats,
+    found: Floats,
+    matrix: Floats,
+    right: Floats,
+) -> None:
+    """Fill ``Q^T Q`` (lower half) and ``Q^T d_beta`` at the parameters `found`.
+
+    Those are the amplitudes, spot i's at ``column[i]``, and then the groups' shifts. A spot's
+    pixels are those within `_FAR` of its place at the parameters `around`.
+    """
+    size = found.size
+    matrix[:size, :size] = 0.0
+    right[:size] = 0.0
+    amplitudes = column.max() + 1
+    q = np.zeros(size)
+    touched = np.empty(size, dtype=np.int64)
+    first, last = _reach(places, groups, halves, amplitudes, around)
+    for n in range(max(math.floor(first), 0), min(math.ceil(last) + 1, row.size)):
+        model = 0.0
+        lit = False
+        for i in range(places.size):
+            group = amplitudes + groups[i]
+            if abs(n - places[i] - around[group]) <= _FAR * halves[i]:
+                u = (n - places[i] - found[group]) / halves[i]
+                if not lit:
+                    q[:] = 0.0
+                    lit = True
+                value, slope = image_of(u, kind, c)
+                a = found[column[i]]
+                model += a * value
+                q[column[i]] += value
+                q[group] -= a * slope / halves[i]
+        if lit:
+            beta = row[n] - floor - model
+            count = 0
+            for i in range(size):
+                if q[i] != 0.0:
+                    touched[count] = i
+                    count += 1
+            for k in range(count):
+                i = touched[k]
+                right[i] += q[i] * beta
+                for m in range(k + 1):
+                    matrix[i, touched[m]] += q[i] * q[touched[m]]
+
+
+@compiled
+def same_pixels(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    places: Floats, groups: Counts, halves: Floats, amplitudes: int, one: Floats, other: Floats
+) -> bool:
+    """Whether all spots have the same pixels at two sets of parameters."""
+    for i in range(places.size):
+        first = places[i] + one[amplitudes + groups[i]]
+        second = places[i] + other[amplitudes + groups[i]]
+        far = _FAR * halves[i]
+        if math.ceil(first - far) != math.ceil(second - far):
+            return False
+        if math.floor(first + far) != math.floor(second + far):
+            return False
+    return True
+
+
+@compiled
+def _iterate(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    row: Floats,
+    floor: float,
+    places: Floats,
+    groups: Counts,
+    halves: Floats,
+    column: Counts,
+    kind: int,
+    c: Floats,
+    tolerance: float,
+    iterations: int,
+    found: Floats,
+    matrix: Floats,
+    right: Floats,
+) -> bool:
+    """Move `found` by Gauss-Newton steps, and say whether they end near the start.
+
+    The pixels that count stay the same until the steps end, and are then told anew: told at every
+    step, one on the border may come and go for ever. Where the image is not quite the light's,
+    steps shrink by a constant ratio; once they do, the rest of their series is taken at once.
+    """
+    count = column.max() + 1
+    size = found.size
+    start = found.copy()
+    around = found.copy()
+    widest = halves.max()
+    before = np.zeros(size)
+    rounds = 0
+    for _ in range(iterations):
+        normal_equations(
+            row, floor, places, groups, halves, column, kind, c, around, found, matrix, right
+        )
+        if not solve(matrix, right, size):
+            return False
+        along = 0.0
+        square = 0.0
+        ended = True
+        for i in range(size):
+            step = right[i]
+            scale = abs(found[i] + step)
+            if i >= count:
+                step = min(max(step, -_STRIDE * widest), _STRIDE * widest)
+                scale = widest
+                along += step * before[i]
+                square += before[i] * before[i]
+            found[i] += step
+            before[i] = step
+            ended = ended and abs(step) <= tolerance * scale
+            if i >= count and not abs(found[i] - start[i]) <= 2.0 * widest:
+                return False
+        if ended:
+            rounds += 1
+            if rounds == _ROUNDS or same_pixels(places, groups, halves, count, around, found):
+                return True
+            around[:] = found
+            before[:] = 0.0
+        elif _SLOW * square < along < _SLOWEST * square:
+            more = along / (square - along)
+            for i in range(count, size):
+                found[i] += min(max(more * before[i], -_STRIDE * widest), _STRIDE * widest)
+            before[:] = 0.0
+    return False
+
+
+@compiled
+def fit_images(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    lines: Floats,
+    floors: Floats,
+    starts: Floats,
+    places: Floats,
+    groups: Counts,
+    halves: Floats,
+    kind: int,
+    c: Floats,
+    overlap: float,
+    tolerance: float,
+    iterations: int,
+    out: Floats,
+    pairs: Counts,
+) -> None:
+    """Write the groups' shifts to `out` (R, G), and to `pairs` (R, 2) the spots that overlap.
+
+    Starts at shifts `starts` (R, G); `halves` (R, S) are the spots' half widths. NaN where the
+    fit does not end, an amplitude is not positive, or a shift goes further than a spot's width
+    from its start or a spot off the line.
+    """
+    spots = places.size
+    kinds = starts.shape[1]
+    matrix = np.empty((spots + kinds, spots + kinds))
+    right = np.empty(spots + kinds)
+    column = np.empty(spots, dtype=np.int64)
+    shifts = np.empty(kinds)
+    length = lines.shape[1]
+    for r in range(len(lines)):
+        out[r] = np.nan
+        pairs[r] = -1
+        if not np.isfinite(starts[r]).all():
+            continue
+        shifts[:] = starts[r]
+        good = True
+        for _ in range(2):  # the peaks that overlap, as at the start and then as fitted
+            first, second = image_type(places, groups, halves[r], shifts, overlap)
+            if first == pairs[r, 0] and second == pairs[r, 1] and not math.isnan(out[r, 0]):
+                break
+            pairs[r, 0] = first
+            pairs[r, 1] = second
+            count = 0
+            for i in range(spots):
+                column[i] = column[first] if i == second else count
+                count += i != second
+            found = np.empty(count + kinds)
+            for i in range(spots):
+                at = round(places[i] + shifts[groups[i]])
+                found[column[i]] = lines[r, min(max(at, 0), length - 1)] - floors[r]
+            found[count:] = shifts
+            good = _iterate(
+                lines[r],
+                floors[r],
+                places,
+                groups,
+                halves[r],
+                column,
+                kind,
+                c,
+                tolerance,
+                iterations,
+                found,
+                matrix,
+                right,
+            )
+            for i in range(spots):
+                at = places[i] + found[count + groups[i]]
+                good = good and found[column[i]] > 0 and -0.5 <= at <= length - 0.5
+            if not good:
+                break
+            shifts[:] = found[count:]
+            out[r] = shifts
+        if not good:
+            out[r] = np.nan
+
+
+def numbered(image: str) -> Any:
+    """Return an image's number by its name."""
+    return {"rational": RATIONAL, "gaussian": GAUSSIAN, "diffraction": DIFFRACTION}[image]

@@ -1,0 +1,104 @@
+"""Cross-spectra of spots with their reference signal: what phase and subspace methods read."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.contract import Floats
+from algorithms.extractors.profiles.slit_lines import SlitLines
+
+#: First zero of a spectrum, in cycles a width: of a slit's even light, and of a disc's summed one.
+FIRST_ZERO = {"square": 1.0, "round": 1.2196699}
+
+Shape = Literal["round", "square"]
+
+
+@dataclass(frozen=True)
+class SpotSpectra:
+    """Windows around the spots of a line, and the spectra of their references.
+
+    Attributes
+    ----------
+    places : ndarray, shape (S,)
+        Positions of the spots at zero shift, px.
+    groups : ndarray, shape (S,)
+        Which shift moves each.
+    half_px : int
+        Half width of a window.
+    period : int
+        Length of the transform, px: the window's, or more where it is padded with zeros.
+    reference : ndarray, shape (S, K)
+        Spectra of the references at the frequencies 0 to K - 1, real: even light over the width
+        of each spot, about the middle of its window, summed over pixels.
+    """
+
+    places: Floats
+    groups: NDArray[np.int64]
+    half_px: int
+    period: int
+    reference: Floats
+
+    @classmethod
+    def behind(cls, slits: SlitLines, padded: bool, lobes: float) -> Self:
+        """Windows and references of slits, up to `lobes` times their spectrum's first zero."""
+        widths = [slit[2] for slit in slits.slits]
+        return cls.of(slits.pattern(), slits.groups, widths, "square", slits.half_px, padded, lobes)
+
+    @classmethod
+    def of(  # noqa: PLR0917 - what the attributes are made of
+        cls,
+        places: Floats,
+        groups: NDArray[np.int64],
+        widths: list[float],
+        shape: Shape,
+        half_px: int,
+        padded: bool,
+        lobes: float,
+    ) -> Self:
+        """Windows and references of spots of these widths, px."""
+        size = 2 * half_px + 1
+        period = 2 * size - 1 if padded else size
+        last = math.ceil(lobes * FIRST_ZERO[shape] * period / max(widths)) - 1
+        frequencies = np.arange(min(max(last, 1), (period - 1) // 2) + 1) / period
+        reference = np.array(
+            [width * _spectrum(frequencies * width, shape) for width in widths]
+        ) * np.sinc(frequencies)
+        return cls(places, groups, half_px, period, reference)
+
+    @property
+    def powers(self) -> Floats:
+        """Squared references (K,), summed over the spots of the first group."""
+        return np.asarray((self.reference[self.groups == 0] ** 2).sum(axis=0))
+
+    def cross(self, lines: Floats, floors: Floats, shifts: Floats) -> NDArray[np.complex128]:
+        """Cross-spectra (R, G, K) of lines (R, L) at shifts (R, G); NaN where a spot is cut."""
+        from algorithms.kernels import slit_patterns  # noqa: PLC0415 - Numba, at first use
+
+        spectra = np.empty((*shifts.shape, self.reference.shape[1]), dtype=np.complex128)
+        slit_patterns.cross_spectra(
+            lines,
+            floors,
+            shifts,
+            self.places,
+            self.groups,
+            self.half_px,
+            self.period,
+            self.reference,
+            spectra,
+        )
+        return spectra
+
+
+def _spectrum(cycles: Floats, shape: Shape) -> Floats:
+    """Spectrum, one at zero, of even light over a width, at frequencies in cycles a width."""
+    if shape == "square":
+        return np.asarray(np.sinc(cycles), dtype=np.float64)
+    from scipy.special import j1  # noqa: PLC0415 - SciPy, for round apertures only
+
+    angle = np.pi * np.where(cycles == 0, 1.0, cycles)
+    return np.where(cycles == 0, 1.0, 2.0 * j1(angle) / angle)

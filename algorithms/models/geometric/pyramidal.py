@@ -1,0 +1,163 @@
+"""Sun vectors from the lateral faces of a regular pyramid (Pyramidal)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import ClassVar, Literal, Self, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from algorithms.contract import (
+    FeatureKind,
+    Floats,
+    Origin,
+    SensorGeometry,
+    UnsuitableDesignError,
+    UnusableDataError,
+)
+from algorithms.inputs import (
+    as_calibration,
+    as_features,
+    require_fitted,
+    require_kind,
+    require_samples,
+)
+from algorithms.models.geometric.detector_faces import (
+    UNIT_TOLERANCE,
+    Normals,
+    require_normals,
+    row_sums,
+)
+from algorithms.row_arithmetic import normalised
+
+Coefficient = Literal["common", "each"]
+
+
+@dataclass
+class RegularPyramid:
+    """Each component of the Sun vector is the signals' mean, weighted by the faces' normals.
+
+    The columns of a regular pyramid's normals are orthogonal, so least squares over all faces
+    falls apart into three weighted sums. A constant added to all faces cancels in the two
+    horizontal ones, and noise averages out over the faces.
+
+    Parameters
+    ----------
+    face_normals : tuple of M vectors
+        Unit normals in the order of the features, M at least 3: all equally far from +z, by less
+        than 90 degrees, and evenly spaced around it, in any order.
+    coefficient : {"common", "each"}
+        Whether one measurement coefficient serves all faces, as published, or the calibration
+        gives each its own, which makes up for gains that differ.
+    dark_fraction : float
+        Share of the row's largest signal, in [0, 1), up to which a face counts as dark: what dark
+        current and stray light may look like.
+
+    Attributes
+    ----------
+    coefficients_ : ndarray, shape (M,)
+        xi of every face: cosine of incidence per unit of signal.
+
+    Notes
+    -----
+    Implements: eq:msfpyra1, eq:msfpyra2 (model:pyra, Wang2019): ``s = xi (b_x^T / b_x^T b_x,
+    b_y^T / b_y^T b_y, b_z^T / b_z^T b_z) e``, e the signals of the M illuminated faces, b_x, b_y
+    and b_z the components of their normals. Survey prints b_x in all three rows; corrected because
+    each row gives its own component. Azimuths are counted there from +y towards +x; the normals
+    here hold them. The length is scaled to one, so a common xi drops out of the direction.
+
+    Shapes: signals (N, M), in any common unit, to unit vectors (N, 3). xi is learnt by least
+    squares of the cosines of incidence on the signals of samples with all faces lit.
+
+    Failure: a NaN row for a NaN feature row, and where a face is dark: over some of the faces the
+    three sums do not separate. A constant added to all faces pulls the vector towards +z. fit
+    raises UnusableDataError where no sample lights all faces.
+
+    Cost: 6 operations a face and one root a sample.
+    """
+
+    name: ClassVar[str] = "pyramidal"
+    taxonomy: ClassVar[str] = "Pyramidal"
+    studies: ClassVar[tuple[str, ...]] = ("Wang2019",)
+    labels: ClassVar[tuple[str, ...]] = ("model:pyra", "eq:msfpyra1", "eq:msfpyra2")
+    origin: ClassVar[Origin] = "survey"
+    version: ClassVar[int] = 1
+    accepts: ClassVar[frozenset[FeatureKind]] = frozenset({FeatureKind.SIGNALS})
+    needs: ClassVar[tuple[str, ...]] = ("face_normals",)
+
+    face_normals: Normals
+    coefficient: Coefficient = "common"
+    dark_fraction: float = 0.01
+
+    coefficients_: Floats = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        self._normals()
+        if self.coefficient not in get_args(Coefficient):
+            raise ValueError(
+                f"{self.name}: coefficient must be one of {', '.join(get_args(Coefficient))}; "
+                f"got {self.coefficient!r}"
+            )
+        if not 0 <= self.dark_fraction < 1:
+            raise ValueError(
+                f"{self.name}: dark_fraction must be in [0, 1); got {self.dark_fraction!r}"
+            )
+
+    @classmethod
+    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
+        """Return the published model of the sensor's pyramid.
+
+        UnsuitableDesignError where it is none.
+        """
+        require_kind(kind, cls.accepts, cls.name)
+        geometry.require("face_normals", by=cls.name)
+        return cls(geometry.face_normals or ())
+
+    def fit(self, features: ArrayLike, sun: ArrayLike) -> Self:
+        """Learn the measurement coefficients."""
+        normals = self._normals()
+        found, vectors = as_calibration(features, sun, len(normals), self.name)
+        lit = self._all_lit(found)
+        require_samples(int(lit.sum()), 1, self.name, "with every face lit")
+        signals, cosines = found[lit], vectors[lit] @ normals.T
+        products, squares = (signals * cosines).sum(axis=0), (signals**2).sum(axis=0)
+        if self.coefficient == "common":
+            coefficients = np.full(len(normals), products.sum() / squares.sum())
+        else:
+            coefficients = products / squares
+        if not (coefficients > 0).all():
+            raise UnusableDataError(
+                f"{self.name}: the lit faces must look towards the Sun; the calibration gives "
+                f"coefficients of {coefficients.min():.6g} and more"
+            )
+        self.coefficients_ = coefficients
+        return self
+
+    def predict(self, features: ArrayLike) -> Floats:
+        """Sun unit vectors (N, 3) of signals (N, M)."""
+        require_fitted(self, "coefficients_")
+        normals = self._normals()
+        signals = as_features(features, len(normals), self.name)
+        signals[~self._all_lit(signals)] = np.nan
+        rows = [b / (b @ b) * self.coefficients_ for b in normals.T]
+        return normalised(np.column_stack([row_sums(signals, row) for row in rows]))
+
+    def _all_lit(self, signals: Floats) -> NDArray[np.bool_]:
+        least = np.maximum(self.dark_fraction * signals.max(axis=1), 0.0)
+        return np.asarray((signals > least[:, None]).all(axis=1))
+
+    def _normals(self) -> Floats:
+        """(M, 3) normals, or UnsuitableDesignError unless they are a regular pyramid's."""
+        normals = require_normals(self.face_normals, self.name)
+        up = normals[:, 2]
+        turns = np.sort(np.arctan2(normals[:, 1], normals[:, 0]))
+        steps = np.diff(turns, append=turns[0] + 2.0 * np.pi)
+        level = np.ptp(up) <= UNIT_TOLERANCE < up.min()
+        even = np.allclose(steps, 2.0 * np.pi / len(normals), rtol=0, atol=10 * UNIT_TOLERANCE)
+        if not (level and even):
+            raise UnsuitableDesignError(
+                f"{self.name} needs the faces of a regular pyramid around +z, equally tilted and "
+                f"evenly spaced; got {self.face_normals!r}"
+            )
+        return normals

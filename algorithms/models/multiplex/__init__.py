@@ -1,0 +1,1 @@
+"""Multiplex models: masks that carry a code."""

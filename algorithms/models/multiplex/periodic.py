@@ -1,0 +1,150 @@
+"""Code dials with the fine code's phase error and each dial's assembly calibrated (Periodic)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, ClassVar, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from algorithms.contract import FeatureKind, Floats, Origin, SensorGeometry
+from algorithms.inputs import as_features, require_fitted
+from algorithms.models.multiplex.dial_code import (
+    NEEDS,
+    Axes,
+    DialCode,
+    dial_code,
+    fit_tangents,
+    sun_from_fractions,
+)
+
+_START = (0.0, 0.0, 0.0, 1.0, 0.0)
+
+
+@dataclass
+class PeriodicCode:
+    """Coarse cell and fine phase of each dial, its periodic error and its assembly taken out.
+
+    The Gray code tells which period of the fine rows the light falls on, their phase where in
+    it. Rows displaced against each other make the phase err twice a period; a dial off centre,
+    tilted or too far away bends the scale of tangents into a fraction of straight lines.
+
+    Parameters
+    ----------
+    bits : int
+        Coarse tracks of each dial, in [1, 16].
+    cell_mm : float
+        Length of a Gray cell, positive, below `period_mm`.
+    period_mm : float
+        Period of the fine rows.
+    focal_length_mm : float
+        Nominal distance from the slit to the dials, positive.
+    axes : tuple of {"x", "y"}
+        Along which detector axis each dial lies, in the order of the features.
+    smallest_contrast : float
+        Amplitude of the fine rows over their mean, in [0, 1), below which they say nothing; a
+        slit of half a period gives 2/pi, light without a pattern 0.
+
+    Attributes
+    ----------
+    correction_ : ndarray, shape (2, 2)
+        (k, t) of the dials along x and y: amplitude of the correction as a tangent, phase in
+        radians.
+    conversion_ : ndarray, shape (2, 4)
+        (a, b, c, d) of the dials along x and y, a = -1.
+
+    Notes
+    -----
+    Implements: eq:pamulti, eq:fourier (model:periodic, Fan2013): ``alpha_s = alpha_1 + alpha_2 +
+    k sin(4 pi alpha / theta_0 + t)``, ``alpha_comp = arctan((b - d tan(alpha_s)) / (c
+    tan(alpha_s) - a))``, the fine phase from ``F3 - F1`` and ``F4 - F2``. Survey prints
+    ``sin(4 pi alpha + t)``; corrected because the error repeats twice per fine period theta_0.
+    The tracks of a flat dial are even in the tangent, so alpha_1, alpha_2 and k add up there and
+    the period is the phase's. (a, b, c, d) are one number too many: only their ratios count. They
+    and (k, t) are fitted by least squares of the angles, an axis at a time.
+
+    Shapes: signals (N, 2 (bits + 4)), a dial's coarse tracks and then F1 to F4, in any common
+    unit, to unit vectors (N, 3).
+
+    Failure: a NaN row for a NaN feature row, for fine rows without contrast, where cell and phase
+    contradict each other, and where the direction would lie behind the detector. What couples the
+    axes (dials turned against the reference, slits askew) is not in the equation and stays. fit
+    raises UnusableDataError where the samples do not settle the ten parameters.
+
+    Cost: 2 arc tangents, 2 sines and 60 operations a sample.
+    """
+
+    name: ClassVar[str] = "periodic"
+    taxonomy: ClassVar[str] = "Periodic"
+    studies: ClassVar[tuple[str, ...]] = ("Fan2013",)
+    labels: ClassVar[tuple[str, ...]] = ("model:periodic", "eq:pamulti", "eq:fourier")
+    origin: ClassVar[Origin] = "survey"
+    version: ClassVar[int] = 1
+    accepts: ClassVar[frozenset[FeatureKind]] = frozenset({FeatureKind.SIGNALS})
+    needs: ClassVar[tuple[str, ...]] = NEEDS
+
+    bits: int
+    cell_mm: float
+    period_mm: float
+    focal_length_mm: float
+    axes: Axes = ("x", "y")
+    smallest_contrast: float = 0.2
+
+    correction_: Floats = field(init=False, repr=False, compare=False)
+    conversion_: Floats = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        self._code().require(self.name)
+
+    @classmethod
+    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
+        """Return the published model of the sensor's dials.
+
+        UnsuitableDesignError where it has none.
+        """
+        return cls(**dial_code(geometry, kind, cls.accepts, cls.name))
+
+    def fit(self, features: ArrayLike, sun: ArrayLike) -> Self:
+        """Learn (k, t) and (a, b, c, d) of both dials."""
+        places, phases, vectors = self._code().calibration(features, sun, self.name)
+
+        def tangents(parameters: NDArray[np.complex128]) -> NDArray[np.complex128]:
+            numerators, denominators = _fraction(parameters.reshape(2, 5), places, phases)
+            return np.asarray(numerators / denominators)
+
+        found = fit_tangents(tangents, np.tile(_START, 2), vectors, self.name).reshape(2, 5)
+        sine, cosine, shift, slope, bend = found.T
+        self.correction_ = np.column_stack([np.hypot(sine, cosine), np.arctan2(cosine, sine)])
+        self.conversion_ = np.column_stack([np.full(2, -1.0), shift, bend, -slope])
+        return self
+
+    def predict(self, features: ArrayLike) -> Floats:
+        """Sun unit vectors (N, 3) of signals (N, 2 (bits + 4))."""
+        require_fitted(self, "conversion_")
+        code = self._code()
+        places, phases = code.read(as_features(features, code.columns, self.name))
+        k, t = self.correction_.T
+        a, b, c, d = self.conversion_.T
+        tangent = places + k * np.sin(2.0 * phases + t)
+        return sun_from_fractions(b - d * tangent, c * tangent - a)
+
+    def _code(self) -> DialCode:
+        return DialCode(
+            self.bits,
+            self.cell_mm,
+            self.period_mm,
+            self.focal_length_mm,
+            self.axes,
+            self.smallest_contrast,
+        )
+
+
+def _fraction(parameters: NDArray[Any], places: Floats, phases: Floats) -> tuple[Any, Any]:
+    """Numerators and denominators (N, 2) of eq:pamulti's tangents.
+
+    A row of `parameters` (2, 5) is an axis': k cos(t), k sin(t), b, -d and c, with a = -1.
+    """
+    sine, cosine, shift, slope, bend = parameters.T
+    tangent = places + sine * np.sin(2.0 * phases) + cosine * np.cos(2.0 * phases)
+    return shift + slope * tangent, 1.0 + bend * tangent

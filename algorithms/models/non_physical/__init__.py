@@ -1,0 +1,1 @@
+"""Non-physical models: curves fitted to calibration data."""

@@ -1,0 +1,170 @@
+"""Code dials with the fine code's phase error as a Fourier series (Fourier)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, ClassVar, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from algorithms.contract import FeatureKind, Floats, Origin, SensorGeometry
+from algorithms.inputs import as_features, require_fitted
+from algorithms.models.multiplex.dial_code import (
+    NEEDS,
+    Axes,
+    DialCode,
+    dial_code,
+    fit_tangents,
+    sun_from_fractions,
+)
+
+MAX_HARMONICS = 16
+
+
+@dataclass
+class FourierPhase:
+    """Coarse cell and fine phase of each dial, the phase error a Fourier series of the phase.
+
+    Whatever the fine rows are like, their phase errs periodically: once a period by gains that
+    differ, twice by rows displaced, four times by windows with plain edges. The series holds it
+    all, and one projection of the plane takes both dials' assembly out together.
+
+    Parameters
+    ----------
+    bits : int
+        Coarse tracks of each dial, in [1, 16].
+    cell_mm : float
+        Length of a Gray cell, positive, below `period_mm`.
+    period_mm : float
+        Period of the fine rows.
+    focal_length_mm : float
+        Nominal distance from the slit to the dials, positive.
+    axes : tuple of {"x", "y"}
+        Along which detector axis each dial lies, in the order of the features.
+    smallest_contrast : float
+        Amplitude of the fine rows over their mean, in [0, 1), below which they say nothing; a
+        slit of half a period gives 2/pi, light without a pattern 0.
+    harmonics : int
+        Terms of the series, in [1, 16]; 4 reach the first one that plain windows cause.
+
+    Attributes
+    ----------
+    series_ : ndarray, shape (2, harmonics, 2)
+        Of the dials along x and y, the coefficients of ``sin(n p)`` and ``cos(n p)``, n from 1,
+        as tangents.
+    conversion_ : ndarray, shape (3, 3)
+        Projection H: ``(tan(beta), tan(alpha), 1)`` in proportion to ``H (T_x, T_y, 1)``,
+        ``H_33 = 1``.
+
+    Notes
+    -----
+    Implements: eq:fourier (model:fourier, Fan2013): fine rows ``F1, F3 = a_0/2 -+ sum a_n cos(n
+    p)``, ``F2, F4 = a_0/2 -+ sum a_n sin(n p)``, ``p = 2 pi alpha / theta_0 = atan2(F4 - F2, F3 -
+    F1)`` where a_1 is alone; the survey states in words that the error of p is a Fourier series.
+    Here ``T = place(cell, p) + sum_n A_n sin(n p) + B_n cos(n p)``, a tangent, of each dial.
+    Fan2013 measures one axis, where assembly turns T into ``(b - d T) / (c T - a)`` (eq:pamulti);
+    the projection is what that becomes for two (ours). A tilt in any direction, dials turned or
+    off centre, a wrong focal length and slits askew are all projections: the relation is exact.
+
+    Shapes: signals (N, 2 (bits + 4)), a dial's coarse tracks and then F1 to F4, in any common
+    unit, to unit vectors (N, 3). All ``8 + 4 harmonics`` parameters are fitted together, by least
+    squares of the angles.
+
+    Failure: a NaN row for a NaN feature row, for fine rows without contrast, where cell and phase
+    contradict each other, and where the direction would lie behind the detector. fit raises
+    UnusableDataError where the samples do not settle every parameter.
+
+    Cost: 2 arc tangents, 4 sines a harmonic and 60 operations a sample.
+    """
+
+    name: ClassVar[str] = "fourier-phase"
+    taxonomy: ClassVar[str] = "Fourier"
+    studies: ClassVar[tuple[str, ...]] = ("Fan2013",)
+    labels: ClassVar[tuple[str, ...]] = ("model:fourier", "eq:fourier", "eq:pamulti")
+    origin: ClassVar[Origin] = "survey"
+    version: ClassVar[int] = 1
+    accepts: ClassVar[frozenset[FeatureKind]] = frozenset({FeatureKind.SIGNALS})
+    needs: ClassVar[tuple[str, ...]] = NEEDS
+
+    bits: int
+    cell_mm: float
+    period_mm: float
+    focal_length_mm: float
+    axes: Axes = ("x", "y")
+    smallest_contrast: float = 0.2
+    harmonics: int = 4
+
+    series_: Floats = field(init=False, repr=False, compare=False)
+    conversion_: Floats = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        self._code().require(self.name)
+        if not 1 <= self.harmonics <= MAX_HARMONICS:
+            raise ValueError(
+                f"{self.name}: harmonics must be in [1, {MAX_HARMONICS}]; got {self.harmonics!r}"
+            )
+
+    @classmethod
+    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
+        """Return the model of the sensor's dials; UnsuitableDesignError where it has none."""
+        return cls(**dial_code(geometry, kind, cls.accepts, cls.name))
+
+    def fit(self, features: ArrayLike, sun: ArrayLike) -> Self:
+        """Learn the series of both dials and the projection."""
+        places, phases, vectors = self._code().calibration(features, sun, self.name)
+        waves = self._waves(phases)
+
+        def tangents(parameters: NDArray[np.complex128]) -> NDArray[np.complex128]:
+            conversion, series = self._split(parameters)
+            numerators, denominators = _projected(conversion, _corrected(places, waves, series))
+            return np.asarray(numerators / denominators)
+
+        start = np.zeros(8 + 4 * self.harmonics)
+        start[[0, 4]] = 1.0
+        self.conversion_, self.series_ = self._split(
+            fit_tangents(tangents, start, vectors, self.name)
+        )
+        return self
+
+    def predict(self, features: ArrayLike) -> Floats:
+        """Sun unit vectors (N, 3) of signals (N, 2 (bits + 4))."""
+        require_fitted(self, "conversion_")
+        code = self._code()
+        places, phases = code.read(as_features(features, code.columns, self.name))
+        corrected = _corrected(places, self._waves(phases), self.series_)
+        return sun_from_fractions(*_projected(self.conversion_, corrected))
+
+    def _waves(self, phases: Floats) -> Floats:
+        """(harmonics, 2, N, 2) sines and cosines of the phases (N, 2) times 1, 2, ..."""
+        turns = [n * phases for n in range(1, self.harmonics + 1)]
+        return np.array([(np.sin(turn), np.cos(turn)) for turn in turns])
+
+    def _split(self, parameters: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
+        conversion = np.append(parameters[:8], 1.0).reshape(3, 3)
+        return conversion, parameters[8:].reshape(2, self.harmonics, 2)
+
+    def _code(self) -> DialCode:
+        return DialCode(
+            self.bits,
+            self.cell_mm,
+            self.period_mm,
+            self.focal_length_mm,
+            self.axes,
+            self.smallest_contrast,
+        )
+
+
+def _corrected(places: Floats, waves: Floats, series: NDArray[Any]) -> NDArray[Any]:
+    """Tangents T (N, 2): places and the series' terms, added one by one."""
+    total: NDArray[Any] = places
+    for n, (sine, cosine) in enumerate(waves):
+        total = total + series[:, n, 0] * sine + series[:, n, 1] * cosine
+    return total
+
+
+def _projected(conversion: NDArray[Any], tangents: NDArray[Any]) -> tuple[Any, Any]:
+    """Numerators (N, 2) and their common denominator (N, 1) of the projection of T (N, 2)."""
+    x, y = tangents[:, 0], tangents[:, 1]
+    rows = [h[0] * x + h[1] * y + h[2] for h in conversion]
+    return np.column_stack(rows[:2]), rows[2][:, None]

@@ -1,0 +1,109 @@
+"""Straight line of each Sun angle on its feature (Linear)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import ClassVar, Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from algorithms.contract import FeatureKind, Floats, Origin, SensorGeometry
+from algorithms.inputs import (
+    as_features,
+    as_frontal_calibration,
+    require_fitted,
+    require_kind,
+    require_samples,
+)
+from algorithms.models.nominal_projection import POSITIONS
+from algorithms.models.non_physical.regression_axes import (
+    Target,
+    feature_scaling,
+    require_target,
+    solve_regression,
+    sun_from_target,
+    target_from_sun,
+)
+
+
+@dataclass
+class LinearFit:
+    """Each Sun angle as a straight line on the feature of its axis.
+
+    Two numbers an axis make the smallest and fastest calibration there is; it holds over a
+    narrow field of view, where the sensor's response is straight.
+
+    Parameters
+    ----------
+    target : {"angle", "tangent"}
+        What the line gives: the angle in degrees, as published, or its tangent, which is what a
+        pinhole's response is straight in.
+
+    Attributes
+    ----------
+    coefficients_ : ndarray, shape (2, 2)
+        Intercept and slope on the feature, rows ``alpha`` (on y) and ``beta`` (on x); in degrees
+        (or tangents) and per unit of feature.
+
+    Notes
+    -----
+    Implements: model:linear (Faizullin2017), in words there: ``alpha = c_0 + c_1 y``,
+    ``beta = d_0 + d_1 x`` by ordinary least squares.
+
+    Shapes: features ``(x, y)`` (N, 2), in px or dimensionless, to unit vectors (N, 3).
+
+    Failure: a NaN row for a NaN feature row or where an angle reaches 90 degrees. fit raises
+    UnusableDataError below 2 samples or where all have the same feature.
+
+    Cost: 4 operations and 2 tangents a sample.
+    """
+
+    name: ClassVar[str] = "linear"
+    taxonomy: ClassVar[str] = "Linear"
+    studies: ClassVar[tuple[str, ...]] = ("Faizullin2017",)
+    labels: ClassVar[tuple[str, ...]] = ("model:linear",)
+    origin: ClassVar[Origin] = "survey"
+    version: ClassVar[int] = 1
+    accepts: ClassVar[frozenset[FeatureKind]] = POSITIONS
+    needs: ClassVar[tuple[str, ...]] = ()
+
+    target: Target = "angle"
+
+    coefficients_: Floats = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        require_target(self.target, self.name)
+
+    @classmethod
+    def for_sensor(
+        cls,
+        geometry: SensorGeometry,  # noqa: ARG003 - learnt from the calibration alone
+        kind: FeatureKind,
+    ) -> Self:
+        """Return the published model, whatever the sensor."""
+        require_kind(kind, cls.accepts, cls.name)
+        return cls()
+
+    def fit(self, features: ArrayLike, sun: ArrayLike) -> Self:
+        """Fit one line an axis."""
+        found, vectors = as_frontal_calibration(features, sun, self.name)
+        require_samples(len(found), 2, self.name, "two coefficients an axis")
+        wanted = target_from_sun(vectors, self.target)
+        middle, half = feature_scaling(found, self.name)
+        coefficients = np.empty((2, 2))
+        for axis, column in ((0, 1), (1, 0)):
+            scaled = (found[:, column] - middle[column]) / half[column]
+            design = np.column_stack([np.ones(len(scaled)), scaled])
+            level, slope = solve_regression(design, wanted[:, axis], self.name)
+            slope = slope / half[column]
+            coefficients[axis] = level - slope * middle[column], slope
+        self.coefficients_ = coefficients
+        return self
+
+    def predict(self, features: ArrayLike) -> Floats:
+        """Sun unit vectors (N, 3) of features (N, 2)."""
+        require_fitted(self, "coefficients_")
+        found = as_features(features, 2, self.name)
+        level, slope = self.coefficients_.T
+        return sun_from_target(level + slope * found[:, ::-1], self.target)

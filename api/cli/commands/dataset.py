@@ -1,0 +1,178 @@
+"""`sunatlas dataset`: the standard data sets."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from api.cli.asking import knowledge
+from api.cli.measuring import AVAILABLE_WORKERS, ManyWorkersOption
+from api.cli.tables import Format, FormatOption, emit
+from benchmark import datasets
+from benchmark.datasets import coverage as covered
+from benchmark.datasets import export as dataset_export
+from benchmark.results.store import PUBLISHED, Store
+from benchmark.running import pinning
+from benchmark.running.progress import terminal_progress
+
+app = typer.Typer(
+    help="List, describe, export or verify the standard datasets.",
+    add_completion=False,
+    rich_markup_mode=None,
+)
+
+COLUMNS = ("name", "version", "detector", "mask", "observation", "conditions", "follows")
+CONDITIONS = ("condition", "bound_deg", "description")
+PAIRS = ("detector", "mask", "studies", "datasets", "reason")
+FILES = ("file", "bytes")
+
+NameArgument = Annotated[str, typer.Argument(help="Name of the data set.", show_default=False)]
+
+
+@app.command("list")
+def listing(form: FormatOption = Format.TABLE) -> None:
+    """List the data sets: what sensor each simulates, under which conditions."""
+    cards = knowledge().measurements.cards
+    emit(cards, COLUMNS, form, title=f"{len(cards)} data sets")
+    if form is Format.TABLE:
+        typer.echo(f"{covered.coverage().sentence()} See `sunatlas dataset coverage`.", err=True)
+
+
+@app.command()
+def describe(name: NameArgument, form: FormatOption = Format.TABLE) -> None:
+    """Describe one data set: its card, with the published Cramer-Rao bound of each condition.
+
+    As JSON with every parameter that its numbers depend on.
+    """
+    datasets.get(name)  # refuses an unknown name with the nearest one
+    card = knowledge().measurements.card(name)
+    if form is Format.TABLE:
+        typer.echo(f"{card['name']} (version {card['version']}): {card['description']}")
+        typer.echo(f"{card['detector']}, {card['mask']}; gives {card['observation']}")
+        typer.echo(f"follows {', '.join(card['follows'])}\n")
+    rows = [
+        {"condition": key, "bound_deg": card["bounds"].get(key), **setup}
+        for key, setup in card["setups"].items()
+    ]
+    emit(rows, CONDITIONS, form, document=card)
+
+
+@app.command()
+def export(
+    name: NameArgument,
+    *,
+    out: Annotated[Path, typer.Option(help="Directory to make.", show_default=False)],
+    condition: Annotated[
+        list[str] | None,
+        typer.Option(help="Only this condition; may be repeated.", show_default=False),
+    ] = None,
+    split: Annotated[
+        list[str] | None,
+        typer.Option(help="Only calibration or test; may be repeated.", show_default=False),
+    ] = None,
+    n: Annotated[
+        int | None,
+        typer.Option("--n", min=1, help="Only the first N samples of each split."),
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace an earlier export.")] = False,
+    form: FormatOption = Format.TABLE,
+) -> None:
+    """Write a data set to files: arrays, a card that says what they are, checksums, a picture.
+
+    A condition is a directory with preview.png and, for each split, an .npz that numpy.load
+    reads; where samples are a few numbers each also a .csv. card.json says what every array holds,
+    which study is followed, the bound and the hashes. Exporting twice gives the same bytes.
+    """
+    with terminal_progress() as progress:
+        made = dataset_export.export(
+            name, out, conditions=condition, splits=split, n=n, force=force, progress=progress
+        )
+    rows = [{"file": f, "bytes": (made.directory / f).stat().st_size} for f in made.files]
+    document = {"directory": str(made.directory), "files": rows}
+    emit(rows, FILES, form, document=document, title=str(made.directory))
+    for file in made.card["files"]:
+        pinned = file.get("published_data_hash")
+        if file["kind"] == "arrays" and pinned not in (None, file["data_hash"]):
+            typer.echo(f"note: {file['path']} differs from the published data {pinned}", err=True)
+    typer.echo(f"wrote {made.directory}", err=True)
+
+
+@app.command()
+def verify(
+    directory: Annotated[Path, typer.Argument(help="Directory of the export.", show_default=False)],
+    form: FormatOption = Format.TABLE,
+) -> None:
+    """Verify an export: every checksum, then every array against its hash in the card.
+
+    What does not hold is listed with its file, and the exit code is 1.
+    """
+    wrong = dataset_export.verify(directory)
+    rows = [{"file": name, "problem": problem} for name, problem in wrong]
+    if rows or form is not Format.TABLE:
+        emit(rows, ("file", "problem"), form, title=f"{directory}: {len(rows)} problems")
+    if rows:
+        raise typer.Exit(1)
+    typer.echo(f"{directory}: every checksum and every array holds", err=True)
+
+
+@app.command()
+def coverage(form: FormatOption = Format.TABLE) -> None:
+    """Show which detector-mask pairs of the mapped studies are simulated, and why others are not.
+
+    With the pairs that a data set simulates though no mapped study uses them.
+    """
+    found = covered.coverage()
+    rows = [
+        {**pair.to_dict(), "studies": len(pair.studies) if form is Format.TABLE else pair.studies}
+        for pair in found.pairs
+    ]
+    emit(rows, PAIRS, form, document=found.to_dict(), title="Detector-mask pairs")
+    if form is Format.TABLE:
+        typer.echo(found.sentence(), err=True)
+
+
+@app.command()
+def pin(
+    names: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="[NAME]...", help="Data sets; all by default.", show_default=False),
+    ] = None,
+    *,
+    check: Annotated[
+        bool,
+        typer.Option("--check", help="Generate everything again and compare; renew nothing."),
+    ] = False,
+    workers: ManyWorkersOption = AVAILABLE_WORKERS,
+) -> None:
+    """Pin the hashes and bounds of the data that changed code makes anew, or check the pins.
+
+    `sunatlas leaderboard update` does it too. Data that changed while the version of their data
+    set did not are refused. With --check a pin that is missing or does not hold is named, and the
+    exit code is 1.
+    """
+    store = Store(PUBLISHED)
+    if check:
+        _check(store, names, workers)
+        return
+    with terminal_progress() as progress:
+        done = pinning.update(store, workers, progress, datasets=names or None)
+    for warning in done.warnings:
+        typer.echo(f"warning: {warning}", err=True)
+    typer.echo(
+        f"{done.renewed} conditions pinned in {done.seconds:.1f} s, {done.kept} pinned before; "
+        f"in {done.store}",
+        err=True,
+    )
+
+
+def _check(store: Store, names: list[str] | None, workers: int) -> None:
+    with terminal_progress() as progress:
+        wrong = pinning.differences(store, workers, progress, datasets=names or None)
+    for line in wrong:
+        typer.echo(line)
+    if wrong:
+        typer.echo(f"sunatlas: {len(wrong)} pins do not hold, the first: {wrong[0]}", err=True)
+        raise typer.Exit(1)
+    typer.echo("every pin holds: generated again", err=True)

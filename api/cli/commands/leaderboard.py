@@ -1,0 +1,275 @@
+"""`sunatlas leaderboard`: the published results shown, brought up to date, checked or rendered."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from api.cli.measuring import (
+    AVAILABLE_WORKERS,
+    ManyWorkersOption,
+    StoreOption,
+    interruptible,
+)
+from api.cli.tables import Format, FormatOption, emit
+from api.cli.working import working_directory
+from api.cli.wrong_call import WrongCallError
+from benchmark.leaderboard import check as checking
+from benchmark.leaderboard import pages
+from benchmark.leaderboard import update as updating
+from benchmark.leaderboard.board import at_field, within_error
+from benchmark.metrics.rings import EDGES_DEG
+from benchmark.plan.parts import UnknownNameError
+from benchmark.results.store import PUBLISHED
+from benchmark.running import times as running_times
+
+app = typer.Typer(add_completion=False, rich_markup_mode=None)
+
+COLUMNS = (
+    *("rank", "tied", "dataset", "condition", "extractor", "model", "rms_deg", "low_deg"),
+    *("high_deg", "over_bound", "availability", "false_sun"),
+)
+FIELD_COLUMNS = (
+    *("rank", "dataset", "condition", "extractor", "model", "field_deg", "field_rms_deg"),
+    *("rms_deg", "availability", "false_sun"),
+)
+WIDEST_COLUMNS = (
+    *("rank", "dataset", "condition", "extractor", "model", "widest_field_deg", "half_fov_deg"),
+    *("rms_deg", "availability", "false_sun"),
+)
+DIFFERENCES = ("file", "cell", "committed", "measured", "kernels")
+
+Row = Mapping[str, Any]
+
+
+class Kernels(StrEnum):
+    """Numerical kernels that a check measures with."""
+
+    NATIVE = checking.NATIVE
+    OLDER = checking.OLDER
+    BOTH = "both"
+
+    @property
+    def chosen(self) -> tuple[str, ...]:
+        """Names that `benchmark.leaderboard.check.check` takes."""
+        return checking.KERNELS if self is Kernels.BOTH else (self.value,)
+
+
+@app.callback(invoke_without_command=True)
+def leaderboard(
+    context: typer.Context,
+    *,
+    dataset: Annotated[
+        list[str] | None,
+        typer.Option(help="All pipelines of this data set; may be repeated.", show_default=False),
+    ] = None,
+    condition: Annotated[
+        list[str] | None,
+        typer.Option(help="Only this condition; may be repeated.", show_default=False),
+    ] = None,
+    field: Annotated[
+        int | None,
+        typer.Option(
+            help="Judge by the error within this angle of the boresight, degrees: one of "
+            f"{', '.join(map(str, EDGES_DEG[1:]))}.",
+            show_default=False,
+        ),
+    ] = None,
+    max_error: Annotated[
+        float | None,
+        typer.Option(
+            min=0.0,
+            help="Judge by the field about the boresight in whose every ring the error stays "
+            "within this, degrees.",
+            show_default=False,
+        ),
+    ] = None,
+    check: Annotated[
+        bool,
+        typer.Option("--check", help="Measure everything again and compare; write nothing."),
+    ] = False,
+    stored: Annotated[
+        bool,
+        typer.Option("--stored", help="With --check: measure nothing, compare what is stored."),
+    ] = False,
+    kernels: Annotated[
+        Kernels | None,
+        typer.Option(
+            help="With --check: measure as this machine does, as an older processor would, or "
+            "first so and then so (both, the default).",
+            show_default=False,
+        ),
+    ] = None,
+    workers: ManyWorkersOption = AVAILABLE_WORKERS,
+    form: FormatOption = Format.TABLE,
+) -> None:
+    """Show the leaderboard, bring it up to date or check it.
+
+    Without a command the published results are shown: the best of each data set in its first
+    condition, or in those asked for, or all pipelines of a data set. With --field an error is
+    that over a part of the field, where rings count by their solid angle: the best of each data
+    set then compare at an equal field. With --max-error they compare by the field they cover.
+    With --check every committed number is compared with what the code gives now; a difference is
+    printed with its file and cell, and the exit code is 1.
+    """
+    if context.invoked_subcommand is not None:
+        _require_no_options(context)
+        return
+    if check:
+        _check(workers, form, (kernels or Kernels.BOTH).chosen, stored_only=stored)
+    elif stored or kernels:
+        raise WrongCallError(f"{'--stored' if stored else '--kernels'} goes with --check")
+    elif field is not None and max_error is not None:
+        raise WrongCallError("--field and --max-error are two questions; ask one at a time")
+    else:
+        _show(dataset or [], condition or [], field, max_error, form)
+
+
+def _require_no_options(context: typer.Context) -> None:
+    """Refuse options before a command, which would be passed over in silence."""
+    given = [
+        f"--{name.replace('_', '-')}"
+        for name in context.params
+        if (source := context.get_parameter_source(name)) and source.name == "COMMANDLINE"
+    ]
+    if given:
+        raise WrongCallError(
+            f"{', '.join(given)} before `{context.invoked_subcommand}`: options of a command "
+            "stand behind it"
+        )
+
+
+@app.command()
+def update(workers: ManyWorkersOption = AVAILABLE_WORKERS) -> None:
+    """Measure what code or data have changed of, and write the published results.
+
+    Only the cells whose code or data have changed are measured. Data that changed while the
+    version of their data set did not are refused, with the data sets named.
+    """
+    with interruptible():
+        summary = updating.update(PUBLISHED, workers)
+    for cell, reason in summary.failed:
+        typer.echo(f"failed: {cell}: {reason}", err=True)
+    for warning in summary.warnings:
+        typer.echo(f"warning: {warning}", err=True)
+    typer.echo(
+        f"{summary.planned} cells, {summary.computed} measured in {summary.seconds:.1f} s, "
+        f"{summary.already_stored} stored before; in {summary.store}",
+        err=True,
+    )
+
+
+@app.command()
+def render(
+    out: Annotated[Path, typer.Option(help="Directory to write to.", show_default=False)],
+) -> None:
+    """Write the whole leaderboard as leaderboard.{json,csv,md,html} and sweeps.csv.
+
+    Files of the same name are replaced. Nothing is measured; times of this machine are those that
+    `sunatlas leaderboard times` has kept.
+    """
+    from api.cli.asking import knowledge  # noqa: PLC0415 - slow; measuring does without it
+
+    board = knowledge().measurements.leaderboard
+    if not board["datasets"]:
+        raise WrongCallError(f"nothing is published in {PUBLISHED}; `sunatlas leaderboard update`")
+    for path in pages.render(board, out):
+        typer.echo(str(path))
+
+
+@app.command()
+def times(store: StoreOption = None, form: FormatOption = Format.TABLE) -> None:
+    """Time every pipeline on this machine, where that is not done yet.
+
+    On the first condition of each data set, in one thread, the best of three beside a reference.
+    Times belong to a machine: they are kept in the working store and shown by the page, by
+    recommendations and by `sunatlas assess`, and are never published.
+    """
+    directory = working_directory(store)
+    with interruptible():
+        timed = running_times.update(directory)
+    kept = running_times.times_of_code(directory)
+    columns = ("dataset", "extractor", "model", "latency_us", "time_ratio", "extract_ratio")
+    rows = [{name: getattr(time, name) for name in columns} for time in kept.values()]
+    emit(rows, columns, form, title=f"{len(rows)} pipelines")
+    typer.echo(f"{timed} timed now, {len(rows) - timed} before; in {directory}", err=True)
+
+
+def _check(workers: int, form: Format, kernels: tuple[str, ...], *, stored_only: bool) -> None:
+    with interruptible():
+        found = checking.check(PUBLISHED, workers, stored_only=stored_only, kernels=kernels)
+    rows = [{name: getattr(difference, name) for name in DIFFERENCES} for difference in found]
+    if rows or form is not Format.TABLE:
+        emit(rows, DIFFERENCES, form, title=f"{len(rows)} differences")
+    if found:
+        typer.echo(f"sunatlas: {len(found)} differences, the first: {found[0]}", err=True)
+        raise typer.Exit(1)
+    how = (
+        "the files agree with each other and the code"
+        if stored_only
+        else f"measured again with {' and '.join(kernels)} kernels"
+    )
+    typer.echo(f"every published number holds: {how}", err=True)
+
+
+def _show(
+    datasets: list[str],
+    conditions: list[str],
+    field: int | None,
+    max_error: float | None,
+    form: Format,
+) -> None:
+    from api.cli.asking import knowledge  # noqa: PLC0415 - slow; measuring does without it
+
+    measurements = knowledge().measurements
+    _require("dataset", datasets, measurements.dataset_names)
+    _require("condition", conditions, measurements.conditions)
+    first = {
+        board["name"]: board["conditions"][0] for board in measurements.leaderboard["datasets"]
+    }
+    rows, columns, judged = _judged(measurements.board_rows(), field, max_error)
+    chosen = [
+        row
+        for row in rows
+        if (row["dataset"] in datasets if datasets else row["rank"] == 1)
+        and (
+            row["condition"] in (conditions or [first[row["dataset"]]])
+            or (datasets and not conditions)
+        )
+    ]
+    if judged == "field_rms_deg":
+        chosen.sort(key=lambda row: (row[judged] is None, row[judged] or 0.0))
+    elif judged == "widest_field_deg":
+        chosen.sort(key=lambda row: (-(row[judged] or 0), row["rms_deg"] or 0.0))
+    title = ", ".join(datasets) if datasets else "Best of each data set"
+    document = {"items": chosen, "total": len(chosen)}
+    emit(chosen, columns, form, document=document, title=title)
+    if not chosen:
+        typer.echo("sunatlas: no pipeline has such an error there", err=True)
+        raise typer.Exit(1)
+
+
+def _judged(
+    rows: Iterable[Row], field: int | None, max_error: float | None
+) -> tuple[Iterable[Row], tuple[str, ...], str]:
+    """Rank rows as asked; return them with the columns to show and the one they are judged by."""
+    if field is not None:
+        if field not in EDGES_DEG[1:]:
+            edges = ", ".join(map(str, EDGES_DEG[1:]))
+            raise WrongCallError(f"--field: no {field}; expected one of {edges}")
+        return at_field(rows, field), FIELD_COLUMNS, "field_rms_deg"
+    if max_error is not None:
+        return within_error(rows, max_error), WIDEST_COLUMNS, "widest_field_deg"
+    return rows, COLUMNS, "rank"
+
+
+def _require(what: str, names: Iterable[str], known: Iterable[str]) -> None:
+    """Raise UnknownNameError for a name that is not among the known ones."""
+    there = tuple(known)
+    for name in names:
+        if name not in there:
+            raise UnknownNameError(what, name, there)

@@ -1,0 +1,118 @@
+"""`sunatlas run`: what a study did, run on the data of its architecture."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Annotated, Any
+
+import typer
+
+from api.cli.asking import ask, knowledge
+from api.cli.measuring import Scored, StoreOption, WorkersOption, scored
+from api.cli.tables import Format, FormatOption, emit
+from benchmark.metrics.score import METRICS
+from benchmark.plan.combinations import Cell, cells, datasets_for
+from benchmark.plan.parts import UnknownNameError
+from registry.resolution import Resolution
+
+app = typer.Typer(add_completion=False, rich_markup_mode=None)
+
+COLUMNS = (
+    *("dataset", "condition", "extractor", "model", "rms_deg", "bound_deg", "over_bound"),
+    *("availability", "false_sun", "status", "assumed"),
+)
+CSV_COLUMNS = (
+    *("study", "dataset", "condition", "detector", "mask", "extractor", "model", "status"),
+    *("reason", "n_calibration", "n_test", "n_observable", *METRICS, "latency_us", "assumed"),
+)
+
+
+@app.command()
+def run(
+    study: Annotated[str, typer.Argument(help="Key of the study, such as Chang2008.")],
+    *,
+    condition: Annotated[
+        list[str] | None, typer.Option(help="Only this condition; may be repeated.")
+    ] = None,
+    workers: WorkersOption = 1,
+    store: StoreOption = None,
+    form: FormatOption = Format.TABLE,
+) -> None:
+    """Run a study's pipelines on the data of its architecture.
+
+    Every pipeline that the study's mapping resolves to is scored on every data set with its
+    detector and mask; bound is the Cramer-Rao bound, over bound the error divided by it. What
+    lacks an implementation or data is a gap: listed on stderr, and in JSON under "gaps". Where
+    nothing runs, the exit code is 1.
+
+    Cells that the published results hold are read there. Others are measured into the working
+    store (see --store) and not measured again.
+    """
+    ask("study", {}, {"key": study})  # refuses an unknown key with the nearest one
+    resolution = knowledge().resolutions[study]
+    planned = _planned(resolution, condition)
+    result = scored(planned, workers, store)
+    rows = [{"study": study, **row, "assumed": planned[_cell(row)]} for row in result.rows]
+    _print(study, resolution, rows, result, form)
+    if not rows:
+        typer.echo(f"sunatlas: nothing of {study} runs yet; its gaps are listed above", err=True)
+        raise typer.Exit(1)
+
+
+def _planned(resolution: Resolution, conditions: Sequence[str] | None) -> dict[Cell, list[str]]:
+    """Return the study's cells, each with what is assumed where the study does not say."""
+    places = {
+        pipeline: datasets_for(pipeline.detector, pipeline.mask)
+        for pipeline in resolution.pipelines
+    }
+    presets = {name for names in places.values() for name in names}
+    everything = [cell for name in presets for cell in cells(name)]
+    known = {cell.condition for cell in everything}
+    for name in conditions or ():
+        if known and name not in known:
+            raise UnknownNameError("condition", name, known)
+    wanted = set(conditions or known)
+    planned: dict[Cell, list[str]] = {}
+    for pipeline, names in places.items():
+        assumed = [f"{attribute} {stated}" for attribute, stated in pipeline.assumed.items()]
+        for cell in everything:
+            ours = cell.dataset in names and cell.condition in wanted
+            if ours and (cell.extractor, cell.model) == (pipeline.extractor, pipeline.model):
+                # A pipeline that the study states outright is not an assumption.
+                planned[cell] = [] if planned.get(cell) == [] else assumed
+    return planned
+
+
+def _cell(row: dict[str, Any]) -> Cell:
+    return Cell(row["dataset"], row["condition"], row["extractor"], row["model"])
+
+
+def _print(
+    study: str,
+    resolution: Resolution,
+    rows: list[dict[str, Any]],
+    result: Scored,
+    form: Format,
+) -> None:
+    gaps = [gap.to_dict() for gap in resolution.gaps]
+    document = {
+        "study": study,
+        "state": resolution.state,
+        "scores": rows,
+        "gaps": gaps,
+        "sources": result.sources(),
+    }
+    title = f"{study} ({resolution.state}): {len(rows)} scores"
+    columns = CSV_COLUMNS if form is Format.CSV else COLUMNS
+    emit(rows, columns, form, document=document, title=title)
+    for warning in result.warnings:
+        typer.echo(f"warning: {warning}", err=True)
+    if form is not Format.JSON:
+        for gap in gaps:
+            typer.echo(f"gap: {gap['attribute']} {gap['value']}: {gap['reason']}", err=True)
+    if result.measured or result.kept:
+        typer.echo(
+            f"{result.published} published, {result.kept} measured before, {result.measured} "
+            f"measured now; kept in {result.directory}",
+            err=True,
+        )

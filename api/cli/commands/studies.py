@@ -1,0 +1,106 @@
+"""`sunatlas studies`: the mapped studies and what of each can be run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from enum import StrEnum
+from typing import Annotated, Any
+
+import typer
+
+from api.cli import attributes
+from api.cli.asking import ask
+from api.cli.tables import Format, FormatOption, emit, emit_json
+from api.cli.wrong_call import WrongCallError
+from api.http.pagination import LARGEST_PAGE
+
+app = typer.Typer(add_completion=False, rich_markup_mode=None)
+
+COLUMNS = ("key", "year", "state", "detector", "mask", "extractor", "model", "title")
+CSV_COLUMNS = (
+    *("key", "title", "authors", "year", "venue", "doi", "url", "identity", "state"),
+    *("task", "error", "accuracy", "detector", "mask", "model", "extractor"),
+    *("accuracy_deg", "fov_deg"),
+)
+
+
+class State(StrEnum):
+    """How much of a study can be run."""
+
+    COMPLETE = "complete"
+    PARTIAL = "partial"
+    NONE = "none"
+
+
+@app.command()
+def studies(
+    key: Annotated[
+        str | None, typer.Argument(help="Show this study alone, with every value's basis.")
+    ] = None,
+    *,
+    task: attributes.Task = None,
+    error: attributes.Error = None,
+    accuracy: attributes.Accuracy = None,
+    detector: attributes.Detector = None,
+    mask: attributes.Mask = None,
+    model: attributes.Model = None,
+    extractor: attributes.Extractor = None,
+    state: Annotated[
+        list[State] | None, typer.Option(help="How much can be run; may be repeated.")
+    ] = None,
+    year_min: Annotated[int | None, typer.Option(help="This year or later.")] = None,
+    year_max: Annotated[int | None, typer.Option(help="This year or earlier.")] = None,
+    q: Annotated[
+        str | None, typer.Option("--q", help="Words in key, title, authors or venue.")
+    ] = None,
+    form: FormatOption = Format.TABLE,
+) -> None:
+    """List the studies and how far each one runs, or show one.
+
+    A study is complete when every value of its mapping runs, partial when some values lack an
+    implementation or a data set, none when nothing of it runs. `sunatlas studies KEY` says why.
+    """
+    filters: dict[str, Any] = {
+        "task": task,
+        "error": error,
+        "accuracy": accuracy,
+        "detector": detector,
+        "mask": mask,
+        "model": model,
+        "extractor": extractor,
+        "state": [str(s) for s in state or ()],
+        "year_min": year_min,
+        "year_max": year_max,
+        "q": q,
+    }
+    if key is None:
+        _list(filters, form)
+    elif any(value not in (None, []) for value in filters.values()):
+        raise WrongCallError("a study's key takes no filters beside it")
+    else:
+        _show(key, form)
+
+
+def _list(filters: Mapping[str, Any], form: Format) -> None:
+    found = ask("studies", {**filters, "limit": LARGEST_PAGE}).document["items"]
+    flat = [{**study, **study["values"]} for study in found]
+    columns = CSV_COLUMNS if form is Format.CSV else COLUMNS
+    emit(flat, columns, form, document=found, title=f"{len(found)} studies")
+
+
+def _show(key: str, form: Format) -> None:
+    study = ask("study", {}, {"key": key}).document
+    if form is Format.JSON:
+        emit_json(study)
+        return
+    if form is Format.TABLE:
+        typer.echo(f"{study['key']}: {study['title'] or 'title unknown'}")
+        year = study["year"] or "year unknown"
+        typer.echo(f"{study['authors'] or 'authors unknown'}, {year}. {study['venue'] or ''}")
+        typer.echo(f"{study['doi'] or study['url'] or 'no DOI known'}; runs: {study['state']}\n")
+    emit(study["attributes"], ("attribute", "value", "basis", "source", "note"), form)
+    if form is Format.TABLE:
+        pipelines = ("detector", "mask", "extractor", "model", "datasets")
+        emit(study["pipelines"], pipelines, form, title=f"Runs: {len(study['pipelines'])}")
+        gaps = ("attribute", "value", "reason")
+        emit(study["gaps"], gaps, form, title=f"Gaps: {len(study['gaps'])}")

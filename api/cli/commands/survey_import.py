@@ -1,0 +1,101 @@
+"""`sunatlas survey import`: the authors' own table compared with ours, and taken over if asked."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+import survey_data
+from api.cli.tables import Format, FormatOption, emit, emit_json
+from api.cli.wrong_call import WrongCallError
+from survey_data import ImportPlan
+
+CELLS = ("study", "attribute", "kind", "ours", "theirs", "basis", "row", "column")
+
+
+def import_(
+    file: Annotated[Path, typer.Argument(help="CSV or XLSX table of studies.", show_default=False)],
+    *,
+    mapped: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--map",
+            metavar="COL=ATTRIBUTE",
+            help="What a column holds: study, title, authors, year or an attribute, or - to leave "
+            "it aside; may be repeated. Other columns are matched by similarity.",
+        ),
+    ] = None,
+    sheet: Annotated[str | None, typer.Option(help="Sheet of a workbook.")] = None,
+    apply: Annotated[
+        bool, typer.Option("--apply", help="Write; without it nothing is written.")
+    ] = False,
+    data: Annotated[
+        Path | None,
+        typer.Option(help="Directory of our tables; our own by default.", show_default=False),
+    ] = None,
+    form: FormatOption = Format.TABLE,
+) -> None:
+    """Compare a table with ours, cell by cell, and take it over with --apply.
+
+    Shows which column was taken for what, and every cell that differs: new (ours is unknown),
+    changed, confirmed (the same on better evidence), or conflict (the survey prints ours, which
+    stays). Cells that cannot be read are named on stderr with row and column, and the exit code
+    is 1.
+    """
+    plan = survey_data.import_table(
+        file, data, overrides=_overrides(mapped or ()), sheet=sheet, apply=apply
+    )
+    if form is Format.JSON:
+        emit_json(plan.to_dict())
+    elif form is Format.CSV:
+        emit([d.to_dict() for d in (*plan.differences, *plan.confirmed)], CELLS, form)
+    else:
+        _print(plan)
+    for problem in plan.errors:
+        typer.echo(f"sunatlas: {problem}", err=True)
+    if plan.errors:
+        raise typer.Exit(1)
+
+
+def _overrides(mapped: Sequence[str]) -> dict[str, str]:
+    """Read COL=ATTRIBUTE; the last = divides, so that a column's name may hold one."""
+    overrides: dict[str, str] = {}
+    for text in mapped:
+        column, equals, target = text.rpartition("=")
+        if not (equals and column and target):
+            raise WrongCallError(f"--map: expected COL=ATTRIBUTE; got {text!r}")
+        if overrides.setdefault(column, target) != target:
+            raise WrongCallError(
+                f"--map: column {column!r} is given both {overrides[column]!r} and {target!r}"
+            )
+    return overrides
+
+
+def _print(plan: ImportPlan) -> None:
+    mapping = plan.mapping.to_dict()
+    columns = ("column", "target", "score", "name_score", "value_score", "how")
+    emit(mapping["matches"], columns, Format.TABLE, title=f"Columns of {plan.source}")
+    if mapping["ignored"]:
+        typer.echo(f"left aside: {', '.join(mapping['ignored'])}\n")
+    cells = [d.to_dict() for d in (*plan.differences, *plan.confirmed)]
+    emit(cells, CELLS, Format.TABLE, title=f"{len(cells)} cells that differ")
+    listed = plan.to_dict()
+    if listed["guesses"]:
+        emit(
+            listed["guesses"],
+            tuple(listed["guesses"][0]),
+            Format.TABLE,
+            title="Values read by similarity: check them",
+        )
+    if listed["unmatched"]:
+        emit(listed["unmatched"], ("row", "reason"), Format.TABLE, title="Rows left aside")
+    edits = len(plan.edits)
+    if plan.written:
+        typer.echo(f"{plan.written} cells written.")
+    elif edits and not plan.errors:
+        typer.echo(f"Nothing written; --apply writes {edits} cells.")
+    else:
+        typer.echo("Nothing written.")

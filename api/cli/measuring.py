@@ -1,0 +1,139 @@
+"""Measuring cells for a command: where results are looked up, where new ones go.
+
+A cell that the published results hold for the code and data as they are is read there. Any other
+is measured once into the working store (`api.cli.working`), a directory of the same files,
+and read from it the next time.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from api.cli.working import working_directory
+from benchmark.plan.combinations import Cell
+from benchmark.results.store import PUBLISHED, Store
+from benchmark.running.run import RunInterruptedError, run, stale
+from benchmark.running.times import times_of_code
+
+Row = dict[str, Any]
+
+
+def _available_workers() -> int:
+    """Return the number of processors this process may use."""
+    affinity = getattr(os, "sched_getaffinity", None)
+    return len(affinity(0)) if affinity else os.cpu_count() or 1
+
+
+AVAILABLE_WORKERS = _available_workers()
+
+WorkersOption = Annotated[
+    int, typer.Option(min=1, help="Processes; the numbers do not depend on it.")
+]
+ManyWorkersOption = Annotated[
+    int,
+    typer.Option(
+        min=1,
+        help="Processes; the numbers do not depend on it.",
+        show_default="the processors there are",
+    ),
+]
+StoreOption = Annotated[
+    Path | None,
+    typer.Option(
+        help="Where new results go; by default $SUNATLAS_STORE, else the user's cache directory.",
+        file_okay=False,
+        show_default=False,
+    ),
+]
+
+
+@dataclass(frozen=True)
+class Scored:
+    """Rows of cells and where they came from.
+
+    Attributes
+    ----------
+    rows : score rows in the order of the cells, with latency_us and time_ratio where this machine
+        has timed the pipeline
+    published, kept, measured : how many were read from the published results, how many from the
+        working store, how many measured now
+    directory : the working store
+    warnings : of the runner
+    """
+
+    rows: list[Row]
+    published: int
+    kept: int
+    measured: int
+    directory: Path
+    warnings: tuple[str, ...]
+
+    def sources(self) -> dict[str, Any]:
+        """Say where the rows came from, for JSON."""
+        return {
+            "published": self.published,
+            "kept": self.kept,
+            "measured": self.measured,
+            "directory": str(self.directory),
+        }
+
+
+def scored(cells: Iterable[Cell], workers: int, directory: Path | None) -> Scored:
+    """Read what is known of the cells and measure the rest.
+
+    Raises
+    ------
+    typer.Exit
+        With 130 on Ctrl-C, after saying what is kept.
+    StoreLockedError, StoreError
+        As `benchmark.running.run.run`.
+    """
+    wanted = sorted(set(cells))
+    shipped, work = Store(PUBLISHED), Store(working_directory(directory))
+    elsewhere = stale(wanted, shipped)
+    missing = stale(elsewhere, work)
+    warnings: tuple[str, ...] = ()
+    if missing:
+        with interruptible():
+            warnings = run(missing, work, workers).warnings
+    found = {**_rows(shipped, set(wanted) - set(elsewhere)), **_rows(work, set(elsewhere))}
+    times = times_of_code(work.directory)
+    for cell, row in found.items():
+        time = times.get((cell.dataset, cell.extractor, cell.model))
+        row["latency_us"] = time.latency_us if time else None
+        row["time_ratio"] = time.time_ratio if time else None
+    return Scored(
+        rows=[found[cell] for cell in wanted],
+        published=len(wanted) - len(elsewhere),
+        kept=len(elsewhere) - len(missing),
+        measured=len(missing),
+        directory=work.directory,
+        warnings=warnings,
+    )
+
+
+@contextmanager
+def interruptible() -> Iterator[None]:
+    """Let Ctrl-C end a run with a line that says what is kept, and exit code 130."""
+    try:
+        yield
+    except RunInterruptedError as interrupted:
+        typer.echo(f"sunatlas: {interrupted}", err=True)
+        raise typer.Exit(130) from interrupted
+
+
+def _rows(store: Store, cells: set[Cell]) -> dict[Cell, Row]:
+    if not cells:
+        return {}
+    return {cell: row for row in store.rows() if (cell := _cell(row)) in cells}
+
+
+def _cell(row: Row) -> Cell:
+    return Cell(row["dataset"], row["condition"], row["extractor"], row["model"], row["unit"])

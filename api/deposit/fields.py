@@ -1,0 +1,160 @@
+"""What the columns of the bundle's measured tables hold: type, unit and meaning.
+
+The survey's tables bring their own descriptor; here stand the tables that come from the benchmark.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal
+
+from benchmark.metrics.rings import RINGS
+
+Type = Literal["string", "integer", "number", "boolean"]
+
+TABLE_SCHEMA = "https://datapackage.org/profiles/2.0/tableschema.json"
+
+_FIELDS: dict[str, tuple[Type, str]] = {
+    # what was measured
+    "rank": (
+        "integer",
+        "Place in the data set's condition, best first; those that answer less than 95 % last.",
+    ),
+    "tied": ("boolean", "Whether others share the rank: errors on units built alike overlap."),
+    "unit": ("integer", "Unit of the sensor; 0 is the standard one."),
+    "dataset": ("string", "Name of the standard data set."),
+    "dataset_version": ("integer", "Version of the data set."),
+    "condition": ("string", "Named condition of the data set."),
+    "detector": ("string", "Detector, as in the survey's taxonomy."),
+    "mask": ("string", "Mask, as in the survey's taxonomy."),
+    "half_fov_deg": ("number", "Half field of view of the sensor, degrees."),
+    "extractor": ("string", "Name of the feature extractor's implementation."),
+    "extractor_taxonomy": ("string", "Extractor, as in the survey's taxonomy."),
+    "extractor_version": ("integer", "Version of the extractor's numbers."),
+    "model": ("string", "Name of the calibration model's implementation."),
+    "model_taxonomy": ("string", "Model, as in the survey's taxonomy."),
+    "model_version": ("integer", "Version of the model's numbers."),
+    "status": (
+        "string",
+        "ok, refused (the model cannot work on these data) or failed, with a reason.",
+    ),
+    "reason": ("string", "Why there is no score; empty where there is one."),
+    "n_calibration": ("integer", "Samples of the calibration split."),
+    "n_test": ("integer", "Samples of the test split."),
+    "n_observable": ("integer", "Test samples whose direction is observable."),
+    # accuracy
+    "availability": ("number", "Answered share of the observable test samples."),
+    "false_sun": ("number", "Answered share of the test samples that are not observable."),
+    "rms_deg": (
+        "number",
+        "Root mean square separation angle of observable samples with an answer, degrees.",
+    ),
+    "median_deg": ("number", "Median separation angle, degrees."),
+    "p95_deg": ("number", "95th percentile of the separation angle, degrees."),
+    "p997_deg": ("number", "99.7th percentile of the separation angle, degrees."),
+    "max_deg": ("number", "Largest separation angle, degrees."),
+    "bias_alpha_deg": ("number", "Mean error of alpha, degrees."),
+    "bias_beta_deg": ("number", "Mean error of beta, degrees."),
+    "rms_alpha_deg": ("number", "Root mean square error of alpha, degrees."),
+    "rms_beta_deg": ("number", "Root mean square error of beta, degrees."),
+    "repeatability_deg": (
+        "number",
+        "Standard deviation of answers to a pose held still, over both axes, degrees.",
+    ),
+    "bound_deg": ("number", "Root mean square of the Cramer-Rao bound, degrees."),
+    "over_bound": ("number", "Root mean square error divided by the bound."),
+    "over_bound_se": ("number", "Standard error of over_bound."),
+    **{
+        ring.column: (
+            "number",
+            f"Root mean square error {ring.inner_deg} to {ring.outer_deg} degrees off the axis.",
+        )
+        for ring in RINGS
+    },
+    "low_deg": ("number", "Smallest root mean square error of a unit, degrees."),
+    "high_deg": ("number", "Largest root mean square error of a unit, degrees."),
+    "unit_rms_deg": ("string", "Root mean square error of each unit, separated by semicolons."),
+    # sweeps
+    "series": ("string", "Reference feature; none where no feature fits the extractor."),
+    "sweep": ("string", "What is varied; none where the feature is not measured."),
+    "point": ("string", "Point of the sweep; none where the feature is not measured."),
+    "value": ("number", "Place of the point on the sweep's axis; empty where it is a word."),
+    "n": ("integer", "Samples at the point; 0 where the extractor's design refuses it."),
+    "measured_in": ("string", "Unit of rms, bias and bound."),
+    "kept_fraction": ("number", "Share of samples found within 3 px of the truth."),
+    "rms": ("number", "Root mean square error of one coordinate of the found samples."),
+    "bias": ("number", "Root mean square over the coordinates of the mean error."),
+    "bound": ("number", "Root mean square Cramer-Rao bound of one coordinate."),
+    "found_fraction": ("number", "Share of samples with a feature found."),
+    # provenance
+    "split": ("string", "calibration, test or repeat."),
+    "observable": ("integer", "Samples of the test split whose direction is observable."),
+    "head_bound_deg": ("number", "Bound of the first samples, degrees."),
+    "data_hash": ("string", "Hash of the samples."),
+    "head_hash": ("string", "Hash of the first samples."),
+    "metric_version": ("integer", "Version of how errors become numbers."),
+    # algorithms and data sets
+    "name": ("string", "Unique name."),
+    "role": ("string", "extractor or model."),
+    "taxonomy": ("string", "Value of the survey's taxonomy that is implemented."),
+    "category": ("string", "Category of that value."),
+    "observation": ("string", "What is read: frames, profiles, currents or events."),
+    "kind": ("string", "What an extractor's features mean."),
+    "accepts": ("string", "Kinds of features a model reads, separated by semicolons."),
+    "labels": ("string", "The survey's labels of what is implemented, separated by semicolons."),
+    "studies": ("string", "Studies that are followed, separated by semicolons."),
+    "origin": ("string", "survey: described there; ours: not."),
+    "version": ("integer", "Raised when the numbers change on purpose."),
+    "summary": ("string", "What it does."),
+    "conditions": ("string", "Named conditions, separated by semicolons."),
+    "description": ("string", "What it is."),
+    "follows": ("string", "Studies whose sensor it follows, separated by semicolons."),
+}
+
+
+def schema(
+    columns: Sequence[str],
+    where: str,
+    *,
+    primary: Sequence[str],
+    foreign: Mapping[str, tuple[str, str]] | None = None,
+) -> dict[str, Any]:
+    """Describe a table as Table Schema v2.
+
+    Parameters
+    ----------
+    columns : of the table, in order
+    where : the table's name, for messages
+    primary : columns that identify a row
+    foreign : column -> (resource, column) that its values stand in
+
+    Raises
+    ------
+    ValueError
+        For a column nothing is known of: a table does not go out half described.
+    """
+    unknown = [name for name in columns if name not in _FIELDS]
+    if unknown:
+        raise ValueError(
+            f"{where}: no description of column {', '.join(unknown)} in api.deposit.fields"
+        )
+    required = {*primary, *(foreign or {})}
+    fields = []
+    for name in columns:
+        kind, description = _FIELDS[name]
+        field: dict[str, Any] = {"name": name, "type": kind, "description": description}
+        if name in required:
+            field["constraints"] = {"required": True}
+        fields.append(field)
+    described: dict[str, Any] = {
+        "$schema": TABLE_SCHEMA,
+        "fields": fields,
+        "missingValues": [""],
+        "primaryKey": list(primary),
+    }
+    if foreign:
+        described["foreignKeys"] = [
+            {"fields": [column], "reference": {"resource": resource, "fields": [target]}}
+            for column, (resource, target) in foreign.items()
+        ]
+    return described

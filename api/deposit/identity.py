@@ -1,0 +1,146 @@
+"""What the project is called, its version, its licences, how to cite it.
+
+In a checkout the files at the repository's root say so; in an installed package, which has no
+such files beside it, the distribution's metadata does.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import tomllib
+from dataclasses import dataclass
+from datetime import UTC, date, datetime
+from functools import cache
+from importlib.metadata import Distribution, PackageNotFoundError, distribution
+from pathlib import Path
+
+DISTRIBUTION = "sun-sensor-atlas"
+ROOT = Path(__file__).resolve().parents[2]
+_DATE = re.compile(r'^date-released:\s*"?(\d{4}-\d{2}-\d{2})"?\s*$', re.MULTILINE)
+
+
+class MissingFileError(FileNotFoundError):
+    """A file the project cannot go out without is neither in the checkout nor in the package."""
+
+
+@dataclass(frozen=True)
+class Identity:
+    """Name, version and terms of the project.
+
+    Attributes
+    ----------
+    title : name for people
+    version : of the distribution
+    summary : one sentence
+    authors : names
+    released : date of this version
+    citation : text of CITATION.cff (Citation File Format 1.2.0)
+    code_licence, data_licence : texts, MIT and CC BY 4.0
+    """
+
+    title: str
+    version: str
+    summary: str
+    authors: tuple[str, ...]
+    released: date
+    citation: str
+    code_licence: str
+    data_licence: str
+
+
+@cache
+def identity() -> Identity:
+    """Say who the running code is.
+
+    Raises
+    ------
+    MissingFileError
+        Where a licence is not found.
+    """
+    number, summary, authors = _project()
+    path = ROOT / "CITATION.cff"
+    written = path.read_text("utf-8") if _checkout() and path.is_file() else None
+    released = _released(written)
+    return Identity(
+        title="Sun Sensor Atlas",
+        version=number,
+        summary=summary,
+        authors=authors,
+        released=released,
+        citation=written or generated_citation(number, summary, authors, released),
+        code_licence=_licence("LICENSE"),
+        data_licence=_licence("survey_data/LICENSE"),
+    )
+
+
+def version() -> str:
+    """Return the version of the running code; licences are not looked for."""
+    return _project()[0]
+
+
+def generated_citation(number: str, summary: str, authors: tuple[str, ...], released: date) -> str:
+    """Write a CITATION.cff from the metadata, for an installation without the file."""
+    names = "".join(f'  - name: "{_quoted(name)}"\n' for name in authors)
+    return (
+        "cff-version: 1.2.0\n"
+        "message: If you use the dataset, the benchmark or the code, please cite it as below.\n"
+        "type: software\n"
+        "title: Sun Sensor Atlas\n"
+        f'abstract: "{_quoted(summary)}"\n'
+        f"authors:\n{names}"
+        f'version: "{_quoted(number)}"\n'
+        f'date-released: "{released.isoformat()}"\n'
+        "license:\n  - MIT\n  - CC-BY-4.0\n"
+    )
+
+
+def _quoted(text: str) -> str:
+    return text.replace("\\", "\\\\").replace('"', '\\"')
+
+
+def _checkout() -> bool:
+    return (ROOT / "pyproject.toml").is_file()
+
+
+def _installed() -> Distribution | None:
+    try:
+        return distribution(DISTRIBUTION)
+    except PackageNotFoundError:
+        return None
+
+
+def _project() -> tuple[str, str, tuple[str, ...]]:
+    # The checkout first: an editable installation's metadata are those of the day it was made.
+    if _checkout():
+        project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+        authors = tuple(author["name"] for author in project["authors"])
+        return project["version"], project["description"], authors
+    installed = _installed()
+    if installed is None:
+        raise MissingFileError(f"neither {ROOT / 'pyproject.toml'} nor an installed {DISTRIBUTION}")
+    metadata = installed.metadata
+    names = (metadata["Author"] or metadata["Author-email"] or "").split(", ")
+    return metadata["Version"], metadata["Summary"], tuple(n for n in names if n)
+
+
+def _released(citation: str | None) -> date:
+    found = _DATE.search(citation or "")
+    if found:
+        return date.fromisoformat(found[1])
+    # Reproducible-builds convention; without it the only date an installation knows is today's.
+    epoch = os.environ.get("SOURCE_DATE_EPOCH")
+    moment = datetime.fromtimestamp(int(epoch), UTC) if epoch else datetime.now(UTC)
+    return moment.date()
+
+
+def _licence(name: str) -> str:
+    # survey_data/LICENSE is package data, beside this package in a checkout and in a wheel alike.
+    path = ROOT / name
+    if path.is_file() and (_checkout() or "/" in name):
+        return path.read_text("utf-8")
+    installed = _installed()
+    text = installed.read_text(f"licenses/{name}") if installed else None
+    if text is None:
+        raise MissingFileError(f"no {name} at {ROOT} or in the metadata of {DISTRIBUTION}")
+    return text

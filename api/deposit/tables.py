@@ -1,0 +1,201 @@
+"""The measured tables of the bundle: algorithms, data sets, scores and leaderboard, as CSV."""
+
+from __future__ import annotations
+
+import csv
+import dataclasses
+import io
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from api.deposit.fields import schema
+from api.http.tables import cell
+from benchmark import datasets
+from benchmark.leaderboard.board import build
+from benchmark.results.store import Store
+from registry.catalogue import catalogue
+
+#: Columns of sweeps that stand in the bundle under another name or value.
+_RENAMED = frozenset({"series", "sweep", "point", "unit"})
+_PIPELINE = ("dataset", "condition", "extractor", "model")
+_RANKED = ("rank", "tied", *_PIPELINE, "rms_deg", "low_deg", "high_deg", "unit_rms_deg")
+
+
+class NothingPublishedError(FileNotFoundError):
+    """There are no published results to deposit."""
+
+
+class DescriptorError(ValueError):
+    """A file is no descriptor of a data package; the message names it."""
+
+
+@dataclass(frozen=True)
+class MeasuredTable:
+    """A table with its description.
+
+    Attributes
+    ----------
+    name : of the resource; the file is benchmark/<name>.csv
+    title, description : for people
+    text : the CSV, UTF-8, lines ended by a line feed
+    schema : Table Schema v2
+    """
+
+    name: str
+    title: str
+    description: str
+    text: str
+    schema: Mapping[str, Any]
+
+
+def measured_tables(published: Path) -> list[MeasuredTable]:
+    """Make the measured tables from a directory of published results.
+
+    Raises
+    ------
+    NothingPublishedError
+        Where it holds no scores.
+    ValueError
+        Where a file cannot be read, or has a column nothing is known of.
+    """
+    store = Store(published)
+    scores = store.rows(unit=None)
+    if not scores:
+        raise NothingPublishedError(
+            f"{store.scores_directory} is missing or empty; run `sunatlas leaderboard update`"
+        )
+    names = {"extractor": ("algorithms", "name"), "model": ("algorithms", "name")}
+    foreign = {"dataset": ("datasets", "name"), **names}
+    swept = store.swept()
+    return [
+        _algorithms(),
+        _datasets(),
+        _table(
+            "scores",
+            "Scores",
+            "One row a pipeline on a data set in a condition and a unit of the sensor; a pure "
+            "function of code and data.",
+            scores,
+            primary=(*_PIPELINE, "unit"),
+            foreign=foreign,
+        ),
+        _leaderboard(scores, foreign),
+        _pins(store),
+        *([_sweeps(swept)] if swept else []),
+    ]
+
+
+def _leaderboard(
+    scores: Sequence[Mapping[str, Any]], foreign: Mapping[str, tuple[str, str]]
+) -> MeasuredTable:
+    board = build(scores)
+    rows = [
+        {name: row[name] for name in _RANKED}
+        for dataset in board["datasets"]
+        for row in dataset["rows"]
+    ]
+    return _table(
+        "leaderboard",
+        "Leaderboard",
+        "Pipelines ranked in each data set and condition; numbers of every row stand in scores.",
+        rows,
+        primary=_PIPELINE,
+        foreign=foreign,
+    )
+
+
+def _pins(store: Store) -> MeasuredTable:
+    return _table(
+        "data",
+        "Generated data",
+        "Hash of every generated split of every data set, and its Cramer-Rao bound.",
+        [dataclasses.asdict(pin) for _, pin in sorted(store.pins().items())],
+        primary=("dataset", "condition", "split"),
+        foreign={"dataset": ("datasets", "name")},
+    )
+
+
+def _sweeps(rows: Sequence[Mapping[str, Any]]) -> MeasuredTable:
+    # An empty cell is a missing value, which a key may not be: a refused series says so in words.
+    named = [
+        {
+            **{name: row[name] or "none" for name in ("series", "sweep", "point")},
+            **{name: value for name, value in row.items() if name not in _RENAMED},
+            "measured_in": row["unit"],
+        }
+        for row in rows
+    ]
+    return _table(
+        "sweeps",
+        "Sweeps",
+        "Error of every extractor on features in closed form, with the Cramer-Rao bound.",
+        named,
+        primary=("series", "sweep", "point", "extractor"),
+        foreign={"extractor": ("algorithms", "name")},
+    )
+
+
+def _algorithms() -> MeasuredTable:
+    return _table(
+        "algorithms",
+        "Algorithms",
+        "Every implementation of an extractor or a model.",
+        [implementation.to_dict() for implementation in catalogue().listing()],
+        primary=("name",),
+    )
+
+
+def _datasets() -> MeasuredTable:
+    rows = [
+        {
+            "name": preset.name,
+            "version": preset.version,
+            "detector": preset.detector,
+            "mask": preset.mask,
+            "observation": str(preset.observation),
+            "half_fov_deg": preset.geometry.half_fov_deg,
+            "conditions": preset.conditions,
+            "description": preset.description,
+            "follows": preset.follows,
+        }
+        for preset in map(datasets.get, datasets.names())
+    ]
+    return _table(
+        "datasets",
+        "Standard data sets",
+        "The simulated sensors that pipelines are scored on.",
+        rows,
+        primary=("name",),
+    )
+
+
+def _table(
+    name: str,
+    title: str,
+    description: str,
+    rows: Sequence[Mapping[str, Any]],
+    *,
+    primary: Sequence[str],
+    foreign: Mapping[str, tuple[str, str]] | None = None,
+) -> MeasuredTable:
+    columns = list(dict.fromkeys(column for row in rows for column in row))
+    stream = io.StringIO(newline="")
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(columns)
+    writer.writerows([cell(row.get(column)) for column in columns] for row in rows)
+    described = schema(columns, f"{name}.csv", primary=primary, foreign=foreign)
+    return MeasuredTable(name, title, description, stream.getvalue(), described)
+
+
+def read_descriptor(path: Path) -> dict[str, Any]:
+    """Read a datapackage.json; DescriptorError naming the file where it is none."""
+    try:
+        found = json.loads(path.read_text("utf-8"))
+    except ValueError as error:
+        raise DescriptorError(f"{path}: not JSON ({error})") from error
+    if isinstance(found, dict) and isinstance(found.get("resources"), list):
+        return found
+    raise DescriptorError(f"{path}: expected an object with a list of resources")

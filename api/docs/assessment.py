@@ -1,0 +1,152 @@
+"""What the docs say of sweeps and assessment: definitions, outcomes and pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cache, partial
+from typing import Any
+
+from benchmark.assessment import assess as assessment
+from benchmark.assessment.definitions import DEFINITIONS
+from benchmark.results.store import Store
+from benchmark.results.tables import Row
+from benchmark.sweeps import pictures as sweep_pictures
+from benchmark.sweeps import tables as sweep_tables
+from benchmark.sweeps.plan import SERIES
+
+_MARKS = {"agrees": "=", "near": "~", "opposed": "x", "not measured": ""}
+
+
+def definitions() -> str:
+    """List every property with its experiment and limits."""
+    rows = [
+        (str(number), d.name, d.measure, d.limits() or "not measured")
+        for number, d in enumerate(DEFINITIONS.values(), start=1)
+    ]
+    return _table(("", "property", "measured as (or why not)", "score"), rows)
+
+
+def outcomes() -> str:
+    """Put survey and measurement side by side, a row a method."""
+    document = _document()
+    numbers = [str(number) for number in range(1, len(DEFINITIONS) + 1)]
+    counted = ("agrees", "near", "opposed", "not measured")
+    rows = [
+        (
+            method["method"],
+            *(_cell(verdict) for verdict in method["properties"]),
+            *(str(method["counts"][name]) for name in counted),
+        )
+        for method in document["methods"]
+    ]
+    totals = "; ".join(f"{name} {count}" for name, count in document["totals"].items())
+    return f"{totals}.\n\n" + _table(("method", *numbers, *counted), rows)
+
+
+def values() -> str:
+    """List what was measured, property by property."""
+    parts = []
+    for number, (name, definition) in enumerate(DEFINITIONS.items(), start=1):
+        if not definition.measured:
+            continue
+        rows = [
+            (
+                method["method"],
+                str(verdict["survey"]),
+                _score(verdict),
+                verdict["agreement"],
+                _value(verdict, definition.source),
+                " on ".join(filter(None, (verdict["extractor"], verdict["measured_on"]))),
+            )
+            for method in _document()["methods"]
+            for verdict in method["properties"]
+            if verdict["property"] == name
+        ]
+        table = _table(("method", "survey", "measured", "", definition.unit or "value", "by"), rows)
+        parts.append(f"### {number}. {name}\n\n{table}")
+    return "\n\n".join(parts)
+
+
+def features() -> str:
+    """List the reference series."""
+    rows = [
+        (
+            f"`{series.name}`",
+            series.description,
+            ", ".join(dict.fromkeys(setting.sweep for setting in series.settings())),
+        )
+        for series in SERIES.values()
+    ]
+    return _table(("series", "feature", "sweeps"), rows)
+
+
+def accuracy() -> str:
+    """Write the tables of the reference settings and of the noise sweep."""
+    shown = [
+        table
+        for table in sweep_tables.tables(_rows())
+        if table.title.partition(":")[0] in ("reference", "noise")
+    ]
+    if not shown:
+        return "Nothing is published yet."
+    return "\n\n".join(
+        f"### {table.series}, {table.title}\n\n"
+        + _table(
+            (table.first, *table.columns),
+            [(name, *(text for _, _, text in cells)) for name, cells in table.rows],
+        )
+        for table in shown
+    )
+
+
+def unmeasured() -> str:
+    """List what no reference feature fits, with the reason."""
+    rows = [(f"`{n}`", s or "any", reason) for s, n, reason in sweep_tables.unmeasured(_rows())]
+    return _table(("extractor", "series", "reason"), rows) if rows else "Nothing is left out."
+
+
+def _picture(sweep: str) -> str:
+    return sweep_pictures.picture(_rows(), sweep)
+
+
+#: Pictures beside the pages, by file name.
+PICTURES: Mapping[str, Callable[[], str]] = {
+    f"error-against-{sweep}.svg": partial(_picture, sweep) for sweep in sweep_pictures.DRAWN
+}
+
+
+@cache
+def _rows() -> list[Row]:
+    return Store().swept()
+
+
+@cache
+def _document() -> dict[str, Any]:
+    return assessment.document(assessment.assess())
+
+
+def _cell(verdict: Mapping[str, Any]) -> str:
+    if verdict["measured"] is None:
+        return f"{verdict['survey']} –"
+    return f"{verdict['survey']}{_MARKS[verdict['agreement']]}{verdict['measured']}"
+
+
+def _score(verdict: Mapping[str, Any]) -> str:
+    return "–" if verdict["measured"] is None else str(verdict["measured"])
+
+
+def _value(verdict: Mapping[str, Any], source: str) -> str:
+    if verdict["measured"] is None:
+        return str(verdict["reason"])
+    if verdict["value"] is None:
+        return "too few found" if source == "sweeps" else "reads none of them"
+    return f"{verdict['value']:.3g}"
+
+
+def _table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    lines = [header, ["---"] * len(header), *rows]
+    return "\n".join(f"| {' | '.join(map(_escaped, line))} |" for line in lines)
+
+
+def _escaped(text: str) -> str:
+    return " ".join(text.split()).replace("|", "\\|")

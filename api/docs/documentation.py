@@ -1,0 +1,136 @@
+"""The generated parts of docs/: what the code knows of itself, written where people read it.
+
+A page holds prose and, between `<!-- generated: NAME -->` and `<!-- end: NAME -->`, parts that are
+made here. `python -m api.docs.documentation` renews them; `--check` names the pages that are
+behind.
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+import sys
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+from api.docs import assessment
+from api.docs.export import export_example
+from api.docs.parts import (
+    command_line,
+    coverage,
+    datasets,
+    extractors,
+    findings,
+    http_examples,
+    missing,
+    models,
+    resolutions,
+)
+
+DIRECTORY = Path(__file__).resolve().parents[2] / "docs"
+
+Make = Callable[[], str]
+PAGES: Mapping[str, Mapping[str, Make]] = {
+    "algorithms.md": {"extractors": extractors, "models": models, "missing": missing},
+    "datasets.md": {"coverage": coverage, "example": export_example, "datasets": datasets},
+    "sweeps.md": {
+        "features": assessment.features,
+        "accuracy": assessment.accuracy,
+        "unmeasured": assessment.unmeasured,
+    },
+    "assessment.md": {
+        "definitions": assessment.definitions,
+        "outcomes": assessment.outcomes,
+        "values": assessment.values,
+    },
+    "survey.md": {"findings": findings, "resolutions": resolutions},
+    "http.md": {"endpoints": http_examples},
+    "command-line.md": {"help": command_line},
+}
+
+_PART = re.compile(
+    r"(?P<opening><!-- generated: (?P<name>[a-z-]+) -->\n)"
+    r"(?P<body>.*?)"
+    r"(?P<closing><!-- end: (?P=name) -->)",
+    re.DOTALL,
+)
+
+
+class DocumentationError(ValueError):
+    """A page does not have the parts it should; the message names both."""
+
+
+def renewed(page: str, text: str, parts: Mapping[str, Make]) -> str:
+    """Return a page with its generated parts renewed.
+
+    Parameters
+    ----------
+    page : its name, for messages
+    text : as it is
+    parts : what makes each part, by name
+
+    Raises
+    ------
+    DocumentationError
+        Where a part is missing, unknown, or there twice.
+    """
+    found = [match["name"] for match in _PART.finditer(text)]
+    if sorted(found) != sorted(parts):
+        raise DocumentationError(
+            f"{page}: expected one generated part each of {', '.join(sorted(parts))}; "
+            f"found {', '.join(sorted(found)) or 'none'}"
+        )
+    return _PART.sub(
+        lambda match: f"{match['opening']}\n{parts[match['name']]().strip()}\n\n{match['closing']}",
+        text,
+    )
+
+
+def regenerate(directory: Path = DIRECTORY, *, write: bool = True) -> list[str]:
+    """Renew every page and picture; return the names of those that were behind.
+
+    Parameters
+    ----------
+    directory : where the pages are
+    write : write those that were behind
+
+    Raises
+    ------
+    DocumentationError
+        Where a page does not have the parts it should.
+    FileNotFoundError
+        Where a page is missing.
+    """
+    behind = {}
+    for page, parts in PAGES.items():
+        text = (directory / page).read_text("utf-8")
+        new = renewed(page, text, parts)
+        if new != text:
+            behind[page] = new
+    for picture, make in assessment.PICTURES.items():
+        path = directory / picture
+        new = make()
+        if not path.is_file() or path.read_text("utf-8") != new:
+            behind[picture] = new
+    if write:
+        for page, new in behind.items():
+            (directory / page).write_text(new, "utf-8", newline="\n")
+    return sorted(behind)
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Renew the pages, or with --check only say which are behind (exit code 1)."""
+    parser = argparse.ArgumentParser(
+        prog="python -m api.docs.documentation", description=main.__doc__
+    )
+    parser.add_argument("--check", action="store_true", help="write nothing")
+    options = parser.parse_args(arguments)
+    behind = regenerate(write=not options.check)
+    for page in behind:
+        said = "is behind; run `make docs`" if options.check else "renewed"
+        sys.stderr.write(f"docs/{page} {said}\n")
+    return 1 if behind and options.check else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,164 @@
+"""Examples in the docs that are what really comes out: HTTP answers and the commands' help."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from collections.abc import Iterator, Mapping
+from typing import Any
+from urllib.parse import quote
+
+from typer.testing import CliRunner
+
+from api.cli.command_line import COMMANDS, app, load
+from api.http.service import create_app
+
+LONGEST_LIST = 1
+LONGEST_TEXT = 160
+DEEPEST = 4
+TIMES = ("latency_us", "time_ratio")
+REFUSED = "/v1/studies?detectr=CMOS"
+
+
+def command_line() -> str:
+    """Return the help of `sunatlas` and of every command below it."""
+    shown = [("sunatlas", ["--help"])]
+    for name in COMMANDS:
+        below = getattr(load(name), "commands", {})
+        shown.append((f"sunatlas {name}", [name, "--help"]))
+        shown += [(f"sunatlas {name} {sub}", [name, sub, "--help"]) for sub in below]
+    runner = CliRunner(env={"COLUMNS": "88", "TERMINAL_WIDTH": "88"})
+    parts = []
+    for title, arguments in shown:
+        text = runner.invoke(app, arguments, prog_name="sunatlas").stdout
+        trimmed = "\n".join(line.rstrip() for line in text.strip().splitlines())
+        parts.append(f"## {title}\n\n```text\n{trimmed}\n```")
+    return "\n\n".join(parts)
+
+
+def http_examples() -> str:
+    """Return every endpoint with its parameters and the answer to its example."""
+    service = create_app()
+    described = service.openapi()
+    parts = []
+    for path, operations in described["paths"].items():
+        for method, operation in operations.items():
+            parts.append(_operation(service, path, method, operation))
+    refused = _ask(service, "GET", REFUSED)
+    parts.append(
+        "### What is refused\n\nAs a problem document (RFC 9457), with the nearest valid word:\n\n"
+        + _exchange(f"GET {REFUSED}", None, refused)
+    )
+    return "\n\n".join(parts)
+
+
+def _operation(service: Any, path: str, method: str, operation: Mapping[str, Any]) -> str:
+    target, body = _example(path, operation)
+    answer = _ask(service, method.upper(), target, body)
+    lines = [f"### {method.upper()} {path}", "", operation.get("summary", "") + ".", ""]
+    if operation.get("description"):
+        lines += [operation["description"], ""]
+    rows = [p for p in operation.get("parameters", ()) if p["in"] in {"path", "query"}]
+    if rows:
+        lines += ["| parameter | takes | what it does |", "|---|---|---|"]
+        lines += [
+            f"| `{p['name']}` | {_takes(p['schema'])} | {p.get('description', '')} |" for p in rows
+        ]
+        lines.append("")
+    lines.append(_exchange(f"{method.upper()} {target}", body, answer))
+    return "\n".join(lines)
+
+
+def _example(path: str, operation: Mapping[str, Any]) -> tuple[str, Any]:
+    """Return the target and the JSON body of an operation's example."""
+    query = []
+    for parameter in operation.get("parameters", ()):
+        if "example" not in parameter:
+            continue
+        given = parameter["example"]
+        if parameter["in"] == "path":
+            path = path.replace(f"{{{parameter['name']}}}", quote(str(given), safe=""))
+        elif parameter["in"] == "query":
+            values = given if isinstance(given, list) else [given]
+            query += [f"{parameter['name']}={quote(str(value), safe='')}" for value in values]
+    content = operation.get("requestBody", {}).get("content", {})
+    body = content.get("application/json", {}).get("example")
+    return path + ("?" + "&".join(query) if query else ""), body
+
+
+def _ask(service: Any, method: str, target: str, body: Any = None) -> tuple[int, str, str]:
+    import httpx  # noqa: PLC0415 - needed to write the docs, not to run the service
+
+    async def exchange() -> tuple[int, str, str]:
+        transport = httpx.ASGITransport(service)
+        async with httpx.AsyncClient(transport=transport, base_url="http://127.0.0.1") as client:
+            options = {} if body is None else {"json": body}
+            answer = await client.request(method, target, **options)
+            return answer.status_code, answer.headers["content-type"], answer.text
+
+    return asyncio.run(exchange())
+
+
+def _exchange(request: str, body: Any, answer: tuple[int, str, str]) -> str:
+    status, media_type, text = answer
+    if media_type.startswith("image/"):
+        return f"```http\n{request}\n```\n\n{status}, `{media_type}`."
+    asked = "" if body is None else f"\n\n{json.dumps(body, ensure_ascii=False)}"
+    if "json" in media_type:
+        shown = "\n".join(_pretty(_shortened(json.loads(text))))
+    else:
+        shown = text.strip()[:LONGEST_TEXT]
+    return f"```http\n{request}{asked}\n```\n\n{status}, `{media_type}`:\n\n```json\n{shown}\n```"
+
+
+def _shortened(value: Any, depth: int = 0) -> Any:
+    """Cut long lists, saying how much was left out, and what lies deep."""
+    if depth >= DEEPEST and len(json.dumps(value)) > LONGEST_TEXT // 2:
+        return "…"
+    if isinstance(value, dict):
+        # Times change with every measuring; the docs should not.
+        return {
+            name: "…" if name in TIMES and member is not None else _shortened(member, depth + 1)
+            for name, member in value.items()
+        }
+    if isinstance(value, list):
+        kept = [_shortened(member, depth + 1) for member in value[:LONGEST_LIST]]
+        left = len(value) - len(kept)
+        return [*kept, f"… {left} more"] if left else kept
+    if isinstance(value, str) and len(value) > LONGEST_TEXT:
+        return value[:LONGEST_TEXT] + "…"
+    return value
+
+
+def _pretty(value: Any, indent: str = "", name: str = "", comma: str = "") -> Iterator[str]:
+    """Write JSON with what fits on a line on one line."""
+    flat = json.dumps(value, ensure_ascii=False)
+    if len(indent) + len(name) + len(flat) < 100 or not isinstance(value, dict | list):
+        yield f"{indent}{name}{flat}{comma}"
+        return
+    opening, closing = "{}" if isinstance(value, dict) else "[]"
+    yield f"{indent}{name}{opening}"
+    if isinstance(value, dict):
+        members = [(f"{json.dumps(key)}: ", member) for key, member in value.items()]
+    else:
+        members = [("", member) for member in value]
+    for number, (key, member) in enumerate(members, start=1):
+        yield from _pretty(member, indent + "  ", key, "," if number < len(members) else "")
+    yield f"{indent}{closing}{comma}"
+
+
+def _takes(schema: Mapping[str, Any]) -> str:
+    """Say in words what a parameter's schema takes."""
+    if schema.get("type") == "array":
+        return f"{_takes(schema['items'])}; repeatable"
+    if "enum" in schema:
+        words = schema["enum"]
+        some = ", ".join(f"`{word}`" for word in words[:6])
+        return some if len(words) <= 6 else f"{some}, … ({len(words)} values)"
+    default = f", {schema['default']} by default" if "default" in schema else ""
+    limits = [
+        f"{said} {schema[key]:g}"
+        for key, said in (("minimum", "from"), ("exclusiveMinimum", "above"), ("maximum", "to"))
+        if key in schema
+    ]
+    return " ".join([str(schema.get("type", "any")), *limits]) + default

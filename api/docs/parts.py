@@ -1,0 +1,175 @@
+"""What each generated part of the docs says, as Markdown."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from functools import cache
+from typing import Any
+
+import survey_data
+from api.docs.examples import command_line, http_examples
+from api.http.knowledge import Knowledge
+from benchmark.datasets import coverage as simulated
+
+__all__ = [
+    "command_line",
+    "coverage",
+    "datasets",
+    "extractors",
+    "findings",
+    "http_examples",
+    "missing",
+    "models",
+    "resolutions",
+]
+
+
+def extractors() -> str:
+    """List every extractor: what it implements, what it reads and gives."""
+    rows = [
+        (
+            f"`{i.name}`",
+            i.taxonomy,
+            i.summary,
+            f"{i.observation} → {i.kind}",
+            ", ".join(i.studies),
+            _labels(i.labels),
+        )
+        for i in _knowledge().catalogue.listing("extractor")
+    ]
+    return _table(("name", "taxonomy", "what it does", "reads → gives", "studies", "survey"), rows)
+
+
+def models() -> str:
+    """List every model: what it implements, what it reads."""
+    rows = [
+        (
+            f"`{i.name}`",
+            i.taxonomy,
+            i.summary,
+            ", ".join(i.accepts or ()),
+            ", ".join(i.studies),
+            _labels(i.labels),
+        )
+        for i in _knowledge().catalogue.listing("model")
+    ]
+    return _table(("name", "taxonomy", "what it does", "reads", "studies", "survey"), rows)
+
+
+def missing() -> str:
+    """List the taxonomy's values that nothing implements, with the studies that wait for them."""
+    known = _knowledge()
+    rows = []
+    for attribute, value in known.catalogue.gaps():
+        waiting = [key for key, s in known.facts.studies.items() if value in s.of(attribute)]
+        name = known.taxonomy.name(attribute, value)
+        rows.append((attribute, value, name, str(len(waiting))))
+    if not rows:
+        return "Every value of the taxonomy is implemented."
+    rows.sort(key=lambda row: (row[0], -int(row[3]), row[1]))
+    return _table(("attribute", "value", "name", "studies"), rows)
+
+
+def datasets() -> str:
+    """Write a card for each standard data set, with the published bounds."""
+    return "\n\n".join(_card(card) for card in _knowledge().measurements.cards)
+
+
+def coverage() -> str:
+    """Say which detector-mask pairs of the mapped studies are simulated."""
+    found = simulated.coverage()
+    rows = [
+        (
+            pair.detector,
+            pair.mask,
+            str(len(pair.studies)),
+            ", ".join(f"[{name}](#{name})" for name in pair.datasets) or pair.reason,
+        )
+        for pair in found.pairs
+    ]
+    return f"{found.sentence()}\n\n" + _table(
+        ("detector", "mask", "studies", "data sets, or why none"), rows
+    )
+
+
+def findings() -> str:
+    """List the survey's findings with the verdict of the tables."""
+    report = survey_data.fidelity(survey_data.load())
+    counted = ", ".join(f"{count} {verdict}" for verdict, count in report.verdicts.items())
+    rows = [
+        (
+            finding.id,
+            finding.verdict,
+            finding.statement,
+            ", ".join(f"{value} {count}" for value, count in finding.ranking[:3]),
+            str(finding.counted),
+        )
+        for finding in report.findings
+    ]
+    return (
+        f"{report.studies} studies; the survey states {report.stated}. {report.explanation}\n\n"
+        f"{len(report.findings)} findings: {counted}.\n\n"
+        + _table(("id", "verdict", "finding", "most frequent", "studies counted"), rows)
+    )
+
+
+def resolutions() -> str:
+    """Say how many studies run, and what the others wait for."""
+    known = _knowledge()
+    resolved = known.resolutions
+    states = Counter(resolution.state for resolution in resolved.values())
+    counted = f"{states['complete']} run completely, {states['partial']} in part"
+    lines = [f"Of {len(resolved)} studies, {counted}, {states['none']} not at all."]
+    waiting: Counter[tuple[str, str, str]] = Counter(
+        gap
+        for resolution in resolved.values()
+        for gap in {(g.attribute, g.value or "not stated", g.reason) for g in resolution.gaps}
+    )
+    rows = [
+        (attribute, value, reason, str(count))
+        for (attribute, value, reason), count in sorted(
+            waiting.items(), key=lambda item: (-item[1], item[0])
+        )
+    ]
+    if rows:
+        lines.append("What they wait for, by the number of studies:")
+        lines.append(_table(("attribute", "value", "reason", "studies"), rows))
+    return "\n\n".join(lines)
+
+
+@cache
+def _knowledge() -> Knowledge:
+    return Knowledge()
+
+
+def _card(card: Any) -> str:
+    rows = [
+        (condition, _number(card["bounds"].get(condition)), setup["description"])
+        for condition, setup in card["setups"].items()
+    ]
+    follows = ", ".join(card["follows"]) or "no study"
+    return (
+        f"### {card['name']}\n\n"
+        f"{card['description']}\n\n"
+        f"Version {card['version']}; {card['detector']}, {card['mask']}; gives "
+        f"{card['observation']}; follows {follows}.\n\n"
+        + _table(("condition", "bound (rms, deg)", "what differs"), rows)
+    )
+
+
+def _labels(labels: Iterable[str]) -> str:
+    return ", ".join(f"`{label}`" for label in labels)
+
+
+def _number(value: float | None) -> str:
+    return "not measured" if value is None else f"{value:.3g}"
+
+
+def _table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    lines = [header, ["---"] * len(header), *rows]
+    return "\n".join(f"| {' | '.join(map(_escaped, line))} |" for line in lines)
+
+
+def _escaped(text: str) -> str:
+    return " ".join(text.split()).replace("|", "\\|")

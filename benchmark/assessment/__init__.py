@@ -1,0 +1,1 @@
+"""The survey's scores of each method beside measured ones."""

@@ -1,0 +1,251 @@
+"""The survey's assessment of its methods beside what was measured, property by property.
+
+Definitions and limits stand in `benchmark.assessment.definitions`; the numbers come from stored
+results alone (sweeps and scores) and from running times of this machine where there are any, so
+that asking measures nothing.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from statistics import median
+from typing import TYPE_CHECKING, Any
+
+from algorithms.contract import Extractor
+from algorithms.discovery import discover_extractors
+from benchmark.assessment.definitions import DEFINITIONS, Definition
+from benchmark.assessment.measures import SCORED, SWEPT, Unmeasured
+from benchmark.metrics.score import stored
+from benchmark.results.store import PUBLISHED, Store
+from benchmark.results.tables import Row
+from benchmark.running.times import Pipeline, Time
+from survey_data.tables import load
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+#: How far survey and measurement are apart, from the difference of their scores.
+AGREEMENTS = ("agrees", "near", "opposed")
+NOT_MEASURED = "not measured"
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """One property of one method.
+
+    Attributes
+    ----------
+    name
+        Of the property.
+    survey
+        2, 1 or 0, as the survey scores it.
+    measured
+        2, 1 or 0 by the definition; None where it is not measured.
+    value
+        The measured quantity; None where it is not measured or nothing was found.
+    extractor, series
+        Implementation and reference series or dataset the value comes from.
+    reason
+        Why there is no measurement; empty where there is one.
+    """
+
+    name: str
+    survey: int
+    measured: int | None
+    value: float | None
+    extractor: str
+    series: str
+    reason: str
+
+    @property
+    def agreement(self) -> str:
+        """`agrees`, `near` (one apart), `opposed` (two apart) or `not measured`."""
+        if self.measured is None:
+            return NOT_MEASURED
+        return AGREEMENTS[abs(self.survey - self.measured)]
+
+
+@dataclass(frozen=True)
+class Assessed:
+    """One method with its verdicts, in the order of the survey's table."""
+
+    method: str
+    taxonomy: str
+    case_study: str
+    extractors: tuple[str, ...]
+    verdicts: tuple[Verdict, ...]
+
+    @property
+    def counts(self) -> Mapping[str, int]:
+        """Number of properties by agreement."""
+        found = Counter(verdict.agreement for verdict in self.verdicts)
+        return {name: found[name] for name in (*AGREEMENTS, NOT_MEASURED)}
+
+
+def assess(
+    directory: Path | str = PUBLISHED,
+    extractors: Mapping[str, type[Extractor]] | None = None,
+    times: Mapping[Pipeline, Time] | None = None,
+) -> list[Assessed]:
+    """Assess every method of the survey's table from published results.
+
+    Parameters
+    ----------
+    directory
+        Of the published files.
+    extractors
+        Implementations by name; those installed by default.
+    times
+        Of this machine (`benchmark.running.times`); none by default.
+
+    Raises
+    ------
+    StoreError, ComponentsError
+        When a stored file cannot be read.
+    """
+    known = discover_extractors() if extractors is None else extractors
+    store = Store(directory)
+    evidence = _Evidence(store.swept(), store.rows(), list((times or {}).values()))
+    tables = load()
+    table = tables.feature_assessment
+    methods = list(dict.fromkeys(zip(table["extractor"], table["case_study"], strict=True)))
+    taxonomy = {name: _taxonomy(name, tables.aliases) for name, _ in methods}
+    found = []
+    for method, study in methods:
+        shared = sum(value == taxonomy[method] for value in taxonomy.values()) > 1
+        names = _implementations(known, taxonomy[method], study if shared else None)
+        scores = table[table["extractor"] == method].set_index("property")["score"]
+        verdicts = tuple(
+            _verdict(definition, int(scores[name]), names, evidence)
+            for name, definition in DEFINITIONS.items()
+        )
+        found.append(Assessed(method, taxonomy[method], study, tuple(names), verdicts))
+    return found
+
+
+def document(assessed: Iterable[Assessed]) -> dict[str, Any]:
+    """Return definitions, methods with their verdicts, and totals, of what JSON knows."""
+    listed = list(assessed)
+    return {
+        "definitions": [
+            {
+                "property": definition.name,
+                "source": definition.source,
+                "measure": definition.measure,
+                "limits": definition.limits(),
+            }
+            for definition in DEFINITIONS.values()
+        ],
+        "methods": [
+            {
+                "method": one.method,
+                "taxonomy": one.taxonomy,
+                "case_study": one.case_study,
+                "extractors": list(one.extractors),
+                "counts": dict(one.counts),
+                "properties": [_shown(verdict) for verdict in one.verdicts],
+            }
+            for one in listed
+        ],
+        "totals": totals_of(listed),
+    }
+
+
+def _shown(verdict: Verdict) -> dict[str, Any]:
+    return {
+        "property": verdict.name,
+        "survey": verdict.survey,
+        "measured": verdict.measured,
+        "agreement": verdict.agreement,
+        "value": verdict.value,
+        "unit": DEFINITIONS[verdict.name].unit,
+        "extractor": verdict.extractor,
+        "measured_on": verdict.series,
+        "reason": verdict.reason,
+    }
+
+
+def totals_of(assessed: Iterable[Assessed]) -> dict[str, int]:
+    """Return the number of verdicts by agreement."""
+    found: Counter[str] = Counter()
+    for one in assessed:
+        found.update(one.counts)
+    return {name: found[name] for name in (*AGREEMENTS, NOT_MEASURED)}
+
+
+@dataclass(frozen=True)
+class _Evidence:
+    swept: Sequence[Row]
+    scores: Sequence[Row]
+    times: Sequence[Time]
+
+
+def _verdict(
+    definition: Definition, survey: int, names: Sequence[str], evidence: _Evidence
+) -> Verdict:
+    """Take the best of a method's implementations, of all series each is measured on."""
+    if not definition.measured:
+        return Verdict(definition.name, survey, None, None, "", "", definition.measure)
+    if not names:
+        return Verdict(definition.name, survey, None, None, "", "", "not implemented")
+    found: list[tuple[float, str, str]] = []
+    reasons = []
+    for name in names:
+        try:
+            found += [
+                (value, name, series) for value, series in _values(definition, name, evidence)
+            ]
+        except Unmeasured as reason:
+            reasons.append(str(reason))
+    if not found:
+        return Verdict(
+            definition.name, survey, None, None, "", "", "; ".join(dict.fromkeys(reasons))
+        )
+    sign = -1.0 if definition.larger_is_better else 1.0
+    value, name, series = min(
+        found, key=lambda one: (math.inf if math.isnan(one[0]) else sign * one[0], *one[1:])
+    )
+    return Verdict(
+        definition.name, survey, definition.score(value), stored(value), name, series, ""
+    )
+
+
+def _values(definition: Definition, name: str, evidence: _Evidence) -> list[tuple[float, str]]:
+    """Return (value, where) of an implementation; NaN where it does not do it at all."""
+    if definition.source == "sweeps":
+        rows = [row for row in evidence.swept if row["extractor"] == name]
+        return SWEPT[definition.name](rows)
+    if definition.source == "scores":
+        rows = [row for row in evidence.scores if row["extractor"] == name]
+        return SCORED[definition.name](rows)
+    return _cost([time for time in evidence.times if time.extractor == name])
+
+
+def _cost(times: Sequence[Time]) -> list[tuple[float, str]]:
+    """Return the median ratio of extraction to the reference over the data sets with a time."""
+    ratios = {time.dataset: time.extract_ratio for time in times if time.extract_ratio is not None}
+    if not ratios:
+        raise Unmeasured("no times of this machine: `sunatlas leaderboard times`")
+    return [(median(ratios.values()), f"{len(ratios)} data sets")]
+
+
+def _taxonomy(method: str, aliases: pd.DataFrame) -> str:
+    known = aliases[(aliases["attribute"] == "extractor") & (aliases["alias"] == method)]
+    return str(known["value"].iloc[0]) if len(known) else method
+
+
+def _implementations(
+    known: Mapping[str, type[Extractor]], taxonomy: str, study: str | None
+) -> list[str]:
+    """Names of the survey's own implementations of a method; of a study, where methods share."""
+    return sorted(
+        name
+        for name, extractor in known.items()
+        if extractor.taxonomy == taxonomy
+        and extractor.origin == "survey"
+        and (study is None or study in extractor.studies)
+    )

@@ -1,0 +1,1 @@
+"""Conditions that data sets of a family share, one family a module."""

@@ -1,0 +1,289 @@
+"""Time-ordered splits along an orbit: `Flight` (where and when) and `FlightPreset` (a dataset)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+from typing import Any, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmark.datasets.fields import Split
+from benchmark.datasets.preset import DRAWN, Preset, Samples, drawn_split
+from benchmark.datasets.repeats import REPEAT
+from benchmark.seeds import generator
+from benchmark.simulator.flight.attitude import Attitude, rotated, turned
+from benchmark.simulator.flight.magnetic_field import TiltedDipole
+from benchmark.simulator.flight.orbit import (
+    DAY_S,
+    YEAR_DAYS,
+    CircularOrbit,
+    sun_direction,
+    sunlight,
+)
+from benchmark.simulator.flight.time_series import DriftingSensor, TimedScene
+from benchmark.simulator.light.sun_disc import tangent_axes
+from benchmark.simulator.sensors.faces import Faces
+
+Floats = NDArray[np.float64]
+
+#: Said in every card: what the bound of a time series does not cover.
+BOUND_NOTE = (
+    "The bound is that of one sample by itself, unit and drift known. It is not defined for an "
+    "estimator that carries a state from sample to sample or reads other instruments (Kalman "
+    "filters, dead reckoning through eclipse, fusion with magnetometer or horizon sensor): such a "
+    "one may go below it. Samples in eclipse are not observable and do not enter; there a "
+    "single-sample estimator should find nothing (NaN), and whatever it does find counts as error."
+)
+
+
+@dataclass(frozen=True)
+class Span:
+    """Equally spaced moments: `samples` of them, `step_s` apart, from `start_day` on."""
+
+    start_day: float
+    samples: int
+    step_s: float
+
+    def __post_init__(self) -> None:
+        if not (self.samples > 0 and self.step_s > 0 and self.start_day >= 0):
+            raise ValueError(
+                "samples and step_s must be positive, start_day not negative; got "
+                f"{self.samples}, {self.step_s} and {self.start_day}"
+            )
+
+
+@dataclass(frozen=True)
+class Leg:
+    """One split of a flight, sample by sample; inertial and body vectors (N, 3).
+
+    `time_s` counts from the start of the flight, `since_s` from the start of the leg. `orbit`
+    and `sun` (3,) stand still during a leg: they move by less than half a degree.
+    """
+
+    orbit: CircularOrbit
+    sun: Floats
+    sunlight: float
+    time_s: Floats
+    since_s: Floats
+    sun_body: Floats
+    nadir: Floats
+    nadir_body: Floats
+    field_nt: Floats
+    field_body_nt: Floats
+    eclipse: NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Flight:
+    """Where a satellite flies and how it turns, for both splits; a dataset's `directions`.
+
+    Nobody calibrates in the dark: of the calibration's span only the samples in sunlight are
+    kept, in the order of time, with gaps where the eclipses are. The test split is whole.
+
+    Attributes
+    ----------
+    orbit
+        On day 0.
+    epoch_day
+        Days from the March equinox to day 0.
+    calibration, test
+        When each split is taken, by the flight's days.
+    magnetometer_nt, horizon_deg
+        Noise a component, and a tangent axis, of the two other instruments.
+    """
+
+    orbit: CircularOrbit
+    attitude: Attitude
+    epoch_day: float
+    calibration: Span
+    test: Span
+    dipole: TiltedDipole = field(default_factory=TiltedDipole)
+    magnetometer_nt: float = 200.0
+    horizon_deg: float = 0.5
+
+    def span(self, split: Split) -> Span:
+        """Return when a split is taken."""
+        return self.calibration if split == "calibration" else self.test
+
+    def _since(self, span: Span) -> Floats:
+        return span.step_s * np.arange(span.samples, dtype=np.float64)
+
+    def leg(self, split: Split) -> Leg:
+        """Fly a split."""
+        span = self.span(split)
+        since = self._since(span)
+        start_s = span.start_day * DAY_S
+        orbit = self.orbit.after(span.start_day)
+        day = self.epoch_day + span.start_day
+        sun = sun_direction(day)
+        eclipse = orbit.eclipsed(since, sun)
+        if split == "calibration":
+            since, eclipse = since[~eclipse], eclipse[~eclipse]
+        place = orbit.position(since)
+        turn = self.attitude.matrices(orbit, sun, since, start_s)
+        magnetic = self.dipole.inertial(place, orbit.distance_km, start_s + since)
+        return Leg(
+            orbit=orbit,
+            sun=sun,
+            sunlight=sunlight(day),
+            time_s=start_s + since,
+            since_s=since,
+            sun_body=turned(turn, sun),
+            nadir=-place,
+            nadir_body=turned(turn, -place),
+            field_nt=magnetic,
+            field_body_nt=rotated(turn, magnetic),
+            eclipse=eclipse,
+        )
+
+    def sun(self, split: Split, generator: np.random.Generator) -> Floats:
+        """(N, 3) unit vectors of a split, body frame; nothing is random."""
+        del generator
+        return self.leg(split).sun_body
+
+    def card(self) -> dict[str, dict[str, Any]]:
+        """By split: size, times and motion."""
+        found: dict[str, dict[str, Any]] = {}
+        for split in DRAWN:
+            span = self.span(split)
+            orbit = self.orbit.after(span.start_day)
+            sun = sun_direction(self.epoch_day + span.start_day)
+            kept = int(np.count_nonzero(~orbit.eclipsed(self._since(span), sun)))
+            calibration = split == "calibration"
+            found[split] = {
+                "samples": kept if calibration else span.samples,
+                "directions": f"in the order of time, {span.step_s:g} s apart, "
+                f"{'left out in eclipse, ' if calibration else ''}from day "
+                f"{span.start_day:g} of the flight; {self.attitude.describe()}",
+                "orbits": round(span.samples * span.step_s / orbit.period_s, 3),
+                "sun_above_orbit_deg": round(orbit.sun_elevation_deg(sun), 2),
+                "eclipse_fraction": round(orbit.eclipse_half_width(sun) / math.pi, 4),
+            }
+        return found
+
+
+@dataclass(frozen=True)
+class FlightPreset(Preset):
+    """A dataset in the order of time; `directions` is a `Flight`, every sensor a drifting one.
+
+    Samples carry the context columns that `card` lists. The calibration split is flown too, on
+    earlier orbits of the same unit, so that filters have a time series to be tuned on.
+    """
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.directions, Flight):
+            raise TypeError(f"directions must be a Flight; got {type(self.directions).__name__}")
+        for name, setup in self.setups.items():
+            if not hasattr(setup.sensor, "thermal"):
+                raise TypeError(f"the sensor of condition {name} must have a thermal cycle")
+            if setup.earth is not None and (
+                setup.earth.altitude_km != self.directions.orbit.altitude_km
+                or setup.earth.radius_km != self.directions.orbit.radius_km
+            ):
+                raise ValueError(
+                    f"condition {name} must see Earth from the orbit's altitude of "
+                    f"{self.directions.orbit.altitude_km} km; got {setup.earth.altitude_km} km"
+                )
+
+    @property
+    def flight(self) -> Flight:
+        """Where the satellite flies."""
+        return cast("Flight", self.directions)
+
+    def _scene(self, condition: str, known: Split) -> TimedScene:
+        """Return what a split looks at; no sunlight, direct or stray, reaches it in eclipse.
+
+        There a window stays where it was when the Sun was last seen.
+        """
+        setup = self.condition(condition)
+        leg = self.flight.leg(known)
+        names = (self.name, self.version, known)
+        _, stray = setup.irradiance.draw(len(leg.time_s), generator(*names, "irradiance"))
+        sensor = cast("DriftingSensor", setup.sensor)
+        origin = sensor.origins(leg.sun_body, generator(*names, "window"))
+        if origin is not None:
+            origin = origin[_last_seen(~leg.eclipse)]
+        albedo = None
+        if setup.earth is not None and isinstance(setup.sensor, Faces):
+            lit = ~leg.eclipse  # from within the cylinder no sunlit ground is in view
+            light = setup.sensor.earthlight(
+                setup.earth,
+                leg.sun_body[lit],
+                leg.nadir_body[lit],
+                self.fixed_pattern(condition),
+            )
+            albedo = np.zeros((len(lit), light.shape[1]))
+            albedo[lit] = leg.sunlight * light
+        return TimedScene(
+            leg.sun_body,
+            np.where(leg.eclipse, 0.0, leg.sunlight),
+            np.where(leg.eclipse, 0.0, stray),
+            origin,
+            albedo,
+            temperature_k=sensor.thermal.temperature(leg.orbit, leg.sun, leg.since_s),
+            age_years=leg.time_s / (DAY_S * YEAR_DAYS),
+        )
+
+    def context(self, condition: str, split: str) -> dict[str, NDArray[Any]]:
+        """Return what else is known of each sample: the columns of the card's ``context``."""
+        if split == REPEAT:
+            test = self.context(condition, "test")
+            again = np.tile(self.repeats.chosen(len(test["time_s"])), self.repeats.passes)
+            return {name: column[again] for name, column in test.items()}
+        known = drawn_split(split)
+        setup = self.condition(condition)
+        leg = self.flight.leg(known)
+        names = (self.name, self.version, known)
+        noise = generator(*names, "magnetometer").standard_normal((len(leg.time_s), 3))
+        first, second = tangent_axes(leg.nadir_body)
+        tilt = math.tan(math.radians(self.flight.horizon_deg)) * generator(
+            *names, "horizon"
+        ).standard_normal((len(leg.time_s), 2))
+        seen = leg.nadir_body + tilt[:, :1] * first + tilt[:, 1:] * second
+        thermal = cast("DriftingSensor", setup.sensor).thermal
+        return {
+            "time_s": leg.time_s,
+            "temperature_K": thermal.temperature(leg.orbit, leg.sun, leg.since_s),
+            "eclipse": leg.eclipse,
+            "albedo": np.full(len(leg.time_s), setup.earth is not None) & ~leg.eclipse,
+            "magnetic_field_nT": leg.field_body_nt + self.flight.magnetometer_nt * noise,
+            "nadir": seen / np.sqrt(np.sum(seen**2, axis=1, keepdims=True)),
+            "sun_inertial": np.repeat(leg.sun[None, :], len(leg.time_s), axis=0),
+            "nadir_inertial": leg.nadir,
+            "magnetic_field_inertial_nT": leg.field_nt,
+        }
+
+    def generate(self, condition: str, split: str, n: int | None = None) -> Samples:
+        """As `Preset.generate`, with the context's columns."""
+        plain = super().generate(condition, split, n)
+        context = self.context(condition, split)
+        return replace(plain, context={name: column[:n] for name, column in context.items()})
+
+    def card(self) -> dict[str, Any]:
+        """As `Preset.card`, with the context's columns and what the bound is of."""
+        flight = self.flight
+        return {
+            **super().card(),
+            "context": {
+                "time_s": "(N,) seconds since the start of the flight",
+                "temperature_K": "(N,) of the sensor, error-free",
+                "eclipse": "(N,) bool: in Earth's cylindrical shadow, no sunlight at all",
+                "albedo": "(N,) bool: whether light from the sunlit Earth is simulated",
+                "magnetic_field_nT": "(N, 3) body frame, as a magnetometer reads it: noise of "
+                f"{flight.magnetometer_nt:g} nT a component",
+                "nadir": "(N, 3) unit vectors to Earth's centre, body frame, as a horizon sensor "
+                f"reads them: noise of {flight.horizon_deg:g} deg a tangent axis",
+                "sun_inertial": "(N, 3) unit vectors to the Sun, inertial frame, from the almanac",
+                "nadir_inertial": "(N, 3) unit vectors, inertial frame, from the known orbit",
+                "magnetic_field_inertial_nT": "(N, 3) inertial frame, error-free model (dipole)",
+            },
+            "bound": {"kind": "single sample", "note": BOUND_NOTE},
+        }
+
+
+def _last_seen(lit: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """(N,) index of the last lit sample up to each one; of the first lit one before there is."""
+    last = np.maximum.accumulate(np.where(lit, np.arange(len(lit)), -1))
+    return np.asarray(np.where(last < 0, np.argmax(lit), last), dtype=np.int64)

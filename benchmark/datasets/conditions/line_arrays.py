@@ -1,0 +1,191 @@
+"""What the datasets of linear arrays share: pixels, assembly, conditions, design."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+from algorithms.contract import SensorGeometry
+from benchmark.datasets.preset import Condition
+from benchmark.simulator.light.environment import Irradiance
+from benchmark.simulator.light.sun_disc import SolarDisc
+from benchmark.simulator.masks.slits import SlitErrors, slit_rows
+from benchmark.simulator.optics.assembly import Assembly
+from benchmark.simulator.optics.plates import CoverGlass, Plate, fresnel_number
+from benchmark.simulator.readout.detectors import DarkCurrent, PixelArray
+from benchmark.simulator.sensors.lines import LineSensor
+
+LIGHT = Irradiance(stray=0.002, stray_spread=0.0004)
+PLATE = Plate(0.5, 1.52)
+
+#: For pixels of some 10 um, over a dozen of which the Sun blurs an edge at 60 deg: the steps that
+#: single points make must not show (0.2 % of the peak).
+SUN = SolarDisc(rings=(28, 28, 28, 28, 28, 28))
+
+#: Small errors that remain after careful assembly.
+ASSEMBLED = Assembly(
+    tilt_x_deg=0.05,
+    tilt_y_deg=-0.03,
+    rotation_deg=0.05,
+    focal_length_error_mm=0.003,
+    offset_x_mm=0.004,
+    offset_y_mm=-0.003,
+)
+SLITS_ASSEMBLED = SlitErrors(deflection_deg=0.03, inclination_deg=0.05)
+MISASSEMBLED = Assembly(
+    tilt_x_deg=1.0,
+    tilt_y_deg=-0.7,
+    rotation_deg=0.5,
+    focal_length_error_mm=0.03,
+    offset_x_mm=0.05,
+    offset_y_mm=-0.04,
+)
+SLITS_MISASSEMBLED = SlitErrors(deflection_deg=0.5, inclination_deg=1.0)
+
+
+def ccd(columns: int, pitch_mm: float) -> PixelArray:
+    """Return a linear CCD: deep wells, little noise, 12 bits."""
+    return PixelArray(
+        columns=columns,
+        rows=1,
+        pitch_mm=pitch_mm,
+        sunlit_e=60_000.0,
+        full_well_e=100_000.0,
+        prnu=0.01,
+        dsnu=0.1,
+        dark=DarkCurrent(5_000.0),
+        exposure_s=0.01,
+        read_noise_e=20.0,
+        gain_e_per_dn=25.0,
+        offset_dn=16.0,
+        bits=12,
+    )
+
+
+def photodiode_array(columns: int, pitch_mm: float, bits: int = 10) -> PixelArray:
+    """Return a linear photodiode array: larger wells, noise and gain spread than a CCD's."""
+    return PixelArray(
+        columns=columns,
+        rows=1,
+        pitch_mm=pitch_mm,
+        sunlit_e=200_000.0,
+        full_well_e=300_000.0,
+        prnu=0.03,
+        dsnu=0.2,
+        dark=DarkCurrent(20_000.0),
+        exposure_s=0.01,
+        read_noise_e=300.0,
+        gain_e_per_dn=300_000.0 / 2.0**bits,
+        offset_dn=8.0,
+        bits=bits,
+    )
+
+
+def conditions(sensor: LineSensor, half_fov_deg: float) -> dict[str, Condition]:
+    """Return the named conditions of a carefully assembled sensor."""
+    detector = sensor.detector
+    low = replace(
+        detector,
+        sunlit_e=10.0 * detector.sunlit_e,
+        full_well_e=10.0 * detector.full_well_e,
+        gain_e_per_dn=detector.gain_e_per_dn * 10.0 / 16.0,
+        bits=detector.bits + 4,
+    )
+    noise = 5.0 * detector.read_noise_e
+    high = replace(
+        detector,
+        sunlit_e=detector.sunlit_e / 5.0,
+        read_noise_e=noise,
+        offset_dn=detector.offset_dn + 5.0 * noise / detector.gain_e_per_dn,
+    )
+    hot = replace(detector, dark=replace(detector.dark, temperature_c=80.0))
+    misaligned = replace(
+        sensor,
+        camera=replace(sensor.camera, assembly=MISASSEMBLED),
+        errors=SLITS_MISASSEMBLED,
+    )
+    setups = {
+        "nominal": (
+            (
+                "Carefully assembled sensor: tilts, slit deflection and inclination of hundredths "
+                f"of a degree, {detector.prnu:.0%} pixel gain spread."
+            ),
+            sensor,
+        ),
+        "low-noise": (
+            "The same sensor with ten times the electrons and a converter of four more bits.",
+            replace(sensor, detector=low),
+        ),
+        "high-noise": (
+            (
+                "The same sensor with a fifth of the electrons and five times the read noise; the "
+                "converter's offset is raised so that noise is not clipped."
+            ),
+            replace(sensor, detector=high),
+        ),
+        "misaligned": (
+            (
+                "The nominal sensor tilted by 1.0 and -0.7 deg, turned by 0.5 deg, mask 30 um too "
+                "high, 50 and -40 um off centre, slits deflected by 0.5 and inclined by 1.0 deg."
+            ),
+            misaligned,
+        ),
+        "hot": (
+            "The nominal sensor at 80 deg C: dark current doubles every 7 K.",
+            replace(sensor, detector=hot),
+        ),
+    }
+    if not sensor.camera.glass.plates:
+        setups["glass"] = (
+            (
+                "The nominal sensor with 0.5 mm of glass (index 1.52) on the detector: refraction "
+                "pulls the light inwards, reflection dims it."
+            ),
+            replace(sensor, camera=replace(sensor.camera, glass=CoverGlass((PLATE,)))),
+        )
+    return {
+        name: Condition(
+            text, setup, LIGHT, geometry=design(setup, half_fov_deg) if name == "glass" else None
+        )
+        for name, (text, setup) in setups.items()
+    }
+
+
+def design(sensor: LineSensor, half_fov_deg: float) -> SensorGeometry:
+    """Return what the builder of a sensor knows of it."""
+    middle = sensor.detector.centre_px[0]
+    mask, plates = sensor.camera.mask, sensor.camera.glass.plates
+    return SensorGeometry(
+        focal_length_mm=sensor.camera.focal_length_mm,
+        pixel_pitch_mm=sensor.detector.pitch_mm,
+        centre_px=(middle, middle),  # both coordinates are counted in pixels of the array
+        aperture_width_mm=mask.apertures[0].width_mm,
+        half_fov_deg=half_fov_deg,
+        line_axes=sensor.axes,
+        line_pixels=sensor.detector.columns,
+        slits=slit_rows(mask),
+        mask_thickness_mm=mask.thickness_mm,
+        cover_glass=tuple((plate.thickness_mm, plate.index) for plate in plates) or None,
+    )
+
+
+def units(sensor: LineSensor) -> str:
+    """Return what the observations are, for the card."""
+    parts = [
+        f"columns {k * sensor.detector.columns} to {(k + 1) * sensor.detector.columns - 1} the "
+        f"array along {axis}"
+        for k, axis in enumerate(sensor.axes)
+    ]
+    return f"digital numbers, uint16 (N, {sensor.width_px}): {', '.join(parts)}"
+
+
+def regime(sensor: LineSensor) -> dict[str, Any]:
+    """Return how light is propagated, and why that is enough."""
+    narrowest = min(a.smallest_half_width_mm for a in sensor.camera.mask.apertures)
+    return {
+        "propagation": "geometric",
+        "fresnel_number": round(fresnel_number(narrowest, sensor.camera.focal_length_mm), 2),
+        "wavelength_nm": 550,
+        "reason": "a^2 / (lambda h) of a slit at normal incidence is above 10; diffraction is "
+        "left out (linear arrays with less are refused)",
+    }

@@ -1,0 +1,355 @@
+"""A dataset as files: arrays, a card that says what they are, checksums, a picture.
+
+An export is a directory: ``card.json``, ``checksums-sha256.txt`` (which ``sha256sum --check``
+reads) and for each condition ``<condition>/preview.png``, ``<condition>/<split>.npz`` and, where
+samples are a few numbers each, the same as ``<condition>/<split>.csv``. It is a function of the
+dataset and of what was asked for: exporting twice gives the same bytes.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import shutil
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from numpy.typing import NDArray
+
+from algorithms.contract import Observation
+from benchmark import datasets
+from benchmark.datasets import Preset, Samples
+from benchmark.datasets.checksums import (
+    CHECKSUMS,
+    ChecksumFileError,
+    contents,
+    differences,
+    read_checksums,
+    sha256,
+    write_checksums,
+)
+from benchmark.datasets.export_arrays import columns_of, read_archive, write_archive, write_table
+from benchmark.datasets.preview import preview_png
+from benchmark.metrics.bounds import Bound
+from benchmark.metrics.score import stored
+from benchmark.plan.parts import SPLITS, UnknownNameError
+from benchmark.results.digests import samples_hash
+from benchmark.results.pins import Pin
+from benchmark.results.store import PUBLISHED, Store
+from benchmark.running.progress import ProgressCallback, silent
+
+CARD = "card.json"
+#: Layout of an export; raised when a file or a field changes its meaning.
+SCHEMA_VERSION = 1
+
+#: What the arrays beside the observations are.
+_MEANINGS = {
+    "sun": "(N, 3) true unit vectors from the sensor to the Sun, sensor frame, +z the boresight; "
+    "tan(alpha) = y/z, tan(beta) = x/z",
+    "origin_px": "(N, 2) detector coordinates (x, y) of each window's first pixel; a pixel's "
+    "centre is at whole numbers",
+    "bound_deg": "(N,) Cramer-Rao bound of the separation angle, one standard deviation, degrees; "
+    "inf where the direction is not observable",
+    "bound_alpha_deg": "(N,) the same of alpha; NaN where the Sun is not in front of the sensor",
+    "bound_beta_deg": "(N,) the same of beta",
+    "observable": "(N,) bool: where the direction is observable from the sample",
+}
+
+
+class ExportError(ValueError):
+    """A directory cannot be written to or is no export; the message names it."""
+
+
+@dataclass(frozen=True)
+class Exported:
+    """What was written.
+
+    Attributes
+    ----------
+    directory
+        Where.
+    files
+        Paths in it, sorted.
+    card
+        As in ``card.json``.
+    """
+
+    directory: Path
+    files: tuple[str, ...]
+    card: Mapping[str, Any]
+
+
+def export(
+    name: str,
+    out: Path | str,
+    *,
+    conditions: Sequence[str] | None = None,
+    splits: Sequence[str] | None = None,
+    n: int | None = None,
+    force: bool = False,
+    progress: ProgressCallback = silent,
+    published: Path = PUBLISHED,
+) -> Exported:
+    """Write a dataset to the directory `out`, whole or not at all.
+
+    Parameters
+    ----------
+    name
+        Of the dataset.
+    out
+        Directory to make.
+    conditions, splits
+        Which; all by default.
+    n
+        Only the first n samples of each split.
+    force
+        Replace an earlier export. Anything else in the way is refused all the same.
+    progress
+        Called as ``progress(done, total, what)`` in splits.
+    published
+        Where the pinned hashes are.
+
+    Raises
+    ------
+    UnknownDatasetError, UnknownNameError
+        For a name that there is not, naming the nearest.
+    ExportError
+        Where `out` holds something.
+    ValueError
+        For n below 1.
+    """
+    preset = datasets.get(name)
+    chosen = _chosen("condition", conditions, preset.conditions)
+    wanted = _chosen("split", splits, SPLITS)
+    if n is not None and n < 1:
+        raise ValueError(f"n must be at least 1; got {n}")
+    out = Path(os.path.abspath(out))  # noqa: PTH100 - resolve() would follow a symbolic link
+    _require_free(out, force=force)
+    out.parent.mkdir(parents=True, exist_ok=True)
+    pins = Store(published).pins()
+    with _temporary(out) as work:
+        made = work / "export"
+        made.mkdir()
+        files: list[dict[str, Any]] = []
+        total = len(chosen) * len(wanted)
+        for done, condition in enumerate(chosen):
+            (made / condition).mkdir()
+            for more, split in enumerate(wanted):
+                progress(done * len(wanted) + more, total, f"{condition} {split}")
+                pinned = pins.get((name, condition, split))
+                files += _write_split(made, preset, (condition, split), n, pinned)
+            picture = f"{condition}/preview.png"
+            (made / picture).write_bytes(preview_png(preset, condition))
+            files.append({"path": picture, "kind": "preview", "condition": condition})
+        exported = {"conditions": chosen, "splits": wanted, "first_samples": n}
+        card = _card(made, preset, exported, files)
+        text = json.dumps(card, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+        (made / CARD).write_text(text, "utf-8", newline="\n")
+        write_checksums(made)
+        _replace(made, out, work / "before")
+        progress(total, total, "")
+    return Exported(out, tuple(contents(out)), card)
+
+
+def verify(directory: Path | str) -> list[tuple[str, str]]:
+    """Check an export: (file, what is wrong with it); empty where all holds.
+
+    Checksums of the files first; where they hold, the arrays against their hashes in the card.
+
+    Raises
+    ------
+    ExportError
+        Where the directory is no export, or its card cannot be read.
+    ChecksumFileError
+        Where the list of checksums cannot be read.
+    """
+    directory = Path(directory)
+    if not (directory / CHECKSUMS).is_file():
+        raise ExportError(f"{directory}: not an export of a dataset, it has no {CHECKSUMS}")
+    wrong = differences(directory)
+    if wrong:
+        return wrong
+    card = _read_card(directory)
+    found: list[tuple[str, str]] = []
+    try:
+        for entry in card["files"]:
+            path = directory / entry["path"]
+            if not path.is_file():
+                found.append((entry["path"], "in the card but missing"))
+            elif sha256(path) != entry["sha256"]:
+                found.append((entry["path"], "SHA-256 is not that of the card"))
+            elif entry["kind"] == "arrays":
+                found += _wrong_arrays(path, entry)
+    except (KeyError, TypeError, AttributeError) as error:
+        raise ExportError(f"{directory / CARD}: not the card of an export ({error!r})") from error
+    return sorted(found)
+
+
+def _wrong_arrays(path: Path, entry: Mapping[str, Any]) -> list[tuple[str, str]]:
+    try:
+        arrays = read_archive(path)
+    except ValueError as error:
+        return [(entry["path"], str(error))]
+    shapes = {name: _described(array) for name, array in arrays.items()}
+    if shapes != entry["arrays"]:
+        return [(entry["path"], f"holds {shapes}, the card says {entry['arrays']}")]
+    found = samples_hash(_samples(arrays))
+    if found != entry["data_hash"]:
+        return [(entry["path"], f"hash of the data is {found}, the card says {entry['data_hash']}")]
+    return []
+
+
+def _samples(arrays: Mapping[str, NDArray[Any]]) -> Samples:
+    context = {
+        name.removeprefix("context."): array
+        for name, array in arrays.items()
+        if name.startswith("context.")
+    }
+    return Samples(arrays["observations"], arrays["sun"], arrays.get("origin_px"), context or None)
+
+
+def _write_split(
+    made: Path, preset: Preset, which: tuple[str, str], n: int | None, pinned: Pin | None
+) -> list[dict[str, Any]]:
+    condition, split = which
+    samples = preset.generate(condition, split, n)
+    bound = preset.bound(condition, split, n)
+    arrays = {name: array for name, array in samples.arrays().items() if array is not None}
+    arrays |= _bounds(bound)
+    count = len(samples.sun)
+    about = {
+        "condition": condition,
+        "split": split,
+        "samples": count,
+        "data_hash": samples_hash(samples),
+        "published_data_hash": pinned.data_hash if pinned and pinned.n == count else None,
+        "bound_rms_deg": None if math.isnan(bound.rms_deg) else stored(bound.rms_deg),
+    }
+    path = f"{condition}/{split}.npz"
+    write_archive(made / path, arrays)
+    shapes = {name: _described(array) for name, array in arrays.items()}
+    files: list[dict[str, Any]] = [{"path": path, "kind": "arrays", **about, "arrays": shapes}]
+    if preset.observation is Observation.CURRENTS:
+        path = f"{condition}/{split}.csv"
+        write_table(made / path, arrays)
+        files.append({"path": path, "kind": "table", **about, "columns": list(columns_of(arrays))})
+    return files
+
+
+def _bounds(bound: Bound) -> dict[str, NDArray[Any]]:
+    return {
+        "bound_deg": bound.angle_deg,
+        "bound_alpha_deg": bound.alpha_deg,
+        "bound_beta_deg": bound.beta_deg,
+        "observable": bound.observable,
+    }
+
+
+def _described(array: NDArray[Any]) -> dict[str, Any]:
+    return {"dtype": array.dtype.str, "shape": list(array.shape)}
+
+
+def _card(
+    made: Path,
+    preset: Preset,
+    exported: Mapping[str, Any],
+    files: list[dict[str, Any]],
+) -> dict[str, Any]:
+    card = preset.card()
+    names = {name for file in files for name in file.get("arrays", ())}
+    context = card.get("context", {})
+    meanings = {"observations": f"{preset.units}; one row a sample", **_MEANINGS}
+    meanings |= {f"context.{name}": text for name, text in context.items()}
+    return {
+        "schema": SCHEMA_VERSION,
+        **{name: member for name, member in card.items() if name != "conditions"},
+        "conditions": {name: card["conditions"][name] for name in exported["conditions"]},
+        "studies": _studies(preset.follows),
+        "exported": exported,
+        "arrays": {name: text for name, text in meanings.items() if name in names},
+        "data_hash": "first 32 digits of a SHA-256 over names, types, shapes and bytes of "
+        "observations, sun, origin_px and context, as in scores and pins of Sun Sensor Atlas",
+        "files": [
+            {
+                **file,
+                "bytes": (made / file["path"]).stat().st_size,
+                "sha256": sha256(made / file["path"]),
+            }
+            for file in files
+        ],
+    }
+
+
+def _studies(keys: Sequence[str]) -> list[dict[str, Any]]:
+    from registry.studies import study  # noqa: PLC0415 - pandas, which only the card needs
+
+    named = ("key", "title", "authors", "year", "venue", "doi", "url")
+    return [{name: getattr(study(key), name) for name in named} for key in keys]
+
+
+def _chosen(what: str, wanted: Sequence[str] | None, known: Sequence[str]) -> list[str]:
+    for name in wanted or ():
+        if name not in known:
+            raise UnknownNameError(what, name, known)
+    return [name for name in known if not wanted or name in wanted]
+
+
+def _read_card(directory: Path) -> dict[str, Any]:
+    path = directory / CARD
+    try:
+        card = json.loads(path.read_bytes())
+    except FileNotFoundError as error:
+        raise ExportError(f"{directory}: not an export of a dataset, it has no {CARD}") from error
+    except ValueError as error:
+        raise ExportError(f"{path}: not JSON ({error})") from error
+    if not isinstance(card, dict) or card.get("schema") != SCHEMA_VERSION or "files" not in card:
+        raise ExportError(f"{path}: not the card of an export, schema {SCHEMA_VERSION}")
+    return card
+
+
+def _require_free(out: Path, *, force: bool) -> None:
+    if out.is_symlink() or (out.exists() and not out.is_dir()):
+        raise ExportError(f"{out}: expected a directory or nothing; nothing was written")
+    if not out.exists() or not any(out.iterdir()):
+        return
+    try:
+        listed = {*read_checksums(out), CHECKSUMS}
+        foreign = [name for name in contents(out) if name not in listed]
+        _read_card(out)
+    except (FileNotFoundError, ChecksumFileError, ExportError):
+        foreign = contents(out) or ["directories"]
+    if foreign:
+        raise ExportError(
+            f"{out}: holds {foreign[0]}, which is no part of an earlier export; choose another "
+            "directory with --out; nothing was written"
+        )
+    if not force:
+        raise ExportError(
+            f"{out}: holds an earlier export; replace it with --force; nothing was written"
+        )
+
+
+@contextmanager
+def _temporary(out: Path) -> Iterator[Path]:
+    # Beside the target: a rename is only atomic within a file system.
+    work = Path(tempfile.mkdtemp(dir=out.parent, prefix=f".{out.name}."))
+    try:
+        yield work
+    finally:
+        shutil.rmtree(work)
+
+
+def _replace(made: Path, out: Path, before: Path) -> None:
+    if out.exists():
+        out.rename(before)
+    try:
+        made.rename(out)
+    except OSError:
+        if before.exists():
+            before.rename(out)
+        raise

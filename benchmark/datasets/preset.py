@@ -1,0 +1,400 @@
+"""`Preset`: a named, versioned, seeded dataset; its samples, parameters, bound and card."""
+
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Self, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.contract import Observation, SensorGeometry
+from benchmark.datasets.card import differences
+from benchmark.datasets.fields import Field, Split
+from benchmark.datasets.repeats import REPEAT, Repeats
+from benchmark.datasets.units import assembled, tolerances
+from benchmark.metrics.bounds import STEP_RAD, Bound, cramer_rao
+from benchmark.seeds import generator
+from benchmark.simulator import SIMULATOR_VERSION
+from benchmark.simulator.light.environment import Earth, Irradiance
+from benchmark.simulator.readout.noise import NoiseStreams
+from benchmark.simulator.scene import Scene
+from benchmark.simulator.sensor import FixedPattern, Sensor
+from benchmark.simulator.sensors.faces import Faces
+
+Floats = NDArray[np.float64]
+
+#: Splits that a field of directions is drawn for, and all there are.
+DRAWN: tuple[Split, ...] = get_args(Split)
+SPLITS: tuple[str, ...] = (*DRAWN, REPEAT)
+#: Fields of the geometry that are written even where they are None; later ones are not.
+_FIRST_GEOMETRY = frozenset(
+    {
+        "focal_length_mm",
+        "pixel_pitch_mm",
+        "centre_px",
+        "aperture_width_mm",
+        "aperture_shape",
+        "face_normals",
+        "half_fov_deg",
+    }
+)
+#: Samples simulated together; memory only, the numbers do not depend on it.
+BATCH = 64
+
+
+@dataclass(frozen=True)
+class Samples:
+    """One split of a dataset.
+
+    Attributes
+    ----------
+    observations
+        (N, ...) what the sensor puts out; shape and unit as the dataset's card says.
+    sun
+        (N, 3) true unit vectors from the sensor to the Sun, float64.
+    origin_px
+        (N, 2) int64 detector coordinate (x, y) of each window's first pixel, or None.
+    context
+        What else is known of each sample by column name, e.g. ``time_s``: arrays of N rows. None
+        where there is nothing.
+    """
+
+    observations: NDArray[Any]
+    sun: Floats
+    origin_px: NDArray[np.int64] | None
+    context: Mapping[str, NDArray[Any]] | None = None
+
+    def arrays(self) -> dict[str, NDArray[Any] | None]:
+        """Everything that hashes cover by name: columns of the context come last, sorted."""
+        found: dict[str, NDArray[Any] | None] = {
+            "observations": self.observations,
+            "sun": self.sun,
+            "origin_px": self.origin_px,
+        }
+        for name in sorted(self.context or ()):
+            found[f"context.{name}"] = (self.context or {})[name]
+        return found
+
+
+def data_digest(samples: Samples) -> str:
+    """SHA-256 (hex) over names, dtypes, shapes and bytes of the arrays; little-endian."""
+    digest = hashlib.sha256()
+    for name, array in samples.arrays().items():
+        if array is None:
+            digest.update(f"{name}:none;".encode())
+            continue
+        plain = np.ascontiguousarray(array, dtype=array.dtype.newbyteorder("<"))
+        digest.update(f"{name}:{plain.dtype.str}:{plain.shape};".encode())
+        digest.update(plain.tobytes())
+    return digest.hexdigest()
+
+
+@dataclass(frozen=True)
+class Condition:
+    """One condition of a dataset.
+
+    Attributes
+    ----------
+    description
+        What differs from the nominal condition, and why.
+    sensor
+        The sensor under this condition.
+    irradiance
+        How sunlight and stray light vary from sample to sample.
+    earth
+        Sunlit Earth in view on the test split (calibration happens on the ground), or None.
+    geometry
+        Nominal design where it differs from the dataset's, else None.
+    """
+
+    description: str
+    sensor: Sensor
+    irradiance: Irradiance
+    earth: Earth | None = None
+    geometry: SensorGeometry | None = None
+
+    def __post_init__(self) -> None:
+        if self.earth is not None and not isinstance(self.sensor, Faces):
+            raise ValueError("light from the Earth is simulated for face sensors only")
+
+
+@dataclass(frozen=True)
+class Preset:
+    """A standard dataset.
+
+    All conditions share one sensor unit, the Sun directions, irradiances and window offsets of
+    each split; only the parameters that a condition names and the noise differ, so that
+    conditions compare sample by sample.
+
+    Attributes
+    ----------
+    name, version
+        ``<detector>-<mask>[-variant]``; raised when the data change on purpose.
+    detector, mask
+        Values of the survey's taxonomy.
+    observation, units
+        What `Samples.observations` holds.
+    geometry
+        Nominal design; `geometry_for` gives a condition's own.
+    setups, directions
+        The conditions by name; Sun directions of the splits.
+    follows
+        Study keys whose architecture the dataset follows.
+    description, regime
+        In words: where the numbers come from; how light is propagated and why that is enough.
+    bound_step_rad
+        Half step of the bound's differences (see `benchmark.metrics.bounds.cramer_rao`).
+    repeats, unit
+        Poses and passes of the split ``repeat``; which unit of the sensor is seen (`as_unit`).
+    batch
+        Samples simulated together, `BATCH` for None; the numbers do not depend on it. Frames of a
+        quarter megabyte are faster a few at a time.
+    """
+
+    name: str
+    version: int
+    detector: str
+    mask: str
+    observation: Observation
+    units: str
+    geometry: SensorGeometry
+    setups: Mapping[str, Condition]
+    directions: Field
+    follows: tuple[str, ...]
+    description: str
+    regime: Mapping[str, Any] = field(default_factory=dict)
+    bound_step_rad: float = STEP_RAD
+    repeats: Repeats = field(default_factory=Repeats)
+    unit: int = 0
+    batch: int | None = None
+
+    @property
+    def conditions(self) -> tuple[str, ...]:
+        """Names of the conditions, ``nominal`` first."""
+        return tuple(self.setups)
+
+    def condition(self, name: str) -> Condition:
+        """Return the condition of this name; ValueError naming the known ones."""
+        if name not in self.setups:
+            raise ValueError(
+                f"dataset {self.name} has no condition {name!r}; it has "
+                f"{', '.join(self.conditions)}"
+            )
+        return self.setups[name]
+
+    def geometry_for(self, condition: str) -> SensorGeometry:
+        """Return the nominal design under this condition."""
+        return self.condition(condition).geometry or self.geometry
+
+    def as_unit(self, number: int) -> Self:
+        """Return the dataset seen by another unit of its sensor; 0 is the standard one.
+
+        Its errors of assembly are others within the tolerances (`benchmark.datasets.units`), as
+        are its elements' own, and so is the noise. Suns and light are the same.
+
+        Raises
+        ------
+        ValueError
+            For a number below 0, and on a preset that is another unit already.
+        """
+        if number < 0:
+            raise ValueError(f"units are numbered from 0; got {number}")
+        if self.unit != 0:
+            raise ValueError(f"units are drawn from unit 0; this is unit {self.unit}")
+        if number == 0:
+            return self
+        names = (self.name, self.version, "unit", number)
+        setups = {
+            name: dataclasses.replace(setup, sensor=assembled(setup.sensor, *names))
+            for name, setup in self.setups.items()
+        }
+        return dataclasses.replace(self, setups=setups, unit=number)
+
+    def _of_unit(self, *names: str | int) -> tuple[str | int, ...]:
+        """Names of a random stream that every unit has of its own."""
+        return (*names, "unit", self.unit) if self.unit else names
+
+    def fixed_pattern(self, condition: str) -> FixedPattern:
+        """Return the unit as this condition shows it."""
+        names: tuple[str | int, ...] = (self.name, self.version, "unit")
+        if self.unit:
+            names = (*names, self.unit)
+        return self.condition(condition).sensor.fixed_pattern(*names)
+
+    def scene(self, condition: str, split: str) -> Scene:
+        """Sun, irradiance, stray light, windows and light from the Earth of a split."""
+        if split == REPEAT:
+            return self.repeats.scene(self._scene(condition, "test"))
+        return self._scene(condition, drawn_split(split))
+
+    def _scene(self, condition: str, known: Split) -> Scene:
+        """`scene` of a split that directions are drawn for."""
+        setup = self.condition(condition)
+        names = (self.name, self.version, known)
+        sun = self.directions.sun(known, generator(*names, "sun"))
+        light, stray = setup.irradiance.draw(len(sun), generator(*names, "irradiance"))
+        origin = setup.sensor.origins(sun, generator(*names, "window"))
+        albedo = None
+        if setup.earth is not None and known == "test" and isinstance(setup.sensor, Faces):
+            nadir = setup.earth.draw_nadir(sun, generator(*names, "nadir"))
+            pattern = self.fixed_pattern(condition)
+            albedo = light[:, None] * setup.sensor.earthlight(setup.earth, sun, nadir, pattern)
+        return Scene(sun, light, stray, origin, albedo)
+
+    def generate(self, condition: str, split: str, n: int | None = None) -> Samples:
+        """Simulate the samples of a split: ``calibration``, ``test`` or ``repeat``.
+
+        Returns the same numbers whenever, wherever and beside whatever it is called.
+
+        Parameters
+        ----------
+        condition, split
+            Which.
+        n
+            Only the first n samples, or all there are where that is fewer; the same numbers.
+
+        Raises
+        ------
+        ValueError
+            On an unknown condition or split, naming the known ones; on n below 1.
+        """
+        sensor = self.condition(condition).sensor
+        whole = self.scene(condition, split)
+        scene = first(whole, n)
+        pattern = self.fixed_pattern(condition)
+        names = self._of_unit(self.name, self.version, condition, split)
+        streams = NoiseStreams.named(*names)
+        # passes over the same poses share their light where light is remembered
+        size = len(whole) // self.repeats.passes if split == REPEAT else self.batch or BATCH
+        batch = sensor.observe(scene.part(0, size), pattern, streams)
+        # filled batch by batch: joining a list of batches would hold everything twice
+        observations = np.empty((len(scene), *batch.shape[1:]), batch.dtype)
+        observations[: len(batch)] = batch
+        for start in range(size, len(scene), size):
+            del batch  # or two would be held while the next is made
+            batch = sensor.observe(scene.part(start, start + size), pattern, streams)
+            observations[start : start + size] = batch
+        return Samples(observations, scene.sun, scene.origin_px)
+
+    def bound(self, condition: str, split: str = "test", n: int | None = None) -> Bound:
+        """Cramer-Rao bound of every sample of a split (see `benchmark.metrics.bounds.cramer_rao`).
+
+        Parameters as `generate`.
+        """
+        setup = self.condition(condition)
+        return cramer_rao(
+            setup.sensor,
+            first(self.scene(condition, split), n),
+            self.fixed_pattern(condition),
+            setup.irradiance,
+            self.bound_step_rad,
+            self.batch or BATCH,
+        )
+
+    def parameters(self, condition: str) -> dict[str, Any]:
+        """Everything the numbers of a condition depend on, as plain JSON values."""
+        setup = self.condition(condition)
+        plain: dict[str, Any] = _plain(
+            {
+                "simulator_version": SIMULATOR_VERSION,
+                "dataset": self.name,
+                "dataset_version": self.version,
+                "condition": condition,
+                "sensor": setup.sensor,
+                "irradiance": setup.irradiance,
+                "earth": setup.earth,
+                "directions": self.directions,
+                "geometry": self.geometry_for(condition),
+                "bound_step_rad": self.bound_step_rad,
+                "repeats": self.repeats,
+                "unit": self.unit,
+            }
+        )
+        return plain
+
+    def card(self) -> dict[str, Any]:
+        """Everything a reader of the dataset needs, as plain JSON values; renders nothing.
+
+        ``parameters`` are those of the first condition. ``conditions`` have of their own only what
+        differs: members of ``parameters`` (an object that names its type stands whole) and, where
+        it is another, the geometry; `benchmark.datasets.parameters_of` puts them together.
+        """
+        geometry, splits = _plain(self.geometry), self.directions.card()
+        shared: dict[str, Any] | None = None
+        conditions = {}
+        for name, setup in self.setups.items():
+            own = self.parameters(name)
+            design = own.pop("geometry")
+            shared = own if shared is None else shared
+            about = {
+                "description": setup.description,
+                "tolerances": _plain(tolerances(setup.sensor)),
+                "parameters": differences(shared, own),
+            }
+            conditions[name] = about if design == geometry else {**about, "geometry": design}
+        return {
+            "name": self.name,
+            "version": self.version,
+            "detector": self.detector,
+            "mask": self.mask,
+            "observation": str(self.observation),
+            "units": self.units,
+            "description": self.description,
+            "follows": list(self.follows),
+            "geometry": geometry,
+            "splits": {**splits, REPEAT: self.repeats.card(splits["test"]["samples"])},
+            "parameters": shared,
+            "conditions": conditions,
+            "regime": _plain(self.regime),
+            "seeds": {
+                "generator": "NumPy PCG64, SeedSequence over the SHA-256 of the stream's names",
+                "unit": [self.name, self.version, "unit"],
+                "samples": [self.name, self.version, "<split>"],
+                "noise": [self.name, self.version, "<condition>", "<split>"],
+                "other_units": 'unit: [..., "unit", <number>]; noise: [..., "unit", <number>]',
+            },
+        }
+
+
+def drawn_split(name: str) -> Split:
+    """Return the split of this name that directions are drawn for; ValueError otherwise."""
+    for split in DRAWN:
+        if name == split:
+            return split
+    raise ValueError(f"no split {name!r}; there are {', '.join(SPLITS)}")
+
+
+def first(scene: Scene, n: int | None) -> Scene:
+    """Return the first n samples, all for None; ValueError for n below 1."""
+    if n is not None and n < 1:
+        raise ValueError(f"n must be at least 1; got {n}")
+    return scene if n is None else scene.part(0, n)
+
+
+def _plain(value: Any) -> Any:
+    """Dataclasses, mappings and tuples as JSON objects and arrays; a dataclass names its type."""
+    if value is None or type(value) in (str, bool, int):
+        return value
+    if type(value) is float and math.isfinite(value):
+        return value
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        fields = {f.name: _plain(getattr(value, f.name)) for f in dataclasses.fields(value)}
+        if isinstance(value, SensorGeometry):
+            # a field added for one architecture must not change the parameters of the others
+            fields = {
+                name: item
+                for name, item in fields.items()
+                if item is not None or name in _FIRST_GEOMETRY
+            }
+        return {"type": type(value).__name__, **fields}
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, tuple | list):
+        return [_plain(item) for item in value]
+    return json.loads(json.dumps(value, allow_nan=False))

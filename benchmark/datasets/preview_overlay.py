@@ -1,0 +1,145 @@
+"""A picture of frames with the places that an extractor found in them drawn on top.
+
+A row of samples a condition; a green ring about the true place where the simulator can say
+it, an orange cross where the extractor says it is, and under each frame how far apart they are.
+The frames are cut to the surroundings of the Sun, which is what there is to see.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.contract import Extractor, FeatureKind, Observation
+from benchmark.datasets import Preset, Samples
+from benchmark.datasets.preview_canvas import LINES, MUTED, Canvas, heat
+from benchmark.simulator.sensors.black_sun import BlackSunSensor
+from benchmark.simulator.sensors.blooming import BloomingSensor
+
+Floats = NDArray[np.float64]
+
+_ACROSS = 4
+_TILE, _GAP, _LEFT, _TOP = 232, 14, 24, 84
+_FOUND, _TRUE = LINES[1], LINES[2]
+_CUT_PX = 116
+"""Pixels that a tile shows each way, where the frame has more."""
+
+
+def overlay_png(
+    preset: Preset,
+    extractor: type[Extractor],
+    conditions: Sequence[str] | None = None,
+) -> bytes:
+    """Draw what an extractor finds in a dataset's frames; returns PNG.
+
+    Parameters
+    ----------
+    preset : Preset
+        A dataset of frames.
+    extractor : type
+        An extractor of spots in frames that fits the dataset's design.
+    conditions : sequence of str, optional
+        A row of pictures each; all by default.
+
+    Raises
+    ------
+    ValueError
+        On an unknown condition, on a dataset or an extractor of another kind, and where the
+        extractor refuses the design.
+    """
+    if preset.observation is not Observation.FRAMES or extractor.kind is not FeatureKind.SPOT:
+        raise ValueError(
+            f"overlays show spots on frames; {preset.name} has {preset.observation} and "
+            f"{extractor.name} gives {extractor.kind}"
+        )
+    if extractor.observation is not preset.observation:
+        raise ValueError(f"{extractor.name} reads {extractor.observation}, not frames")
+    chosen = tuple(conditions or preset.conditions)
+    row = _TILE + 52
+    canvas = Canvas(2 * _LEFT + _ACROSS * (_TILE + _GAP) - _GAP, _TOP + len(chosen) * row)
+    canvas.text(_LEFT, 32, f"{preset.name}: {extractor.name}", 22, bold=True)
+    said = "orange cross: found; green ring: the Sun's true image; each picture on its own scale"
+    canvas.text(_LEFT, 54, said, 13, colour=MUTED)
+    for place, condition in enumerate(chosen):
+        preset.condition(condition)
+        top = _TOP + place * row
+        canvas.text(_LEFT, top - 6, condition, 14, bold=True)
+        _condition(canvas, preset, extractor, condition, top)
+    return canvas.png()
+
+
+def true_places(preset: Preset, condition: str, samples: Samples) -> Floats:
+    """(N, 2) where the Sun's centre is imaged in each frame, px; NaN where none can say."""
+    sensor = preset.condition(condition).sensor
+    if isinstance(sensor, (BlackSunSensor, BloomingSensor)):
+        return sensor.camera.image_px(samples.sun) - _origins(samples)
+    return np.full((len(samples.sun), 2), math.nan)
+
+
+def _origins(samples: Samples) -> Floats:
+    if samples.origin_px is None:
+        return np.zeros((len(samples.sun), 2))
+    return np.asarray(samples.origin_px, dtype=np.float64)
+
+
+def _condition(
+    canvas: Canvas, preset: Preset, extractor: type[Extractor], condition: str, top: int
+) -> None:
+    samples = preset.generate(condition, "test", _ACROSS)
+    geometry = preset.geometry_for(condition)
+    found = extractor.for_sensor(geometry).extract(samples.observations)
+    truth = true_places(preset, condition, samples)
+    for n, frame in enumerate(samples.observations):
+        x = _LEFT + n * (_TILE + _GAP)
+        middle = truth[n] if np.isfinite(truth[n]).all() else found[n]
+        _tile(canvas, (x, top), frame.astype(np.float64), middle, (found[n], truth[n]))
+        canvas.text(x, top + _TILE + 17, _apart(found[n], truth[n]), 13)
+
+
+def _tile(
+    canvas: Canvas,
+    corner: tuple[int, int],
+    frame: Floats,
+    middle: Floats,
+    places: tuple[Floats, Floats],
+) -> None:
+    x, y = corner
+    height, width = frame.shape
+    cut = min(_CUT_PX, height, width)
+    wanted = middle if np.isfinite(middle).all() else np.array([width, height]) / 2.0
+    left = int(np.clip(round(float(wanted[0])) - cut // 2, 0, width - cut))
+    first = int(np.clip(round(float(wanted[1])) - cut // 2, 0, height - cut))
+    part = frame[first : first + cut, left : left + cut]
+    zoom = _TILE // cut
+    low, high = float(part.min()), float(part.max())
+    # the square root shows halo and ghosts beside what is saturated
+    scaled = np.sqrt((part - low) / max(high - low, 1e-12))
+    canvas.picture(x, y, heat(scaled.repeat(zoom, axis=0).repeat(zoom, axis=1)))
+
+    def at(place: Floats) -> tuple[float, float]:
+        """Return a pixel coordinate's place on the canvas, whose pixels have their centres too."""
+        a, b = (zoom * (place - [left, first] + 0.5) - 0.5).tolist()
+        return x + a, y + b
+
+    found, true = places
+    if np.isfinite(true).all():
+        a, b = at(true)
+        turns = np.linspace(0.0, 2.0 * math.pi, 41)
+        canvas.line([(a + 14 * math.cos(t), b + 14 * math.sin(t)) for t in turns], _TRUE, 2)
+    if np.isfinite(found).all():
+        a, b = at(found)
+        inside = x <= a <= x + zoom * cut and y <= b <= y + zoom * cut
+        for dx, dy in ((9, 0), (0, 9)) if inside else ():
+            canvas.line([(a - dx, b - dy), (a + dx, b + dy)], _FOUND, 2)
+
+
+def _apart(found: Floats, true: Floats) -> str:
+    if not np.isfinite(found).all():
+        return "not found"
+    place = f"({found[0]:.1f}, {found[1]:.1f})"
+    if not np.isfinite(true).all():
+        return place
+    return f"{place}, {math.hypot(*(found - true).tolist()):.2f} px off"

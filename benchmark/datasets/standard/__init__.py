@@ -1,0 +1,1 @@
+"""The standard data sets: a module each, which defines PRESET."""

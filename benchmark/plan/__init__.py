@@ -1,0 +1,1 @@
+"""What there is to measure, and what it is made of."""

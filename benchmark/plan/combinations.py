@@ -1,0 +1,177 @@
+"""What there is to measure: every compatible dataset, condition, extractor and model."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import product
+
+from algorithms.contract import Extractor, FeatureKind, Model, UnsuitableDesignError
+from benchmark.plan.parts import Parts, Preset, UnknownNameError, installed
+
+Names = str | Iterable[str] | None
+
+
+@dataclass(frozen=True, order=True)
+class Cell:
+    """One thing to measure, by names, and by the number of the sensor's unit."""
+
+    dataset: str
+    condition: str
+    extractor: str
+    model: str
+    unit: int = 0
+
+    def __str__(self) -> str:
+        name = f"{self.dataset}/{self.condition}/{self.extractor}/{self.model}"
+        return f"{name}/unit {self.unit}" if self.unit else name
+
+
+@dataclass(frozen=True, order=True)
+class Incompatible:
+    """A combination that is not measured, with the reason.
+
+    `model` is empty where the extractor alone does not fit the dataset.
+    """
+
+    dataset: str
+    extractor: str
+    model: str
+    reason: str
+
+
+def cells(
+    datasets: Names = None,
+    conditions: Names = None,
+    extractors: Names = None,
+    models: Names = None,
+    *,
+    parts: Parts | None = None,
+) -> list[Cell]:
+    """Every compatible combination of the named things (None: all), in sorted order.
+
+    A condition is taken from the datasets that have it.
+
+    Raises
+    ------
+    UnknownNameError
+        For a name that is not installed, naming the nearest.
+    """
+    chosen = _Choice.of(parts or installed(), datasets, conditions, extractors, models)
+    return sorted(
+        Cell(preset.name, condition, extractor.name, model.name)
+        for preset in chosen.presets
+        for extractor, model in _compatible(preset, chosen)
+        for condition in preset.conditions
+        if chosen.conditions is None or condition in chosen.conditions
+    )
+
+
+def _compatible(preset: Preset, chosen: _Choice) -> Iterator[tuple[type[Extractor], type[Model]]]:
+    """Give the extractors that fit a dataset with each model that fits them and it."""
+    fitting: dict[FeatureKind, list[type[Model]]] = {}  # models see the kind of feature alone
+    for extractor in chosen.extractors:
+        if _why_not_extractor(preset, extractor):
+            continue
+        if extractor.kind not in fitting:
+            fitting[extractor.kind] = [
+                model for model in chosen.models if not _why_not_model(preset, extractor, model)
+            ]
+        yield from ((extractor, model) for model in fitting[extractor.kind])
+
+
+def incompatible(
+    datasets: Names = None,
+    extractors: Names = None,
+    models: Names = None,
+    *,
+    parts: Parts | None = None,
+) -> list[Incompatible]:
+    """List the combinations `cells` leaves out, each with its reason, in sorted order."""
+    chosen = _Choice.of(parts or installed(), datasets, None, extractors, models)
+    found = []
+    for preset, extractor in product(chosen.presets, chosen.extractors):
+        if reason := _why_not_extractor(preset, extractor):
+            found.append(Incompatible(preset.name, extractor.name, "", reason))
+            continue
+        found.extend(
+            Incompatible(preset.name, extractor.name, model.name, reason)
+            for model in chosen.models
+            if (reason := _why_not_model(preset, extractor, model))
+        )
+    return sorted(found)
+
+
+def architectures(*, parts: Parts | None = None) -> frozenset[tuple[str, str]]:
+    """Return the (detector, mask) pairs that the datasets simulate."""
+    presets = (parts or installed()).presets.values()
+    return frozenset((preset.detector, preset.mask) for preset in presets)
+
+
+def datasets_for(detector: str, mask: str, *, parts: Parts | None = None) -> tuple[str, ...]:
+    """Names of the datasets of an architecture, sorted; empty where it is not simulated."""
+    presets = (parts or installed()).presets.values()
+    return tuple(sorted(p.name for p in presets if (p.detector, p.mask) == (detector, mask)))
+
+
+@dataclass(frozen=True)
+class _Choice:
+    presets: Sequence[Preset]
+    conditions: frozenset[str] | None
+    extractors: Sequence[type[Extractor]]
+    models: Sequence[type[Model]]
+
+    @classmethod
+    def of(
+        cls, parts: Parts, datasets: Names, conditions: Names, extractors: Names, models: Names
+    ) -> _Choice:
+        presets = [parts.preset(name) for name in _listed(datasets, parts.presets)]
+        wanted = None if conditions is None else frozenset(_listed(conditions, ()))
+        known = {condition for preset in presets for condition in preset.conditions}
+        for name in sorted(wanted or ()):
+            if name not in known:
+                raise UnknownNameError("condition", name, known)
+        return cls(
+            presets,
+            wanted,
+            [parts.extractor(name) for name in _listed(extractors, parts.extractors)],
+            [parts.model(name) for name in _listed(models, parts.models)],
+        )
+
+
+def _listed(names: Names, everything: Iterable[str]) -> list[str]:
+    if names is None:
+        return sorted(everything)
+    return sorted({names} if isinstance(names, str) else set(names))
+
+
+def _why_not_extractor(preset: Preset, extractor: type[Extractor]) -> str:
+    if extractor.observation != preset.observation:
+        return f"reads {extractor.observation}; the dataset has {preset.observation}"
+    return _missing_design(preset, extractor) or _refusal(
+        lambda: extractor.for_sensor(preset.geometry)
+    )
+
+
+def _why_not_model(preset: Preset, extractor: type[Extractor], model: type[Model]) -> str:
+    if extractor.kind not in model.accepts:
+        return f"accepts {', '.join(sorted(model.accepts))}; the extractor gives {extractor.kind}"
+    return _missing_design(preset, model) or _refusal(
+        lambda: model.for_sensor(preset.geometry, extractor.kind)
+    )
+
+
+def _missing_design(preset: Preset, implementation: type[Extractor | Model]) -> str:
+    missing = [name for name in implementation.needs if getattr(preset.geometry, name) is None]
+    return f"needs {', '.join(missing)}; the sensor has none" if missing else ""
+
+
+def _refusal(build: Callable[[], object]) -> str:
+    """Why an implementation does not fit a design that has all the fields it needs, or empty."""
+    try:
+        build()
+    except UnsuitableDesignError as error:
+        return str(error)
+    except Exception:  # noqa: BLE001 - a defect: planned, so that its row says what failed
+        return ""
+    return ""

@@ -1,0 +1,1 @@
+"""Reference features whose light is known in closed form, with their bounds."""

@@ -1,0 +1,1 @@
+"""Sensors in orbit: where they fly, how they turn, what changes with time."""

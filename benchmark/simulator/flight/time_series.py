@@ -1,0 +1,166 @@
+"""Sensors whose samples follow each other in time, each at its own temperature and age."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Hashable
+from dataclasses import dataclass, field, replace
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmark.seeds import generator
+from benchmark.simulator.flight.drift import (
+    AssemblyDrift,
+    PhotodiodeDrift,
+    ThermalCycle,
+    dark_levels,
+)
+from benchmark.simulator.optics.assembly import Assembly
+from benchmark.simulator.optics.projection import ProjectedLight
+from benchmark.simulator.scene import Scene
+from benchmark.simulator.sensor import FixedPattern, Sensor
+from benchmark.simulator.sensors.faces import FaceSensor
+from benchmark.simulator.sensors.frames import FrameSensor
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class TimedScene(Scene):
+    """A scene whose samples have a time.
+
+    Attributes
+    ----------
+    temperature_k, age_years
+        (N,) of the sensor, at each sample.
+    """
+
+    temperature_k: Floats
+    age_years: Floats
+
+
+class DriftingSensor(Sensor, Protocol):
+    """A sensor that follows the temperatures of a thermal cycle."""
+
+    @property
+    def thermal(self) -> ThermalCycle:
+        """The temperatures it goes through."""
+        ...
+
+
+def timed(scene: Scene, sensor: object) -> TimedScene:
+    """Return the scene itself; TypeError where its samples have no temperature and age."""
+    if not isinstance(scene, TimedScene):
+        raise TypeError(
+            f"{type(sensor).__name__} needs each sample's temperature and age (TimedScene); got "
+            f"{type(scene).__name__}"
+        )
+    return scene
+
+
+@dataclass(frozen=True)
+class DriftingFaceSensor(FaceSensor):
+    """Photodiodes on faces whose gains and dark currents follow temperature and age.
+
+    The readout's own dark-current temperature is not used.
+    """
+
+    drift: PhotodiodeDrift = field(default_factory=PhotodiodeDrift)
+    thermal: ThermalCycle = field(default_factory=ThermalCycle)
+
+    def fixed_pattern(self, *names: str | int) -> FixedPattern:
+        """As `FaceSensor`; with ``gain_per_k`` and ``loss_per_year`` (K,), the elements' own."""
+        spread = generator(*names, "drift").standard_normal((2, len(self.normals)))
+        drift = self.drift
+        return {
+            **super().fixed_pattern(*names),
+            "gain_per_k": drift.gain_per_k + drift.gain_per_k_spread * spread[0],
+            "loss_per_year": drift.loss_per_year + drift.loss_per_year_spread * spread[1],
+        }
+
+    def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
+        """(N, K) mean microamperes; TypeError for a scene that is not a `TimedScene`."""
+        at = timed(scene, self)
+        factor = self.drift.factors(
+            at.temperature_k, at.age_years, pattern["gain_per_k"], pattern["loss_per_year"]
+        )
+        light = self.received(scene, pattern) * pattern["gain"] * factor
+        dark = dark_levels(self.readout.dark, at.temperature_k)
+        return np.asarray(self.readout.sunlit_ua * light + dark[:, None])
+
+
+@dataclass(frozen=True)
+class DriftingFrameSensor(FrameSensor):
+    """A pixel array behind a mask that moves against it with temperature and age.
+
+    Windows are placed where the spot would be without drift. The detector's own dark-current
+    temperature is not used.
+    """
+
+    drift: AssemblyDrift = field(default_factory=AssemblyDrift)
+    thermal: ThermalCycle = field(default_factory=ThermalCycle)
+
+    def fixed_pattern(self, *names: str | int) -> FixedPattern:
+        """As `FrameSensor`, dark signal at 25 deg C."""
+        dark = replace(self.detector.dark, temperature_c=25.0)
+        still = FrameSensor(self.camera, replace(self.detector, dark=dark))
+        return still.fixed_pattern(*names)
+
+    def moved(self, scene: Scene) -> Floats:
+        """(N, 5) how the head stands at each sample beyond its design.
+
+        Tilts about x and y (deg), focal length and offsets x and y (mm): errors of assembly and
+        drift together. TypeError for a scene that is not a `TimedScene`.
+        """
+        at = timed(scene, self)
+        built = self.camera.assembly
+        errors = (
+            built.tilt_x_deg,
+            built.tilt_y_deg,
+            built.focal_length_error_mm,
+            built.offset_x_mm,
+            built.offset_y_mm,
+        )
+        return np.asarray(errors + self.drift.moved(at.temperature_k, at.age_years))
+
+    def projected(self, scene: Scene) -> ProjectedLight:
+        """As `Camera.project`, every sample with its own assembly."""
+        camera = self.camera
+        moved = self.moved(scene)
+        sun = _turned_about(0, scene.sun, moved[:, 0])
+        sun = _turned_about(1, sun, moved[:, 1])
+        sun = Assembly(rotation_deg=camera.assembly.rotation_deg).to_head(sun)
+        # projected by a camera at its nominal place; the rest is straight lines in the gap
+        level = replace(camera, assembly=Assembly()).project(sun)
+        points = camera.sun.directions(sun)
+        front = points[..., 2:] > 0
+        slope = np.where(front, points[..., :2] / np.where(front, points[..., 2:], 1.0), 0.0)
+        rims = level.rims_mm + moved[:, None, 2:3] * slope + moved[:, None, 3:]
+        return ProjectedLight(rims, level.light)
+
+    def _moment(self, scene: Scene) -> tuple[Hashable, ...]:
+        return (self.moved(scene).tobytes(),)
+
+    def _electrons(self, scene: Scene, pattern: FixedPattern) -> Floats:
+        electrons = super()._electrons(scene, pattern)
+        temperature = timed(scene, self).temperature_k
+        warmer = dark_levels(replace(self.detector.dark, at_25_c=1.0), temperature) - 1.0
+        columns, rows = self.window_px
+        for n, (x, y) in enumerate(np.asarray(scene.origin_px)):
+            electrons[n] += warmer[n] * pattern["dark_e"][y : y + rows, x : x + columns]
+        return electrons
+
+
+def _turned_about(axis: int, vectors: Floats, angle_deg: Floats) -> Floats:
+    """Vectors (N, 3), each turned about an axis by its own angle (N,)."""
+    angles = [math.radians(angle) for angle in angle_deg.tolist()]
+    # one by one: NumPy's cosine has other last bits on other processors
+    c = np.array([math.cos(angle) for angle in angles])
+    s = np.array([math.sin(angle) for angle in angles])
+    i, j = (axis + 1) % 3, (axis + 2) % 3
+    turned = vectors.copy()
+    turned[:, i] = c * vectors[:, i] - s * vectors[:, j]
+    turned[:, j] = s * vectors[:, i] + c * vectors[:, j]
+    return turned

@@ -1,0 +1,1 @@
+"""Compiled loops. Importing one of these modules loads Numba: do it at first use."""

@@ -1,0 +1,1 @@
+"""What shines: the Sun, what else reaches the sensor, and rendered light that is kept."""

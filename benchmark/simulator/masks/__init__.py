@@ -1,0 +1,1 @@
+"""Masks as data: apertures, their layouts, their codes and their errors."""

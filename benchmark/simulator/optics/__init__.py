@@ -1,0 +1,1 @@
+"""From the mask to the detector: assembly, glass, lenses, flare and diffraction."""

@@ -1,0 +1,149 @@
+"""Diffraction at an aperture: when it counts, for which light, and its closed forms.
+
+Scalar Fresnel diffraction about the chief ray, the ray through the aperture's centre. Where the
+ray-optical landing point ``S`` moves by ``J ds`` when the direction cosines of the light change by
+``ds`` (no glass: ``J_r = h / cos^3`` along the plane of incidence, ``J_t = h / cos`` across), the
+phase of the light from the point q of the aperture to the point S + delta of the detector is
+``(pi / lambda) ((delta_r - q_r)^2 / J_r + (delta_t - q_t)^2 / J_t)``. Each axis thus has its own
+Fresnel number ``a^2 / (lambda J)``, and oblique incidence makes the shadow of a round aperture
+elliptical far away and leaves it round close by.
+
+Left out: vector effects, the next (cubic) term of the phase - ``pi N (a / h) sin(theta)`` must be
+small against one - and interference of different points of the Sun, which is incoherent.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmark.simulator.masks.apertures import Mask
+from benchmark.simulator.optics.plates import fresnel_number
+
+Floats = NDArray[np.float64]
+
+#: From this Fresnel number on the shadow is taken as geometric.
+GEOMETRIC_FROM = 10.0
+#: Below this one the pattern behind a round aperture is placed by direction cosines.
+COSINES_BELOW = 1.0
+
+
+@dataclass(frozen=True)
+class Spectrum:
+    """Light of a few wavelengths, nanometres, with their shares of the detected electrons."""
+
+    wavelengths_nm: tuple[float, ...]
+    weights: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        if not self.wavelengths_nm or len(self.wavelengths_nm) != len(self.weights):
+            raise ValueError(
+                f"a spectrum needs one weight a wavelength; got {len(self.wavelengths_nm)} "
+                f"wavelengths and {len(self.weights)} weights"
+            )
+        if min(self.wavelengths_nm) <= 0 or min(self.weights) <= 0:
+            raise ValueError("wavelengths and weights must be positive")
+        if abs(math.fsum(self.weights) - 1.0) > 1e-9:
+            raise ValueError(f"weights must add up to 1; got {math.fsum(self.weights)}")
+
+
+#: Sunlight on silicon: photons of a black body of 5772 K times the quantum efficiencies 0.50,
+#: 0.60, 0.50, 0.35, 0.20 and 0.08, round numbers for a front-illuminated CMOS pixel.
+SUNLIT_SILICON = Spectrum(
+    wavelengths_nm=(450.0, 550.0, 650.0, 750.0, 850.0, 950.0),
+    weights=(0.191, 0.283, 0.246, 0.164, 0.086, 0.030),
+)
+
+
+def propagation(mask: Mask, height_mm: float, spectrum: Spectrum) -> dict[str, Any]:
+    """How light gets from a mask to a detector `height_mm` below, for a dataset's ``regime``.
+
+    The smallest aperture decides, at normal incidence and 550 nm: ``diffraction`` where its
+    Fresnel number ``a^2 / (lambda h)`` is below `GEOMETRIC_FROM`, else ``geometric``.
+    """
+    half = min(aperture.smallest_half_width_mm for aperture in mask.apertures)
+    number = fresnel_number(half, height_mm)
+    found = {"fresnel_number": float(f"{number:.3g}"), "wavelength_nm": 550}
+    if number >= GEOMETRIC_FROM:
+        return {
+            "propagation": "geometric",
+            **found,
+            "reason": "a^2 / (lambda h) at normal incidence is above 10; diffraction is left out",
+        }
+    return {
+        "propagation": "diffraction",
+        **found,
+        "wavelengths_nm": list(spectrum.wavelengths_nm),
+        "weights": list(spectrum.weights),
+        "mapping": "direction cosines" if number < COSINES_BELOW else "chief ray",
+        "reason": "a^2 / (lambda h) at normal incidence is below 10: scalar Fresnel diffraction "
+        "about the chief ray, tabulated for the aperture, over the Sun's disc",
+    }
+
+
+def fresnel(argument: Floats) -> NDArray[np.complex128]:
+    """Fresnel's ``C(u) + i S(u)``, the integral of ``exp(i pi t^2 / 2)`` from 0 to u."""
+    from scipy.special import fresnel as sine_and_cosine  # noqa: PLC0415 - SciPy on demand
+
+    sine, cosine = sine_and_cosine(argument)
+    return np.asarray(cosine + 1j * sine)
+
+
+def slit_intensity(position: Floats, number: float) -> Floats:
+    """Intensity behind an endless slit, in units of the open light.
+
+    Parameters
+    ----------
+    position
+        Distance from the middle of the shadow in units of the slit's half width.
+    number
+        Fresnel number ``a^2 / (lambda J)`` of the half width a, of any size.
+    """
+    root = math.sqrt(2.0 * number)
+    field = fresnel(root * (position + 1.0)) - fresnel(root * (position - 1.0))
+    return np.asarray((field.real**2 + field.imag**2) / 2.0)
+
+
+def round_intensity(
+    radial: Floats, tangential: Floats, numbers: tuple[float, float], points: int | None = None
+) -> Floats:
+    """Intensity behind a round aperture, (R, T), in units of the open light.
+
+    The integral across the aperture is Fresnel's in closed form; the one along it is a trapezoidal
+    sum over the angle ``psi``, ``q = sin(psi)``, in which the integrand is analytic and periodic,
+    so that it converges faster than any power of the number of points.
+
+    Parameters
+    ----------
+    radial, tangential
+        (R,), (T,) positions along and across the plane of incidence, from the middle of the
+        shadow, in units of the aperture's radius.
+    numbers
+        Fresnel numbers ``a^2 / (lambda J)`` of the radius a in the two directions.
+    points
+        Of the sum; by default as many as the phase over the aperture asks for.
+    """
+    from benchmark.simulator.kernels.diffraction import squared_sums  # noqa: PLC0415 - Numba
+
+    along, across = numbers
+    if points is None:
+        reach = 1.0 + float(np.max(np.abs(radial), initial=0.0))
+        side = 1.0 + float(np.max(np.abs(tangential), initial=0.0))
+        points = 24 + math.ceil(4.0 * max(along * reach, across * side))
+    turns = [math.pi * ((step + 0.5) / points - 0.5) for step in range(points)]
+    sines = np.array([math.sin(turn) for turn in turns])
+    cosines = np.array([math.cos(turn) for turn in turns])
+    root = math.sqrt(2.0 * across)
+    side_on = fresnel(root * (tangential + cosines[:, None])) - fresnel(
+        root * (tangential - cosines[:, None])
+    )
+    # sqrt(N_r N_t) of the amplitude over sqrt(2 N_t) of the substitution
+    side_on *= cosines[:, None] * (math.pi / points * math.sqrt(along / 2.0))
+    out = np.empty((len(radial), len(tangential)))
+    parts = np.stack([side_on.real, side_on.imag])
+    squared_sums(out, np.ascontiguousarray(radial), sines, along, parts)
+    return out

@@ -1,0 +1,1 @@
+"""Simulated sensors, one kind a module."""

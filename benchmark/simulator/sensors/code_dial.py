@@ -1,0 +1,183 @@
+"""Currents of photodiodes behind a code dial with coarse and fine rows: `CodeDialSensor`."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmark.seeds import generator
+from benchmark.simulator.optics.projection import Camera
+from benchmark.simulator.readout import currents as readout
+from benchmark.simulator.readout.detectors import CurrentReadout
+from benchmark.simulator.readout.noise import NoiseStreams
+from benchmark.simulator.scene import Scene
+from benchmark.simulator.sensor import FixedPattern
+from benchmark.simulator.sensors.lines import LineAxis
+
+Floats = NDArray[np.float64]
+FineRows = Literal["sine", "square"]
+
+
+@dataclass(frozen=True)
+class CodeDial:
+    """Tracks side by side across the dial, a photodiode behind each (Fan2013).
+
+    `bits` coarse tracks carry the Gray code of the cell, most significant bit first; then come
+    the fine rows F1..F4 in quadrature (eq:fourier): behind a narrow slit at u they pass
+    ``(1 - cos p)/2, (1 - sin p)/2, (1 + cos p)/2, (1 + sin p)/2`` with ``p = 2 pi u / period``,
+    so that ``p = atan2(F4 - F2, F3 - F1)``. u counts from the dial's middle.
+
+    Attributes
+    ----------
+    bits, cell_mm
+        ``2^bits`` cells of equal length; beyond them the dial is opaque.
+    period_mm
+        Of the fine rows.
+    track_height_mm, track_pitch_mm
+        Height of each track, and distance from one to the next.
+    fine_rows
+        ``sine``: outlines that pass one harmonic only, as the ideal output has; ``square``: plain
+        windows of half a period, whose output has all odd harmonics.
+    track_error_mm
+        Standard deviation over tracks of each built pattern's displacement along the dial.
+    """
+
+    bits: int
+    cell_mm: float
+    period_mm: float
+    track_height_mm: float
+    track_pitch_mm: float
+    fine_rows: FineRows = "sine"
+    track_error_mm: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not 1 <= self.bits <= 16:
+            raise ValueError(f"bits must be in [1, 16]; got {self.bits}")
+        if not (self.cell_mm > 0 and self.period_mm > 0):
+            raise ValueError("cell_mm and period_mm must be positive")
+        if not 0 < self.track_height_mm <= self.track_pitch_mm:
+            raise ValueError("track_height_mm must be above 0 and at most track_pitch_mm")
+        if self.fine_rows not in {"sine", "square"}:
+            raise ValueError(f"fine_rows must be 'sine' or 'square'; got {self.fine_rows!r}")
+
+    @property
+    def tracks(self) -> int:
+        """Coarse and fine ones together."""
+        return self.bits + 4
+
+    @property
+    def reach_mm(self) -> float:
+        """From the dial's middle to either end."""
+        return self.cell_mm * 2.0**self.bits / 2.0
+
+    def gray(self) -> NDArray[np.int64]:
+        """(bits, cells) what the coarse tracks show: 1 open, 0 opaque."""
+        number = np.arange(2**self.bits)
+        code = number ^ (number >> 1)
+        return np.array([(code >> bit) & 1 for bit in reversed(range(self.bits))])
+
+    def table(self, shifts_mm: Floats) -> Floats:
+        """(T, 4 + cells + 1) as `dial_kernel.read_dial` wants it, patterns moved by `shifts_mm`."""
+        table = np.zeros((self.tracks, 5 + 2**self.bits))
+        table[self.bits :, 0] = (1.0, 2.0, 3.0, 4.0)
+        table[:, 1] = (np.arange(self.tracks) - (self.tracks - 1) / 2.0) * self.track_pitch_mm
+        table[:, 2] = self.track_height_mm / 2.0
+        table[:, 3] = shifts_mm
+        table[: self.bits, 5:] = np.cumsum(self.gray(), axis=1) * self.cell_mm
+        return table
+
+
+@dataclass(frozen=True)
+class CodeDialSensor:
+    """One code dial an axis, each under its own slit.
+
+    Attributes
+    ----------
+    camera
+        Light; its mask is the slit, in a dial's own coordinates: x along the dial (u), y across
+        it (v); for a dial along the detector's y axis they are swapped.
+    dial
+        Of every axis.
+    readout
+        ``sunlit_ua`` is the current of a track without pattern.
+    axes
+        Along which axis each dial lies, in the order of the currents.
+    deflection_deg
+        Rotation of the slits against the dials, from x towards y: light of the slit falls
+        further along on tracks further across.
+    """
+
+    camera: Camera
+    dial: CodeDial
+    readout: CurrentReadout
+    axes: tuple[LineAxis, ...] = ("x", "y")
+    deflection_deg: float = 0.0
+
+    def __post_init__(self) -> None:
+        apertures = self.camera.mask.apertures
+        if len(apertures) != 1 or apertures[0].shape != "rectangle":
+            raise ValueError("a code dial has one rectangular slit")
+        if not self.axes or any(axis not in {"x", "y"} for axis in self.axes):
+            raise ValueError(f"axes must be 'x' or 'y', one a dial; got {self.axes}")
+
+    def fixed_pattern(self, *names: str | int) -> FixedPattern:
+        """``gain`` and ``shift_mm`` (K,): gains of the channels, displacements of the patterns."""
+        count = self.dial.tracks * len(self.axes)
+        shifts = generator(*names, "tracks").standard_normal(count)
+        return {
+            "gain": readout.element_gains(self.readout, count, *names),
+            "shift_mm": self.dial.track_error_mm * shifts,
+        }
+
+    def origins(self, sun: Floats, generator: np.random.Generator) -> None:
+        """Nothing is windowed (the arguments are the protocol's)."""
+
+    def lit(self, scene: Scene, pattern: FixedPattern) -> Floats:
+        """(N, K) light behind the tracks in units of what the slit gives an open one at noon."""
+        from benchmark.simulator.kernels.dial import read_dial  # noqa: PLC0415 - Numba on demand
+
+        projected = self.camera.project(scene.sun)
+        light = projected.light * scene.irradiance[:, None]
+        slit = self.camera.mask.table()[0]
+        count = self.dial.tracks
+        out = np.empty((len(scene), count * len(self.axes)))
+        for number, axis in enumerate(self.axes):
+            # swapped axes see the slit turn the other way
+            side = 1.0 if axis == "x" else -1.0
+            turn = math.radians(self.camera.mask.apertures[0].rotation_deg)
+            turn += side * math.radians(self.deflection_deg)
+            numbers = np.array(
+                [
+                    self.dial.period_mm,
+                    self.dial.cell_mm,
+                    1.0 if self.dial.fine_rows == "square" else 0.0,
+                    *slit[1:5],
+                    math.cos(turn),
+                    math.sin(turn),
+                ]
+            )
+            rims = projected.rims_mm
+            if axis == "y":
+                rims = np.ascontiguousarray(rims[..., ::-1])
+            part = np.empty((len(scene), count))
+            columns = slice(number * count, (number + 1) * count)
+            read_dial(part, self.dial.table(pattern["shift_mm"][columns]), rims, light, numbers)
+            out[:, columns] = part / self.camera.mask.apertures[0].width_mm
+        return out
+
+    def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
+        """(N, K) mean microamperes."""
+        response = self.lit(scene, pattern) + scene.stray[:, None]
+        return readout.currents(self.readout, response, pattern)
+
+    def variance(self, expected: Floats) -> Floats:
+        """Squared microamperes."""
+        return readout.variance(self.readout, expected)
+
+    def observe(self, scene: Scene, pattern: FixedPattern, streams: NoiseStreams) -> Floats:
+        """(N, K) microamperes."""
+        return readout.converted(self.readout, self.expected(scene, pattern), streams)

@@ -1,0 +1,161 @@
+"""Frames of a pixel array behind a mask: `FrameSensor`."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmark.seeds import generator
+from benchmark.simulator.light.memory import memory
+from benchmark.simulator.optics.projection import Camera, ProjectedLight
+from benchmark.simulator.readout.detectors import PixelArray
+from benchmark.simulator.readout.noise import NoiseStreams, counted
+from benchmark.simulator.scene import Scene
+from benchmark.simulator.sensor import FixedPattern
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class FrameSensor:
+    """A pixel array read out in windows around the expected spot.
+
+    Attributes
+    ----------
+    camera, detector
+        Light and pixels.
+    window_px
+        Columns and rows read out.
+    window_jitter_px
+        The window's middle misses the true spot by up to this many whole pixels an axis, as if
+        placed from a previous frame; uniform, so the origin alone tells the spot no better than
+        ``(2 j + 1) / sqrt(12)`` px.
+    """
+
+    camera: Camera
+    detector: PixelArray
+    window_px: tuple[int, int] = (64, 64)
+    window_jitter_px: int = 8
+
+    def fixed_pattern(self, *names: str | int) -> FixedPattern:
+        """``gain`` and ``dark_e``, (rows, columns): the pixels' relative gain and dark signal."""
+        detector = self.detector
+        shape = (detector.rows, detector.columns)
+        gain = 1.0 + detector.prnu * generator(*names, "prnu").standard_normal(shape)
+        dark = detector.dark.level() * detector.exposure_s
+        dark_e = dark * (1.0 + detector.dsnu * generator(*names, "dsnu").standard_normal(shape))
+        return {"gain": np.maximum(gain, 0.0), "dark_e": np.maximum(dark_e, 0.0)}
+
+    def spot_px(self, sun: Floats) -> Floats:
+        """(N, 2) true detector coordinate of the spot of a point Sun and a thin mask."""
+        return self.camera.spot_mm(sun) / self.detector.pitch_mm + self.detector.centre_px
+
+    def origins(self, sun: Floats, generator: np.random.Generator) -> NDArray[np.int64]:
+        """(N, 2) window origins: the rounded spot plus a uniform whole offset an axis.
+
+        A window that would leave the detector stops at its edge.
+        """
+        jitter = self.window_jitter_px
+        offset = generator.integers(-jitter, jitter + 1, size=(len(sun), 2))
+        half = np.array([size // 2 for size in self.window_px])
+        last = np.array([self.detector.columns, self.detector.rows]) - self.window_px
+        wanted = np.rint(self.spot_px(sun)).astype(np.int64) + offset - half
+        return np.asarray(np.clip(wanted, 0, last), dtype=np.int64)
+
+    def projected(self, scene: Scene) -> ProjectedLight:
+        """Where the mask's rims fall, and with how much light, before sunlight's own variation."""
+        return self.camera.project(scene.sun)
+
+    def lit(self, scene: Scene) -> Floats:
+        """(N, H, W) irradiance averaged over each pixel, in units of mean normal sunlight.
+
+        This is the rendering itself: no fixed pattern, no noise, no stray light.
+
+        Raises
+        ------
+        ValueError
+            When the scene has no window origins.
+        """
+        if scene.origin_px is None:
+            raise ValueError("frames need the windows' origins; the scene's origin_px is None")
+        seen = scene.sun.tobytes(), scene.origin_px.tobytes()
+        key = (*self._optics(), *self._moment(scene), *seen)
+        flux = memory.rendered(key, lambda: self._rendered(scene, np.asarray(scene.origin_px)))
+        flux *= scene.irradiance[:, None, None]
+        return flux
+
+    def _optics(self) -> tuple[Hashable, ...]:
+        """Everything `_rendered` depends on but its arguments."""
+        detector = self.detector
+        size = detector.rows, detector.columns, detector.pitch_mm
+        return type(self).__name__, self.camera, self.window_px, size
+
+    def _moment(self, scene: Scene) -> tuple[Hashable, ...]:  # noqa: ARG002 - for sensors that drift
+        """Everything of a scene `_rendered` depends on but its Suns and windows."""
+        return ()
+
+    def _rendered(self, scene: Scene, origin_px: NDArray[np.int64]) -> Floats:
+        """(N, H, W) light of the mean sunlight in windows at (N, 2)."""
+        from benchmark.simulator.kernels.rasteriser import render  # noqa: PLC0415 - Numba on demand
+
+        pitch = self.detector.pitch_mm
+        light = self.projected(scene)
+        columns, rows = self.window_px
+        flux = np.empty((len(scene), rows, columns))
+        render(
+            flux,
+            self.camera.mask.table(pitch),
+            light.rims_mm / pitch,
+            light.light,
+            origin_px - 0.5 - np.asarray(self.detector.centre_px),
+        )
+        return flux
+
+    def _electrons(self, scene: Scene, pattern: FixedPattern) -> Floats:
+        electrons = self.lit(scene)
+        electrons += scene.stray[:, None, None]
+        electrons *= self.detector.sunlit_e
+        columns, rows = self.window_px
+        for n, (x, y) in enumerate(np.asarray(scene.origin_px)):
+            if not (
+                0 <= x <= self.detector.columns - columns and 0 <= y <= self.detector.rows - rows
+            ):
+                raise ValueError(
+                    f"window of {columns} x {rows} px at ({x}, {y}) leaves the detector of "
+                    f"{self.detector.columns} x {self.detector.rows} px"
+                )
+            window = slice(y, y + rows), slice(x, x + columns)
+            electrons[n] *= pattern["gain"][window]
+            electrons[n] += pattern["dark_e"][window]
+        return electrons
+
+    def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
+        """(N, H, W) mean digital numbers before rounding."""
+        detector = self.detector
+        numbers = self._electrons(scene, pattern)
+        np.minimum(numbers, detector.full_well_e, out=numbers)
+        numbers /= detector.gain_e_per_dn
+        numbers += detector.offset_dn
+        return numbers
+
+    def variance(self, expected: Floats) -> Floats:
+        """Squared digital numbers: shot and read noise, and 1/12 for rounding."""
+        detector = self.detector
+        electrons = (expected - detector.offset_dn) * detector.gain_e_per_dn
+        noise = np.maximum(electrons, 0.0) + detector.read_noise_e**2
+        return np.asarray(noise / detector.gain_e_per_dn**2 + 1.0 / 12.0)
+
+    def observe(
+        self, scene: Scene, pattern: FixedPattern, streams: NoiseStreams
+    ) -> NDArray[np.uint16]:
+        """(N, H, W) uint16 digital numbers."""
+        detector = self.detector
+        electrons = counted(self._electrons(scene, pattern), detector.read_noise_e, streams)
+        np.minimum(electrons, detector.full_well_e, out=electrons)
+        electrons /= detector.gain_e_per_dn
+        electrons += detector.offset_dn
+        np.rint(electrons, out=electrons)
+        return np.clip(electrons, 0, detector.full_scale_dn, out=electrons).astype(np.uint16)

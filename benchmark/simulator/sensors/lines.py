@@ -1,0 +1,188 @@
+"""Profiles of linear arrays behind slits: `LineSensor`."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmark.seeds import generator
+from benchmark.simulator.light.memory import memory
+from benchmark.simulator.masks.slits import SlitErrors
+from benchmark.simulator.optics.diffraction import GEOMETRIC_FROM
+from benchmark.simulator.optics.plates import fresnel_number
+from benchmark.simulator.optics.projection import Camera
+from benchmark.simulator.readout.detectors import PixelArray
+from benchmark.simulator.readout.noise import NoiseStreams, counted
+from benchmark.simulator.scene import Scene
+from benchmark.simulator.sensor import FixedPattern
+
+Floats = NDArray[np.float64]
+LineAxis = Literal["x", "y"]
+
+
+@dataclass(frozen=True)
+class LineSensor:
+    """One or two linear arrays, each behind slits of the same layout.
+
+    Attributes
+    ----------
+    camera
+        Light. The mask is written in each array's own coordinates: x along the array (u), y
+        across it (v); for an array along the detector's y axis they are swapped. Every array
+        sees its own slits only, as behind separate slots or a baffle.
+    detector
+        One array: ``rows`` is 1, ``columns`` its pixels, ``pitch_mm`` their distance.
+    axes
+        Along which detector axis each array lies, in the order of the profile's columns.
+    pixel_height_mm
+        Of the pixels, across the array.
+    fill_factor
+        Sensitive share of the pitch.
+    errors
+        How the plate with the slits stands over the arrays.
+    least_fresnel
+        Shadows are geometric, diffraction is left out: slits of a smaller Fresnel number at
+        normal incidence and 550 nm are refused. 0 takes any, for light that does not diffract.
+
+    Raises
+    ------
+    ValueError
+        On slits so narrow that their shadow is not geometric, among others.
+    """
+
+    camera: Camera
+    detector: PixelArray
+    pixel_height_mm: float
+    axes: tuple[LineAxis, ...] = ("x", "y")
+    fill_factor: float = 1.0
+    errors: SlitErrors = field(default_factory=SlitErrors)
+    least_fresnel: float = GEOMETRIC_FROM
+
+    def __post_init__(self) -> None:
+        if self.detector.rows != 1:
+            raise ValueError(f"a linear array has one row of pixels; got {self.detector.rows}")
+        if not self.axes or any(axis not in {"x", "y"} for axis in self.axes):
+            raise ValueError(f"axes must be 'x' or 'y', one an array; got {self.axes}")
+        if not self.pixel_height_mm > 0:
+            raise ValueError(f"pixel_height_mm must be positive; got {self.pixel_height_mm}")
+        if not 0 < self.fill_factor <= 1:
+            raise ValueError(f"fill_factor must be in (0, 1]; got {self.fill_factor}")
+        if any(aperture.shape != "rectangle" for aperture in self.camera.mask.apertures):
+            raise ValueError("linear arrays are simulated behind rectangular slits only")
+        mask = self.camera.mask
+        half = min(aperture.smallest_half_width_mm for aperture in mask.apertures)
+        number = fresnel_number(half, self.camera.focal_length_mm)
+        if number < self.least_fresnel:
+            raise ValueError(
+                "linear arrays are simulated in geometric shadow, Fresnel number of at least "
+                f"{self.least_fresnel:g}; slits of {2.0 * half:g} mm "
+                f"{self.camera.focal_length_mm:g} mm up have {number:.3g}"
+            )
+
+    @property
+    def width_px(self) -> int:
+        """Columns of a profile, all arrays together."""
+        return self.detector.columns * len(self.axes)
+
+    def fixed_pattern(self, *names: str | int) -> FixedPattern:
+        """``gain`` and ``dark_e``, (W,): the pixels' relative gain and dark signal."""
+        detector, width = self.detector, self.width_px
+        gain = 1.0 + detector.prnu * generator(*names, "prnu").standard_normal(width)
+        dark = detector.dark.level() * detector.exposure_s
+        dark_e = dark * (1.0 + detector.dsnu * generator(*names, "dsnu").standard_normal(width))
+        return {"gain": np.maximum(gain, 0.0), "dark_e": np.maximum(dark_e, 0.0)}
+
+    def origins(self, sun: Floats, generator: np.random.Generator) -> None:
+        """Nothing is windowed (the arguments are the protocol's)."""
+
+    def _slits(self, axis: LineAxis) -> Floats:
+        """`Mask.table` of one array in pixels, the plate turned by its deflection."""
+        table = self.camera.mask.table(self.detector.pitch_mm)
+        turn = math.radians(self.errors.deflection_deg)
+        c, s = math.cos(turn), math.sin(turn)
+        if axis == "y":  # swapped axes see the plate turn the other way
+            s = -s
+        x, y, cosine, sine = (table[:, column].copy() for column in (1, 2, 5, 6))
+        table[:, 1], table[:, 2] = c * x - s * y, s * x + c * y
+        table[:, 5], table[:, 6] = c * cosine - s * sine, s * cosine + c * sine
+        return table
+
+    def lit(self, scene: Scene) -> Floats:
+        """(N, W) irradiance averaged over each pixel, in units of mean normal sunlight.
+
+        This is the rendering itself: no fixed pattern, no noise, no stray light.
+        """
+        detector = self.detector
+        pixels = detector.columns, detector.pitch_mm, self.pixel_height_mm, self.fill_factor
+        key = (type(self).__name__, self.camera, pixels, self.axes, self.errors)
+        flux = memory.rendered((*key, scene.sun.tobytes()), lambda: self._rendered(scene.sun))
+        flux *= scene.irradiance[:, None]
+        return flux
+
+    def _rendered(self, sun: Floats) -> Floats:
+        """(N, W) light of the mean sunlight from (N, 3)."""
+        from benchmark.simulator.kernels.lines import expose  # noqa: PLC0415 - Numba on demand
+
+        pitch, columns = self.detector.pitch_mm, self.detector.columns
+        projected = self.camera.project(sun)
+        light = projected.light
+        lower, upper = projected.rims_mm
+        tangents = np.zeros_like(lower)
+        tilt = math.radians(self.errors.inclination_deg)
+        if tilt != 0.0:
+            points = self.camera.sun.directions(self.camera.assembly.to_head(sun))
+            tangents = points[..., :2] / np.maximum(points[..., 2:], 1e-6)
+        half_height = self.pixel_height_mm / pitch / 2.0
+        numbers = -columns / 2.0, half_height, self.fill_factor, math.cos(tilt), math.sin(tilt)
+        flux = np.empty((len(sun), self.width_px))
+        for number, axis in enumerate(self.axes):
+            along = np.stack([lower / pitch, upper / pitch, tangents])
+            if axis == "y":
+                along = np.ascontiguousarray(along[..., ::-1])
+            if tilt != 0.0:
+                self._tilt(along, tilt)
+            part = np.empty((len(sun), columns))
+            expose(part, self._slits(axis), along, light, numbers)
+            flux[:, number * columns : (number + 1) * columns] = part
+        return flux
+
+    def _tilt(self, paths: Floats, tilt: float) -> None:
+        """Let the plate's thickness stand along its own, tilted normal."""
+        middle = (paths[0] + paths[1]) / 2.0
+        thickness = self.camera.mask.thickness_mm / self.detector.pitch_mm
+        through = thickness * (math.cos(tilt) * paths[2] - np.array([0.0, math.sin(tilt)]))
+        paths[0], paths[1] = middle - through / 2.0, middle + through / 2.0
+
+    def _electrons(self, scene: Scene, pattern: FixedPattern) -> Floats:
+        electrons = self.lit(scene)
+        electrons += scene.stray[:, None]
+        electrons *= self.detector.sunlit_e * pattern["gain"]
+        electrons += pattern["dark_e"]
+        return electrons
+
+    def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
+        """(N, W) mean digital numbers before rounding."""
+        detector = self.detector
+        electrons = np.minimum(self._electrons(scene, pattern), detector.full_well_e)
+        return np.asarray(detector.offset_dn + electrons / detector.gain_e_per_dn)
+
+    def variance(self, expected: Floats) -> Floats:
+        """Squared digital numbers: shot and read noise, and 1/12 for rounding."""
+        detector = self.detector
+        electrons = (expected - detector.offset_dn) * detector.gain_e_per_dn
+        noise = np.maximum(electrons, 0.0) + detector.read_noise_e**2
+        return np.asarray(noise / detector.gain_e_per_dn**2 + 1.0 / 12.0)
+
+    def observe(
+        self, scene: Scene, pattern: FixedPattern, streams: NoiseStreams
+    ) -> NDArray[np.uint16]:
+        """(N, W) uint16 digital numbers."""
+        detector = self.detector
+        electrons = counted(self._electrons(scene, pattern), detector.read_noise_e, streams)
+        np.minimum(electrons, detector.full_well_e, out=electrons)
+        values = np.rint(detector.offset_dn + electrons / detector.gain_e_per_dn)
+        return np.clip(values, 0, detector.full_scale_dn).astype(np.uint16)

@@ -1,0 +1,200 @@
+"""Full frames of a large pixel array behind a mask of many apertures: `MultiSpotSensor`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmark.simulator.light.memory import Places, digest_of, memory
+from benchmark.simulator.masks.errors import MaskErrors
+from benchmark.simulator.optics.projection import Camera
+from benchmark.simulator.readout.detectors import PixelArray
+from benchmark.simulator.readout.noise import NoiseStreams
+from benchmark.simulator.scene import Scene
+from benchmark.simulator.sensor import FixedPattern
+from benchmark.simulator.sensors.frames import FrameSensor
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+#: Below this read noise the Gaussian shot noise of dim pixels is not good enough.
+LEAST_READ_NOISE_E = 10.0
+
+
+@dataclass(frozen=True)
+class MultiSpotSensor:
+    """A pixel array read out whole; light is rendered where it falls, aperture by aperture.
+
+    Shot noise is drawn as a Gaussian of variance equal to the mean in every pixel. With read
+    noise of r electrons the sum's skewness is ``m / (m + r^2)^(3/2)``, at most ``0.385 / r`` at
+    any mean m: less than 0.04 from `LEAST_READ_NOISE_E` on, and less is refused.
+
+    Attributes
+    ----------
+    camera, detector
+        Light and pixels. The camera's mask may be larger than the detector.
+    errors
+        Of the mask's manufacture.
+    """
+
+    camera: Camera
+    detector: PixelArray
+    errors: MaskErrors = field(default_factory=MaskErrors)
+
+    def __post_init__(self) -> None:
+        if self.detector.read_noise_e < LEAST_READ_NOISE_E:
+            raise ValueError(
+                f"full frames need a read noise of at least {LEAST_READ_NOISE_E} electrons; got "
+                f"{self.detector.read_noise_e}"
+            )
+
+    def fixed_pattern(self, *names: str | int) -> FixedPattern:
+        """``gain``, ``dark_e`` (rows, columns), and the built mask.
+
+        ``apertures`` (A, 7) is `Mask.table` in pixels, ``transmission`` (A,) what they pass.
+        """
+        table, transmission = self.errors.built(self.camera.mask, *names)
+        table[:, 1:5] /= self.detector.pitch_mm
+        pixels = self._whole().fixed_pattern(*names)
+        return {**pixels, "apertures": table, "transmission": transmission}
+
+    def _whole(self) -> FrameSensor:
+        size = (self.detector.columns, self.detector.rows)
+        return FrameSensor(self.camera, self.detector, size, 0)
+
+    def origins(self, sun: Floats, generator: np.random.Generator) -> Integers:  # noqa: ARG002 - the protocol's
+        """(N, 2) zeros: frames are whole."""
+        return np.zeros((len(sun), 2), dtype=np.int64)
+
+    def spots_px(self, sun: Floats, pattern: FixedPattern) -> Floats:
+        """(N, A, 2) where the ray from the Sun's centre through each aperture's centre falls."""
+        shift = self.camera.spot_mm(sun) / self.detector.pitch_mm + self.detector.centre_px
+        return np.asarray(shift[:, None, :] + pattern["apertures"][None, :, 1:3])
+
+    def boxes(self, scene: Scene, pattern: FixedPattern, margin_px: int = 0) -> Integers:
+        """(N, A, 4) first and past-last column and row each aperture lights, on the detector.
+
+        Empty (past-last not above first) where its light misses the detector or it is closed.
+        """
+        light = self.camera.project(scene.sun)
+        return self._boxes(light.rims_mm / self.detector.pitch_mm, pattern, margin_px)
+
+    def _boxes(self, rims: Floats, pattern: FixedPattern, margin_px: int) -> Integers:
+        table = pattern["apertures"]
+        box = table[:, 0] > 0.5
+        c, s = np.abs(table[:, 5]), np.abs(table[:, 6])
+        reach = np.stack(
+            [
+                np.where(box, table[:, 3] * c + table[:, 4] * s, table[:, 3]),
+                np.where(box, table[:, 3] * s + table[:, 4] * c, table[:, 3]),
+            ],
+            axis=1,
+        )
+        # pixel n covers [n, n + 1) from the detector's first corner
+        half = np.array([self.detector.columns, self.detector.rows]) / 2.0
+        place = table[:, 1:3] + half
+        low = rims.min(axis=(0, 2))[:, None] + (place - reach)[None] - margin_px
+        high = rims.max(axis=(0, 2))[:, None] + (place + reach)[None] + margin_px
+        size = np.array([self.detector.columns, self.detector.rows], dtype=np.float64)
+        first = np.clip(np.floor(low), 0.0, size).astype(np.int64)
+        last = np.clip(np.ceil(high), 0.0, size).astype(np.int64)
+        last[:, pattern["transmission"] == 0.0] = 0
+        return np.stack([first[..., 0], last[..., 0], first[..., 1], last[..., 1]], axis=-1)
+
+    def lit(self, scene: Scene, pattern: FixedPattern) -> Floats:
+        """(N, rows, columns) irradiance averaged over each pixel, in units of mean sunlight.
+
+        The rendering alone: the built mask, but no pixel gains, noise or stray light.
+        """
+        frames = np.zeros((len(scene), self.detector.rows, self.detector.columns))
+        for n, frame in enumerate(frames):
+            self.add_light(frame, scene.part(n, n + 1), pattern)
+        return frames
+
+    def add_light(self, frame: Floats, one: Scene, pattern: FixedPattern) -> Integers:
+        """Add the light of one sample to `frame` (rows, columns).
+
+        Returns
+        -------
+        (B, 4) the boxes (as `boxes`) outside of which nothing was added.
+        """
+        from benchmark.simulator.kernels.rasteriser import add_apertures  # noqa: PLC0415 - Numba on demand
+
+        projected = self.camera.project(one.sun)
+        rims = np.ascontiguousarray(projected.rims_mm / self.detector.pitch_mm)
+        light = projected.light * one.irradiance[:, None]
+        if not light.any():
+            return np.zeros((0, 4), dtype=np.int64)
+        boxes = self._boxes(rims, pattern, 0)[0]
+        add_apertures(frame, (pattern["apertures"], pattern["transmission"]), rims, light, boxes)
+        lit = (boxes[:, 1] > boxes[:, 0]) & (boxes[:, 3] > boxes[:, 2])
+        return np.asarray(boxes[lit])
+
+    def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
+        """(N, rows, columns) mean digital numbers before rounding."""
+        detector = self.detector
+        electrons = self.lit(scene, pattern)
+        electrons += scene.stray[:, None, None]
+        electrons *= detector.sunlit_e * pattern["gain"]
+        electrons += pattern["dark_e"]
+        np.minimum(electrons, detector.full_well_e, out=electrons)
+        return np.asarray(detector.offset_dn + electrons / detector.gain_e_per_dn)
+
+    def variance(self, expected: Floats) -> Floats:
+        """Squared digital numbers: shot and read noise, and 1/12 for rounding."""
+        return self._whole().variance(expected)
+
+    def observe(
+        self, scene: Scene, pattern: FixedPattern, streams: NoiseStreams
+    ) -> NDArray[np.uint16]:
+        """(N, rows, columns) uint16 digital numbers.
+
+        Each frame takes the same number of words of the Gaussian stream, whatever it shows.
+        """
+        from benchmark.simulator.kernels.digitising import digitise, quantiles  # noqa: PLC0415 - Numba
+
+        detector = self.detector
+        shape = (detector.rows, detector.columns)
+        out = np.empty((len(scene), *shape), dtype=np.uint16)
+        light = np.zeros(shape)
+        numbers = (
+            detector.sunlit_e,
+            detector.read_noise_e**2,
+            detector.full_well_e,
+            detector.gain_e_per_dn,
+            detector.offset_dn,
+            float(detector.full_scale_dn),
+        )
+        tables = (quantiles(), pattern["gain"], pattern["dark_e"])
+        words = (shape[0] * shape[1] + 1) // 2
+        flat = light.reshape(-1)
+        mask = digest_of(pattern["apertures"], pattern["transmission"])
+        key = (type(self).__name__, self.camera, mask, shape, detector.pitch_mm)
+        for n in range(len(scene)):
+            one = Scene(scene.sun[n : n + 1], np.ones(1), np.zeros(1))
+            places, values = memory.places(
+                (*key, one.sun.tobytes()), partial(self._places, light, one, pattern)
+            )
+            flat[places] = values * scene.irradiance[n]
+            digitise(
+                out[n],
+                light,
+                streams.gaussian.bit_generator.random_raw(words).view(np.int64),
+                tables,
+                (float(scene.stray[n]), *numbers),
+            )
+            flat[places] = 0.0
+        return out
+
+    def _places(self, frame: Floats, one: Scene, pattern: FixedPattern) -> Places:
+        """Light of one sample, rendered in a dark frame that is dark again afterwards."""
+        from benchmark.simulator.kernels.rasteriser import take_light  # noqa: PLC0415 - Numba on demand
+
+        boxes = self.add_light(frame, one, pattern)
+        room = int(((boxes[:, 1] - boxes[:, 0]) * (boxes[:, 3] - boxes[:, 2])).sum())
+        places, values = np.empty(room, dtype=np.int32), np.empty(room)
+        count = take_light(frame, boxes, places, values)
+        return places[:count].copy(), values[:count].copy()

@@ -1,0 +1,147 @@
+"""Electrode currents of a two-axis position-sensitive device: `PositionSensor`."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmark.simulator.masks.apertures import Aperture
+from benchmark.simulator.optics.projection import Camera
+from benchmark.simulator.readout import currents as readout
+from benchmark.simulator.readout.detectors import CurrentReadout
+from benchmark.simulator.readout.noise import NoiseStreams
+from benchmark.simulator.scene import Scene
+from benchmark.simulator.sensor import FixedPattern
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class LateralEffect:
+    """A square photodiode whose photocurrent divides among electrodes at its four corners.
+
+    The electrodes lie, in the detector frame, at Q1 (-x, +y), Q2 (+x, +y), Q3 (+x, -y) and
+    Q4 (-x, -y): the order of a quadrant photodiode, for which alg:VB gives the x balance as
+    (Q2 + Q3 - Q1 - Q4) / sum and the y balance as (Q1 + Q2 - Q3 - Q4) / sum. With both
+    coordinates (u, v) of the light in units of half the active length L, each electrode takes the
+    share (1 +- u)(1 +- v) / 4, so that the balances are (u, v): a spot at X has the balance
+    ``S = 2 X / L``, that of a quadrant photodiode behind a square aperture of width L.
+
+    Attributes
+    ----------
+    length_mm
+        Side L of the active area.
+    nonlinearity
+        kappa: light at (x, y) divides as if at ``(x, y) (1 - kappa (x^2 + y^2))``, in units of
+        half the active length; the resistive layer is not uniform and its edge pulls.
+    """
+
+    length_mm: float
+    nonlinearity: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not self.length_mm > 0:
+            raise ValueError(f"length_mm must be positive; got {self.length_mm}")
+        if not 0 <= self.nonlinearity < 1 / 6:  # beyond, one balance belongs to two places
+            raise ValueError(f"nonlinearity must be in [0, 1/6); got {self.nonlinearity}")
+
+    def shares(self, x_mm: Floats, y_mm: Floats) -> Floats:
+        """(..., 4) shares of light at (x, y) that Q1..Q4 collect; 0 beyond the active area."""
+        x, y = 2.0 * x_mm / self.length_mm, 2.0 * y_mm / self.length_mm
+        scale = 1.0 - self.nonlinearity * (x * x + y * y)
+        u, v = x * scale, y * scale
+        inside = (np.abs(x) <= 1.0) & (np.abs(y) <= 1.0)
+        left, right = (1.0 - u) / 2.0 * inside, (1.0 + u) / 2.0 * inside
+        low, high = (1.0 - v) / 2.0, (1.0 + v) / 2.0
+        return np.stack([left * high, right * high, right * low, left * low], axis=-1)
+
+
+@dataclass(frozen=True)
+class PositionSensor:
+    """A position-sensitive device behind one or more sharp-edged apertures.
+
+    The spot is a finite one: every point of the Sun casts the whole aperture. The mask must be
+    thin (`Mask.thickness_mm` 0), so that every such image has the aperture's own shape.
+    """
+
+    camera: Camera
+    detector: LateralEffect
+    readout: CurrentReadout
+
+    def __post_init__(self) -> None:
+        if self.camera.mask.thickness_mm != 0:
+            raise ValueError(
+                "a position sensor is simulated behind a thin mask; got thickness_mm "
+                f"{self.camera.mask.thickness_mm}"
+            )
+
+    def fixed_pattern(self, *names: str | int) -> FixedPattern:
+        """``gain`` (4,): relative gains of the electrodes' amplifiers."""
+        return {"gain": readout.element_gains(self.readout, 4, *names)}
+
+    def origins(self, sun: Floats, generator: np.random.Generator) -> None:
+        """Nothing is windowed (the arguments are the protocol's)."""
+
+    def lit(self, scene: Scene) -> Floats:
+        """(N, 4) photocurrent of the electrodes in units of all apertures at normal incidence.
+
+        Exact (by Gauss's rule) while the spot lies whole inside the active area; light beyond it
+        is lost, point by point of the rule.
+        """
+        light = self.camera.project(scene.sun)
+        apertures = self.camera.mask.apertures
+        whole = sum(aperture.area_mm2 for aperture in apertures)
+        collected = np.zeros((len(scene), 4))
+        for aperture in apertures:
+            points, weights = aperture_rule(aperture)
+            shares = weights * (aperture.area_mm2 / whole)
+            for (x, y), share in zip(points, shares, strict=True):
+                at = light.rims_mm[0] + (x, y)
+                parts = self.detector.shares(at[..., 0], at[..., 1])
+                collected += share * np.sum(light.light[..., None] * parts, axis=1)
+        return np.asarray(collected * scene.irradiance[:, None])
+
+    def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
+        """(N, 4) mean microamperes; a quarter of the stray light to each electrode."""
+        response = self.lit(scene) + scene.stray[:, None] / 4.0
+        return readout.currents(self.readout, response, pattern)
+
+    def variance(self, expected: Floats) -> Floats:
+        """Squared microamperes."""
+        return readout.variance(self.readout, expected)
+
+    def observe(self, scene: Scene, pattern: FixedPattern, streams: NoiseStreams) -> Floats:
+        """(N, 4) microamperes."""
+        return readout.converted(self.readout, self.expected(scene, pattern), streams)
+
+
+def aperture_rule(aperture: Aperture) -> tuple[Floats, Floats]:
+    """Points (P, 2) in mm and weights (P,), sum 1, of a mean over an aperture's area.
+
+    Exact for polynomials of degree 6, that of `LateralEffect.shares`.
+    """
+    if aperture.shape == "round":
+        nodes, halves = np.polynomial.legendre.leggauss(2)
+        turns = [2.0 * math.pi * (step + 0.5) / 8 for step in range(8)]
+        reach = aperture.width_mm / 2.0
+        points = [
+            (
+                reach * math.sqrt((node + 1.0) / 2.0) * math.cos(turn),
+                reach * math.sqrt((node + 1.0) / 2.0) * math.sin(turn),
+            )
+            for node in nodes
+            for turn in turns
+        ]
+        weights = np.repeat(halves / 2.0, 8) / 8
+    else:
+        nodes, halves = np.polynomial.legendre.leggauss(4)
+        c = math.cos(math.radians(aperture.rotation_deg))
+        s = math.sin(math.radians(aperture.rotation_deg))
+        a, b = aperture.width_mm / 2.0, aperture.height_mm / 2.0
+        points = [(c * a * p - s * b * q, s * a * p + c * b * q) for p in nodes for q in nodes]
+        weights = np.outer(halves, halves).ravel() / 4.0
+    centre = np.array([aperture.x_mm, aperture.y_mm])
+    return np.array(points) + centre, np.asarray(weights)

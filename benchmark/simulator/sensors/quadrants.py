@@ -1,0 +1,64 @@
+"""Currents of a quadrant photodiode behind a mask: `QuadrantSensor`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmark.simulator.optics.projection import Camera
+from benchmark.simulator.readout import currents as readout
+from benchmark.simulator.readout.detectors import CurrentReadout, Quadrants
+from benchmark.simulator.readout.noise import NoiseStreams
+from benchmark.simulator.scene import Scene
+from benchmark.simulator.sensor import FixedPattern
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class QuadrantSensor:
+    """Four photodiodes (order Q1..Q4 of `Quadrants`) under one aperture."""
+
+    camera: Camera
+    detector: Quadrants
+    readout: CurrentReadout
+
+    def fixed_pattern(self, *names: str | int) -> FixedPattern:
+        """``gain`` (4,): relative gains of the quadrants."""
+        return {"gain": readout.element_gains(self.readout, 4, *names)}
+
+    def origins(self, sun: Floats, generator: np.random.Generator) -> None:
+        """Nothing is windowed (the arguments are the protocol's)."""
+
+    def lit(self, scene: Scene) -> Floats:
+        """(N, 4) light on the quadrants, in units of the whole aperture at normal incidence.
+
+        Exact areas; light on the gap and beyond the detector's edge is lost.
+        """
+        from benchmark.simulator.kernels.areas import lit_boxes  # noqa: PLC0415 - Numba on demand
+
+        light = self.camera.project(scene.sun)
+        area = np.empty((len(scene), 4))
+        lit_boxes(
+            area,
+            self.detector.boxes(),
+            self.camera.mask.table(),
+            light.rims_mm,
+            light.light * scene.irradiance[:, None],
+        )
+        return np.asarray(area / sum(a.area_mm2 for a in self.camera.mask.apertures))
+
+    def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
+        """(N, 4) mean microamperes."""
+        response = self.lit(scene) + scene.stray[:, None]
+        return readout.currents(self.readout, response, pattern)
+
+    def variance(self, expected: Floats) -> Floats:
+        """Squared microamperes."""
+        return readout.variance(self.readout, expected)
+
+    def observe(self, scene: Scene, pattern: FixedPattern, streams: NoiseStreams) -> Floats:
+        """(N, 4) microamperes."""
+        return readout.converted(self.readout, self.expected(scene, pattern), streams)

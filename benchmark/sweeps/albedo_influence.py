@@ -1,0 +1,212 @@
+"""How far light from the sunlit Earth moves an estimate: on bare photodiodes, behind a pinhole.
+
+The same Earth, the same random positions in orbit; noise is left out, so that what moves is moved
+by the Earth alone.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.contract import Extractor, Floats
+from algorithms.extractors.frames.centroid import ThresholdedCentroid
+from benchmark import datasets
+from benchmark.metrics.bounds import cramer_rao
+from benchmark.metrics.score import separation_deg
+from benchmark.seeds import generator
+from benchmark.simulator.light.environment import Earth
+from benchmark.simulator.light.sun_disc import tangent_axes
+from benchmark.simulator.sensors.faces import FaceSensor
+from benchmark.simulator.sensors.frames import FrameSensor
+
+
+@dataclass(frozen=True)
+class Influence:
+    """Angle (N,) by which light from the Earth moves each sample's estimate, and the bound."""
+
+    moved_deg: Floats
+    bound_deg: Floats
+
+    @property
+    def worst_deg(self) -> float:
+        """Largest movement."""
+        return float(np.nanmax(self.moved_deg))
+
+    @property
+    def rms_deg(self) -> float:
+        """Root mean square movement."""
+        return float(np.sqrt(np.nanmean(self.moved_deg**2)))
+
+    @property
+    def rms_over_bound(self) -> float:
+        """Root mean square movement over that of the bound, where both are finite."""
+        both = np.isfinite(self.moved_deg) & np.isfinite(self.bound_deg)
+        moved, bound = self.moved_deg[both], self.bound_deg[both]
+        return float(np.sqrt(np.mean(moved**2) / np.mean(bound**2)))
+
+    @property
+    def share_above_a_tenth(self) -> float:
+        """Share of samples moved by more than a tenth of their own bound."""
+        both = np.isfinite(self.moved_deg) & np.isfinite(self.bound_deg)
+        return float(np.mean(self.moved_deg[both] > 0.1 * self.bound_deg[both]))
+
+
+def maximum_currents(currents: Floats) -> Floats:
+    """Sun directions (N, 3) of a cube's currents (N, 6), faces +x, -x, +y, -y, +z, -z.
+
+    The larger of each pair with its sign, made a unit vector (eq:albedo1, Frezza2022).
+    """
+    plus, minus = currents[:, ::2], currents[:, 1::2]
+    found = np.where(plus >= minus, plus, -minus)
+    return np.asarray(found / np.sqrt(np.sum(found**2, axis=1, keepdims=True)))
+
+
+def on_cube(name: str = "pd-maskless-cube") -> Influence:
+    """Move the maximum-currents estimate of a photodiode cube's albedo condition.
+
+    Raises
+    ------
+    TypeError
+        When the dataset's sensor is no cube of photodiodes.
+    """
+    preset = datasets.get(name)
+    sensor = preset.condition("albedo").sensor
+    if not isinstance(sensor, FaceSensor) or len(sensor.normals) != 6:
+        raise TypeError(f"dataset {name} has no cube of photodiodes")
+    scene, pattern = preset.scene("albedo", "test"), preset.fixed_pattern("albedo")
+    with_earth = maximum_currents(sensor.expected(scene, pattern))
+    without = maximum_currents(sensor.expected(replace(scene, albedo=None), pattern))
+    return Influence(separation_deg(with_earth, without), preset.bound("albedo", "test").angle_deg)
+
+
+@dataclass(frozen=True)
+class Patches:
+    """The visible Earth cut up: directions (P, 3) and irradiance (P,) across each of them."""
+
+    directions: Floats
+    light: Floats
+
+
+def lit_patches(
+    earth: Earth, sun: Floats, nadir: Floats, rings: int = 64, spokes: int = 192
+) -> Patches:
+    """Cut the visible, sunlit Earth into patches for one sample's Sun and nadir (3,).
+
+    Light is in units of mean sunlight at normal incidence: Lambert radiance
+    ``reflectance cos(sun zenith) / pi`` times the patch's solid angle. Patches are equally wide in
+    the cosine of the nadir angle and in azimuth, each taken at its middle.
+    """
+    edge = math.cos(math.radians(earth.half_angle_deg))
+    cosine = 1.0 - (1.0 - edge) * (np.arange(rings) + 0.5) / rings
+    sine = np.sqrt(1.0 - cosine**2)
+    turns = math.tau * (np.arange(spokes) + 0.5) / spokes
+    first, second = (axis[0] for axis in tangent_axes(nadir[None, :]))
+    around = np.cos(turns)[:, None] * first + np.sin(turns)[:, None] * second
+    sight = (cosine[:, None, None] * nadir + sine[:, None, None] * around).reshape(-1, 3)
+    centre = earth.radius_km + earth.altitude_km
+    half = np.repeat(centre * cosine, spokes)
+    distance = half - np.sqrt(np.maximum(half**2 - centre**2 + earth.radius_km**2, 0.0))
+    ground = (distance[:, None] * sight - centre * nadir) / earth.radius_km
+    lit = np.maximum(ground @ sun, 0.0)
+    solid_angle = math.tau * (1.0 - edge) / (rings * spokes)
+    seen = lit > 0
+    return Patches(sight[seen], earth.reflectance / math.pi * lit[seen] * solid_angle)
+
+
+def aperture_earthlight(
+    sensor: FrameSensor, patches: Patches, origin_px: NDArray[np.int64]
+) -> Floats:
+    """(H, W) irradiance of Earth on a window's pixels, in units of mean normal sunlight.
+
+    Earth is an extended source: every patch throws its own displaced image of the aperture, as
+    every point of the Sun does, weighted by its irradiance and the cosine of incidence. Approximate
+    in that a patch (1 to 3 deg wide) counts as a point, a fraction of the aperture's own 9.5 deg
+    seen from the detector.
+    """
+    from benchmark.simulator.kernels.rasteriser import render  # noqa: PLC0415 - Numba on demand
+
+    camera, detector = sensor.camera, sensor.detector
+    head = camera.assembly.to_head(patches.directions)
+    point = replace(camera, sun=replace(camera.sun, diameter_deg=0.0))
+    front = head[:, 2] > 0.05
+    light = point.project(patches.directions[front])
+    pitch = detector.pitch_mm
+    columns, rows = sensor.window_px
+    first = origin_px - 0.5 - np.asarray(detector.centre_px)
+    reach = max(max(a.width_mm, a.height_mm) for a in camera.mask.apertures) / pitch
+    place = light.rims_mm[0, :, 0] / pitch - first
+    near = np.all((place > -reach) & (place < np.array([columns, rows]) + reach), axis=1)
+    flux = np.zeros((1, rows, columns))
+    render(
+        flux,
+        camera.mask.table(pitch),
+        light.rims_mm[:, near, 0][:, None] / pitch,
+        (light.light[near, 0] * patches.light[front][near])[None, :],
+        first[None, :],
+    )
+    return np.asarray(flux[0])
+
+
+def on_aperture(
+    name: str = "cmos-single-aperture",
+    samples: int | None = None,
+    extractor: Extractor | None = None,
+    earth: Earth | None = None,
+) -> Influence:
+    """Move the centroid behind one aperture by Earth's light, for the same random positions.
+
+    Parameters
+    ----------
+    name
+        Of a dataset of frames behind a mask.
+    samples
+        Only so many of the test split; None takes all.
+    extractor
+        Whose spot is looked at; None takes the thresholded centroid.
+    earth
+        Seen from orbit; None takes that of ``pd-maskless-cube``.
+
+    Raises
+    ------
+    TypeError
+        When the dataset has no such sensor.
+    ValueError
+        When its geometry gives no focal length or pixel pitch.
+    """
+    preset = datasets.get(name)
+    sensor = preset.condition("nominal").sensor
+    if not isinstance(sensor, FrameSensor):
+        raise TypeError(f"dataset {name} has no pixel array behind a mask")
+    geometry = preset.geometry
+    geometry.require("focal_length_mm", "pixel_pitch_mm", by="albedo_influence")
+    scene = preset.scene("nominal", "test")
+    scene = scene.part(0, len(scene) if samples is None else samples)
+    pattern = preset.fixed_pattern("nominal")
+    reader = ThresholdedCentroid.for_sensor(geometry) if extractor is None else extractor
+    seen = earth or datasets.get("pd-maskless-cube").condition("albedo").earth or Earth()
+    nadir = seen.draw_nadir(scene.sun, generator(name, preset.version, "test", "nadir"))
+    detector, (columns, rows) = sensor.detector, sensor.window_px
+    spots = np.empty((2, len(scene), 2))
+    for n in range(len(scene)):
+        one = scene.part(n, n + 1)
+        x, y = np.asarray(one.origin_px)[0]
+        frame = sensor.expected(one, pattern)
+        spots[0, n] = reader.extract(frame)[0]
+        patches = lit_patches(seen, one.sun[0], nadir[n])
+        light = aperture_earthlight(sensor, patches, np.array([x, y]))
+        gain = pattern["gain"][y : y + rows, x : x + columns]
+        frame = frame + detector.sunlit_e * one.irradiance[0] * light * gain / (
+            detector.gain_e_per_dn
+        )
+        spots[1, n] = reader.extract(frame)[0]
+    # from spots to directions by the nominal pinhole: only their difference counts
+    scale = (geometry.pixel_pitch_mm or math.nan) / (geometry.focal_length_mm or math.nan)
+    offset = np.asarray(scene.origin_px) - np.asarray(detector.centre_px)
+    sight = np.concatenate([scale * (spots + offset), np.ones((2, len(scene), 1))], axis=2)
+    sight /= np.sqrt(np.sum(sight**2, axis=2, keepdims=True))
+    bound = cramer_rao(sensor, scene, pattern, preset.condition("nominal").irradiance).angle_deg
+    return Influence(separation_deg(sight[0], sight[1]), bound)

@@ -1,0 +1,1 @@
+"""The survey's narrative findings, checked against the tables."""

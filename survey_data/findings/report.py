@@ -1,0 +1,233 @@
+"""How faithful the tables are: counts against the survey's, completeness, and its findings.
+
+Nothing here is tuned: a contradicted finding is a fact about the data set, and is shown with the
+counts behind it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+import pandas as pd
+
+from survey_data.findings.checks import (
+    FindingVerdict,
+    Vocabulary,
+    evaluate,
+    parse_finding,
+    study_values,
+)
+from survey_data.problems import Problem
+from survey_data.tables import SurveyTables
+from survey_data.validation.rules import count_rows
+
+
+@dataclass(frozen=True)
+class CountLine:
+    """A count held, the one the survey states (None: none), and why the two differ."""
+
+    id: str
+    held: int
+    stated: int | None
+    explanation: str
+
+
+@dataclass(frozen=True)
+class Completeness:
+    """How many studies have a known value of an attribute, and what the values rest on.
+
+    `by_basis` counts studies by the strongest basis of their values, strongest basis first.
+    """
+
+    attribute: str
+    known: int
+    unknown: int
+    by_basis: dict[str, int] = field(hash=False)
+
+
+@dataclass(frozen=True)
+class ClassDisagreement:
+    """A reported accuracy that lies outside the limits of the class its study is filed under."""
+
+    study: str
+    accuracy_deg: float
+    filed: str
+    by_limits: str
+
+
+@dataclass(frozen=True)
+class FidelityReport:
+    """Counts, completeness and findings of a set of tables; `to_dict` gives JSON data."""
+
+    studies: int
+    stated: int
+    explanation: str
+    counts: tuple[CountLine, ...]
+    early_keys: tuple[str, ...]
+    case_references: tuple[str, ...]
+    completeness: tuple[Completeness, ...]
+    class_disagreements: tuple[ClassDisagreement, ...]
+    findings: tuple[FindingVerdict, ...]
+    problems: tuple[Problem, ...]
+
+    @property
+    def verdicts(self) -> dict[str, int]:
+        """Return verdict -> number of findings."""
+        counted = {"reproduced": 0, "contradicted": 0, "undecidable": 0}
+        for finding in self.findings:
+            counted[finding.verdict] += 1
+        return counted
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the report as plain JSON data."""
+        return {
+            "studies": self.studies,
+            "stated": self.stated,
+            "explanation": self.explanation,
+            "counts": [asdict(line) for line in self.counts],
+            "early_keys": list(self.early_keys),
+            "case_references": list(self.case_references),
+            "completeness": {
+                entry.attribute: {
+                    "known": entry.known,
+                    "unknown": entry.unknown,
+                    "by_basis": dict(entry.by_basis),
+                }
+                for entry in self.completeness
+            },
+            "class_disagreements": [asdict(entry) for entry in self.class_disagreements],
+            "verdicts": self.verdicts,
+            "findings": [finding.to_dict() for finding in self.findings],
+            "problems": [problem.to_dict() for problem in self.problems],
+        }
+
+
+def fidelity(tables: SurveyTables, problems: Sequence[Problem] = ()) -> FidelityReport:
+    """Compare the tables with what the survey says of itself.
+
+    Parameters
+    ----------
+    tables : SurveyTables
+        Valid tables (`validate` finds no problem).
+    problems : sequence of Problem, optional
+        Problems to carry in the report.
+
+    Returns
+    -------
+    FidelityReport
+        Every number is counted from the tables at hand.
+
+    Raises
+    ------
+    FindingSyntaxError
+        A finding does not keep the grammar.
+    KeyError, LookupError
+        The tables are not valid: a key or value they refer to is not there.
+    """
+    counts = _counts(tables)
+    by_id = {line.id: line for line in counts}
+    stated = by_id["studies"].stated
+    if stated is None:
+        raise LookupError("counts.csv states no number of studies")
+    vocabulary = Vocabulary(tables.taxonomy)
+    values = study_values(tables.studies, tables.attributes, vocabulary)
+    findings = []
+    for record in tables.findings.to_dict("records"):
+        row = {str(name): cell for name, cell in record.items()}
+        findings.append(evaluate(parse_finding(row, vocabulary), row, values, vocabulary))
+    early = tables.studies.loc[tables.studies["year"].isin(_excluded_years(tables)), "key"]
+    references = tables.references
+    case_studies = references.loc[references["role"] == "case study", "key"]
+    return FidelityReport(
+        studies=len(tables.studies),
+        stated=stated,
+        explanation=" ".join(
+            line.explanation for line in counts if line.id.startswith(("studies", "case-studies"))
+        ),
+        counts=counts,
+        early_keys=tuple(str(key) for key in early),
+        case_references=tuple(str(key) for key in case_studies),
+        completeness=_completeness(tables),
+        class_disagreements=_class_disagreements(tables),
+        findings=tuple(findings),
+        problems=tuple(problems),
+    )
+
+
+def _counts(tables: SurveyTables) -> tuple[CountLine, ...]:
+    lines = []
+    for row in tables.counts.to_dict("records"):
+        column = "" if pd.isna(row["column"]) else str(row["column"])
+        value = "" if pd.isna(row["value"]) else str(row["value"])
+        lines.append(
+            CountLine(
+                id=str(row["id"]),
+                held=count_rows(getattr(tables, row["table"]), column, value),
+                stated=None if pd.isna(row["stated"]) else int(row["stated"]),
+                explanation=str(row["explanation"]),
+            )
+        )
+    return tuple(lines)
+
+
+def _excluded_years(tables: SurveyTables) -> list[int]:
+    """Return the years of which the survey states that it holds no study."""
+    counts = tables.counts
+    chosen = counts[(counts["table"] == "studies") & (counts["column"] == "year")]
+    return [int(year) for year in chosen.loc[chosen["stated"] == 0, "value"]]
+
+
+def _completeness(tables: SurveyTables) -> tuple[Completeness, ...]:
+    rank = dict(zip(tables.bases["basis"], tables.bases["rank"].astype(int), strict=True))
+    attributes = tables.attributes.assign(rank=tables.attributes["basis"].map(rank))
+    known = attributes[attributes["value"].notna()]
+    strongest = known.sort_values("rank", kind="stable").drop_duplicates(["study", "attribute"])
+    entries = []
+    for attribute in tables.attribute_definitions["attribute"]:
+        counted = strongest.loc[strongest["attribute"] == attribute, "basis"].value_counts()
+        entries.append(
+            Completeness(
+                attribute=str(attribute),
+                known=int(counted.sum()),
+                unknown=len(tables.studies) - int(counted.sum()),
+                by_basis={str(basis): int(counted[basis]) for basis in rank if basis in counted},
+            )
+        )
+    return tuple(entries)
+
+
+def accuracy_class(tables: SurveyTables, accuracy_deg: float) -> str:
+    """Return the taxonomy's accuracy class of an accuracy in degrees (min <= a < max).
+
+    Raises
+    ------
+    LookupError
+        No class holds it (negative or not a number).
+    """
+    classes = tables.taxonomy[tables.taxonomy["attribute"] == "accuracy"]
+    for row in classes.to_dict("records"):
+        upper = float("inf") if pd.isna(row["max_deg"]) else row["max_deg"]
+        if row["min_deg"] <= accuracy_deg < upper:
+            return str(row["value"])
+    raise LookupError(f"no accuracy class holds {accuracy_deg} deg")
+
+
+def _class_disagreements(tables: SurveyTables) -> tuple[ClassDisagreement, ...]:
+    known = tables.attributes[tables.attributes["value"].notna()]
+    filed = known[known["attribute"] == "accuracy"].set_index("study")["value"]
+    disagreements = []
+    for row in known[known["attribute"] == "accuracy_deg"].itertuples(index=False):
+        reported = float(str(row.value))
+        by_limits = accuracy_class(tables, reported)
+        if row.study in filed.index and filed[str(row.study)] != by_limits:
+            disagreements.append(
+                ClassDisagreement(
+                    study=str(row.study),
+                    accuracy_deg=reported,
+                    filed=str(filed[str(row.study)]),
+                    by_limits=by_limits,
+                )
+            )
+    return tuple(disagreements)

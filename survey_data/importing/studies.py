@@ -1,0 +1,118 @@
+"""Which study a row of another table is about: by key, by title, or by author and year."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import pandas as pd
+
+from survey_data.importing.text_similarity import normalise, similarity
+from survey_data.tables import SurveyTables
+
+_LEAST_SCORE = 0.92
+_LEAST_LEAD = 0.03
+_KEY = re.compile(r"([^\W\d_]+)([0-9]{4})([a-z]?)")
+
+
+class StudyNotFoundError(LookupError):
+    """A row names no study of ours, or could mean several."""
+
+
+class StudyFinder:
+    """Finds studies by what a row says of them."""
+
+    def __init__(self, tables: SurveyTables) -> None:
+        self._by_key = {str(key).casefold(): str(key) for key in tables.studies["key"]}
+        mapped = tables.references.dropna(subset=["mapped_key"])
+        for key, meant in zip(mapped["key"], mapped["mapped_key"], strict=True):
+            self._by_key.setdefault(str(key).casefold(), str(meant))
+        titled = tables.studies.dropna(subset=["title"])
+        self._titles: dict[str, list[str]] = {}
+        for key, title in zip(titled["key"], titled["title"], strict=True):
+            self._titles.setdefault(normalise(str(title)), []).append(str(key))
+        # (surname as in the key, year) -> keys
+        self._by_author: dict[tuple[str, str], list[str]] = {}
+        for key in map(str, tables.studies["key"]):
+            parts = _KEY.fullmatch(key)
+            if parts is not None:
+                entry = (_letters(parts[1]), parts[2])
+                self._by_author.setdefault(entry, []).append(key)
+
+    def find(self, key: str = "", title: str = "", authors: str = "", year: str = "") -> str:
+        """Return the key of the study a row is about.
+
+        Parameters
+        ----------
+        key, title, authors, year : str
+            What the row says; empty where it says nothing. The first that decides is taken, in
+            this order; authors count together with the year.
+
+        Raises
+        ------
+        StudyNotFoundError
+            Says why none was found, or which several could be meant.
+        """
+        reasons = []
+        if key:
+            found = self._by_key.get(key.strip().casefold())
+            if found is not None:
+                return found
+            reasons.append(f"no study has the key {key!r}")
+        for given, search in ((title, self._find_title), (authors and year, None)):
+            if not given:
+                continue
+            try:
+                return search(title) if search else self._find_author(authors, year)
+            except StudyNotFoundError as error:
+                reasons.append(str(error))
+        raise StudyNotFoundError("; ".join(reasons) or "the row names no study")
+
+    def _find_title(self, title: str) -> str:
+        plain = normalise(title)
+        keys = self._titles.get(plain) or self._keys_of_like_title(plain)
+        if not keys:
+            raise StudyNotFoundError(f"no study has the title {title!r}")
+        if len(keys) > 1:
+            raise StudyNotFoundError(f"the title {title!r} may mean {' or '.join(sorted(keys))}")
+        return keys[0]
+
+    def _keys_of_like_title(self, plain: str) -> list[str]:
+        ranked = sorted(
+            ((similarity(plain, other), other) for other in self._titles if _close(plain, other)),
+            reverse=True,
+        )
+        if not ranked or ranked[0][0] < _LEAST_SCORE:
+            return []
+        likeliest = [other for score, other in ranked if ranked[0][0] - score < _LEAST_LEAD]
+        return [key for other in likeliest for key in self._titles[other]]
+
+    def _find_author(self, authors: str, year: str) -> str:
+        first = re.split(r"[;,&]|\band\b|\bet\b", authors)[0]
+        words = first.split()
+        for start in range(len(words)):
+            surname = _letters("".join(words[start:]))
+            keys = self._by_author.get((surname, year), [])
+            if len(keys) == 1:
+                return keys[0]
+            if keys:
+                raise StudyNotFoundError(f"{authors!r}, {year} may mean {' or '.join(keys)}")
+        raise StudyNotFoundError(f"no study by {authors!r} of {year}")
+
+
+def _letters(text: str) -> str:
+    return normalise(text).replace(" ", "")
+
+
+def _close(one: str, other: str) -> bool:
+    """Say whether two titles are of similar length, the cheap condition for a high similarity."""
+    longest = max(len(one), len(other))
+    return longest > 0 and min(len(one), len(other)) >= 0.8 * longest
+
+
+def cell_text(frame: pd.DataFrame, row: int, column: str | None) -> str:
+    """Return a cell as text, '' where it is missing or there is no such column."""
+    if column is None:
+        return ""
+    cell: Any = frame.at[row, column]
+    return "" if pd.isna(cell) else str(cell)

@@ -1,0 +1,204 @@
+"""Taking over the survey authors' own table: reading, comparing, and writing when asked."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+
+from survey_data.csv_reading import format_records, read_records
+from survey_data.descriptor import (
+    DATA_DIRECTORY,
+    DESCRIPTOR_FILE,
+    column_types,
+    file_name,
+    table_names,
+)
+from survey_data.importing.columns import match_columns
+from survey_data.importing.plan import (
+    AUTHORS_BASIS,
+    Difference,
+    ImportPlan,
+    current_cells,
+    plan_import,
+    require_readable,
+)
+from survey_data.importing.reading import read_table
+from survey_data.problems import SurveyImportError
+from survey_data.tables import SurveyTables, load
+from survey_data.validation.validate import validate
+
+_TABLE = "attributes"
+
+
+def import_table(
+    path: str | Path,
+    directory: str | Path | None = None,
+    *,
+    overrides: Mapping[str, str] | None = None,
+    sheet: str | None = None,
+    apply: bool = False,
+) -> ImportPlan:
+    """Compare a table with ours and, when asked, take over what it says.
+
+    Parameters
+    ----------
+    path : str or Path
+        CSV or XLSX file, see `read_table`.
+    directory : str or Path, optional
+        Our tables; by default the package's own data.
+    overrides : mapping of str to str, optional
+        Column -> target, see `match_columns`.
+    sheet : str, optional
+        Sheet of a workbook.
+    apply : bool
+        Write. Without it nothing is written, and unreadable cells are listed in the plan's
+        `errors` instead of raised.
+
+    Returns
+    -------
+    ImportPlan
+        What would be written, or has been.
+
+    Raises
+    ------
+    SurveyImportError
+        The file is no table, its columns cannot be matched, or (with `apply`) a value cannot be
+        read; nothing has been written.
+    SurveyDataError
+        Our own tables cannot be read.
+    """
+    tables = load(directory)
+    frame = read_table(path, sheet)
+    mapping = match_columns(tables, frame, overrides)
+    plan = plan_import(tables, frame, mapping, source=Path(path).name)
+    return apply_import(directory, plan) if apply else plan
+
+
+def apply_import(directory: str | Path | None, plan: ImportPlan) -> ImportPlan:
+    """Write a plan's edits into attributes.csv, all or nothing.
+
+    A cell taken over gets the basis ``authors-table``; what it said before, and on what basis,
+    stays in its note. The result is validated before it replaces the file.
+
+    Parameters
+    ----------
+    directory : str or Path or None
+        Our tables; None is the package's own data.
+    plan : ImportPlan
+        As `plan_import` returns it. Applying the same table twice changes nothing the second
+        time.
+
+    Returns
+    -------
+    ImportPlan
+        The plan with `written` set to the number of cells written.
+
+    Raises
+    ------
+    SurveyImportError
+        The plan has errors, our tables have changed since, they would be invalid, or the file
+        cannot be written; nothing has been written.
+    """
+    require_readable(plan)
+    folder = DATA_DIRECTORY if directory is None else Path(directory)
+    tables = load(folder)
+    _require_fresh(tables, plan)
+    if not plan.edits:
+        return plan
+    text = _edited(folder, plan, _authors_doi(tables))
+    try:
+        _require_valid(folder, text)
+        _replace(folder / file_name(_TABLE), text)
+    except OSError as error:
+        raise SurveyImportError(f"cannot write in {folder}: {error.strerror or error}") from error
+    return plan.after_writing()
+
+
+def _require_fresh(tables: SurveyTables, plan: ImportPlan) -> None:
+    cells = current_cells(tables)
+    for edit in plan.edits:
+        cell = cells.get((edit.study, edit.attribute))
+        if (cell.values if cell else ()) != edit.ours:
+            raise SurveyImportError(
+                f"{edit.study}, {edit.attribute} has changed since the comparison; compare again",
+                row=edit.row,
+                column=edit.column,
+            )
+
+
+def _authors_doi(tables: SurveyTables) -> str:
+    references = tables.references
+    return str(references.loc[references["role"] == "dataset", "doi"].iloc[0])
+
+
+def _edited(folder: Path, plan: ImportPlan, doi: str) -> str:
+    """Return the text of attributes.csv with the plan's cells replaced where they stand."""
+    header = list(column_types(_TABLE))
+    rows = [cells for _, cells in read_records(folder / file_name(_TABLE), header).rows]
+    waiting = {(edit.study, edit.attribute): edit for edit in plan.edits}
+    last = {cells[0]: index for index, cells in enumerate(rows)}
+    standing = {(cells[0], cells[1]) for cells in rows}
+    written: set[tuple[str, str]] = set()
+    edited: list[list[str]] = []
+    for index, cells in enumerate(rows):
+        at = (cells[0], cells[1])
+        if at not in waiting:
+            edited.append(cells)
+        elif at not in written:
+            written.add(at)
+            replaced = [old for old in rows if (old[0], old[1]) == at]
+            edited += _rows_of(waiting[at], replaced, doi)
+        if last[cells[0]] == index:
+            edited += [
+                row
+                for (study, attribute), edit in waiting.items()
+                if study == cells[0] and (study, attribute) not in standing
+                for row in _rows_of(edit, [], doi)
+            ]
+    return format_records(header, edited)
+
+
+def _rows_of(edit: Difference, replaced: list[list[str]], doi: str) -> list[list[str]]:
+    if edit.kind == "confirmed":
+        return [
+            [study, attribute, value, AUTHORS_BASIS, doi, _note(f"also {basis}", source, note)]
+            for study, attribute, value, basis, source, note in replaced
+        ]
+    before = ", ".join(edit.ours)
+    note = f"before: {before} ({edit.basis})" if before else ""
+    return [[edit.study, edit.attribute, value, AUTHORS_BASIS, doi, note] for value in edit.theirs]
+
+
+def _note(basis: str, source: str, note: str) -> str:
+    said = f"{basis} ({source})" if source else basis
+    return f"{said}: {note}" if note else said
+
+
+def _require_valid(folder: Path, text: str) -> None:
+    with tempfile.TemporaryDirectory() as scratch:
+        for name in (DESCRIPTOR_FILE, *map(file_name, table_names())):
+            shutil.copyfile(folder / name, Path(scratch) / name)
+        (Path(scratch) / file_name(_TABLE)).write_text(text, encoding="utf-8", newline="")
+        problems = validate(scratch)
+    if problems:
+        raise SurveyImportError(
+            f"the tables would not be valid: {problems[0]}", problems=tuple(problems)
+        )
+
+
+def _replace(path: Path, text: str) -> None:
+    """Write a file in full beside the old one and put it in its place."""
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    scratch = Path(name)
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8", newline="") as stream:
+            stream.write(text)
+            stream.flush()
+            os.fsync(stream.fileno())
+        shutil.copymode(path, scratch)
+        scratch.replace(path)
+    finally:
+        scratch.unlink(missing_ok=True)

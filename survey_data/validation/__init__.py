@@ -1,0 +1,1 @@
+"""Whether the tables keep their own rules."""

@@ -1,0 +1,150 @@
+"""Checking a directory of tables: form, types, keys, and what the survey's data must keep.
+
+Three passes, each over what the pass before found sound: the form of every file
+(`csv_reading`), types, enumerations, primary and foreign keys (frictionless against
+``datapackage.json``), and the rules a descriptor cannot say (`rules`).
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import frictionless
+
+from survey_data.csv_reading import Records, read_records
+from survey_data.descriptor import (
+    DATA_DIRECTORY,
+    DESCRIPTOR_FILE,
+    column_types,
+    descriptor,
+    file_name,
+    primary_key,
+    table_names,
+)
+from survey_data.problems import Problem
+from survey_data.tables import typed_frame
+from survey_data.validation.rules import check_rules
+
+
+def validate(directory: str | Path | None = None) -> list[Problem]:
+    """Return every problem of the tables in a directory; an empty list means they are valid.
+
+    Parameters
+    ----------
+    directory : str or Path, optional
+        Where the CSV files and ``datapackage.json`` are; by default the package's own data.
+
+    Returns
+    -------
+    list of Problem
+        In the order of file, row and column. A table whose form is broken is left out of the
+        checks of content, so that one broken cell is not reported a hundred times.
+
+    Raises
+    ------
+    NotADirectoryError
+        There is no such directory. Nothing in the files themselves raises.
+    """
+    folder = DATA_DIRECTORY if directory is None else Path(directory)
+    if not folder.is_dir():
+        raise NotADirectoryError(f"expected a directory of survey tables, got {folder}")
+    problems = _check_descriptor(folder)
+    sound: dict[str, Records] = {}
+    for table in table_names():
+        records = read_records(folder / file_name(table), list(column_types(table)))
+        problems += records.problems
+        if not records.problems:
+            sound[table] = records
+    problems += _check_schema(sound)
+    frames = {}
+    for table, records in sound.items():
+        frame, flaws = typed_frame(table, records)
+        if not flaws:  # frictionless has named them
+            frames[table] = frame
+    problems += check_rules(frames)
+    return sorted(set(problems), key=lambda p: (p.file, p.row or 0, p.column or "", p.message))
+
+
+def _check_descriptor(folder: Path) -> list[Problem]:
+    path = folder / DESCRIPTOR_FILE
+    try:
+        found = json.loads(path.read_bytes())
+    except FileNotFoundError:
+        return [Problem(DESCRIPTOR_FILE, None, None, "the file is missing")]
+    except OSError:
+        return [Problem(DESCRIPTOR_FILE, None, None, "the file cannot be read")]
+    except json.JSONDecodeError as error:
+        return [Problem(DESCRIPTOR_FILE, error.lineno, None, f"broken JSON: {error.msg}")]
+    except (ValueError, RecursionError):
+        return [Problem(DESCRIPTOR_FILE, None, None, "broken JSON: cannot be decoded")]
+    ours, theirs = dict(_leaves(descriptor(), "")), dict(_leaves(found, ""))
+    places = [
+        place
+        for place in (*ours, *(place for place in theirs if place not in ours))
+        if place not in ours or place not in theirs or ours[place] != theirs[place]
+    ]
+    if not places:
+        return []
+    message = f"differs from the descriptor in use at {places[0]}"
+    return [Problem(DESCRIPTOR_FILE, None, None, message)]
+
+
+def _leaves(node: object, place: str) -> Iterator[tuple[str, object]]:
+    """Yield (path, value) of a JSON document; values carry their type (1 is not true)."""
+    if isinstance(node, dict):
+        yield f"{place}/", "object"
+        for key, inner in node.items():
+            yield from _leaves(inner, f"{place}/{key}")
+    elif isinstance(node, list):
+        yield f"{place}/", "array"
+        for index, inner in enumerate(node):
+            yield from _leaves(inner, f"{place}/{index}")
+    else:
+        yield place, (type(node).__name__, node)
+
+
+def _check_schema(sound: dict[str, Records]) -> list[Problem]:
+    """Types, enumerations, patterns, primary and foreign keys, by frictionless.
+
+    The rows are handed over as they were read, so that the row numbers are those of the file;
+    foreign keys into a table that could not be read are left out.
+    """
+    package = descriptor()
+    resources = []
+    for resource in package["resources"]:
+        table = resource["name"]
+        if table not in sound:
+            continue
+        schema = resource["schema"]
+        schema["foreignKeys"] = [
+            key for key in schema.get("foreignKeys", []) if key["reference"]["resource"] in sound
+        ]
+        for entry in ("path", "format", "mediatype", "encoding"):
+            resource.pop(entry)
+        resource["data"] = [sound[table].header, *(cells for _, cells in sound[table].rows)]
+        resources.append(resource)
+    if not resources:
+        return []
+    package["resources"] = resources
+    report = frictionless.Package.from_descriptor(package).validate()
+    problems = [Problem(DESCRIPTOR_FILE, None, None, str(error.note)) for error in report.errors]
+    for task in report.tasks:
+        rows = sound[task.name].rows
+        problems += [_as_problem(task.name, error, rows) for error in task.errors]
+    return problems
+
+
+def _as_problem(table: str, error: Any, rows: list[tuple[int, list[str]]]) -> Problem:
+    counted = getattr(error, "row_number", None)
+    row = rows[counted - 2][0] if isinstance(counted, int) and counted >= 2 else 1
+    column = getattr(error, "field_name", None)
+    if column is None:
+        names = getattr(error, "field_names", None)
+        column = names[-1] if error.type == "foreign-key" and names else primary_key(table)[0]
+    note = error.note or error.message
+    if error.type == "primary-key":
+        note = f"duplicate row: the key ({', '.join(primary_key(table))}) stands already: {note}"
+    return Problem(file_name(table), row, str(column), f"{error.title}: {note}")

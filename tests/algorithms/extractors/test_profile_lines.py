@@ -1,0 +1,487 @@
+"""Extractors of profiles: closed-form shadows of slits, brute force, and what cannot be told."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from algorithms.contract import SensorGeometry
+from algorithms.extractors.frames.peak import PixelMax
+from algorithms.extractors.frames.threshold_average import MultipleThresholdCentroid
+from algorithms.extractors.profiles.centroid import (
+    ProfileCentroid,
+    ProfileThresholdAverage,
+    ProfileThresholdedCentroid,
+)
+from algorithms.extractors.profiles.eigen_analysis import EigenAnalysis
+from algorithms.extractors.profiles.linear_phase import FrameLinearPhase, LinearPhase
+from algorithms.extractors.profiles.peak_detection import FramePeak, PeakDetection
+from algorithms.extractors.profiles.slit_lines import SlitLines
+from algorithms.kernels import slit_patterns
+from benchmark import datasets
+from benchmark.reference.frames import REFERENCE_SETS
+
+#: The most a noiseless shadow may be off, px. PD knows whole pixels, and a width to err in.
+FINE_PX = {
+    LinearPhase: 0.02,
+    EigenAnalysis: 0.02,
+    ProfileThresholdedCentroid: 0.03,
+    ProfileThresholdAverage: 0.06,
+    PeakDetection: 4.5,
+}
+
+PARALLEL = SensorGeometry(
+    focal_length_mm=2.0,
+    pixel_pitch_mm=0.02,
+    half_fov_deg=55.0,
+    line_axes=("x", "y"),
+    line_pixels=400,
+    slits=((0.0, 0.0, 0.17),),
+)
+DESIGNS = {
+    "one slit": PARALLEL,
+    "five slits": replace(
+        PARALLEL,
+        slits=tuple((at, 0.0, 0.17) for at in (-1.1, -0.6, 0.0, 0.7, 1.5)),
+        line_pixels=480,
+    ),
+    "sixteen slits": replace(
+        PARALLEL,
+        slits=tuple((0.4 * (number - 7.5), 0.0, 0.17) for number in range(16)),
+        line_pixels=700,
+    ),
+    "an N": replace(
+        PARALLEL,
+        slits=((-4.0, 45.0, 0.2), (0.0, 0.0, 0.2), (4.0, 45.0, 0.2)),
+        line_axes=("y",),
+        line_pixels=1100,
+    ),
+    "a V": replace(
+        PARALLEL,
+        slits=((-3.7, 0.0, 0.2), (0.5, 45.0, 0.2)),
+        line_axes=("x",),
+        line_pixels=900,
+    ),
+    "crossed pairs": replace(
+        PARALLEL,
+        slits=((-5.2, -45.0, 0.2), (-4.5, -45.0, 0.2), (4.4, 45.0, 0.2), (5.3, 45.0, 0.2)),
+        line_axes=("y",),
+        line_pixels=1300,
+    ),
+}
+
+
+def shadow(design: SensorGeometry, moved_mm: np.ndarray, peak: float = 2000.0) -> np.ndarray:
+    """Profiles (N, W) of sharp slits, light integrated over pixels exactly; moved (N, 2)."""
+    pitch, pixels = design.pixel_pitch_mm, design.line_pixels
+    edges = (np.arange(pixels + 1) - pixels / 2.0) * pitch
+    parts = []
+    for axis in design.line_axes:
+        along, across = moved_mm.T if axis == "x" else moved_mm.T[::-1]
+        line = np.zeros((len(moved_mm), pixels))
+        for position, slant_deg, width_mm in design.slits:
+            slant = np.radians(slant_deg)
+            at = position + along + across * np.tan(slant)
+            half = width_mm / np.cos(slant) / 2.0
+            lit = np.clip(edges, (at - half)[:, None], (at + half)[:, None])
+            line += peak * np.diff(lit, axis=1) / pitch
+        parts.append(line)
+    return np.hstack(parts)
+
+
+def soft_shadow(design: SensorGeometry, moved_mm: np.ndarray) -> np.ndarray:
+    """Shadows with the edges that a disc of light 5 pixels wide gives."""
+    steps = np.linspace(-1.0, 1.0, 41)[1:-1]
+    weights = np.sqrt(1.0 - steps**2)
+    axes = "xy".index(design.line_axes[0]) if len(design.line_axes) == 1 else [0, 1]
+    lit = 0.0
+    for step, weight in zip(steps, weights / weights.sum(), strict=True):
+        there = moved_mm.copy()
+        there[:, axes] += 2.5 * step * design.pixel_pitch_mm
+        lit = lit + weight * shadow(design, there)
+    return np.asarray(lit)
+
+
+def where(design: SensorGeometry, moved_mm: np.ndarray) -> np.ndarray:
+    return (design.line_pixels - 1) / 2.0 + moved_mm / design.pixel_pitch_mm
+
+
+def displacements(count: int, reach_mm: float = 2.7, seed: int = 3) -> np.ndarray:
+    return np.random.default_rng(seed).uniform(-reach_mm, reach_mm, (count, 2))
+
+
+def noisy(profiles: np.ndarray, sigma: float = 20.0, dark: float = 40.0) -> np.ndarray:
+    rng = np.random.default_rng(8)
+    return np.rint(rng.normal(profiles + dark, sigma)).clip(0, 4095).astype(np.uint16)
+
+
+# Where an exact projection is reported
+
+
+@pytest.mark.parametrize("method", FINE_PX, ids=lambda method: method.name)
+@pytest.mark.parametrize("name", DESIGNS)
+def test_a_shadow_is_reported_where_it_falls(name, method):
+    design = DESIGNS[name]
+    moved = displacements(60)
+    found = method.for_sensor(design).extract(soft_shadow(design, moved))
+    # Of slits of two slants the second coordinate is a difference of two shifts.
+    tolerance = FINE_PX[method] * (1 if len(design.line_axes) == 2 else 2.5)
+    np.testing.assert_allclose(found, where(design, moved), rtol=0, atol=tolerance)
+
+
+@settings(deadline=None, derandomize=True, max_examples=30)
+@given(st.tuples(st.floats(-2.7, 2.7), st.floats(-2.7, 2.7)), st.sampled_from(sorted(DESIGNS)))
+def test_bcm_of_a_dark_free_shadow_errs_by_its_cut_pixels_only(moved, name):
+    """A pixel lit to a part f counts at its centre: off by f (1 - f) / 2, at most 1/8."""
+    design = DESIGNS[name]
+    moved = np.array([moved])
+    found = ProfileCentroid.for_sensor(design).extract(shadow(design, moved))
+    # Each slit's two ends may add up; a difference of two shifts doubles it.
+    worst = 2 * 0.125 / (0.17 / 0.02) * (1 if len(design.line_axes) == 2 else 2)
+    np.testing.assert_allclose(found, where(design, moved), rtol=0, atol=worst)
+
+
+def test_bcm_is_pulled_to_the_middle_by_dark_signal_unless_it_is_taken_off():
+    moved = np.array([[2.0, -1.0]])  # both ends of the light cut a pixel alike
+    lit = shadow(PARALLEL, moved) + 100.0
+    true = where(PARALLEL, moved)
+    middle = (PARALLEL.line_pixels - 1) / 2.0
+    area = 2000.0 * 0.17 / 0.02
+    pulled = middle + (true - middle) * area / (area + 100.0 * PARALLEL.line_pixels)
+    plain = ProfileCentroid.for_sensor(PARALLEL)
+    np.testing.assert_allclose(plain.extract(lit), pulled, rtol=0, atol=1e-9)
+    without = replace(plain, subtract_dark=True)
+    np.testing.assert_allclose(without.extract(lit), true, rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("method", [LinearPhase, EigenAnalysis], ids=lambda method: method.name)
+def test_narrower_and_blurred_light_keeps_its_place(method):
+    """The reference is as wide as the slit; a thick mask and the Sun change that evenly."""
+    moved = displacements(40)
+    design = DESIGNS["five slits"]
+    narrow = replace(design, slits=tuple((at, 0.0, 0.12) for at, _, _ in design.slits))
+    kernel = np.hanning(9)[1:-1] / np.hanning(9).sum()
+    lines = shadow(narrow, moved).reshape(-1, design.line_pixels)
+    blurred = np.array([np.convolve(line, kernel, "same") for line in lines])
+    found = method.for_sensor(design).extract(blurred.reshape(len(moved), -1))
+    np.testing.assert_allclose(found, where(design, moved), rtol=0, atol=0.02)
+
+
+# Oracles
+
+
+@settings(deadline=None, derandomize=True, max_examples=60)
+@given(st.integers(0, 2**32 - 1), st.integers(1, 4))
+def test_pd_of_one_pattern_is_the_maxi_min(seed, count):
+    """alg:PDsp and alg:PDmp, transcribed: the rule that nothing else is bright left out."""
+    rng = np.random.default_rng(seed)
+    places = np.sort(rng.choice(12, count, replace=False)) + 20
+    line = rng.permutation(60).astype(float)
+    best, n_peak = -1.0, None
+    for n in range(-places.min(), 60 - places.max()):
+        least = min(line[n + place] for place in places)
+        if least > best:
+            best, n_peak = least, n
+    out = np.empty((1, 1))
+    groups = np.zeros(count, dtype=np.int64)
+    slit_patterns.match(
+        line[None], np.array([-1.0]), places, groups, np.zeros(1), 0.0, 0.0, 60, 0, out
+    )
+    assert out[0, 0] == n_peak
+
+
+@settings(deadline=None, derandomize=True, max_examples=40)
+@given(st.integers(0, 2**32 - 1))
+def test_pd_of_two_patterns_is_the_brightest_pair_a_sun_can_cast(seed):
+    rng = np.random.default_rng(seed)
+    places, groups = np.array([10, 25, 40]), np.array([1, 0, 1])
+    tangents = np.array([rng.uniform(-0.5, 0.5), rng.choice([-1.2, 0.9, 1.0])])
+    reach, apart = rng.uniform(4.0, 14.0), rng.uniform(1.0, 8.0)
+    line = rng.uniform(0.0, 1.0, 50)
+    best, pair = -1.0, (np.nan, np.nan)
+    for first, second in itertools.product(range(-25, 25), range(-10, 10)):
+        across = (second - first) / (tangents[1] - tangents[0])
+        along = first - across * tangents[0]
+        at = places + np.array([first, second])[groups]
+        clear = min(abs(at[1] - at[0]), abs(at[1] - at[2])) >= apart
+        if abs(across) <= reach and abs(along) <= reach and clear:
+            score = line[at[1]] + min(line[at[0]], line[at[2]])
+            if score > best:
+                best, pair = score, (first, second)
+    out = np.empty((1, 2))
+    slit_patterns.match(
+        line[None], np.array([-1.0]), places, groups, tangents, reach, apart, 50, 0, out
+    )
+    np.testing.assert_array_equal(out[0], pair)
+
+
+def test_linear_phase_is_numpys_weighted_fit_of_the_window():
+    moved = np.array([[0.613, -0.404]])
+    line = noisy(shadow(PARALLEL, moved)).astype(float)
+    method = LinearPhase.for_sensor(PARALLEL)
+    half, width = method.half_px, 0.17 / 0.02
+    found = []
+    for part in line.reshape(2, -1):
+        means = np.convolve(part, np.ones(7) / 7, "same")
+        position = float(np.argmax(means))
+        for _ in range(2):
+            centre = round(position)
+            window = part[centre - half : centre + half + 1]
+            spectrum = np.fft.fft(np.fft.ifftshift(window))
+            size = len(window)
+            k = np.arange(1, int(np.ceil(size / width)))
+            reference = np.sinc(k * width / size) * np.sinc(k / size)
+            phase = np.unwrap(np.angle(spectrum[k] * np.sign(reference)))
+            slope = np.linalg.lstsq(
+                (np.abs(reference) * k)[:, None], np.abs(reference) * phase, rcond=None
+            )[0][0]
+            position = centre - slope * size / (2 * np.pi)
+        found.append(position)
+    np.testing.assert_allclose(method.extract(line)[0], found, rtol=0, atol=1e-9)
+
+
+def test_unweighted_phases_of_all_frequencies_fail_where_the_weighted_low_ones_do_not():
+    """The survey's printed fit, against the corrected one, on the same noisy light."""
+    moved = displacements(60, 2.0)
+    lines = noisy(shadow(PARALLEL, moved))
+    true = where(PARALLEL, moved)
+    pixels = PARALLEL.line_pixels
+    zero = np.fft.fft(shadow(PARALLEL, np.zeros((1, 2))).reshape(2, -1)[0])[1 : pixels // 2]
+    k = np.arange(1, pixels // 2)
+    phase = np.unwrap(np.angle(np.fft.fft(lines[:, :pixels])[:, 1 : pixels // 2] / zero))
+    slope = phase @ k / (k @ k)
+    naive = (pixels - 1) / 2.0 - slope * pixels / (2 * np.pi)
+    found = LinearPhase.for_sensor(PARALLEL).extract(lines)
+    assert np.sqrt(np.mean((found - true) ** 2)) < 0.05
+    assert np.sqrt(np.mean((naive - true[:, 0]) ** 2)) > 1.0
+
+
+def test_eigen_analysis_is_the_pseudocode_on_a_grid():
+    """alg:eigen with its padded transforms and all noise eigenvectors, on one window."""
+    moved = np.array([[0.613, -0.404]])
+    profile = noisy(shadow(PARALLEL, moved)).astype(float)
+    method = EigenAnalysis.for_sensor(PARALLEL)
+    found = method.extract(profile)[0]
+    half, width = method.half_px, 0.17 / 0.02
+    for part, mine in zip(profile.reshape(2, -1), found, strict=True):
+        centre = round(mine)
+        window = part[centre - half : centre + half + 1] - np.median(part)
+        size = len(window)
+        padded = 2 * size - 1
+        steps = np.arange(padded)
+        light = np.exp(-2j * np.pi * np.outer(steps, np.arange(size) - half) / padded) @ window
+        signed = np.where(steps > size - 1, steps - padded, steps)
+        reference = width * np.sinc(signed * width / padded) * np.sinc(signed / padded)
+        last = int(np.ceil(padded / width)) - 1
+        band = np.abs(signed) <= last
+        series = np.roll((light * reference) * band, last)[: 2 * last + 1]
+        spectrum = np.fft.fft(series, 4 * last + 2)
+        lags = np.fft.ifft(np.abs(spectrum) ** 2)[: last + 1]
+        order = np.subtract.outer(np.arange(last + 1), np.arange(last + 1))
+        covariance = np.where(order >= 0, lags[np.abs(order)], lags[np.abs(order)].conj())
+        noise = np.linalg.eigh(covariance)[1][:, :-1]
+        grid = np.arange(-1.0, 1.0, 1e-4)
+        k = np.arange(last + 1)
+        model = (reference[k] ** 2)[:, None] * np.exp(-2j * np.pi * np.outer(k, grid) / padded)
+        projection = (np.abs(noise.conj().T @ model) ** 2).sum(axis=0)
+        assert abs(centre + grid[np.argmin(projection)] - mine) < 2e-4
+
+
+@pytest.mark.parametrize("crossing", ["pixel", "linear"])
+def test_mt_acm_of_a_line_is_that_of_a_frame_with_its_sums(crossing):
+    moved = displacements(20)
+    lines = noisy(shadow(PARALLEL, moved)).reshape(len(moved), 2, -1).astype(float)
+    method = replace(ProfileThresholdAverage.for_sensor(PARALLEL), crossing=crossing)
+    frames = lines[:, 1, :, None] * lines[:, 0, None, :]
+    expected = MultipleThresholdCentroid(crossing=crossing).extract(frames)
+    found = method.extract(lines.reshape(len(moved), -1))
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-6)
+
+
+# What cannot be told
+
+TELLING = (PeakDetection, LinearPhase, EigenAnalysis)
+
+
+@pytest.mark.parametrize("method", TELLING, ids=lambda method: method.name)
+@pytest.mark.parametrize("name", DESIGNS)
+def test_noise_alone_two_suns_and_a_missing_slit_are_nan(name, method):
+    design = DESIGNS[name]
+    extractor = method.for_sensor(design)
+    moved = displacements(40)
+    lit = shadow(design, moved)
+    assert np.isfinite(extractor.extract(noisy(lit))).all()
+    assert np.isnan(extractor.extract(noisy(0 * lit))).all()
+    apart = np.abs(moved - np.roll(moved, 1, axis=0)).min(axis=1) > 0.5
+    if len(design.slits) < 16:  # a second comb half a tooth beside the first is another pattern
+        both = extractor.extract(noisy(lit + np.roll(lit, 1, axis=0)))
+        assert np.isnan(both[apart]).all()
+    missing = replace(design, slits=design.slits[1:])
+    if missing.slits:
+        assert np.isnan(extractor.extract(noisy(shadow(missing, moved)))).all()
+
+
+@pytest.mark.parametrize("method", TELLING, ids=lambda method: method.name)
+def test_slits_off_the_line_are_never_taken_for_their_neighbours(method):
+    """Off the end by one slit of the comb: nothing, not a whole period's error."""
+    design = DESIGNS["sixteen slits"]
+    moved = np.column_stack([np.linspace(2.7, 5.5, 80), np.zeros(80)])
+    found = method.for_sensor(design).extract(noisy(shadow(design, moved)))
+    seen = np.isfinite(found[:, 0])
+    assert seen[:20].all()
+    assert not seen[-20:].any()
+    np.testing.assert_allclose(found[seen], where(design, moved)[seen], rtol=0, atol=6.0)
+
+
+@pytest.mark.parametrize("method", TELLING, ids=lambda method: method.name)
+def test_peaks_that_merge_or_cross_are_right_or_nan(method):
+    """The V's slits cross in the mask: the slanted one's spot passes over the other's."""
+    design = replace(DESIGNS["a V"], slits=((-0.4, 0.0, 0.2), (0.4, 45.0, 0.2)))
+    across = np.linspace(-2.7, 2.7, 150)
+    moved = np.column_stack([np.full(150, 0.3), across])
+    found = method.for_sensor(design).extract(noisy(shadow(design, moved)))
+    gap = np.abs(0.8 + across)
+    seen = np.isfinite(found[:, 0])
+    assert not seen[gap < 0.2].any()
+    # Either spot may be either slit's where both readings are of Suns in the field.
+    other = np.column_stack([moved[:, 0] + 0.8 + across, -1.6 - across])
+    wrong = np.minimum(
+        np.abs(found - where(design, moved)).max(axis=1),
+        np.abs(found - where(design, other)).max(axis=1),
+    )
+    assert (wrong[seen] < 25).all()
+
+
+def test_saturated_light_peaks_in_its_middle():
+    moved = displacements(30)
+    lit = np.minimum(shadow(PARALLEL, moved, peak=9000.0), 4095.0)
+    found = PeakDetection.for_sensor(PARALLEL).extract(lit)
+    np.testing.assert_allclose(found, where(PARALLEL, moved), rtol=0, atol=1.0)
+
+
+# Designs
+
+
+def test_designs_that_do_not_give_two_coordinates_are_refused():
+    for design, why in (
+        (replace(PARALLEL, line_axes=("x",)), "two coordinates"),
+        (replace(PARALLEL, line_axes=("x", "x")), "two coordinates"),
+        (replace(PARALLEL, slits=((0.0, 0.0, 0.1), (1.0, 9.0, 0.1), (2.0, 20.0, 0.1))), "slants"),
+        (replace(PARALLEL, line_pixels=None), "line_pixels"),
+        (replace(PARALLEL, slits=None), "slits"),
+    ):
+        for method in (*FINE_PX, ProfileCentroid):
+            with pytest.raises(ValueError, match=why):
+                method.for_sensor(design)
+
+
+def test_frame_variants_refuse_many_spots(geometry):
+    holes = replace(geometry, apertures=((0.0, 0.0, 0.1), (1.0, 0.0, 0.1)))
+    lines = replace(geometry, slits=((0.0, 0.0, 0.1),))
+    for design, method in itertools.product((holes, lines), (FramePeak, FrameLinearPhase)):
+        with pytest.raises(ValueError, match="one spot"):
+            method.for_sensor(design)
+
+
+def test_windows_hold_a_spots_light_and_not_its_neighbours():
+    comb = SlitLines.for_sensor.__func__(PeakDetection, DESIGNS["sixteen slits"])
+    assert 2 * comb.half_px <= 0.4 / 0.02
+    single = PeakDetection.for_sensor(PARALLEL)
+    blur = 0.0093 * 2.0 / np.cos(np.arctan(np.sqrt(2) * np.tan(np.radians(55.0)))) ** 2
+    assert single.half_px >= (0.17 + blur) / 2.0 / 0.02
+
+
+# Every standard dataset of profiles, as simulated
+
+
+@pytest.mark.parametrize(
+    "name",
+    [name for name in datasets.names() if datasets.get(name).observation == "profiles"],
+)
+def test_simulated_suns_are_found_where_light_falls(name):
+    """To a few percent of the mask's height: assembly, or what a cubic leaves of the glass."""
+    preset = datasets.get(name)
+    design = preset.geometry
+    samples = preset.generate("nominal", "test", 60)
+    tangents = samples.sun[:, :2] / samples.sun[:, 2:]
+    true = where(design, design.focal_length_mm * tangents)
+    for method in TELLING:
+        found = method.for_sensor(design).extract(samples.observations)
+        assert np.isfinite(found).all()
+        bent = found - true
+        if design.cover_glass is not None:
+            fit = np.column_stack([true, true**3, np.ones(len(true))])
+            slopes = np.linalg.lstsq(fit, found, rcond=None)[0]
+            assert (np.diag(slopes[:2]) > 0.5).all()
+            bent = found - fit @ slopes
+        # A peak is anywhere in the light of its slit.
+        wide = max(slit[2] for slit in design.slits) if method is PeakDetection else 0.0
+        allowed = (0.04 * design.focal_length_mm + wide) / design.pixel_pitch_mm
+        assert np.sqrt(np.mean(bent**2)) < allowed
+
+
+# Frames
+
+
+@settings(deadline=None, derandomize=True, max_examples=50)
+@given(st.integers(0, 2**32 - 1))
+def test_the_peak_of_a_frame_is_its_largest_pixel(seed):
+    frames = np.random.default_rng(seed).permutation(9 * 7 * 2).reshape(2, 9, 7)
+    expected = [np.unravel_index(np.argmax(frame), frame.shape)[::-1] for frame in frames]
+    np.testing.assert_array_equal(FramePeak().extract(frames), expected)
+
+
+def test_a_saturated_disc_peaks_in_its_middle_and_two_suns_do_not():
+    y, x = np.mgrid[:40, :50]
+    one = np.where(np.hypot(x - 20, y - 15) < 5, 255, 3).astype(np.uint8)
+    two = np.maximum(one, np.where(np.hypot(x - 40, y - 30) < 5, 255, 3)).astype(np.uint8)
+    found = FramePeak(width_px=10.0).extract(np.stack([one, two]))
+    np.testing.assert_array_equal(found[0], [20.0, 15.0])
+    assert np.isnan(found[1]).all()
+
+
+def test_a_spot_that_diffraction_widens_is_expected_as_wide_as_it_is():
+    """cmos-single-aperture-pinhole: 0.47 mm between the dark rings of a hole of 0.02 mm."""
+    pinhole = datasets.get("cmos-single-aperture-pinhole")
+    method = FrameLinearPhase.for_sensor(pinhole.geometry)
+    assert method.width_px == pytest.approx(0.47 / 2 / 0.024, rel=0.01)
+    assert method.width_px / 2 + method.margin_px > 0.47 / 2 / 0.024
+    samples = pinhole.generate("nominal", "test", 60)
+    geometry = pinhole.geometry
+    scale = geometry.focal_length_mm / geometry.pixel_pitch_mm
+    true = geometry.centre_px + scale * samples.sun[:, :2] / samples.sun[:, 2:]
+    found = method.extract(samples.observations) + samples.origin_px
+    assert np.abs(found - true).max() < 1.5
+    peaks = FramePeak.for_sensor(geometry).extract(samples.observations) + samples.origin_px
+    assert np.abs(peaks - true).max() < 5.0
+
+
+def test_linear_phase_of_frames_is_within_thrice_the_bound_wherever_the_spot_is():
+    for name, width, times in (
+        ("disc", 16.0, 3.0),
+        ("disc-512", 16.0, 3.0),
+        ("gaussian", 8.0, 2.0),
+    ):
+        reference = REFERENCE_SETS[name]
+        frames, centres = reference.frames(60)
+        error = FrameLinearPhase(width).extract(frames) - centres
+        assert np.sqrt(np.mean(error**2)) < times * reference.bound_px(centres[:15])
+        whole = PixelMax().extract(frames) - centres
+        assert np.mean(error**2) < 0.05 * np.mean(whole**2) or name == "gaussian"
+
+
+def test_linear_phase_of_frames_tells_noise_cut_spots_and_two_suns():
+    reference = REFERENCE_SETS["disc"]
+    frames, centres = reference.frames(30)
+    method = FrameLinearPhase(16.0)
+    rng = np.random.default_rng(4)
+    assert np.isnan(method.extract(rng.normal(20.0, 10.0, frames.shape))).all()
+    cut = frames[:, :, int(centres[0, 0]) :][:1]
+    assert np.isnan(method.extract(cut)).all()
+    two = frames[0].astype(int) + np.roll(frames[0], (26, 26), axis=(0, 1))
+    assert np.isnan(method.extract(two[None])).all()

@@ -1,0 +1,131 @@
+"""`sunatlas assess`, /v1/assessment and /v1/sweeps: the same verdicts, however they are asked."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from algorithms.discovery import discover_extractors
+from api.cli.command_line import app
+from api.docs import assessment as pages
+from api.http.knowledge import Knowledge
+from api.http.measurements import Measurements
+from api.http.service import create_app
+from benchmark.assessment import assess as assessment
+from benchmark.assessment.definitions import DEFINITIONS
+from benchmark.results.store import Store
+from benchmark.sweeps import run as sweeps
+
+PROPERTIES = tuple(DEFINITIONS)
+
+
+def run(*arguments):
+    return CliRunner(env={"COLUMNS": "80"}).invoke(app, ["assess", *arguments])
+
+
+@pytest.fixture(scope="module")
+def published(tmp_path_factory):
+    directory = tmp_path_factory.mktemp("published")
+    known = discover_extractors()
+    few = {name: known[name] for name in ("voltage-balance", "direct")}
+    sweeps.update(directory, 1, lambda *_: None, extractors=few)
+    return directory
+
+
+@pytest.fixture(scope="module")
+def swept(published, client_of):
+    return client_of(create_app(Knowledge(Measurements(published))))
+
+
+def test_the_table_has_nineteen_rows_with_both_scores_and_counts():
+    shown = run()
+    assert shown.exit_code == 0
+    methods = [method["method"] for method in json.loads(run("--format", "json").stdout)["methods"]]
+    assert len(methods) == 19
+    lines = shown.stdout.splitlines()
+    for method in methods:
+        (line,) = [text for text in lines if text.startswith(f" {method}  ")]
+        counts = [int(n) for n in line.split()[-4:]]
+        assert sum(counts) == 21
+    assert all(name in shown.stdout for name in PROPERTIES)
+    assert "agrees:" in shown.stderr
+
+
+def test_formats_and_http_say_the_same(atlas):
+    document = json.loads(run("--format", "json").stdout)
+    assert document == atlas.get("/v1/assessment").json()
+    assert sum(document["totals"].values()) == 19 * 21
+    rows = list(csv.DictReader(io.StringIO(run("--format", "csv").stdout)))
+    assert len(rows) == 19 * 21
+    served = atlas.table("/v1/assessment")
+    assert [(r["method"], r["property"], r["agreement"]) for r in rows] == [
+        (r["method"], r["property"], r["agreement"]) for r in served
+    ]
+
+
+def test_a_method_is_shown_with_its_values_and_a_wrong_one_is_named():
+    shown = json.loads(run("--method", "BCTM", "--format", "json").stdout)
+    assert [method["method"] for method in shown["methods"]] == ["BCTM"]
+    assert [v["property"] for v in shown["methods"][0]["properties"]] == list(PROPERTIES)
+    wrong = run("--method", "BCTMM")
+    assert wrong.exit_code == 2
+    assert "did you mean 'BCTM'" in wrong.stderr
+
+
+def test_answers_revalidate_and_refusals_name_the_nearest(swept):
+    first = swept.get("/v1/assessment")
+    assert (
+        swept.get("/v1/assessment", headers={"If-None-Match": first.headers["etag"]}).status_code
+        == 304
+    )
+    wrong = swept.get("/v1/assessment?method=BCTN")
+    assert wrong.status_code == 422
+    assert wrong.json()["errors"][0]["nearest"] == "BCTM"
+    assert swept.get("/v1/sweeps?sweep=nois").json()["errors"][0]["nearest"] == "noise"
+
+
+def test_sweeps_are_served_page_by_page_and_filtered(swept, published):
+    stored = Store(published).swept()
+    assert swept.walk("/v1/sweeps?limit=7") == stored
+    noise = swept.walk("/v1/sweeps?sweep=noise&extractor=direct")
+    assert [row["value"] for row in noise] == [5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0]
+    rows = swept.table("/v1/sweeps?series=quadrants")
+    assert {row["extractor"] for row in rows} == {"voltage-balance"}
+    assert [float(row["bound"]) for row in rows] == [
+        row["bound"] for row in stored if row["series"] == "quadrants"
+    ]
+
+
+def test_what_is_measured_reaches_the_answer(swept):
+    (method,) = swept.get("/v1/assessment?method=Voltage%20Balance").json()["methods"]
+    found = {verdict["property"]: verdict for verdict in method["properties"]}
+    precise = found["High precision"]
+    assert (precise["measured"], precise["agreement"]) == (2, "opposed")
+    assert precise["value"] == pytest.approx(1.0, abs=0.1)
+    assert found["Feature tracking"]["measured"] is None
+    assert "tracking" in found["Feature tracking"]["reason"]
+
+
+def test_the_page_prints_the_definitions_and_outcomes(published, monkeypatch):
+    rows = Store(published).swept()
+    document = assessment.document(assessment.assess(published))
+    monkeypatch.setattr(pages, "_rows", lambda: rows)
+    monkeypatch.setattr(pages, "_document", lambda: document)
+    definitions = pages.definitions()
+    for definition in DEFINITIONS.values():
+        assert definition.name in definitions
+        assert definition.limits() in definitions
+    assert len(pages.outcomes().splitlines()) == 2 + 2 + 19
+    assert pages.values().count("### ") == sum(d.measured for d in DEFINITIONS.values())
+    assert "quadrants, noise: peak SNR" in pages.accuracy()
+    assert all(make().startswith("<svg") for make in pages.PICTURES.values())
+
+
+def test_numbers_are_finite_everywhere(swept):
+    for row in swept.walk("/v1/sweeps"):
+        assert all(np.isfinite(v) for v in row.values() if isinstance(v, float))

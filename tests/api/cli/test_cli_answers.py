@@ -1,0 +1,129 @@
+"""`sunatlas studies`, `recommend` and `dataset`: the same answers in every format."""
+
+import csv
+import io
+import json
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+import survey_data
+from api.cli.command_line import app
+from benchmark import datasets
+
+OURS = Path(survey_data.__file__).parent
+
+
+def sunatlas(*arguments):
+    return CliRunner().invoke(app, list(map(str, arguments)), catch_exceptions=False)
+
+
+def answer(*arguments):
+    shown = sunatlas(*arguments, "--format", "json")
+    assert shown.exit_code == 0, shown.stderr
+    return json.loads(shown.stdout)
+
+
+def table(*arguments):
+    shown = sunatlas(*arguments, "--format", "csv")
+    assert shown.exit_code == 0, shown.stderr
+    return list(csv.DictReader(io.StringIO(shown.stdout)))
+
+
+def studies_with(attribute, value):
+    with (OURS / "attributes.csv").open(encoding="utf-8", newline="") as file:
+        return {
+            row["study"]
+            for row in csv.DictReader(file)
+            if (row["attribute"], row["value"]) == (attribute, value)
+        }
+
+
+def test_studies_lists_129_with_how_far_each_one_runs():
+    listed = answer("studies")
+    assert len({study["key"] for study in listed}) == len(listed) == 129
+    assert {study["state"] for study in listed} <= {"complete", "partial", "none"}
+    assert [row["key"] for row in table("studies")] == [study["key"] for study in listed]
+    assert [row["state"] for row in table("studies")] == [study["state"] for study in listed]
+    assert sunatlas("studies").stdout.startswith("129 studies")
+
+
+def test_filters_keep_what_has_one_of_the_values_of_every_attribute():
+    found = {s["key"] for s in answer("studies", "--detector", "CMOS", "--mask", "Multi-Ap.")}
+    assert found == studies_with("detector", "CMOS") & studies_with("mask", "Multi-Ap.")
+    found = {s["key"] for s in answer("studies", "--detector", "CMOS", "--detector", "CCD")}
+    assert found == studies_with("detector", "CMOS") | studies_with("detector", "CCD")
+
+
+def test_filters_by_state_and_year_divide_the_studies():
+    by_state = [len(answer("studies", "--state", s)) for s in ("complete", "partial", "none")]
+    assert sum(by_state) == 129
+    early = answer("studies", "--year-max", 2009)
+    late = answer("studies", "--year-min", 2010)
+    assert len(early) + len(late) == 129
+    assert max(s["year"] for s in early) <= 2009 < min(s["year"] for s in late)
+    assert [s["key"] for s in answer("studies", "--q", "chang2008")] == ["Chang2008"]
+
+
+def test_one_study_is_shown_with_basis_pipelines_and_gaps():
+    study = answer("studies", "Chang2008")
+    assert study["key"] == "Chang2008"
+    assert all(cell["basis"] for cell in study["attributes"])
+    assert study["pipelines"]
+    shown = sunatlas("studies", "Chang2008").stdout
+    for gap in study["gaps"]:
+        assert gap["reason"].split()[0] in shown
+    assert len(table("studies", "Chang2008")) == len(study["attributes"])
+
+
+@pytest.mark.parametrize("state", ["complete", "partial", "none"])
+def test_a_state_is_what_pipelines_and_gaps_say(state):
+    for found in answer("studies", "--state", state)[:3]:
+        study = answer("studies", found["key"])
+        assert bool(study["pipelines"]) == (state != "none")
+        if state != "none":
+            assert bool(study["gaps"]) == (state == "partial")
+
+
+def test_recommendations_keep_the_requirements():
+    found = answer("recommend", "--task", "Accuracy", "--exclude-mask", "Slit", "--limit", 500)
+    assert found["count"] == len(found["paths"]) > 0
+    assert {path["task"] for path in found["paths"]} == {"Accuracy"}
+    assert "Slit" not in {path["mask"] for path in found["paths"]}
+    assert all(path["studies"] for path in found["paths"])
+    assert [path["rank"] for path in found["paths"]] == list(range(1, found["count"] + 1))
+    rows = table("recommend", "--task", "Accuracy", "--exclude-mask", "Slit", "--limit", 500)
+    assert [row["keys"].split("; ") for row in rows] == [p["studies"] for p in found["paths"]]
+
+
+def test_limit_shortens_the_paths_and_not_the_count():
+    every = answer("recommend", "--task", "Accuracy", "--limit", 500)
+    few = answer("recommend", "--task", "Accuracy", "--limit", 3)
+    assert few["count"] == every["count"]
+    assert few["paths"] == every["paths"][:3]
+
+
+def test_what_cannot_be_met_names_the_requirement_that_rules_it_out():
+    impossible = ("recommend", "--detector", "Event", "--max-error-deg", "1e-9")
+    found = answer(*impossible)
+    assert found["count"] == 0
+    assert found["paths"] == []
+    assert found["blocked"]["constraint"]
+    shown = sunatlas(*impossible)
+    assert shown.exit_code == 0
+    assert f"nothing is left: {found['blocked']['constraint']}" in shown.stderr
+
+
+def test_data_sets_are_listed_and_described():
+    assert [row["name"] for row in table("dataset", "list")] == sorted(datasets.names())
+    for name in datasets.names():
+        card = answer("dataset", "describe", name)
+        preset = datasets.get(name)
+        assert (card["name"], card["version"]) == (name, preset.version)
+        assert set(card["setups"]) == set(preset.conditions)
+        shown = sunatlas("dataset", "describe", name).stdout
+        assert all(condition in shown for condition in preset.conditions)
+        assert [r["condition"] for r in table("dataset", "describe", name)] == list(
+            preset.conditions
+        )

@@ -1,0 +1,191 @@
+"""`sunatlas dataset`: files that hold what was asked for, checks that find what was changed."""
+
+import csv
+import io
+import json
+
+import numpy as np
+import pandas as pd
+import pytest
+from typer.testing import CliRunner
+
+from api.cli.command_line import app
+from api.cli.commands import dataset
+from benchmark import datasets
+from benchmark.datasets.coverage import coverage
+from benchmark.plan.parts import SPLITS
+from benchmark.results.store import Store
+from benchmark.running import pinning
+from benchmark.running.pinning import Pinned
+
+CUBE = "pd-maskless-cube"
+
+
+def sunatlas(*arguments):
+    return CliRunner().invoke(app, ["dataset", *map(str, arguments)])
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    out = tmp_path_factory.mktemp("export") / "cube"
+    arguments = ("--condition", "nominal", "--condition", "albedo", "--n", 4)
+    shown = sunatlas("export", CUBE, "--out", out, *arguments, "--format", "json")
+    assert shown.exit_code == 0, shown.stderr
+    return out, shown
+
+
+def test_export_writes_what_was_asked_for_and_lists_it(made):
+    out, shown = made
+    listed = json.loads(shown.stdout)
+    assert listed["directory"] == str(out)
+    expected = {"card.json", "checksums-sha256.txt"} | {
+        f"{condition}/{name}"
+        for condition in ("nominal", "albedo")
+        for name in (
+            "preview.png",
+            *(f"{split}.{kind}" for split in SPLITS for kind in ("npz", "csv")),
+        )
+    }
+    assert {row["file"] for row in listed["files"]} == expected
+    assert {p.relative_to(out).as_posix() for p in out.rglob("*") if p.is_file()} == expected
+    for row in listed["files"]:
+        assert row["bytes"] == (out / row["file"]).stat().st_size
+    assert shown.stderr == f"wrote {out}\n"
+
+
+def test_exports_load_with_plain_numpy_and_pandas(made):
+    out, _ = made
+    table = pd.read_csv(out / "albedo" / "test.csv")
+    with np.load(out / "albedo" / "test.npz") as arrays:
+        assert len(table) == len(arrays["sun"]) == 4
+        signals = table.filter(like="signal_").to_numpy()
+        np.testing.assert_array_equal(signals, arrays["observations"])
+        whole = datasets.get(CUBE).generate("albedo", "test")
+        np.testing.assert_array_equal(signals, whole.observations[:4])
+
+
+def test_verify_passes_then_names_what_was_changed(made, tmp_path):
+    out, _ = made
+    shown = sunatlas("verify", out)
+    assert (shown.exit_code, shown.stdout) == (0, "")
+    assert shown.stderr == f"{out}: every checksum and every array holds\n"
+    assert json.loads(sunatlas("verify", out, "--format", "json").stdout) == []
+    path = out / "nominal" / "test.npz"
+    good = path.read_bytes()
+    path.write_bytes(good[:-1] + bytes([good[-1] ^ 1]))
+    shown = sunatlas("verify", out, "--format", "csv")
+    path.write_bytes(good)
+    assert shown.exit_code == 1
+    (row,) = csv.DictReader(io.StringIO(shown.stdout))
+    assert row["file"] == "nominal/test.npz"
+    assert row["problem"].startswith("SHA-256 is")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "says"),
+    [
+        (("export", "pd-maskless-cub", "--out", "x"), 1, "'pd-maskless-cube'"),
+        (("export", CUBE, "--out", "x", "--condition", "nominl"), 1, "'nominal'"),
+        (("export", CUBE, "--out", "x", "--split", "tests"), 1, "'test'"),
+        (("export", CUBE, "--out", "x", "--n", "0"), 2, "--n"),
+        (("export", CUBE), 2, "--out"),
+        (("verify", "nowhere"), 1, "not an export"),
+        (("pin", "pd-maskless-cub"), 1, "'pd-maskless-cube'"),
+        (("exprot", CUBE), 2, "'export'"),
+    ],
+)
+def test_wrong_calls_are_one_line_and_write_nothing(tmp_path, monkeypatch, arguments, code, says):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(dataset, "PUBLISHED", tmp_path / "published")
+    shown = sunatlas(*arguments)
+    assert shown.exit_code == code
+    assert shown.stdout == ""
+    assert shown.stderr.count("\n") == 1
+    assert says in shown.stderr
+    assert not (tmp_path / "x").exists()
+
+
+def test_what_is_in_the_way_stays(made, tmp_path):
+    out, _ = made
+    assert "--force" in sunatlas("export", CUBE, "--out", out).stderr
+    (tmp_path / "mine").write_text("x")
+    shown = sunatlas("export", CUBE, "--out", tmp_path, "--force")
+    assert shown.exit_code == 1
+    assert "holds mine" in shown.stderr
+
+
+def test_data_other_than_published_are_noted(tmp_path, monkeypatch):
+    real = Store.pins
+
+    def other(self):
+        from dataclasses import replace
+
+        return {place: replace(pin, data_hash="0" * 32) for place, pin in real(self).items()}
+
+    monkeypatch.setattr(Store, "pins", other)
+    arguments = ("--condition", "nominal", "--split", "test")
+    shown = sunatlas("export", CUBE, "--out", tmp_path / "x", *arguments)
+    assert shown.exit_code == 0
+    assert "note: nominal/test.npz differs from the published data 0000" in shown.stderr
+
+
+def test_coverage_is_the_table_in_every_format():
+    found = coverage()
+    document = json.loads(sunatlas("coverage", "--format", "json").stdout)
+    assert document == json.loads(json.dumps(found.to_dict()))
+    rows = list(csv.DictReader(io.StringIO(sunatlas("coverage", "--format", "csv").stdout)))
+    assert [(r["detector"], r["mask"]) for r in rows] == [
+        (pair.detector, pair.mask) for pair in found.pairs
+    ]
+    assert [r["studies"] for r in rows] == ["; ".join(pair.studies) for pair in found.pairs]
+    shown = sunatlas("coverage")
+    assert "10 of 10 detectors and 10 of 10 masks" in shown.stderr
+    assert "pd-maskless-cube" in shown.stdout
+
+
+def test_list_says_what_is_covered():
+    shown = sunatlas("list")
+    assert shown.stderr.startswith("10 of 10 detectors and 10 of 10 masks")
+    rows = json.loads(sunatlas("list", "--format", "json").stdout)
+    assert len({row["detector"] for row in rows}) == len({row["mask"] for row in rows}) == 10
+
+
+@pytest.fixture
+def published(tmp_path, monkeypatch):
+    monkeypatch.setattr(dataset, "PUBLISHED", tmp_path)
+    return Store(tmp_path)
+
+
+def test_pin_pins_what_is_named_and_check_tells_what_does_not_hold(published):
+    shown = sunatlas("pin", "oi-maskless-pyramid", "--workers", 1)
+    assert shown.exit_code == 0, shown.stderr
+    conditions = datasets.get("oi-maskless-pyramid").conditions
+    assert shown.stderr.startswith(f"{len(conditions)} conditions pinned in ")
+    assert {place[:2] for place in published.pins()} == {
+        ("oi-maskless-pyramid", condition) for condition in conditions
+    }
+    held = sunatlas("pin", "oi-maskless-pyramid", "--check", "--workers", 1)
+    assert (held.exit_code, held.stderr) == (0, "every pin holds: generated again\n")
+    path = published.pins_path
+    first = next(iter(published.pins().values()))
+    path.write_text(path.read_text().replace(first.data_hash, "0" * 32))
+    shown = sunatlas("pin", "oi-maskless-pyramid", "--check", "--workers", 1)
+    assert shown.exit_code == 1
+    where = " ".join(first.place)
+    assert shown.stdout.startswith(f"{where}: data_hash {first.data_hash}, pinned 0000")
+
+
+def test_pin_takes_every_data_set_by_default(published, monkeypatch):
+    asked = []
+
+    def update(store, workers, progress, *, datasets):
+        asked.append((store.directory, workers, datasets))
+        return Pinned(store.directory, 3, 2, ("one that fails",), 1.5)
+
+    monkeypatch.setattr(pinning, "update", update)
+    shown = sunatlas("pin", "--workers", 2)
+    assert asked == [(published.directory, 2, None)]
+    assert shown.stderr.splitlines() == [
+        "warning: one that fails",
+        f"2 conditions pinned in 1.5 s, 3 pinned before; in {published.directory}",
+    ]

@@ -1,0 +1,331 @@
+"""`sunatlas run`, `benchmark` and `leaderboard`: measured once, read afterwards, checked."""
+
+import csv
+import io
+import json
+import re
+import shutil
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from api.cli import asking, measuring, working
+from api.cli.command_line import app
+from api.cli.commands import leaderboard
+from benchmark.leaderboard.pages import FORMATS
+from benchmark.plan.combinations import Cell, cells, datasets_for
+from benchmark.plan.parts import Parts, installed
+from benchmark.results.store import PUBLISHED, Store
+from benchmark.running import times
+from benchmark.running.run import RunInterruptedError, stale
+from registry.catalogue import catalogue
+from registry.resolution import resolve
+
+CHEAP = ("--dataset", "pd-maskless-cube", "--condition", "nominal", "--model", "basic")
+
+
+def sunatlas(*arguments):
+    return CliRunner().invoke(app, list(map(str, arguments)), catch_exceptions=False)
+
+
+@pytest.fixture
+def unpublished(tmp_path, monkeypatch):
+    """Nothing is published, and the working store is new."""
+    monkeypatch.setattr(measuring, "PUBLISHED", tmp_path / "published")
+    monkeypatch.setenv("SUNATLAS_STORE", str(tmp_path / "working"))
+    return tmp_path
+
+
+def test_a_study_s_pipelines_are_scored_against_the_bound_and_its_gaps_listed():
+    shown = sunatlas("run", "Chang2008", "--condition", "nominal", "--format", "json")
+    assert shown.exit_code == 0, shown.stderr
+    found = json.loads(shown.stdout)
+    resolution = resolve("Chang2008")
+    expected = {
+        (name, pipeline.extractor, pipeline.model)
+        for pipeline in resolution.pipelines
+        for name in datasets_for(pipeline.detector, pipeline.mask)
+    }
+    assert expected
+    scored = {(row["dataset"], row["extractor"], row["model"]) for row in found["scores"]}
+    # a variant that reads profiles has nothing to read where a data set gives frames
+    planned = {
+        (cell.dataset, cell.extractor, cell.model)
+        for cell in cells({name for name, _, _ in expected}, "nominal")
+    }
+    assert scored == expected & planned
+    values = catalogue().extractors
+    assert {values[extractor].taxonomy for _, extractor, _ in scored} == {
+        values[extractor].taxonomy for _, extractor, _ in expected
+    }
+    for row in found["scores"]:
+        assert row["condition"] == "nominal"
+        if not row["availability"]:  # nothing found, nothing to compare: TM on the pinhole
+            assert row["rms_deg"] is row["bound_deg"] is row["over_bound"] is None
+            continue
+        assert row["bound_deg"] > 0
+        # Root mean squares over the same samples: 5 digits each.
+        assert row["over_bound"] == pytest.approx(row["rms_deg"] / row["bound_deg"], rel=1e-4)
+    assert {gap["value"] for gap in found["gaps"]} == {
+        gap.value
+        for gap in resolve("Chang2008", {(p.detector, p.mask) for p in resolution.pipelines}).gaps
+    }
+
+
+def test_a_run_that_finds_nothing_published_measures_once(unpublished):
+    arguments = ("run", "Allgeier2009", "--condition", "nominal", "--format", "json")
+    first = sunatlas(*arguments)
+    assert first.exit_code == 0, first.stderr
+    measured = json.loads(first.stdout)
+    assert measured["sources"]["measured"] == len(measured["scores"]) > 0
+    assert measured["sources"]["directory"] == str(unpublished / "working")
+    written = {path.stem for path in (unpublished / "working" / "scores").iterdir()}
+    assert written == {row["dataset"] for row in measured["scores"]}
+    again = json.loads(sunatlas(*arguments).stdout)
+    assert again["sources"]["measured"] == 0
+    assert again["sources"]["kept"] == len(again["scores"])
+    assert again["scores"] == measured["scores"]
+
+
+def test_what_is_published_is_read_there():
+    found = json.loads(sunatlas("benchmark", *CHEAP, "--format", "json").stdout)
+    published = Store(PUBLISHED).scores()
+    assert found["scores"]
+    for row in found["scores"]:
+        cell = Cell(row["dataset"], row["condition"], row["extractor"], row["model"])
+        assert {name: row[name] for name in published[cell]} == published[cell]
+    assert found["sources"]["published"] == len(found["scores"])
+    assert found["sources"]["measured"] == 0
+
+
+def test_the_formats_say_the_same(unpublished):
+    store = ("--store", unpublished / "other")
+    shown = sunatlas("benchmark", *CHEAP, *store, "--format", "json")
+    found = json.loads(shown.stdout)["scores"]
+    rows = list(
+        csv.DictReader(io.StringIO(sunatlas("benchmark", *CHEAP, *store, "--format", "csv").stdout))
+    )
+    assert [float(row["rms_deg"]) for row in rows] == [row["rms_deg"] for row in found]
+    assert str(unpublished / "other") in shown.stderr
+    assert found[0]["extractor"] in sunatlas("benchmark", *CHEAP, *store).stdout
+
+
+def test_a_study_of_which_nothing_runs_says_why_and_fails(unpublished):
+    listed = json.loads(sunatlas("studies", "--state", "none", "--format", "json").stdout)
+    shown = sunatlas("run", listed[0]["key"], "--format", "json")
+    assert shown.exit_code == 1
+    found = json.loads(shown.stdout)
+    assert found["scores"] == []
+    assert found["gaps"]
+    assert "nothing of" in shown.stderr
+
+
+def test_names_that_go_with_nothing_fail(unpublished):
+    shown = sunatlas("benchmark", "--dataset", "pd-maskless-cube", "--extractor", "bctm")
+    assert shown.exit_code == 1
+    assert "no compatible combination" in shown.stderr
+
+
+def test_an_unknown_condition_of_a_study_s_data_is_refused():
+    shown = sunatlas("run", "Allgeier2009", "--condition", "nominale")
+    assert shown.exit_code == 1
+    assert "'nominal'" in shown.stderr
+
+
+def test_ctrl_c_says_what_is_kept(unpublished, monkeypatch):
+    def interrupted(*_arguments, **_options):
+        raise RunInterruptedError("interrupted with 1 of 2 cells measured")
+
+    monkeypatch.setattr(measuring, "run", interrupted)
+    shown = sunatlas("benchmark", *CHEAP)
+    assert shown.exit_code == 130
+    assert shown.stderr == "sunatlas: interrupted with 1 of 2 cells measured\n"
+
+
+@pytest.mark.parametrize(
+    ("environment", "expected"),
+    [
+        ({"SUNATLAS_STORE": "/a"}, Path("/a")),
+        ({"XDG_CACHE_HOME": "/c"}, Path("/c/sunatlas")),
+        ({"HOME": "/h"}, Path("/h/.cache/sunatlas")),
+    ],
+)
+def test_the_working_store_is_where_it_is_said_to_be(monkeypatch, environment, expected):
+    for name in ("SUNATLAS_STORE", "XDG_CACHE_HOME"):
+        monkeypatch.delenv(name, raising=False)
+    for name, value in environment.items():
+        monkeypatch.setenv(name, value)
+    assert working.working_directory() == expected
+    assert working.working_directory(Path("given")) == Path("given")
+
+
+# ---- leaderboard
+
+
+@pytest.fixture
+def published(tmp_path, monkeypatch):
+    """A copy of the published results, free to be altered."""
+    directory = tmp_path / "published"
+    shutil.copytree(PUBLISHED, directory, ignore=shutil.ignore_patterns(".sunatlas"))
+    monkeypatch.setattr(leaderboard, "PUBLISHED", directory)
+    return directory
+
+
+@pytest.fixture
+def untimed(tmp_path, monkeypatch):
+    """Nothing is timed on this machine."""
+    monkeypatch.setenv("SUNATLAS_STORE", str(tmp_path / "working"))
+    asking.knowledge.cache_clear()
+    yield tmp_path / "working"
+    asking.knowledge.cache_clear()
+
+
+def listed(*arguments):
+    shown = sunatlas("leaderboard", *arguments, "--format", "json")
+    assert shown.exit_code == 0, shown.stderr
+    return json.loads(shown.stdout)["items"]
+
+
+def test_the_leaderboard_is_shown_and_nothing_is_measured(untimed):
+    best = listed()
+    assert {row["rank"] for row in best} == {1}
+    assert {row["condition"] for row in best} == {"nominal"}
+    assert {row["dataset"] for row in best} == set(installed().presets)
+    assert all(row["latency_us"] is None for row in best)
+    whole = listed("--dataset", "ccd-orbit", "--condition", "stable")
+    assert {(row["dataset"], row["condition"]) for row in whole} == {("ccd-orbit", "stable")}
+    assert [row["rank"] for row in whole if row["rank"]] == sorted(
+        row["rank"] for row in whole if row["rank"]
+    )
+    assert not untimed.exists()
+
+
+def test_architectures_are_compared_at_an_equal_field(untimed):
+    within = listed("--field", "20")
+    errors = [row["field_rms_deg"] for row in within]
+    assert errors == sorted(errors)
+    assert {row["field_deg"] for row in within} == {20}
+    assert all((row["half_fov_deg"] or 180) >= 20 for row in within)
+    for row in within:
+        # two rings by their solid angle: between the errors of both
+        rings = sorted((row["rms_0_10_deg"], row["rms_10_20_deg"]))
+        assert rings[0] <= row["field_rms_deg"] <= rings[1]
+
+
+def test_a_field_of_view_can_be_read_off(untimed):
+    wide = listed("--max-error", "0.01")
+    fields = [row["widest_field_deg"] for row in wide]
+    assert fields == sorted(fields, reverse=True)
+    for row in wide:
+        assert row["widest_field_deg"] <= (row["half_fov_deg"] or 180)
+        rings = [
+            value
+            for name, value in row.items()
+            if (edges := re.fullmatch(r"rms_(\d+)_(\d+)_deg", name))
+            and int(edges[2]) <= row["widest_field_deg"]
+        ]
+        assert rings
+        assert max(rings) <= 0.01
+    every = listed("--dataset", wide[0]["dataset"], "--condition", "nominal", "--max-error", "0.01")
+    assert every[0]["widest_field_deg"] == fields[0]
+    assert {row["rank"] for row in every if row["widest_field_deg"] is None} <= {None}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "says"),
+    [
+        (["--field", "25"], 2, "--field: no 25; expected one of 10, 20"),
+        (["--dataset", "ccd-orbt"], 1, "did you mean 'ccd-orbit'?"),
+        (["--condition", "nominl"], 1, "did you mean 'nominal'?"),
+        (["--stored"], 2, "--stored goes with --check"),
+        (["--kernels", "older"], 2, "--kernels goes with --check"),
+        (["--field", "20", "--max-error", "1"], 2, "one at a time"),
+        (["--dataset", "ccd-orbit", "update"], 2, "--dataset before `update`"),
+        (["--workers", "1", "render"], 2, "--workers before `render`"),
+        (["--kernels", "new"], 2, "'new'"),
+    ],
+)
+def test_a_wrong_call_of_leaderboard_is_a_line(arguments, code, says):
+    shown = sunatlas("leaderboard", *arguments)
+    assert shown.exit_code == code
+    assert shown.stderr.startswith("sunatlas: ")
+    assert says in shown.stderr
+    assert shown.stderr.count("\n") == 1
+
+
+def test_the_committed_leaderboard_is_what_its_code_gives(published):
+    shown = sunatlas("leaderboard", "--check", "--stored")
+    assert (shown.exit_code, shown.stdout) == (0, ""), shown.stdout
+
+
+def test_what_is_not_of_the_code_is_named(published):
+    path = published / "components.json"
+    text = path.read_text("utf-8")
+    name, digest = re.search(r'"(lsq)": .*"digest": "(\w+)"', text).groups()
+    path.write_text(text.replace(digest, "0" * 16), "utf-8")
+    page = published / "leaderboard.md"
+    page.write_text(page.read_text("utf-8").replace("| 1 |", "| 2 |", 1), "utf-8")
+    shown = sunatlas("leaderboard", "--check", "--stored", "--format", "json")
+    assert shown.exit_code == 1
+    found = {row["file"]: row for row in json.loads(shown.stdout)}
+    assert set(found) == {"components.json", "leaderboard.md"}
+    assert found["components.json"]["cell"] == f"models/{name}"
+    assert "the first: " in shown.stderr
+
+
+def test_an_up_to_date_record_is_left_as_it_is(published):
+    assert stale(cells(), Store(published)) == [], "run `make leaderboard`"
+    before = {path: path.read_bytes() for path in published.rglob("*") if path.is_file()}
+    shown = sunatlas("leaderboard", "update", "--workers", 1)
+    assert shown.exit_code == 0, shown.stderr
+    assert " 0 measured" in shown.stderr
+    after = {path: path.read_bytes() for path in published.rglob("*") if path.is_file()}
+    assert {path: after[path] for path in before} == before
+    assert {path.name for path in after.keys() - before.keys()} <= {"lock", "journal.jsonl"}
+
+
+def test_everything_else_is_derived(tmp_path, untimed):
+    shown = sunatlas("leaderboard", "render", "--out", tmp_path / "out")
+    assert shown.exit_code == 0, shown.stderr
+    written = {path.name: path for path in (tmp_path / "out").iterdir()}
+    assert set(written) == set(FORMATS)
+    board = json.loads(written["leaderboard.json"].read_text("utf-8"))
+    rows = [row for dataset in board["datasets"] for row in dataset["rows"]]
+    standard = [cell for cell in Store(PUBLISHED).scores() if cell.unit == 0]
+    assert len(rows) == len(standard)
+    with written["leaderboard.csv"].open(encoding="utf-8", newline="") as file:
+        table = list(csv.DictReader(file))
+    assert [float(row["rms_deg"]) if row["rms_deg"] else None for row in table] == [
+        row["rms_deg"] for row in rows
+    ]
+
+
+def test_times_are_of_this_machine_and_kept_beside_the_record(untimed, monkeypatch):
+    known = installed()
+    few = Parts(
+        {"pd-maskless-cube": known.presets["pd-maskless-cube"]}, known.extractors, known.models
+    )
+    monkeypatch.setattr(times, "installed", lambda: few)
+    first = sunatlas("leaderboard", "times", "--format", "json")
+    assert first.exit_code == 0, first.stderr
+    rows = json.loads(first.stdout)
+    planned = cells("pd-maskless-cube", "nominal")
+    assert {(r["extractor"], r["model"]) for r in rows} == {
+        (cell.extractor, cell.model) for cell in planned
+    }
+    ok = {
+        (cell.extractor, cell.model)
+        for cell, row in Store(PUBLISHED).scores().items()
+        if cell in planned and row["status"] == "ok"
+    }
+    assert {(r["extractor"], r["model"]) for r in rows if r["latency_us"] is not None} == ok
+    assert all(r["time_ratio"] >= r["extract_ratio"] > 0 for r in rows if r["latency_us"])
+    again = sunatlas("leaderboard", "times", "--format", "json")
+    assert json.loads(again.stdout) == rows
+    assert again.stderr.startswith("0 timed now")
+    monkeypatch.undo()
+    monkeypatch.setenv("SUNATLAS_STORE", str(untimed))
+    asking.knowledge.cache_clear()
+    shown = listed("--dataset", "pd-maskless-cube", "--condition", "nominal")
+    assert {(r["extractor"], r["model"]) for r in shown if r["latency_us"] is not None} == ok

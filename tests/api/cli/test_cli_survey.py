@@ -1,0 +1,230 @@
+"""`sunatlas survey`: the report on good tables, refusals on corrupted ones, imports."""
+
+import csv
+import io
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+import survey_data
+from api.cli.command_line import app
+
+OURS = Path(survey_data.__file__).parent
+TABLES = sorted(path.name for path in OURS.glob("*.csv"))
+
+
+def survey(*arguments):
+    return CliRunner().invoke(app, ["survey", *map(str, arguments)], catch_exceptions=False)
+
+
+@pytest.fixture
+def copy(tmp_path):
+    """A copy of the survey's tables, free to be spoilt."""
+    directory = tmp_path / "tables"
+    directory.mkdir()
+    for path in [*OURS.glob("*.csv"), OURS / "datapackage.json"]:
+        shutil.copy(path, directory)
+    return directory
+
+
+def rows_of(path):
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.reader(file))
+
+
+def write(path, rows):
+    stream = io.StringIO(newline="")
+    csv.writer(stream, lineterminator="\n").writerows(rows)
+    path.write_text(stream.getvalue(), "utf-8", newline="")
+
+
+def refused(directory):
+    """Problems of a directory, as JSON tells them, after checking that stderr tells the same."""
+    shown = survey("check", "--data", directory, "--format", "json")
+    assert shown.exit_code == 1
+    problems = json.loads(shown.stdout)["problems"]
+    lines = shown.stderr.splitlines()
+    assert len(lines) == len(problems) > 0
+    for line, problem in zip(lines, problems, strict=True):
+        assert line.startswith(f"sunatlas: {problem['file']}")
+        assert problem["row"] is None or f"row {problem['row']}" in line
+        assert problem["column"] is None or f"column {problem['column']}" in line
+    return problems
+
+
+def test_the_report_counts_129_studies_and_judges_51_findings():
+    shown = survey("check", "--format", "json")
+    assert shown.exit_code == 0
+    assert shown.stderr == ""
+    report = json.loads(shown.stdout)
+    assert (report["studies"], report["stated"]) == (129, 128)
+    assert report["explanation"]
+    assert len(report["findings"]) == 51
+    verdicts = [finding["verdict"] for finding in report["findings"]]
+    assert set(verdicts) <= {"reproduced", "contradicted", "undecidable"}
+    assert report["verdicts"] == {name: verdicts.count(name) for name in report["verdicts"]}
+    assert all("ranking" in finding for finding in report["findings"])
+    assert report["problems"] == []
+
+
+def test_the_report_comes_as_table_and_csv_too():
+    table = survey("check")
+    assert table.exit_code == 0
+    assert table.stdout.startswith("129 studies; the survey states 128.")
+    listed = list(csv.DictReader(io.StringIO(survey("check", "--format", "csv").stdout)))
+    assert [row["id"] for row in listed] == [f"F{n:02}" for n in range(1, 52)]
+    assert all(row["id"] in table.stdout for row in listed)
+
+
+def test_a_copy_is_as_good_as_the_original(copy):
+    assert survey("check", "--data", copy).stdout == survey("check").stdout
+
+
+def test_an_unknown_value_is_named_with_file_row_and_column(copy):
+    rows = rows_of(copy / "attributes.csv")
+    header = rows[0]
+    number = next(n for n, row in enumerate(rows) if row[header.index("value")] == "CMOS")
+    rows[number][header.index("value")] = "CMSO"
+    write(copy / "attributes.csv", rows)
+    places = [(p["file"], p["row"], p["column"]) for p in refused(copy)]
+    assert ("attributes.csv", number + 1, "value") in places
+
+
+def test_a_study_that_is_gone_is_missed_where_it_is_referred_to(copy):
+    rows = rows_of(copy / "studies.csv")
+    write(copy / "studies.csv", [row for row in rows if row[0] != "Chang2008"])
+    listed = rows_of(copy / "attributes.csv")
+    expected = {n for n, row in enumerate(listed, start=1) if row[0] == "Chang2008"}
+    found = {
+        p["row"] for p in refused(copy) if (p["file"], p["column"]) == ("attributes.csv", "study")
+    }
+    assert found == expected
+
+
+def test_a_row_that_stands_twice_is_named_in_every_table(copy):
+    expected = set()
+    for name in TABLES:
+        rows = rows_of(copy / name)
+        write(copy / name, [*rows, rows[1]])
+        expected.add((name, len(rows) + 1))
+    assert len(expected) == 13
+    assert expected <= {(p["file"], p["row"]) for p in refused(copy) if p["column"]}
+
+
+def test_a_row_with_a_cell_too_many_is_named_in_every_table(copy):
+    expected = set()
+    for name in TABLES:
+        text = (copy / name).read_text("utf-8")
+        (copy / name).write_text(text.rstrip("\n") + ",surplus\n", "utf-8")
+        expected.add((name, text.count("\n")))
+    assert len(expected) == 13
+    assert expected <= {(p["file"], p["row"]) for p in refused(copy)}
+
+
+def test_a_quote_that_never_ends_is_named(copy):
+    lines = (copy / "claims.csv").read_text("utf-8").splitlines()
+    lines[2] = '"' + lines[2].replace('"', "")
+    (copy / "claims.csv").write_text("\n".join(lines) + "\n", "utf-8")
+    assert {("claims.csv", 3)} <= {(p["file"], p["row"]) for p in refused(copy)}
+
+
+def test_a_table_that_is_gone_is_named(copy):
+    (copy / "taxonomy.csv").unlink()
+    assert "taxonomy.csv" in {p["file"] for p in refused(copy)}
+
+
+# ---- import
+
+
+@pytest.fixture
+def theirs(tmp_path):
+    """A table as others might write it: other names, one value changed, one unreadable by us."""
+    path = tmp_path / "theirs.csv"
+    write(
+        path,
+        [
+            ["Citation key", "Sensor technology", "Remarks"],
+            ["Chang2008", "CCD", "hello"],
+            ["Ali2011", "", ""],
+        ],
+    )
+    return path
+
+
+def detectors(directory, study):
+    return [
+        row[2:4] for row in rows_of(directory / "attributes.csv") if row[:2] == [study, "detector"]
+    ]
+
+
+def test_an_import_shows_the_mapping_and_the_cells_and_writes_nothing(copy, theirs):
+    before = (copy / "attributes.csv").read_bytes()
+    shown = survey(
+        *("import", theirs, "--map", "Sensor technology=detector", "--data", copy),
+        *("--format", "json"),
+    )
+    assert shown.exit_code == 0
+    plan = json.loads(shown.stdout)
+    taken = {match["column"]: match["target"] for match in plan["mapping"]["matches"]}
+    assert taken == {"Citation key": "study", "Sensor technology": "detector"}
+    assert plan["mapping"]["ignored"] == ["Remarks"]
+    cells = [(d["study"], d["attribute"], d["theirs"]) for d in plan["differences"]]
+    assert cells == [("Chang2008", "detector", ["CCD"])]
+    assert plan["written"] == 0
+    assert (copy / "attributes.csv").read_bytes() == before
+    table = survey("import", theirs, "--map", "Sensor technology=detector", "--data", copy)
+    assert "Nothing written; --apply writes 1 cells." in table.stdout
+
+
+def test_an_import_that_is_applied_leaves_valid_tables(copy, theirs):
+    shown = survey(
+        *("import", theirs, "--map", "Sensor technology=detector", "--data", copy, "--apply")
+    )
+    assert shown.exit_code == 0
+    assert "1 cells written." in shown.stdout
+    assert detectors(copy, "Chang2008") == [["CCD", "authors-table"]]
+    assert survey("check", "--data", copy).exit_code == 0
+
+
+def test_a_cell_that_cannot_be_read_is_named_and_nothing_is_written(copy, theirs):
+    rows = rows_of(theirs)
+    rows[1][1] = "qwertyuiop"
+    write(theirs, rows)
+    before = (copy / "attributes.csv").read_bytes()
+    mapped = ("--map", "Sensor technology=detector", "--data", copy)
+    for apply in ((), ("--apply",)):
+        shown = survey("import", theirs, *mapped, *apply)
+        assert shown.exit_code == 1
+        assert "row 2" in shown.stderr
+        assert "column Sensor technology" in shown.stderr
+        assert (copy / "attributes.csv").read_bytes() == before
+
+
+@pytest.mark.parametrize(
+    ("mapped", "code", "says"),
+    [
+        ("Sensor technology", 2, "expected COL=ATTRIBUTE"),
+        ("=detector", 2, "expected COL=ATTRIBUTE"),
+        ("Sensor technology=detecter", 1, "detector"),
+        ("Sensor tecnology=detector", 1, "Sensor technology"),
+    ],
+)
+def test_a_mapping_that_cannot_be_is_refused(copy, theirs, mapped, code, says):
+    shown = survey("import", theirs, "--map", mapped, "--data", copy)
+    assert shown.exit_code == code
+    assert shown.stdout == ""
+    assert shown.stderr.count("\n") == 1
+    assert says in shown.stderr
+
+
+@pytest.mark.parametrize("content", [b"", b"\xff\xfe\x00bad", b"PK\x03\x04", b"a,b\n1,2\n"])
+def test_a_file_that_is_no_table_of_studies_is_refused(copy, tmp_path, content):
+    path = tmp_path / "bad.csv"
+    path.write_bytes(content)
+    shown = survey("import", path, "--data", copy, "--apply")
+    assert shown.exit_code == 1
+    assert shown.stderr.count("\n") == 1
+    assert detectors(copy, "Chang2008") == detectors(OURS, "Chang2008")

@@ -1,0 +1,85 @@
+"""Who the project is, in a checkout and where only the package is installed."""
+
+import datetime as dt
+import email.message
+from pathlib import Path
+
+import pytest
+import yaml
+
+from api.deposit import identity as deposit_identity
+from api.deposit.identity import MissingFileError, generated_citation
+
+ROOT = Path(__file__).resolve().parents[3]
+
+
+class Installed:
+    """Metadata as a wheel's."""
+
+    def __init__(self, texts):
+        self.texts = texts
+        self.metadata = email.message.Message()
+        self.metadata["Version"] = "9.8.7"
+        self.metadata["Summary"] = 'Says "hello".'
+        self.metadata["Author"] = "A. Sun, B. Sensor"
+
+    def read_text(self, name):
+        return self.texts.get(name)
+
+
+@pytest.fixture
+def elsewhere(tmp_path, monkeypatch):
+    """The package where no checkout is around it."""
+    (tmp_path / "survey_data").mkdir()
+    (tmp_path / "survey_data" / "LICENSE").write_text("data terms")
+    monkeypatch.setattr(deposit_identity, "ROOT", tmp_path)
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "86400")
+    deposit_identity.identity.cache_clear()
+    yield monkeypatch
+    deposit_identity.identity.cache_clear()
+
+
+def test_a_checkout_speaks_by_its_own_files():
+    who = deposit_identity.identity()
+    cited = yaml.safe_load((ROOT / "CITATION.cff").read_text("utf-8"))
+    assert who.version == cited["version"]
+    assert who.released == dt.date.fromisoformat(cited["date-released"])
+    assert who.citation == (ROOT / "CITATION.cff").read_text("utf-8")
+
+
+def test_an_installation_speaks_by_its_metadata(elsewhere):
+    installed = Installed({"licenses/LICENSE": "code terms"})
+    elsewhere.setattr(deposit_identity, "_installed", lambda: installed)
+    who = deposit_identity.identity()
+    assert (who.version, who.code_licence, who.data_licence) == (
+        "9.8.7",
+        "code terms",
+        "data terms",
+    )
+    assert who.authors == ("A. Sun", "B. Sensor")
+    cited = yaml.safe_load(who.citation)
+    assert cited["cff-version"] == "1.2.0"
+    assert cited["version"] == "9.8.7"
+    assert cited["abstract"] == 'Says "hello".'
+    assert cited["authors"] == [{"name": "A. Sun"}, {"name": "B. Sensor"}]
+    assert cited["date-released"] == "1970-01-02"
+
+
+def test_without_its_licence_nothing_goes_out(elsewhere):
+    elsewhere.setattr(deposit_identity, "_installed", lambda: Installed({}))
+    with pytest.raises(MissingFileError, match="no LICENSE"):
+        deposit_identity.identity()
+
+
+def test_without_checkout_and_metadata_there_is_no_identity(elsewhere):
+    elsewhere.setattr(deposit_identity, "_installed", lambda: None)
+    with pytest.raises(MissingFileError, match="sun-sensor-atlas"):
+        deposit_identity.version()
+
+
+def test_a_generated_citation_carries_any_name():
+    cited = yaml.safe_load(
+        generated_citation("1.0", "a: b\\", ('O"Neil', "#x"), dt.date(2026, 1, 2))
+    )
+    assert cited["abstract"] == "a: b\\"
+    assert [author["name"] for author in cited["authors"]] == ['O"Neil', "#x"]

@@ -1,0 +1,131 @@
+"""/v1/datasets/{name} and its picture: the card with bounds and hashes, drawn once."""
+
+import cv2
+import numpy as np
+import pytest
+
+from api.http.knowledge import Knowledge
+from api.http.measurements import Measurements
+from api.http.service import create_app
+from benchmark import datasets
+from benchmark.datasets import preview as dataset_preview
+from benchmark.results.components import Components
+from benchmark.results.pins import Pin
+from benchmark.results.store import PUBLISHED, Store
+
+NAME = "cmos-single-aperture"
+
+
+@pytest.fixture(scope="module")
+def pinned(tmp_path_factory, client_of):
+    """A service whose published pins are two, one of them of another version."""
+    directory = tmp_path_factory.mktemp("published")
+    pins = [
+        Pin(NAME, "nominal", "test", 1, 1000, "a" * 32, "c" * 32, 1000, 0.25, 0.25),
+        Pin(NAME, "hot", "test", 99, 1000, "b" * 32, "c" * 32, 1000, 0.5, 0.5),
+    ]
+    Store(directory).write({}, pins, [], Components())
+    return client_of(create_app(Knowledge(Measurements(directory))))
+
+
+def test_the_card_is_the_preset_s_with_bounds_hashes_and_the_picture(atlas):
+    card = atlas.get(f"/v1/datasets/{NAME}").json()
+    preset = datasets.get(NAME)
+    own = preset.card()
+    assert card["setups"] == own["conditions"]
+    assert card["conditions"] == list(preset.conditions)
+    for name in ("geometry", "seeds", "regime", "splits", "units", "description"):
+        assert card[name] == own[name]
+    assert set(card["bounds"]) == set(preset.conditions)
+    assert atlas.get(card["preview"]).headers["content-type"] == "image/png"
+    pins = Store(PUBLISHED).pins()
+    assert [(row["condition"], row["split"]) for row in card["data"]] == [
+        (condition, split)
+        for condition in preset.conditions
+        for split in ("calibration", "test", "repeat")
+    ]
+    for row in card["data"]:
+        assert row["data_hash"] == pins[NAME, row["condition"], row["split"]].data_hash
+
+
+def test_the_list_has_the_same_without_parameters(atlas):
+    listed = {card["name"]: card for card in atlas.walk("/v1/datasets?limit=500")}
+    assert set(listed) == set(datasets.names())
+    card = atlas.get(f"/v1/datasets/{NAME}").json()
+    short = listed[NAME]
+    assert "parameters" not in short["setups"]["nominal"]
+    for condition, setup in short["setups"].items():
+        assert setup == {"description": card["setups"][condition]["description"]}
+    assert {name: card[name] for name in short if name != "setups"} == {
+        name: member for name, member in short.items() if name != "setups"
+    }
+    assert len(atlas.get("/v1/datasets?limit=500").content) < 200_000
+
+
+def test_pins_of_the_version_there_is_give_hash_and_bound(pinned):
+    card = pinned.get(f"/v1/datasets/{NAME}").json()
+    assert card["bounds"] == {"nominal": 0.25}
+    rows = {(row["condition"], row["split"]): row for row in card["data"]}
+    assert rows["nominal", "test"] == {
+        "condition": "nominal",
+        "split": "test",
+        "samples": 1000,
+        "data_hash": "a" * 32,
+        "bound_deg": 0.25,
+    }
+    assert rows["hot", "test"]["data_hash"] is None
+    assert rows["nominal", "calibration"]["data_hash"] is None
+    table = pinned.table(f"/v1/datasets/{NAME}")
+    assert [row["data_hash"] for row in table] == [row["data_hash"] or "" for row in card["data"]]
+
+
+@pytest.mark.parametrize("path", ["/v1/datasets/{}", "/v1/datasets/{}/preview.png"])
+def test_an_unknown_name_is_answered_with_the_nearest(atlas, path):
+    answer = atlas.get(path.format("cmos-single-apertures"))
+    assert answer.status_code == 404
+    assert answer.headers["content-type"] == "application/problem+json"
+    document = answer.json()
+    assert document["type"].endswith(":unknown-name")
+    assert document["errors"][0]["nearest"] == NAME
+
+
+def test_the_picture_is_drawn_once_and_revalidated(atlas, client_of, monkeypatch):
+    drawn = []
+    draw = dataset_preview.preview_png
+
+    def watched(preset, *arguments):
+        drawn.append(preset.name)
+        return draw(preset, *arguments)
+
+    monkeypatch.setattr(dataset_preview, "preview_png", watched)
+    client = client_of(create_app())
+    path = f"/v1/datasets/{NAME}/preview.png"
+    first = client.get(path)
+    assert first.status_code == 200
+    assert first.headers["content-type"] == "image/png"
+    image = cv2.imdecode(np.frombuffer(first.content, np.uint8), cv2.IMREAD_COLOR)
+    assert image.shape[1] == 1000
+    again = client.get(path, headers={"If-None-Match": first.headers["etag"]})
+    assert (again.status_code, again.content) == (304, b"")
+    head = client.request("HEAD", path)
+    assert head.content == b""
+    assert head.headers["etag"] == first.headers["etag"]
+    zipped = client.get(path, headers={"Accept-Encoding": "gzip"})
+    assert "content-encoding" not in zipped.headers
+    assert zipped.content == first.content
+    assert drawn == [NAME]
+
+
+@pytest.mark.parametrize(
+    ("accept", "status"),
+    [("image/*", 200), ("image/avif,image/webp,*/*;q=0.5", 200), ("application/json", 406)],
+)
+def test_the_picture_is_given_to_who_takes_pictures(atlas, accept, status):
+    assert atlas.get(f"/v1/datasets/{NAME}/preview.png", accept=accept).status_code == status
+
+
+def test_the_picture_takes_no_parameters(atlas):
+    answer = atlas.get(f"/v1/datasets/{NAME}/preview.png?condition=hot")
+    assert answer.status_code == 400
+    assert answer.json()["errors"][0]["parameter"] == "condition"
+    assert atlas.post(f"/v1/datasets/{NAME}/preview.png").status_code == 405

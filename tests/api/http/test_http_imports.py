@@ -1,0 +1,46 @@
+"""What is imported when: the front door opens without the heavy furniture."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+HEAVY = ("cv2", "scipy", "plotly", "numba", "pandas")
+ROOT = Path(__file__).parents[3]
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "import api",
+        "import api.http.service",
+        "import api.http.service; api.http.service.create_app()",
+    ],
+)
+def test_nothing_heavy_is_loaded_before_it_is_needed(code):
+    program = f"{code}\nimport sys\nprint([name for name in {HEAVY} if name in sys.modules])"
+    done = subprocess.run(
+        [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True
+    )
+    assert done.stdout.strip() == "[]"
+
+
+def test_importing_the_package_loads_none_of_its_parts():
+    program = "import api, sys\nprint(sorted(n for n in sys.modules if n.startswith('api.')))"
+    done = subprocess.run(
+        [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True
+    )
+    assert done.stdout.strip() == "[]"
+
+
+def test_plotly_is_served_without_being_imported():
+    program = (
+        "from api.http.page import page_file\n"
+        "assert len(page_file('plotly.min.js').body) > 1_000_000\n"
+        "import sys\nprint('plotly' in sys.modules)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True
+    )
+    assert done.stdout.strip() == "False"

@@ -1,0 +1,305 @@
+"""Scores, leaderboard and data sets, from a hand-made store whose every number is known."""
+
+import jsonschema
+import pytest
+
+from api.http.knowledge import Knowledge
+from api.http.measurements import Measurements
+from api.http.service import create_app
+from benchmark.metrics.score import METRICS
+from benchmark.plan.combinations import Cell
+from benchmark.plan.parts import installed
+from benchmark.results.components import Components, ComponentsError, current
+from benchmark.results.pins import Pin
+from benchmark.results.store import Store, StoreError
+from benchmark.results.tables import text_of
+from benchmark.running import times
+
+CMOS = "cmos-single-aperture"
+QPD = "qpd-single-aperture"
+HALF_FOV = {CMOS: 60.0, QPD: 40.0}
+CELLS = [
+    # data set, condition, extractor, model, rms, bound, availability, latency
+    (CMOS, "nominal", "bctm", "spm", 0.02, 0.001, 1.0, 5.0),
+    (CMOS, "nominal", "bctm", "lsq", 0.01, 0.001, 1.0, 9.0),
+    (CMOS, "nominal", "bcm", "spm", 0.5, 0.002, 0.98, 3.0),
+    (CMOS, "nominal", "bcm", "lsq", None, None, None, None),
+    (CMOS, "nominal", "ifm", "spm", 0.005, 0.001, 0.94, 3.0),
+    (CMOS, "misaligned", "bctm", "spm", 2.0, 0.001, 1.0, 5.0),
+    (QPD, "nominal", "voltage-balance", "linear", 1.5, 0.05, 1.0, 1.0),
+]
+#: Errors of bctm's pipelines on units 1 to 4: spm's overlap those of lsq.
+UNITS = {"spm": (0.009, 0.03, 0.02, 0.02), "lsq": (0.011, 0.012, 0.01, 0.01)}
+
+
+def numbers_of(rms, bound, availability):
+    if rms is None:
+        return {"status": "failed", **dict.fromkeys(METRICS), "reason": "fit: too few samples"}
+    metrics = dict.fromkeys(METRICS, 0.25) | {"false_sun": None, "availability": availability}
+    metrics |= {"rms_deg": rms, "bound_deg": bound, "over_bound": rms / bound}
+    metrics |= {"rms_0_10_deg": 2.0 * rms, "rms_10_20_deg": None}
+    return {"status": "ok", **metrics, "reason": ""}
+
+
+def stored_scores():
+    scores = {Cell(*cell[:4]): numbers_of(*cell[4:7]) for cell in CELLS}
+    for model, errors in UNITS.items():
+        for unit, rms in enumerate(errors, start=1):
+            scores[Cell(CMOS, "nominal", "bctm", model, unit)] = numbers_of(rms, 0.001, 1.0)
+    return scores
+
+
+def stored_pins():
+    def pin(dataset, condition, bound):
+        sizes = {"n": 200, "data_hash": "d" * 32, "head_hash": "h" * 32}
+        told = {"observable": 190, "bound_deg": bound, "head_bound_deg": bound}
+        return Pin(
+            dataset, condition, "test", installed().presets[dataset].version, **sizes, **told
+        )
+
+    return [pin(CMOS, "nominal", 0.0015), pin(CMOS, "misaligned", 0.001), pin(QPD, "nominal", 0.05)]
+
+
+@pytest.fixture(scope="module")
+def components():
+    return current(installed()).only(stored_scores())
+
+
+@pytest.fixture(scope="module")
+def published(tmp_path_factory, components):
+    directory = tmp_path_factory.mktemp("published")
+    Store(directory).write(stored_scores(), stored_pins(), [], components)
+    return directory
+
+
+@pytest.fixture(scope="module")
+def measured(tmp_path_factory, client_of, published, components):
+    """A service with those scores, and with times that one pipeline has outlived."""
+    directory = tmp_path_factory.mktemp("working")
+    rows = [
+        {
+            "dataset": dataset,
+            "extractor": extractor,
+            "model": model,
+            "latency_us": latency,
+            "time_ratio": 2.0,
+            "extract_ratio": 1.0,
+            "digest": times._digest((dataset, extractor, model), components),
+        }
+        for dataset, condition, extractor, model, *_, latency in CELLS
+        if condition == "nominal" and latency is not None
+    ]
+    rows[0] |= {"latency_us": 5.0}
+    rows[2] |= {"digest": "of-older-code"}
+    (directory / times.TIMES).write_text(text_of(list(rows[0]), rows))
+    return client_of(create_app(Knowledge(Measurements(published, directory))))
+
+
+@pytest.fixture(scope="module")
+def unmeasured(tmp_path_factory, client_of):
+    return client_of(create_app(Knowledge(Measurements(tmp_path_factory.mktemp("nothing")))))
+
+
+def cells_of(items):
+    return {(i["dataset"], i["condition"], i["extractor"], i["model"]) for i in items}
+
+
+def test_results_are_the_stored_numbers_of_the_standard_unit(measured):
+    served = measured.walk("/v1/results?limit=4")
+    known = {cell: numbers for cell, numbers in stored_scores().items() if cell.unit == 0}
+    assert measured.get("/healthz").json()["scores"] == len(CELLS) == len(known)
+    for row in served:
+        cell = Cell(row["dataset"], row["condition"], row["extractor"], row["model"], row["unit"])
+        assert {name: row[name] for name in known.pop(cell)} == stored_scores()[cell]
+        assert row["half_fov_deg"] == HALF_FOV[cell.dataset]
+        assert (row["n_test"], row["n_observable"], row["n_calibration"]) == (200, 190, None)
+    assert known == {}
+
+
+@pytest.mark.parametrize(
+    ("query", "kept"),
+    [
+        ("dataset=cmos-single-aperture", lambda r: r["detector"] == "CMOS"),
+        ("condition=misaligned", lambda r: r["condition"] == "misaligned"),
+        ("extractor=bcm&extractor=bctm", lambda r: r["extractor"] in {"bcm", "bctm"}),
+        ("model=lsq&condition=nominal", lambda r: r["model"] == "lsq"),
+        ("dataset=pd-maskless-cube", lambda r: False),
+    ],
+)
+def test_results_narrow_by_their_fields(measured, query, kept):
+    rows = measured.walk("/v1/results")
+    assert cells_of(measured.walk(f"/v1/results?{query}")) == cells_of(filter(kept, rows))
+
+
+def test_results_as_csv_are_the_same_numbers(measured):
+    items = measured.walk("/v1/results")
+    table = measured.table("/v1/results")
+    assert len(table) == len(items)
+    for row, item in zip(table, items, strict=True):
+        assert set(row) == set(item)
+        for name, value in item.items():
+            assert row[name] == ("" if value is None else str(value)), name
+
+
+def test_the_leaderboard_ranks_by_error_within_a_condition(measured):
+    board = measured.walk(f"/v1/leaderboard/{CMOS}?condition=nominal&limit=1")
+    assert [(r["rank"], r["tied"], r["extractor"], r["model"]) for r in board] == [
+        (1, True, "bctm", "lsq"),
+        (1, True, "bctm", "spm"),
+        (3, False, "bcm", "spm"),
+        (4, False, "ifm", "spm"),  # the smallest error, of too few answers
+        (None, False, "bcm", "lsq"),
+    ]
+    assert (board[0]["low_deg"], board[0]["high_deg"]) == (0.01, 0.012)
+    assert board[1]["unit_rms_deg"] == [0.02, *UNITS["spm"]]
+    assert board[2]["unit_rms_deg"] is board[2]["low_deg"] is None
+    assert (board[0]["time_ratio"], board[0]["latency_us"]) == (2.0, 9.0)
+    assert board[2]["time_ratio"] is board[2]["latency_us"] is None  # timed with other code
+    assert board[-1]["status"] == "failed"
+    assert board[-1]["reason"] == "fit: too few samples"
+    whole = measured.get("/v1/leaderboard").json()
+    assert [d["name"] for d in whole["datasets"]] == [CMOS, QPD]
+    assert whole["datasets"][0]["conditions"] == ["nominal", "misaligned"]
+    assert len(measured.table("/v1/leaderboard")) == len(CELLS)
+
+
+def test_the_leaderboard_ranks_by_the_error_over_a_part_of_the_field(measured):
+    address = f"/v1/leaderboard/{CMOS}?condition=nominal&field_deg="
+    board = measured.walk(f"{address}10")
+    assert [(r["rank"], r["model"], r["field_deg"], r["field_rms_deg"]) for r in board][:2] == [
+        (1, "lsq", 10, 0.02),
+        (2, "spm", 10, 0.04),
+    ]
+    beyond = measured.walk(f"{address}20")  # a ring without an error: no such field
+    assert {(r["rank"], r["field_rms_deg"]) for r in beyond} == {(None, None)}
+    refused = measured.get(f"{address}25")
+    assert refused.status_code == 422
+    assert "20" in refused.json()["errors"][0]["expected"]
+
+
+def test_the_leaderboard_ranks_by_the_field_that_keeps_an_error(measured):
+    address = f"/v1/leaderboard/{CMOS}?condition=nominal&max_error_deg="
+    board = measured.walk(f"{address}0.03")
+    assert [(r["rank"], r["extractor"], r["model"], r["widest_field_deg"]) for r in board] == [
+        (1, "bctm", "lsq", 10),
+        (None, "bctm", "spm", None),
+        (None, "bcm", "spm", None),
+        (None, "ifm", "spm", None),  # too few answers
+        (None, "bcm", "lsq", None),
+    ]
+    assert measured.get(f"{address}-1").status_code == 422
+
+
+def test_measured_answers_fit_their_schemas(measured):
+    document = measured.get("/openapi.json").json()
+    for template in ("/v1/leaderboard", "/v1/leaderboard/{dataset}", "/v1/results", "/v1/datasets"):
+        content = document["paths"][template]["get"]["responses"]["200"]["content"]
+        schema = {**content["application/json"]["schema"], "components": document["components"]}
+        answer = measured.get(template.format(dataset=CMOS)).json()
+        jsonschema.Draft202012Validator(schema).validate(answer)
+        assert answer.get("items", answer.get("datasets"))
+
+
+def test_cards_name_conditions_and_published_bounds(measured):
+    cards = {card["name"]: card for card in measured.walk("/v1/datasets")}
+    cmos = cards[CMOS]
+    assert cmos["conditions"][0] == "nominal"
+    assert set(cmos["setups"]) == set(cmos["conditions"])
+    # over all observable samples, not over those a pipeline answered
+    assert cmos["bounds"] == {"nominal": 0.0015, "misaligned": 0.001}
+    assert cards["pd-maskless-cube"]["bounds"] == {}
+
+
+def test_recommendations_carry_what_is_measured_in_the_condition(measured):
+    query = "detector=CMOS&mask=Single-Ap.&model=SPM&extractor=BCTM"
+    nominal = measured.get(f"/v1/recommendations?{query}").json()["paths"]
+    assert nominal
+    for path in nominal:
+        assert path["measured"] == {
+            "dataset": CMOS,
+            "condition": "nominal",
+            "extractor": "bctm",
+            "model": "spm",
+            "rms_deg": 0.02,
+            "bound_deg": 0.001,
+            "over_bound": pytest.approx(20.0),
+            "half_fov_deg": 60.0,
+            "latency_us": 5.0,
+            "availability": 1.0,
+            "false_sun": None,
+        }
+    other = measured.get(f"/v1/recommendations?{query}&condition=misaligned").json()["paths"]
+    assert {path["measured"]["rms_deg"] for path in other} == {2.0}
+    hot = measured.get(f"/v1/recommendations?{query}&condition=hot").json()["paths"]
+    assert all(path["measured"] is None for path in hot)
+
+
+def test_measured_columns_of_the_csv_are_empty_where_nothing_is_measured(measured):
+    rows = measured.table("/v1/recommendations?detector=CMOS&limit=500")
+    paths = measured.get("/v1/recommendations?detector=CMOS&limit=500").json()["paths"]
+    assert len(rows) == len(paths)
+    assert any(path["measured"] for path in paths)
+    assert not all(path["measured"] for path in paths)
+    for row, path in zip(rows, paths, strict=True):
+        rms = path["measured"]["rms_deg"] if path["measured"] else None
+        assert row["measured_rms_deg"] == ("" if rms is None else str(rms))
+        assert row["literature_studies"] == str(path["literature"]["studies"])
+        assert row["studies"] == "; ".join(path["studies"])
+        assert "measured" not in row
+
+
+def test_limits_are_judged_on_what_is_measured(measured):
+    query = "detector=CMOS&mask=Single-Ap.&model=SPM&extractor=BCTM"
+    for limit, met in [
+        ("max_error_deg=0.02", True),
+        ("max_error_deg=0.019", False),
+        ("max_latency_us=5", True),
+        ("max_latency_us=4.9", False),
+        ("min_fov_deg=120", True),
+        ("min_fov_deg=121", False),
+    ]:
+        answer = measured.get(f"/v1/recommendations?{query}&{limit}").json()
+        assert (answer["count"] > 0) is met, limit
+        assert (answer["blocked"] is None) is met
+
+
+@pytest.mark.parametrize(
+    "path",
+    ["/v1/results", "/v1/leaderboard/cmos-single-aperture", "/v1/results?extractor=bcm"],
+)
+def test_where_nothing_is_published_lists_are_empty(unmeasured, path):
+    assert unmeasured.get(path).json() == {"items": [], "total": 0, "next": None}
+    assert unmeasured.table(path) == []
+    assert unmeasured.get(path, accept="text/csv").text.count("\r\n") == 1
+
+
+def test_where_nothing_is_published_the_rest_is_served(unmeasured):
+    assert unmeasured.get("/v1/leaderboard").json() == {"schema": None, "datasets": []}
+    assert unmeasured.get("/healthz").json()["scores"] == 0
+    assert unmeasured.get("/v1/recommendations?task=Accuracy").json()["count"] > 0
+    assert unmeasured.get("/v1/datasets").json()["total"] >= 3
+
+
+def test_an_error_of_too_few_answers_keeps_no_limit(measured):
+    query = "detector=CMOS&mask=Single-Ap.&model=SPM&extractor=IFM"
+    answer = measured.get(f"/v1/recommendations?{query}").json()
+    assert {path["measured"]["availability"] for path in answer["paths"]} == {0.94}
+    limited = measured.get(f"/v1/recommendations?{query}&max_error_deg=0.01").json()
+    assert limited["count"] == 0
+
+
+def test_a_published_file_that_cannot_be_read_stops_the_start(tmp_path, components):
+    (tmp_path / "components.json").write_text("[]")
+    with pytest.raises(ComponentsError, match=r"components\.json: expected schema"):
+        Knowledge(Measurements(tmp_path)).load_all()
+    (tmp_path / "components.json").write_text(components.text())
+    (tmp_path / "scores").mkdir()
+    (tmp_path / "scores" / "cmos-single-aperture.csv").write_text("condition,extractor\n")
+    with pytest.raises(StoreError, match=r"cmos-single-aperture\.csv, line 1"):
+        Knowledge(Measurements(tmp_path)).load_all()
+
+
+def test_a_score_of_something_unknown_stops_the_start(tmp_path):
+    Store(tmp_path).write(stored_scores(), [], [], Components("h"))
+    with pytest.raises(ComponentsError, match="cmos-single-aperture"):
+        Knowledge(Measurements(tmp_path)).load_all()

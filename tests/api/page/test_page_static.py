@@ -1,0 +1,136 @@
+"""Facts of the page's files that need no browser: what they refer to and how readable they are."""
+
+import re
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+PAGE = Path(__file__).parents[3] / "api" / "page"
+MODULES = sorted(PAGE.glob("*.js"))
+STYLES = sorted(PAGE.glob("*.css"))
+READABLE = 4.5  # WCAG 2.2, 1.4.3, level AA
+
+
+class Tags(HTMLParser):
+    """All tags of a document with their attributes, and the text inside scripts and styles."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
+        self.inline: list[str] = []
+        self._inside = ""
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, dict(attrs)))
+        self._inside = tag
+
+    def handle_endtag(self, tag: str) -> None:
+        self._inside = ""
+
+    def handle_data(self, data: str) -> None:
+        if self._inside in {"script", "style"} and data.strip():
+            self.inline.append(data)
+
+
+@pytest.fixture(scope="module")
+def index() -> Tags:
+    parser = Tags()
+    parser.feed((PAGE / "index.html").read_text(encoding="utf-8"))
+    return parser
+
+
+def test_the_document_has_no_inline_script_style_or_handler(index: Tags) -> None:
+    assert index.inline == []
+    for tag, attributes in index.tags:
+        assert "style" not in attributes, tag
+        assert not [name for name in attributes if name.startswith("on")], tag
+
+
+def test_every_file_the_document_loads_is_a_file_of_the_page(index: Tags) -> None:
+    loaded = {
+        attributes.get("src") or attributes.get("href") or ""
+        for tag, attributes in index.tags
+        if tag in {"script", "link", "img"}
+    }
+    assert len(loaded) >= 5
+    for address in loaded:
+        assert re.fullmatch(r"/page/[\w.]+", address), address
+        assert (PAGE / address.removeprefix("/page/")).is_file(), address
+
+
+def test_every_module_imports_files_and_names_that_exist() -> None:
+    imported = 0
+    for module in MODULES:
+        text = module.read_text(encoding="utf-8")
+        for names, source in re.findall(r"import \{([^}]*)\} from \"\./([\w.]+)\"", text):
+            exported = (PAGE / source).read_text(encoding="utf-8")
+            for name in (part.strip() for part in names.split(",")):
+                pattern = rf"export (?:async )?(?:function|class|const) {name}\b"
+                assert re.search(pattern, exported), f"{module.name}: {name} from {source}"
+                rest = text.replace(names, "", 1)
+                assert re.search(rf"\b{name}\b", rest), f"{module.name}: {name} is not used"
+                imported += 1
+    assert imported > 30
+
+
+def test_every_element_looked_up_by_id_is_made_somewhere(index: Tags) -> None:
+    made = {attributes["id"] for _, attributes in index.tags if "id" in attributes}
+    code = "\n".join(path.read_text(encoding="utf-8") for path in MODULES)
+    made |= set(re.findall(r"\bid: \"([\w-]+)\"", code))
+    made |= set(re.findall(r"choice\(\"[^\"]+\", \"([\w-]+)\"", code))
+    wanted = set(re.findall(r"byId\(\"([\w-]+)\"\)", code))
+    assert len(wanted) > 10
+    assert wanted <= made
+
+
+def test_nothing_is_loaded_from_elsewhere() -> None:
+    for path in [*MODULES, *STYLES, PAGE / "index.html"]:
+        text = path.read_text(encoding="utf-8")
+        # A link to a DOI is followed by the reader, not loaded by the page.
+        assert set(re.findall(r"https?://[\w.]+", text)) <= {"https://doi.org"}, path.name
+        assert "innerHTML" not in text, path.name
+        assert "@import" not in text, path.name
+
+
+def _tokens(selector: str) -> dict[str, str]:
+    text = (PAGE / "base.css").read_text(encoding="utf-8")
+    block = re.search(rf"^{re.escape(selector)} \{{(.*?)^\}}", text, re.MULTILINE | re.DOTALL)
+    assert block is not None
+    return dict(re.findall(r"(--[\w-]+): (#[0-9a-f]{6});", block.group(1)))
+
+
+def _luminance(colour: str) -> float:
+    channels = [int(colour[at : at + 2], 16) / 255 for at in (1, 3, 5)]
+    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in channels]
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+
+def _contrast(a: str, b: str) -> float:
+    lighter, darker = sorted((_luminance(a), _luminance(b)), reverse=True)
+    return (lighter + 0.05) / (darker + 0.05)
+
+
+@pytest.mark.parametrize("scheme", [":root", ':root[data-theme="dark"]'])
+@pytest.mark.parametrize(
+    ("text", "grounds"),
+    [
+        ("--text", ["--ground", "--surface", "--sunken", "--bar"]),
+        ("--muted", ["--ground", "--surface", "--sunken"]),
+        ("--link", ["--ground", "--surface", "--sunken"]),
+        ("--on-sun", ["--sun"]),
+        ("--bad", ["--surface", "--bad-ground"]),
+        ("--good", ["--good-ground"]),
+    ],
+)
+def test_text_has_contrast_on_every_surface(scheme: str, text: str, grounds: list[str]) -> None:
+    tokens = _tokens(":root") | _tokens(scheme)
+    for ground in grounds:
+        assert _contrast(tokens[text], tokens[ground]) >= READABLE, (text, ground)
+
+
+@pytest.mark.parametrize("scheme", [":root", ':root[data-theme="dark"]'])
+def test_borders_of_controls_and_marks_of_charts_stand_out(scheme: str) -> None:
+    tokens = _tokens(":root") | _tokens(scheme)
+    for mark in ("--line-strong", "--node", "--link"):
+        assert _contrast(tokens[mark], tokens["--surface"]) >= 3.0, mark  # WCAG 1.4.11

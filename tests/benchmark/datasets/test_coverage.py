@@ -1,0 +1,85 @@
+"""The coverage table is what mapping and datasets say; a reason is given only where needed."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import pytest
+
+import survey_data
+from benchmark import datasets
+from benchmark.datasets.coverage import REASONS, CoverageError, coverage
+
+OURS = Path(survey_data.__file__).parent
+
+
+def mapped():
+    """(detector, mask) -> studies, from the table itself."""
+    values = {}
+    with (OURS / "attributes.csv").open(encoding="utf-8", newline="") as file:
+        for row in csv.DictReader(file):
+            if row["attribute"] in {"detector", "mask"} and row["value"]:
+                values.setdefault(row["study"], {}).setdefault(row["attribute"], []).append(
+                    row["value"]
+                )
+    pairs = {}
+    for study, found in values.items():
+        for detector in found.get("detector", ()):
+            for mask in found.get("mask", ()):
+                pairs.setdefault((detector, mask), set()).add(study)
+    return pairs
+
+
+def values_of(attribute):
+    with (OURS / "taxonomy.csv").open(encoding="utf-8", newline="") as file:
+        return [row["value"] for row in csv.DictReader(file) if row["attribute"] == attribute]
+
+
+def test_every_pair_of_a_mapped_study_is_there_with_its_studies():
+    found = {(pair.detector, pair.mask): set(pair.studies) for pair in coverage().used}
+    assert found == mapped()
+
+
+def test_every_pair_is_simulated_or_has_a_reason_and_never_both():
+    for pair in coverage().pairs:
+        assert bool(pair.datasets) != bool(pair.reason), pair
+        for name in pair.datasets:
+            preset = datasets.get(name)
+            assert (preset.detector, preset.mask) == (pair.detector, pair.mask)
+
+
+def test_all_detectors_and_all_masks_are_simulated():
+    found = coverage()
+    assert list(found.detectors) == values_of("detector")
+    assert list(found.masks) == values_of("mask")
+    assert len(found.detectors) == len(found.masks) == 10
+    assert all(found.detectors.values())
+    assert all(found.masks.values())
+    assert "10 of 10 detectors and 10 of 10 masks" in found.sentence()
+
+
+def test_a_pair_without_data_set_and_reason_is_an_error():
+    simulated = {n: (datasets.get(n).detector, datasets.get(n).mask) for n in datasets.names()}
+    fewer = {name: pair for name, pair in simulated.items() if pair != ("PSD", "Single-Ap.")}
+    with pytest.raises(CoverageError, match=r"^PSD Single-Ap\. has neither a dataset nor a reason"):
+        coverage(fewer)
+    with pytest.raises(CoverageError, match="PDA Maskless has neither"):
+        coverage(simulated, reasons={})
+    found = coverage(fewer, reasons={**REASONS, ("PSD", "Single-Ap."): "why not"})
+    (pair,) = (p for p in found.pairs if p.detector == "PSD")
+    assert (pair.datasets, pair.reason) == ((), "why not")
+
+
+def test_a_reason_that_is_not_needed_is_an_error():
+    with pytest.raises(CoverageError, match="PD Maskless is simulated and has a reason"):
+        coverage(reasons={**REASONS, ("PD", "Maskless"): "forgotten"})
+    with pytest.raises(CoverageError, match=r"OI V-Slit has a reason .* used by no study"):
+        coverage(reasons={**REASONS, ("OI", "V-Slit"): "nobody asked"})
+
+
+def test_reasons_say_what_the_mapping_says():
+    """Both reasons name Post2013, whose detectors and masks cross to the two pairs."""
+    for pair, reason in REASONS.items():
+        assert mapped()[pair] == {"Post2013"}
+        assert "Post2013" in reason

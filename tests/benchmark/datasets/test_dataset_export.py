@@ -1,0 +1,309 @@
+"""An export holds what its card says, byte for byte each time, and says what has been changed."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import shutil
+import subprocess
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from benchmark import datasets
+from benchmark.datasets import Samples, UnknownDatasetError
+from benchmark.datasets import export as dataset_export
+from benchmark.datasets.checksums import CHECKSUMS, ChecksumFileError, write_checksums
+from benchmark.datasets.export import CARD, ExportError, export, verify
+from benchmark.datasets.export_arrays import read_archive, write_archive
+from benchmark.metrics.score import SIGNIFICANT_DIGITS
+from benchmark.plan.parts import SPLITS, UnknownNameError
+from benchmark.results.digests import samples_hash
+from benchmark.results.store import PUBLISHED, Store
+
+FEW = 5
+#: One of each kind of observation, with windows, several arrays, context, elements without frames.
+KINDS = ("cmos-single-aperture", "ccd-periodic", "qpd-single-aperture", "event-l-slit", "pd-orbit")
+
+
+def exported(name, out, **options):
+    return export(name, out, **{"conditions": ["nominal"], "n": FEW, **options})
+
+
+@pytest.fixture(scope="module", params=KINDS)
+def made(request, tmp_path_factory):
+    return exported(request.param, tmp_path_factory.mktemp("export") / request.param)
+
+
+@pytest.fixture(scope="module")
+def quads(tmp_path_factory):
+    return exported("qpd-single-aperture", tmp_path_factory.mktemp("export") / "qpd")
+
+
+@pytest.fixture
+def copy(quads, tmp_path):
+    return Path(shutil.copytree(quads.directory, tmp_path / "copy"))
+
+
+def content(directory):
+    return {
+        path.relative_to(directory).as_posix(): path.read_bytes()
+        for path in directory.rglob("*")
+        if path.is_file()
+    }
+
+
+def test_the_card_lists_every_file_with_its_bytes(made):
+    card = json.loads((made.directory / CARD).read_text("utf-8"))
+    assert card == made.card
+    assert {file["path"] for file in card["files"]} | {CARD, CHECKSUMS} == set(made.files)
+    for file in card["files"]:
+        found = (made.directory / file["path"]).read_bytes()
+        assert (file["bytes"], file["sha256"]) == (len(found), hashlib.sha256(found).hexdigest())
+    assert verify(made.directory) == []
+
+
+def test_other_people_s_tools_check_the_sums(made):
+    run = subprocess.run(
+        ["sha256sum", "--check", "--strict", CHECKSUMS],
+        cwd=made.directory,
+        capture_output=True,
+        check=False,
+    )
+    assert run.returncode == 0, run.stderr
+
+
+def test_the_arrays_are_the_first_samples_of_the_data_set_with_its_bound(made):
+    card = made.card
+    preset = datasets.get(card["name"])
+    for file in card["files"]:
+        if file["kind"] != "arrays":
+            continue
+        condition, split = file["condition"], file["split"]
+        whole = preset.generate(condition, split)
+        bound = preset.bound(condition, split, FEW)
+        with np.load(made.directory / file["path"], allow_pickle=False) as arrays:
+            assert set(arrays.files) == set(file["arrays"]) <= set(card["arrays"])
+            for name, expected in whole.arrays().items():
+                assert (name in arrays.files) == (expected is not None)
+                if expected is not None:
+                    assert arrays[name].dtype == expected.dtype
+                    np.testing.assert_array_equal(arrays[name], expected[:FEW])
+            np.testing.assert_array_equal(arrays["bound_deg"], bound.angle_deg)
+            np.testing.assert_array_equal(arrays["bound_alpha_deg"], bound.alpha_deg)
+            np.testing.assert_array_equal(arrays["bound_beta_deg"], bound.beta_deg)
+            np.testing.assert_array_equal(arrays["observable"], bound.observable)
+            for name, about in file["arrays"].items():
+                assert about == {
+                    "dtype": arrays[name].dtype.str,
+                    "shape": list(arrays[name].shape),
+                }
+            seen = arrays["bound_deg"][arrays["observable"]]
+        if seen.size:
+            assert file["bound_rms_deg"] == pytest.approx(
+                np.sqrt(np.mean(seen**2)), rel=0.5 * 10 ** (1 - SIGNIFICANT_DIGITS)
+            )
+        else:
+            assert file["bound_rms_deg"] is None
+        assert file["samples"] == FEW
+        assert file["published_data_hash"] is None, "five samples are not the published data"
+
+
+def test_tables_read_back_as_the_arrays(made):
+    tables = [file for file in made.card["files"] if file["kind"] == "table"]
+    assert bool(tables) == (made.card["observation"] == "currents")
+    for file in tables:
+        table = pd.read_csv(made.directory / file["path"])
+        assert list(table.columns) == file["columns"]
+        arrays = read_archive((made.directory / file["path"]).with_suffix(".npz"))
+        for name, array in arrays.items():
+            if array.ndim == 1:
+                columns = [name]
+            elif name == "observations":
+                columns = [f"signal_{k + 1}" for k in range(array.shape[1])]
+            else:
+                columns = [f"{name}_{axis}" for axis in "xyz"]
+            found = table[columns].to_numpy().reshape(array.shape)
+            assert found.dtype == array.dtype
+            np.testing.assert_array_equal(found, array)
+
+
+def test_the_card_says_geometry_seeds_studies_and_what_was_asked_for(made):
+    card, preset = made.card, datasets.get(made.card["name"])
+    assert card["exported"] == {
+        "conditions": ["nominal"],
+        "splits": list(SPLITS),
+        "first_samples": FEW,
+    }
+    assert datasets.parameters_of(card, "nominal") == preset.parameters("nominal")
+    for name in ("geometry", "units", "seeds", "splits", "regime", "description"):
+        assert card[name] == preset.card()[name]
+    assert [study["key"] for study in card["studies"]] == list(preset.follows)
+    assert all({"title", "year", "doi"} <= study.keys() for study in card["studies"])
+
+
+def test_exporting_twice_gives_the_same_bytes(quads, tmp_path):
+    again = exported("qpd-single-aperture", tmp_path / "again")
+    assert content(again.directory) == content(quads.directory)
+
+
+def test_a_whole_split_carries_the_published_hash(tmp_path):
+    made = export("pd-maskless-cube", tmp_path / "cube", conditions=["cosine"], splits=["test"])
+    (arrays,) = (file for file in made.card["files"] if file["kind"] == "arrays")
+    pin = Store(PUBLISHED).pins()["pd-maskless-cube", "cosine", "test"]
+    assert arrays["data_hash"] == arrays["published_data_hash"] == pin.data_hash
+    assert arrays["samples"] == pin.n
+    assert {Path(name).parts[0] for name in made.files} == {CARD, CHECKSUMS, "cosine"}
+    loaded = read_archive(made.directory / "cosine" / "test.npz")
+    assert samples_hash(Samples(loaded["observations"], loaded["sun"], None)) == pin.data_hash
+
+
+def test_a_flipped_byte_is_found_in_any_file(copy):
+    for name in [*content(copy)]:
+        if name == CHECKSUMS:
+            continue
+        path = copy / name
+        good = path.read_bytes()
+        for place in (0, len(good) // 2, len(good) - 1):
+            path.write_bytes(good[:place] + bytes([good[place] ^ 1]) + good[place + 1 :])
+            ((where, what),) = verify(copy)
+            assert where == name
+            assert what.startswith("SHA-256 is ")
+        path.write_bytes(good)
+    assert verify(copy) == []
+
+
+def test_a_missing_and_an_extra_file_are_named(copy):
+    (copy / "nominal" / "test.npz").rename(copy / "nominal" / "tset.npz")
+    assert verify(copy) == [
+        ("nominal/test.npz", "listed but missing"),
+        ("nominal/tset.npz", "not listed"),
+    ]
+
+
+def changed(copy, **arrays):
+    """The test split with other arrays, checksums and the file's sum in the card made to fit."""
+    path = copy / "nominal" / "test.npz"
+    write_archive(path, {**read_archive(path), **arrays})
+    fitting(copy, path.read_bytes())
+
+
+def fitting(copy, written):
+    card = json.loads((copy / CARD).read_text())
+    for file in card["files"]:
+        if file["path"] == "nominal/test.npz":
+            file["sha256"] = hashlib.sha256(written).hexdigest()
+    (copy / CARD).write_text(json.dumps(card))
+    write_checksums(copy)
+
+
+def test_changed_arrays_are_found_though_every_checksum_holds(copy):
+    arrays = read_archive(copy / "nominal" / "test.npz")
+    changed(copy, observations=arrays["observations"] + 1e-9)
+    ((where, what),) = verify(copy)
+    assert where == "nominal/test.npz"
+    assert what.startswith("hash of the data is ")
+    changed(copy, observations=arrays["observations"][:3])
+    ((where, what),) = verify(copy)
+    assert "the card says" in what
+    (copy / "nominal" / "test.npz").write_bytes(b"no archive")
+    fitting(copy, b"no archive")
+    ((where, what),) = verify(copy)
+    assert "not an archive of arrays" in what
+
+
+def test_what_the_card_no_longer_says_is_found(copy):
+    (copy / "nominal" / "test.npz").unlink()
+    write_checksums(copy)
+    assert verify(copy) == [("nominal/test.npz", "in the card but missing")]
+    (copy / CARD).write_text('{"schema": 1, "files": [{"path": "x"}]}')
+    write_checksums(copy)
+    assert verify(copy) == [("x", "in the card but missing")]
+    (copy / CARD).write_text('{"schema": 1, "files": [3]}')
+    write_checksums(copy)
+    with pytest.raises(ExportError, match="not the card of an export"):
+        verify(copy)
+
+
+@pytest.mark.parametrize(
+    ("card", "says"),
+    [
+        (None, "it has no card.json"),
+        ("{", "not JSON"),
+        ("[]", "not the card"),
+        ('{"schema": 99, "files": []}', "schema 1"),
+    ],
+)
+def test_a_directory_that_is_no_export_is_refused(tmp_path, card, says):
+    with pytest.raises(ExportError, match="not an export of a dataset, it has no checksums"):
+        verify(tmp_path)
+    (tmp_path / "notes.txt").write_text("mine")
+    if card is not None:
+        (tmp_path / CARD).write_text(card)
+    write_checksums(tmp_path)
+    with pytest.raises(ExportError, match=says):
+        verify(tmp_path)
+    (tmp_path / CHECKSUMS).write_text("00  x\n")
+    with pytest.raises(ChecksumFileError):
+        verify(tmp_path)
+
+
+def test_nothing_in_the_way_is_overwritten(copy, tmp_path):
+    before = content(copy)
+    with pytest.raises(ExportError, match="holds an earlier export; replace it with --force"):
+        exported("qpd-single-aperture", copy)
+    assert content(copy) == before
+    made = exported("qpd-single-aperture", copy, n=3, force=True)
+    assert made.card["exported"]["first_samples"] == 3
+    assert verify(copy) == []
+    (copy / "nominal" / "notes.txt").write_text("mine")
+    with pytest.raises(ExportError, match=r"holds nominal/notes\.txt, which is no part"):
+        exported("qpd-single-aperture", copy, force=True)
+    foreign = tmp_path / "foreign"
+    foreign.mkdir()
+    (foreign / "thesis.tex").write_text("mine")
+    with pytest.raises(ExportError, match=r"holds thesis\.tex"):
+        exported("qpd-single-aperture", foreign, force=True)
+    with pytest.raises(ExportError, match="expected a directory or nothing"):
+        exported("qpd-single-aperture", foreign / "thesis.tex", force=True)
+    (tmp_path / "link").symlink_to(foreign)
+    with pytest.raises(ExportError, match="expected a directory or nothing"):
+        exported("qpd-single-aperture", tmp_path / "link", force=True)
+    assert (foreign / "thesis.tex").read_text() == "mine"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["copy", "foreign", "link"]
+
+
+def test_a_failure_half_way_leaves_nothing(tmp_path, monkeypatch):
+    def failing(*_):
+        raise OSError("disk full")
+
+    monkeypatch.setattr(dataset_export, "preview_png", failing)
+    with pytest.raises(OSError, match="disk full"):
+        exported("qpd-single-aperture", tmp_path / "out")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_wrong_names_and_numbers_are_refused(tmp_path):
+    with pytest.raises(UnknownDatasetError, match="did you mean 'pd-maskless-cube'"):
+        exported("pd-maskless-cub", tmp_path / "x")
+    with pytest.raises(UnknownNameError, match="no condition named 'nominl'; did you mean"):
+        exported("pd-maskless-cube", tmp_path / "x", conditions=["nominl"])
+    with pytest.raises(UnknownNameError, match="no split named 'tset'; did you mean 'test'"):
+        exported("pd-maskless-cube", tmp_path / "x", splits=["tset"])
+    with pytest.raises(ValueError, match="n must be at least 1; got 0"):
+        exported("pd-maskless-cube", tmp_path / "x", n=0)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_archives_hold_no_time_and_no_pickle(tmp_path):
+    arrays = {"a": np.arange(6.0).reshape(2, 3), "context.b": np.array([True, False])}
+    write_archive(tmp_path / "one.npz", arrays)
+    write_archive(tmp_path / "two.npz", arrays)
+    assert (tmp_path / "one.npz").read_bytes() == (tmp_path / "two.npz").read_bytes()
+    with zipfile.ZipFile(tmp_path / "one.npz") as archive:
+        assert {entry.date_time for entry in archive.infolist()} == {(1980, 1, 1, 0, 0, 0)}
+    with pytest.raises(ValueError, match="Object arrays"):
+        write_archive(tmp_path / "three.npz", {"a": np.array([{}])})

@@ -1,0 +1,114 @@
+"""Previews show what was simulated: every data set has one, and it is drawn from its samples."""
+
+from __future__ import annotations
+
+import math
+
+import cv2
+import numpy as np
+import pytest
+
+from benchmark import datasets
+from benchmark.datasets.preview import FIRST_SAMPLES, preview_png
+from benchmark.datasets.preview_canvas import PAPER, Canvas, Plot, decades, heat, number, ticks
+
+
+def read(png):
+    return cv2.imdecode(np.frombuffer(png, dtype=np.uint8), cv2.IMREAD_COLOR)[:, :, ::-1]
+
+
+@pytest.mark.parametrize("name", datasets.names())
+def test_every_data_set_has_a_picture_with_much_on_it(name):
+    png = preview_png(datasets.get(name))
+    assert png.startswith(b"\x89PNG")
+    assert len(png) < 600_000
+    image = read(png)
+    assert image.shape[1] == 1000
+    assert 250 < image.shape[0] < 700
+    drawn = (image != PAPER).any(axis=2)
+    assert drawn.mean() > 0.005
+    assert drawn[:60].any(), "a title"
+    assert not drawn[:, -8:].any(), "nothing runs off the edge"
+    assert not drawn[-3:].any()
+
+
+def test_a_picture_is_the_same_each_time_and_another_one_for_another_condition():
+    preset = datasets.get("qpd-single-aperture")
+    assert preview_png(preset, "high-noise") == preview_png(preset, "high-noise")
+    assert preview_png(preset, "high-noise") != preview_png(preset, "nominal")
+    with pytest.raises(ValueError, match="no condition 'warm'"):
+        preview_png(preset, "warm")
+
+
+def test_frames_are_drawn_from_the_first_samples_only(monkeypatch):
+    preset = datasets.get("cmos-multi-aperture")
+    asked = []
+    generate = type(preset).generate
+
+    def watched(self, condition, split, n=None):
+        asked.append(n)
+        return generate(self, condition, split, n)
+
+    monkeypatch.setattr(type(preset), "generate", watched)
+    preview_png(preset)
+    assert asked == [FIRST_SAMPLES]
+
+
+def test_a_spot_is_drawn_where_it_is():
+    """The brightest part of a tile is the spot of the sample with the smallest incidence."""
+    preset = datasets.get("cmos-single-aperture")
+    samples = preset.generate("nominal", "test", FIRST_SAMPLES)
+    nearest = int(np.argmax(samples.sun[:, 2]))
+    frame = samples.observations[nearest].astype(float)
+    rows, columns = np.mgrid[:64, :64]
+    frame -= np.median(frame)
+    y, x = (np.sum(frame * grid) / frame.sum() for grid in (rows, columns))
+    tile = read(preview_png(preset))[78 : 78 + 208, 24 : 24 + 208].astype(float).sum(axis=2)
+    tile = tile[8:200, 8:200]  # the grey border
+    bright = tile > 0.8 * tile.max()
+    at_y, at_x = (float(np.mean(k)) for k in np.nonzero(bright))
+    assert (at_x / 3, at_y / 3) == pytest.approx((x + 1 / 3, y + 1 / 3), abs=0.7)
+
+
+def test_colours_rise_with_the_value():
+    image = heat(np.linspace(0, 1, 256)[None]).astype(float)[0]
+    light = image @ [0.2126, 0.7152, 0.0722]
+    assert (np.diff(light) >= -0.6).all()
+    assert light[0] < 5
+    assert light[-1] > 240
+    assert tuple(heat(np.array([[math.nan]]))[0, 0]) == PAPER
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "most", "expected"),
+    [
+        (0.0, 10.0, 5, [0, 2, 4, 6, 8, 10]),
+        (-40.0, 40.0, 8, [-40, -30, -20, -10, 0, 10, 20, 30, 40]),
+        (0.03, 0.09, 3, [0.04, 0.06, 0.08]),
+        (7.0, 7.0, 3, [7.0]),
+    ],
+)
+def test_ticks_are_round_and_inside(low, high, most, expected):
+    assert ticks(low, high, most) == pytest.approx(expected)
+
+
+def test_decades_are_ones_twos_and_fives():
+    assert decades(80.0, 2500.0) == pytest.approx([100, 200, 500, 1000, 2000])
+
+
+@pytest.mark.parametrize(
+    ("value", "text"), [(0.0, "0"), (12.5, "12.5"), (4e5, "4e5"), (2e-4, "2e-4"), (1000.0, "1000")]
+)
+def test_numbers_are_short(value, text):
+    assert number(value) == text
+
+
+def test_a_curve_breaks_where_there_is_nothing():
+    canvas = Canvas(100, 50)
+    plot = Plot(canvas, (0, 0, 100, 40), (0.0, 10.0), (0.0, 1.0), x_ticks=False)
+    canvas.image[:] = 255
+    plot.curve(np.arange(11.0), np.where(np.arange(11) == 5, np.nan, 0.5), (0, 0, 0))
+    dark = np.nonzero((canvas.image < 128).all(axis=2).any(axis=0))[0]
+    assert dark.min() == 0
+    assert not set(range(43, 57)) & set(dark.tolist())
+    assert {20, 70} <= set(dark.tolist())

@@ -1,0 +1,330 @@
+"""The standard datasets: found by walking, seeded by name, the same whenever they are made."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import json
+import math
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from algorithms.contract import Observation
+from benchmark import datasets
+from benchmark.datasets import Samples, UnknownDatasetError, data_digest
+from benchmark.datasets.card import differences, merged
+from benchmark.datasets.conditions.full_frames import FullFramePreset
+from benchmark.simulator.sensors.frames import FrameSensor
+
+ROOT = Path(__file__).parents[3]
+NAMES = datasets.names()
+CASES = [(name, c) for name in NAMES for c in datasets.get(name).conditions]
+SPLITS = ("calibration", "test")
+#: Samples of a split that stand for all of them; that all are as pinned, runs and pins check.
+FEW = 3
+
+
+@functools.cache
+def first(name: str, condition: str, split: str) -> Samples:
+    return datasets.get(name).generate(condition, split, FEW)
+
+
+@functools.cache
+def card_of(name: str) -> dict[str, Any]:
+    return datasets.get(name).card()  # a second for masks of a thousand holes
+
+
+def test_every_module_of_the_package_is_a_dataset() -> None:
+    files = sorted((ROOT / "benchmark" / "datasets").glob("[!_]*.py"))
+    assert [f.stem.replace("_", "-") for f in files] == list(datasets.names())
+    assert set(datasets.names()) >= {
+        "cmos-single-aperture",
+        "qpd-single-aperture",
+        "pd-maskless-cube",
+    }
+
+
+def test_unknown_names_are_answered_with_the_nearest() -> None:
+    with pytest.raises(UnknownDatasetError, match="did you mean 'cmos-single-aperture'") as caught:
+        datasets.get("cmos-single-apertures")
+    assert caught.value.nearest == "cmos-single-aperture"
+    assert isinstance(caught.value, LookupError)
+    assert isinstance(caught.value, ValueError)
+    preset = datasets.get("pd-maskless-cube")
+    with pytest.raises(ValueError, match="no condition 'warm'; it has nominal"):
+        preset.generate("warm", "test")
+    with pytest.raises(ValueError, match="no split 'train'; there are calibration, test"):
+        preset.generate("nominal", "train")
+
+
+#: Type, dimensions and whether there are windows, by what is observed.
+ARRAYS = {
+    Observation.FRAMES: (np.uint16, 3, True),
+    Observation.PROFILES: (np.uint16, 2, False),
+    Observation.CURRENTS: (np.float64, 2, False),
+    Observation.EVENTS: (np.float64, 3, False),
+}
+
+
+@pytest.mark.parametrize(("name", "condition"), CASES)
+def test_samples_are_what_the_card_says(name: str, condition: str) -> None:
+    preset = datasets.get(name)
+    kind, dimensions, windows = ARRAYS[preset.observation]
+    for split in SPLITS:
+        samples = first(name, condition, split)
+        assert samples.sun.shape == (FEW, 3)
+        assert np.linalg.norm(samples.sun, axis=1) == pytest.approx(1.0, abs=1e-14)
+        assert len(samples.observations) == FEW
+        assert samples.observations.dtype == kind
+        assert samples.observations.ndim == dimensions
+        if windows:
+            assert samples.origin_px is not None
+            assert samples.origin_px.shape == (FEW, 2)
+        else:
+            assert samples.origin_px is None
+        context = samples.context or {}
+        assert set(context) == set(card_of(name).get("context", ()))
+        assert all(len(column) == FEW for column in context.values())
+        if preset.observation is Observation.EVENTS:
+            missing = np.isnan(samples.observations)
+            assert (missing.all(axis=2) == missing.any(axis=2)).all()
+            assert (np.diff(missing[..., 0].astype(int), axis=1) >= 0).all(), "at the end"
+            assert not missing[:, 0].any()
+        else:
+            assert np.isfinite(samples.observations).all()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_cards_say_shared_things_once(name: str) -> None:
+    """A mask of a thousand holes is 140 kB; written for every condition it made 1.2 MB."""
+    card = card_of(name)
+    assert len(json.dumps(card)) < 250_000
+    first, *others = card["conditions"].values()
+    assert not first["parameters"]
+    for about in others:
+        assert about["parameters"].keys() >= {"condition"}
+        assert len(json.dumps(about)) < 10_000
+    with pytest.raises(KeyError):
+        datasets.parameters_of(card, "no such condition")
+
+
+def test_differences_of_objects_are_taken_back_by_merging() -> None:
+    base = {"a": 1, "b": {"type": "X", "c": 2, "d": [1, 2]}, "e": None, "f": {"g": 1, "h": 2}}
+    for other in (
+        base,
+        {**base, "a": None},
+        {**base, "b": None, "e": {"type": "Z", "y": 1}},
+        {**base, "b": {"type": "X", "c": 2, "d": [1]}},
+        {**base, "b": {"type": "Y", "x": 0}, "f": {"g": None, "h": 2}},
+    ):
+        assert merged(base, differences(base, other)) == other
+    assert differences(base, {**base, "b": {"type": "X", "c": 3, "d": [1, 2]}}) == {"b": {"c": 3}}
+    with pytest.raises(ValueError, match="objects of the same members"):
+        differences(base, {"a": 1})
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_cards_and_parameters_are_plain_json(name: str) -> None:
+    preset = datasets.get(name)
+    card = card_of(name)
+    assert json.loads(json.dumps(card, allow_nan=False)) == card
+    assert list(card["conditions"]) == list(preset.conditions)
+    for condition in preset.conditions:
+        assert datasets.parameters_of(card, condition) == preset.parameters(condition)
+    texts = {json.dumps(preset.parameters(c), sort_keys=True) for c in preset.conditions}
+    assert len(texts) == len(preset.conditions)
+
+
+def test_all_samples_differ_from_one_condition_and_split_to_another() -> None:
+    digests = {data_digest(first(*case, split)) for case in CASES for split in SPLITS}
+    assert len(digests) == len(CASES) * len(SPLITS)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_conditions_share_the_sun_and_calibration_is_apart_from_test(name: str) -> None:
+    preset = datasets.get(name)
+    card = card_of(name)
+    nominal = {}
+    for split in SPLITS:
+        suns = [preset.scene(condition, split).sun for condition in preset.conditions]
+        assert suns[0].shape == (card["splits"][split]["samples"], 3)
+        assert all(np.array_equal(sun, suns[0]) for sun in suns)
+        assert np.array_equal(first(name, "nominal", split).sun, suns[0][:FEW])
+        nominal[split] = suns[0]
+    assert (nominal["test"] @ nominal["calibration"].T).max() < 1.0
+
+
+def test_generation_depends_on_neither_order_nor_process_nor_import() -> None:
+    """A fresh process, conditions backwards, must give the same bytes; and import nothing heavy."""
+    code = f"""
+import sys
+from benchmark import datasets
+heavy = [m for m in ("numba", "scipy", "cv2", "pandas") if m in sys.modules]
+assert not heavy, heavy
+for name in datasets.names():
+    datasets.get(name).card()
+    datasets.get(name).parameters("nominal")
+assert "numba" not in sys.modules
+for name in reversed(datasets.names()):
+    for condition in datasets.get(name).conditions[:-3:-1]:  # two are as good as all
+        for split in ("test", "calibration"):
+            samples = datasets.get(name).generate(condition, split, {FEW})
+            print(name, condition, split, datasets.data_digest(samples))
+"""
+    run = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False
+    )
+    assert run.returncode == 0, run.stderr
+    lines = dict(line.rsplit(" ", 1) for line in run.stdout.splitlines())
+    assert len(lines) == 4 * len(NAMES)
+    for place, digest in lines.items():
+        assert digest == data_digest(first(*place.split())), place
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_generation_depends_on_neither_the_batch_nor_how_much_is_wanted(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    preset = datasets.get(name)
+    condition = preset.conditions[-1]
+    monkeypatch.setattr("benchmark.datasets.preset.BATCH", 2)
+    more = preset.generate(condition, "calibration", FEW + 2)
+    for key, array in first(name, condition, "calibration").arrays().items():
+        there = more.arrays()[key]
+        assert array is there is None or np.array_equal(array, there[:FEW], equal_nan=True), key
+
+
+@pytest.mark.parametrize("name", ["cmos-single-aperture", "pda-slit", "pd-orbit", "event-l-slit"])
+def test_all_samples_begin_with_the_first_and_do_not_depend_on_the_batch(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    preset = datasets.get(name)
+    condition = preset.conditions[-1]
+    everything = preset.generate(condition, "calibration")
+    assert len(everything.sun) == card_of(name)["splits"]["calibration"]["samples"]
+    for key, array in first(name, condition, "calibration").arrays().items():
+        there = everything.arrays()[key]
+        assert array is there is None or np.array_equal(array, there[:FEW], equal_nan=True), key
+    monkeypatch.setattr("benchmark.datasets.preset.BATCH", 17)
+    again = preset.generate(condition, "calibration")
+    assert data_digest(again) == data_digest(everything)
+
+
+def test_digest_sees_values_shapes_and_types() -> None:
+    base = np.arange(6.0)
+    sun = np.ones((2, 3))
+    digests = {
+        data_digest(Samples(array, sun, origin))
+        for array in (base, base.reshape(2, 3), base.astype(np.float32), base + 1)
+        for origin in (None, np.zeros((2, 2), dtype=np.int64))
+    }
+    assert len(digests) == 8
+    assert data_digest(Samples(base[::1], sun, None)) == data_digest(
+        Samples(np.repeat(base, 2)[::2], sun.copy(), None)
+    )
+
+
+def test_the_window_says_little_about_the_spot() -> None:
+    preset = datasets.get("cmos-single-aperture")
+    sensor = preset.setups["nominal"].sensor
+    assert isinstance(sensor, FrameSensor)
+    scene = preset.scene("nominal", "test")
+    assert scene.origin_px is not None
+    miss = scene.origin_px + 32 - sensor.spot_px(scene.sun)
+    assert np.abs(miss).max() <= 8.5
+    # uniform over 17 whole pixels, independent between axes and of the truth's fraction
+    assert miss.std(axis=0) == pytest.approx(math.sqrt((17**2) / 12), rel=0.05)
+    assert abs(np.corrcoef(miss.T)[0, 1]) < 0.1
+
+
+@pytest.mark.parametrize("condition", datasets.get("cmos-single-aperture").conditions)
+def test_spots_lie_whole_inside_their_windows_neither_dark_nor_saturated(condition: str) -> None:
+    preset = datasets.get("cmos-single-aperture")
+    frames = preset.generate(condition, "test").observations
+    border = np.concatenate(
+        [
+            frames[:, [0, -1]].reshape(len(frames), -1),
+            frames[:, :, [0, -1]].reshape(len(frames), -1),
+        ],
+        axis=1,
+    )
+    assert (border.max(axis=1) < 0.5 * frames.max(axis=(1, 2))).all()
+    assert frames.max() < 2 ** preset.setups[condition].sensor.detector.bits - 1
+    assert np.mean(frames == 0) < 1e-3
+
+
+def test_low_noise_is_the_nominal_unit_with_less_noise() -> None:
+    preset = datasets.get("cmos-single-aperture")
+    low, nominal = preset.fixed_pattern("low-noise"), preset.fixed_pattern("nominal")
+    assert np.array_equal(low["gain"], nominal["gain"])
+    assert preset.setups["low-noise"].sensor.camera == preset.setups["nominal"].sensor.camera
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_bounds_order_with_the_noise(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of directions from all over the calibration split."""
+    preset = datasets.get(name)
+    whole = type(preset).scene
+    # whole frames take up to a second each
+    count = 5 if isinstance(preset, FullFramePreset) or preset.mask == "Lens" else 25
+
+    def some(self, condition, split):
+        scene = whole(self, condition, split)
+        rows = np.linspace(0, len(scene) - 1, count).round().astype(int)
+        columns = {f.name: getattr(scene, f.name) for f in dataclasses.fields(scene)}
+        return dataclasses.replace(
+            scene, **{key: column[rows] for key, column in columns.items() if column is not None}
+        )
+
+    monkeypatch.setattr(type(preset), "scene", some)
+    low, nominal, high = (
+        preset.bound(c, "calibration").angle_deg for c in ("low-noise", "nominal", "high-noise")
+    )
+    seen = np.isfinite(low) & np.isfinite(nominal) & np.isfinite(high)
+    assert len(seen) == count
+    assert seen.mean() > 0.8
+    assert (low[seen] <= nominal[seen]).all()
+    assert (nominal[seen] <= high[seen]).all()
+
+
+def test_round_aperture_condition_has_its_own_geometry() -> None:
+    preset = datasets.get("qpd-single-aperture")
+    assert preset.geometry_for("round-aperture").aperture_shape == "round"
+    assert preset.geometry_for("nominal") == preset.geometry
+    assert preset.geometry.aperture_shape == "square"
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_propagation_is_geometric_only_above_a_fresnel_number_of_ten(name: str) -> None:
+    preset = datasets.get(name)
+    regime = card_of(name)["regime"]
+    assert regime["reason"]
+    if regime["propagation"] == "geometric" and preset.mask != "Maskless":
+        assert regime["fresnel_number"] > 10
+    elif regime["propagation"] == "lens":
+        assert preset.mask == "Lens"
+
+
+def test_earth_shines_on_test_samples_only_and_turns_the_estimate_by_degrees() -> None:
+    preset = datasets.get("pd-maskless-cube")
+    assert preset.scene("albedo", "calibration").albedo is None
+    albedo = preset.scene("albedo", "test").albedo
+    assert albedo is not None
+    assert albedo.min() >= 0
+    assert 0.1 < albedo.max() < 0.4
+    # maximum currents (eq:albedo1): the larger of each pair, signed
+    error = {}
+    for condition in ("nominal", "albedo"):
+        samples = preset.generate(condition, "test")
+        plus, minus = samples.observations[:, ::2], samples.observations[:, 1::2]
+        found = np.where(plus >= minus, plus, -minus)
+        found /= np.linalg.norm(found, axis=1)[:, None]
+        apart = np.clip(np.sum(found * samples.sun, axis=1), -1, 1)
+        error[condition] = np.degrees(np.arccos(apart))
+    assert error["nominal"].max() < 10
+    assert 10 < error["albedo"].max() < 60

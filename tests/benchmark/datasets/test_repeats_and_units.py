@@ -1,0 +1,166 @@
+"""The split of repeated poses, and other units of a sensor."""
+
+from __future__ import annotations
+
+from dataclasses import astuple, replace
+
+import numpy as np
+import pytest
+
+from benchmark import datasets
+from benchmark.datasets.repeats import Repeats
+from benchmark.datasets.units import assembled, tolerance_of, tolerances
+from benchmark.simulator.optics.assembly import Assembly
+from benchmark.simulator.sensors.frames import FrameSensor
+
+PRESETS = {name: datasets.get(name) for name in datasets.names()}
+
+
+@pytest.mark.parametrize(
+    "name", ["cmos-single-aperture", "pd-orbit", "cmos-single-aperture-pinhole"]
+)
+def test_passes_differ_in_noise_alone(name: str) -> None:
+    preset = PRESETS[name]
+    scene, test = preset.scene("nominal", "repeat"), preset.scene("nominal", "test")
+    again = preset.repeats.chosen(len(test))
+    poses, passes = len(again), preset.repeats.passes
+    assert len(scene) == poses * passes == 200
+    for column in ("sun", "irradiance", "stray", "origin_px", "albedo", "temperature_k"):
+        whole = getattr(test, column, None)
+        if whole is not None:
+            held = getattr(scene, column).reshape(passes, poses, *whole.shape[1:])
+            assert (held == whole[again]).all(), column
+    samples = preset.generate("nominal", "repeat")
+    observed = samples.observations.reshape(passes, poses, -1)
+    assert (observed[0] != observed[1]).any(axis=1).all()
+    assert (
+        observed != preset.generate("nominal", "test").observations[again].reshape(poses, -1)
+    ).any()
+
+
+def test_the_spread_of_repeats_is_the_noise_the_sensor_states() -> None:
+    """Over 200 passes the variance of every pixel is the shot, read and rounding noise."""
+    preset = replace(PRESETS["cmos-single-aperture"], repeats=Repeats(poses=3, passes=200))
+    samples = preset.generate("nominal", "repeat")
+    frames = samples.observations.reshape(200, 3, -1).astype(float)
+    sensor, pattern = preset.condition("nominal").sensor, preset.fixed_pattern("nominal")
+    scene = preset.scene("nominal", "repeat").part(0, 3)
+    variance = sensor.variance(sensor.expected(scene, pattern)).reshape(3, -1)
+    ratio = frames.var(axis=0, ddof=1) / variance
+    assert ratio.mean() == pytest.approx(1.0, abs=0.01)
+
+
+def test_repeats_of_a_flight_carry_the_context_of_their_moments() -> None:
+    preset = PRESETS["ccd-orbit"]
+    repeat, test = (preset.generate("nominal", split) for split in ("repeat", "test"))
+    again = np.tile(preset.repeats.chosen(len(test.sun)), preset.repeats.passes)
+    assert repeat.context.keys() == test.context.keys()
+    for name, column in repeat.context.items():
+        assert (column == test.context[name][again]).all(), name
+
+
+@pytest.mark.parametrize("count", [1, 7, 24, 25, 1000])
+def test_poses_are_spread_over_the_test_split(count: int) -> None:
+    chosen = Repeats().chosen(count)
+    assert len(chosen) == min(25, count) == len(set(chosen.tolist()))
+    assert 0 <= chosen.min() <= chosen.max() < count
+    assert np.ptp(np.diff(chosen)) <= 1 if len(chosen) > 2 else True
+
+
+def test_repeats_need_two_passes() -> None:
+    with pytest.raises(ValueError, match="2 passes; got 25 and 1"):
+        Repeats(passes=1)
+
+
+def test_unit_0_is_the_dataset_itself() -> None:
+    preset = PRESETS["cmos-single-aperture"]
+    assert preset.as_unit(0) is preset
+    with pytest.raises(ValueError, match="numbered from 0; got -1"):
+        preset.as_unit(-1)
+    with pytest.raises(ValueError, match="this is unit 2"):
+        preset.as_unit(2).as_unit(1)
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_another_unit_sees_the_same_suns_otherwise(name: str) -> None:
+    standard, other = PRESETS[name], PRESETS[name].as_unit(1)
+    one, two = (preset.generate("nominal", "test", 8) for preset in (standard, other))
+    assert np.array_equal(one.sun, two.sun)
+    assert one.observations.dtype == two.observations.dtype
+    same = one.observations.tobytes() == two.observations.tobytes()
+    assert not same
+    assert other.geometry == standard.geometry, "the design is what it was"
+    again = PRESETS[name].as_unit(1).generate("nominal", "test", 8)
+    assert again.observations.tobytes() == two.observations.tobytes()
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_every_condition_of_another_unit_can_be_generated(name: str) -> None:
+    preset = PRESETS[name].as_unit(3)
+    for condition in preset.conditions:
+        for split in ("calibration", "test", "repeat"):
+            assert len(preset.generate(condition, split, 2).sun) == 2
+            sensor, scene = preset.condition(condition).sensor, preset.scene(condition, split)
+            if isinstance(sensor, FrameSensor):
+                size = (sensor.detector.columns, sensor.detector.rows)
+                origin = np.asarray(scene.origin_px)
+                assert (origin >= 0).all()
+                assert (origin + sensor.window_px <= size).all()
+
+
+def test_errors_of_assembly_are_uniform_within_the_tolerance_of_unit_0() -> None:
+    """Standard deviation: the size in unit 0, of two axes the larger one's."""
+    sensor = PRESETS["cmos-single-aperture"].condition("nominal").sensor
+    built = sensor.camera.assembly
+    ((place, limit),) = tolerances(sensor).items()
+    assert place == "camera.assembly"
+    drawn = np.array([astuple(assembled(sensor, "test", n).camera.assembly) for n in range(2000)])
+    expected = np.array([0.05, 0.05, 0.05, 0.002, 0.004, 0.004])
+    assert (np.abs(drawn) <= np.array(astuple(limit))).all()
+    np.testing.assert_allclose(drawn.std(axis=0), expected, rtol=0.05)
+    np.testing.assert_allclose(np.abs(drawn).max(axis=0), np.sqrt(3) * expected, rtol=0.01)
+    assert np.abs(drawn.mean(axis=0) / expected).max() < 0.1
+    correlation = np.corrcoef(drawn.T) - np.eye(6)
+    assert np.abs(correlation).max() < 0.1
+    assert astuple(tolerance_of(built)) == astuple(limit)
+
+
+def test_conditions_of_equal_tolerance_see_one_unit() -> None:
+    preset = PRESETS["cmos-single-aperture"].as_unit(4)
+    nominal, noisy, crooked = (
+        preset.condition(name).sensor.camera.assembly
+        for name in ("nominal", "high-noise", "misaligned")
+    )
+    assert nominal == noisy
+    # the same draw, of twenty times the tolerance
+    assert crooked.tilt_x_deg == pytest.approx(20 * nominal.tilt_x_deg)
+    patterns = [preset.fixed_pattern(name)["gain"] for name in ("nominal", "misaligned")]
+    assert np.array_equal(*patterns)
+    assert not np.array_equal(patterns[0], PRESETS[preset.name].fixed_pattern("nominal")["gain"])
+
+
+def test_a_mask_that_lies_on_its_glass_takes_it_along() -> None:
+    """The gap of pd-single-aperture is glass all through: a shorter one holds thinner glass."""
+    preset = PRESETS["pd-single-aperture"]
+    cameras = [preset.as_unit(n).condition("nominal").sensor.camera for n in range(1, 30)]
+    gaps = np.array([camera.height_mm for camera in cameras])
+    glass = np.array([camera.glass.thickness_mm for camera in cameras])
+    assert (gaps < 0.5).any()
+    np.testing.assert_allclose(glass, np.minimum(gaps, 0.5), rtol=1e-12)
+
+
+def test_a_perfect_assembly_has_no_tolerance() -> None:
+    assert astuple(tolerance_of(Assembly())) == (0.0,) * 6
+    card = PRESETS["pd-maskless-cube"].card()
+    assert set(card["conditions"]["nominal"]["tolerances"]["assembly"].values()) <= {
+        0.0,
+        "Assembly",
+    }
+
+
+def test_cards_say_what_is_repeated_and_the_tolerances() -> None:
+    card = PRESETS["cmos-multi-aperture"].card()
+    assert (card["splits"]["repeat"]["poses"], card["splits"]["repeat"]["samples"]) == (10, 50)
+    limit = card["conditions"]["nominal"]["tolerances"]["camera.assembly"]
+    assert limit["tilt_x_deg"] == pytest.approx(0.05 * np.sqrt(3))
+    assert PRESETS["cmos-multi-aperture"].as_unit(2).parameters("nominal")["unit"] == 2

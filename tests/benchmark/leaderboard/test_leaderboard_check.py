@@ -1,0 +1,343 @@
+"""Checking the record: an altered, missing or extra number is found and named by its cell."""
+
+import dataclasses
+import re
+
+import fake_plan
+import pytest
+from fake_atlas import Diodes, LeastSquares
+from fake_results import copied
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from benchmark.leaderboard import check as checking
+from benchmark.leaderboard.check import NATIVE, OLDER, Difference, compare_scores
+from benchmark.leaderboard.pages import PAGE
+from benchmark.leaderboard.update import update, write_page
+from benchmark.metrics.rings import RINGS
+from benchmark.metrics.score import METRICS
+from benchmark.plan.combinations import Cell
+from benchmark.results.store import Store
+from benchmark.running import task
+from benchmark.running.progress import silent
+from benchmark.running.run import RunInterruptedError
+
+pytestmark = pytest.mark.usefixtures("readings_only", "log")
+PARTS = fake_plan.parts(presets=(Diodes(), Diodes(name="fake-second")))
+CELL = Cell("fake-diodes", "noisy", "fake-currents", "fake-least-squares")
+SCORES = "scores/fake-diodes.csv"
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory, readings_only):
+    task._kept.clear()
+    directory = tmp_path_factory.mktemp("published")
+    update(directory, progress=silent, parts=PARTS)
+    return directory
+
+
+@pytest.fixture
+def published(made, tmp_path):
+    """A copy that a test may damage."""
+    return copied(made, tmp_path / "published")
+
+
+def check(directory, **options):
+    """Check with this machine's kernels: what older ones take is what is installed."""
+    options = {"parts": PARTS, "kernels": (NATIVE,), **options}
+    return checking.check(directory, 1, silent, **options)
+
+
+def altered(directory, cell, **changed):
+    """Change numbers of a stored score, and bring the page after it."""
+    store = Store(directory)
+    scores = store.scores()
+    scores[cell] = {**scores[cell], **changed}
+    store.write(scores, store.pins().values(), store.swept(), store.components())
+    write_page(store)
+
+
+def test_a_record_that_is_as_it_should_be_passes_with_and_without_measuring(published):
+    assert check(published, stored_only=True) == []
+    assert check(published) == []
+
+
+def test_without_measuring_nothing_is_generated_or_extracted(published, log):
+    assert check(published, stored_only=True) == []
+    assert log() == []
+
+
+@pytest.mark.parametrize(
+    ("column", "value"),
+    [
+        ("rms_deg", 0.123),
+        ("p997_deg", 0.123),
+        ("availability", 0.5),
+        ("false_sun", 0.5),
+        ("repeatability_deg", 0.123),
+        ("over_bound_se", None),
+        ("rms_10_20_deg", 0.123),
+        ("rms_60_70_deg", 0.123),
+        ("reason", "x"),
+        ("status", "refused"),
+    ],
+)
+def test_one_altered_number_is_found_by_measuring_and_named_by_its_cell(published, column, value):
+    right = Store(published).scores()[CELL][column]
+    altered(published, CELL, **{column: value})
+    assert check(published, stored_only=True) == [], "page and digests agree: only measuring tells"
+    [difference] = check(published)
+    assert difference == Difference(SCORES, f"{CELL}/{column}", str(value), str(right), NATIVE)
+    assert str(difference) == (
+        f"{SCORES}: {CELL}/{column} is {value}, should be {right} (native kernels)"
+    )
+
+
+def test_a_number_of_another_unit_is_named_with_its_unit(published):
+    cell = dataclasses.replace(CELL, condition="quiet", unit=3)
+    altered(published, cell, max_deg=9.0)
+    [difference] = check(published)
+    assert difference.cell == f"{cell}/max_deg"
+    assert "/unit 3/" in difference.cell
+
+
+def test_an_altered_number_of_the_page_is_found_without_measuring(published):
+    store = Store(published)
+    scores = store.scores()
+    scores[CELL] = {**scores[CELL], "rms_deg": 0.123}
+    store.write(scores, store.pins().values(), store.swept(), store.components())
+    [difference] = check(published, stored_only=True)
+    assert difference.file == PAGE
+    assert re.fullmatch(r"line \d+", difference.cell)
+    assert " 0.1230 " in difference.measured
+
+
+def test_a_row_taken_out_is_named(published):
+    path = published / SCORES
+    lines = path.read_text().splitlines(keepends=True)
+    gone = next(line for line in lines if line.startswith("noisy,fake-currents,"))
+    path.write_text("".join(line for line in lines if line != gone))
+    write_page(Store(published))
+    [difference] = check(published, stored_only=True)
+    assert difference == Difference("scores", f"{CELL}/row", "absent", "planned")
+    found = check(published)
+    assert Difference(SCORES, f"{CELL}/row", "absent", "measured", NATIVE) in found
+
+
+def test_a_row_too_much_is_named(published):
+    """Of a unit beyond those that are measured."""
+    extra = dataclasses.replace(CELL, condition="quiet", unit=9)
+    path = published / SCORES
+    lines = path.read_text().splitlines(keepends=True)
+    copy = next(line for line in lines if line.startswith("quiet,fake-currents,"))
+    path.write_text("".join([*lines, copy.replace(",0,ok", ",9,ok")]))
+    write_page(Store(published))
+    [difference] = check(published, stored_only=True)
+    assert difference == Difference("scores", f"{extra}/row", "present", "not planned")
+
+
+def test_a_missing_pin_is_named_and_an_altered_one_by_what_differs(published):
+    store = Store(published)
+    first, *rest = store.pins().values()
+    place = "/".join(first.place)
+
+    def with_pins(*pins):
+        store.write(store.scores(), pins, store.swept(), store.components())
+        write_page(store)
+
+    with_pins(*rest)
+    [difference] = check(published, stored_only=True)
+    assert difference == Difference("pins.csv", f"{place}/row", "absent", "pinned")
+    with_pins(*rest, dataclasses.replace(first, data_hash="0" * 32))
+    assert check(published, stored_only=True) == []
+    [difference] = check(published)
+    assert (difference.file, difference.cell) == ("pins.csv", place)
+    assert difference.measured.endswith("the data changed and the version did not")
+    with_pins(*rest, dataclasses.replace(first, version=4))
+    [difference] = check(published)
+    assert (difference.committed, difference.measured) == ("version 4", "version 1")
+
+
+def test_a_changed_bound_is_named_by_its_data_set(published):
+    store = Store(published)
+    pins = store.pins()
+    test = pins["fake-second", "quiet", "test"]
+    moved = dataclasses.replace(test, bound_deg=test.bound_deg * 1.001)
+    store.write(
+        store.scores(), [*(pins | {test.place: moved}).values()], store.swept(), store.components()
+    )
+    [difference] = check(published)
+    assert (difference.file, difference.cell) == ("pins.csv", "fake-second/quiet/test")
+    assert "bound_deg" in difference.measured
+
+
+def test_results_of_other_code_are_named_without_measuring(published, log):
+    newer = type("Newer", (LeastSquares,), {"version": 2, "__module__": "fake_atlas"})
+    parts = fake_plan.parts(newer, presets=(Diodes(), Diodes(name="fake-second", n=200)))
+    found = check(published, stored_only=True, parts=parts)
+    assert [(d.file, d.cell) for d in found] == [
+        ("components.json", "datasets/fake-second"),
+        ("components.json", "models/fake-least-squares"),
+    ]
+    assert {d.measured for d in found} == {"another: code or parameters have changed"}
+    assert log() == []
+
+
+def test_data_that_moved_under_their_version_are_told_before_anything_is_measured(published, log):
+    parts = fake_plan.parts(presets=(Diodes(seed=8), Diodes(name="fake-second")))
+    found = check(published, parts=parts)
+    moved = [d for d in found if d.file == "pins.csv"]
+    assert {d.cell for d in moved} == {
+        f"fake-diodes/{condition}/{split}"
+        for condition in Diodes().conditions
+        for split in ("calibration", "test", "repeat")
+    }
+    assert all("the data changed and the version did not" in d.measured for d in moved)
+    assert moved == found[: len(moved)]
+    assert not [line for line in log() if line.startswith(("extract", "fit"))]
+
+
+def test_a_stale_harness_is_named(published):
+    path = published / "components.json"
+    path.write_text(re.sub(r'"harness": "\w+"', '"harness": "0"', path.read_text()))
+    [difference] = check(published, stored_only=True)
+    assert (difference.cell, difference.committed) == ("harness", "0")
+
+
+def test_what_is_stored_and_no_longer_there_is_named(published):
+    found = check(published, stored_only=True, parts=fake_plan.parts())
+    assert {(d.file, d.measured) for d in found} == {
+        ("components.json", "not installed"),
+        ("scores", "not planned"),
+        ("pins.csv", "not pinned"),
+    }
+    assert all("fake-second" in d.cell for d in found)
+
+
+def test_what_is_planned_and_not_yet_stored_is_named(published):
+    parts = fake_plan.parts(presets=(Diodes(), Diodes(name="fake-second"), Diodes(name="fake-3")))
+    found = check(published, stored_only=True, parts=parts)
+    assert {(d.file, d.committed) for d in found} == {("scores", "absent"), ("pins.csv", "absent")}
+    assert len(found) == 4 + 6
+    assert all("fake-3" in d.cell for d in found)
+
+
+@pytest.mark.parametrize("name", ["sweeps.csv", "components.json", PAGE])
+def test_a_missing_file_is_named(published, name):
+    path = published / name
+    path.unlink()
+    if name == "components.json":
+        with pytest.raises(ValueError, match="not in components"):
+            check(published, stored_only=True)
+        return
+    found = check(published, stored_only=True)
+    assert {d.file for d in found} == {name}
+    assert {d.committed for d in found} == {"absent"}
+
+
+def test_a_changed_page_is_a_named_line(published):
+    path = published / PAGE
+    right = path.read_text()
+    path.write_text(right.replace("# Leaderboard", "# Leader board"))
+    [difference] = check(published, stored_only=True)
+    assert difference == Difference(PAGE, "line 1", "# Leader board", "# Leaderboard")
+    path.write_text(right + "more\n")
+    [difference] = check(published, stored_only=True)
+    assert (difference.file, difference.cell) == (PAGE, "file")
+    path.write_text(right[:-1])
+    [difference] = check(published, stored_only=True)
+    assert (difference.file, difference.cell) == (PAGE, "file")
+
+
+POINT = "faces/noise/50/fake-currents"
+
+
+def test_a_changed_sweep_is_named_by_its_point(published):
+    store = Store(published)
+    rows = store.swept()
+    names = ("series", "sweep", "point", "extractor")
+    row = next(row for row in rows if "/".join(row[name] for name in names) == POINT)
+    right = row["rms"]
+    row["rms"] *= 1.5
+    store.write(store.scores(), store.pins().values(), rows, store.components())
+    assert check(published, stored_only=True) == []
+    [difference] = check(published)
+    assert (difference.file, difference.cell) == ("sweeps.csv", f"{POINT}/rms")
+    assert (difference.committed, difference.measured) == (str(row["rms"]), str(right))
+
+
+def test_both_kernels_are_measured_with_and_each_difference_says_with_which(published, monkeypatch):
+    """Older kernels by a stand-in that finds one number otherwise: their process takes all."""
+
+    def measured_elsewhere(directory, workers):
+        update(directory, workers, silent, parts=PARTS)
+        altered(directory, CELL, rms_deg=0.123)
+
+    monkeypatch.setattr(checking, "update_with_older_kernels", measured_elsewhere)
+    right = str(Store(published).scores()[CELL]["rms_deg"])
+    assert checking.check(published, 1, silent, parts=PARTS) == [
+        Difference(SCORES, f"{CELL}/rms_deg", right, "0.123", OLDER)
+    ]
+    assert check(published, kernels=(NATIVE,)) == []
+
+
+@pytest.mark.parametrize("kernels", [NATIVE, OLDER])
+def test_a_check_that_is_broken_off_says_that_nothing_is_kept(published, monkeypatch, kernels):
+    def interrupted(*_arguments, **_options):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(checking, "update", interrupted)
+    monkeypatch.setattr(checking, "update_with_older_kernels", interrupted)
+    with pytest.raises(RunInterruptedError, match="keeps nothing"):
+        check(published, kernels=(kernels,))
+
+
+def differences(column, value, measured, **row):
+    """Compare one number with another measured; 400 samples."""
+    base = {"status": "ok", **dict.fromkeys(METRICS), "reason": "", "rms_deg": 0.5, **row}
+    committed, found = {CELL: {**base, column: value}}, {CELL: {**base, column: measured}}
+    counted = {("fake-diodes", "noisy"): 400}
+    return [d.cell for d in compare_scores(committed, found, counted)]
+
+
+def test_accuracy_is_compared_within_a_ten_thousandth_and_shares_within_a_sample():
+    assert differences("median_deg", 0.5, 0.5 * (1 + 9e-5)) == []
+    assert differences("median_deg", 0.5, 0.5 * (1 + 2e-4)) == [f"{CELL}/median_deg"]
+    assert differences("availability", 1.0, 1 - 1 / 400) == []
+    assert differences("availability", 1.0, 1 - 2 / 400) == [f"{CELL}/availability"]
+    assert differences("false_sun", None, 0.0) == [f"{CELL}/false_sun"]
+    assert differences("rms_deg", None, 0.5) == [f"{CELL}/rms_deg"]
+    assert differences("status", "ok", "failed") == [f"{CELL}/status"]
+    # a mean near zero is as uncertain as the spread it averages
+    assert differences("bias_alpha_deg", 1e-9, -4e-5) == []
+    assert differences("bias_alpha_deg", 1e-9, -6e-5) == [f"{CELL}/bias_alpha_deg"]
+
+
+COLUMNS = [name for name in METRICS if name not in ("availability", "false_sun")]
+
+
+@settings(deadline=None, derandomize=True)
+@given(
+    column=st.sampled_from([name for name in COLUMNS if not name.startswith("bias_")]),
+    value=st.floats(1e-9, 180.0),
+    factor=st.floats(1.0, 1.1),
+)
+def test_a_fifth_of_a_percent_is_found_in_every_column_and_rounding_in_none(column, value, factor):
+    digits = 4 if column in {ring.column for ring in RINGS} else 5
+    one, other = (float(f"{v:.{digits}g}") for v in (value, value * factor))
+    found = bool(differences(column, one, other))
+    if factor > 1.0021:  # the step of a number of four digits, and the tolerance
+        assert found
+    if abs(factor - 1.0) < 1e-5:
+        assert not found
+
+
+def test_every_cell_of_either_side_is_named_once():
+    row = {"status": "ok", **dict.fromkeys(METRICS), "reason": ""}
+    other = dataclasses.replace(CELL, model="other")
+    found = compare_scores({CELL: row}, {other: row}, {})
+    assert [(d.cell, d.committed, d.measured) for d in found] == [
+        (f"{CELL}/row", "present", "not measured"),
+        (f"{other}/row", "absent", "measured"),
+    ]
+    assert compare_scores({CELL: row}, {CELL: row}, {}) == []

@@ -1,0 +1,246 @@
+"""The committed results: of the code as it is, and in line with what is known of the methods."""
+
+import shutil
+from itertools import groupby, product
+
+import numpy as np
+import pytest
+
+from benchmark import datasets
+from benchmark.datasets import Preset
+from benchmark.leaderboard.board import board_of
+from benchmark.leaderboard.check import check, compare_scores
+from benchmark.leaderboard.ranking import LEADING, UNITS
+from benchmark.leaderboard.update import update
+from benchmark.plan import combinations as plan
+from benchmark.plan.parts import Parts, installed
+from benchmark.results.store import PUBLISHED, Store
+from benchmark.running import pinning, task
+from benchmark.running import run as runner
+from benchmark.running.progress import silent
+
+#: Standard errors by which the best of some hundred unbiased scores may fall below the bound.
+BY_CHANCE = 4.0
+
+
+@pytest.fixture(scope="module")
+def published():
+    return Store(PUBLISHED)
+
+
+@pytest.fixture(scope="module")
+def fresh(tmp_path_factory):
+    """Two datasets measured now; everything else is read from the committed scores."""
+    store = Store(tmp_path_factory.mktemp("fresh"))
+    wanted = plan.cells("cmos-single-aperture", "low-noise", ["bcm", "bctm"])
+    wanted += plan.cells("qpd-single-aperture", ["nominal", "high-noise"])
+    wanted += plan.cells("pd-maskless-cube", "cosine", "direct")
+    assert runner.run(wanted, store).failed == ()
+    return store
+
+
+def rms(store, **where):
+    return {
+        (row["extractor"], row["model"]): row["rms_deg"]
+        for row in store.query(status="ok", **where)
+    }
+
+
+def beaten(store):
+    """Rows that lie below the Cramer-Rao bound by more than chance allows."""
+    # a single sample has a ratio but no standard error, and so says nothing here
+    scored = [row for row in store.query(status="ok") if row["over_bound_se"] is not None]
+    assert scored
+    return [
+        (row["dataset"], row["condition"], row["extractor"], row["model"], row["over_bound"])
+        for row in scored
+        if row["over_bound"] + BY_CHANCE * row["over_bound_se"] < 1
+    ]
+
+
+def files():
+    """List what is committed: a runner's progress is not."""
+    return [
+        path
+        for path in PUBLISHED.rglob("*")
+        if path.is_file() and ".sunatlas" not in path.relative_to(PUBLISHED).parts
+    ]
+
+
+def test_the_record_is_of_the_code_as_it_is(published):
+    assert check(PUBLISHED, stored_only=True) == []
+    assert set(plan.cells()) == {cell for cell in published.scores() if cell.unit == 0}
+
+
+def test_it_is_small_and_holds_nothing_that_can_be_derived():
+    assert sum(path.stat().st_size for path in files()) < 3e6
+    tables = {f"scores/{cell.dataset}.csv" for cell in plan.cells()}
+    names = {path.relative_to(PUBLISHED).as_posix() for path in files()}
+    assert names == {
+        *tables, "pins.csv", "sweeps.csv", "components.json", "leaderboard.md",
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("name", datasets.names())
+def test_no_data_or_bound_changed_in_silence(published, name):
+    """The first samples of every split: a change of the simulator needs a new version."""
+    preset = datasets.get(name)
+    pins = published.pins()
+    assert {place for place in pins if place[0] == name} == pinning.places(
+        Parts({name: preset}, {}, {})
+    )
+    assert {pins[place].version for place in pins if place[0] == name} == {preset.version}
+    assert pinning.changed_heads(pins, [preset]) == {}
+
+
+def boards(published):
+    for dataset in board_of(published)["datasets"]:
+        for condition, rows in groupby(dataset["rows"], key=lambda row: row["condition"]):
+            yield dataset["name"], condition, list(rows)
+
+
+def test_nothing_that_answers_too_seldom_is_before_anything_that_answers(published):
+    for name, condition, rows in boards(published):
+        ranked = [row for row in rows if row["rank"] is not None]
+        answering = [(row["availability"] or 0.0) >= 0.95 for row in ranked]
+        assert answering == sorted(answering, reverse=True), (name, condition)
+        if any(answering):
+            assert ranked[0]["availability"] >= 0.95, (name, condition)
+
+
+def test_the_leading_pipelines_of_each_first_condition_carry_the_spread_of_units(published):
+    """And a rank is shared where, and only where, the spread does not decide."""
+    shared = 0
+    for name, condition, rows in boards(published):
+        first = condition == datasets.get(name).conditions[0]
+        spread = [row["unit_rms_deg"] for row in rows]
+        leading = min(LEADING, sum(row["rms_deg"] is not None for row in rows)) if first else 0
+        assert [one is not None for one in spread] == [n < leading for n in range(len(rows))]
+        assert {len(one) for one in spread if one} <= {UNITS}
+        for row, errors in zip(rows, spread, strict=True):
+            best = next(one for one in rows if one["rank"] == row["rank"])
+            if best is not row and row["rank"] is not None:
+                assert row["tied"]
+                assert best["tied"]
+                assert (
+                    None in errors
+                    or None in best["unit_rms_deg"]
+                    or (row["low_deg"] <= best["high_deg"] and best["low_deg"] <= row["high_deg"])
+                )
+                shared += 1
+    assert shared, "sensors built alike decide every rank"
+
+
+@pytest.mark.parametrize("name", ["pd-orbit", "ccd-orbit"])
+def test_flights_say_their_error_in_sunlight_and_their_suns_in_eclipse(published, name):
+    rows = published.query(dataset=name, condition="nominal", status="ok")
+    assert rows
+    for row in rows:
+        assert 0 < row["n_observable"] < row["n_test"]
+        assert row["false_sun"] is not None
+        assert row["availability"] is not None
+    assert any(row["rms_deg"] < 5 and row["availability"] >= 0.95 for row in rows)
+
+
+def test_no_planned_pipeline_fails(published):
+    failed = published.query(status="failed")
+    assert [(r["dataset"], r["extractor"], r["model"], r["reason"]) for r in failed] == []
+
+
+def unreadable():
+    """Datasets of which no installed pipeline can measure anything, by the plan's own reasons."""
+    parts = installed()
+    why_not = {(i.dataset, i.extractor, i.model): i.reason for i in plan.incompatible()}
+
+    def refused(dataset, extractor, model):
+        return why_not.get((dataset, extractor, "")) or why_not.get((dataset, extractor, model))
+
+    return {
+        dataset
+        for dataset in parts.presets
+        if all(refused(dataset, *pair) for pair in product(parts.extractors, parts.models))
+    }
+
+
+def test_every_dataset_and_condition_is_scored_that_an_implemented_pipeline_can_read(published):
+    """The others are said to be unscored: by the plan with reasons, and by their pins alone."""
+    unscored = unreadable()
+    places = {(row["dataset"], row["condition"]) for row in published.query(status="ok")}
+    presets = [datasets.get(name) for name in datasets.names()]
+    assert places == {
+        (p.name, condition) for p in presets for condition in p.conditions if p.name not in unscored
+    }
+    assert not unscored & {row["dataset"] for row in published.rows()}
+    assert not unscored & {cell.dataset for cell in plan.cells()}
+    assert unscored <= {dataset for dataset, _, _ in published.pins()}
+
+
+def test_measured_now_is_what_is_committed(published, fresh):
+    scores = published.scores()
+    counts = {place[:2]: pin.n for place, pin in published.pins().items() if place[2] == "test"}
+    measured = fresh.scores()
+    assert compare_scores({cell: scores[cell] for cell in measured}, measured, counts) == []
+
+
+def test_bringing_an_up_to_date_record_up_to_date_renders_nothing(tmp_path, monkeypatch):
+    def refuse(*arguments):
+        raise AssertionError("a dataset was rendered")
+
+    for path in files():
+        target = tmp_path / path.relative_to(PUBLISHED)
+        target.parent.mkdir(exist_ok=True)
+        shutil.copy(path, target)
+    before = {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.*") if path.is_file()}
+    monkeypatch.setattr(Preset, "generate", refuse)
+    monkeypatch.setattr(Preset, "bound", refuse)
+    done = update(tmp_path, progress=silent)
+    assert (done.computed, done.warnings) == (0, ())
+    shutil.rmtree(Store(tmp_path).work_directory)
+    after = {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.*") if path.is_file()}
+    assert after == before
+
+
+@pytest.mark.parametrize("source", ["published", "fresh"])
+def test_under_low_noise_the_thresholded_centroid_beats_the_plain_one(source, request):
+    """Chang2008, He2005. With every model that does not hide the extractor behind its own error:
+
+    the linear one is off by degrees whatever the centroid (tan is no line over 60 degrees).
+    """
+    store = request.getfixturevalue(source)
+    scores = rms(store, dataset="cmos-single-aperture", condition="low-noise")
+    models = {model for _, model in scores} - {"linear"}
+    assert {"lsq", "spm", "polynomial-1d", "polynomial-2d"} <= models
+    assert all(scores["bctm", model] < scores["bcm", model] for model in models), scores
+
+
+@pytest.mark.parametrize("extractor", ["bctm", "bcm", "ifm", "pm"])
+def test_least_squares_beat_the_nominal_projection_once_tilt_and_focal_length_err(
+    published, extractor
+):
+    scores = rms(published, dataset="cmos-single-aperture", condition="misaligned")
+    assert scores[extractor, "lsq"] < scores[extractor, "spm"]
+
+
+@pytest.mark.parametrize("source", ["published", "fresh"])
+def test_no_pipeline_beats_the_cramer_rao_bound_beyond_statistical_error(source, request):
+    assert beaten(request.getfixturevalue(source)) == []
+
+
+def test_a_model_that_peeks_at_the_truth_is_caught(tmp_path, monkeypatch):
+    """The same question asked of a leak: half of the noise is taken out with the true direction."""
+    [cell] = plan.cells("qpd-single-aperture", "high-noise", "voltage-balance", "polynomial-2d")
+    model = installed().model("polynomial-2d")
+    truth = datasets.get("qpd-single-aperture").generate("high-noise", "test").sun
+    honest = model.predict
+
+    def peek(self, features):
+        if len(features) != len(truth):  # the repeated poses
+            return honest(self, features)
+        mixed = honest(self, features) + truth
+        return mixed / np.linalg.norm(mixed, axis=1, keepdims=True)
+
+    monkeypatch.setattr(model, "predict", peek)
+    task._kept.clear()
+    store = Store(tmp_path)
+    assert runner.run([cell], store).failed == ()
+    assert len(beaten(store)) == 1

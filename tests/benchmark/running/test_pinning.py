@@ -1,0 +1,287 @@
+"""Every dataset's data are pinned, and do not change in silence."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import fake_plan
+import pytest
+from fake_atlas import Diodes
+
+from benchmark import datasets
+from benchmark.plan import combinations as plan
+from benchmark.plan.parts import SPLITS, Parts, UnknownNameError, installed
+from benchmark.results.digests import HEAD, head_hash, samples_hash
+from benchmark.results.record import opened
+from benchmark.results.store import PUBLISHED, Store
+from benchmark.running import pinning, task
+from benchmark.running import run as runner
+from benchmark.running.pinning import UnversionedChangeError, changed_heads
+from benchmark.running.progress import silent
+
+SMALL = ("pd-maskless-cube", "oi-maskless-pyramid")  # a second each
+
+
+@dataclasses.dataclass(frozen=True)
+class Unmeasurable(Diodes):
+    """Nothing reads a rolling image of it."""
+
+    name: str = "fake-unmeasurable"
+    observation: str = "nothing reads this"
+
+
+@dataclasses.dataclass(frozen=True)
+class Missing(Diodes):
+    name: str = "fake-missing"
+
+    def generate(self, condition, split, n=None):
+        raise OSError("no data today")
+
+
+def parts(*presets):
+    return fake_plan.parts(presets=presets)
+
+
+@pytest.fixture
+def store(tmp_path):
+    task._kept.clear()
+    return Store(tmp_path / "store")
+
+
+def update(store, **options):
+    return pinning.update(store, progress=silent, **options)
+
+
+def contents(store):
+    return {
+        path: (path.read_bytes(), path.stat().st_mtime_ns)
+        for path in store.directory.rglob("*.*")
+        if path.is_file() and path.parent != store.work_directory
+    }
+
+
+def test_a_run_pins_what_it_measures_and_the_update_what_remains(store):
+    there = parts(Diodes(), Unmeasurable())
+    runner.run(plan.cells(parts=there), store, progress=silent, parts=there)
+    assert {place[0] for place in store.pins()} == {"fake-diodes"}
+    measured = store.pins()
+    done = update(store, parts=there)
+    assert (done.kept, done.renewed, done.warnings) == (2, 2, ())
+    assert set(store.pins()) == pinning.places(there)
+    assert store.pins().items() >= measured.items()
+    assert len(store.rows()) == 4, "scores stay"
+    # and the other way round: a run keeps the pins of what nothing reads
+    runner.run(plan.cells(parts=there), store, progress=silent, parts=there)
+    assert set(store.pins()) == pinning.places(there)
+
+
+def test_nothing_is_generated_twice(store, log):
+    there = parts(Diodes())
+    update(store, parts=there)
+    generated = [line for line in log() if line.startswith("generate")]
+    assert len(generated) == len(set(generated)) == 6
+    before, done = contents(store), log()
+    assert update(store, parts=there).renewed == 0
+    assert log() == done
+    assert contents(store) == before
+
+
+def test_a_pin_says_what_was_generated(store):
+    preset = Diodes(dark=0.125)
+    update(store, parts=parts(preset))
+    for (_, condition, split), pin in store.pins().items():
+        samples = preset.generate(condition, split)
+        assert pin.n == len(samples.sun) == (80 if split == "repeat" else 400)
+        assert pin.data_hash == samples_hash(samples)
+        assert pin.head_hash == head_hash(preset.generate(condition, split, HEAD))
+        assert pin.observable == (350 if split == "test" else None)
+        assert (pin.bound_deg is not None) is (split == "test")
+        assert pin.head_bound_deg is None, "the first samples of the test split are dark"
+
+
+def test_a_pin_carries_the_bound_of_the_test_split_and_of_its_head(store):
+    preset = datasets.get("oi-maskless-pyramid")
+    update(store, parts=_some("oi-maskless-pyramid"))
+    for condition in preset.conditions:
+        pin = store.pins()[preset.name, condition, "test"]
+        assert pin.bound_deg == pytest.approx(preset.bound(condition).rms_deg, rel=1e-4)
+        head = preset.bound(condition, n=HEAD)
+        assert pin.head_bound_deg == pytest.approx(head.rms_deg, rel=1e-4)
+        assert store.pins()[preset.name, condition, "calibration"].bound_deg is None
+
+
+CHANGES = {
+    "every sample": ({"seed": 8}, "calibration: head_hash"),
+    "a bound": ({"looseness": 1.01}, "test: head_bound_deg"),
+}
+
+
+@pytest.mark.parametrize(("changed", "said"), CHANGES.values(), ids=CHANGES)
+def test_a_change_of_the_first_samples_or_their_bound_is_found_in_the_heads(
+    store, log, changed, said
+):
+    update(store, parts=parts(Diodes(), Diodes(name="fake-second")))
+    pins, done = store.pins(), len(log())
+    assert changed_heads(pins, [Diodes(), Diodes(name="fake-second")]) == {}
+    generated = [line for line in log()[done:] if line.startswith("generate")]
+    assert len(generated) == 12
+    assert all(line.endswith(f"first {HEAD}") for line in generated)
+    found = changed_heads(pins, [Diodes(), Diodes(name="fake-second", **changed)])
+    assert list(found) == ["fake-second"]
+    assert found["fake-second"][0].startswith(f"quiet {said} ")
+    assert {line.split()[0] for line in found["fake-second"]} == {"quiet", "noisy"}
+
+
+def test_heads_do_not_see_what_comes_later_nor_another_version(store):
+    update(store, parts=parts(Diodes()))
+    assert changed_heads(store.pins(), [Diodes(late=0.1)]) == {}
+    assert changed_heads(store.pins(), [Diodes(seed=8, version=2)]) == {}
+    assert changed_heads(store.pins(), [Diodes(name="fake-new")]) == {}
+    assert changed_heads({}, [Diodes()]) == {}
+
+
+GUARDED = {
+    **{name: (changed, said.split()[1]) for name, (changed, said) in CHANGES.items()},
+    "later samples": ({"late": 0.1}, "data_hash"),
+    "what is observable": ({"dark": 0.1}, "observable"),
+}
+WITHIN = {"every sample": "data_hash", "a bound": "bound_deg"}
+
+
+@pytest.mark.parametrize("name", GUARDED)
+def test_data_or_bounds_that_change_while_the_version_does_not_are_an_error(store, name):
+    """It names the data set and nothing is written; with a new version the pins are renewed."""
+    others = [Diodes(name="fake-first"), Diodes(name="fake-third")]
+    changed = Diodes(name="fake-second", **GUARDED[name][0])
+    update(store, parts=parts(*others, Diodes(name="fake-second")))
+    before, pins = contents(store), store.pins()
+    for _ in range(2):  # the journal of the first does not let the second through
+        with pytest.raises(UnversionedChangeError, match="1 data sets") as caught:
+            update(store, parts=parts(*others, changed))
+        assert list(caught.value.changes) == ["fake-second"]
+        assert f": {WITHIN.get(name, GUARDED[name][1])} " in str(caught.value)
+        assert contents(store) == before
+    update(store, parts=parts(*others, dataclasses.replace(changed, version=2)))
+    moved = {place for place, pin in store.pins().items() if pin != pins[place]}
+    assert {place[0] for place in moved} == {"fake-second"}
+    assert {store.pins()[place].version for place in moved} == {2}
+
+
+def test_a_change_back_is_no_change(store):
+    update(store, parts=parts(Diodes()))
+    before = contents(store)
+    with pytest.raises(UnversionedChangeError):
+        update(store, parts=parts(Diodes(seed=8)))
+    update(store, parts=parts(Diodes()))
+    assert contents(store) == before
+
+
+def test_a_new_version_of_unchanged_data_is_pinned_as_such(store):
+    update(store, parts=parts(Diodes()))
+    hashes = {place: pin.data_hash for place, pin in store.pins().items()}
+    update(store, parts=parts(Diodes(version=2)))
+    assert {place: pin.data_hash for place, pin in store.pins().items()} == hashes
+    assert {pin.version for pin in store.pins().values()} == {2}
+
+
+def test_generating_again_tells_what_is_not_as_pinned_and_writes_nothing(store):
+    there = parts(Diodes())
+    update(store, parts=there)
+
+    def told(**changed):
+        first, *rest = store.pins().values()
+        wrong = Store(store.directory.with_name("wrong"))
+        pins = [*rest, dataclasses.replace(first, **changed)]
+        wrong.write({}, pins, [], store.components())
+        before = contents(wrong)
+        found = pinning.differences(wrong, progress=silent, parts=there)
+        assert contents(wrong) == before
+        return found
+
+    assert told() == []
+    place = "fake-diodes noisy calibration"
+    (line,) = told(data_hash="0" * 32)
+    assert line.startswith(f"{place}: data_hash ")
+    assert line.endswith(f", pinned {'0' * 32}")
+    assert told(n=5) == [f"{place}: n 400, pinned 5"]
+    assert told(bound_deg=1.0) == [f"{place}: bound_deg None, pinned 1.0"]
+    assert told(version=3) == [f"{place}: version 1, pinned 3"]
+    assert told(split="else") == [f"{place}: not pinned"]
+    gone = pinning.differences(store, progress=silent, parts=parts(Diodes(), Missing()))
+    assert gone == [
+        f"fake-missing {condition}: cannot be generated: OSError: no data today"
+        for condition in ("noisy", "quiet")
+    ]
+
+
+def test_data_that_cannot_be_made_are_told_and_the_rest_is_pinned(store):
+    done = update(store, parts=parts(Missing(), Diodes()))
+    assert done.warnings == tuple(
+        f"fake-missing {condition}: cannot be generated: OSError: no data today"
+        for condition in ("quiet", "noisy")
+    )
+    assert len(store.pins()) == 6
+
+
+def test_some_data_sets_are_pinned_alone(store):
+    there = parts(Diodes(), Diodes(name="fake-second"))
+    update(store, parts=there, datasets=["fake-second"])
+    assert {place[0] for place in store.pins()} == {"fake-second"}
+    assert list(store.components().datasets) == ["fake-second"]
+    update(store, parts=there, datasets=["fake-diodes"])
+    assert set(store.pins()) == pinning.places(there)
+
+
+def test_scores_of_data_that_were_pinned_anew_are_dropped(store):
+    there = parts(Diodes(), Diodes(name="fake-second"))
+    runner.run(plan.cells(parts=there), store, progress=silent, parts=there)
+    update(store, parts=parts(Diodes(version=2, seed=8), Diodes(name="fake-second")))
+    assert {row["dataset"] for row in store.rows()} == {"fake-second"}
+
+
+def test_wrong_calls_are_refused(store):
+    with pytest.raises(ValueError, match="workers must be at least 1; got 0"):
+        update(store, workers=0)
+    with pytest.raises(UnknownNameError, match="did you mean 'fake-diodes'"):
+        update(store, datasets=["fake-diode"], parts=parts(Diodes()))
+    with opened(store), pytest.raises(RuntimeError, match="another runner"):
+        update(store, parts=parts(Diodes()))
+
+
+def _some(*names):
+    return Parts({name: datasets.get(name) for name in names}, {}, {})
+
+
+def test_hashes_depend_on_neither_workers_nor_order_nor_company(tmp_path):
+    """The published pins, from one process and two, in any order, alone and together."""
+    published = {
+        place: pin.data_hash for place, pin in Store(PUBLISHED).pins().items() if place[0] in SMALL
+    }
+    assert set(published) == pinning.places(_some(*SMALL))
+
+    def made(name, *wanted, workers):
+        store = Store(tmp_path / name)
+        task._kept.clear()
+        update(store, workers=workers, parts=_some(*wanted))
+        return {place: pin.data_hash for place, pin in store.pins().items()}
+
+    assert made("together", *SMALL, workers=2) == published
+    alone = made("alone", SMALL[1], workers=1)
+    assert alone == {place: one for place, one in published.items() if place[0] == SMALL[1]}
+    backwards = {
+        (name, condition, split): samples_hash(datasets.get(name).generate(condition, split))
+        for name in reversed(SMALL)
+        for condition in reversed(datasets.get(name).conditions)
+        for split in reversed(SPLITS)
+    }
+    assert backwards == published
+
+
+def test_everything_there_is_is_pinned():
+    pins = Store(PUBLISHED).pins()
+    assert set(pins) == pinning.places(), "run `sunatlas dataset pin`"
+    assert len({pin.data_hash for pin in pins.values()}) == len(pins)
+    presets = installed().presets
+    for (name, _, split), pin in pins.items():
+        assert pin.n == presets[name].card()["splits"][split]["samples"]
+        assert pin.version == presets[name].version

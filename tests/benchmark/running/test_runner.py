@@ -1,0 +1,392 @@
+"""Measuring: the right numbers, the same with any number of workers, never twice."""
+
+import dataclasses
+import sys
+
+import fake_atlas
+import fake_plan
+import numpy as np
+import pytest
+
+from benchmark.metrics.score import repeatability_deg
+from benchmark.plan import combinations as plan
+from benchmark.results.record import Record
+from benchmark.results.store import Store
+from benchmark.running import run as runner
+from benchmark.running import task
+from benchmark.running.backend import DaskMissingError, bundles
+from benchmark.running.progress import silent, terminal_progress
+
+pytestmark = pytest.mark.usefixtures("log")
+
+
+@pytest.fixture
+def store(tmp_path):
+    return Store(tmp_path / "store")
+
+
+def contents(store):
+    return {
+        path.relative_to(store.directory): path.read_bytes()
+        for path in store.directory.rglob("*")
+        if path.is_file() and path.parent != store.work_directory
+    }
+
+
+def solved(observations):
+    vectors = observations @ np.linalg.pinv(fake_atlas.NORMALS).T
+    return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
+
+
+def measure(store, parts=None, **options):
+    parts = parts or fake_plan.parts()
+    return runner.run(plan.cells(parts=parts), store, parts=parts, **options)
+
+
+def test_scores_are_the_ones_the_pipeline_gives_and_the_bound_is_respected(store):
+    summary = measure(store)
+    assert (summary.planned, summary.computed, summary.failed, summary.warnings) == (4, 4, (), ())
+    row = store.query(condition="noisy", extractor="fake-currents")[0]
+    preset = fake_atlas.Diodes()
+    test = preset.generate("noisy", "test")
+    error = np.rad2deg(np.arccos(np.sum(solved(test.observations) * test.sun, axis=1)))
+    assert row["rms_deg"] == pytest.approx(np.sqrt(np.mean(error**2)), rel=1e-4)
+    assert row["bound_deg"] == pytest.approx(
+        np.sqrt(np.mean(preset.bound("noisy").angle_deg ** 2)), rel=1e-4
+    )
+    assert 1 - 4 * row["over_bound_se"] < row["over_bound"] < 1.2
+    assert row["n_test"] == row["n_calibration"] == 400
+    gaps = store.query(condition="noisy", extractor="fake-gaps")[0]
+    assert gaps["availability"] == 0.75
+
+
+def test_repeatability_is_of_the_answers_to_the_repeated_poses(store):
+    """Four diodes and white noise: the spread is the bound itself, and no error of truth enters."""
+    measure(store)
+    row = store.query(condition="noisy", extractor="fake-currents")[0]
+    answers = solved(fake_atlas.Diodes().generate("noisy", "repeat").observations)
+    expected = repeatability_deg(answers.reshape(4, 20, 3))
+    assert row["repeatability_deg"] == pytest.approx(expected, rel=1e-4)
+    assert row["repeatability_deg"] == pytest.approx(row["bound_deg"], rel=0.2)
+
+
+def test_what_cannot_be_observed_is_left_to_false_suns(store):
+    """The first eighth of the test split is dark, three of the repeated poses among it."""
+    parts = fake_plan.parts(presets=(fake_atlas.Diodes(dark=0.125),))
+    measure(store, parts)
+    row = store.query(condition="noisy", extractor="fake-currents")[0]
+    assert (row["n_test"], row["n_observable"]) == (400, 350)
+    assert (row["availability"], row["false_sun"]) == (1.0, 1.0)
+    test = fake_atlas.Diodes().generate("noisy", "test")
+    error = np.rad2deg(np.arccos(np.sum(solved(test.observations) * test.sun, axis=1)))[50:]
+    assert row["rms_deg"] == pytest.approx(np.sqrt(np.mean(error**2)), rel=1e-4)
+    answers = solved(fake_atlas.Diodes().generate("noisy", "repeat").observations)
+    held = repeatability_deg(answers.reshape(4, 20, 3)[:, 3:])
+    assert row["repeatability_deg"] == pytest.approx(held, rel=1e-4)
+
+
+def test_other_units_are_measured_by_their_own_light_and_the_standard_unit_s_bound(store, log):
+    parts = fake_plan.parts()
+    standard = plan.Cell("fake-diodes", "quiet", "fake-currents", "fake-least-squares")
+    second = dataclasses.replace(standard, unit=2)
+    runner.run([standard, second], store, parts=parts)
+    rows = {row["unit"]: row for row in store.rows(unit=None)}
+    test = fake_atlas.Diodes(unit=2).generate("quiet", "test")
+    error = np.rad2deg(np.arccos(np.sum(solved(test.observations) * test.sun, axis=1)))
+    assert rows[2]["rms_deg"] == pytest.approx(np.sqrt(np.mean(error**2)), rel=1e-4)
+    assert rows[2]["rms_deg"] != rows[0]["rms_deg"]
+    assert rows[2]["bound_deg"] is rows[2]["repeatability_deg"] is None
+    assert rows[0]["bound_deg"] > 0
+    assert [row["unit"] for row in store.rows()] == [0]
+    assert {place[:2] for place in store.pins()} == {("fake-diodes", "quiet")}
+    assert not any("repeat unit 2" in line for line in log())
+
+
+@pytest.mark.parametrize("dark", [0.0, 0.125])
+def test_another_unit_judges_what_is_observable_by_the_standard_one(store, log, dark):
+    """Where everything is, its bound is not computed a second time."""
+    parts = fake_plan.parts(presets=(fake_atlas.Diodes(dark=dark),))
+    standard = plan.Cell("fake-diodes", "quiet", "fake-currents", "fake-least-squares")
+    runner.run([standard], store, parts=parts)
+    runner.run([dataclasses.replace(standard, unit=1)], store, parts=parts)
+    row = store.rows(unit=1)[0]
+    assert row["availability"] == 1.0
+    assert row["false_sun"] == (1.0 if dark else None)
+    assert log().count("bound fake-diodes quiet test") == (2 if dark else 1)
+
+
+def test_one_and_two_workers_give_identical_bytes(store, tmp_path):
+    parts = fake_plan.parts(presets=(fake_atlas.Diodes(), fake_atlas.Diodes(name="fake-second")))
+    measure(store, parts)
+    other = Store(tmp_path / "two")
+    measure(other, parts, workers=2)
+    assert contents(other) == contents(store)
+    assert len(store.rows()) == 8
+
+
+def test_a_second_run_renders_nothing_and_changes_no_byte(store, log):
+    measure(store)
+    before, done = contents(store), log()
+    assert {str(path) for path in before} == {
+        "scores/fake-diodes.csv", "pins.csv", "sweeps.csv", "components.json",
+    }  # fmt: skip
+    summary = measure(store)
+    assert (summary.computed, summary.already_stored) == (0, 4)
+    assert log() == done
+    assert contents(store) == before
+
+
+def test_each_split_is_generated_and_extracted_from_once_for_all_models(store, log):
+    class Second(fake_atlas.LeastSquares):
+        name = "fake-second"
+
+    parts = fake_plan.parts(fake_atlas.LeastSquares, Second)
+    measure(store, parts)
+    assert len(store.rows()) == 8
+    generated = [line for line in log() if line.startswith("generate")]
+    assert len(generated) == len(set(generated)) == 2 * 3
+    extractions = [line for line in log() if line.startswith("extract fake-currents")]
+    assert len(extractions) == 2 * 3, "each split once, for two conditions"
+
+
+def test_only_what_changed_is_measured_again(store, log):
+    measure(store)
+    newer = type("Newer", (fake_atlas.Gaps,), {"version": 2, "__module__": "fake_atlas"})
+    parts = fake_plan.parts()
+    parts = dataclasses.replace(parts, extractors={**parts.extractors, "fake-gaps": newer})
+    stale = runner.stale(plan.cells(parts=parts), store, parts=parts)
+    assert [cell.extractor for cell in stale] == ["fake-gaps", "fake-gaps"]
+    before, pins = log(), store.pins()
+    assert measure(store, parts).computed == 2
+    assert {line for line in log()[len(before) :] if line.startswith("extract")} == {
+        "extract fake-gaps 400",
+        "extract fake-gaps 80",
+    }
+    assert store.pins() == pins
+    assert len(store.rows()) == 4
+    assert {row["extractor_version"] for row in store.query(extractor="fake-gaps")} == {2}
+
+
+def test_data_that_change_are_measured_again_whatever_their_version(store):
+    measure(store)
+    before = store.scores(), store.pins()
+    changed = fake_plan.parts(presets=(fake_atlas.Diodes(seed=8),))
+    assert measure(store, changed).computed == 4
+    assert all(store.scores()[cell] != row for cell, row in before[0].items())
+    assert all(store.pins()[place].data_hash != pin.data_hash for place, pin in before[1].items())
+    assert measure(store).computed == 4
+    assert (store.scores(), store.pins()) == before
+
+
+def test_a_failure_is_a_row_with_its_reason_and_is_tried_again(store, log, monkeypatch):
+    parts = fake_plan.parts(fake_atlas.LeastSquares, fake_atlas.Broken, fake_atlas.Unbuildable)
+    summary = measure(store, parts)
+    reasons = {cell.model: reason for cell, reason in summary.failed}
+    assert reasons == {
+        "fake-broken": "RuntimeError: gives up always",
+        "fake-unbuildable": "RuntimeError: no such sensor",
+    }
+    failed = store.query(status="failed")
+    assert len(failed) == len(summary.failed) == 8
+    assert all(row["rms_deg"] is None and row["over_bound"] is None for row in failed)
+    assert len(store.query(status="ok")) == 4
+    attempts = log().count("fit fake-broken")
+    before = contents(store)
+    assert measure(store, parts).computed == 8
+    assert log().count("fit fake-broken") == 2 * attempts
+    assert contents(store) == before
+    monkeypatch.setenv("FAKE_ATLAS_MENDED", "1")
+    assert {cell.model for cell, _ in measure(store, parts).failed} == {"fake-unbuildable"}
+
+
+def test_an_extractor_or_dataset_that_fails_fails_its_cells_alone(store):
+    class Wrong(fake_atlas.Currents):
+        name = "fake-currents"
+
+        def extract(self, observations):
+            return np.zeros((len(observations), 2))
+
+    class Empty(fake_atlas.Diodes):
+        def generate(self, condition, split, n=None):
+            raise OSError("no data today")
+
+    parts = fake_plan.parts(presets=(fake_atlas.Diodes(), Empty(name="fake-empty")))
+    parts = dataclasses.replace(parts, extractors={**parts.extractors, "fake-currents": Wrong})
+    measure(store, parts)
+    reasons = {(r["dataset"], r["extractor"]): r["reason"] for r in store.rows()}
+    assert (
+        "features of shape (400, 4); got float64 (400, 2)"
+        in reasons["fake-diodes", "fake-currents"]
+    )
+    assert reasons["fake-diodes", "fake-gaps"] == ""
+    assert reasons["fake-empty", "fake-gaps"] == "generating data: OSError: no data today"
+
+
+def test_a_partial_run_keeps_other_results(store):
+    measure(store)
+    before = contents(store)
+    parts = fake_plan.parts()
+    runner.run(plan.cells(conditions="quiet", parts=parts), store, parts=parts)
+    assert contents(store) == before
+
+
+def test_a_partial_run_drops_what_its_new_code_no_longer_vouches_for(store):
+    """A changed extractor measured under one condition: its other score is of older code."""
+    measure(store)
+    newer = type("Newer", (fake_atlas.Gaps,), {"version": 2, "__module__": "fake_atlas"})
+    parts = fake_plan.parts()
+    parts = dataclasses.replace(parts, extractors={**parts.extractors, "fake-gaps": newer})
+    runner.run(
+        plan.cells(conditions="quiet", extractors="fake-gaps", parts=parts), store, parts=parts
+    )
+    assert {(row["condition"], row["extractor"]) for row in store.rows()} == {
+        ("quiet", "fake-currents"),
+        ("noisy", "fake-currents"),
+        ("quiet", "fake-gaps"),
+    }
+
+
+def test_ctrl_c_keeps_what_is_stored_and_says_so(store, log):
+    def interrupt(done, total, what):
+        if done == 2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(runner.RunInterruptedError, match="2 of 4 cells measured; they are kept"):
+        measure(store, progress=interrupt)
+    assert contents(store) == {}, "an interrupted run does not touch the results"
+    assert measure(store).already_stored == 2
+    assert not Record(store).journal.exists()
+
+
+def test_progress_counts_cells_to_the_end(store):
+    seen = []
+    measure(store, progress=lambda done, total, what: seen.append((done, total)))
+    assert seen == [(0, 4), (1, 4), (2, 4), (3, 4), (4, 4)]
+
+
+def test_the_bar_is_silent_where_standard_error_is_no_terminal(capsys):
+    with terminal_progress() as report:
+        assert report is silent
+        report(1, 2, "x")
+    assert capsys.readouterr().err == ""
+
+
+def test_the_bar_shows_cells_on_a_terminal(monkeypatch, capsys):
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
+    with terminal_progress() as report:
+        report(1, 2, "some dataset")
+    assert "1/2" in capsys.readouterr().err
+
+
+def tasks(names, conditions, units, count):
+    return [
+        task.Task(fake_atlas.Diodes(name=name), condition, number, (), unit)
+        for name in names
+        for unit in units
+        for condition in conditions
+        for number in range(count)
+    ]
+
+
+def test_tasks_that_share_samples_go_to_one_worker_four_at_most():
+    some = [*tasks("a", "x", [0], 6), *tasks("a", "y", [0], 1), *tasks("a", "y", [1], 1)]
+    some += tasks("b", "y", [1], 1)
+    assert [len(bundle) for bundle in bundles(some)] == [4, 2, 1, 1, 1]
+    assert [one for bundle in bundles(some) for one in bundle] == some
+
+
+def test_with_many_data_sets_each_unit_of_one_is_done_by_one_worker():
+    some = tasks("abcdefgh", "xy", [0], 6)
+    assert [len(bundle) for bundle in bundles(some, workers=2)] == [12] * 8
+    assert max(len(bundle) for bundle in bundles(some, workers=3)) == 4
+    assert [len(bundle) for bundle in bundles(tasks("ab", "xy", range(4), 6), 2)] == [12] * 8
+
+
+def test_a_worker_lets_go_of_large_data_before_it_generates_more(monkeypatch):
+    preset = fake_atlas.Diodes()
+    held = []
+    generate = fake_atlas.Diodes.generate
+
+    def watched(self, condition, split, n=None):
+        held.append(len(task._kept))
+        return generate(self, condition, split, n)
+
+    monkeypatch.setattr(fake_atlas.Diodes, "generate", watched)
+    for limit, expected in ((2**30, [0, 0, 0, 1, 1, 1]), (1000, [0] * 6)):
+        monkeypatch.setattr(task, "_KEPT_BYTES", limit)
+        task._kept.clear()
+        held.clear()
+        for condition in preset.conditions:
+            task.generated_pins(preset, condition)
+        assert held == expected
+
+
+def test_data_kept_are_those_of_the_same_parameters_and_unit():
+    first, other = fake_atlas.Diodes(), fake_atlas.Diodes(seed=8)
+    one, two = (task.generated_pins(preset, "quiet") for preset in (first, other))
+    assert [a.data_hash == b.data_hash for a, b in zip(one, two, strict=True)] == [False] * 3
+    again = task.generated_pins(fake_atlas.Diodes(), "quiet")
+    assert again is one, "an equal preset finds them"
+
+
+def test_dask_without_its_package_is_a_clear_error(store):
+    with pytest.raises(DaskMissingError, match="pip install distributed"):
+        measure(store, scheduler="tcp://127.0.0.1:1")
+
+
+def test_measuring_uses_one_thread_and_restores_the_number_after(store):
+    import cv2
+
+    from benchmark.running.threads import _bundled_blas, one_thread
+
+    before = [library.get() for library in _bundled_blas()]
+    with one_thread():
+        assert cv2.getNumThreads() == 1
+        assert all(library.get() == 1 for library in _bundled_blas())
+    assert [library.get() for library in _bundled_blas()] == before
+
+
+def test_no_workers_is_refused(store):
+    with pytest.raises(ValueError, match="at least 1; got 0"):
+        measure(store, workers=0)
+    assert contents(store) == {}
+
+
+def test_a_refusal_is_a_result_that_is_kept(store, log):
+    """UnusableDataError is the contract's word for data that a model cannot work on."""
+    parts = fake_plan.parts(fake_atlas.LeastSquares, fake_atlas.Choosy)
+    summary = measure(store, parts)
+    assert summary.failed == ()
+    refused = store.query(status="refused")
+    assert {(row["model"], row["reason"]) for row in refused} == {
+        ("fake-choosy", "UnusableDataError: needs other samples")
+    }
+    assert len(refused) == 4
+    assert all(row["rms_deg"] is None for row in refused)
+    attempts = log().count("fit fake-choosy")
+    assert measure(store, parts).computed == 0
+    assert log().count("fit fake-choosy") == attempts
+
+
+@pytest.mark.parametrize("place", ["fit", "predict"])
+def test_any_other_value_error_is_a_failure_and_tried_again(store, log, place):
+    """NumPy's LinAlgError is a ValueError; so is what an extractor or `predict` raises."""
+
+    class Sloppy(fake_atlas.Singular):
+        def fit(self, features, sun):
+            return super().fit(features, sun) if place == "fit" else self
+
+        def predict(self, features):
+            fake_atlas.log("predict fake-singular")
+            raise fake_atlas.UnusableDataError("too late")
+
+    parts = fake_plan.parts(Sloppy)
+    said = {
+        "fit": "LinAlgError: Singular matrix",
+        "predict": "UnusableDataError: too late",
+    }[place]
+    for times in (1, 2):
+        summary = measure(store, parts)
+        assert {reason for _, reason in summary.failed} == {said}
+        assert log().count(f"{place} fake-singular") == 4 * times
+    assert {row["status"] for row in store.rows()} == {"failed"}

@@ -1,0 +1,357 @@
+"""Faces without a mask: layouts, what turns their light into signals, and its exact inversion."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from algorithms.extractors.currents.photodiode import VoltageBalance
+from benchmark import datasets
+from benchmark.datasets.conditions.cone import ConeField
+from benchmark.plan import combinations as plan
+from benchmark.plan.parts import installed
+from benchmark.seeds import generator
+from benchmark.simulator.light.environment import Earth
+from benchmark.simulator.light.sun_disc import SolarDisc
+from benchmark.simulator.optics.assembly import Assembly
+from benchmark.simulator.readout.detectors import CurrentReadout, DarkCurrent
+from benchmark.simulator.readout.noise import NoiseStreams
+from benchmark.simulator.scene import Scene
+from benchmark.simulator.sensors.face_layouts import lattice, pyramid, sphere
+from benchmark.simulator.sensors.faces import CUBE, Faces
+from benchmark.simulator.sensors.light_to_frequency import FrequencyCounter, FrequencySensor
+from benchmark.simulator.sensors.opto_isolator import OptoIsolatorSensor
+from benchmark.simulator.sensors.solar_cells import SolarCells, SolarCellSensor
+
+IDEAL = CurrentReadout(100.0, 0.0, 0.0, full_scale_ua=400.0, bits=24)
+POINT = SolarDisc(diameter_deg=0.0)
+ANALOG = (
+    "ltf-maskless-cube",
+    "oi-maskless-pyramid",
+    "pd-maskless-pyramid",
+    "pd-single-aperture",
+    "pd-slit",
+    "psd-single-aperture",
+    "pva-maskless-panels",
+    "pva-maskless-sphere",
+    "qpd-maskless-pyramid",
+)
+BARE = tuple(name for name in ANALOG if "maskless" in name)
+
+
+def lit_by(sun: np.ndarray) -> Scene:
+    return Scene(sun, np.ones(len(sun)), np.zeros(len(sun)))
+
+
+def apart_deg(first: np.ndarray, second: np.ndarray) -> float:
+    return float(np.degrees(np.linalg.norm(np.cross(first, second), axis=-1)).max())
+
+
+@pytest.mark.parametrize(("faces", "tilt"), [(3, 20.0), (6, 30.0), (7, 71.0)])
+def test_pyramid_normals_are_those_of_the_survey(faces: int, tilt: float) -> None:
+    """eq:msfpyra1: b = (sin a cos g, cos a cos g, sin g), a counted from +y to +x."""
+    gamma = math.radians(90.0 - tilt)
+    a = math.pi / 2 - 2 * math.pi * np.arange(faces) / faces
+    expected = np.column_stack(
+        [np.sin(a) * math.cos(gamma), np.cos(a) * math.cos(gamma), np.full(faces, math.sin(gamma))]
+    )
+    assert np.array(pyramid(faces, tilt)) == pytest.approx(expected, abs=1e-15)
+
+
+@pytest.mark.parametrize("count", [16, 991])
+def test_faces_spread_evenly_over_the_sphere(count: int) -> None:
+    normals = np.array(sphere(count))
+    assert np.linalg.norm(normals, axis=1) == pytest.approx(1.0)
+    assert np.abs(normals.mean(axis=0)).max() < 1 / count
+    assert normals.T @ normals / count == pytest.approx(np.eye(3) / 3, abs=2 / count)
+    nearest = np.degrees(np.arccos(np.sort(normals @ normals.T, axis=1)[:, -2]))
+    equal = math.degrees(math.sqrt(4 * math.pi / count))  # side of an equal share of the sphere
+    assert nearest.min() > 0.6 * equal
+
+
+def test_a_cap_holds_all_its_directions_and_none_beyond() -> None:
+    field = ConeField(55.0, calibration_samples=400, test_samples=4000)
+    edge = math.cos(math.radians(55.0))
+    for split in ("calibration", "test"):
+        z = field.sun(split, generator("test", split))[:, 2]
+        assert edge < z.min() < edge + 2e-3
+        assert z.mean() == pytest.approx((1 + edge) / 2, abs=0.01)  # uniform in solid angle
+        assert len(z) == field.card()[split]["samples"]
+
+
+def test_impossible_layouts_are_refused() -> None:
+    with pytest.raises(ValueError, match="at least 3 faces; got 2"):
+        pyramid(2, 30.0)
+    with pytest.raises(ValueError, match=r"tilt_deg must be in \(0, 90\); got 90"):
+        pyramid(4, 90.0)
+    with pytest.raises(ValueError, match="count must be at least 1; got 0"):
+        sphere(0)
+    with pytest.raises(ValueError, match=r"lowest_cosine must be in \[-1, 1\); got 1"):
+        lattice(5, 1.0)
+
+
+def perfect(name: str) -> Any:
+    """The dataset's sensor as drawn: cosine faces, no errors, a point Sun; cells stay warm."""
+    sensor = datasets.get(name).setups["nominal"].sensor
+    changes: dict[str, Any] = {"response": "cosine", "normal_error_deg": 0.0, "sun": POINT}
+    changes["readout"] = replace(sensor.readout, gain_mismatch=0.0, dark=DarkCurrent(0.0))
+    changes["assembly"] = Assembly()
+    return replace(sensor, **changes)
+
+
+def undone(sensor: Any, signals: np.ndarray, pattern: Any) -> np.ndarray:
+    """Light (K,) on the faces, from one row of signals by each detector's own relation."""
+    if isinstance(sensor, FrequencySensor):
+        return signals / sensor.readout.sunlit_hz
+    relative = signals / sensor.readout.sunlit_ua
+    if isinstance(sensor, OptoIsolatorSensor):
+        return relative ** (2 / 3)
+    if isinstance(sensor, SolarCellSensor):
+        # i = light (1 + c (T - 25 + h light)), a quadratic in the light
+        cells = sensor.cells
+        b = 1 + cells.temperature_per_k * (cells.temperature_c - 25)
+        a = cells.temperature_per_k * cells.heating_k
+        string = relative / pattern["cells"].min(axis=1)
+        return (np.sqrt(b * b + 4 * a * string) - b) / (2 * a)
+    return relative
+
+
+@pytest.mark.parametrize("name", BARE)
+@given(data=st.data())
+@settings(deadline=None, derandomize=True, max_examples=25)
+def test_least_squares_over_the_lit_faces_invert_the_perfect_sensor(
+    name: str, data: st.DataObject
+) -> None:
+    """Three lit cosine faces or more are linear in the Sun vector."""
+    half = datasets.get(name).geometry.half_fov_deg or 180.0
+    z = math.cos(math.radians(data.draw(st.floats(0.0, half))))
+    turn = data.draw(st.floats(0.0, 2 * math.pi))
+    radius = math.sqrt(1 - z * z)
+    sun = np.array([[radius * math.cos(turn), radius * math.sin(turn), z]])
+    sensor = perfect(name)
+    pattern = sensor.fixed_pattern("test")
+    light = undone(sensor, sensor.expected(lit_by(sun), pattern)[0], pattern)
+    normals = np.array(sensor.normals)
+    # a dark face says its cosine is not positive: on a cube, that of the opposite face's is not
+    lit = light > 1e-12
+    if np.linalg.matrix_rank(normals[lit], tol=1e-6) < 3:
+        return
+    found = np.linalg.lstsq(normals[lit], light[lit])[0]
+    assert apart_deg(found[None], sun) < 1e-6
+
+
+@pytest.mark.parametrize("name", BARE)
+def test_three_faces_that_span_space_are_lit_nearly_everywhere(name: str) -> None:
+    """So that the property above is seldom empty: dark pairs occur in face planes only."""
+    sun = datasets.get(name).generate("nominal", "test").sun
+    light = perfect(name).lit(lit_by(sun), {"normals": np.array(perfect(name).normals)})
+    normals = np.array(perfect(name).normals)
+    spanned = [np.linalg.matrix_rank(normals[row > 1e-12]) == 3 for row in light]
+    assert np.mean(spanned) == 1.0
+
+
+@given(alpha=st.floats(-38.0, 38.0), beta=st.floats(-38.0, 38.0))
+@settings(deadline=None, derandomize=True, max_examples=40)
+def test_balances_of_a_quadrant_pyramid_are_linear_in_the_tangents(
+    alpha: float, beta: float
+) -> None:
+    """Faces tilted by t: ``s_a = tan(t) tan(beta) / sqrt(2)`` while all four are lit."""
+    sensor = perfect("qpd-maskless-pyramid")
+    tangents = np.array([math.tan(math.radians(beta)), math.tan(math.radians(alpha))])
+    sun = np.array([[*tangents, 1.0]]) / math.sqrt(1 + tangents @ tangents)
+    seen = VoltageBalance().extract(sensor.expected(lit_by(sun), sensor.fixed_pattern("test")))
+    slope = math.tan(math.radians(30.0)) / math.sqrt(2)
+    found = np.array([[*(seen[0] / slope), 1.0]])
+    assert seen[0] == pytest.approx(slope * tangents, abs=1e-12)
+    assert apart_deg(found / np.linalg.norm(found), sun) < 1e-6
+
+
+@pytest.mark.parametrize("name", ["pd-maskless-pyramid", "pva-maskless-sphere"])
+def test_kelly_faces_follow_the_printed_polynomial_of_their_own_angle(name: str) -> None:
+    sensor = replace(perfect(name), response="kelly")
+    sun = np.array([[0.36, 0.48, 0.8], [0.6, 0.0, 0.8], [-0.28, -0.42, math.sqrt(0.7452)]])
+    light = sensor.lit(lit_by(sun), sensor.fixed_pattern("test"))
+    c = np.clip(sun @ np.array(sensor.normals).T, 0, None)
+    kelly = -0.369 * c**3 + 0.637 * c**2 + 0.75 * c - 0.015
+    assert light == pytest.approx(np.clip(kelly, 0, None), abs=1e-12)
+
+
+def counter(rate: float, gate_s: float = 1.0, full_scale: float = 1e9) -> FrequencySensor:
+    """A single face whose rate in the Sun is `rate`."""
+    readout = FrequencyCounter(rate, gate_s, 0.0, full_scale)
+    return FrequencySensor(((0.0, 0.0, 1.0),), readout, sun=POINT)
+
+
+@pytest.mark.parametrize("mean", [3.0, 12.0, 400.0, 50_000.0])
+def test_counts_vary_as_their_mean(mean: float) -> None:
+    sensor = counter(mean)
+    up = np.tile([0.0, 0.0, 1.0], (100_000, 1))
+    pattern = sensor.fixed_pattern("test")
+    counts = sensor.observe(lit_by(up), pattern, NoiseStreams.named("test", "counts"))
+    assert np.array_equal(counts, np.rint(counts))
+    assert counts.mean() == pytest.approx(mean, abs=4 * math.sqrt(mean / 1e5))
+    assert counts.var() == pytest.approx(mean, rel=0.03)
+    stated = sensor.variance(sensor.expected(lit_by(up[:1]), pattern))
+    assert stated[0, 0] == pytest.approx(mean, abs=0.1)
+
+
+def test_frequencies_are_whole_counts_and_stop_at_full_scale() -> None:
+    up = np.tile([0.0, 0.0, 1.0], (50, 1))
+    sensor = counter(rate=1000.0, gate_s=0.02)
+    seen = sensor.observe(lit_by(up), sensor.fixed_pattern("t"), NoiseStreams.named("test", "hz"))
+    assert seen * 0.02 == pytest.approx(np.rint(seen * 0.02))
+    assert len(np.unique(seen)) > 5
+    full = counter(rate=2e6, gate_s=0.02, full_scale=1e6)
+    seen = full.observe(lit_by(up), full.fixed_pattern("t"), NoiseStreams.named("test", "hz"))
+    assert (seen <= 1e6).all()
+    assert full.expected(lit_by(up[:1]), full.fixed_pattern("t"))[0, 0] == 1e6
+    with pytest.raises(ValueError, match="gate_s and full_scale_hz must be positive"):
+        FrequencyCounter(1.0, 0.0, 0.0, 1.0)
+
+
+def test_dark_frequency_doubles_with_the_stated_kelvins() -> None:
+    readout = FrequencyCounter(1e5, 0.1, 0.0, 1e6, DarkCurrent(5.0, temperature_c=39.0))
+    sensor = FrequencySensor(CUBE, readout, sun=POINT)
+    down = np.array([[0.0, 0.0, 1.0]])
+    seen = sensor.expected(lit_by(down), sensor.fixed_pattern("test"))[0]
+    assert seen == pytest.approx([20.0] * 4 + [1e5 + 20.0, 20.0])
+
+
+def cells(**changes: Any) -> SolarCellSensor:
+    return SolarCellSensor(CUBE, IDEAL, SolarCells(**changes), response="cosine", sun=POINT)
+
+
+def test_a_string_carries_the_current_of_its_weakest_cell() -> None:
+    sensor = cells(in_series=3, mismatch=0.1)
+    pattern = dict(sensor.fixed_pattern("test"))
+    sun = np.array([[0.48, 0.6, 0.64]])
+    light = np.array([0.48, 0, 0.6, 0, 0.64, 0])
+    seen = sensor.expected(lit_by(sun), pattern)[0]
+    assert seen == pytest.approx(
+        [100 * x * min(c) for x, c in zip(light, pattern["cells"], strict=True)]
+    )
+    assert len(set(pattern["cells"].ravel())) == 18
+    broken = pattern["cells"].copy()
+    broken[4, 1] = 0.0
+    dead = sensor.expected(lit_by(sun), {**pattern, "cells": broken})[0]
+    assert dead[4] == 0.0
+    assert dead[:4] == pytest.approx(seen[:4])
+
+
+def test_longer_strings_lose_more() -> None:
+    """The mean of the smallest of n Gaussians: -0.5642 sigma for two, -1.0294 for four."""
+    many = tuple(sphere(3000))
+    for length, loss in ((1, 0.0), (2, 0.5642), (4, 1.0294)):
+        sensor = SolarCellSensor(many, IDEAL, SolarCells(length, mismatch=0.02))
+        weakest = sensor.fixed_pattern("test")["cells"].min(axis=1)
+        assert weakest.mean() == pytest.approx(1 - 0.02 * loss, abs=0.0015)
+
+
+def test_current_changes_with_temperature_by_the_coefficient() -> None:
+    """eq:tempcomp: ``I (1 + C (T - T0))``; and warmer where there is more light."""
+    sun = np.array([[0.6, 0.0, 0.8]])
+    plain = cells().expected(lit_by(sun), cells().fixed_pattern("test"))[0]
+    hot = cells(temperature_per_k=0.0006, temperature_c=80.0)
+    assert hot.expected(lit_by(sun), hot.fixed_pattern("test"))[0] == pytest.approx(
+        plain * (1 + 0.0006 * 55)
+    )
+    warmed = cells(temperature_per_k=0.0006, heating_k=40.0)
+    seen = warmed.expected(lit_by(sun), warmed.fixed_pattern("test"))[0]
+    assert seen[[0, 4]] == pytest.approx([60 * (1 + 0.0006 * 24), 80 * (1 + 0.0006 * 32)])
+
+
+def test_ageing_takes_its_share_from_every_cell() -> None:
+    sensor = SolarCellSensor(sphere(3000), IDEAL, SolarCells(loss=0.2, loss_spread=0.05))
+    kept = sensor.fixed_pattern("test")["cells"]
+    assert kept.mean() == pytest.approx(0.8, abs=0.004)
+    assert kept.std() == pytest.approx(0.05, rel=0.05)
+    preset = datasets.get("pva-maskless-panels")
+    new, old = (preset.fixed_pattern(c) for c in ("nominal", "aged"))
+    assert np.array_equal(new["gain"], old["gain"])  # the same unit, years later
+    assert (old["cells"] / new["cells"] > 0.6).all()
+    assert (old["cells"] / new["cells"] < 1.0).all()
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"in_series": 0}, "in_series must be at least 1; got 0"),
+        ({"loss": 1.0}, r"loss must be in \[0, 1\); got 1.0"),
+        ({"mismatch": -0.1}, "must not be negative; got -0.1"),
+    ],
+)
+def test_impossible_cells_are_refused(changes: dict[str, Any], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        SolarCells(**changes)
+
+
+def test_opto_isolators_are_steep_and_far_apart() -> None:
+    sensor = OptoIsolatorSensor(sphere(3000), replace(IDEAL, gain_mismatch=0.3), sun=POINT)
+    pattern = sensor.fixed_pattern("test")
+    logs = np.log(pattern["gain"])
+    assert logs.mean() == pytest.approx(0.0, abs=0.02)
+    assert logs.std() == pytest.approx(0.3, rel=0.05)
+    sun = np.array([[0.0, 0.0, 1.0]])
+    light = np.clip(np.array(sensor.normals)[:, 2], 0, None)
+    seen = sensor.expected(lit_by(sun), pattern)[0]
+    assert seen == pytest.approx(100 * pattern["gain"] * light**1.5)
+    bright = sensor.expected(replace(lit_by(sun), irradiance=np.array([2.0])), pattern)[0]
+    assert bright == pytest.approx(2**1.5 * seen)
+
+
+@pytest.mark.parametrize("name", BARE)
+def test_earthlight_reaches_each_face_by_its_own_normal(name: str) -> None:
+    """As light, before the detector makes a signal of it; on the test split alone."""
+    preset = datasets.get(name)
+    sensor = preset.setups["albedo"].sensor
+    assert isinstance(sensor, Faces)
+    assert preset.scene("albedo", "calibration").albedo is None
+    scene = preset.scene("albedo", "test").part(0, 20)
+    assert scene.albedo is not None
+    pattern = preset.fixed_pattern("albedo")
+    assert scene.albedo.shape == (20, len(sensor.normals))
+    assert 0.05 < scene.albedo.max() < 0.4
+    assert sensor.received(scene, pattern) == pytest.approx(
+        sensor.lit(scene, pattern) + scene.stray[:, None] + scene.albedo
+    )
+    sun, nadir = np.array([[0.0, 0, 1.0]]), np.array([[0.0, 0.6, -0.8]])
+    light = sensor.earthlight(Earth(), sun, nadir, pattern)[0]
+    expected = Earth().response(sun, nadir, pattern["normals"], sensor.response)[0]
+    if sensor.assembly == Assembly():
+        assert light == pytest.approx(expected)
+    facing = pattern["normals"] @ nadir[0]
+    brightest = pattern["normals"][light.argmax()] @ nadir[0]
+    assert brightest > np.sort(facing)[-3:].min() - 1e-12
+
+
+def test_models_of_other_layouts_are_left_out_with_the_reason() -> None:
+    for name in BARE:
+        faces = len(datasets.get(name).geometry.face_normals or ())
+        cube = datasets.get(name).geometry.face_normals == CUBE
+        planned = {(c.extractor, c.model) for c in plan.cells(name)}
+        reasons = {(r.extractor, r.model): r.reason for r in plan.incompatible(name)}
+        assert (("direct", "basic") in planned) == cube
+        if not cube:
+            assert "needs six face normals" in reasons["direct", "basic"]
+        if faces == 4:
+            assert ("voltage-balance", "polynomial-2d") in planned
+        else:
+            assert f"the sensor has {faces} faces" in reasons["voltage-balance", ""]
+
+
+@pytest.mark.parametrize("name", ANALOG)
+def test_no_planned_pair_fails_on_the_analog_datasets(name: str) -> None:
+    preset = datasets.get(name)
+    samples = preset.generate("nominal", "calibration")
+    for cell in plan.cells(name, "nominal"):
+        extractor = installed().extractor(cell.extractor)
+        model = installed().model(cell.model).for_sensor(preset.geometry, extractor.kind)
+        features = extractor.for_sensor(preset.geometry).extract(samples.observations)
+        found = model.fit(features, samples.sun).predict(features)
+        assert np.isfinite(found).all(axis=1).mean() > 0.95, cell

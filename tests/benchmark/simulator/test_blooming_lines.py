@@ -1,0 +1,155 @@
+"""Linear CCDs: charge is conserved and spills along its own array; narrow slits are refused."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from benchmark import datasets
+from benchmark.simulator.light.sun_disc import from_angles
+from benchmark.simulator.masks.apertures import Aperture, Mask
+from benchmark.simulator.readout.noise import NoiseStreams
+from benchmark.simulator.scene import Scene
+from benchmark.simulator.sensors.blooming_lines import BloomingLineSensor
+from benchmark.simulator.sensors.lines import LineSensor
+
+PRESET = datasets.get("ccd-slit")
+FULL, GAIN, OFFSET = 100_000.0, 25.0, 16.0
+
+
+def saturated() -> BloomingLineSensor:
+    sensor = PRESET.setups["saturated"].sensor
+    assert isinstance(sensor, BloomingLineSensor)
+    return sensor
+
+
+def scene_over(*angles: tuple[float, float]) -> Scene:
+    alpha, beta = np.array(angles, dtype=float).T
+    return Scene(from_angles(alpha, beta), np.ones(len(alpha)), np.full(len(alpha), 0.002))
+
+
+def test_charge_is_conserved_and_stays_in_its_array() -> None:
+    rng = np.random.default_rng(3)
+    sensor = saturated()
+    for full in (0.0, 40.0):
+        charge = rng.uniform(0, FULL, (5, 2048))
+        charge[:, 900:940] += full * FULL
+        held, drained = sensor.held(charge)
+        before, after = charge.reshape(5, 2, 1024).sum(axis=2), held.reshape(5, 2, 1024).sum(axis=2)
+        assert after + drained == pytest.approx(before, rel=1e-12)
+        assert held.max() <= FULL * (1 + 1e-12)
+        assert np.array_equal(held[:, 1024:], charge[:, 1024:])
+        assert (drained[:, 0] > 0).all() == (full > 0)
+        assert not drained[:, 1].any()
+
+
+def test_half_of_the_overflow_widens_the_spot_on_either_side() -> None:
+    """Twelve pixels of 2.4 wells each: 1.4 wells a pixel flow out, half to the left."""
+    charge = np.zeros((1, 2048))
+    charge[0, 500:512] = 2.4 * FULL
+    held, _ = saturated().held(charge)
+    full = np.flatnonzero(np.isclose(held[0], FULL))
+    assert (full[0], full[-1]) == (492, 519)
+    assert held[0, [491, 520]] == pytest.approx(0.4 * FULL)
+    assert held[0].sum() == pytest.approx(charge.sum())
+
+
+def test_the_saturated_profile_has_the_charge_of_its_light() -> None:
+    sensor, pattern = saturated(), PRESET.fixed_pattern("saturated")
+    scene = scene_over((0, 0), (31, -42), (-60, 60))
+    light = LineSensor._electrons(sensor, scene, pattern)
+    picture = (sensor.picture(scene, pattern) - OFFSET) * GAIN
+    assert picture.sum(axis=1) == pytest.approx(light.sum(axis=1), rel=1e-12)
+    # wider than the same light without spilling
+    cut = np.minimum(light, FULL)
+    assert ((picture > 0.99 * FULL).sum(axis=1) > (cut > 0.99 * FULL).sum(axis=1) + 8).all()
+
+
+@pytest.mark.parametrize("split", ["calibration", "test"])
+def test_trails_stay_on_the_array_all_over_the_field(split: str) -> None:
+    scene = PRESET.scene("saturated", split)
+    keep = np.argsort(np.abs(scene.sun[:, :2] / scene.sun[:, 2:]).max(axis=1))[-40:]
+    part = Scene(scene.sun[keep], scene.irradiance[keep], scene.stray[keep])
+    sensor, pattern = saturated(), PRESET.fixed_pattern("saturated")
+    charge = sensor._electrons(part, pattern)
+    _, drained = sensor.held(charge)
+    assert not drained.any()
+    assert (charge.reshape(-1, 2, 1024).max(axis=2) > FULL).all()
+
+
+def test_statistics_of_the_bound_have_the_variance_they_state() -> None:
+    sensor, pattern = saturated(), PRESET.fixed_pattern("saturated")
+    scene = scene_over((14.0, -33.0))
+    mean = sensor._electrons(scene, pattern)[0]
+    expected = sensor.expected(scene, pattern)
+    assert expected.shape == (1, 2050)
+    draws = np.random.default_rng(2).poisson(mean, (2000, 2048)).reshape(2000, 2, 1024)
+    over = np.maximum(draws - FULL, 0).sum(axis=2)
+    single = 20.0**2 + GAIN**2 / 12
+    stated = sensor.variance(expected)[0, -2:] - 2 * single
+    assert over.mean(axis=0) == pytest.approx(expected[0, -2:], rel=1e-3)
+    assert over.var(axis=0, ddof=1) == pytest.approx(stated, rel=0.15)
+
+
+def test_saturation_costs_accuracy_but_little_is_lost() -> None:
+    """Eight times the light, tops cut flat: edges and the overflow still tell."""
+    nominal, bright = (PRESET.bound(c, n=20).rms_deg for c in ("nominal", "saturated"))
+    assert 0.3 * nominal < bright < 2 * nominal
+
+
+def test_profiles_do_not_depend_on_the_batch() -> None:
+    sensor, pattern = saturated(), PRESET.fixed_pattern("saturated")
+    scene = scene_over((0, 0), (31, -42), (-60, 60), (5, 5))
+    seen = []
+    for cuts in ((0, 4), (0, 1, 3, 4)):
+        streams = NoiseStreams.named("test", "lines")
+        parts = [sensor.observe(scene.part(a, b), pattern, streams) for a, b in pairwise(cuts)]
+        seen.append(np.concatenate(parts))
+    assert np.array_equal(*seen)
+    assert seen[0].max() <= 4095
+
+
+def test_without_overflow_the_statistics_are_those_of_other_lines() -> None:
+    sensor, pattern = saturated(), PRESET.fixed_pattern("saturated")
+    dim = replace(sensor, detector=PRESET.setups["nominal"].sensor.detector)
+    scene = scene_over((3.0, -8.0))
+    plain = PRESET.setups["nominal"].sensor.expected(scene, pattern)
+    assert dim.picture(scene, pattern) == pytest.approx(plain, rel=1e-12)
+    assert not dim.expected(scene, pattern)[:, -2:].any()
+
+
+def test_a_converter_below_the_full_well_is_refused() -> None:
+    sensor = saturated()
+    with pytest.raises(ValueError, match="must reach the full well of 100000 electrons"):
+        replace(sensor, detector=replace(sensor.detector, gain_e_per_dn=20.0))
+
+
+def test_slits_that_diffract_are_refused() -> None:
+    """Half width of 0.1 mm: ``a^2 / (lambda h)`` is 10 at 1.818 mm."""
+    sensor = PRESET.setups["nominal"].sensor
+    slit = Mask((Aperture("rectangle", 0.2, 9.0),))
+    limit = 0.1**2 / (550e-6 * 10)
+    close = replace(sensor.camera, mask=slit, focal_length_mm=limit * 0.999)
+    assert isinstance(replace(sensor, camera=close), LineSensor)
+    far = replace(close, focal_length_mm=limit * 1.01)
+    with pytest.raises(ValueError, match=r"Fresnel number of at least 10; slits of 0.2 mm .* 9.9"):
+        replace(sensor, camera=far)
+    assert math.isclose(limit, 1.818, rel_tol=1e-3)
+
+
+@pytest.mark.parametrize(
+    "name", [n for n in datasets.names() if datasets.get(n).regime.get("propagation")]
+)
+def test_no_line_array_needs_diffraction(name: str) -> None:
+    preset = datasets.get(name)
+    for condition, setup in preset.setups.items():
+        if isinstance(setup.sensor, LineSensor):
+            camera = setup.sensor.camera
+            half = min(a.smallest_half_width_mm for a in camera.mask.apertures)
+            assert half**2 / (550e-6 * camera.focal_length_mm) >= 10, condition
+            assert preset.regime["propagation"] == "geometric"
+            assert preset.regime["fresnel_number"] >= 10

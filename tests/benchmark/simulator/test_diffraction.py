@@ -1,0 +1,160 @@
+"""Diffraction against quadrature, closed forms and its limits: Airy's pattern and the shadow."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy import integrate
+from scipy.special import j1
+
+from benchmark.simulator.kernels.diffraction_slits import intensities
+from benchmark.simulator.masks.apertures import Aperture, Mask
+from benchmark.simulator.optics.diffraction import (
+    SUNLIT_SILICON,
+    Spectrum,
+    propagation,
+    round_intensity,
+    slit_intensity,
+)
+from benchmark.simulator.optics.diffraction_tables import fresnel_table, landing, layers
+from benchmark.simulator.optics.plates import CoverGlass, Plate
+
+
+@pytest.mark.parametrize("number", [0.02, 0.7, 3.0, 9.0])
+@pytest.mark.parametrize("position", [0.0, 0.6, 1.0, 2.5])
+def test_slit_is_the_integral_of_the_fresnel_phase(number: float, position: float) -> None:
+    def part(function):
+        inner = lambda q: function(math.pi * number * (position - q) ** 2)  # noqa: E731
+        return integrate.quad(inner, -1, 1, epsabs=1e-12, epsrel=1e-12, limit=400)[0]
+
+    expected = number * (part(math.cos) ** 2 + part(math.sin) ** 2)
+    found = slit_intensity(np.array([position, -position]), number)
+    assert found == pytest.approx(expected, rel=1e-9, abs=1e-12)
+
+
+def test_slit_of_the_frames_is_the_closed_form() -> None:
+    position = np.linspace(-8.0, 8.0, 4001)
+    out = np.empty_like(position)
+    for number in (0.003, 0.5, 9.0, 80.0):
+        intensities(out, position, number, fresnel_table())
+        assert out == pytest.approx(slit_intensity(position, number), abs=2e-8), number
+
+
+def test_straight_edge_of_a_wide_slit_has_a_quarter_of_the_light() -> None:
+    assert slit_intensity(np.array([1.0]), 3000.0)[0] == pytest.approx(0.25, rel=0.02)
+
+
+def test_light_behind_a_slit_is_the_light_that_entered() -> None:
+    position = np.linspace(-60.0, 60.0, 60001)
+    for number in (0.5, 4.0):
+        total = np.trapezoid(slit_intensity(position, number), position)
+        # beyond the ends, on average (1 / pi^2 N) / x^2
+        tail = 2.0 / (math.pi**2 * number * 60.0)
+        assert total + tail / 2.0 == pytest.approx(2.0, abs=tail)
+
+
+@pytest.mark.parametrize("number", [0.004, 0.026, 0.5, 1.0, 2.0, 3.7, 9.5, 40.0])
+def test_axis_behind_a_hole_swings_between_zero_and_four(number: float) -> None:
+    axis = round_intensity(np.zeros(1), np.zeros(1), (number, number))[0, 0]
+    assert axis == pytest.approx(4.0 * math.sin(math.pi * number / 2.0) ** 2, abs=1e-12)
+
+
+@pytest.mark.parametrize("numbers", [(0.4, 0.9), (6.0, 6.0), (2.5, 8.0)])
+def test_hole_is_the_double_integral_of_the_fresnel_phase(numbers: tuple[float, float]) -> None:
+    """Elliptical phase fronts, as oblique light makes them; quadrature in polar coordinates."""
+    x, y = np.array([0.0, 0.55, 1.3]), np.array([0.0, 0.8])
+    nodes, shares = np.polynomial.legendre.leggauss(200)
+    radius = (nodes[:, None] + 1.0) / 2.0
+    turn = 2.0 * math.pi * np.arange(400) / 400
+    q, p = radius * np.cos(turn), radius * np.sin(turn)
+    weights = np.repeat(shares[:, None] / 2.0 * radius * 2.0 * math.pi / 400, 400, axis=1)
+    found = round_intensity(x, y, numbers)
+    for i in range(3):
+        for j in range(2):
+            phase = math.pi * (numbers[0] * (x[i] - q) ** 2 + numbers[1] * (y[j] - p) ** 2)
+            field = np.sum(weights * np.exp(1j * phase))
+            expected = numbers[0] * numbers[1] * abs(field) ** 2
+            assert found[i, j] == pytest.approx(expected, abs=1e-9)
+
+
+def test_small_hole_far_away_shows_airys_pattern() -> None:
+    number = 0.004
+    position = np.linspace(0.1, 700.0, 300)
+    v = 2.0 * math.pi * number * position
+    airy = (math.pi * number) ** 2 * (2.0 * j1(v) / v) ** 2
+    found = round_intensity(position, np.zeros(1), (number, number))[:, 0]
+    assert np.abs(found - airy).max() < 2e-5 * airy.max()
+    # half the light in the radial direction, elliptical: each axis by its own number
+    oblique = round_intensity(np.zeros(1), position, (number / 2.0, number))[0]
+    assert np.abs(oblique - airy / 2.0).max() < 2e-5 * airy.max()
+
+
+def test_light_behind_a_hole_is_the_light_that_entered() -> None:
+    """Encircled energy; far out Airy's mean tail, 2 / (pi v), is missing."""
+    number = 1.3
+    radius = np.linspace(0.0, 25.0, 5001)
+    intensity = round_intensity(radius, np.zeros(1), (number, number))[:, 0]
+    total = np.trapezoid(intensity * 2.0 * radius, radius)
+    missing = 2.0 / (math.pi * 2.0 * math.pi * number * 25.0)
+    assert total == pytest.approx(1.0 - missing, abs=0.3 * missing)
+
+
+def test_large_hole_casts_its_shadow() -> None:
+    number = 400.0
+    inside, outside = np.linspace(0.3, 0.8, 600), np.linspace(1.15, 1.6, 600)
+    lit = round_intensity(inside, np.zeros(1), (number, number))[:, 0]
+    dark = round_intensity(outside, np.zeros(1), (number, number))[:, 0]
+    assert lit.mean() == pytest.approx(1.0, abs=0.01)
+    assert dark.mean() < 0.01
+
+
+def test_weights_are_sunlight_on_silicon() -> None:
+    """Planck's photons at 5772 K times the stated quantum efficiencies."""
+    efficiency = np.array([0.50, 0.60, 0.50, 0.35, 0.20, 0.08])
+    micrometres = np.array(SUNLIT_SILICON.wavelengths_nm) / 1000.0
+    photons = micrometres**-4.0 / np.expm1(14387.769 / (micrometres * 5772.0))
+    expected = efficiency * photons / np.sum(efficiency * photons)
+    assert SUNLIT_SILICON.weights == pytest.approx(expected, abs=5.1e-4)
+
+
+def test_landing_point_moves_by_its_derivatives() -> None:
+    glass = CoverGlass((Plate(0.5, 1.52), Plate(0.2, 1.9)))
+    stack = layers(3.0, glass)
+    sine, step = np.array([0.0, 0.3, 0.7]), 1e-6
+    found = landing(sine, stack)
+    direction = np.stack([sine, np.zeros(3), np.sqrt(1.0 - sine**2)], axis=1)
+    assert found[:, 0] == pytest.approx(glass.displacement(direction, 3.0)[:, 0], abs=1e-14)
+    slope = (landing(sine + step, stack)[:, 0] - landing(sine - step, stack)[:, 0]) / (2.0 * step)
+    assert found[:, 1] == pytest.approx(slope, rel=1e-8)
+    assert found[:, 2] * sine == pytest.approx(found[:, 0], abs=1e-14)
+    cosine = np.sqrt(1.0 - sine**2)
+    empty = landing(sine, layers(3.0, CoverGlass()))
+    assert empty[:, 1] == pytest.approx(3.0 / cosine**3)
+    assert empty[:, 2] == pytest.approx(3.0 / cosine)
+
+
+def test_the_fresnel_number_decides_on_diffraction() -> None:
+    mask = Mask((Aperture("round", 0.2, 0.2), Aperture("rectangle", 0.1, 3.0, x_mm=1.0)))
+    close = propagation(mask, 0.4, SUNLIT_SILICON)
+    assert close["propagation"] == "geometric"
+    assert close["fresnel_number"] == pytest.approx(0.05**2 / (550e-6 * 0.4), rel=5e-3)
+    far = propagation(mask, 0.6, SUNLIT_SILICON)
+    assert far["propagation"] == "diffraction"
+    assert far["mapping"] == "chief ray"
+    assert propagation(mask, 20.0, SUNLIT_SILICON)["mapping"] == "direction cosines"
+
+
+@pytest.mark.parametrize(
+    ("wavelengths", "weights", "said"),
+    [
+        ((), (), "one weight a wavelength"),
+        ((500.0,), (0.5, 0.5), "got 1 wavelengths and 2 weights"),
+        ((500.0, 600.0), (0.5, 0.4), "add up to 1; got 0.9"),
+        ((-500.0,), (1.0,), "positive"),
+    ],
+)
+def test_impossible_spectra_are_refused(wavelengths, weights, said: str) -> None:
+    with pytest.raises(ValueError, match=said):
+        Spectrum(wavelengths, weights)

@@ -1,0 +1,235 @@
+"""Sweeps: what is measured, stored, renewed and compared."""
+
+from __future__ import annotations
+
+import csv
+import dataclasses
+import io
+from dataclasses import dataclass
+from typing import ClassVar
+from xml.etree import ElementTree as ET
+
+import numpy as np
+import pytest
+
+from algorithms.contract import FeatureKind, Observation
+from algorithms.discovery import discover_extractors
+from benchmark.reference.series import SWEEPS
+from benchmark.results.record import point_of
+from benchmark.results.store import Store
+from benchmark.sweeps import pictures as sweep_pictures
+from benchmark.sweeps import plan as sweep_plan
+from benchmark.sweeps import run as sweeps
+from benchmark.sweeps import tables as sweep_tables
+
+
+@dataclass(frozen=True)
+class Plain:
+    """Balances by the closed form."""
+
+    name: ClassVar[str] = "plain"
+    taxonomy: ClassVar[str] = "Voltage balance"
+    studies: ClassVar[tuple[str, ...]] = ()
+    labels: ClassVar[tuple[str, ...]] = ()
+    origin: ClassVar[str] = "survey"
+    version: ClassVar[int] = 1
+    observation: ClassVar[Observation] = Observation.CURRENTS
+    kind: ClassVar[FeatureKind] = FeatureKind.BALANCE
+    needs: ClassVar[tuple[str, ...]] = ()
+    features: ClassVar[tuple[str, ...]] = ("s_a", "s_b")
+
+    @classmethod
+    def for_sensor(cls, geometry):
+        return cls()
+
+    def extract(self, observations):
+        q1, q2, q3, q4 = observations.T
+        both = np.column_stack([q2 + q3 - q1 - q4, q1 + q2 - q3 - q4])
+        return both / observations.sum(axis=1, keepdims=True)
+
+
+class Broken(Plain):
+    name = "broken"
+
+    def extract(self, observations):
+        raise RuntimeError("no light")
+
+
+class Spots(Plain):
+    name = "spots-of-readings"
+    kind = FeatureKind.SPOT
+
+
+FEW = {c.name: c for c in (Plain, Broken, Spots)}
+
+
+def quiet(*_):
+    pass
+
+
+def rows_of(directory):
+    return Store(directory).swept()
+
+
+def table(directory):
+    return Store(directory).sweeps_path.read_bytes()
+
+
+@pytest.fixture
+def made(tmp_path):
+    return tmp_path, sweeps.update(tmp_path, 1, quiet, extractors=FEW)
+
+
+def test_points_are_measured_failures_named_and_misfits_listed(made):
+    directory, swept = made
+    rows = rows_of(directory)
+    states = {name: {r["status"] for r in rows if r["extractor"] == name} for name in FEW}
+    assert states == {"plain": {"ok"}, "broken": {"failed"}, "spots-of-readings": {"refused"}}
+    assert swept.planned == swept.computed == 2 * len(sweep_plan.SERIES["quadrants"].settings())
+    assert {reason for _, reason in swept.failed} == {"RuntimeError: no light"}
+    listed = sweep_tables.unmeasured(rows)
+    assert listed == [
+        ("", "spots-of-readings", "no reference series of currents that are read as spot")
+    ]
+
+
+def test_the_closed_form_of_balances_is_at_the_bound(made):
+    found = [
+        row["over_bound"]
+        for row in rows_of(made[0])
+        if row["extractor"] == "plain" and row["sweep"] == "noise"
+    ]
+    assert len(found) == 7
+    assert found == pytest.approx([1.0] * 7, abs=0.08)
+
+
+def test_what_is_current_stays_and_failures_are_tried_again(made):
+    directory, swept = made
+    before = table(directory)
+    again = sweeps.update(directory, 1, quiet, extractors=FEW)
+    assert again.computed == swept.computed // 2 == len(again.failed)
+    assert table(directory) == before
+    assert list(sweeps.unplanned(rows_of(directory), FEW)) == []
+    less = sweeps.update(directory, 1, quiet, extractors={"plain": Plain})
+    assert less.computed == 0
+    assert {row["extractor"] for row in rows_of(directory)} == {"plain"}
+    assert list(Store(directory).components().extractors) == ["plain"]
+
+
+def test_a_method_of_other_code_is_measured_again_alone(tmp_path):
+    second = type("Second", (Plain,), {"name": "second"})
+    both = {"plain": Plain, "second": second}
+    first = sweeps.update(tmp_path, 1, quiet, extractors=both)
+    before = rows_of(tmp_path)
+    newer = type("Newer", (second,), {"version": 2})
+    again = sweeps.update(tmp_path, 1, quiet, extractors={"plain": Plain, "second": newer})
+    assert again.computed == first.computed // 2
+    version = "extractor_version"
+    assert [{**row, version: 0} for row in rows_of(tmp_path)] == [
+        {**row, version: 0} for row in before
+    ]
+    assert {row[version] for row in rows_of(tmp_path) if row["extractor"] == "second"} == {2}
+
+
+@pytest.mark.parametrize("name", ["quadrants", "faces"])
+def test_a_series_of_other_code_is_measured_again_alone(made, monkeypatch, name):
+    directory, swept = made
+    digests = sweeps.series_digests()
+    monkeypatch.setattr(sweeps, "series_digests", lambda: {**digests, name: "0" * 16})
+    again = sweeps.update(directory, 1, quiet, extractors={"plain": Plain})
+    assert again.computed == (swept.computed // 2 if name == "quadrants" else 0)
+
+
+def test_a_reason_that_changes_is_renewed(made, monkeypatch):
+    """What a method is refused for is the plan's to say, whatever code stood there before."""
+    monkeypatch.setattr(Spots, "observation", Observation.EVENTS)
+    monkeypatch.setattr(sweep_plan, "_SERIES_OF", dict.fromkeys(Observation, ()))
+    sweeps.update(made[0], 1, quiet, extractors=FEW)
+    assert sweep_tables.unmeasured(rows_of(made[0])) == [
+        ("", "spots-of-readings", "no reference series of events that are read as spot")
+    ]
+
+
+def test_workers_and_what_was_there_before_do_not_change_a_byte(tmp_path):
+    known = discover_extractors()
+    some = {name: known[name] for name in ("voltage-balance", "direct", "escm-wta")}
+    one, two, grown = (tmp_path / name for name in ("one", "two", "grown"))
+    sweeps.update(one, 1, quiet, extractors=some)
+    sweeps.update(two, 2, quiet, extractors=some)
+    sweeps.update(grown, 1, quiet, extractors={"direct": some["direct"]})
+    assert sweeps.update(grown, 1, quiet, extractors=some).computed < 60
+    assert table(two) == table(one)
+    assert table(grown) == table(one)
+
+
+def test_a_missing_point_and_one_too_much_are_named(made):
+    rows = rows_of(made[0])
+    gone, *rest = rows
+    found = list(sweeps.unplanned([*rest, {**gone, "point": "else"}], FEW))
+    assert sorted((dataclasses.astuple(point), state) for point, state in found) == sorted(
+        [
+            (point_of(gone), "absent"),
+            (point_of({**gone, "point": "else"}), "not planned"),
+        ]
+    )
+
+
+def test_a_number_that_moved_is_told_beyond_the_tolerance_only(made):
+    rows = [row for row in rows_of(made[0]) if row["status"] == "ok"]
+    near = [{**row, "rms": row["rms"] * 1.00005} for row in rows]
+    assert list(sweeps.differences(rows, near)) == []
+    far = [{**rows[0], "rms": rows[0]["rms"] * 1.001}, *rows[1:]]
+    (found,) = sweeps.differences(rows, far)
+    assert found[0] == f"{'/'.join(point_of(rows[0]))}/rms"
+    assert [place for place, *_ in sweeps.differences(rows[1:], rows)] == [
+        f"{'/'.join(point_of(rows[0]))}/row"
+    ]
+
+
+def test_tables_show_what_is_stored_cell_by_cell(made):
+    rows = rows_of(made[0])
+    shown = {
+        (cell, column): text
+        for one in sweep_tables.tables(rows)
+        for _, values in one.rows
+        for cell, column, text in values
+    }
+    assert shown["quadrants/noise/50/broken", "over_bound"] == "-"
+    row = next(r for r in rows if point_of(r) == ("quadrants", "noise", "50", "plain"))
+    assert shown["quadrants/noise/50/plain", "over_bound"] == f"{row['over_bound']:#.4g}"
+    text = "\n".join(sweep_tables.to_markdown(rows))
+    assert f"| {shown['quadrants/noise/50/plain', 'over_bound']} |" in text
+    assert "- spots-of-readings on any: no reference series" in text
+    as_csv = list(csv.DictReader(io.StringIO(sweep_tables.to_csv(rows))))
+    assert len(as_csv) == len(rows)
+    for line, stored in zip(as_csv, rows, strict=True):
+        for name, value in stored.items():
+            if isinstance(value, float):
+                assert float(line[name]) == value
+            else:
+                assert line[name] == ("" if value is None else str(value))
+
+
+def test_pictures_are_the_same_every_time_and_well_formed(made):
+    rows = rows_of(made[0])
+    for sweep in sweep_pictures.DRAWN:
+        text = sweep_pictures.picture(rows, sweep)
+        assert text == sweep_pictures.picture(rows, sweep)
+        ET.fromstring(text)
+    drawn = sweep_pictures.picture(rows, "noise")
+    assert drawn.count("<circle") == 7 + 2  # the legend's two
+    assert "nothing found" in drawn  # the broken one's panel
+    with pytest.raises(ValueError, match="sweep must be one of noise, size, phase"):
+        sweep_pictures.picture(rows, "pedestal")
+
+
+def test_every_method_of_the_survey_has_a_noise_sweep():
+    """Accept point: all 19 values of the taxonomy, error and bound from SNR 5 upwards."""
+    known = discover_extractors()
+    plan = sweep_plan.planned(known)
+    swept = {known[p.extractor].taxonomy for p in plan.settings if p.sweep == "noise"}
+    implemented = {extractor.taxonomy for extractor in known.values()}
+    assert implemented <= swept
+    for point, reason in plan.refused.items():
+        assert reason, point
+    assert {point.sweep for point in plan.settings} == set(SWEEPS)
