@@ -11,17 +11,11 @@ import fake_atlas
 import numpy as np
 import pytest
 
+from benchmark.canonical import canonical_json, digest
+from benchmark.datasets.samples import HEAD, head_hash, samples_hash
 from benchmark.results import digests
 from benchmark.results.closure import ClosureError, closure, closure_digest, syntax_digest
-from benchmark.results.digests import (
-    HEAD,
-    dataset_digest,
-    head_hash,
-    method_digest,
-    module_digest,
-    preset_modules,
-    samples_hash,
-)
+from benchmark.results.digests import dataset_digest, method_digest, module_digest, preset_modules
 
 
 @pytest.fixture
@@ -189,18 +183,18 @@ class Inner:
 
 def test_canonical_json_has_one_spelling():
     value = {"b": Inner((0.1 + 0.2, np.float32(2.0))), "a": {3, 1}, "c": Colour.RED, "d": None}
-    assert digests.canonical_json(value) == '{"a":[1,3],"b":{"b":[0.3,2.0]},"c":"red","d":null}'
-    assert digests.digest(value) == digests.digest(dict(reversed(value.items())))
+    assert canonical_json(value) == '{"a":[1,3],"b":{"b":[0.3,2.0]},"c":"red","d":null}'
+    assert digest(value) == digest(dict(reversed(value.items())))
 
 
 def test_arrays_enter_with_their_type_and_non_finite_numbers_by_name():
-    assert digests.digest(np.array([1, 2])) != digests.digest(np.array([1.0, 2.0]))
-    assert digests.canonical_json([float("inf"), float("nan")]) == '["inf","nan"]'
+    assert digest(np.array([1, 2])) != digest(np.array([1.0, 2.0]))
+    assert canonical_json([float("inf"), float("nan")]) == '["inf","nan"]'
 
 
 def test_a_value_without_spelling_is_refused():
     with pytest.raises(TypeError, match="object has no canonical spelling"):
-        digests.canonical_json({"a": object()})
+        canonical_json({"a": object()})
 
 
 def test_the_data_hash_sees_every_array_its_shape_and_type_but_not_its_memory_layout():
