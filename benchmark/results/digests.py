@@ -31,9 +31,14 @@ def dataset_digest(preset: Preset) -> str:
             "dataset": preset.name,
             "version": preset.version,
             "parameters": {name: preset.parameters(name) for name in preset.conditions},
-            "code": closure_digest(*preset_modules(preset)),
+            "code": closure_digest(*modules_of(preset)),
         }
     )
+
+
+def series_digest(series: object) -> str:
+    """Digest of a reference series: of what it holds, and of the code of all it is made of."""
+    return _component({"holds": series, "code": closure_digest(*modules_of(series))})
 
 
 def method_digest(method: type[Extractor | Model]) -> str:
@@ -45,11 +50,6 @@ def method_digest(method: type[Extractor | Model]) -> str:
             "code": closure_digest(method.__module__),
         }
     )
-
-
-def module_digest(*modules: str) -> str:
-    """Digest of modules and of the code they reach."""
-    return _component(closure_digest(*modules))
 
 
 def harness_digest() -> str:
@@ -68,9 +68,9 @@ def _component(value: object) -> str:
     return digest(value)[:_COMPONENT_DIGITS]
 
 
-def preset_modules(preset: Preset) -> tuple[str, ...]:
-    """Modules of the preset's class and of every dataclass instance or function it holds."""
-    return tuple(sorted(set(_modules_of(preset))))
+def modules_of(instance: object) -> tuple[str, ...]:
+    """Modules of an instance's class and of every dataclass instance or function it holds."""
+    return tuple(sorted(set(_modules_of(instance))))
 
 
 def _modules_of(value: object) -> Iterator[str]:

@@ -24,7 +24,7 @@ from benchmark.plan.parts import Parts
 from benchmark.progress import ProgressCallback, terminal_progress
 from benchmark.reference.series import SWEEPS, Setting
 from benchmark.results.components import Components, current
-from benchmark.results.digests import module_digest
+from benchmark.results.digests import series_digest
 from benchmark.results.record import Record, opened, point_of
 from benchmark.results.store import PUBLISHED, SWEPT, Store
 from benchmark.results.tables import Row
@@ -59,8 +59,8 @@ class Swept:
 
 
 def series_digests() -> dict[str, str]:
-    """Digest of the code of each series of reference features."""
-    return {name: module_digest(type(series).__module__) for name, series in SERIES.items()}
+    """Digest of each series of reference features."""
+    return {name: series_digest(series) for name, series in SERIES.items()}
 
 
 def components_of(extractors: Extractors) -> Components:
