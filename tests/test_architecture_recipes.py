@@ -97,6 +97,6 @@ def test_the_new_algorithm_passes_the_common_suite(tree: Path) -> None:
 def test_adding_a_dataset_changes_no_other(tree: Path) -> None:
     digest = (
         "from benchmark import datasets as d;"
-        "print(d.data_digest(d.get('pd-maskless-cube').generate('nominal', 'test')))"
+        "print(d.samples_hash(d.get('pd-maskless-cube').generate('nominal', 'test')))"
     )
     assert run(["-c", digest], tree) == run(["-c", digest], ROOT)

@@ -8,9 +8,9 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from benchmark.datasets.pins import Pin
 from benchmark.leaderboard.board import build
 from benchmark.metrics.score import is_available
-from benchmark.results.pins import Pin
 from benchmark.results.store import PUBLISHED, Store
 from registry.measured import Measured
 

@@ -13,17 +13,18 @@ from functools import cache
 
 from benchmark.datasets import standard
 from benchmark.datasets.card import parameters_of
-from benchmark.datasets.preset import Condition, Preset, Samples, data_digest
+from benchmark.datasets.preset import Condition, Preset
+from benchmark.datasets.samples import Samples, samples_hash
 
 __all__ = [
     "Condition",
     "Preset",
     "Samples",
     "UnknownDatasetError",
-    "data_digest",
     "get",
     "names",
     "parameters_of",
+    "samples_hash",
 ]
 
 

@@ -6,17 +6,18 @@ import time
 from collections.abc import Iterable
 from pathlib import Path
 
+from benchmark.contract import Cell
 from benchmark.leaderboard import ranking
 from benchmark.leaderboard.board import board_of, build
 from benchmark.leaderboard.pages import PAGE, page
-from benchmark.plan.combinations import Cell, cells
+from benchmark.plan.combinations import cells
 from benchmark.plan.parts import Parts, installed
+from benchmark.progress import ProgressCallback
 from benchmark.results.components import Components, current
 from benchmark.results.files import replace
 from benchmark.results.record import opened
 from benchmark.results.store import PUBLISHED, Store, described
 from benchmark.running import pinning
-from benchmark.running.progress import ProgressCallback
 from benchmark.running.run import Summary, failures, measure_missing
 from benchmark.sweeps import run as sweeps
 

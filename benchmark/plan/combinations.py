@@ -7,24 +7,10 @@ from dataclasses import dataclass
 from itertools import product
 
 from algorithms.contract import Extractor, FeatureKind, Model, UnsuitableDesignError
-from benchmark.plan.parts import Parts, Preset, UnknownNameError, installed
+from benchmark.contract import Cell, Preset, UnknownNameError
+from benchmark.plan.parts import Parts, installed
 
 Names = str | Iterable[str] | None
-
-
-@dataclass(frozen=True, order=True)
-class Cell:
-    """One thing to measure, by names, and by the number of the sensor's unit."""
-
-    dataset: str
-    condition: str
-    extractor: str
-    model: str
-    unit: int = 0
-
-    def __str__(self) -> str:
-        name = f"{self.dataset}/{self.condition}/{self.extractor}/{self.model}"
-        return f"{name}/unit {self.unit}" if self.unit else name
 
 
 @dataclass(frozen=True, order=True)

@@ -13,9 +13,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from benchmark.contract import Cell, Preset
 from benchmark.metrics.score import METRIC_VERSION
-from benchmark.plan.combinations import Cell
-from benchmark.plan.parts import Parts, Preset
+from benchmark.plan.parts import Parts
 from benchmark.results.digests import dataset_digest, harness_digest, method_digest
 
 #: Layout of the stored files; raised when a field changes its meaning.

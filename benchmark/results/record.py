@@ -16,9 +16,9 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from benchmark.plan.combinations import Cell
+from benchmark.contract import Cell
+from benchmark.datasets.pins import Pin, Place
 from benchmark.results.components import Components
-from benchmark.results.pins import Pin, Place
 from benchmark.results.store import Store
 from benchmark.results.tables import Row, StoreError
 

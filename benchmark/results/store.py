@@ -20,11 +20,12 @@ from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from benchmark.contract import Cell
+from benchmark.datasets.pins import Pin, Place
 from benchmark.metrics.score import METRIC_VERSION, METRICS
-from benchmark.plan.combinations import Cell
 from benchmark.results.components import Components, ComponentsError, Facts
 from benchmark.results.files import replace
-from benchmark.results.pins import Pin, Place, pins_text, read_pins
+from benchmark.results.pins import pins_text, read_pins
 from benchmark.results.tables import Reader, Row, StoreError, number, read, text_of, whole, word
 
 if TYPE_CHECKING:

@@ -15,15 +15,15 @@ from dataclasses import dataclass
 from itertools import groupby
 from pathlib import Path
 
+from benchmark.contract import Cell
 from benchmark.metrics.score import METRICS
-from benchmark.plan.combinations import Cell
 from benchmark.plan.parts import Parts, installed
+from benchmark.progress import ProgressCallback, terminal_progress
 from benchmark.results.components import Components, current
 from benchmark.results.record import Record, opened
 from benchmark.results.store import Store
 from benchmark.results.tables import Row
 from benchmark.running.backend import outcomes
-from benchmark.running.progress import ProgressCallback, terminal_progress
 from benchmark.running.task import Outcome, Task, TaskResult
 
 

@@ -20,10 +20,12 @@ from algorithms.contract import (
     UnusableDataError,
     in_detector_coordinates,
 )
+from benchmark.canonical import digest
+from benchmark.contract import SPLITS, Bound, Preset, Samples
+from benchmark.datasets.pins import Pin
+from benchmark.datasets.samples import HEAD, head_hash, samples_hash
 from benchmark.metrics.score import Score, score, stored
-from benchmark.plan.parts import SPLITS, Bound, Preset, Samples
-from benchmark.results.digests import HEAD, digest, head_hash, samples_hash, seed
-from benchmark.results.pins import Pin
+from benchmark.results.digests import seed
 from benchmark.running.threads import one_thread
 from benchmark.simulator.light.memory import memory
 

@@ -25,12 +25,13 @@ from algorithms.contract import (
     SensorGeometry,
     in_detector_coordinates,
 )
-from benchmark.plan.combinations import Cell, cells
-from benchmark.plan.parts import Parts, Preset, Samples, installed
+from benchmark.contract import Cell, Preset, Samples
+from benchmark.plan.combinations import cells
+from benchmark.plan.parts import Parts, installed
+from benchmark.progress import ProgressCallback, terminal_progress
 from benchmark.results import files
 from benchmark.results.components import Components, current
 from benchmark.results.tables import number, read, text_of, word
-from benchmark.running.progress import ProgressCallback, terminal_progress
 from benchmark.running.threads import one_thread
 from benchmark.running.timing import best_of, best_time
 

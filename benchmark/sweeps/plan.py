@@ -7,12 +7,25 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from algorithms.contract import Extractor, FeatureKind, Observation, UnsuitableDesignError
-from benchmark.reference.cameras import BLACK_SUN, BLOOMING
+from benchmark.datasets import Preset
+from benchmark.datasets.standard import ccd_lens, cmos_lens
+from benchmark.reference.cameras import CameraSeries
 from benchmark.reference.events import EVENTS
 from benchmark.reference.lines import SLIT, SLITS
 from benchmark.reference.readings import FacesSeries, QuadrantSeries
 from benchmark.reference.series import Series, Setting
 from benchmark.reference.spots import DiscSeries, GridSeries
+from benchmark.simulator.sensors.black_sun import BlackSunSensor
+from benchmark.simulator.sensors.blooming import BloomingSensor
+
+
+def _camera_of(preset: Preset, name: str, description: str) -> CameraSeries:
+    """Return the series of a dataset's nominal camera."""
+    camera = preset.condition("nominal").sensor
+    if not isinstance(camera, BloomingSensor | BlackSunSensor):
+        raise TypeError(f"{preset.name} has no lens camera; got {type(camera).__name__}")
+    return CameraSeries(name, camera, preset.geometry, description)
+
 
 _ALL: tuple[Series, ...] = (
     DiscSeries(),
@@ -22,8 +35,18 @@ _ALL: tuple[Series, ...] = (
     QuadrantSeries(),
     FacesSeries(),
     EVENTS,
-    BLOOMING,
-    BLACK_SUN,
+    _camera_of(
+        ccd_lens.PRESET,
+        "blooming",
+        "the Sun through a lens on a CCD without drains, trails along the columns: the nominal "
+        "`ccd-lens` camera without distortion; the SNR is that of a pixel at the full well",
+    ),
+    _camera_of(
+        cmos_lens.PRESET,
+        "black-sun",
+        "the Sun through a lens on a CMOS array that inverts: the nominal `cmos-lens` camera "
+        "without distortion; the SNR is that of a pixel at the full well",
+    ),
 )
 
 #: By name, in the order of the tables.

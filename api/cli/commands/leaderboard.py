@@ -18,12 +18,12 @@ from api.cli.measuring import (
 from api.cli.tables import Format, FormatOption, emit
 from api.cli.working import working_directory
 from api.cli.wrong_call import WrongCallError
+from benchmark.contract import UnknownNameError
 from benchmark.leaderboard import check as checking
 from benchmark.leaderboard import pages
 from benchmark.leaderboard import update as updating
 from benchmark.leaderboard.board import at_field, within_error
 from benchmark.metrics.rings import EDGES_DEG
-from benchmark.plan.parts import UnknownNameError
 from benchmark.results.store import PUBLISHED
 from benchmark.running import times as running_times
 

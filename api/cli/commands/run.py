@@ -10,9 +10,9 @@ import typer
 from api.cli.asking import ask, knowledge
 from api.cli.measuring import Scored, StoreOption, WorkersOption, scored
 from api.cli.tables import Format, FormatOption, emit
+from benchmark.contract import Cell, UnknownNameError
 from benchmark.metrics.score import METRICS
-from benchmark.plan.combinations import Cell, cells, datasets_for
-from benchmark.plan.parts import UnknownNameError
+from benchmark.plan.combinations import cells, datasets_for
 from registry.resolution import Resolution
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)

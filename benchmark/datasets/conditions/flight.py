@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmark.datasets.fields import Split
-from benchmark.datasets.preset import DRAWN, Preset, Samples, drawn_split
+from benchmark.datasets.preset import DRAWN, Preset, drawn_split
 from benchmark.datasets.repeats import REPEAT
+from benchmark.datasets.samples import Samples
 from benchmark.seeds import generator
 from benchmark.simulator.flight.attitude import Attitude, rotated, turned
 from benchmark.simulator.flight.magnetic_field import TiltedDipole

@@ -12,8 +12,8 @@ from typer.testing import CliRunner
 from api.cli.command_line import app
 from api.cli.commands import dataset
 from benchmark import datasets
+from benchmark.contract import SPLITS
 from benchmark.datasets.coverage import coverage
-from benchmark.plan.parts import SPLITS
 from benchmark.results.store import Store
 from benchmark.running import pinning
 from benchmark.running.pinning import Pinned

@@ -13,8 +13,9 @@ from typer.testing import CliRunner
 from api.cli import asking, measuring, working
 from api.cli.command_line import app
 from api.cli.commands import leaderboard
+from benchmark.contract import Cell
 from benchmark.leaderboard.pages import FORMATS
-from benchmark.plan.combinations import Cell, cells, datasets_for
+from benchmark.plan.combinations import cells, datasets_for
 from benchmark.plan.parts import Parts, installed
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import times

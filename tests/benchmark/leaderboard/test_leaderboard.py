@@ -18,10 +18,10 @@ from benchmark.leaderboard.board import board_of
 from benchmark.leaderboard.pages import FORMATS, PAGE, page, render
 from benchmark.leaderboard.ranking import UNITS
 from benchmark.leaderboard.update import update, write_page
+from benchmark.progress import silent
 from benchmark.results.store import Store
 from benchmark.running import task
 from benchmark.running.pinning import UnversionedChangeError
-from benchmark.running.progress import silent
 
 pytestmark = pytest.mark.usefixtures("readings_only", "log")
 CELL = "fake-diodes/noisy/fake-currents/fake-least-squares"

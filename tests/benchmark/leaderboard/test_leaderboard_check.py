@@ -10,16 +10,16 @@ from fake_results import copied
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from benchmark.contract import Cell
 from benchmark.leaderboard import check as checking
 from benchmark.leaderboard.check import NATIVE, OLDER, Difference, compare_scores
 from benchmark.leaderboard.pages import PAGE
 from benchmark.leaderboard.update import update, write_page
 from benchmark.metrics.rings import RINGS
 from benchmark.metrics.score import METRICS
-from benchmark.plan.combinations import Cell
+from benchmark.progress import silent
 from benchmark.results.store import Store
 from benchmark.running import task
-from benchmark.running.progress import silent
 from benchmark.running.run import RunInterruptedError
 
 pytestmark = pytest.mark.usefixtures("readings_only", "log")

@@ -14,10 +14,10 @@ from benchmark.leaderboard.ranking import LEADING, UNITS
 from benchmark.leaderboard.update import update
 from benchmark.plan import combinations as plan
 from benchmark.plan.parts import Parts, installed
+from benchmark.progress import silent
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import pinning, task
 from benchmark.running import run as runner
-from benchmark.running.progress import silent
 
 #: Standard errors by which the best of some hundred unbiased scores may fall below the bound.
 BY_CHANCE = 4.0

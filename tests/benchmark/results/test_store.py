@@ -7,10 +7,10 @@ from fake_results import cell, components, numbers, pin, swept
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from benchmark.datasets.pins import alike
 from benchmark.metrics.score import METRICS
 from benchmark.results.components import ComponentsError
 from benchmark.results.files import replace
-from benchmark.results.pins import alike
 from benchmark.results.store import NUMBERS, Store, UnknownFieldError
 from benchmark.results.tables import StoreError, number, read, text_of
 

@@ -7,9 +7,8 @@ import fake_plan
 import pytest
 
 from algorithms.contract import UnsuitableDesignError
+from benchmark.contract import Cell, UnknownNameError
 from benchmark.plan import combinations as plan
-from benchmark.plan.combinations import Cell
-from benchmark.plan.parts import UnknownNameError
 
 
 @pytest.fixture

@@ -10,12 +10,12 @@ import pytest
 
 from benchmark.metrics.score import repeatability_deg
 from benchmark.plan import combinations as plan
+from benchmark.progress import silent, terminal_progress
 from benchmark.results.record import Record
 from benchmark.results.store import Store
 from benchmark.running import run as runner
 from benchmark.running import task
 from benchmark.running.backend import DaskMissingError, bundles
-from benchmark.running.progress import silent, terminal_progress
 
 pytestmark = pytest.mark.usefixtures("log")
 

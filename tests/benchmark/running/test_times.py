@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from benchmark.plan.combinations import cells
+from benchmark.progress import silent
 from benchmark.results.tables import StoreError
 from benchmark.running import times
-from benchmark.running.progress import silent
 
 pytestmark = pytest.mark.usefixtures("log")
 
