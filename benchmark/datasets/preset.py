@@ -13,7 +13,7 @@ from typing import Any, Self, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from algorithms.contract import Observation, SensorGeometry
+from algorithms.contract import Floats, Observation, SensorGeometry
 from benchmark.datasets.card import differences
 from benchmark.datasets.fields import Field, Split
 from benchmark.datasets.repeats import REPEAT, Repeats
@@ -26,8 +26,6 @@ from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern, Sensor
 from benchmark.simulator.sensors.faces import Faces
-
-Floats = NDArray[np.float64]
 
 #: Splits that a field of directions is drawn for, and all there are.
 DRAWN: tuple[Split, ...] = get_args(Split)

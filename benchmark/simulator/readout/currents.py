@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from algorithms.contract import Floats
 from benchmark.seeds import generator
 from benchmark.simulator.readout.detectors import CurrentReadout
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.sensor import FixedPattern
-
-Floats = NDArray[np.float64]
 
 
 def element_gains(readout: CurrentReadout, count: int, *names: str | int) -> Floats:
