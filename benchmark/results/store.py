@@ -23,9 +23,9 @@ from typing import TYPE_CHECKING
 from benchmark.metrics.score import METRIC_VERSION, METRICS
 from benchmark.plan.combinations import Cell
 from benchmark.results.components import Components, ComponentsError, Facts
-from benchmark.results.files import replace
 from benchmark.results.pins import Pin, Place, pins_text, read_pins
 from benchmark.results.tables import Reader, Row, StoreError, number, read, text_of, whole, word
+from survey_data.whole_files import replace_file
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -240,13 +240,13 @@ class Store:
             ]
             tables[dataset] = text_of(list(_SCORE_COLUMNS), rows)
         for name, text in tables.items():
-            replace(self.scores_directory / f"{name}.csv", text)
+            replace_file(self.scores_directory / f"{name}.csv", text)
         for path in self.scores_directory.glob("*.csv"):
             if path.stem not in tables:
                 path.unlink()
-        replace(self.pins_path, pins_text(pins))
-        replace(self.sweeps_path, text_of(list(_SWEEP_COLUMNS), swept))
-        replace(self.components_path, components.text())
+        replace_file(self.pins_path, pins_text(pins))
+        replace_file(self.sweeps_path, text_of(list(_SWEEP_COLUMNS), swept))
+        replace_file(self.components_path, components.text())
 
 
 def described(
