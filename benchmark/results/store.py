@@ -14,7 +14,6 @@ All depend on code and data only, never on time or machine. A running runner kee
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
-from difflib import get_close_matches
 from functools import cached_property
 from itertools import groupby
 from pathlib import Path
@@ -25,6 +24,7 @@ from benchmark.plan.combinations import Cell
 from benchmark.results.components import Components, ComponentsError, Facts
 from benchmark.results.pins import Pin, Place, pins_text, read_pins
 from benchmark.results.tables import Reader, Row, StoreError, number, read, text_of, whole, word
+from survey_data.nearest import nearest
 from survey_data.whole_files import replace_file
 
 if TYPE_CHECKING:
@@ -190,8 +190,8 @@ class Store:
         wanted = {}
         for field, values in where.items():
             if field not in known:
-                close = get_close_matches(field, sorted(known), n=1)
-                hint = f"did you mean {close[0]!r}?" if close else f"known: {sorted(known)}"
+                close = nearest(field, known)
+                hint = f"did you mean {close!r}?" if close else f"known: {sorted(known)}"
                 raise UnknownFieldError(f"results have no field {field!r}; {hint}")
             if values is not None:
                 wanted[field] = {values} if isinstance(values, str) else set(values)
