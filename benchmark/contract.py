@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from difflib import get_close_matches
 from typing import Any, Protocol
 
 from numpy.typing import NDArray
 
 from algorithms.contract import Floats, Observation, SensorGeometry
+from survey_data.nearest import nearest
 
 #: Every split of a dataset.
 SPLITS = ("calibration", "test", "repeat")
@@ -151,8 +151,6 @@ class UnknownNameError(LookupError):
         self.what = what
         self.name = name
         self.known = tuple(sorted(known))
-        folded = {known_name.casefold(): known_name for known_name in self.known}
-        close = get_close_matches(name.casefold(), folded, n=1, cutoff=0.4)
-        self.nearest = folded[close[0]] if close else None
+        self.nearest = nearest(name, self.known)
         hint = f"did you mean {self.nearest!r}?" if self.nearest else f"known: {self.known}"
         super().__init__(f"no {what} named {name!r}; {hint}")

@@ -11,10 +11,7 @@ from __future__ import annotations
 import json
 import math
 import os
-import shutil
-import tempfile
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
@@ -42,6 +39,7 @@ from benchmark.datasets.samples import samples_hash
 from benchmark.metrics.bounds import Bound
 from benchmark.metrics.score import stored
 from benchmark.progress import ProgressCallback, silent
+from survey_data.whole_files import replacing
 
 CARD = "card.json"
 #: Layout of an export; raised when a file or a field changes its meaning.
@@ -131,8 +129,7 @@ def export(
     out = Path(os.path.abspath(out))  # noqa: PTH100 - resolve() would follow a symbolic link
     _require_free(out, force=force)
     out.parent.mkdir(parents=True, exist_ok=True)
-    with _temporary(out) as work:
-        made = work / "export"
+    with replacing(out) as (made,):
         made.mkdir()
         files: list[dict[str, Any]] = []
         total = len(chosen) * len(wanted)
@@ -150,8 +147,7 @@ def export(
         text = json.dumps(card, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
         (made / CARD).write_text(text, "utf-8", newline="\n")
         write_checksums(made)
-        _replace(made, out, work / "before")
-        progress(total, total, "")
+    progress(total, total, "")
     return Exported(out, tuple(contents(out)), card)
 
 
@@ -331,24 +327,3 @@ def _require_free(out: Path, *, force: bool) -> None:
         raise ExportError(
             f"{out}: holds an earlier export; replace it with --force; nothing was written"
         )
-
-
-@contextmanager
-def _temporary(out: Path) -> Iterator[Path]:
-    # Beside the target: a rename is only atomic within a file system.
-    work = Path(tempfile.mkdtemp(dir=out.parent, prefix=f".{out.name}."))
-    try:
-        yield work
-    finally:
-        shutil.rmtree(work)
-
-
-def _replace(made: Path, out: Path, before: Path) -> None:
-    if out.exists():
-        out.rename(before)
-    try:
-        made.rename(out)
-    except OSError:
-        if before.exists():
-            before.rename(out)
-        raise

@@ -13,12 +13,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from algorithms.contract import Observation
+from algorithms.contract import Floats, Observation
 from benchmark.datasets import Preset, Samples
 from benchmark.datasets.fields import AngleField
 from benchmark.datasets.preview_canvas import LINES, MUTED, SHADE, Canvas, Plot, heat, number
-
-Floats = NDArray[np.float64]
 
 #: Samples that are rendered to choose from.
 FIRST_SAMPLES = 16

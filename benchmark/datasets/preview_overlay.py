@@ -11,15 +11,12 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-from algorithms.contract import Extractor, FeatureKind, Observation
+from algorithms.contract import Extractor, FeatureKind, Floats, Observation
 from benchmark.datasets import Preset, Samples
 from benchmark.datasets.preview_canvas import LINES, MUTED, Canvas, heat
 from benchmark.simulator.sensors.black_sun import BlackSunSensor
 from benchmark.simulator.sensors.blooming import BloomingSensor
-
-Floats = NDArray[np.float64]
 
 _ACROSS = 4
 _TILE, _GAP, _LEFT, _TOP = 232, 14, 24, 84

@@ -29,11 +29,11 @@ from benchmark.contract import Cell, Preset, Samples
 from benchmark.plan.combinations import cells
 from benchmark.plan.parts import Parts, installed
 from benchmark.progress import ProgressCallback, terminal_progress
-from benchmark.results import files
 from benchmark.results.components import Components, current
 from benchmark.results.tables import number, read, text_of, word
 from benchmark.running.threads import one_thread
 from benchmark.running.timing import best_of, best_time
+from survey_data.whole_files import replace_file
 
 #: Name of the file.
 TIMES = "times.csv"
@@ -164,7 +164,7 @@ def update(
                 kept[time.pipeline] = replace(time, digest=_digest(time.pipeline, components))
                 done += 1
             rows = [asdict(kept[pipeline]) for pipeline in sorted(kept)]
-            files.replace(directory / TIMES, text_of(list(_COLUMNS), rows))
+            replace_file(directory / TIMES, text_of(list(_COLUMNS), rows))
             report(done, len(missing), dataset)
     return len(missing)
 

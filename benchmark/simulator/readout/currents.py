@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
+from algorithms.contract import Floats
 from benchmark.seeds import generator
 from benchmark.simulator.readout.detectors import CurrentReadout
 from benchmark.simulator.readout.noise import NoiseStreams
-
-Floats = NDArray[np.float64]
 
 
 def element_gains(readout: CurrentReadout, count: int, *names: str | int) -> Floats:
