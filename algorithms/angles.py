@@ -8,11 +8,10 @@ Two pairs of angles are in use and agree only on the axes: projected angles
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from algorithms.contract import Floats
 from algorithms.row_arithmetic import normalised
-
-Floats = NDArray[np.float64]
 
 
 def angles_from_sun(sun: ArrayLike) -> Floats:

@@ -6,17 +6,14 @@ the form is right and the data are not enough), and never changes the caller's a
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from algorithms.contract import (
-    FeatureKind,
     Floats,
     NotFittedError,
-    UnsuitableDesignError,
     UnusableDataError,
 )
 
@@ -148,13 +145,6 @@ def require_fitted(model: object, attribute: str) -> None:
         raise NotFittedError(
             f"this {type(model).__name__} is not fitted yet; call fit(features, sun) first"
         )
-
-
-def require_kind(kind: FeatureKind, accepts: Iterable[FeatureKind], by: str) -> None:
-    """Raise UnsuitableDesignError when `kind` is not one of the feature kinds `by` accepts."""
-    kinds = sorted(accepts)
-    if kind not in kinds:
-        raise UnsuitableDesignError(f"{by} accepts {', '.join(kinds)} features; got {kind}")
 
 
 def require_positive(by: str, **parameters: float) -> None:

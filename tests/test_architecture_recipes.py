@@ -33,7 +33,7 @@ for dataset, extractor, model in pairs:
     runner.run(plan.cells(dataset, "nominal", extractor, model), store)
 print(json.dumps({
     "extractor": "squared-centroid" in found.extractors,
-    "for_value": [c.name for c in found.extractors_for("BCM")],
+    "for_value": [c.about.name for c in found.extractors_for("BCM")],
     "datasets": list(datasets.names()),
     "rows": store.rows(),
 }))
@@ -82,6 +82,21 @@ def test_one_file_makes_an_algorithm_and_one_a_dataset_that_are_measured(tree: P
     bright = rows["pd-maskless-cube", "direct"]
     # a tenth of the light at the same amplifier noise: about ten times the bound
     assert 8.0 < dim["bound_deg"] / bright["bound_deg"] < 12.0
+
+
+def test_an_algorithm_with_its_docstring_takes_at_most_60_lines() -> None:
+    recipes = dict(RECIPE.findall((ROOT / "docs" / "architecture.md").read_text()))
+    text = recipes["algorithms/extractors/frames/squared_centroid.py"]
+    assert "    Examples\n    --------\n    >>> " in text
+    assert len(text.splitlines()) <= 60
+
+
+def test_the_example_of_the_new_algorithm_is_true(tree: Path) -> None:
+    code = (
+        "import doctest; from algorithms.extractors.frames import squared_centroid;"
+        "found = doctest.testmod(squared_centroid); assert found.attempted, found; print(found)"
+    )
+    assert "failed=0" in run(["-c", code], tree)
 
 
 def test_the_new_algorithm_passes_the_common_suite(tree: Path) -> None:

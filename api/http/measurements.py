@@ -16,7 +16,7 @@ from registry.measured import Measured
 
 if TYPE_CHECKING:
     from benchmark.datasets import Preset
-    from benchmark.running.times import Pipeline, Time
+    from benchmark.running.times import Place, Time
 
 _TAKEN = tuple(
     f.name for f in dataclasses.fields(Measured) if f.name not in {"latency_us", "available"}
@@ -49,7 +49,7 @@ class Measurements:
         return [row for row in self._every_unit if row["unit"] == 0]
 
     @cached_property
-    def times(self) -> Mapping[Pipeline, Time]:
+    def times(self) -> Mapping[Place, Time]:
         """Times of this machine that are of the code as it is."""
         if self.times_directory is None:
             return {}

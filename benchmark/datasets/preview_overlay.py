@@ -47,17 +47,17 @@ def overlay_png(
         On an unknown condition, on a dataset or an extractor of another kind, and where the
         extractor refuses the design.
     """
-    if preset.observation is not Observation.FRAMES or extractor.kind is not FeatureKind.SPOT:
+    if preset.observation is not Observation.FRAMES or extractor.about.kind is not FeatureKind.SPOT:
         raise ValueError(
             f"overlays show spots on frames; {preset.name} has {preset.observation} and "
-            f"{extractor.name} gives {extractor.kind}"
+            f"{extractor.about.name} gives {extractor.about.kind}"
         )
-    if extractor.observation is not preset.observation:
-        raise ValueError(f"{extractor.name} reads {extractor.observation}, not frames")
+    if extractor.about.observation is not preset.observation:
+        raise ValueError(f"{extractor.about.name} reads {extractor.about.observation}, not frames")
     chosen = tuple(conditions or preset.conditions)
     row = _TILE + 52
     canvas = Canvas(2 * _LEFT + _ACROSS * (_TILE + _GAP) - _GAP, _TOP + len(chosen) * row)
-    canvas.text(_LEFT, 32, f"{preset.name}: {extractor.name}", 22, bold=True)
+    canvas.text(_LEFT, 32, f"{preset.name}: {extractor.about.name}", 22, bold=True)
     said = "orange cross: found; green ring: the Sun's true image; each picture on its own scale"
     canvas.text(_LEFT, 54, said, 13, colour=MUTED)
     for place, condition in enumerate(chosen):

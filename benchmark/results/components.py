@@ -180,8 +180,8 @@ def _of_dataset(preset: Preset) -> Facts:
 
 def _of_method(method: Any) -> Facts:
     return {
-        "version": method.version,
-        "taxonomy": method.taxonomy,
+        "version": method.about.version,
+        "taxonomy": method.about.taxonomy,
         "digest": method_digest(method),
     }
 

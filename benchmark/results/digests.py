@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import hashlib
 from collections.abc import Iterator, Mapping
 from types import FunctionType
 
@@ -16,7 +15,7 @@ from benchmark.results.closure import closure_digest, module_path, syntax_digest
 _COMPONENT_DIGITS = 16
 #: Modules that turn data and implementations into numbers.
 _HARNESS = (
-    "algorithms.contract",
+    "algorithms.pipeline",
     "benchmark.metrics.rings",
     "benchmark.metrics.score",
     "benchmark.running.task",
@@ -45,8 +44,8 @@ def method_digest(method: type[Extractor | Model]) -> str:
     """Digest of an implementation: its name, its version, the code it reaches."""
     return _component(
         {
-            "name": method.name,
-            "version": method.version,
+            "name": method.about.name,
+            "version": method.about.version,
             "code": closure_digest(method.__module__),
         }
     )
@@ -88,8 +87,3 @@ def _modules_of(value: object) -> Iterator[str]:
             yield from _modules_of(item)
     elif isinstance(value, FunctionType):
         yield value.__module__
-
-
-def seed(*names: str) -> int:
-    """Make a 31-bit seed of names, never of a position in a loop."""
-    return int.from_bytes(hashlib.sha256("\0".join(names).encode()).digest()[:4], "big") >> 1

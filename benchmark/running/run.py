@@ -213,7 +213,7 @@ def _keep_all(
             new = [pin for pin in result.pins if not record.is_pinned(pin.place, components)]
             record.keep(components, pins=new, scores=scores)
             done += len(scores)
-            report(done, total, f"{task.preset.name} {task.condition} {task.extractor.name}")
+            report(done, total, f"{task.preset.name} {task.condition} {task.extractor.about.name}")
     except KeyboardInterrupt as error:
         raise RunInterruptedError(
             f"interrupted with {done} of {total} cells measured; they are kept in "
@@ -222,7 +222,9 @@ def _keep_all(
 
 
 def _cell(task: Task, outcome: Outcome) -> Cell:
-    return Cell(task.preset.name, task.condition, task.extractor.name, outcome.model, task.unit)
+    return Cell(
+        task.preset.name, task.condition, task.extractor.about.name, outcome.model, task.unit
+    )
 
 
 def _numbers(outcome: Outcome) -> Row:

@@ -13,19 +13,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from algorithms.contract import (
-    Extractor,
-    Floats,
-    Model,
-    UnusableDataError,
-    in_detector_coordinates,
-)
+from algorithms.contract import Extractor, Floats, Model, UnusableDataError
+from algorithms.pipeline import Pipeline, extracted
 from benchmark.canonical import digest
 from benchmark.contract import SPLITS, Bound, Preset, Samples
 from benchmark.datasets.pins import Pin
 from benchmark.datasets.samples import HEAD, head_hash, samples_hash
 from benchmark.metrics.score import Score, score, stored
-from benchmark.results.digests import seed
 from benchmark.running.threads import one_thread
 from benchmark.simulator.light.memory import memory
 
@@ -194,29 +188,36 @@ def _kept_bytes() -> int:
 
 
 def _measured(task: Task, data: _Data) -> TaskResult:
-    _seed_opencv(seed(task.preset.name, task.condition, task.extractor.name))
     extractor = task.extractor.for_sensor(task.preset.geometry_for(task.condition))
-    features = {split: _features(extractor, samples) for split, samples in data.splits.items()}
-    outcomes = tuple(_outcome(task, model, features, data) for model in task.models)
+    features = {
+        split: extracted(extractor, samples.observations, samples.origin_px)
+        for split, samples in data.splits.items()
+    }
+    outcomes = tuple(_outcome(task, extractor, model, features, data) for model in task.models)
     return TaskResult(task, data.pins, outcomes)
 
 
 def _outcome(
-    task: Task, model_class: type[Model], features: dict[str, Floats], data: _Data
+    task: Task,
+    extractor: Extractor,
+    model_class: type[Model],
+    features: dict[str, Floats],
+    data: _Data,
 ) -> Outcome:
-    name = model_class.name
+    """Calibrate and score one pipeline on the features its extractor found."""
+    name = model_class.about.name
     try:
-        _seed_opencv(seed(task.preset.name, task.condition, task.extractor.name, name))
         geometry = task.preset.geometry_for(task.condition)
-        model = model_class.for_sensor(geometry, task.extractor.kind)
+        model = model_class.for_sensor(geometry, extractor.about.kind)
+        pipeline = Pipeline(extractor, model)
         try:
-            model.fit(features["calibration"], data.splits["calibration"].sun)
+            pipeline.fit_features(features["calibration"], data.splits["calibration"].sun)
         except UnusableDataError as error:
             return Outcome(name, reason_of(error), refused=True)
-        predicted = model.predict(features["test"])
+        predicted = pipeline.predict_features(features["test"])
         repeated = None
         if "repeat" in features:
-            repeated = _repeated(model.predict(features["repeat"]), data)
+            repeated = _repeated(pipeline.predict_features(features["repeat"]), data)
         truth = data.splits["test"].sun
         result = score(predicted, truth, data.bound_deg, data.observable, repeated)
     except Exception as error:  # noqa: BLE001 - any error of a model is a row with its reason
@@ -231,17 +232,6 @@ def _repeated(predicted: Floats, data: _Data) -> Floats:
     return np.asarray(passes[:, data.observable[chosen]])
 
 
-def _features(extractor: Extractor, samples: Samples) -> Floats:
-    features = extractor.extract(samples.observations)
-    expected = (len(samples.sun), len(extractor.features))
-    if features.shape != expected or features.dtype != np.float64:
-        raise ValueError(
-            f"{extractor.name} must give float64 features of shape {expected}; "
-            f"got {features.dtype} {features.shape}"
-        )
-    return in_detector_coordinates(features, extractor.kind, samples.origin_px)
-
-
 def reason_of(error: BaseException) -> str:
     """Spell an error as a results row states it: one line, the same on every machine."""
     return f"{type(error).__name__}: {' '.join(str(error).split())}"
@@ -249,10 +239,4 @@ def reason_of(error: BaseException) -> str:
 
 def _failed(task: Task, error: Exception, doing: str, pins: tuple[Pin, ...] = ()) -> TaskResult:
     reason = f"{doing}: {reason_of(error)}"
-    return TaskResult(task, pins, tuple(Outcome(model.name, reason) for model in task.models))
-
-
-def _seed_opencv(value: int) -> None:
-    import cv2  # noqa: PLC0415 - only the process that measures needs OpenCV
-
-    cv2.setRNGSeed(value)
+    return TaskResult(task, pins, tuple(Outcome(model.about.name, reason) for model in task.models))

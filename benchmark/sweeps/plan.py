@@ -103,10 +103,9 @@ def planned(extractors: Mapping[str, type[Extractor]]) -> Planned:
     for extractor in extractors.values():
         names = _series_names(extractor)
         if not names:
-            reason = (
-                f"no reference series of {extractor.observation} that are read as {extractor.kind}"
-            )
-            refused[Point("", "", "", extractor.name)] = reason
+            about = extractor.about
+            reason = f"no reference series of {about.observation} that are read as {about.kind}"
+            refused[Point("", "", "", extractor.about.name)] = reason
         for series in (SERIES[name] for name in names):
             accepted, left_out = _sorted_out(series, extractor)
             settings |= accepted
@@ -114,7 +113,7 @@ def planned(extractors: Mapping[str, type[Extractor]]) -> Planned:
                 refused |= left_out
             else:  # one line instead of one a point
                 reason = next(iter(left_out.values()))
-                refused[Point(series.name, "", "", extractor.name)] = reason
+                refused[Point(series.name, "", "", extractor.about.name)] = reason
     return Planned(dict(sorted(settings.items())), dict(sorted(refused.items())))
 
 
@@ -123,13 +122,13 @@ def _sorted_out(
 ) -> tuple[dict[Point, Setting], dict[Point, str]]:
     """Return the points whose design a method accepts, and reasons for the others."""
     # a method for one spot meets the grid only to say what several features do for it
-    visiting = series.name == "grid" and "grid" not in _FRAMES_OF.get(extractor.taxonomy, ())
+    visiting = series.name == "grid" and "grid" not in _FRAMES_OF.get(extractor.about.taxonomy, ())
     accepted: dict[Point, Setting] = {}
     left_out: dict[Point, str] = {}
     for setting in series.settings():
         if visiting and setting.sweep != "features":
             continue
-        point = Point(series.name, setting.sweep, setting.point, extractor.name)
+        point = Point(series.name, setting.sweep, setting.point, extractor.about.name)
         if reason := _refusal(series, setting, extractor):
             left_out[point] = reason
         else:
@@ -138,17 +137,17 @@ def _sorted_out(
 
 
 def _series_names(extractor: type[Extractor]) -> tuple[str, ...]:
-    if extractor.observation is Observation.FRAMES and extractor.taxonomy in _FRAMES_OF:
-        return _FRAMES_OF[extractor.taxonomy]
-    if extractor.observation is Observation.CURRENTS:
-        return _READINGS_OF.get(extractor.kind, ())
-    return _SERIES_OF[extractor.observation]
+    if extractor.about.observation is Observation.FRAMES and extractor.about.taxonomy in _FRAMES_OF:
+        return _FRAMES_OF[extractor.about.taxonomy]
+    if extractor.about.observation is Observation.CURRENTS:
+        return _READINGS_OF.get(extractor.about.kind, ())
+    return _SERIES_OF[extractor.about.observation]
 
 
 def _refusal(series: Series, setting: Setting, extractor: type[Extractor]) -> str:
     """Why a method does not fit the design of a point, or empty."""
     geometry = series.geometry(setting)
-    missing = [name for name in extractor.needs if getattr(geometry, name) is None]
+    missing = [name for name in extractor.about.needs if getattr(geometry, name) is None]
     if missing:
         return f"needs {', '.join(missing)}; the series has none"
     try:

@@ -53,19 +53,19 @@ def same(first, second) -> None:
 
 
 def assert_metadata(implementation: Any) -> None:
-    assert re.fullmatch(r"[a-z0-9]+(-[a-z0-9]+)*", implementation.name)
-    assert implementation.taxonomy
-    assert implementation.origin in {"survey", "ours"}
-    assert isinstance(implementation.version, int)
-    assert implementation.version >= 1
+    assert re.fullmatch(r"[a-z0-9]+(-[a-z0-9]+)*", implementation.about.name)
+    assert implementation.about.taxonomy
+    assert implementation.about.origin in {"survey", "ours"}
+    assert isinstance(implementation.about.version, int)
+    assert implementation.about.version >= 1
     fields = {field.name for field in dataclasses.fields(SensorGeometry)}
-    assert set(implementation.needs) <= fields
-    if implementation.origin == "survey":
-        assert implementation.studies
-        assert implementation.labels
-    for key in implementation.studies:
+    assert set(implementation.about.needs) <= fields
+    if implementation.about.origin == "survey":
+        assert implementation.about.studies
+        assert implementation.about.labels
+    for key in implementation.about.studies:
         assert re.fullmatch(r"[A-Za-z]+\d{4}[a-z]?", key)
-    for label in implementation.labels:
+    for label in implementation.about.labels:
         assert re.fullmatch(r"(fe|model|alg|eq):[A-Za-z0-9]+", label)
 
 
@@ -75,7 +75,7 @@ def assert_documented(implementation: Any) -> None:
         assert section in text, f"{section} is missing"
     opening = text.split("Parameters\n")[0].split("Notes\n")[0]
     assert opening.count(". ") + opening.count(".\n") >= 2, "two sentences of what it does"
-    for mentioned in (*implementation.studies, *implementation.labels):
+    for mentioned in (*implementation.about.studies, *implementation.about.labels):
         assert mentioned in text, f"{mentioned} is not cited"
     for field in dataclasses.fields(implementation):
         assert re.search(rf"\b{field.name}\b", text) or not field.init, f"{field.name} is missing"
@@ -112,8 +112,8 @@ def wrong_arrays(right: np.ndarray) -> dict[str, Any]:
 def check_keeps_the_contract(cls, extractor, observations):
     assert isinstance(extractor, Extractor)
     assert_metadata(cls)
-    assert cls.observation in Observation
-    assert cls.kind in FeatureKind
+    assert cls.about.observation in Observation
+    assert cls.about.kind in FeatureKind
     names = extractor.features
     assert isinstance(names, tuple)
     assert len(set(names)) == len(names) > 0
@@ -166,7 +166,7 @@ def check_samples_with_nan_or_infinity_are_nan_rows(cls, extractor, observations
 
 @extractor_check
 def check_frames_without_contrast_are_nan_rows(cls, extractor, observations):
-    if cls.observation is Observation.FRAMES:
+    if cls.about.observation is Observation.FRAMES:
         for dtype in (np.uint8, np.uint16, np.float32, np.float64):
             flat = np.full_like(observations, 255, dtype=dtype)
             assert np.isnan(extractor.extract(flat)).all()
@@ -175,7 +175,7 @@ def check_frames_without_contrast_are_nan_rows(cls, extractor, observations):
 @extractor_check
 def check_refuses_wrong_input(cls, extractor, observations):
     assert_rejects(extractor.extract, wrong_arrays(observations))
-    if cls.observation is Observation.CURRENTS:
+    if cls.about.observation is Observation.CURRENTS:
         wrong = {"a column more": np.hstack([observations, observations[:, :1]])}
         assert_rejects(extractor.extract, wrong)
 
@@ -249,10 +249,10 @@ def check_survives_pickling(cls, extractor, observations):
 
 @extractor_check
 def check_names_the_geometry_it_needs(cls, extractor, observations):
-    for name in cls.needs:
+    for name in cls.about.needs:
         with pytest.raises(UnsuitableDesignError, match=name):
             cls.for_sensor(SensorGeometry())
-    if not cls.needs:
+    if not cls.about.needs:
         assert isinstance(cls.for_sensor(SensorGeometry()), cls)
 
 
@@ -263,8 +263,8 @@ def check_names_the_geometry_it_needs(cls, extractor, observations):
 def check_model_keeps_the_contract(cls, model, cal):
     assert isinstance(model, Model)
     assert_metadata(cls)
-    assert cls.accepts
-    assert all(kind in FeatureKind for kind in cls.accepts)
+    assert cls.about.accepts
+    assert all(kind in FeatureKind for kind in cls.about.accepts)
 
 
 @model_check
@@ -366,7 +366,7 @@ def check_data_that_do_not_settle_it_are_refused_by_their_own_error(cls, model, 
         try:
             model.fit(features, sun)
         except UnusableDataError as refusal:
-            assert model.name in str(refusal)  # noqa: PT017 - either outcome is right
+            assert model.about.name in str(refusal)  # noqa: PT017 - either outcome is right
         else:
             found = model.predict(cal.features)
             assert (np.isnan(found).all(axis=1) | np.isfinite(found).all(axis=1)).all()
@@ -438,11 +438,11 @@ def check_model_survives_pickling(cls, model, cal):
 
 @model_check
 def check_refuses_other_kinds_and_names_missing_geometry(cls, model, cal, geometry):
-    for kind in set(FeatureKind) - cls.accepts:
+    for kind in set(FeatureKind) - cls.about.accepts:
         with pytest.raises(UnsuitableDesignError, match="accepts"):
             cls.for_sensor(geometry, kind)
-    for kind in cls.accepts:
-        for name in cls.needs:
+    for kind in cls.about.accepts:
+        for name in cls.about.needs:
             with pytest.raises(UnsuitableDesignError, match=name):
                 cls.for_sensor(SensorGeometry(), kind)
 
@@ -464,7 +464,7 @@ def test_model(name, check, design_for, calibration_for):
     cls = MODELS[name]
     RAN.add((name, check.__name__))
     design = design_for(cls)
-    for kind in sorted(cls.accepts):
+    for kind in sorted(cls.about.accepts):
         extra = (design,) if "geometry" in check.__code__.co_varnames else ()
         check(cls, cls.for_sensor(design, kind), calibration_for(kind, design), *extra)
 
@@ -477,7 +477,7 @@ def test_every_check_ran_on_every_implementation(request):
         for path in (Path(algorithms.__file__).parent / folder).rglob("*.py")
     ]
     declared = sum(
-        len(re.findall(r"^    taxonomy: ClassVar", text, re.MULTILINE)) for text in source
+        len(re.findall(r"^    about: ClassVar = About", text, re.MULTILINE)) for text in source
     )
     assert declared == len(EXTRACTORS) + len(MODELS) >= 14
 

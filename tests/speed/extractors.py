@@ -99,7 +99,10 @@ def methods(chosen: ReferenceSet) -> dict[str, Method]:
     )
     found: dict[str, Extractor] = {}
     for name, extractor in discover_extractors().items():
-        if extractor.observation is Observation.FRAMES and extractor.kind is FeatureKind.SPOT:
+        if (
+            extractor.about.observation is Observation.FRAMES
+            and extractor.about.kind is FeatureKind.SPOT
+        ):
             try:
                 found[name] = extractor.for_sensor(sensor)
             except ValueError:  # not a method for one spot
@@ -174,7 +177,7 @@ def measure_many_spots(count: int, repeats: int) -> list[Measured]:
     rows = []
     with one_thread():
         for name, extractor in discover_extractors().items():
-            if extractor.taxonomy not in _MANY_SPOTS:
+            if extractor.about.taxonomy not in _MANY_SPOTS:
                 continue
             method = extractor.for_sensor(preset.geometry).extract
             method(frames[:1])

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from algorithms.contract import FeatureKind, Floats, Observation, Origin, SensorGeometry
+from algorithms.contract import AboutExtractor, Extractor, FeatureKind, Floats, Observation
 from algorithms.extractors.frames.background import (
     Background,
     background_level,
@@ -20,7 +20,7 @@ from algorithms.row_arithmetic import quotient_rows
 
 
 @dataclass(frozen=True)
-class BasicCentroid:
+class BasicCentroid(Extractor):
     """Intensity-weighted mean position of all light in the frame.
 
     Simple and sub-pixel, but every pixel of background and noise pulls the result towards the
@@ -49,32 +49,22 @@ class BasicCentroid:
     Cost: 4 operations a pixel, one pass.
     """
 
-    name: ClassVar[str] = "bcm"
-    taxonomy: ClassVar[str] = "BCM"
-    studies: ClassVar[tuple[str, ...]] = ("Chang2008",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:bcm", "alg:BCM")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.FRAMES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
-    needs: ClassVar[tuple[str, ...]] = ()
+    about: ClassVar = AboutExtractor(
+        name="bcm",
+        taxonomy="BCM",
+        studies=("Chang2008",),
+        labels=("fe:bcm", "alg:BCM"),
+        origin="survey",
+        observation=Observation.FRAMES,
+        kind=FeatureKind.SPOT,
+    )
 
     background: Background = "none"
     window_px: int | None = None
 
     def __post_init__(self) -> None:
-        require_background(self.background, self.name)
-        require_window(self.window_px, self.name)
-
-    @property
-    def features(self) -> tuple[str, ...]:
-        """Names of the two output columns."""
-        return ("x_px", "y_px")
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry) -> Self:  # noqa: ARG003 - nothing to choose
-        """Return the published method, whatever the sensor."""
-        return cls()
+        require_background(self.background, self.about.name)
+        require_window(self.window_px, self.about.name)
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Centroids (N, 2) of frames (N, H, W); ValueError on wrong input."""
@@ -83,7 +73,7 @@ class BasicCentroid:
 
 
 @dataclass(frozen=True)
-class ThresholdedCentroid:
+class ThresholdedCentroid(Extractor):
     """Intensity-weighted mean position of the light above a fraction of the frame's maximum.
 
     The threshold is subtracted and everything below it set to zero, so that background and noise
@@ -117,15 +107,15 @@ class ThresholdedCentroid:
     threshold; integer sums are exact.
     """
 
-    name: ClassVar[str] = "bctm"
-    taxonomy: ClassVar[str] = "BCTM"
-    studies: ClassVar[tuple[str, ...]] = ("He2005",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:bctm", "alg:BCTM")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.FRAMES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
-    needs: ClassVar[tuple[str, ...]] = ()
+    about: ClassVar = AboutExtractor(
+        name="bctm",
+        taxonomy="BCTM",
+        studies=("He2005",),
+        labels=("fe:bctm", "alg:BCTM"),
+        origin="survey",
+        observation=Observation.FRAMES,
+        kind=FeatureKind.SPOT,
+    )
 
     threshold: float = 0.3
     background: Background = "none"
@@ -133,19 +123,11 @@ class ThresholdedCentroid:
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.threshold < 1.0:
-            raise ValueError(f"{self.name}: threshold must be in [0, 1); got {self.threshold!r}")
-        require_background(self.background, self.name)
-        require_window(self.window_px, self.name)
-
-    @property
-    def features(self) -> tuple[str, ...]:
-        """Names of the two output columns."""
-        return ("x_px", "y_px")
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry) -> Self:  # noqa: ARG003 - nothing to choose
-        """Return the published method, whatever the sensor."""
-        return cls()
+            raise ValueError(
+                f"{self.about.name}: threshold must be in [0, 1); got {self.threshold!r}"
+            )
+        require_background(self.background, self.about.name)
+        require_window(self.window_px, self.about.name)
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Centroids (N, 2) of frames (N, H, W); ValueError on wrong input."""
@@ -179,7 +161,7 @@ class ThresholdedCentroid:
 
 
 @dataclass(frozen=True)
-class FilteredCentroid:
+class FilteredCentroid(Extractor):
     """Intensity-weighted mean position of the frame smoothed by a 3 x 3 mean.
 
     Each pixel is replaced by the mean of itself and its eight neighbours, zero outside the frame,
@@ -213,32 +195,22 @@ class FilteredCentroid:
     Cost: 4 operations a pixel, one pass.
     """
 
-    name: ClassVar[str] = "ifm"
-    taxonomy: ClassVar[str] = "IFM"
-    studies: ClassVar[tuple[str, ...]] = ("Chang2008",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:ifm", "alg:IFM")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.FRAMES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
-    needs: ClassVar[tuple[str, ...]] = ()
+    about: ClassVar = AboutExtractor(
+        name="ifm",
+        taxonomy="IFM",
+        studies=("Chang2008",),
+        labels=("fe:ifm", "alg:IFM"),
+        origin="survey",
+        observation=Observation.FRAMES,
+        kind=FeatureKind.SPOT,
+    )
 
     background: Background = "none"
     window_px: int | None = None
 
     def __post_init__(self) -> None:
-        require_background(self.background, self.name)
-        require_window(self.window_px, self.name)
-
-    @property
-    def features(self) -> tuple[str, ...]:
-        """Names of the two output columns."""
-        return ("x_px", "y_px")
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry) -> Self:  # noqa: ARG003 - nothing to choose
-        """Return the published method, whatever the sensor."""
-        return cls()
+        require_background(self.background, self.about.name)
+        require_window(self.window_px, self.about.name)
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Centroids (N, 2) of frames (N, H, W); ValueError on wrong input."""

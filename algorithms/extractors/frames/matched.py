@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from algorithms.contract import (
+    AboutExtractor,
+    Extractor,
     FeatureKind,
     Floats,
     Observation,
-    Origin,
     SensorGeometry,
     UnsuitableDesignError,
 )
@@ -23,7 +24,7 @@ _SPREAD = 3.0
 
 
 @dataclass(frozen=True)
-class MatchedProfile:
+class MatchedProfile(Extractor):
     """Maximum-likelihood centre of a round spot whose profile is taken from the frame itself.
 
     A thresholded centroid starts it. The light is averaged in rings around that start, and
@@ -58,34 +59,30 @@ class MatchedProfile:
     Cost: 2 operations a pixel, 45 a pixel of the spot's surroundings and step.
     """
 
-    name: ClassVar[str] = "matched-profile"
-    taxonomy: ClassVar[str] = "None"
-    studies: ClassVar[tuple[str, ...]] = ()
-    labels: ClassVar[tuple[str, ...]] = ()
-    origin: ClassVar[Origin] = "ours"
-    version: ClassVar[int] = 2
-    observation: ClassVar[Observation] = Observation.FRAMES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
-    needs: ClassVar[tuple[str, ...]] = ()
+    about: ClassVar = AboutExtractor(
+        name="matched-profile",
+        taxonomy="None",
+        origin="ours",
+        version=2,
+        observation=Observation.FRAMES,
+        kind=FeatureKind.SPOT,
+    )
 
     threshold: float = 0.3
     steps: int = 1
 
     def __post_init__(self) -> None:
         if not 0.0 < self.threshold < 1.0:
-            raise ValueError(f"{self.name}: threshold must be in (0, 1); got {self.threshold!r}")
+            raise ValueError(
+                f"{self.about.name}: threshold must be in (0, 1); got {self.threshold!r}"
+            )
         if self.steps < 1:
-            raise ValueError(f"{self.name}: steps must be at least 1; got {self.steps!r}")
-
-    @property
-    def features(self) -> tuple[str, ...]:
-        """Names of the two output columns."""
-        return ("x_px", "y_px")
+            raise ValueError(f"{self.about.name}: steps must be at least 1; got {self.steps!r}")
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
         """Return the estimator; UnsuitableDesignError for designs without a single spot."""
-        require_one_spot(geometry, cls.name)
+        require_one_spot(geometry, cls.about.name)
         return cls()
 
     def extract(self, observations: ArrayLike) -> Floats:
@@ -106,7 +103,7 @@ class MatchedProfile:
 
 
 @dataclass(frozen=True)
-class GaussianFit:
+class GaussianFit(Extractor):
     """Least-squares fit of a Gaussian on a background to the whole frame.
 
     What astronomers' libraries offer as their precise centroid: six parameters, amplitude,
@@ -136,33 +133,28 @@ class GaussianFit:
     Cost: 10 operations a pixel and step, some 8 steps.
     """
 
-    name: ClassVar[str] = "gaussian-fit"
-    taxonomy: ClassVar[str] = "None"
-    studies: ClassVar[tuple[str, ...]] = ()
-    labels: ClassVar[tuple[str, ...]] = ()
-    origin: ClassVar[Origin] = "ours"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.FRAMES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
-    needs: ClassVar[tuple[str, ...]] = ()
+    about: ClassVar = AboutExtractor(
+        name="gaussian-fit",
+        taxonomy="None",
+        origin="ours",
+        observation=Observation.FRAMES,
+        kind=FeatureKind.SPOT,
+    )
 
     tolerance_px: float = 1e-6
     iterations: int = 50
 
     def __post_init__(self) -> None:
-        require_positive(self.name, tolerance_px=self.tolerance_px)
+        require_positive(self.about.name, tolerance_px=self.tolerance_px)
         if self.iterations < 1:
-            raise ValueError(f"{self.name}: iterations must be at least 1; got {self.iterations!r}")
-
-    @property
-    def features(self) -> tuple[str, ...]:
-        """Names of the two output columns."""
-        return ("x_px", "y_px")
+            raise ValueError(
+                f"{self.about.name}: iterations must be at least 1; got {self.iterations!r}"
+            )
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
         """Return the fit; UnsuitableDesignError for designs without a single spot."""
-        require_one_spot(geometry, cls.name)
+        require_one_spot(geometry, cls.about.name)
         return cls()
 
     def extract(self, observations: ArrayLike) -> Floats:

@@ -9,10 +9,10 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from algorithms.contract import FeatureKind, Floats, Observation, Origin
+from algorithms.contract import AboutExtractor, FeatureKind, Floats, Observation
 from algorithms.extractors.frames.centroid import BasicCentroid, ThresholdedCentroid
 from algorithms.extractors.frames.threshold_average import Crossing, MultipleThresholdCentroid
-from algorithms.extractors.profiles.slit_lines import SlitLines, dark_level
+from algorithms.extractors.profiles.slit_lines import NEEDS, SlitLines, dark_level
 
 Middles = Callable[[Floats, Floats], Floats]
 
@@ -54,14 +54,16 @@ class ProfileCentroid(SlitLines):
     Cost: 4 operations a pixel.
     """
 
-    name: ClassVar[str] = "bcm-profile"
-    taxonomy: ClassVar[str] = "BCM"
-    studies: ClassVar[tuple[str, ...]] = ("Enright2008b",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:bcm", "alg:BCM")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.PROFILES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
+    about: ClassVar = AboutExtractor(
+        name="bcm-profile",
+        taxonomy="BCM",
+        studies=("Enright2008b",),
+        labels=("fe:bcm", "alg:BCM"),
+        origin="survey",
+        needs=NEEDS,
+        observation=Observation.PROFILES,
+        kind=FeatureKind.SPOT,
+    )
 
     subtract_dark: bool = False
 
@@ -110,21 +112,25 @@ class ProfileThresholdedCentroid(SlitLines):
     Cost: 5 operations a pixel.
     """
 
-    name: ClassVar[str] = "bctm-profile"
-    taxonomy: ClassVar[str] = "BCTM"
-    studies: ClassVar[tuple[str, ...]] = ("He2005",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:bctm", "alg:BCTM")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.PROFILES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
+    about: ClassVar = AboutExtractor(
+        name="bctm-profile",
+        taxonomy="BCTM",
+        studies=("He2005",),
+        labels=("fe:bctm", "alg:BCTM"),
+        origin="survey",
+        needs=NEEDS,
+        observation=Observation.PROFILES,
+        kind=FeatureKind.SPOT,
+    )
 
     threshold: float = 0.3
 
     def __post_init__(self) -> None:
         super().__post_init__()
         if not 0.0 <= self.threshold < 1.0:
-            raise ValueError(f"{self.name}: threshold must be in [0, 1); got {self.threshold!r}")
+            raise ValueError(
+                f"{self.about.name}: threshold must be in [0, 1); got {self.threshold!r}"
+            )
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Centroids (N, 2) of profiles (N, A L); ValueError on wrong input."""
@@ -175,14 +181,16 @@ class ProfileThresholdAverage(SlitLines):
     Cost: the median of each line, 2 operations a pixel and 4 a threshold.
     """
 
-    name: ClassVar[str] = "mt-acm-profile"
-    taxonomy: ClassVar[str] = "MT-ACM"
-    studies: ClassVar[tuple[str, ...]] = ("Massari2004",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:mtacm", "alg:MTACM1", "alg:MTACM2")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.PROFILES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
+    about: ClassVar = AboutExtractor(
+        name="mt-acm-profile",
+        taxonomy="MT-ACM",
+        studies=("Massari2004",),
+        labels=("fe:mtacm", "alg:MTACM1", "alg:MTACM2"),
+        origin="survey",
+        needs=NEEDS,
+        observation=Observation.PROFILES,
+        kind=FeatureKind.SPOT,
+    )
 
     accuracy_px: float = 0.01
     lowest: float = 0.25

@@ -8,8 +8,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from algorithms.contract import FeatureKind, Floats, Observation, Origin
-from algorithms.extractors.profiles.slit_lines import SlitLines, dark_level
+from algorithms.contract import AboutExtractor, FeatureKind, Floats, Observation
+from algorithms.extractors.profiles.slit_lines import NEEDS, SlitLines, dark_level
 from algorithms.extractors.profiles.spot_spectra import SpotSpectra
 from algorithms.inputs import require_positive
 
@@ -60,20 +60,22 @@ class EigenAnalysis(SlitLines):
     windows, the eigenvectors of a small matrix, some 5 a side, and its side times 2 tries a pixel.
     """
 
-    name: ClassVar[str] = "eigen-analysis"
-    taxonomy: ClassVar[str] = "Eigen-analysis"
-    studies: ClassVar[tuple[str, ...]] = ("Enright2006b",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:eigena", "alg:eigen")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.PROFILES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
+    about: ClassVar = AboutExtractor(
+        name="eigen-analysis",
+        taxonomy="Eigen-analysis",
+        studies=("Enright2006b",),
+        labels=("fe:eigena", "alg:eigen"),
+        origin="survey",
+        needs=NEEDS,
+        observation=Observation.PROFILES,
+        kind=FeatureKind.SPOT,
+    )
 
     lobes: float = 1.0
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        require_positive(self.name, lobes=self.lobes)
+        require_positive(self.about.name, lobes=self.lobes)
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Positions (N, 2) in profiles (N, A L); ValueError on wrong input."""

@@ -10,15 +10,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from algorithms.contract import (
+    AboutExtractor,
+    Extractor,
     FeatureKind,
     Floats,
     Observation,
-    Origin,
     SensorGeometry,
     UnsuitableDesignError,
 )
 from algorithms.extractors.profiles.single_spot import require_one_spot, spot_size_px
-from algorithms.extractors.profiles.slit_lines import SlitLines, box_means, dark_level
+from algorithms.extractors.profiles.slit_lines import NEEDS, SlitLines, box_means, dark_level
 from algorithms.extractors.profiles.spot_spectra import SpotSpectra
 from algorithms.inputs import as_frames, require_positive
 
@@ -68,20 +69,22 @@ class LinearPhase(SlitLines):
     the windows, of which there are some 2 and 50.
     """
 
-    name: ClassVar[str] = "linear-phase"
-    taxonomy: ClassVar[str] = "Linear-phase"
-    studies: ClassVar[tuple[str, ...]] = ("Enright2007b",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:linearphase", "alg:linearphase")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.PROFILES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
+    about: ClassVar = AboutExtractor(
+        name="linear-phase",
+        taxonomy="Linear-phase",
+        studies=("Enright2007b",),
+        labels=("fe:linearphase", "alg:linearphase"),
+        origin="survey",
+        needs=NEEDS,
+        observation=Observation.PROFILES,
+        kind=FeatureKind.SPOT,
+    )
 
     lobes: float = 1.0
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        require_positive(self.name, lobes=self.lobes)
+        require_positive(self.about.name, lobes=self.lobes)
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Positions (N, 2) in profiles (N, A L); ValueError on wrong input."""
@@ -93,7 +96,7 @@ class LinearPhase(SlitLines):
 
 
 @dataclass(frozen=True)
-class FrameLinearPhase:
+class FrameLinearPhase(Extractor):
     """Position of a spot by the slopes of the phases of its column and row sums.
 
     As `LinearPhase`, once for each axis. The sums of a symmetric spot, blurred or not, have the
@@ -129,20 +132,21 @@ class FrameLinearPhase:
     column of it, of which there are some 3.
     """
 
-    name: ClassVar[str] = "linear-phase-frame"
-    taxonomy: ClassVar[str] = "Linear-phase"
-    studies: ClassVar[tuple[str, ...]] = ("Enright2007b",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:linearphase", "alg:linearphase")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.FRAMES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
-    needs: ClassVar[tuple[str, ...]] = (
-        "focal_length_mm",
-        "pixel_pitch_mm",
-        "aperture_width_mm",
-        "aperture_shape",
-        "half_fov_deg",
+    about: ClassVar = AboutExtractor(
+        name="linear-phase-frame",
+        taxonomy="Linear-phase",
+        studies=("Enright2007b",),
+        labels=("fe:linearphase", "alg:linearphase"),
+        origin="survey",
+        needs=(
+            "focal_length_mm",
+            "pixel_pitch_mm",
+            "aperture_width_mm",
+            "aperture_shape",
+            "half_fov_deg",
+        ),
+        observation=Observation.FRAMES,
+        kind=FeatureKind.SPOT,
     )
 
     width_px: float
@@ -152,18 +156,13 @@ class FrameLinearPhase:
 
     def __post_init__(self) -> None:
         require_positive(
-            self.name, width_px=self.width_px, margin_px=self.margin_px, lobes=self.lobes
+            self.about.name, width_px=self.width_px, margin_px=self.margin_px, lobes=self.lobes
         )
         if self.shape not in get_args(Shape):
             raise ValueError(
-                f"{self.name}: shape must be one of {', '.join(get_args(Shape))}; "
+                f"{self.about.name}: shape must be one of {', '.join(get_args(Shape))}; "
                 f"got {self.shape!r}"
             )
-
-    @property
-    def features(self) -> tuple[str, ...]:
-        """Names of the two output columns."""
-        return ("x_px", "y_px")
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
@@ -172,14 +171,14 @@ class FrameLinearPhase:
         ValueError where a field of `needs` is None, or where the mask has many apertures or
         slits: their spots are not one.
         """
-        geometry.require(*cls.needs, by=cls.name)
-        require_one_spot(geometry, cls.name)
+        geometry.require(*cls.about.needs, by=cls.about.name)
+        require_one_spot(geometry, cls.about.name)
         shape = geometry.aperture_shape
         if shape is None:  # said above; for the type checker
             raise UnsuitableDesignError(
-                f"{cls.name} needs the sensor geometry's aperture_shape; got None"
+                f"{cls.about.name} needs the sensor geometry's aperture_shape; got None"
             )
-        width, margin = spot_size_px(geometry, cls.name)
+        width, margin = spot_size_px(geometry, cls.about.name)
         return cls(width, shape, margin)
 
     def extract(self, observations: ArrayLike) -> Floats:

@@ -8,9 +8,16 @@ from typing import ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from algorithms.contract import FeatureKind, Floats, Observation, Origin, SensorGeometry
+from algorithms.contract import (
+    AboutExtractor,
+    Extractor,
+    FeatureKind,
+    Floats,
+    Observation,
+    SensorGeometry,
+)
 from algorithms.extractors.profiles.single_spot import require_one_spot, spot_size_px
-from algorithms.extractors.profiles.slit_lines import SlitLines, dark_level
+from algorithms.extractors.profiles.slit_lines import NEEDS, SlitLines, dark_level
 from algorithms.inputs import as_frames, require_positive
 
 
@@ -49,14 +56,16 @@ class PeakDetection(SlitLines):
     Cost: 1 operation a pixel and slit, and the median of each line.
     """
 
-    name: ClassVar[str] = "pd"
-    taxonomy: ClassVar[str] = "PD"
-    studies: ClassVar[tuple[str, ...]] = ("Enright2006b",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:peak", "alg:PDsp", "alg:PDmp")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.PROFILES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
+    about: ClassVar = AboutExtractor(
+        name="pd",
+        taxonomy="PD",
+        studies=("Enright2006b",),
+        labels=("fe:peak", "alg:PDsp", "alg:PDmp"),
+        origin="survey",
+        needs=NEEDS,
+        observation=Observation.PROFILES,
+        kind=FeatureKind.SPOT,
+    )
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Positions (N, 2) in profiles (N, A L); ValueError on wrong input."""
@@ -65,7 +74,7 @@ class PeakDetection(SlitLines):
 
 
 @dataclass(frozen=True)
-class FramePeak:
+class FramePeak(Extractor):
     """Brightest pixel of a frame with one spot.
 
     The simplest feature there is, and the baseline of the others: within a spot of even light it
@@ -91,26 +100,21 @@ class FramePeak:
     Cost: 1 operation a pixel, and a second look at rows that hold the maximum.
     """
 
-    name: ClassVar[str] = "pd-frame"
-    taxonomy: ClassVar[str] = "PD"
-    studies: ClassVar[tuple[str, ...]] = ("Enright2006b",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:peak", "alg:PDsp")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.FRAMES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
-    needs: ClassVar[tuple[str, ...]] = ()
+    about: ClassVar = AboutExtractor(
+        name="pd-frame",
+        taxonomy="PD",
+        studies=("Enright2006b",),
+        labels=("fe:peak", "alg:PDsp"),
+        origin="survey",
+        observation=Observation.FRAMES,
+        kind=FeatureKind.SPOT,
+    )
 
     width_px: float | None = None
 
     def __post_init__(self) -> None:
         if self.width_px is not None:
-            require_positive(self.name, width_px=self.width_px)
-
-    @property
-    def features(self) -> tuple[str, ...]:
-        """Names of the two output columns."""
-        return ("x_px", "y_px")
+            require_positive(self.about.name, width_px=self.width_px)
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
@@ -118,11 +122,11 @@ class FramePeak:
 
         ValueError where the mask has many apertures or slits: their spots are not one.
         """
-        require_one_spot(geometry, cls.name)
+        require_one_spot(geometry, cls.about.name)
         known = (geometry.focal_length_mm, geometry.pixel_pitch_mm, geometry.half_fov_deg)
         if None in known or geometry.aperture_shape is None or geometry.aperture_width_mm is None:
             return cls()
-        width, margin = spot_size_px(geometry, cls.name)
+        width, margin = spot_size_px(geometry, cls.about.name)
         return cls(width_px=width + 2.0 * margin)
 
     def extract(self, observations: ArrayLike) -> Floats:

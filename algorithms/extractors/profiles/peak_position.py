@@ -9,9 +9,16 @@ from typing import Any, ClassVar, Literal, Self, get_args
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from algorithms.contract import FeatureKind, Floats, Observation, Origin, SensorGeometry
+from algorithms.contract import (
+    AboutExtractor,
+    Extractor,
+    FeatureKind,
+    Floats,
+    Observation,
+    SensorGeometry,
+)
 from algorithms.extractors.profiles.single_spot import require_one_spot
-from algorithms.extractors.profiles.slit_lines import SlitLines, box_means, dark_level
+from algorithms.extractors.profiles.slit_lines import NEEDS, SlitLines, box_means, dark_level
 from algorithms.inputs import as_frames, require_positive
 
 Image = Literal["rational", "gaussian", "diffraction"]
@@ -76,14 +83,17 @@ class PeakPositionEstimate(SlitLines):
     Cost: 1 operation a pixel and slit to start, 40 a pixel near a peak and step, some 8 steps.
     """
 
-    name: ClassVar[str] = "ppe"
-    taxonomy: ClassVar[str] = "PPE"
-    studies: ClassVar[tuple[str, ...]] = ("Enright2007a",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:ppe", "alg:PPE")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 2
-    observation: ClassVar[Observation] = Observation.PROFILES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
+    about: ClassVar = AboutExtractor(
+        name="ppe",
+        taxonomy="PPE",
+        studies=("Enright2007a",),
+        labels=("fe:ppe", "alg:PPE"),
+        origin="survey",
+        version=2,
+        needs=NEEDS,
+        observation=Observation.PROFILES,
+        kind=FeatureKind.SPOT,
+    )
 
     image: Image = "rational"
     coefficients: Coefficients = SLIT_IMAGE
@@ -93,11 +103,11 @@ class PeakPositionEstimate(SlitLines):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        _require_image(self.name, self.image, self.coefficients)
-        _require_limits(self.name, self.tolerance, self.iterations)
+        _require_image(self.about.name, self.image, self.coefficients)
+        _require_limits(self.about.name, self.tolerance, self.iterations)
         if not (math.isfinite(self.overlap) and self.overlap >= 0):
             raise ValueError(
-                f"{self.name}: overlap must be finite and not negative; got {self.overlap!r}"
+                f"{self.about.name}: overlap must be finite and not negative; got {self.overlap!r}"
             )
 
     def extract(self, observations: ArrayLike) -> Floats:
@@ -169,7 +179,7 @@ class PeakPositionEstimate(SlitLines):
 
 
 @dataclass(frozen=True)
-class FramePeakPositionEstimate:
+class FramePeakPositionEstimate(Extractor):
     """Least-squares fit of a known peak to the sums of a frame's columns and of its rows.
 
     One spot casts one peak on each profile; its position and amplitude are fitted there. All
@@ -207,15 +217,16 @@ class FramePeakPositionEstimate:
     Cost: 2 operations a pixel, 20 a pixel of the profiles and step, some 8 steps.
     """
 
-    name: ClassVar[str] = "ppe-frame"
-    taxonomy: ClassVar[str] = "PPE"
-    studies: ClassVar[tuple[str, ...]] = ("Enright2007a",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:ppe", "alg:PPE")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 2
-    observation: ClassVar[Observation] = Observation.FRAMES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
-    needs: ClassVar[tuple[str, ...]] = ()
+    about: ClassVar = AboutExtractor(
+        name="ppe-frame",
+        taxonomy="PPE",
+        studies=("Enright2007a",),
+        labels=("fe:ppe", "alg:PPE"),
+        origin="survey",
+        version=2,
+        observation=Observation.FRAMES,
+        kind=FeatureKind.SPOT,
+    )
 
     image: Image = "rational"
     coefficients: Coefficients = SLIT_IMAGE
@@ -224,20 +235,15 @@ class FramePeakPositionEstimate:
     iterations: int = 30
 
     def __post_init__(self) -> None:
-        _require_image(self.name, self.image, self.coefficients)
-        _require_limits(self.name, self.tolerance, self.iterations)
+        _require_image(self.about.name, self.image, self.coefficients)
+        _require_limits(self.about.name, self.tolerance, self.iterations)
         if self.width_px is not None:
-            require_positive(self.name, width_px=self.width_px)
-
-    @property
-    def features(self) -> tuple[str, ...]:
-        """Names of the two output columns."""
-        return ("x_px", "y_px")
+            require_positive(self.about.name, width_px=self.width_px)
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
         """Return the method; UnsuitableDesignError where the mask has many apertures or slits."""
-        require_one_spot(geometry, cls.name)
+        require_one_spot(geometry, cls.about.name)
         return cls()
 
     def extract(self, observations: ArrayLike) -> Floats:

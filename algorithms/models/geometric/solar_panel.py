@@ -8,14 +8,21 @@ from typing import ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from algorithms.contract import FeatureKind, Floats, Origin, SensorGeometry, UnsuitableDesignError
-from algorithms.inputs import as_calibration, as_features, require_fitted, require_kind
+from algorithms.contract import (
+    AboutModel,
+    FeatureKind,
+    Floats,
+    Model,
+    SensorGeometry,
+    UnsuitableDesignError,
+)
+from algorithms.inputs import as_calibration, as_features, require_fitted
 from algorithms.models.geometric.detector_faces import UNIT_TOLERANCE, Normals, row_sums
 from algorithms.row_arithmetic import normalised
 
 
 @dataclass
-class SolarPanels:
+class SolarPanels(Model):
     """Sum of the lit panels' normals, each weighted by its current, scaled to length one.
 
     On a body with panels square to each other every current is a component of the Sun vector, so
@@ -46,14 +53,15 @@ class SolarPanels:
     Cost: 40 operations and one root a sample.
     """
 
-    name: ClassVar[str] = "solar-panel"
-    taxonomy: ClassVar[str] = "Solar panel"
-    studies: ClassVar[tuple[str, ...]] = ("Nurgizat2021",)
-    labels: ClassVar[tuple[str, ...]] = ("model:solarpanel", "eq:msfsc")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    accepts: ClassVar[frozenset[FeatureKind]] = frozenset({FeatureKind.SIGNALS})
-    needs: ClassVar[tuple[str, ...]] = ("face_normals",)
+    about: ClassVar = AboutModel(
+        name="solar-panel",
+        taxonomy="Solar panel",
+        studies=("Nurgizat2021",),
+        labels=("model:solarpanel", "eq:msfsc"),
+        origin="survey",
+        needs=("face_normals",),
+        accepts=frozenset({FeatureKind.SIGNALS}),
+    )
 
     face_normals: Normals
 
@@ -65,20 +73,20 @@ class SolarPanels:
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
         """Return the model of the sensor's six panels."""
-        require_kind(kind, cls.accepts, cls.name)
-        geometry.require("face_normals", by=cls.name)
+        cls.about.require_kind(kind)
+        geometry.require("face_normals", by=cls.about.name)
         return cls(geometry.face_normals or ())
 
     def fit(self, features: ArrayLike, sun: ArrayLike) -> Self:
         """Check the calibration data; nothing is learnt from them."""
-        found, _ = as_calibration(features, sun, 6, self.name)
+        found, _ = as_calibration(features, sun, 6, self.about.name)
         self.n_samples_ = len(found)
         return self
 
     def predict(self, features: ArrayLike) -> Floats:
         """Sun unit vectors (N, 3) of signals (N, 6)."""
         require_fitted(self, "n_samples_")
-        lit = np.maximum(as_features(features, 6, self.name), 0.0)
+        lit = np.maximum(as_features(features, 6, self.about.name), 0.0)
         return normalised(np.column_stack([row_sums(lit, n) for n in self._normals().T]))
 
     def _normals(self) -> Floats:
@@ -90,6 +98,6 @@ class SolarPanels:
             if np.allclose(cosines, [-1.0, 0.0, 0.0, 0.0, 0.0, 1.0], rtol=0, atol=UNIT_TOLERANCE):
                 return normals
         raise UnsuitableDesignError(
-            f"{self.name} needs six panel normals, three opposite pairs square to each other; "
-            f"got {self.face_normals!r}"
+            f"{self.about.name} needs six panel normals, three opposite pairs square to each "
+            f"other; got {self.face_normals!r}"
         )

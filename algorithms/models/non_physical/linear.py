@@ -8,12 +8,11 @@ from typing import ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from algorithms.contract import FeatureKind, Floats, Origin, SensorGeometry
+from algorithms.contract import AboutModel, Floats, Model
 from algorithms.inputs import (
     as_features,
     as_frontal_calibration,
     require_fitted,
-    require_kind,
     require_samples,
 )
 from algorithms.models.nominal_projection import POSITIONS
@@ -28,7 +27,7 @@ from algorithms.models.non_physical.regression_axes import (
 
 
 @dataclass
-class LinearFit:
+class LinearFit(Model):
     """Each Sun angle as a straight line on the feature of its axis.
 
     Two numbers an axis make the smallest and fastest calibration there is; it holds over a
@@ -59,43 +58,33 @@ class LinearFit:
     Cost: 4 operations and 2 tangents a sample.
     """
 
-    name: ClassVar[str] = "linear"
-    taxonomy: ClassVar[str] = "Linear"
-    studies: ClassVar[tuple[str, ...]] = ("Faizullin2017",)
-    labels: ClassVar[tuple[str, ...]] = ("model:linear",)
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    accepts: ClassVar[frozenset[FeatureKind]] = POSITIONS
-    needs: ClassVar[tuple[str, ...]] = ()
+    about: ClassVar = AboutModel(
+        name="linear",
+        taxonomy="Linear",
+        studies=("Faizullin2017",),
+        labels=("model:linear",),
+        origin="survey",
+        accepts=POSITIONS,
+    )
 
     target: Target = "angle"
 
     coefficients_: Floats = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        require_target(self.target, self.name)
-
-    @classmethod
-    def for_sensor(
-        cls,
-        geometry: SensorGeometry,  # noqa: ARG003 - learnt from the calibration alone
-        kind: FeatureKind,
-    ) -> Self:
-        """Return the published model, whatever the sensor."""
-        require_kind(kind, cls.accepts, cls.name)
-        return cls()
+        require_target(self.target, self.about.name)
 
     def fit(self, features: ArrayLike, sun: ArrayLike) -> Self:
         """Fit one line an axis."""
-        found, vectors = as_frontal_calibration(features, sun, self.name)
-        require_samples(len(found), 2, self.name, "two coefficients an axis")
+        found, vectors = as_frontal_calibration(features, sun, self.about.name)
+        require_samples(len(found), 2, self.about.name, "two coefficients an axis")
         wanted = target_from_sun(vectors, self.target)
-        middle, half = feature_scaling(found, self.name)
+        middle, half = feature_scaling(found, self.about.name)
         coefficients = np.empty((2, 2))
         for axis, column in ((0, 1), (1, 0)):
             scaled = (found[:, column] - middle[column]) / half[column]
             design = np.column_stack([np.ones(len(scaled)), scaled])
-            level, slope = solve_regression(design, wanted[:, axis], self.name)
+            level, slope = solve_regression(design, wanted[:, axis], self.about.name)
             slope = slope / half[column]
             coefficients[axis] = level - slope * middle[column], slope
         self.coefficients_ = coefficients
@@ -104,6 +93,6 @@ class LinearFit:
     def predict(self, features: ArrayLike) -> Floats:
         """Sun unit vectors (N, 3) of features (N, 2)."""
         require_fitted(self, "coefficients_")
-        found = as_features(features, 2, self.name)
+        found = as_features(features, 2, self.about.name)
         level, slope = self.coefficients_.T
         return sun_from_target(level + slope * found[:, ::-1], self.target)

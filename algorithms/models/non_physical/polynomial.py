@@ -9,12 +9,11 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
 
-from algorithms.contract import FeatureKind, Floats, Origin, SensorGeometry
+from algorithms.contract import AboutModel, Floats, Model
 from algorithms.inputs import (
     as_features,
     as_frontal_calibration,
     require_fitted,
-    require_kind,
     require_samples,
 )
 from algorithms.models.nominal_projection import POSITIONS
@@ -32,7 +31,7 @@ MAX_DEGREE = 15
 
 
 @dataclass
-class AxisPolynomial:
+class AxisPolynomial(Model):
     """Each Sun angle as a polynomial of the feature of its own axis.
 
     Compact and fast, it follows any smooth response of one axis, but not what the other axis does
@@ -70,14 +69,14 @@ class AxisPolynomial:
     Cost: 6 (n + 1) operations and 2 tangents a sample.
     """
 
-    name: ClassVar[str] = "polynomial-1d"
-    taxonomy: ClassVar[str] = "Polynomial"
-    studies: ClassVar[tuple[str, ...]] = ("You2011",)
-    labels: ClassVar[tuple[str, ...]] = ("model:poly",)
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    accepts: ClassVar[frozenset[FeatureKind]] = POSITIONS
-    needs: ClassVar[tuple[str, ...]] = ()
+    about: ClassVar = AboutModel(
+        name="polynomial-1d",
+        taxonomy="Polynomial",
+        studies=("You2011",),
+        labels=("model:poly",),
+        origin="survey",
+        accepts=POSITIONS,
+    )
 
     degree: int = 6
     target: Target = "angle"
@@ -88,39 +87,29 @@ class AxisPolynomial:
     coefficients_: Floats = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        _require_polynomial(self.name, self.degree, self.extrapolation)
-        require_target(self.target, self.name)
-
-    @classmethod
-    def for_sensor(
-        cls,
-        geometry: SensorGeometry,  # noqa: ARG003 - learnt from the calibration alone
-        kind: FeatureKind,
-    ) -> Self:
-        """Return the model of the published degree, whatever the sensor."""
-        require_kind(kind, cls.accepts, cls.name)
-        return cls()
+        _require_polynomial(self.about.name, self.degree, self.extrapolation)
+        require_target(self.target, self.about.name)
 
     def fit(self, features: ArrayLike, sun: ArrayLike) -> Self:
         """Fit one polynomial an axis."""
-        found, vectors = as_frontal_calibration(features, sun, self.name)
+        found, vectors = as_frontal_calibration(features, sun, self.about.name)
         require_samples(
-            len(found), self.degree + 1, self.name, f"degree {self.degree} on each axis"
+            len(found), self.degree + 1, self.about.name, f"degree {self.degree} on each axis"
         )
-        middle, half = feature_scaling(found, self.name)
+        middle, half = feature_scaling(found, self.about.name)
         scaled = (found - middle) / half
         wanted = target_from_sun(vectors, self.target)
         coefficients = np.empty((2, self.degree + 1))
         for axis, column in ((0, 1), (1, 0)):
             design = _axis_terms(scaled[:, column], self.degree)
-            coefficients[axis] = solve_regression(design, wanted[:, axis], self.name)
+            coefficients[axis] = solve_regression(design, wanted[:, axis], self.about.name)
         self.middle_, self.half_range_, self.coefficients_ = middle, half, coefficients
         return self
 
     def predict(self, features: ArrayLike) -> Floats:
         """Sun unit vectors (N, 3) of features (N, 2)."""
         require_fitted(self, "coefficients_")
-        found = as_features(features, 2, self.name)
+        found = as_features(features, 2, self.about.name)
         scaled = _within((found - self.middle_) / self.half_range_, self.extrapolation)
         alpha, beta = self.coefficients_
         values = np.column_stack(
@@ -130,7 +119,7 @@ class AxisPolynomial:
 
 
 @dataclass
-class SurfacePolynomial:
+class SurfacePolynomial(Model):
     """Each Sun angle as a polynomial surface over both features.
 
     The cross terms take up what turns one axis into the other: in-plane rotation, tilt and
@@ -168,14 +157,14 @@ class SurfacePolynomial:
     Cost: 2.5 (n + 1)(n + 2) operations and 2 tangents a sample.
     """
 
-    name: ClassVar[str] = "polynomial-2d"
-    taxonomy: ClassVar[str] = "Polynomial"
-    studies: ClassVar[tuple[str, ...]] = ("Chang2006",)
-    labels: ClassVar[tuple[str, ...]] = ("model:poly",)
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    accepts: ClassVar[frozenset[FeatureKind]] = POSITIONS
-    needs: ClassVar[tuple[str, ...]] = ()
+    about: ClassVar = AboutModel(
+        name="polynomial-2d",
+        taxonomy="Polynomial",
+        studies=("Chang2006",),
+        labels=("model:poly",),
+        origin="survey",
+        accepts=POSITIONS,
+    )
 
     degree: int = 5
     target: Target = "angle"
@@ -186,35 +175,25 @@ class SurfacePolynomial:
     coefficients_: Floats = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        _require_polynomial(self.name, self.degree, self.extrapolation)
-        require_target(self.target, self.name)
-
-    @classmethod
-    def for_sensor(
-        cls,
-        geometry: SensorGeometry,  # noqa: ARG003 - learnt from the calibration alone
-        kind: FeatureKind,
-    ) -> Self:
-        """Return the model of the default degree, whatever the sensor."""
-        require_kind(kind, cls.accepts, cls.name)
-        return cls()
+        _require_polynomial(self.about.name, self.degree, self.extrapolation)
+        require_target(self.target, self.about.name)
 
     def fit(self, features: ArrayLike, sun: ArrayLike) -> Self:
         """Fit both surfaces."""
-        found, vectors = as_frontal_calibration(features, sun, self.name)
+        found, vectors = as_frontal_calibration(features, sun, self.about.name)
         terms = (self.degree + 1) * (self.degree + 2) // 2
-        require_samples(len(found), terms, self.name, f"total degree {self.degree}")
-        middle, half = feature_scaling(found, self.name)
+        require_samples(len(found), terms, self.about.name, f"total degree {self.degree}")
+        middle, half = feature_scaling(found, self.about.name)
         design = _surface_terms((found - middle) / half, self.degree)
         wanted = target_from_sun(vectors, self.target)
-        coefficients = solve_regression(design, wanted, self.name).T.copy()
+        coefficients = solve_regression(design, wanted, self.about.name).T.copy()
         self.middle_, self.half_range_, self.coefficients_ = middle, half, coefficients
         return self
 
     def predict(self, features: ArrayLike) -> Floats:
         """Sun unit vectors (N, 3) of features (N, 2)."""
         require_fitted(self, "coefficients_")
-        found = as_features(features, 2, self.name)
+        found = as_features(features, 2, self.about.name)
         scaled = _within((found - self.middle_) / self.half_range_, self.extrapolation)
         terms = _surface_terms(scaled, self.degree)
         # Term by term: a matrix product rounds a sample differently in batches of another size.

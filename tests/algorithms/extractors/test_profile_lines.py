@@ -123,7 +123,7 @@ def noisy(profiles: np.ndarray, sigma: float = 20.0, dark: float = 40.0) -> np.n
 # Where an exact projection is reported
 
 
-@pytest.mark.parametrize("method", FINE_PX, ids=lambda method: method.name)
+@pytest.mark.parametrize("method", FINE_PX, ids=lambda method: method.about.name)
 @pytest.mark.parametrize("name", DESIGNS)
 def test_a_shadow_is_reported_where_it_falls(name, method):
     design = DESIGNS[name]
@@ -159,7 +159,9 @@ def test_bcm_is_pulled_to_the_middle_by_dark_signal_unless_it_is_taken_off():
     np.testing.assert_allclose(without.extract(lit), true, rtol=0, atol=1e-9)
 
 
-@pytest.mark.parametrize("method", [LinearPhase, EigenAnalysis], ids=lambda method: method.name)
+@pytest.mark.parametrize(
+    "method", [LinearPhase, EigenAnalysis], ids=lambda method: method.about.name
+)
 def test_narrower_and_blurred_light_keeps_its_place(method):
     """The reference is as wide as the slit; a thick mask and the Sun change that evenly."""
     moved = displacements(40)
@@ -308,7 +310,7 @@ def test_mt_acm_of_a_line_is_that_of_a_frame_with_its_sums(crossing):
 TELLING = (PeakDetection, LinearPhase, EigenAnalysis)
 
 
-@pytest.mark.parametrize("method", TELLING, ids=lambda method: method.name)
+@pytest.mark.parametrize("method", TELLING, ids=lambda method: method.about.name)
 @pytest.mark.parametrize("name", DESIGNS)
 def test_noise_alone_two_suns_and_a_missing_slit_are_nan(name, method):
     design = DESIGNS[name]
@@ -326,7 +328,7 @@ def test_noise_alone_two_suns_and_a_missing_slit_are_nan(name, method):
         assert np.isnan(extractor.extract(noisy(shadow(missing, moved)))).all()
 
 
-@pytest.mark.parametrize("method", TELLING, ids=lambda method: method.name)
+@pytest.mark.parametrize("method", TELLING, ids=lambda method: method.about.name)
 def test_slits_off_the_line_are_never_taken_for_their_neighbours(method):
     """Off the end by one slit of the comb: nothing, not a whole period's error."""
     design = DESIGNS["sixteen slits"]
@@ -338,7 +340,7 @@ def test_slits_off_the_line_are_never_taken_for_their_neighbours(method):
     np.testing.assert_allclose(found[seen], where(design, moved)[seen], rtol=0, atol=6.0)
 
 
-@pytest.mark.parametrize("method", TELLING, ids=lambda method: method.name)
+@pytest.mark.parametrize("method", TELLING, ids=lambda method: method.about.name)
 def test_peaks_that_merge_or_cross_are_right_or_nan(method):
     """The V's slits cross in the mask: the slanted one's spot passes over the other's."""
     design = replace(DESIGNS["a V"], slits=((-0.4, 0.0, 0.2), (0.4, 45.0, 0.2)))

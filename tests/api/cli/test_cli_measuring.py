@@ -57,8 +57,8 @@ def test_a_study_s_pipelines_are_scored_against_the_bound_and_its_gaps_listed():
     }
     assert scored == expected & planned
     values = catalogue().extractors
-    assert {values[extractor].taxonomy for _, extractor, _ in scored} == {
-        values[extractor].taxonomy for _, extractor, _ in expected
+    assert {values[extractor].about.taxonomy for _, extractor, _ in scored} == {
+        values[extractor].about.taxonomy for _, extractor, _ in expected
     }
     for row in found["scores"]:
         assert row["condition"] == "nominal"

@@ -108,10 +108,11 @@ def plug_in(tmp_path, monkeypatch):
     """An extractor kept in a file of its own, and how to rewrite that file."""
     path = tmp_path / "plugged_in.py"
     text = (
-        '"""A plug-in."""\n\nfrom fake_atlas import Currents\n\n\n'
+        '"""A plug-in."""\n\nfrom dataclasses import replace\n\n'
+        "from fake_atlas import Currents\n\n\n"
         "class Plugged(Currents):\n"
         '    """Adds nothing."""\n\n'
-        '    name = "fake-plugged"\n\n'
+        '    about = replace(Currents.about, name="fake-plugged")\n\n'
         "    def extract(self, observations):\n"
         "        return super().extract(observations) + 0.0\n"
     )
@@ -154,7 +155,8 @@ def test_an_extractor_s_new_code_renews_its_own_rows_and_its_digest_alone(tmp_pa
 
 
 def test_a_changed_model_or_harness_renews_what_they_are_in(published, monkeypatch):
-    newer = type("Newer", (LeastSquares,), {"version": 2, "__module__": "fake_atlas"})
+    about = dataclasses.replace(LeastSquares.about, version=2)
+    newer = type("Newer", (LeastSquares,), {"about": about, "__module__": "fake_atlas"})
     parts = fake_plan.parts(newer, presets=PRESETS)
     before = states(published)
     done = update(published, progress=silent, parts=parts)
@@ -224,7 +226,7 @@ def test_pipelines_that_differ_less_than_units_share_a_rank_in_every_form(tmp_pa
     class Alike(LeastSquares):
         """Turns what the other finds by a thousandth of a degree."""
 
-        name = "fake-alike"
+        about = dataclasses.replace(LeastSquares.about, name="fake-alike")
 
         def predict(self, features):
             found = super().predict(features)

@@ -138,7 +138,7 @@ def test_a_second_run_renders_nothing_and_changes_no_byte(store, log):
 
 def test_each_split_is_generated_and_extracted_from_once_for_all_models(store, log):
     class Second(fake_atlas.LeastSquares):
-        name = "fake-second"
+        about = dataclasses.replace(fake_atlas.LeastSquares.about, name="fake-second")
 
     parts = fake_plan.parts(fake_atlas.LeastSquares, Second)
     measure(store, parts)
@@ -151,7 +151,8 @@ def test_each_split_is_generated_and_extracted_from_once_for_all_models(store, l
 
 def test_only_what_changed_is_measured_again(store, log):
     measure(store)
-    newer = type("Newer", (fake_atlas.Gaps,), {"version": 2, "__module__": "fake_atlas"})
+    about = dataclasses.replace(fake_atlas.Gaps.about, version=2)
+    newer = type("Newer", (fake_atlas.Gaps,), {"about": about, "__module__": "fake_atlas"})
     parts = fake_plan.parts()
     parts = dataclasses.replace(parts, extractors={**parts.extractors, "fake-gaps": newer})
     stale = runner.stale(plan.cells(parts=parts), store, parts=parts)
@@ -201,8 +202,6 @@ def test_a_failure_is_a_row_with_its_reason_and_is_tried_again(store, log, monke
 
 def test_an_extractor_or_dataset_that_fails_fails_its_cells_alone(store):
     class Wrong(fake_atlas.Currents):
-        name = "fake-currents"
-
         def extract(self, observations):
             return np.zeros((len(observations), 2))
 
@@ -233,7 +232,8 @@ def test_a_partial_run_keeps_other_results(store):
 def test_a_partial_run_drops_what_its_new_code_no_longer_vouches_for(store):
     """A changed extractor measured under one condition: its other score is of older code."""
     measure(store)
-    newer = type("Newer", (fake_atlas.Gaps,), {"version": 2, "__module__": "fake_atlas"})
+    about = dataclasses.replace(fake_atlas.Gaps.about, version=2)
+    newer = type("Newer", (fake_atlas.Gaps,), {"about": about, "__module__": "fake_atlas"})
     parts = fake_plan.parts()
     parts = dataclasses.replace(parts, extractors={**parts.extractors, "fake-gaps": newer})
     runner.run(

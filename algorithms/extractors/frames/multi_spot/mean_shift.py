@@ -8,7 +8,14 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from algorithms.contract import FeatureKind, Floats, Observation, Origin, SensorGeometry
+from algorithms.contract import (
+    AboutExtractor,
+    Extractor,
+    FeatureKind,
+    Floats,
+    Observation,
+    SensorGeometry,
+)
 from algorithms.extractors.frames.multi_spot.aperture_pattern import (
     PATTERN_NEEDS,
     SHARE,
@@ -28,7 +35,7 @@ from algorithms.inputs import as_frames, require_positive
 
 
 @dataclass(frozen=True)
-class MeanShift:
+class MeanShift(Extractor):
     """Mean of all spots, each moved to where its gray values resemble those of a goal spot.
 
     A spot is described by a histogram of its gray values, weighted by a kernel about its centre.
@@ -89,15 +96,16 @@ class MeanShift:
     four steps.
     """
 
-    name: ClassVar[str] = "fmms"
-    taxonomy: ClassVar[str] = "FMMS"
-    studies: ClassVar[tuple[str, ...]] = ("You2011",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:fmms", "alg:FMMS1", "alg:FMMS2")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.FRAMES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
-    needs: ClassVar[tuple[str, ...]] = PATTERN_NEEDS
+    about: ClassVar = AboutExtractor(
+        name="fmms",
+        taxonomy="FMMS",
+        studies=("You2011",),
+        labels=("fe:fmms", "alg:FMMS1", "alg:FMMS2"),
+        origin="survey",
+        needs=PATTERN_NEEDS,
+        observation=Observation.FRAMES,
+        kind=FeatureKind.SPOT,
+    )
 
     apertures_px: Apertures = field(repr=False)
     bandwidth_px: float
@@ -110,20 +118,17 @@ class MeanShift:
 
     def __post_init__(self) -> None:
         require_pattern(
-            self.name, self.apertures_px, self.blur_px, self.threshold, self.tolerance_px
+            self.about.name, self.apertures_px, self.blur_px, self.threshold, self.tolerance_px
         )
         require_positive(
-            self.name, bandwidth_px=self.bandwidth_px, convergence_px=self.convergence_px
+            self.about.name, bandwidth_px=self.bandwidth_px, convergence_px=self.convergence_px
         )
         if not 3 <= self.bins <= 256:
-            raise ValueError(f"{self.name}: bins must be from 3 to 256; got {self.bins!r}")
+            raise ValueError(f"{self.about.name}: bins must be from 3 to 256; got {self.bins!r}")
         if not 0.0 < self.similarity < 1.0:
-            raise ValueError(f"{self.name}: similarity must be in (0, 1); got {self.similarity!r}")
-
-    @property
-    def features(self) -> tuple[str, ...]:
-        """Names of the two output columns."""
-        return ("x_px", "y_px")
+            raise ValueError(
+                f"{self.about.name}: similarity must be in (0, 1); got {self.similarity!r}"
+            )
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
@@ -132,7 +137,7 @@ class MeanShift:
         UnsuitableDesignError where its light is no spots. The bandwidth is a spot's width at
         normal incidence, or what neighbours leave of it.
         """
-        design = design_pattern(geometry, cls.name)
+        design = design_pattern(geometry, cls.about.name)
         apertures = np.array(design["apertures_px"])
         width = float(apertures[:, 2].max()) + design["blur_px"]
         room = nearest_distance(apertures) - width / 2.0 - 1.0

@@ -8,7 +8,14 @@ from typing import ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from algorithms.contract import FeatureKind, Floats, Observation, Origin, SensorGeometry
+from algorithms.contract import (
+    AboutExtractor,
+    Extractor,
+    FeatureKind,
+    Floats,
+    Observation,
+    SensorGeometry,
+)
 from algorithms.extractors.frames.multi_spot.aperture_pattern import (
     PATTERN_NEEDS,
     Apertures,
@@ -22,7 +29,7 @@ from algorithms.inputs import as_frames
 
 
 @dataclass(frozen=True)
-class MultipleCentroids:
+class MultipleCentroids(Extractor):
     """Mean of the thresholded centroids of all whole spots, each less its aperture's place.
 
     Every aperture of the mask repeats the measurement, so noise falls with the square root of
@@ -64,15 +71,16 @@ class MultipleCentroids:
     Cost: 2 operations a pixel, 8 in rows with spots, and 20 a pair of spot and aperture.
     """
 
-    name: ClassVar[str] = "mcam"
-    taxonomy: ClassVar[str] = "MCAM"
-    studies: ClassVar[tuple[str, ...]] = ("Rufino2009b",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:mcam", "alg:MCAM")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.FRAMES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
-    needs: ClassVar[tuple[str, ...]] = PATTERN_NEEDS
+    about: ClassVar = AboutExtractor(
+        name="mcam",
+        taxonomy="MCAM",
+        studies=("Rufino2009b",),
+        labels=("fe:mcam", "alg:MCAM"),
+        origin="survey",
+        needs=PATTERN_NEEDS,
+        observation=Observation.FRAMES,
+        kind=FeatureKind.SPOT,
+    )
 
     apertures_px: Apertures = field(repr=False)
     blur_px: float = 0.0
@@ -81,13 +89,8 @@ class MultipleCentroids:
 
     def __post_init__(self) -> None:
         require_pattern(
-            self.name, self.apertures_px, self.blur_px, self.threshold, self.tolerance_px
+            self.about.name, self.apertures_px, self.blur_px, self.threshold, self.tolerance_px
         )
-
-    @property
-    def features(self) -> tuple[str, ...]:
-        """Names of the two output columns."""
-        return ("x_px", "y_px")
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
@@ -95,7 +98,7 @@ class MultipleCentroids:
 
         UnsuitableDesignError where its light is no spots.
         """
-        return cls(**design_pattern(geometry, cls.name))
+        return cls(**design_pattern(geometry, cls.about.name))
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Averaged positions (N, 2) in frames (N, H, W); ValueError on wrong input."""
