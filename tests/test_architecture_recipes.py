@@ -26,7 +26,7 @@ from registry.catalogue import catalogue
 
 found = catalogue()
 pairs = [("cmos-single-aperture", "squared-centroid", "spm"),
-         ("pd-maskless-cube-dim", "direct", "basic"),
+         ("pd-maskless-dodecahedron", "direct", "panoramic"),
          ("pd-maskless-cube", "direct", "basic")]
 store = Store(sys.argv[1])
 for dataset, extractor, model in pairs:
@@ -73,15 +73,30 @@ def test_one_file_makes_an_algorithm_and_one_a_dataset_that_are_measured(tree: P
     answer = json.loads(run(["-c", MEASURE, str(tree / "store")], tree))
     assert answer["extractor"]
     assert "squared-centroid" in answer["for_value"]
-    assert "pd-maskless-cube-dim" in answer["datasets"]
+    assert "pd-maskless-dodecahedron" in answer["datasets"]
     rows = {(row["dataset"], row["extractor"]): row for row in answer["rows"]}
     centroid = rows["cmos-single-aperture", "squared-centroid"]
     assert centroid["status"] == "ok"
     assert 1.0 < centroid["over_bound"] < 1000.0
-    dim = rows["pd-maskless-cube-dim", "direct"]
-    bright = rows["pd-maskless-cube", "direct"]
-    # a tenth of the light at the same amplifier noise: about ten times the bound
-    assert 8.0 < dim["bound_deg"] / bright["bound_deg"] < 12.0
+    twelve = rows["pd-maskless-dodecahedron", "direct"]
+    six = rows["pd-maskless-cube", "direct"]
+    # a tenth of the light at the same amplifier noise, on twelve faces instead of six
+    expected = 10.0 * (6 / 12) ** 0.5
+    assert twelve["bound_deg"] / six["bound_deg"] == pytest.approx(expected, rel=0.1)
+    assert twelve["status"] == "ok"
+    assert 1.0 < twelve["over_bound"] < 3.0
+
+
+def test_a_dataset_is_one_short_file_in_the_recipe_and_here() -> None:
+    recipes = dict(RECIPE.findall((ROOT / "docs" / "architecture.md").read_text()))
+    (dataset,) = (text for name, text in recipes.items() if name.startswith("benchmark/"))
+    assert len(dataset.splitlines()) <= 40
+    assert "datasets.standard" not in dataset, "a sensor of its own, not another data set's"
+    standard = ROOT / "benchmark" / "datasets" / "standard"
+    lines = {path.name: len(path.read_text().splitlines()) for path in standard.glob("*_*.py")}
+    assert len(lines) > 30
+    assert {name: count for name, count in lines.items() if count > 45} == {}
+    assert sum(count > 40 for count in lines.values()) <= 4
 
 
 def test_an_algorithm_with_its_docstring_takes_at_most_60_lines() -> None:

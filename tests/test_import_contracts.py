@@ -51,7 +51,7 @@ OFFENCES = {
         ("benchmark/metrics/rings.py", "import benchmark.datasets.card",
          "benchmark.metrics", "benchmark.datasets"),
     ],
-    "Inside the data sets: families do not know the data sets of them": [
+    "Inside the data sets: a family does not know its members": [
         ("benchmark/datasets/conditions/cone.py", "import benchmark.datasets.standard.ccd_slit",
          "benchmark.datasets.conditions", "benchmark.datasets.standard"),
     ],

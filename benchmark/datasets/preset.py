@@ -10,7 +10,8 @@ from typing import Any, Self, get_args
 import numpy as np
 
 from algorithms.contract import Observation, SensorGeometry
-from benchmark.datasets.card import differences
+from benchmark.contract import SPLITS
+from benchmark.datasets.card import stream_names, told_once
 from benchmark.datasets.fields import Field, Split
 from benchmark.datasets.parameters import described
 from benchmark.datasets.repeats import REPEAT, Repeats
@@ -25,9 +26,8 @@ from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern, Sensor
 from benchmark.simulator.sensors.faces import Faces
 
-#: Splits that a field of directions is drawn for, and all there are.
+#: Splits that a field of directions is drawn for.
 DRAWN: tuple[Split, ...] = get_args(Split)
-SPLITS: tuple[str, ...] = (*DRAWN, REPEAT)
 #: Samples simulated together; memory only, the numbers do not depend on it.
 BATCH = 64
 
@@ -263,18 +263,15 @@ class Preset:
         it is another, the geometry; `benchmark.datasets.parameters_of` puts them together.
         """
         geometry, splits = described(self.geometry), self.directions.card()
-        shared: dict[str, Any] | None = None
-        conditions = {}
-        for name, setup in self.setups.items():
-            own = self.parameters(name)
-            design = own.pop("geometry")
-            shared = own if shared is None else shared
-            about = {
+        shared, own = told_once({name: self.parameters(name) for name in self.setups}, geometry)
+        conditions = {
+            name: {
                 "description": setup.description,
                 "tolerances": described(tolerances(setup.sensor)),
-                "parameters": differences(shared, own),
+                **own[name],
             }
-            conditions[name] = about if design == geometry else {**about, "geometry": design}
+            for name, setup in self.setups.items()
+        }
         return {
             "name": self.name,
             "version": self.version,
@@ -289,13 +286,7 @@ class Preset:
             "parameters": shared,
             "conditions": conditions,
             "regime": described(self.regime),
-            "seeds": {
-                "generator": "NumPy PCG64, SeedSequence over the SHA-256 of the stream's names",
-                "unit": [self.name, self.version, "unit"],
-                "samples": [self.name, self.version, "<split>"],
-                "noise": [self.name, self.version, "<condition>", "<split>"],
-                "other_units": 'unit: [..., "unit", <number>]; noise: [..., "unit", <number>]',
-            },
+            "seeds": stream_names(self.name, self.version),
         }
 
 
