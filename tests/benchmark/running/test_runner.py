@@ -334,18 +334,6 @@ def test_dask_without_its_package_is_a_clear_error(store):
         measure(store, scheduler="tcp://127.0.0.1:1")
 
 
-def test_measuring_uses_one_thread_and_restores_the_number_after(store):
-    import cv2
-
-    from benchmark.running.threads import _bundled_blas, one_thread
-
-    before = [library.get() for library in _bundled_blas()]
-    with one_thread():
-        assert cv2.getNumThreads() == 1
-        assert all(library.get() == 1 for library in _bundled_blas())
-    assert [library.get() for library in _bundled_blas()] == before
-
-
 def test_no_workers_is_refused(store):
     with pytest.raises(ValueError, match="at least 1; got 0"):
         measure(store, workers=0)

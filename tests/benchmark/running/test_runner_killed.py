@@ -18,7 +18,7 @@ PROGRAM = """
 import sys
 import fake_atlas
 import fake_plan
-from benchmark import plan
+from benchmark.plan import combinations as plan
 from benchmark.running import run as runner
 from benchmark.results.store import Store
 
