@@ -156,7 +156,12 @@ GROUPS: Mapping[str, Group] = {
                 _EXTRACTORS, "camera_black_sun"
             ),
             "algorithms/extractors/frames/cameras/*": _in(_EXTRACTORS, "camera_hough"),
-            "algorithms/extractors/frames/energy_filter*.py": _in(_EXTRACTORS, "energy_filtering"),
+            "algorithms/extractors/frames/energy_filter*.py": _in(
+                _EXTRACTORS, "energy_filter_kernel", "energy_filtering"
+            ),
+            "algorithms/extractors/frames/multi_spot/aperture*.py": _in(
+                _EXTRACTORS, "aperture_grid", "multi_spot_oracles", "multi_spot"
+            ),
             "algorithms/extractors/frames/multi_spot/*": _in(
                 _EXTRACTORS, "multi_spot_oracles", "multi_spot"
             ),

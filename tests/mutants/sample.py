@@ -169,7 +169,8 @@ def _types_in(node: ast.AST) -> Sequence[ast.AST | None]:
         return [node] if _is_type(node.value) else []
     if isinstance(node, ast.AnnAssign):
         facts = "ClassVar" in ast.unparse(node.annotation)  # what the catalogue shows
-        return [node if facts else node.annotation]
+        shown = isinstance(node.value, ast.Call) and ast.unparse(node.value.func) == "field"
+        return [node if facts or shown else node.annotation]
     if isinstance(node, ast.Call) and ast.unparse(node.func) == "isinstance":
         return node.args[1:]
     return []
