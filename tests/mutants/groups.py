@@ -103,9 +103,9 @@ GROUPS: Mapping[str, Group] = {
     "registry": Group(
         70,
         {
-            "registry/flows.py": _in("registry", "flows"),
-            "registry/taxonomy.py": _in("registry", "registry_taxonomy"),
-            "registry/studies.py": _in("registry", "registry_studies"),
+            "registry/flows.py": _in("registry", "registry_order", "flows"),
+            "registry/taxonomy.py": _in("registry", "registry_order", "registry_taxonomy"),
+            "registry/studies.py": _in("registry", "registry_order", "registry_studies"),
             "registry/resolution.py": _in("registry", "resolution"),
             "registry/catalogue.py": _in("registry", "resolution"),
             "registry/*": _in(
@@ -133,14 +133,24 @@ GROUPS: Mapping[str, Group] = {
     "models": Group(
         60,
         {
-            "algorithms/models/multiplex/*": _in(_MODELS, "code_dial_models"),
-            "algorithms/models/non_physical/fourier_phase.py": _in(_MODELS, "code_dial_models"),
-            "algorithms/models/non_physical/*": _in(_MODELS, "fitted_models"),
-            "algorithms/models/lut/*": _in(_MODELS, "fitted_models"),
-            "algorithms/models/geometric/panoramic.py": _in(_MODELS, "fusion_models"),
-            "algorithms/models/geometric/pyramidal.py": _in(_MODELS, "fusion_models"),
-            "algorithms/models/geometric/solar_panel.py": _in(_MODELS, "fusion_models"),
-            "algorithms/models/*": _in(_MODELS, "geometric_models", "fusion_models"),
+            "algorithms/models/multiplex/*": _in(_MODELS, "model_limits", "code_dial_models"),
+            "algorithms/models/non_physical/fourier_phase.py": _in(
+                _MODELS, "model_limits", "code_dial_models"
+            ),
+            "algorithms/models/non_physical/*": _in(_MODELS, "model_limits", "fitted_models"),
+            "algorithms/models/lut/*": _in(_MODELS, "model_limits", "fitted_models"),
+            "algorithms/models/geometric/panoramic.py": _in(
+                _MODELS, "model_limits", "fusion_models"
+            ),
+            "algorithms/models/geometric/pyramidal.py": _in(
+                _MODELS, "model_limits", "fusion_models"
+            ),
+            "algorithms/models/geometric/solar_panel.py": _in(
+                _MODELS, "model_limits", "fusion_models"
+            ),
+            "algorithms/models/*": _in(
+                _MODELS, "model_limits", "geometric_models", "fusion_models"
+            ),
         },
     ),
     "extractors": Group(
