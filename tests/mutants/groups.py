@@ -29,16 +29,17 @@ class Group:
     tests: Mapping[str, tuple[str, ...]]
 
     def modules(self, root: Path) -> list[str]:
-        """Modules of the group, sorted, but for packages' own files and the standard data sets.
+        """Modules of the group, sorted, but for packages' own files and the data sets themselves.
 
-        Those are tables of constants, each pinned by the hash of the data that come of it.
+        Those are constants of sensors, each pinned by the hash of the data that come of it.
         """
         folders = sorted({_folder(pattern) for pattern in self.tests})
         found = {
             path.relative_to(root).as_posix()
             for folder in folders
             for path in (root / folder).rglob("*.py")
-            if path.name not in {"__init__.py", "__main__.py"} and path.parent.name != "standard"
+            if path.name not in {"__init__.py", "__main__.py"}
+            and path.parent.name not in {"conditions", "standard"}
         }
         return sorted(found)
 
@@ -124,10 +125,7 @@ GROUPS: Mapping[str, Group] = {
             "benchmark/datasets/export*.py": _in(_DATASETS, "dataset_export"),
             "benchmark/datasets/checksums.py": _in(_DATASETS, "dataset_export"),
             "benchmark/datasets/preview*.py": _in(_DATASETS, "dataset_preview"),
-            "benchmark/datasets/repeats.py": _in(_DATASETS, "repeats_and_units"),
-            "benchmark/datasets/units.py": _in(_DATASETS, "repeats_and_units"),
-            "benchmark/datasets/conditions/flight.py": _in(_DATASETS, "orbit_datasets"),
-            "benchmark/datasets/*": _in(_DATASETS, "datasets", "dataset_without_bound"),
+            "benchmark/datasets/*": _in(_DATASETS, "dataset_parts"),
         },
     ),
     "models": Group(
