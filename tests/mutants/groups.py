@@ -176,7 +176,9 @@ GROUPS: Mapping[str, Group] = {
             "algorithms/extractors/frames/template*.py": _in(
                 _EXTRACTORS, "template_grey", "single_spots"
             ),
-            "algorithms/extractors/frames/*": _in(_EXTRACTORS, "centroids", "single_spots"),
+            "algorithms/extractors/frames/*": _in(
+                _EXTRACTORS, "frame_kernels", "centroids", "single_spots"
+            ),
             "algorithms/extractors/profiles/peak_*.py": _in(
                 _EXTRACTORS, "peak_position", "profile_lines"
             ),
