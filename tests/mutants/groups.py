@@ -72,7 +72,10 @@ GROUPS: Mapping[str, Group] = {
     "metrics": Group(
         50,
         {
-            "benchmark/metrics/score.py": _in(_METRICS, "score"),
+            "benchmark/metrics/score.py": (
+                *_in(_METRICS, "score"),
+                *_in(_DATASETS, "repeatability"),
+            ),
             "benchmark/metrics/rings.py": _in(_METRICS, "rings"),
             "benchmark/metrics/bounds.py": _in(_METRICS, "bounds_closed_form", "bounds"),
         },
@@ -82,7 +85,7 @@ GROUPS: Mapping[str, Group] = {
         {
             "benchmark/running/kernels.py": _in(_RUNNING, "kernels"),
             "benchmark/running/pinning.py": _in(_RUNNING, "pinning"),
-            "benchmark/running/tim*.py": _in(_RUNNING, "times"),
+            "benchmark/running/tim*.py": _in(_RUNNING, "timing", "times"),
             "benchmark/plan/*": _in(_RUNNING, "plan"),
             "benchmark/running/*": _in(_RUNNING, "runner"),
         },
