@@ -13,9 +13,8 @@ from hypothesis import strategies as st
 from registry.flows import chart
 from registry.measured import Measured, Measurements
 from registry.recommendation import Recommendation, recommend
-from registry.requirements import PARAMETERS, Requirements
+from registry.requirements import PARAMETERS
 from registry.studies import Facts, Study
-from registry.taxonomy import InvalidValueError
 
 LEVELS = ("task", "detector", "mask", "model", "extractor")
 VALUES = {
@@ -331,144 +330,6 @@ def test_nodes_and_links_are_the_cross_analysis_narrowed_to_the_answer(survey: F
         level: sum(not s.of(level) for s in survey.studies.values())
         for level in ("task", "detector", "mask")
     }
-
-
-def score(**changed: object) -> Measured:
-    row: dict[str, object] = {
-        "dataset": "d",
-        "condition": "nominal",
-        "detector": "CMOS",
-        "mask": "Slit",
-        "extractor": "bctm",
-        "extractor_taxonomy": "BCTM",
-        "model": "spm",
-        "model_taxonomy": "SPM",
-        "rms_deg": 0.1,
-        "half_fov_deg": 60.0,
-    }
-    return Measured(**{**row, **changed})  # type: ignore[arg-type]
-
-
-def one_study(facts_of: Callable[[Rows], Facts], **numbers: str) -> Facts:
-    path = {
-        "task": ["Cost"],
-        "detector": ["CMOS"],
-        "mask": ["Slit"],
-        "model": ["SPM"],
-        "extractor": ["BCTM"],
-    }
-    return facts_of([{**path, **{a: [n] for a, n in numbers.items()}}])
-
-
-def test_a_measurement_outranks_what_the_study_states(facts_of: Callable[[Rows], Facts]) -> None:
-    facts = one_study(facts_of, accuracy_deg="0.01")
-    ask = {"max_error_deg": 0.05}
-    assert recommend(ask, facts=facts).paths[0].basis == {"max_error_deg": "stated"}
-    assert recommend(ask, [score()], facts=facts).count == 0
-    (path,) = recommend(ask, [score(rms_deg=0.04)], facts=facts).paths
-    assert path.basis == {"max_error_deg": "measured"}
-    assert path.measured == score(rms_deg=0.04)
-
-
-def test_a_quantity_not_measured_is_judged_on_what_is_stated(
-    facts_of: Callable[[Rows], Facts],
-) -> None:
-    facts = one_study(facts_of, fov_deg="100")
-    ask = {"max_error_deg": 0.2, "min_fov_deg": 90}
-    (path,) = recommend(ask, [score(half_fov_deg=None)], facts=facts).paths
-    assert path.basis == {"max_error_deg": "measured", "min_fov_deg": "stated"}
-
-
-def test_min_fov_is_the_full_field_of_view(facts_of: Callable[[Rows], Facts]) -> None:
-    facts = one_study(facts_of)
-    assert recommend({"min_fov_deg": 120}, [score()], facts=facts).count == 1
-    assert recommend({"min_fov_deg": 120.1}, [score()], facts=facts).count == 0
-
-
-def test_the_most_accurate_row_that_meets_all_limits_is_shown(
-    facts_of: Callable[[Rows], Facts],
-) -> None:
-    rows = [score(dataset="narrow", rms_deg=0.01, half_fov_deg=10.0), score(dataset="wide")]
-    facts = one_study(facts_of)
-    assert recommend({}, rows, facts=facts).paths[0].measured == rows[0]
-    assert recommend({"min_fov_deg": 90}, rows, facts=facts).paths[0].measured == rows[1]
-
-
-def test_failed_runs_and_numbers_that_are_none_do_not_count(
-    facts_of: Callable[[Rows], Facts],
-) -> None:
-    facts = one_study(facts_of)
-    failed = [score(rms_deg=None), score(rms_deg=math.nan)]
-    assert recommend({}, failed, facts=facts).paths[0].measured is None
-    assert score(over_bound=math.inf).over_bound is None
-
-
-def test_a_limit_nothing_tells_of_says_so(survey: Facts) -> None:
-    answer = recommend({"task": "Accuracy", "max_latency_us": 5}, facts=survey)
-    assert answer.blocked is not None
-    assert answer.blocked.constraint == "max_latency_us"
-    assert "Nothing measured or stated tells of max_latency_us" in answer.blocked.detail
-
-
-def test_an_impossible_question_names_the_constraint_and_ways_out(survey: Facts) -> None:
-    ask = {"task": ["Accuracy"], "detector": ["Event"], "mask": ["V-Slit"]}
-    answer = recommend(ask, facts=survey).to_dict()
-    assert answer["paths"] == answer["nodes"] == answer["links"] == []
-    blocked = answer["blocked"]
-    assert isinstance(blocked, dict)
-    assert blocked["constraint"] == "mask"
-    assert {"constraint": "mask", "drop": {"mask": ["V-Slit"]}, "paths": 1} in blocked[
-        "relaxations"
-    ]
-    assert {"constraint": "mask", "change": {"mask": ["L-Slit"]}, "paths": 1} in blocked[
-        "relaxations"
-    ]
-
-
-def test_no_studies_is_no_one_constraints_fault(facts_of: Callable[[Rows], Facts]) -> None:
-    answer = recommend({"task": "Cost"}, facts=facts_of([]))
-    assert answer.blocked is not None
-    assert answer.blocked.constraints == ()
-    assert answer.blocked.relaxations == ()
-
-
-def test_requirements_are_given_back_as_they_can_be_given_again(survey: Facts) -> None:
-    ask = {"task": "Cost", "exclude_mask": ["Lens", "Slit"], "max_error_deg": 2, "model": []}
-    answer = recommend(ask, facts=survey)
-    echo = answer.to_dict()["requirements"]
-    assert echo == {"task": ["Cost"], "exclude_mask": ["Lens", "Slit"], "max_error_deg": 2.0}
-    assert isinstance(echo, dict)
-    assert recommend(echo, facts=survey).paths == answer.paths
-
-
-@pytest.mark.parametrize(
-    ("ask", "message"),
-    [
-        ({"tsk": "Accuracy"}, "did you mean 'task'"),
-        ({"exclude_detektor": "PD"}, "did you mean 'exclude_detector'"),
-        ({"mask": ["Encodd"]}, "mask: .*did you mean 'Encoded'"),
-        ({"exclude_mask": ["Encodd"]}, "exclude_mask: .*did you mean 'Encoded'"),
-        ({"mask": 3}, "a value of the taxonomy"),
-        ({"mask": [3]}, "a value of the taxonomy"),
-        ({"max_error_deg": 0}, "a positive number of degrees; got 0"),
-        ({"max_error_deg": math.nan}, "a positive number of degrees; got nan"),
-        ({"max_error_deg": "0.1"}, "a positive number of degrees; got '0.1'"),
-        ({"max_latency_us": True}, "a positive number of microseconds; got True"),
-        ({"min_fov_deg": 361}, "at most 360; got 361"),
-    ],
-)
-def test_wrong_requirements_name_what_was_expected(
-    survey: Facts, ask: dict[str, object], message: str
-) -> None:
-    with pytest.raises(InvalidValueError, match=message):
-        recommend(ask, facts=survey)
-
-
-def test_requirements_built_by_hand_are_checked_too(survey: Facts) -> None:
-    with pytest.raises(InvalidValueError, match="did you mean 'CMOS'"):
-        recommend(Requirements(include={"detector": ("CMOZ",)}), facts=survey)
-    with pytest.raises(InvalidValueError, match="at least 1"):
-        recommend({}, limit=0, facts=survey)
 
 
 def test_the_worst_question_is_explained_in_the_time_of_a_few_hundred_answers(

@@ -270,6 +270,26 @@ def test_a_build_that_fails_midway_leaves_the_earlier_bundle(built, tmp_path, mo
     assert [path.name for path in tmp_path.iterdir()] == ["bundle"]
 
 
+def test_a_bundle_that_cannot_be_moved_into_place_leaves_the_earlier_one(
+    built, tmp_path, monkeypatch
+):
+    out = tmp_path / "bundle"
+    shutil.copytree(built.directory, out)
+    (out / "README.md").write_text("of before")
+    before, rename = files(out), Path.rename
+
+    def refuse(path, target):
+        if path.parent.parent == tmp_path and Path(target) == out and path.name == "bundle":
+            raise OSError(5, "Input/output error")
+        return rename(path, target)
+
+    monkeypatch.setattr(Path, "rename", refuse)
+    with pytest.raises(OSError, match="Input/output"):
+        deposit.build(out)
+    assert files(out) == before
+    assert [path.name for path in tmp_path.iterdir()] == ["bundle"]
+
+
 def test_tables_with_problems_are_not_deposited(tmp_path):
     survey = tmp_path / "survey"
     shutil.copytree(Path(survey_data.__file__).parent, survey)

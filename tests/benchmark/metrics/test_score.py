@@ -182,6 +182,80 @@ def test_a_pipeline_is_available_from_95_percent_on(share, enough):
     assert is_available({"availability": share}) is enough
 
 
+def from_angles(alpha_deg, beta_deg):
+    tangents = np.tan(np.deg2rad([beta_deg, alpha_deg]))
+    vectors = np.column_stack([*tangents, np.ones(len(alpha_deg))])
+    return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
+
+
+def test_axis_errors_are_predicted_less_true_of_each_angle_by_itself():
+    alpha, beta = np.array([10.0, -20.0, 35.0]), np.array([5.0, 40.0, -15.0])
+    by_alpha, by_beta = np.array([0.3, -0.1, 0.4]), np.array([-0.2, -0.5, 0.1])
+    sun = np.vstack([from_angles(alpha, beta), [[0.0, 0.6, 0.8]], [[0.0, 0.6, -0.8]]])
+    predicted = np.vstack([from_angles(alpha + by_alpha, beta + by_beta), sun[[4]], sun[[3]]])
+    result = score(predicted, sun, None, np.ones(5, bool))
+    # of the last two, one is seen behind the detector and one is there
+    assert result.bias_alpha_deg == pytest.approx(0.2)
+    assert result.bias_beta_deg == pytest.approx(-0.2)
+    assert result.rms_alpha_deg == pytest.approx(np.sqrt(np.mean(by_alpha**2)))
+    assert result.rms_beta_deg == pytest.approx(np.sqrt(np.mean(by_beta**2)))
+    assert result.max_deg == pytest.approx(2 * np.rad2deg(np.arcsin(0.8)))
+
+
+@pytest.mark.parametrize(
+    ("errors", "bounds", "ratio", "se"),
+    [
+        # residuals e^2 - 2.5 of 1 and 2 degrees: +-1.5; 3 over the bounds' 2, over twice the ratio
+        ([1.0, 2.0], [1.0, 1.0], np.sqrt(2.5), 1.5 / (2 * np.sqrt(2.5))),
+        ([1.0, 2.0], [1.0, 2.0], 1.0, 0.0),
+        ([2.0, 1.0], [1.0, 2.0], 1.0, np.sqrt(2 * 18.0) / 5 / 2),
+        ([3.0], [2.0], 1.5, None),  # one error has no spread
+        ([0.0, 0.0], [1.0, 1.0], 0.0, None),
+        ([1.0, 2.0], [1.0, np.inf], None, None),
+        ([1.0, 2.0], [0.0, 0.0], None, None),
+    ],
+)
+def test_the_ratio_to_the_bound_and_its_standard_error_in_closed_form(errors, bounds, ratio, se):
+    sun = np.array([[0.0, 0.0, 1.0]] * len(errors))
+    turns = np.deg2rad(errors)
+    predicted = np.column_stack([np.sin(turns), np.zeros_like(turns), np.cos(turns)])
+    row = score(predicted, sun, bounds, np.ones(len(errors), bool)).row()
+
+    def rounded(value):
+        return None if value is None else pytest.approx(value, rel=1e-4, abs=1e-9)
+
+    assert row["over_bound"] == rounded(ratio)
+    assert row["over_bound_se"] == rounded(se)
+
+
+@pytest.mark.parametrize(("off", "unit"), [(0.9e-6, True), (-0.9e-6, True), (1.1e-6, False)])
+def test_a_prediction_s_length_is_one_within_a_millionth(off, unit):
+    sun = np.array([[0.0, 0.6, 0.8]] * 2)
+    predicted = sun * [[1.0], [1.0 + off]]
+    if unit:
+        assert score(predicted, sun, None, np.ones(2, bool)).availability == 1.0
+    else:
+        with pytest.raises(ValueError, match="one has length"):
+            score(predicted, sun, None, np.ones(2, bool))
+
+
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        ({"sun": np.ones(3)}, "sun must have shape"),
+        ({"sun": np.ones((0, 3)), "predicted": np.ones((0, 3))}, "sun must have shape"),
+        ({"observable": np.ones(3, bool)}, "bound_deg and observable"),
+        ({"repeated": np.ones((2, 3))}, "repeated must have shape"),
+        ({"repeated": np.ones((2, 3, 2))}, "repeated must have shape"),
+    ],
+)
+def test_wrong_shapes_are_named(changed, message):
+    sun = np.array([[0.0, 0.0, 1.0]] * 2)
+    given = {"predicted": sun, "sun": sun, "bound_deg": None, "observable": np.ones(2, bool)}
+    with pytest.raises(ValueError, match=message):
+        score(**{**given, **changed})
+
+
 def test_a_bound_of_zero_gives_no_ratio():
     sun = np.array([[0.0, 0.0, 1.0]] * 3)
     assert score(sun, sun, np.zeros(3), np.ones(3, bool)).row()["over_bound"] is None

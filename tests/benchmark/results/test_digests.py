@@ -124,6 +124,7 @@ DIFFERENT = [
     "def f(a, b):\n    return\n    a + b",
     "def f(a, b):\n    if a:\n        b\n    return a + b",
     "def f(a, b):\n    if a:\n        b\n        return a + b",
+    "def f(a, b):\n    if a:\n        'no docstring'\n        b\n    return a + b",
     "def f(a, b):\n    return (a, b)",
     "def f(a, b):\n    return [a, b]",
     "def f(a, b):\n    return f'{a}{b}'",

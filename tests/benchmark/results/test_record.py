@@ -130,6 +130,38 @@ def test_what_is_dropped_is_what_is_not_wanted(store):
     assert len(store.swept()) == 1
 
 
+def test_numbers_that_change_are_written_though_what_they_are_of_does_not(store):
+    """A failure tried again, and a row no longer wanted: the components are those of before."""
+    with opened(store) as record:
+        record.keep(
+            components(),
+            scores={
+                cell("a"): numbers(None, status="failed", reason="x"),
+                cell("a", condition="other"): numbers(),
+            },
+        )
+        record.write(components())
+    with opened(store) as record:
+        record.keep(components(), scores={cell("a"): numbers(0.25)})
+        record.write(components())
+    assert store.scores()[cell("a")]["rms_deg"] == 0.25
+    with opened(store) as record:
+        record.drop(scores=lambda one: one.condition == "c")
+        record.write(components())
+    assert set(store.scores()) == {cell("a")}
+
+
+def test_a_record_nothing_was_done_to_is_not_written_again(store, monkeypatch):
+    with opened(store) as record:
+        keep_all(record)
+        record.write(components())
+    monkeypatch.setattr(Store, "write", lambda *_arguments: pytest.fail("written"))
+    with opened(store) as record:
+        record.drop(scores=lambda one: True, pins=lambda one: True, swept=lambda one: True)
+        record.keep(components())
+        record.write(components().only([]))
+
+
 def test_the_journal_adds_to_the_store_and_loses_only_a_torn_last_line(store):
     with opened(store) as record:
         record.keep(components(), scores={cell("a"): numbers()})

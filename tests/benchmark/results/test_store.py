@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from benchmark.datasets.pins import alike
 from benchmark.metrics.score import METRICS
 from benchmark.results.components import ComponentsError
-from benchmark.results.store import NUMBERS, Store, UnknownFieldError
-from benchmark.results.tables import StoreError, number, read, text_of
+from benchmark.results.store import NUMBERS, PUBLISHED, Store, UnknownFieldError
+from benchmark.results.tables import StoreError, number, read, spelt, text_of
 
 TEXT = st.text(st.characters(exclude_categories=("Cc", "Cs", "Zl", "Zp"))).map(
     lambda text: " ".join(text.split())
@@ -74,6 +74,31 @@ def test_a_table_reads_back_every_number_and_word(rows, tmp_path_factory):
     path = tmp_path_factory.mktemp("table") / "t.csv"
     path.write_text(text_of(["a", "b", "text"], rows), encoding="utf-8", newline="")
     assert [row for _, row in read(path, {"a": number, "b": number, "text": str})] == rows
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (None, ""),
+        (0.0, "0"),
+        (-3.0, "-3"),
+        (0.1, "0.1"),
+        (999999999999999.0, "999999999999999"),
+        (1e15, "1000000000000000.0"),  # from here on not all whole numbers are floats' neighbours
+        (-1e15, "-1000000000000000.0"),
+        (1e300, "1e+300"),
+        (7, "7"),
+        ("7.0", "7.0"),
+    ],
+)
+def test_a_number_is_spelt_with_the_fewest_digits_that_read_back(value, text):
+    assert spelt(value) == text
+    assert value is None or isinstance(value, str) or float(text) == value
+
+
+def test_the_results_by_default_are_the_published_ones():
+    assert Store().directory == PUBLISHED
+    assert Store().components_path.is_file()
 
 
 def test_rows_of_numbers_are_short(store):

@@ -1,0 +1,320 @@
+"""A dataset of a sensor that does nothing but tell what it was shown: streams, batches, cards."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from algorithms.contract import Observation, SensorGeometry
+from benchmark.datasets import Condition, Preset, preset, units
+from benchmark.datasets.card import differences, merged, parameters_of
+from benchmark.datasets.fields import AngleField, SphereField
+from benchmark.datasets.repeats import Repeats
+from benchmark.seeds import generator
+from benchmark.simulator import SIMULATOR_VERSION
+from benchmark.simulator.light.environment import Earth, Irradiance
+from benchmark.simulator.light.sun_disc import from_angles
+from benchmark.simulator.optics.assembly import Assembly
+from benchmark.simulator.scene import Scene
+
+LIGHT = Irradiance(spread=0.1, stray=0.3, stray_spread=0.02)
+BUILT = Assembly(tilt_x_deg=0.1, tilt_y_deg=-0.3, offset_x_mm=0.02)
+ASKED: list[int] = []  # how many samples sensors were shown at a time
+
+
+@dataclass(frozen=True)
+class Teller:
+    """Says what it was shown: the Sun, both lights, its window, a number of its unit, noise."""
+
+    level: float = 1.0
+    assembly: Assembly = BUILT
+
+    def fixed_pattern(self, *names: str | int) -> dict[str, Any]:
+        return {"unit": np.array([float(len(repr(names)))]), "names": np.array([repr(names)])}
+
+    def origins(self, sun: Any, generator: np.random.Generator) -> Any:
+        return generator.integers(0, 1000, (len(sun), 2))
+
+    def observe(self, scene: Scene, pattern: Any, streams: Any) -> Any:
+        ASKED.append(len(scene))
+        columns = (scene.sun, scene.irradiance, scene.stray, scene.origin_px)
+        noise = streams.gaussian.standard_normal(len(scene))
+        unit = np.full(len(scene), self.level * pattern["unit"][0])
+        return np.column_stack([*columns, unit, noise])
+
+
+def fake(**changed: Any) -> Preset:
+    made: dict[str, Any] = {
+        "name": "fake-teller",
+        "version": 3,
+        "detector": "PD",
+        "mask": "Slit",
+        "observation": Observation.CURRENTS,
+        "units": "none",
+        "geometry": SensorGeometry(half_fov_deg=20.0),
+        "setups": {
+            "nominal": Condition("As it is.", Teller(), LIGHT),
+            "brighter": Condition("More.", Teller(level=2.0), LIGHT),
+            "longer": Condition(
+                "Another design.", Teller(), LIGHT, geometry=SensorGeometry(focal_length_mm=2.0)
+            ),
+        },
+        "directions": AngleField(20.0, steps=5, test_samples=11),
+        "follows": ("Nobody2020",),
+        "description": "Made up.",
+        "repeats": Repeats(poses=3, passes=4),
+    }
+    return Preset(**{**made, **changed})
+
+
+@pytest.fixture(autouse=True)
+def nothing_asked():
+    ASKED.clear()
+
+
+# Streams
+
+
+@pytest.mark.parametrize("condition", ["nominal", "brighter"])
+@pytest.mark.parametrize("split", ["calibration", "test"])
+def test_every_stream_is_named_after_what_it_is_for(condition: str, split: str) -> None:
+    one = fake()
+    found = one.generate(condition, split)
+    names = ("fake-teller", 3, split)
+    count = {"calibration": 25, "test": 11}[split]
+    sun = one.directions.sun(split, generator(*names, "sun"))
+    np.testing.assert_array_equal(found.sun, sun)
+    light, stray = LIGHT.draw(count, generator(*names, "irradiance"))
+    origin = generator(*names, "window").integers(0, 1000, (count, 2))
+    level = {"nominal": 1.0, "brighter": 2.0}[condition]
+    unit = level * len(repr(("fake-teller", 3, "unit")))
+    noise = generator("fake-teller", 3, condition, split, "gaussian").standard_normal(count)
+    expected = np.column_stack([sun, light, stray, origin, np.full(count, unit), noise])
+    np.testing.assert_array_equal(found.observations, expected)
+    np.testing.assert_array_equal(found.origin_px, origin)
+
+
+def test_another_unit_has_its_own_pattern_noise_and_assembly_and_the_same_suns() -> None:
+    one, other = fake(), fake().as_unit(7)
+    assert other.unit == 7
+    assert other.fixed_pattern("nominal")["names"] == repr(("fake-teller", 3, "unit", 7))
+    found, standard = other.generate("nominal", "test"), one.generate("nominal", "test")
+    np.testing.assert_array_equal(found.observations[:, :7], standard.observations[:, :7])
+    named = ("fake-teller", 3, "nominal", "test", "unit", 7, "gaussian")
+    noise = generator(*named).standard_normal(11)
+    np.testing.assert_array_equal(found.observations[:, -1], noise)
+    sensor: Any = other.condition("nominal").sensor
+    drawn = generator("fake-teller", 3, "unit", 7, "assembly", ".assembly").random(6)
+    share = 2.0 * drawn - 1.0
+    limit = math.sqrt(3.0) * np.array([0.3, 0.3, 0.0, 0.0, 0.02, 0.02])
+    built = sensor.assembly
+    assert built == Assembly(*(share * limit).tolist())
+    assert units.tolerances(Teller()) == {"assembly": Assembly(*limit.tolist())}
+
+
+def test_units_are_numbered_from_0_and_drawn_from_it() -> None:
+    one = fake()
+    assert one.as_unit(0) is one
+    assert one.as_unit(1).unit == 1
+    for wrong in (-1, -2):
+        with pytest.raises(ValueError, match=f"numbered from 0; got {wrong}"):
+            one.as_unit(wrong)
+    with pytest.raises(ValueError, match="this is unit 1"):
+        one.as_unit(1).as_unit(0)
+
+
+# Batches
+
+
+@pytest.mark.parametrize(
+    ("split", "n", "batch", "asked"),
+    [
+        ("calibration", None, None, [10, 10, 5]),
+        ("calibration", None, 5, [5] * 5),
+        ("calibration", 25, 24, [24, 1]),
+        ("calibration", 25, 25, [25]),
+        ("calibration", 12, None, [10, 2]),
+        ("calibration", 1, None, [1]),
+        ("calibration", 99, None, [10, 10, 5]),
+        # passes over the same poses share their light
+        ("repeat", None, None, [3, 3, 3, 3]),
+        ("repeat", 7, 2, [3, 3, 1]),
+    ],
+)
+def test_samples_are_simulated_so_many_together_and_no_more_than_wanted(
+    split: str, n: int | None, batch: int | None, asked: list[int], monkeypatch: Any
+) -> None:
+    monkeypatch.setattr(preset, "BATCH", 10)
+    whole = fake(batch=1).generate("nominal", split)
+    ASKED.clear()
+    found = fake(batch=batch).generate("nominal", split, n)
+    assert asked == ASKED
+    np.testing.assert_array_equal(found.observations, whole.observations[: sum(asked)])
+    np.testing.assert_array_equal(found.sun, whole.sun[: sum(asked)])
+
+
+def test_repeats_are_poses_of_the_test_split_pass_after_pass() -> None:
+    one = fake()
+    test, repeat = one.scene("nominal", "test"), one.scene("nominal", "repeat")
+    # every third of 11, from the middle of the first third
+    assert one.repeats.chosen(11).tolist() == [1, 5, 9]
+    rows = [1, 5, 9] * 4
+    for name in ("sun", "irradiance", "stray", "origin_px"):
+        np.testing.assert_array_equal(getattr(repeat, name), getattr(test, name)[rows])
+
+
+@pytest.mark.parametrize(
+    ("poses", "samples", "chosen"),
+    [
+        (1, 9, [4]),
+        (2, 10, [2, 7]),
+        (4, 4, [0, 1, 2, 3]),
+        (9, 3, [0, 1, 2]),
+        (5, 12, [1, 3, 6, 8, 10]),
+    ],
+)
+def test_poses_stand_in_the_middle_of_equal_parts(
+    poses: int, samples: int, chosen: list[int]
+) -> None:
+    assert Repeats(poses, 2).chosen(samples).tolist() == chosen
+    card = Repeats(poses, 2).card(samples)
+    assert (card["samples"], card["poses"], card["passes"]) == (2 * len(chosen), len(chosen), 2)
+
+
+@pytest.mark.parametrize(("poses", "passes", "right"), [(1, 2, True), (0, 2, False), (1, 1, False)])
+def test_a_repeat_is_one_pose_twice_at_least(poses: int, passes: int, right: bool) -> None:
+    if right:
+        assert Repeats(poses, passes).passes == 2
+    else:
+        with pytest.raises(ValueError, match=f"got {poses} and {passes}"):
+            Repeats(poses, passes)
+
+
+@pytest.mark.parametrize("n", [0, -1])
+def test_less_than_one_sample_is_refused(n: int) -> None:
+    with pytest.raises(ValueError, match=f"n must be at least 1; got {n}"):
+        fake().generate("nominal", "test", n)
+
+
+@pytest.mark.parametrize("batch", [None, 4])
+def test_the_bound_is_of_the_first_samples_as_the_condition_shows_them(
+    batch: int | None, monkeypatch: Any
+) -> None:
+    calls = []
+    monkeypatch.setattr(preset, "cramer_rao", lambda *given: calls.append(given) or "bound")
+    one = fake(batch=batch, bound_step_rad=1e-3)
+    assert one.bound("brighter", "calibration", 6) == "bound"
+    ((sensor, scene, pattern, light, step, size),) = calls
+    assert (sensor, light, step) == (Teller(level=2.0), LIGHT, 1e-3)
+    assert size == (batch or preset.BATCH)
+    np.testing.assert_array_equal(scene.sun, one.scene("brighter", "calibration").sun[:6])
+    assert pattern["names"] == repr(("fake-teller", 3, "unit"))
+    one.bound("nominal")
+    np.testing.assert_array_equal(calls[1][1].sun, one.scene("nominal", "test").sun)
+
+
+# Cards
+
+
+def test_parameters_are_all_that_the_numbers_depend_on() -> None:
+    found = fake().parameters("longer")
+    assert found == {
+        "simulator_version": SIMULATOR_VERSION,
+        "dataset": "fake-teller",
+        "dataset_version": 3,
+        "condition": "longer",
+        "sensor": {
+            "type": "Teller",
+            "level": 1.0,
+            "assembly": {
+                "type": "Assembly", "tilt_x_deg": 0.1, "tilt_y_deg": -0.3, "rotation_deg": 0.0,
+                "focal_length_error_mm": 0.0, "offset_x_mm": 0.02, "offset_y_mm": 0.0,
+            },
+        },
+        "irradiance": {"type": "Irradiance", "spread": 0.1, "stray": 0.3, "stray_spread": 0.02},
+        "earth": None,
+        "directions": {
+            "type": "AngleField", "half_fov_deg": 20.0, "steps": 5, "test_samples": 11,
+        },
+        # of the fields that later architectures added only those that are there
+        "geometry": {
+            "type": "SensorGeometry", "focal_length_mm": 2.0, "pixel_pitch_mm": None,
+            "centre_px": None, "aperture_width_mm": None, "aperture_shape": None,
+            "face_normals": None, "half_fov_deg": None,
+        },
+        "bound_step_rad": 5e-4,
+        "repeats": {"type": "Repeats", "poses": 3, "passes": 4},
+        "unit": 0,
+    }  # fmt: skip
+    lines = fake(geometry=SensorGeometry(line_axes=("x", "y")))
+    assert lines.parameters("nominal")["geometry"]["line_axes"] == ["x", "y"]
+
+
+def test_a_card_says_of_each_condition_what_is_its_own() -> None:
+    card = fake().card()
+    assert card["parameters"]["condition"] == "nominal"
+    assert "geometry" not in card["parameters"]
+    own = {name: about["parameters"] for name, about in card["conditions"].items()}
+    assert own == {
+        "nominal": {},
+        "brighter": {"condition": "brighter", "sensor": {"level": 2.0}},
+        "longer": {"condition": "longer"},
+    }
+    assert [("geometry" in about) for about in card["conditions"].values()] == [False, False, True]
+    for name in card["conditions"]:
+        assert parameters_of(card, name) == fake().parameters(name)
+    assert card["splits"]["calibration"]["samples"] == 25
+    assert card["splits"]["test"]["samples"] == 11
+    assert card["splits"]["repeat"]["samples"] == 12
+    assert card["observation"] == "currents"
+
+
+def test_objects_that_name_another_type_stand_whole() -> None:
+    base = {"a": {"type": "X", "b": 1, "c": 2}, "d": {"e": 1, "f": 2}, "g": [1]}
+    other = {"a": {"type": "Y", "b": 1, "c": 3}, "d": {"e": 1, "f": 3}, "g": [2]}
+    found = differences(base, other)
+    assert found == {"a": {"type": "Y", "b": 1, "c": 3}, "d": {"f": 3}, "g": [2]}
+    assert merged(base, found) == other
+    assert base["d"] == {"e": 1, "f": 2}, "what is merged into stays as it is"
+
+
+def test_only_faces_see_the_earth() -> None:
+    with pytest.raises(ValueError, match="face sensors only"):
+        replace(fake().setups["nominal"], earth=Earth())
+
+
+# Directions
+
+
+def test_a_turntable_s_grid_has_its_edges_and_alpha_is_slow() -> None:
+    field = AngleField(30.0, steps=3, test_samples=4000)
+    grid = field.sun("calibration", generator("unused"))
+    alpha = np.repeat([-30.0, 0.0, 30.0], 3)
+    beta = np.tile([-30.0, 0.0, 30.0], 3)
+    np.testing.assert_allclose(grid, from_angles(alpha, beta), atol=1e-15)
+    drawn = field.sun("test", generator("test"))
+    angles = np.degrees(np.arctan(drawn[:, [1, 0]] / drawn[:, 2:]))
+    share = generator("test").random((4000, 2))
+    np.testing.assert_allclose(angles, 60.0 * share - 30.0, atol=1e-9)
+    assert field.card()["calibration"]["samples"] == 9
+    assert field.card()["test"]["samples"] == 4000
+
+
+def test_a_sphere_is_covered_evenly() -> None:
+    field = SphereField(calibration_samples=200, test_samples=3000)
+    lattice = field.sun("calibration", generator("unused"))
+    np.testing.assert_allclose(np.linalg.norm(lattice, axis=1), 1.0, rtol=1e-12)
+    np.testing.assert_allclose(lattice[:, 2], 1.0 - (2.0 * np.arange(200) + 1.0) / 200.0)
+    turn = np.unwrap(np.arctan2(lattice[:, 1], lattice[:, 0]))
+    golden = math.pi * (3.0 - math.sqrt(5.0))
+    np.testing.assert_allclose(np.diff(turn), golden, rtol=1e-9)
+    nearest = np.sort(np.degrees(np.arccos(np.clip(lattice @ lattice.T, -1, 1))), axis=1)[:, 1]
+    assert nearest.min() > 0.7 * nearest.max() > 5.0
+    drawn = field.sun("test", generator("test"))
+    assert drawn.shape == (3000, 3)
+    np.testing.assert_allclose(drawn.mean(axis=0), 0.0, atol=0.05)
+    np.testing.assert_allclose(drawn.T @ drawn / 3000, np.eye(3) / 3, atol=0.03)

@@ -1,0 +1,191 @@
+"""Which modules are mutated, how many mutants of each group are tried, and by which tests.
+
+A mutant is tried with the tests of the first pattern that its module fits: those that state what
+the module does, the quickest first. Not the whole suite, which costs minutes a mutant; nor tests
+that compare the code's own digests with the published record, which go red at any change at all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from pathlib import Path
+
+
+@dataclass(frozen=True)
+class Group:
+    """Modules that are scored together.
+
+    Attributes
+    ----------
+    mutants
+        How many are tried.
+    tests
+        Pattern of modules -> test files, the first pattern that fits counts.
+    """
+
+    mutants: int
+    tests: Mapping[str, tuple[str, ...]]
+
+    def modules(self, root: Path) -> list[str]:
+        """Modules of the group, sorted, but for packages' own files and the data sets themselves.
+
+        Those are constants of sensors, each pinned by the hash of the data that come of it.
+        """
+        folders = sorted({_folder(pattern) for pattern in self.tests})
+        found = {
+            path.relative_to(root).as_posix()
+            for folder in folders
+            for path in (root / folder).rglob("*.py")
+            if path.name not in {"__init__.py", "__main__.py"}
+            and path.parent.name not in {"conditions", "standard"}
+        }
+        return sorted(found)
+
+    def tests_of(self, module: str) -> tuple[str, ...]:
+        """Test files a module's mutants are tried with; LookupError where none is named."""
+        for pattern, tests in self.tests.items():
+            if fnmatchcase(module, pattern):
+                return tests
+        raise LookupError(f"no tests are named for the mutants of {module}: see {__file__}")
+
+
+def _folder(pattern: str) -> str:
+    parts = pattern.split("/")
+    depth = 1 if parts[0] == "registry" else 2
+    return "/".join(parts[:depth])
+
+
+def _in(folder: str, *names: str) -> tuple[str, ...]:
+    return tuple(f"tests/{folder}/test_{name}.py" for name in names)
+
+
+_METRICS = "benchmark/metrics"
+_RUNNING = "benchmark/running"
+_RESULTS = "benchmark/results"
+_DATASETS = "benchmark/datasets"
+_MODELS = "algorithms/models"
+_EXTRACTORS = "algorithms/extractors"
+
+GROUPS: Mapping[str, Group] = {
+    "metrics": Group(
+        50,
+        {
+            "benchmark/metrics/score.py": (
+                *_in(_METRICS, "score"),
+                *_in(_DATASETS, "repeatability"),
+            ),
+            "benchmark/metrics/rings.py": _in(_METRICS, "rings"),
+            "benchmark/metrics/bounds.py": _in(_METRICS, "bounds_closed_form", "bounds"),
+        },
+    ),
+    "running": Group(
+        50,
+        {
+            "benchmark/running/kernels.py": _in(_RUNNING, "kernels"),
+            "benchmark/running/pinning.py": _in(_RUNNING, "pinning"),
+            "benchmark/running/tim*.py": _in(_RUNNING, "timing", "times"),
+            "benchmark/plan/*": _in(_RUNNING, "plan"),
+            "benchmark/running/*": _in(_RUNNING, "runner"),
+        },
+    ),
+    "results": Group(
+        60,
+        {
+            "benchmark/results/closure.py": _in(_RESULTS, "digests"),
+            "benchmark/results/digests.py": _in(_RESULTS, "digests"),
+            "benchmark/results/components.py": _in(_RESULTS, "components", "record"),
+            "benchmark/results/record.py": _in(_RESULTS, "record"),
+            "benchmark/results/pins.py": (
+                *_in(_RESULTS, "store", "record"),
+                *_in(_RUNNING, "pinning"),
+            ),
+            "benchmark/results/*": _in(_RESULTS, "store", "record"),
+        },
+    ),
+    "registry": Group(
+        70,
+        {
+            "registry/flows.py": _in("registry", "registry_order", "flows"),
+            "registry/taxonomy.py": _in("registry", "registry_order", "registry_taxonomy"),
+            "registry/studies.py": _in("registry", "registry_order", "registry_studies"),
+            "registry/resolution.py": _in("registry", "resolution"),
+            "registry/catalogue.py": _in("registry", "resolution"),
+            "registry/*": _in(
+                "registry",
+                "recommendation_measured",
+                "relaxation",
+                "requirements",
+                "recommendation",
+            ),
+        },
+    ),
+    "datasets": Group(
+        50,
+        {
+            "benchmark/datasets/coverage.py": _in(_DATASETS, "coverage"),
+            "benchmark/datasets/export*.py": _in(_DATASETS, "dataset_export"),
+            "benchmark/datasets/checksums.py": _in(_DATASETS, "dataset_export"),
+            "benchmark/datasets/preview*.py": _in(_DATASETS, "dataset_preview"),
+            "benchmark/datasets/*": _in(_DATASETS, "dataset_parts"),
+        },
+    ),
+    "models": Group(
+        60,
+        {
+            "algorithms/models/multiplex/*": _in(_MODELS, "model_limits", "code_dial_models"),
+            "algorithms/models/non_physical/fourier_phase.py": _in(
+                _MODELS, "model_limits", "code_dial_models"
+            ),
+            "algorithms/models/non_physical/*": _in(_MODELS, "model_limits", "fitted_models"),
+            "algorithms/models/lut/*": _in(_MODELS, "model_limits", "fitted_models"),
+            "algorithms/models/geometric/panoramic.py": _in(
+                _MODELS, "model_limits", "fusion_models"
+            ),
+            "algorithms/models/geometric/pyramidal.py": _in(
+                _MODELS, "model_limits", "fusion_models"
+            ),
+            "algorithms/models/geometric/solar_panel.py": _in(
+                _MODELS, "model_limits", "fusion_models"
+            ),
+            "algorithms/models/*": _in(
+                _MODELS, "model_limits", "geometric_models", "fusion_models"
+            ),
+        },
+    ),
+    "extractors": Group(
+        70,
+        {
+            "algorithms/extractors/currents/photodiode.py": _in(_EXTRACTORS, "photodiode"),
+            "algorithms/extractors/currents/dial_tracks.py": _in(_MODELS, "code_dial_models"),
+            "algorithms/extractors/events/*": _in(_EXTRACTORS, "event_centroid"),
+            "algorithms/extractors/frames/cameras/black_sun.py": _in(
+                _EXTRACTORS, "camera_black_sun"
+            ),
+            "algorithms/extractors/frames/cameras/dark_holes_kernel.py": _in(
+                _EXTRACTORS, "camera_black_sun"
+            ),
+            "algorithms/extractors/frames/cameras/*": _in(_EXTRACTORS, "camera_hough"),
+            "algorithms/extractors/frames/energy_filter*.py": _in(
+                _EXTRACTORS, "energy_filter_kernel", "energy_filtering"
+            ),
+            "algorithms/extractors/frames/multi_spot/aperture*.py": _in(
+                _EXTRACTORS, "aperture_grid", "multi_spot_oracles", "multi_spot"
+            ),
+            "algorithms/extractors/frames/multi_spot/*": _in(
+                _EXTRACTORS, "multi_spot_oracles", "multi_spot"
+            ),
+            "algorithms/extractors/frames/template*.py": _in(
+                _EXTRACTORS, "template_grey", "single_spots"
+            ),
+            "algorithms/extractors/frames/*": _in(
+                _EXTRACTORS, "frame_kernels", "centroids", "single_spots"
+            ),
+            "algorithms/extractors/profiles/peak_*.py": _in(
+                _EXTRACTORS, "peak_position", "profile_lines"
+            ),
+            "algorithms/extractors/profiles/*": _in(_EXTRACTORS, "profile_lines"),
+        },
+    ),
+}
