@@ -10,7 +10,7 @@ import fake_atlas
 import fake_plan
 import numpy as np
 import pytest
-from benchmark.running.progress import silent
+from benchmark.progress import silent
 
 from benchmark.plan.combinations import Cell
 from benchmark.results.components import current
