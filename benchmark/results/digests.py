@@ -18,6 +18,7 @@ _HARNESS = (
     "algorithms.pipeline",
     "benchmark.metrics.rings",
     "benchmark.metrics.score",
+    "benchmark.running.generated",
     "benchmark.running.task",
     "benchmark.sweeps.measure",
 )

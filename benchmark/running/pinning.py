@@ -23,7 +23,8 @@ from benchmark.progress import ProgressCallback, terminal_progress
 from benchmark.results.components import Components, current
 from benchmark.results.record import Record, opened
 from benchmark.results.store import Store
-from benchmark.running.task import generated_pins, reason_of, rms_bound
+from benchmark.running.generated import generated_pins, rms_bound
+from benchmark.running.task import reason_of
 from benchmark.running.threads import one_thread
 
 Condition = tuple[str, str]  # (dataset, condition)

@@ -20,7 +20,7 @@ from benchmark.leaderboard.ranking import UNITS
 from benchmark.leaderboard.update import update, write_page
 from benchmark.progress import silent
 from benchmark.results.store import Store
-from benchmark.running import task
+from benchmark.running import generated
 from benchmark.running.pinning import UnversionedChangeError
 
 pytestmark = pytest.mark.usefixtures("readings_only", "log")
@@ -31,7 +31,7 @@ PARTS = fake_plan.parts(presets=PRESETS)
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory, readings_only):
-    task._kept.clear()
+    generated.forget()
     directory = tmp_path_factory.mktemp("published")
     update(directory, progress=silent, parts=PARTS)
     return directory

@@ -19,7 +19,7 @@ from benchmark.metrics.rings import RINGS
 from benchmark.metrics.score import METRICS
 from benchmark.progress import silent
 from benchmark.results.store import Store
-from benchmark.running import task
+from benchmark.running import generated
 from benchmark.running.run import RunInterruptedError
 
 pytestmark = pytest.mark.usefixtures("readings_only", "log")
@@ -30,7 +30,7 @@ SCORES = "scores/fake-diodes.csv"
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory, readings_only):
-    task._kept.clear()
+    generated.forget()
     directory = tmp_path_factory.mktemp("published")
     update(directory, progress=silent, parts=PARTS)
     return directory

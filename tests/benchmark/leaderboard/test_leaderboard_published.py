@@ -16,7 +16,7 @@ from benchmark.plan import combinations as plan
 from benchmark.plan.parts import Parts, installed
 from benchmark.progress import silent
 from benchmark.results.store import PUBLISHED, Store
-from benchmark.running import pinning, task
+from benchmark.running import generated, pinning
 from benchmark.running import run as runner
 
 #: Standard errors by which the best of some hundred unbiased scores may fall below the bound.
@@ -240,7 +240,7 @@ def test_a_model_that_peeks_at_the_truth_is_caught(tmp_path, monkeypatch):
         return mixed / np.linalg.norm(mixed, axis=1, keepdims=True)
 
     monkeypatch.setattr(model, "predict", peek)
-    task._kept.clear()
+    generated.forget()
     store = Store(tmp_path)
     assert runner.run([cell], store).failed == ()
     assert len(beaten(store)) == 1

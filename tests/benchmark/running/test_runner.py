@@ -13,8 +13,8 @@ from benchmark.plan import combinations as plan
 from benchmark.progress import silent, terminal_progress
 from benchmark.results.record import Record
 from benchmark.results.store import Store
+from benchmark.running import generated, task
 from benchmark.running import run as runner
-from benchmark.running import task
 from benchmark.running.backend import DaskMissingError, bundles
 
 pytestmark = pytest.mark.usefixtures("log")
@@ -308,24 +308,24 @@ def test_a_worker_lets_go_of_large_data_before_it_generates_more(monkeypatch):
     generate = fake_atlas.Diodes.generate
 
     def watched(self, condition, split, n=None):
-        held.append(len(task._kept))
+        held.append(len(generated._kept))
         return generate(self, condition, split, n)
 
     monkeypatch.setattr(fake_atlas.Diodes, "generate", watched)
     for limit, expected in ((2**30, [0, 0, 0, 1, 1, 1]), (1000, [0] * 6)):
-        monkeypatch.setattr(task, "_KEPT_BYTES", limit)
-        task._kept.clear()
+        monkeypatch.setattr(generated, "_KEPT_BYTES", limit)
+        generated.forget()
         held.clear()
         for condition in preset.conditions:
-            task.generated_pins(preset, condition)
+            generated.generated_pins(preset, condition)
         assert held == expected
 
 
 def test_data_kept_are_those_of_the_same_parameters_and_unit():
     first, other = fake_atlas.Diodes(), fake_atlas.Diodes(seed=8)
-    one, two = (task.generated_pins(preset, "quiet") for preset in (first, other))
+    one, two = (generated.generated_pins(preset, "quiet") for preset in (first, other))
     assert [a.data_hash == b.data_hash for a, b in zip(one, two, strict=True)] == [False] * 3
-    again = task.generated_pins(fake_atlas.Diodes(), "quiet")
+    again = generated.generated_pins(fake_atlas.Diodes(), "quiet")
     assert again is one, "an equal preset finds them"
 
 

@@ -10,9 +10,9 @@ import fake_atlas
 import fake_plan
 import numpy as np
 import pytest
-from benchmark.progress import silent
 
 from benchmark.plan.combinations import Cell
+from benchmark.progress import silent
 from benchmark.results.components import current
 from benchmark.running import times, timing
 
