@@ -80,23 +80,57 @@ class UnsuitableDesignError(ValueError):
 class SensorGeometry:
     """The sensor's nominal design: what its builder knows before any calibration.
 
-    A field is None where the architecture has no such thing. ``face_normals`` holds K unit
-    vectors in the sensor frame, one a detector element.
+    A field is None where the architecture has no such thing.
 
-    Linear arrays: ``line_axes`` names the detector axis along which each of them lies, in the
-    order of their ``line_pixels`` columns in a profile; all lie behind slits of the same layout.
-    A row of ``slits`` is (position mm, slant deg, width mm): its spot falls ``position + D_u +
-    D_v tan(slant)`` from the array's middle, D the displacement (h tan(beta), h tan(alpha)), u
-    the array's axis and v the other one. ``cover_glass`` holds (thickness mm, index) a plate.
+    Parameters
+    ----------
+    focal_length_mm : float, optional
+        Distance h from the mask or lens to the detector.
+    pixel_pitch_mm : float, optional
+        Distance of two pixels.
+    centre_px : tuple of two float, optional
+        Where the boresight meets the detector, (x, y).
+    aperture_width_mm : float, optional
+        Diameter or side of the one aperture.
+    aperture_shape : {"round", "square"}, optional
+        Of the one aperture, or of all of them.
+    face_normals : tuple of K vectors, optional
+        Unit vectors in the sensor frame, one a detector element.
+    half_fov_deg : float, optional
+        Largest off-axis angle of the field of view.
+    line_axes : tuple of {"x", "y"}, optional
+        The detector axis along which each linear array (or code dial) lies, in the order of
+        their columns in a profile; all arrays lie behind slits of the same layout.
+    line_pixels : int, optional
+        Pixels of each linear array.
+    slits : tuple of (float, float, float), optional
+        Position mm, slant deg and width mm of each. Its spot falls ``position + D_u + D_v
+        tan(slant)`` from the array's middle, D the displacement (h tan(beta), h tan(alpha)), u
+        the array's axis and v the other one.
+    mask_thickness_mm : float, optional
+        Of the mask.
+    cover_glass : tuple of (float, float), optional
+        Thickness mm and index of each plate.
+    code_bits : int, optional
+        Gray tracks of a code dial; four fine tracks follow them.
+    code_cell_mm : float, optional
+        Length of a Gray cell.
+    fine_period_mm : float, optional
+        Period of the fine tracks.
+    apertures : tuple of (float, float, float), optional
+        Place (x mm, y mm) over the detector's centre and width mm of each aperture of many.
+    subfields : int, optional
+        Coded groups of apertures an axis, in rows of groups.
+    lens_distortion : tuple of two float, optional
+        (k1, k2): a lens images the tangents t of a direction, r = abs(t), at ``focal_length_mm t
+        (1 + k1 r^2 + k2 r^4)``.
 
-    Code dials: a row of ``code_bits`` Gray tracks with cells of ``code_cell_mm`` and four fine
-    tracks of ``fine_period_mm`` on each of ``line_axes``.
-
-    Masks of many apertures: a row of ``apertures`` is (x mm, y mm, width mm), the centre over the
-    detector's centre; ``subfields`` counts the coded groups an axis, in rows of groups.
-
-    Lenses: ``lens_distortion`` (k1, k2) images the tangents t of a direction, r = |t|, at
-    ``focal_length_mm t (1 + k1 r^2 + k2 r^4)``.
+    Examples
+    --------
+    >>> quadrants = SensorGeometry(focal_length_mm=2.0, aperture_width_mm=4.0)
+    >>> quadrants.require("line_axes", by="pd")
+    Traceback (most recent call last):
+    algorithms.contract.UnsuitableDesignError: pd needs the sensor geometry's line_axes; got None
     """
 
     focal_length_mm: float | None = None
@@ -131,6 +165,9 @@ class SensorGeometry:
 class About:
     """What an implementation says of itself: a class variable named ``about``.
 
+    The catalogue lists it, the plan asks it what fits what, and results are kept under its name
+    and version; a wrong word is refused where it is written.
+
     Parameters
     ----------
     name : str
@@ -154,6 +191,12 @@ class About:
         If a list of words is given as anything but a tuple.
     ValueError
         If a value is none of those said above; the message names it.
+
+    Examples
+    --------
+    >>> About(name="Centroid 2", taxonomy="BCM")
+    Traceback (most recent call last):
+    ValueError: name must be words of a-z and 0-9 with hyphens; got 'Centroid 2'
     """
 
     name: str
@@ -187,12 +230,24 @@ class About:
 class AboutExtractor(About):
     """What an extractor says of itself.
 
+    To what every implementation says, what it reads and what it gives.
+
     Parameters
     ----------
+    name, taxonomy, studies, labels, origin, version, needs
+        See `About`.
     observation : Observation
         What it reads.
     kind : FeatureKind
         What its columns mean.
+
+    Examples
+    --------
+    >>> about = AboutExtractor(
+    ...     name="bcm", taxonomy="BCM", observation=Observation.FRAMES, kind=FeatureKind.SPOT
+    ... )
+    >>> about.version, str(about.kind)
+    (1, 'spot')
     """
 
     observation: Observation
@@ -203,10 +258,21 @@ class AboutExtractor(About):
 class AboutModel(About):
     """What a model says of itself.
 
+    To what every implementation says, the features it reads.
+
     Parameters
     ----------
+    name, taxonomy, studies, labels, origin, version, needs
+        See `About`.
     accepts : frozenset of FeatureKind
         Kinds of features it reads. `needs` are those of all of them.
+
+    Examples
+    --------
+    >>> about = AboutModel(name="spm", taxonomy="SPM", accepts=frozenset({FeatureKind.SPOT}))
+    >>> about.require_kind(FeatureKind.SIGNALS)
+    Traceback (most recent call last):
+    algorithms.contract.UnsuitableDesignError: spm accepts spot features; got signals
     """
 
     accepts: frozenset[FeatureKind]
@@ -298,7 +364,26 @@ class Model(Protocol):
 def parameters(implementation: Extractor | Model) -> dict[str, Any]:
     """Return the constructor parameters of an implementation, by name.
 
-    TypeError where it is not a dataclass.
+    Parameters
+    ----------
+    implementation : Extractor or Model
+        Fitted or not.
+
+    Returns
+    -------
+    dict
+        Values by name, in the constructor's order.
+
+    Raises
+    ------
+    TypeError
+        If it is not a dataclass.
+
+    Examples
+    --------
+    >>> from algorithms.models.non_physical.linear import LinearFit
+    >>> parameters(LinearFit(target="tangent"))
+    {'target': 'tangent'}
     """
     # The protocols are structural: that an implementation is a dataclass, only running it shows.
     fields = dataclasses.fields(cast("DataclassInstance", implementation))

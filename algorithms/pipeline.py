@@ -20,9 +20,12 @@ from algorithms.contract import Extractor, FeatureKind, Floats, Model, SensorGeo
 class Pipeline:
     """An extractor and a model: what a study resolves to, and what is scored.
 
+    Calibrated once on observations of known Suns, it turns others into directions.
+
     Parameters
     ----------
     extractor : Extractor
+        Made for the sensor (`for_sensor`).
     model : Model
         Fitted or not; it must accept the extractor's kind of features.
 
@@ -30,6 +33,18 @@ class Pipeline:
     ------
     ValueError
         If the model does not accept the extractor's kind of features.
+
+    Examples
+    --------
+    >>> from algorithms.extractors.frames.centroid import BasicCentroid
+    >>> from algorithms.models.geometric.standard_projection import StandardProjection
+    >>> design = SensorGeometry(focal_length_mm=2.0, pixel_pitch_mm=1.0, centre_px=(2.0, 2.0))
+    >>> pipeline = Pipeline.for_sensor(BasicCentroid, StandardProjection, design)
+    >>> frame = np.zeros((1, 5, 5))
+    >>> frame[0, 2, 2] = 1.0
+    >>> pipeline = pipeline.fit(frame, [[0.0, 0.0, 1.0]])
+    >>> pipeline.predict(np.roll(frame, 2, axis=2)).round(3)  # 2 px of 1 mm, 2 mm from the hole
+    array([[0.707, 0.   , 0.707]])
     """
 
     extractor: Extractor
@@ -86,6 +101,7 @@ def extracted(
     Parameters
     ----------
     extractor : Extractor
+        Made for the sensor.
     observations : array_like
         Batch of N in the shape of the extractor's kind of observation.
     origin_px : array_like, shape (N, 2), optional
@@ -102,6 +118,13 @@ def extracted(
     ValueError
         If the observations are not what the extractor reads, if `origin_px` has another shape
         than spots need, or if the extractor breaks its contract (`checked`).
+
+    Examples
+    --------
+    >>> from algorithms.extractors.frames.centroid import BasicCentroid
+    >>> extracted(BasicCentroid(), [[[0, 0], [0, 7]], [[0, 0], [0, 0]]], [[10, 20], [10, 20]])
+    array([[11., 21.],
+           [nan, nan]])
     """
     features = checked(extractor, extractor.extract(observations), len(np.asarray(observations)))
     return in_detector_coordinates(features, extractor.about.kind, origin_px)
@@ -109,6 +132,15 @@ def extracted(
 
 def checked(extractor: Extractor, features: Floats, count: int) -> Floats:
     """Hold what an extractor gave for `count` observations to its contract.
+
+    Parameters
+    ----------
+    extractor : Extractor
+        Whose features they are.
+    features : ndarray, shape (count, F)
+        What it gave.
+    count : int
+        Observations it was given.
 
     Returns
     -------
@@ -119,6 +151,13 @@ def checked(extractor: Extractor, features: Floats, count: int) -> Floats:
     ------
     ValueError
         If they are not float64 of this shape.
+
+    Examples
+    --------
+    >>> from algorithms.extractors.frames.centroid import BasicCentroid
+    >>> checked(BasicCentroid(), np.zeros((3, 4)), 3)
+    Traceback (most recent call last):
+    ValueError: bcm must give float64 features of shape (3, 2); got float64 (3, 4)
     """
     expected = (count, len(extractor.features))
     if features.shape != expected or features.dtype != np.float64:
@@ -133,7 +172,32 @@ def checked(extractor: Extractor, features: Floats, count: int) -> Floats:
 def in_detector_coordinates(
     features: Floats, kind: FeatureKind, origin_px: ArrayLike | None
 ) -> Floats:
-    """Spot features (N, 2) moved by their windows' origins (N, 2); other kinds unchanged."""
+    """Spots moved by their windows' origins; other kinds of features unchanged.
+
+    Parameters
+    ----------
+    features : ndarray, shape (N, F)
+        Of one window each.
+    kind : FeatureKind
+        What they are.
+    origin_px : array_like, shape (N, 2), optional
+        Detector coordinates of each window's first pixel, px.
+
+    Returns
+    -------
+    ndarray, shape (N, F)
+        In detector coordinates.
+
+    Raises
+    ------
+    ValueError
+        If there are not as many origins as spots.
+
+    Examples
+    --------
+    >>> in_detector_coordinates(np.array([[1.5, 2.0]]), FeatureKind.SPOT, [[100, 200]])
+    array([[101.5, 202. ]])
+    """
     if origin_px is None or kind is not FeatureKind.SPOT:
         return features
     origin = np.asarray(origin_px, dtype=np.float64)

@@ -1,7 +1,7 @@
 """The catalogue: every extractor and model implemented, found by discovery.
 
 Nothing is registered by hand. The first call of `catalogue()` imports the implementations, and
-with them SciPy, OpenCV and Numba; importing this module does not.
+with them NumPy; importing this module does not. SciPy and Numba are loaded when they run.
 """
 
 from __future__ import annotations

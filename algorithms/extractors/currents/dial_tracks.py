@@ -41,6 +41,11 @@ class DialTracks(Extractor):
     saturation : float or None
         A reading that reaches it says only "at least": the row is NaN.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: fe:direct (Fan2013): ``I = (Q - Q_dark) / G``; the survey states it in words only.
@@ -52,6 +57,16 @@ class DialTracks(Extractor):
     positive.
 
     Cost: 2 operations a track.
+
+    References
+    ----------
+    Fan2013; survey fe:direct.
+
+    Examples
+    --------
+    >>> tracks = DialTracks(bits=2, axes=("x",), dark=10.0, gain=100.0)
+    >>> tracks.extract([[110.0, 10.0, 60.0, 85.0, 60.0, 35.0]])
+    array([[1.  , 0.  , 0.5 , 0.75, 0.5 , 0.25]])
     """
 
     about: ClassVar = AboutExtractor(

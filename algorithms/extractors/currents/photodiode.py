@@ -45,6 +45,11 @@ class DirectSignals(Extractor):
     saturation : float or None
         A reading that reaches it says only "at least": the row is NaN.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: fe:direct (Allgeier2009): ``Q = G I + Q_dark``, so ``I = (Q - Q_dark) / G``; the
@@ -58,6 +63,17 @@ class DirectSignals(Extractor):
     not told apart.
 
     Cost: 3 operations an element.
+
+    References
+    ----------
+    Allgeier2009; survey fe:direct.
+
+    Examples
+    --------
+    >>> photodiodes = DirectSignals(elements=3, dark=0.1, gain=2.0)
+    >>> photodiodes.extract([[2.1, 1.1, 0.1], [0.1, 0.1, 0.1]])
+    array([[1. , 0.5, 0. ],
+           [nan, nan, nan]])
     """
 
     about: ClassVar = AboutExtractor(
@@ -137,6 +153,11 @@ class VoltageBalance(Extractor):
     saturation : float or None
         A reading that reaches it says only "at least": the row is NaN.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: alg:VB (fe:vb, Boslooper2017): ``s_a = (Q2 + Q3 - Q1 - Q4) / sum Q`` along x,
@@ -152,6 +173,16 @@ class VoltageBalance(Extractor):
     positive. At -1 or 1 all light is on one half and only the direction is known.
 
     Cost: 17 operations a sample.
+
+    References
+    ----------
+    Boslooper2017; survey fe:vb, alg:VB.
+
+    Examples
+    --------
+    >>> VoltageBalance().extract([[1.0, 3.0, 2.0, 2.0], [0.0, 0.0, 0.0, 0.0]])
+    array([[0.25, 0.  ],
+           [ nan,  nan]])
     """
 
     about: ClassVar = AboutExtractor(

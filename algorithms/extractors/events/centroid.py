@@ -46,6 +46,11 @@ class EventCentroid(Extractor):
     hot : float
         Events with more than this many times the light of a lit pixel are left out: hot pixels.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: alg:ECM (fe:escm, Farian2022): ``X = sum(x / (t - t_reset)) / sum(1 / (t -
@@ -66,6 +71,17 @@ class EventCentroid(Extractor):
     more light is found if it has more than half.
 
     Cost: 40 operations an event, in 3 to 5 moves, and the sorting of the times.
+
+    References
+    ----------
+    Farian2022; survey fe:escm, alg:ECM.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> spot = [(10, 5, 20.0), (11, 5, 10.0), (12, 5, 20.0), (11, 4, 40.0), (11, 6, 20.0)]
+    >>> EventCentroid(width_px=3.0, layout="spot").extract([spot]).round(3)
+    array([[11.   ,  5.091]])
     """
 
     about: ClassVar = AboutExtractor(
@@ -138,6 +154,11 @@ class EventWinner(Extractor):
         Where a line falls from the detector's middle when the Sun is on the boresight, px; taken
         off both coordinates.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: fe:escm without its mean (Farian2018): the survey compares ESCM with the address
@@ -152,6 +173,16 @@ class EventWinner(Extractor):
     in one column win unseen.
 
     Cost: 4 operations an event.
+
+    References
+    ----------
+    Farian2018; survey fe:escm.
+
+    Examples
+    --------
+    >>> spot = [(11, 5, 10.0), (10, 5, 20.0), (11, 4, 30.0), (30, 2, 35.0), (11, 6, 40.0)]
+    >>> EventWinner(winners=2).extract([spot])
+    array([[11.,  5.]])
     """
 
     about: ClassVar = AboutExtractor(

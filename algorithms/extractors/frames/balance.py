@@ -43,6 +43,18 @@ class DoubleBalance(Extractor):
     with another beside it in the window. A second spot outside is ignored.
 
     Cost: 1 operation a pixel for the maxima, 3 a pixel of the window and move.
+
+    References
+    ----------
+    Xie2014, deBoer2013; survey fe:dbcm, alg:DBCM.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> y, x = np.mgrid[:31, :33]
+    >>> frames = 200 * np.exp(-((x - 16.3) ** 2 + (y - 14.8) ** 2) / 6)[None]
+    >>> DoubleBalance().extract(frames).round(2)
+    array([[16.29, 14.8 ]])
     """
 
     about: ClassVar = AboutExtractor(

@@ -35,6 +35,11 @@ class BasicCentroid(Extractor):
         Odd side, at least 3, of a square window that starts on the brightest pixel and is moved
         onto its own centroid until it stays; None sums the whole frame, as published.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: alg:BCM (fe:bcm, Chang2008): ``x_c = sum(x I) / sum(I)``, ``y_c = sum(y I) /
@@ -47,6 +52,20 @@ class BasicCentroid(Extractor):
     signs that almost cancel). A second spot or a cut one is averaged in unseen.
 
     Cost: 4 operations a pixel, one pass.
+
+    References
+    ----------
+    Chang2008; survey fe:bcm, alg:BCM.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> y, x = np.mgrid[:21, :25]
+    >>> frames = 200 * np.exp(-((x - 12.3) ** 2 + (y - 9.8) ** 2) / 6)[None]
+    >>> BasicCentroid().extract(frames).round(2)
+    array([[12.3,  9.8]])
+    >>> BasicCentroid(background="median").extract(frames + 50).round(2)
+    array([[12.3,  9.8]])
     """
 
     about: ClassVar = AboutExtractor(
@@ -91,6 +110,11 @@ class ThresholdedCentroid(Extractor):
         Odd side, at least 3, of a square window that starts on the brightest pixel and is moved
         onto its own centroid until it stays; None sums the whole frame, as published.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: alg:BCTM (fe:bctm, He2005): ``I' = max(I - mu I_max, 0)``, ``x_c = sum(x I') /
@@ -105,6 +129,18 @@ class ThresholdedCentroid(Extractor):
 
     Cost: 1 operation a pixel for the maxima, 8 a pixel in rows that hold a pixel above the
     threshold; integer sums are exact.
+
+    References
+    ----------
+    He2005; survey fe:bctm, alg:BCTM.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> y, x = np.mgrid[:21, :25]
+    >>> frames = 200 * np.exp(-((x - 12.3) ** 2 + (y - 9.8) ** 2) / 6)[None]
+    >>> ThresholdedCentroid().extract(frames + 50).round(2)
+    array([[12.3,  9.8]])
     """
 
     about: ClassVar = AboutExtractor(
@@ -178,6 +214,11 @@ class FilteredCentroid(Extractor):
         brightest pixel and is moved onto its own centroid until it stays; None sums the whole
         frame, as published.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: alg:IFM (fe:ifm, Chang2008): ``I_mn = (1/9) sum_{i=m-1..m+1} sum_{j=n-1..n+1}
@@ -193,6 +234,18 @@ class FilteredCentroid(Extractor):
     signs that almost cancel).
 
     Cost: 4 operations a pixel, one pass.
+
+    References
+    ----------
+    Chang2008; survey fe:ifm, alg:IFM.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> y, x = np.mgrid[:21, :25]
+    >>> frames = 200 * np.exp(-((x - 12.3) ** 2 + (y - 9.8) ** 2) / 6)[None]
+    >>> FilteredCentroid(window_px=11).extract(frames).round(2)
+    array([[12.29,  9.81]])
     """
 
     about: ClassVar = AboutExtractor(

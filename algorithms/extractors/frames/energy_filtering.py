@@ -46,6 +46,11 @@ class AdaptiveEnergyFilter(Extractor):
     memory : int
         Most frames, at least 1, that count: later ones replace earlier ones at this rate.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: nothing printed. The survey names adaptive energy filtering with time-domain
@@ -65,6 +70,20 @@ class AdaptiveEnergyFilter(Extractor):
     Sun that moves by some six such errors a frame are better taken alone.
 
     Cost: 6 operations a pixel; in a sequence 3 more, and 12 a pixel of the spot.
+
+    References
+    ----------
+    Bao2022.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> y, x = np.mgrid[:21, :25]
+    >>> spot = 200 * np.exp(-((x - 12.3) ** 2 + (y - 9.8) ** 2) / 6)
+    >>> frames = np.random.default_rng(1).normal(spot, 5.0, (30, 21, 25))
+    >>> found, frames_averaged = AdaptiveEnergyFilter().extract_sequence(frames)
+    >>> found[-1].round(1), int(frames_averaged[-1])
+    (array([12.3,  9.8]), 30)
     """
 
     about: ClassVar = AboutExtractor(

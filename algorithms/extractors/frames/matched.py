@@ -39,6 +39,11 @@ class MatchedProfile(Extractor):
     steps : int
         Gauss-Newton steps, at least 1, each with the profile about the last centre.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: nothing printed in the survey. With p(r) the profile, c = (cos, sin) of a pixel's
@@ -57,6 +62,19 @@ class MatchedProfile(Extractor):
     not round is found without bias where it is symmetric, above the bound.
 
     Cost: 2 operations a pixel, 45 a pixel of the spot's surroundings and step.
+
+    References
+    ----------
+    None of the survey: ours, to hold the others against.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> y, x = np.mgrid[:31, :33]
+    >>> spot = 200 * np.clip(5.5 - np.hypot(x - 16.3, y - 14.8), 0, 1)
+    >>> frames = np.random.default_rng(1).normal(spot, 5.0, (1, 31, 33))
+    >>> MatchedProfile().extract(frames).round(1)
+    array([[16.3, 14.8]])
     """
 
     about: ClassVar = AboutExtractor(
@@ -117,6 +135,11 @@ class GaussianFit(Extractor):
     iterations : int
         Steps, at least 1, after which the fit is given up.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: nothing printed in the survey: ``min sum (I - b - A exp(-(x - x_c)^2 / 2 s_x^2 -
@@ -131,6 +154,18 @@ class GaussianFit(Extractor):
     second spot draws it unseen; one cut by the edge is fitted as such.
 
     Cost: 10 operations a pixel and step, some 8 steps.
+
+    References
+    ----------
+    None of the survey: ours, to hold the others against.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> y, x = np.mgrid[:21, :25]
+    >>> frames = 200 * np.exp(-((x - 12.3) ** 2 + (y - 9.8) ** 2) / 6)[None]
+    >>> GaussianFit().extract(frames + 50).round(3)
+    array([[12.3,  9.8]])
     """
 
     about: ClassVar = AboutExtractor(

@@ -33,6 +33,18 @@ class PixelMax(Extractor):
     contrast (all dark or all saturated) or holds a NaN or infinity.
 
     Cost: 2 operations a pixel, one pass.
+
+    References
+    ----------
+    Coutinho2022; survey fe:pm, alg:PM.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> y, x = np.mgrid[:21, :25]
+    >>> frames = 200 * np.exp(-((x - 12.3) ** 2 + (y - 9.8) ** 2) / 6)[None]
+    >>> PixelMax().extract(frames)
+    array([[12., 10.]])
     """
 
     about: ClassVar = AboutExtractor(

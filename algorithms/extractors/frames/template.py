@@ -54,6 +54,11 @@ class TemplateMatch(Extractor):
         Compare with the lit pixels, as published. False goes on from there to where the outline
         holds most of the grey frame's light: ours, and some eight times finer on a clean disc.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: alg:TM (fe:tm, Chang2008): ``I' = 1`` where ``I > mu I_max``, else 0; J is 1
@@ -77,6 +82,18 @@ class TemplateMatch(Extractor):
 
     Cost: 3 operations a pixel, and some 1600 positions of 10 operations a row of the template;
     a grey frame 36 more of 60 operations a row.
+
+    References
+    ----------
+    Chang2008; survey fe:tm, alg:TM.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> y, x = np.mgrid[:31, :33]
+    >>> frames = 200 * np.clip(5.5 - np.hypot(x - 16.3, y - 14.8), 0, 1)[None]
+    >>> TemplateMatch(width_px=10.0).extract(frames).round(1)
+    array([[16.4, 14.9]])
     """
 
     about: ClassVar = AboutExtractor(

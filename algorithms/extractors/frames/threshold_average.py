@@ -35,6 +35,11 @@ class MultipleThresholdCentroid(Extractor):
     crossing : {"pixel", "linear"}
         Whether a rise counts at its pixel, as published, or is interpolated to the entry before.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: alg:MTACM1, alg:MTACM2 (fe:mtacm, Massari2004): ``N_TH > sigma sqrt(e) / dx``,
@@ -51,6 +56,18 @@ class MultipleThresholdCentroid(Extractor):
     give the middle between their outer flanks unseen.
 
     Cost: 2 operations a pixel for the profiles, the median of each, and 4 a threshold.
+
+    References
+    ----------
+    Massari2004; survey fe:mtacm, alg:MTACM1, alg:MTACM2.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> y, x = np.mgrid[:21, :25]
+    >>> frames = 200 * np.exp(-((x - 12.3) ** 2 + (y - 9.8) ** 2) / 6)[None]
+    >>> MultipleThresholdCentroid(crossing="linear").extract(frames).round(2)
+    array([[12.3,  9.8]])
     """
 
     about: ClassVar = AboutExtractor(

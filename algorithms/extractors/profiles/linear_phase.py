@@ -38,13 +38,25 @@ class LinearPhase(SlitLines):
 
     Parameters
     ----------
-    line_axes, line_pixels, slits
-        The lines and what is before them: see `SlitLines`.
-    reach_px, margin_px
-        Largest displacement, and how much a spot is wider than its slit: see `SlitLines`.
+    line_axes : tuple of {"x", "y"}
+        The detector axis along which each line lies, in the order of a profile's columns.
+    line_pixels : int
+        Pixels of a line, at least 1.
+    slits : tuple of (float, float, float)
+        Offset from the line's middle, px, tangent of the slant and width along the line, px, of
+        each slit; all lines lie behind the same. At most two different slants.
+    reach_px : float
+        Largest displacement of the shadow on either axis, px, positive; used where slants differ.
+    margin_px : float
+        What a spot is wider than its slit on each side, px, positive.
     lobes : float
         Frequencies are fitted up to this many times the first zero of the slit's spectrum.
         Ours: the study gives no limit. Above, light is as weak as its noise, and blur turns signs.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -67,6 +79,19 @@ class LinearPhase(SlitLines):
 
     Cost: 2 operations a pixel and slit, the median of each line, and 8 a frequency and pixel of
     the windows, of which there are some 2 and 50.
+
+    References
+    ----------
+    Enright2007b; survey fe:linearphase, alg:linearphase.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> places = np.arange(80) - np.array([[43.3], [36.8]])
+    >>> profiles = 200 * np.clip(3.5 - abs(places), 0, 1).reshape(1, -1)
+    >>> lines = dict(line_axes=("x", "y"), line_pixels=80, slits=((0.0, 0.0, 6.0),))
+    >>> LinearPhase(**lines, reach_px=20.0, margin_px=2.0).extract(profiles).round(1)
+    array([[43.3, 36.8]])
     """
 
     about: ClassVar = AboutExtractor(
@@ -113,6 +138,11 @@ class FrameLinearPhase(Extractor):
     lobes : float
         Frequencies are fitted up to this many times the first zero of the aperture's spectrum.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: alg:linearphase (fe:linearphase, Enright2007b) on the sums by columns and rows.
@@ -130,6 +160,18 @@ class FrameLinearPhase(Extractor):
 
     Cost: 2 operations a pixel for the sums, 4 a pixel of the window and 16 a frequency and
     column of it, of which there are some 3.
+
+    References
+    ----------
+    Enright2007b; survey fe:linearphase, alg:linearphase.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> y, x = np.mgrid[:31, :33]
+    >>> frames = 200 * np.clip(5.5 - np.hypot(x - 16.3, y - 14.8), 0, 1)[None]
+    >>> FrameLinearPhase(width_px=10.0).extract(frames).round(1)
+    array([[16.3, 14.8]])
     """
 
     about: ClassVar = AboutExtractor(

@@ -31,10 +31,22 @@ class PeakDetection(SlitLines):
 
     Parameters
     ----------
-    line_axes, line_pixels, slits
-        The lines and what is before them: see `SlitLines`.
-    reach_px, margin_px
-        Largest displacement, and how much a spot is wider than its slit: see `SlitLines`.
+    line_axes : tuple of {"x", "y"}
+        The detector axis along which each line lies, in the order of a profile's columns.
+    line_pixels : int
+        Pixels of a line, at least 1.
+    slits : tuple of (float, float, float)
+        Offset from the line's middle, px, tangent of the slant and width along the line, px, of
+        each slit; all lines lie behind the same. At most two different slants.
+    reach_px : float
+        Largest displacement of the shadow on either axis, px, positive; used where slants differ.
+    margin_px : float
+        What a spot is wider than its slit on each side, px, positive.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -54,6 +66,19 @@ class PeakDetection(SlitLines):
     alone, a hot pixel).
 
     Cost: 1 operation a pixel and slit, and the median of each line.
+
+    References
+    ----------
+    Enright2006b; survey fe:peak, alg:PDsp, alg:PDmp.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> places = np.arange(80) - np.array([[43.3], [36.8]])
+    >>> profiles = 200 * np.clip(3.5 - abs(places), 0, 1).reshape(1, -1)
+    >>> lines = dict(line_axes=("x", "y"), line_pixels=80, slits=((0.0, 0.0, 6.0),))
+    >>> PeakDetection(**lines, reach_px=20.0, margin_px=2.0).extract(profiles)
+    array([[43., 37.]])
     """
 
     about: ClassVar = AboutExtractor(
@@ -85,6 +110,11 @@ class FramePeak(Extractor):
     width_px : float or None
         Width of the widest spot: maxima further apart are two spots. None tells none apart.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: alg:PDsp (fe:peak, Enright2006b) on both axes at once: ``(x_c, y_c) = argmax
@@ -98,6 +128,18 @@ class FramePeak(Extractor):
     than `width_px`. A second spot that is darker, a hot pixel and noise alone cannot be told.
 
     Cost: 1 operation a pixel, and a second look at rows that hold the maximum.
+
+    References
+    ----------
+    Enright2006b; survey fe:peak, alg:PDsp.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> y, x = np.mgrid[:21, :25]
+    >>> frames = 200 * np.exp(-((x - 12.3) ** 2 + (y - 9.8) ** 2) / 6)[None]
+    >>> FramePeak().extract(frames)
+    array([[12., 10.]])
     """
 
     about: ClassVar = AboutExtractor(

@@ -39,10 +39,17 @@ class PeakPositionEstimate(SlitLines):
 
     Parameters
     ----------
-    line_axes, line_pixels, slits
-        The lines and what is before them: see `SlitLines`.
-    reach_px, margin_px
-        Largest displacement, and how much a spot is wider than its slit: see `SlitLines`.
+    line_axes : tuple of {"x", "y"}
+        The detector axis along which each line lies, in the order of a profile's columns.
+    line_pixels : int
+        Pixels of a line, at least 1.
+    slits : tuple of (float, float, float)
+        Offset from the line's middle, px, tangent of the slant and width along the line, px, of
+        each slit; all lines lie behind the same. At most two different slants.
+    reach_px : float
+        Largest displacement of the shadow on either axis, px, positive; used where slants differ.
+    margin_px : float
+        What a spot is wider than its slit on each side, px, positive.
     image : {"rational", "gaussian", "diffraction"}
         Light of a peak against u, the distance from its middle in halves of the slit's width: a
         ratio of polynomials; a Gaussian; or the far field of a slit, ``(sin(x) / x)^2``. The
@@ -57,6 +64,11 @@ class PeakPositionEstimate(SlitLines):
         less than this fraction of a half width.
     iterations : int
         Steps, at least 1, after which the fit is given up.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -81,6 +93,19 @@ class PeakPositionEstimate(SlitLines):
     does not end, or not within a spot's width of its start with all amplitudes positive.
 
     Cost: 1 operation a pixel and slit to start, 40 a pixel near a peak and step, some 8 steps.
+
+    References
+    ----------
+    Enright2007a; survey fe:ppe, alg:PPE.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> places = np.arange(80) - np.array([[43.3], [36.8]])
+    >>> profiles = 200 * np.clip(3.5 - abs(places), 0, 1).reshape(1, -1)
+    >>> lines = dict(line_axes=("x", "y"), line_pixels=80, slits=((0.0, 0.0, 6.0),))
+    >>> PeakPositionEstimate(**lines, reach_px=20.0, margin_px=2.0).extract(profiles).round(1)
+    array([[43.3, 36.8]])
     """
 
     about: ClassVar = AboutExtractor(
@@ -201,6 +226,11 @@ class FramePeakPositionEstimate(Extractor):
     iterations : int
         Steps, at least 1, after which the fit is given up.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: alg:PPE (fe:ppe, Enright2007a) with the single peaks ``a_1 A`` along x and
@@ -215,6 +245,18 @@ class FramePeakPositionEstimate(Extractor):
     fitted.
 
     Cost: 2 operations a pixel, 20 a pixel of the profiles and step, some 8 steps.
+
+    References
+    ----------
+    Enright2007a; survey fe:ppe, alg:PPE.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> y, x = np.mgrid[:21, :25]
+    >>> frames = 200 * np.exp(-((x - 12.3) ** 2 + (y - 9.8) ** 2) / 6)[None]
+    >>> FramePeakPositionEstimate(image="gaussian").extract(frames).round(2)
+    array([[12.3,  9.8]])
     """
 
     about: ClassVar = AboutExtractor(

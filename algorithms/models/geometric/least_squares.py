@@ -65,6 +65,11 @@ class LeastSquaresGeometry(Model):
     residual_rms_deg_ : float
         Root mean square of the angle residuals over both axes.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: eq:lsq (model:lsq, Rufino2004a). With ``F' = F + Delta F`` and the spot's
@@ -88,6 +93,24 @@ class LeastSquaresGeometry(Model):
 
     Cost: 5 transcendental functions and 20 operations a sample; the fit, some ten passes of
     about 80 operations a sample and a QR factorisation (2 N, 5) each.
+
+    References
+    ----------
+    Rufino2004a; survey model:lsq, eq:lsq.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from algorithms.angles import angles_from_sun, sun_from_angles
+    >>> steps = [-20, 0, 20]
+    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> spots = 212.0 * sun[:, :2] / sun[:, 2:] + (100.7, 79.5)  # 0.12 mm too long
+    >>> model = LeastSquaresGeometry(focal_length_mm=2.0, unit_mm=0.01, centre=(100.0, 80.0))
+    >>> round(float(model.fit(spots, sun).focal_length_error_mm_), 4)
+    0.12
+    >>> angles_from_sun(model.predict(spots[[0, 8]])).round(3)
+    array([[-20., -20.],
+           [ 20.,  20.]])
     """
 
     about: ClassVar = AboutModel(

@@ -36,6 +36,16 @@ class SixFaces(Model):
         Unit normals of the detectors in the order of the features; the six directions +x, -x,
         +y, -y, +z, -z, each once, in any order.
 
+    Attributes
+    ----------
+    n_samples_ : int
+        Samples with features that `fit` was given.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: eq:msfstd (model:base, Allgeier2009): ``I_a = max(I_x-, I_x+)``, ``I_b =
@@ -50,6 +60,18 @@ class SixFaces(Model):
     face is taken for Sun where it is the brighter of its pair.
 
     Cost: 14 operations and one root a sample.
+
+    References
+    ----------
+    Allgeier2009; survey model:base, eq:msfstd.
+
+    Examples
+    --------
+    >>> faces = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
+    >>> signals = [[0.6, 0.0, 0.0, 0.0, 0.8, 0.0], [0.0, 0.0, 0.0, 1.0, 0.0, 0.0]]
+    >>> SixFaces(faces).fit(signals, [[0.6, 0.0, 0.8], [0.0, -1.0, 0.0]]).predict(signals)
+    array([[ 0.6,  0. ,  0.8],
+           [ 0. , -1. ,  0. ]])
     """
 
     about: ClassVar = AboutModel(

@@ -58,6 +58,11 @@ class WeightedCells(Model):
     reference_ : ndarray, shape (K,)
         Current of every cell under perpendicular sunlight, in units of the features.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: eq:msfpano (model:pano, Zhang2022b): ``s = (A^T W A)^-1 A^T W (I_i / I_max,i)``
@@ -76,6 +81,22 @@ class WeightedCells(Model):
     cubes do.
 
     Cost: 21 operations a cell, 30 a sample.
+
+    References
+    ----------
+    Zhang2022b; survey model:pano, eq:msfpano.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> normals = ((0.6, 0.0, 0.8), (-0.6, 0.0, 0.8), (0.0, 0.6, 0.8), (0.0, -0.6, 0.8))
+    >>> sun = np.array([[0.0, 0.0, 1.0], [0.28, 0.0, 0.96], [0.0, -0.28, 0.96]])
+    >>> signals = np.maximum(sun @ np.array(normals).T, 0.0) * (1.0, 1.1, 0.9, 1.0)
+    >>> model = WeightedCells(normals).fit(signals, sun)
+    >>> model.reference_.round(3)
+    array([1. , 1.1, 0.9, 1. ])
+    >>> model.predict(signals[1:2]).round(3)
+    array([[0.28, 0.  , 0.96]])
     """
 
     about: ClassVar = AboutModel(

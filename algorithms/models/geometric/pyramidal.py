@@ -59,6 +59,11 @@ class RegularPyramid(Model):
     coefficients_ : ndarray, shape (M,)
         xi of every face: cosine of incidence per unit of signal.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: eq:msfpyra1, eq:msfpyra2 (model:pyra, Wang2019): ``s = xi (b_x^T / b_x^T b_x,
@@ -75,6 +80,22 @@ class RegularPyramid(Model):
     raises UnusableDataError where no sample lights all faces.
 
     Cost: 6 operations a face and one root a sample.
+
+    References
+    ----------
+    Wang2019; survey model:pyra, eq:msfpyra1, eq:msfpyra2.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> normals = ((0.6, 0.0, 0.8), (0.0, 0.6, 0.8), (-0.6, 0.0, 0.8), (0.0, -0.6, 0.8))
+    >>> sun = np.array([[0.0, 0.0, 1.0], [0.28, 0.0, 0.96], [0.0, -0.28, 0.96]])
+    >>> signals = 2.5 * sun @ np.array(normals).T
+    >>> model = RegularPyramid(normals).fit(signals, sun)
+    >>> model.coefficients_.round(3)
+    array([0.4, 0.4, 0.4, 0.4])
+    >>> model.predict(signals[1:2]).round(3)
+    array([[0.28, 0.  , 0.96]])
     """
 
     about: ClassVar = AboutModel(

@@ -35,6 +35,16 @@ class SolarPanels(Model):
         Unit normals of the panels in the order of the features: three pairs of opposite ones,
         the pairs square to each other, in any order and turned any way.
 
+    Attributes
+    ----------
+    n_samples_ : int
+        Samples with features that `fit` was given.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: eq:msfsc (model:solarpanel, Nurgizat2021): ``n = sum_i n_i I_i / sqrt(sum_i
@@ -51,6 +61,17 @@ class SolarPanels(Model):
     result.
 
     Cost: 40 operations and one root a sample.
+
+    References
+    ----------
+    Nurgizat2021; survey model:solarpanel, eq:msfsc.
+
+    Examples
+    --------
+    >>> panels = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
+    >>> currents = [[0.3, 0.0, 0.0, 0.0, 0.4, 0.0]]
+    >>> SolarPanels(panels).fit(currents, [[0.6, 0.0, 0.8]]).predict(currents).round(3)
+    array([[0.6, 0. , 0.8]])
     """
 
     about: ClassVar = AboutModel(

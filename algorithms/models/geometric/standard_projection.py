@@ -35,6 +35,16 @@ class StandardProjection(Model):
     centre : tuple of two float
         Feature (x, y) of the spot when the Sun is on the boresight.
 
+    Attributes
+    ----------
+    n_samples_ : int
+        Samples with features that `fit` was given.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: eq:stdproj (model:spm, deBoer2013): ``alpha = arctan(Y s / h)``,
@@ -47,6 +57,20 @@ class StandardProjection(Model):
     Failure: a NaN row for a NaN feature row.
 
     Cost: 11 operations a sample.
+
+    References
+    ----------
+    deBoer2013; survey model:spm, eq:stdproj, alg:VB.
+
+    Examples
+    --------
+    >>> from algorithms.angles import angles_from_sun
+    >>> model = StandardProjection(focal_length_mm=2.0, unit_mm=0.01, centre=(100.0, 80.0))
+    >>> model = model.fit([[100.0, 80.0]], [[0.0, 0.0, 1.0]])
+    >>> angles_from_sun(model.predict([[100.0, 80.0], [300.0, 80.0], [100.0, 180.0]])).round(2)
+    array([[ 0.  ,  0.  ],
+           [ 0.  , 45.  ],
+           [26.57,  0.  ]])
     """
 
     about: ClassVar = AboutModel(

@@ -78,6 +78,11 @@ class ErrorTable(Model):
     hull_ : ndarray, shape (m, 3)
         Facets of the calibrated region in (alpha, beta).
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: model:lut (He2013), in words there: ``angle = nominal + e(nominal)``, nominal by
@@ -92,6 +97,23 @@ class ErrorTable(Model):
 
     Cost: 40 operations a sample, and 2 a facet of the hull; the fit solves one sparse system in
     A B unknowns.
+
+    References
+    ----------
+    He2013; survey model:lut, eq:stdproj.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from algorithms.angles import angles_from_sun, sun_from_angles
+    >>> steps = np.arange(-10, 11, 2)
+    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> bent = 200.0 * (sun[:, :2] / sun[:, 2:]) ** 3  # what the drawing does not know
+    >>> spots = 200.0 * sun[:, :2] / sun[:, 2:] + bent
+    >>> model = ErrorTable(focal_length_mm=2.0, unit_mm=0.01, interval_deg=2.0).fit(spots, sun)
+    >>> angles_from_sun(model.predict([spots[0], [900.0, 0.0]])).round(2)
+    array([[-10., -10.],
+           [ nan,  nan]])
     """
 
     about: ClassVar = AboutModel(
@@ -200,6 +222,11 @@ class BlendedPolynomials(Model):
     hull_ : ndarray, shape (m, 3)
         Facets of the calibrated region in (alpha, beta).
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: model:lut (He2013), in words there: for nominal angles (eq:stdproj) between rows k
@@ -216,6 +243,23 @@ class BlendedPolynomials(Model):
 
     Cost: 12 (n + 1) operations a sample, and 2 a facet of the hull; the fit solves one sparse
     system in A (n + 1) unknowns.
+
+    References
+    ----------
+    He2013; survey model:lut, eq:stdproj.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from algorithms.angles import angles_from_sun, sun_from_angles
+    >>> steps = np.arange(-10, 11, 2)
+    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> bent = 200.0 * (sun[:, :2] / sun[:, 2:]) ** 3  # what the drawing does not know
+    >>> spots = 200.0 * sun[:, :2] / sun[:, 2:] + bent
+    >>> model = BlendedPolynomials(focal_length_mm=2.0, unit_mm=0.01, interval_deg=5.0, degree=4)
+    >>> angles_from_sun(model.fit(spots, sun).predict([spots[0], [900.0, 0.0]])).round(2)
+    array([[-10., -10.],
+           [ nan,  nan]])
     """
 
     about: ClassVar = AboutModel(

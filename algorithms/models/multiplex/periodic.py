@@ -54,6 +54,11 @@ class PeriodicCode(Model):
     conversion_ : ndarray, shape (2, 4)
         (a, b, c, d) of the dials along x and y, a = -1.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: eq:pamulti, eq:fourier (model:periodic, Fan2013): ``alpha_s = alpha_1 + alpha_2 +
@@ -73,6 +78,29 @@ class PeriodicCode(Model):
     raises UnusableDataError where the samples do not settle the ten parameters.
 
     Cost: 2 arc tangents, 2 sines and 60 operations a sample.
+
+    References
+    ----------
+    Fan2013; survey model:periodic, eq:pamulti, eq:fourier.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from algorithms.angles import angles_from_sun, sun_from_angles
+    >>> design = dict(bits=5, cell_mm=0.15, period_mm=0.3, focal_length_mm=2.0)
+    >>> def signals(sun):
+    ...     rows = []
+    ...     for place in (2.0 * sun[:, :2] / sun[:, 2:]).T:
+    ...         cell = np.floor(place / 0.15).astype(int) + 16
+    ...         rows += [((cell ^ (cell >> 1)) >> bit) & 1 for bit in (4, 3, 2, 1, 0)]
+    ...         p = 2 * np.pi * place / 0.3
+    ...         rows += [(1 + way * wave) / 2 for way in (-1, 1) for wave in (np.cos(p), np.sin(p))]
+    ...     return np.transpose(rows)
+    ...
+    >>> sun = sun_from_angles(np.random.default_rng(1).uniform(-30, 30, (60, 2)))
+    >>> model = PeriodicCode(**design).fit(signals(sun), sun)
+    >>> angles_from_sun(model.predict(signals(sun_from_angles([[12.3, -4.5]])))).round(3)
+    array([[12.3, -4.5]])
     """
 
     about: ClassVar = AboutModel(

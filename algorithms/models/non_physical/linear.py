@@ -45,6 +45,11 @@ class LinearFit(Model):
         Intercept and slope on the feature, rows ``alpha`` (on y) and ``beta`` (on x); in degrees
         (or tangents) and per unit of feature.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: model:linear (Faizullin2017), in words there: ``alpha = c_0 + c_1 y``,
@@ -56,6 +61,24 @@ class LinearFit(Model):
     UnusableDataError below 2 samples or where all have the same feature.
 
     Cost: 4 operations and 2 tangents a sample.
+
+    References
+    ----------
+    Faizullin2017; survey model:linear.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from algorithms.angles import angles_from_sun, sun_from_angles
+    >>> steps = [-5, 0, 5]
+    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> balances = 4.0 * sun[:, :2] / sun[:, 2:] + 0.01
+    >>> model = LinearFit().fit(balances, sun)
+    >>> model.coefficients_.round(2)
+    array([[-0.14, 14.29],
+           [-0.14, 14.29]])
+    >>> angles_from_sun(model.predict([[0.36, 0.08]])).round(2)
+    array([[1., 5.]])
     """
 
     about: ClassVar = AboutModel(

@@ -54,6 +54,11 @@ class AxisPolynomial(Model):
     coefficients_ : ndarray, shape (2, n + 1)
         Chebyshev coefficients in the scaled feature, rows ``alpha`` (on y) and ``beta`` (on x).
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: model:poly (You2011), in words there: ``alpha = sum_k a_k y^k``, ``beta = sum_k
@@ -67,6 +72,22 @@ class AxisPolynomial(Model):
     angle reaches 90 degrees. fit raises UnusableDataError below n + 1 different features an axis.
 
     Cost: 6 (n + 1) operations and 2 tangents a sample.
+
+    References
+    ----------
+    You2011; survey model:poly.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from algorithms.angles import angles_from_sun, sun_from_angles
+    >>> steps = np.arange(-30, 31, 5)
+    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> spots = 200.0 * sun[:, :2] / sun[:, 2:] + (100.0, 80.0)
+    >>> model = AxisPolynomial(degree=5).fit(spots, sun)
+    >>> angles_from_sun(model.predict([spots[0], [900.0, 80.0]])).round(1)
+    array([[-30., -30.],
+           [ nan,  nan]])
     """
 
     about: ClassVar = AboutModel(
@@ -142,6 +163,11 @@ class SurfacePolynomial(Model):
     coefficients_ : ndarray, shape (2, (n + 1)(n + 2) / 2)
         Coefficients of ``T_i(u_x) T_j(u_y)``, i + j <= n, j fastest, rows ``alpha`` and ``beta``.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: model:poly (Chang2006), in words there: ``alpha = sum a_ij x^i y^j``, ``beta = sum
@@ -155,6 +181,23 @@ class SurfacePolynomial(Model):
     they lie so that they do not settle every term.
 
     Cost: 2.5 (n + 1)(n + 2) operations and 2 tangents a sample.
+
+    References
+    ----------
+    Chang2006; survey model:poly.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from algorithms.angles import angles_from_sun, sun_from_angles
+    >>> steps = np.arange(-20, 21, 5)
+    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> x, y = (200.0 * sun[:, :2] / sun[:, 2:]).T
+    >>> turned = np.column_stack([x - 0.1 * y, y + 0.1 * x])
+    >>> model = SurfacePolynomial(degree=5).fit(turned, sun)
+    >>> angles_from_sun(model.predict([turned[0], [900.0, 80.0]])).round(2)
+    array([[-20., -20.],
+           [ nan,  nan]])
     """
 
     about: ClassVar = AboutModel(

@@ -47,6 +47,11 @@ class BlackSunCentroid(Extractor):
     blur_px : float
         Standard deviation of the Gaussian blur.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: alg:BCSM (fe:bscm, Saleem2019): blur; masks ``I > T + f`` for falling f; contours;
@@ -66,6 +71,19 @@ class BlackSunCentroid(Extractor):
 
     Cost: 20 operations a pixel for the blur, 4 for the masks, and 10 a pixel of the holes and
     threshold.
+
+    References
+    ----------
+    Saleem2019; survey fe:bscm, alg:BCSM.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> y, x = np.mgrid[:40, :44]
+    >>> away = np.hypot(x - 21.3, y - 19.8)
+    >>> frames = 240 * (np.clip(9.5 - away, 0, 1) - np.clip(4.0 - away, 0, 1))[None]
+    >>> BlackSunCentroid().extract(frames).round(2)
+    array([[21.31, 19.81]])
     """
 
     about: ClassVar = AboutExtractor(

@@ -44,6 +44,11 @@ class HoughLines(Extractor):
     reach_px : float
         Gradients count up to this far from the line. Ours.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: alg:BHT (fe:ht, Liu2016): edges; ``r = x cos(theta) + y sin(theta)``; accumulator
@@ -67,6 +72,19 @@ class HoughLines(Extractor):
     then. Of two Suns the longer line wins unseen.
 
     Cost: 3 operations a pixel for the runs, 4 a run and angle, and 40 a pixel within reach.
+
+    References
+    ----------
+    Liu2016; survey fe:ht, alg:BHT.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> y, x = np.mgrid[:60, :44]
+    >>> halo = 1500 / (1 + ((x - 21) ** 2 + (y - 30.3) ** 2) / 4) ** 1.5
+    >>> halo[(abs(x - 21) <= 1) & (abs(y - 30) <= 20)] = 240
+    >>> HoughLines().extract(np.minimum(halo, 240)[None]).round(1)
+    array([[21. , 30.3]])
     """
 
     about: ClassVar = AboutExtractor(
@@ -166,6 +184,11 @@ class HoughCircle(Extractor):
         Whether a dark circle is sought first, for cameras whose Sun may be black, and a bright
         one only where there is none.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: alg:CHT (fe:ht, Adatrao2016): edges, accumulator ``H[a, b, r]``, ``a = x - r
@@ -184,6 +207,18 @@ class HoughCircle(Extractor):
     white Sun, and blooming breaks its rim.
 
     Cost: 30 operations a pixel for edges, 4 an edge and radius, 500 an edge for the candidates.
+
+    References
+    ----------
+    Adatrao2016; survey fe:ht, alg:CHT.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> y, x = np.mgrid[:31, :33]
+    >>> frames = 200 * np.clip(5.5 - np.hypot(x - 16.3, y - 14.8), 0, 1)[None]
+    >>> HoughCircle().extract(frames).round(1)
+    array([[16.3, 14.8]])
     """
 
     about: ClassVar = AboutExtractor(

@@ -72,6 +72,11 @@ class ImageCorrelation(Extractor):
         Largest distance of a spot from its aperture's place, px, in that search; below a quarter
         of the least distance of two apertures.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: alg:FEIC (fe:feic, Xing2008): ``x_s = int(Dx + x_s + 0.5)``, ``C_s(m, n) = sum_ij
@@ -96,6 +101,20 @@ class ImageCorrelation(Extractor):
     to rest, and where fewer than 0.3 of the spots that should be whole in the frame are there.
 
     Cost: as MCAM, and ``2 (N_c + 1)^2`` operations a pixel of the template and spot.
+
+    References
+    ----------
+    Xing2008; survey fe:feic, alg:FEIC.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> holes = ((-8, -6, 5), (8, -5, 5), (-7, 7, 5), (9, 6, 5))
+    >>> y, x = np.mgrid[:40, :46]
+    >>> away = [np.maximum(abs(x - 23.4 - u), abs(y - 18.8 - v)) for u, v, _ in holes]
+    >>> frames = 200 * np.clip(3.0 - np.array(away), 0, 1).sum(axis=0)[None]
+    >>> ImageCorrelation(holes, shape="square", correlations=4).extract(frames).round(1)
+    array([[23.4, 18.8]])
     """
 
     about: ClassVar = AboutExtractor(

@@ -67,6 +67,11 @@ class MeanShift(Extractor):
         Largest distance of a spot from its aperture's place, px; below a quarter of the least
         distance of two apertures.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: alg:FMMS1, alg:FMMS2 (fe:fmms, You2011): ``q_u = C sum K_E delta[b(x_i) - u]``,
@@ -94,6 +99,20 @@ class MeanShift(Extractor):
 
     Cost: as MCAM, and 10 operations a pixel of a window of radius h, a spot and a step: three or
     four steps.
+
+    References
+    ----------
+    You2011; survey fe:fmms, alg:FMMS1, alg:FMMS2.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> holes = ((-8, -6, 5), (8, -5, 5), (-7, 7, 5), (9, 6, 5))
+    >>> y, x = np.mgrid[:40, :46]
+    >>> away = [np.maximum(abs(x - 23.4 - u), abs(y - 18.8 - v)) for u, v, _ in holes]
+    >>> frames = 200 * np.clip(3.0 - np.array(away), 0, 1).sum(axis=0)[None]
+    >>> MeanShift(holes, bandwidth_px=6.0).extract(frames).round(1)
+    array([[23.4, 19. ]])
     """
 
     about: ClassVar = AboutExtractor(

@@ -49,6 +49,11 @@ class MultipleCentroids(Extractor):
         Largest distance of a spot from its aperture's place, px; below a quarter of the least
         distance of two apertures.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: alg:MCAM (fe:mcam, Rufino2009b): ``I' = max(I - mu I_max, 0)``, ``x_n = sum(x I')
@@ -69,6 +74,20 @@ class MultipleCentroids(Extractor):
     code that several sub-fields share, a window of a grid that has no end in view).
 
     Cost: 2 operations a pixel, 8 in rows with spots, and 20 a pair of spot and aperture.
+
+    References
+    ----------
+    Rufino2009b; survey fe:mcam, alg:MCAM.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> holes = ((-8, -6, 5), (8, -5, 5), (-7, 7, 5), (9, 6, 5))
+    >>> y, x = np.mgrid[:40, :46]
+    >>> away = [np.maximum(abs(x - 23.4 - u), abs(y - 18.8 - v)) for u, v, _ in holes]
+    >>> frames = 200 * np.clip(3.0 - np.array(away), 0, 1).sum(axis=0)[None]
+    >>> MultipleCentroids(holes).extract(frames).round(1)
+    array([[23.3, 18.9]])
     """
 
     about: ClassVar = AboutExtractor(
