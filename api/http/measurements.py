@@ -96,21 +96,11 @@ class Measurements:
         return assessment.document(assessment.assess(self.directory, times=self.times))
 
     @cached_property
-    def assessed_methods(self) -> tuple[str, ...]:
-        """Methods of the survey's assessment."""
-        return tuple(method["method"] for method in self.assessment["methods"])
-
-    @cached_property
     def presets(self) -> Mapping[str, Preset]:
         """The standard data sets by name. The first use loads the simulator."""
         from benchmark import datasets  # noqa: PLC0415 - slow, and not needed to make the service
 
         return {name: datasets.get(name) for name in datasets.names()}
-
-    @cached_property
-    def dataset_names(self) -> tuple[str, ...]:
-        """Names of the standard data sets."""
-        return tuple(self.presets)
 
     @cached_property
     def pins(self) -> Mapping[tuple[str, str, str], Pin]:
@@ -185,12 +175,6 @@ class Measurements:
             if dataset is None or board["name"] == dataset
             for row in board.get("rows", ())
         ]
-
-    @cached_property
-    def conditions(self) -> tuple[str, ...]:
-        """Conditions that any standard data set has, in order of appearance."""
-        presets = self.presets.values()
-        return tuple(dict.fromkeys(name for preset in presets for name in preset.conditions))
 
     @cached_property
     def architectures(self) -> frozenset[tuple[str, str]]:

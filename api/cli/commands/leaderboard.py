@@ -224,10 +224,11 @@ def _show(
     form: Format,
 ) -> None:
     from api.cli.asking import knowledge  # noqa: PLC0415 - slow; measuring does without it
+    from api.http.models import words  # noqa: PLC0415
 
     measurements = knowledge().measurements
-    _require("dataset", datasets, measurements.dataset_names)
-    _require("condition", conditions, measurements.conditions)
+    _require("dataset", datasets, words.datasets())
+    _require("condition", conditions, words.conditions())
     first = {
         board["name"]: board["conditions"][0] for board in measurements.leaderboard["datasets"]
     }

@@ -1,14 +1,43 @@
-"""JSON shapes of sweeps and of the assessment."""
+"""Sweeps on reference features, and the survey's assessment beside the measured one."""
 
 from __future__ import annotations
 
 from typing import Literal
 
-from pydantic import Field
+from pydantic import ConfigDict, Field
 
-from api.http.shapes import Listing, OpenShape, Shape
+from api.http.models.base import Listing, OpenShape, Question, Shape
+from api.http.models.parameters import DEFAULT_PAGE, Cursor, Limit, Several
+from api.http.models.scores import only
+from api.http.models.words import ExtractorName, MethodName, Series, SweepName
 
 Agreement = Literal["agrees", "near", "opposed", "not measured"]
+
+
+class SweepsQuery(Question):
+    """Which sweeps."""
+
+    model_config = ConfigDict(
+        json_schema_extra={
+            "examples": [
+                {"series": ["disc"], "sweep": ["noise"], "extractor": ["bctm"], "limit": 1}
+            ]
+        }
+    )
+
+    series: Several[Series] = only("feature")
+    sweep: Several[SweepName] = only("sweep")
+    extractor: Several[ExtractorName] = only("extractor, by the name of its implementation")
+    limit: Limit = DEFAULT_PAGE
+    cursor: Cursor = None
+
+
+class AssessmentQuery(Question):
+    """Which methods."""
+
+    model_config = ConfigDict(json_schema_extra={"examples": [{"method": ["BCTM"]}]})
+
+    method: Several[MethodName] = only("method, as the survey's table calls it")
 
 
 class Sweep(OpenShape):

@@ -1,55 +1,59 @@
-"""JSON shapes of data sets, scores and leaderboards."""
+"""Scores and leaderboards."""
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field
 
-from api.http.shapes import Listing, OpenShape, Shape
+from api.http.models.base import Listing, OpenShape, Question
+from api.http.models.parameters import DEFAULT_PAGE, GIVEN, NUMBER, Cursor, Limit, OneOf, Several
+from api.http.models.words import Condition, DatasetName, ExtractorName, ModelName
+from benchmark.metrics.rings import EDGES_DEG
+
+FIELDS = tuple(str(edge) for edge in EDGES_DEG[1:])
 
 
-class Dataset(OpenShape):
-    """Card of a standard data set."""
-
-    name: str
-    version: int
-    detector: str
-    mask: str
-    observation: str
-    conditions: list[str]
-    description: str
-    follows: list[str]
-    units: str
-    bounds: dict[str, float] = Field(description="Cramer-Rao bound by condition, rms, degrees.")
-    splits: dict[str, dict[str, Any]]
-    setups: dict[str, dict[str, Any]] = Field(description="What each condition is.")
-    preview: str = Field(description="Where its picture is served.")
+def only(what: str) -> Any:
+    """Return the field of a parameter that narrows a list to some of its rows."""
+    return Field(default_factory=list, description=f"Only this {what}.")
 
 
-class Data(Shape):
-    """The published data of a split in a condition; null where none are pinned."""
+class ScoresQuery(Question):
+    """Which scores."""
 
-    condition: str
-    split: str
-    samples: int
-    data_hash: str | None
-    bound_deg: float | None = Field(description="Cramer-Rao bound, rms over the test split.")
+    model_config = ConfigDict(json_schema_extra={"examples": [{"limit": 1}]})
 
-
-class DatasetDetail(Dataset):
-    """Card of a standard data set, with every parameter that its numbers depend on."""
-
-    geometry: dict[str, Any]
-    regime: dict[str, Any]
-    seeds: dict[str, Any]
-    data: list[Data]
+    dataset: Several[DatasetName] = only("data set")
+    condition: Several[Condition] = only("condition")
+    extractor: Several[ExtractorName] = only("extractor, by the name of its implementation")
+    model: Several[ModelName] = only("model, by the name of its implementation")
+    limit: Limit = DEFAULT_PAGE
+    cursor: Cursor = None
 
 
-class Datasets(Listing):
-    """A page of standard data sets."""
+class LeaderboardQuery(Question):
+    """Which rows of a data set's leaderboard, and what they are ranked by."""
 
-    items: list[Dataset]
+    model_config = ConfigDict(json_schema_extra={"examples": [{"limit": 1}]})
+
+    condition: Several[Condition] = only("condition")
+    extractor: Several[ExtractorName] = only("extractor, by the name of its implementation")
+    model: Several[ModelName] = only("model, by the name of its implementation")
+    field_deg: Annotated[str | None, OneOf(lambda: FIELDS), GIVEN] = Field(
+        None,
+        description="Rank by the error within this angle of the boresight, degrees: rings of the "
+        "field count by their solid angle, so that sensors compare at an equal field.",
+    )
+    max_error_deg: Annotated[float | None, NUMBER] = Field(
+        None,
+        gt=0,
+        le=180,
+        description="Rank by the widest field in whose every ring the RMS error stays within "
+        "this, degrees.",
+    )
+    limit: Limit = DEFAULT_PAGE
+    cursor: Cursor = None
 
 
 class Score(OpenShape):
