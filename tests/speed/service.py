@@ -35,6 +35,8 @@ from tests.speed.verdicts import Verdict, broken
 
 LARGEST_RATIO = 5.0
 PATH = "/v1/recommendations"
+#: A connection is kept however long the machine lets its next request wait, s.
+_KEPT_S = 600
 
 
 @dataclass(frozen=True)
@@ -72,7 +74,10 @@ def empty_app() -> FastAPI:
 def serving(apps: Sequence[FastAPI]) -> Iterator[list[HTTPConnection]]:
     """Serve applications from a thread of this process; yield a connection to each."""
     servers = [
-        uvicorn.Server(uvicorn.Config(app, log_level="error", access_log=False)) for app in apps
+        uvicorn.Server(
+            uvicorn.Config(app, log_level="error", access_log=False, timeout_keep_alive=_KEPT_S)
+        )
+        for app in apps
     ]
     sockets = [_listening() for _ in apps]
 

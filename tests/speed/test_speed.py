@@ -13,6 +13,7 @@ from tests.speed.light import diffracted_frames, light_of_frames
 from tests.speed.references import centroid_of_spots, counted_light, rendering_of_frames
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "prepare", [centroid_of_spots, rendering_of_frames, light_of_frames, diffracted_frames]
 )

@@ -218,6 +218,7 @@ def test_generation_depends_on_neither_batch_nor_order(monkeypatch: pytest.Monke
     assert np.array_equal(first.origin_px, np.zeros((7, 2)))
 
 
+@pytest.mark.slow
 def test_million_pixel_frames_agree_with_the_brute_force_they_are_timed_against() -> None:
     subject = Subject(**frames_of_many_spots())
     assert subject.worst <= subject.tolerance
