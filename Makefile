@@ -72,13 +72,13 @@ COMPILE := uv pip compile --quiet --universal --python-version 3.11 --generate-h
 	--no-emit-index-url --no-header $(UPGRADE)
 lock: ## renew the lock files from pyproject.toml (needs uv on the PATH)
 	$(COMPILE) --extra build -o requirements.lock pyproject.toml
-	$(COMPILE) --extra build --extra charts --extra dev --constraints requirements.lock -o requirements-dev.lock pyproject.toml
+	$(COMPILE) --extra build --extra dev --constraints requirements.lock -o requirements-dev.lock pyproject.toml
 	$(COMPILE) --extra peers --constraints requirements-dev.lock -o requirements-peers.lock pyproject.toml
 	mkdir -p out
 	uv pip compile --quiet --python-version 3.11 --no-header --upgrade --resolution lowest-direct \
-		--extra build --extra charts -o out/lowest.txt pyproject.toml
+		--extra build -o out/lowest.txt pyproject.toml
 	uv pip compile --quiet --python-version 3.11 --generate-hashes --no-emit-index-url --no-header \
-		$(UPGRADE) --extra build --extra charts --extra dev --constraints out/lowest.txt \
+		$(UPGRADE) --extra build --extra dev --constraints out/lowest.txt \
 		-o requirements-lowest.lock pyproject.toml
 
 clean: ## remove the virtual environment and caches
