@@ -65,6 +65,7 @@ def noisy(frames, seed, noise=8.0):
 # Any of them
 
 
+@pytest.mark.slow
 @every_method
 def test_noiseless_spots_are_inverted_anywhere(which):
     places = np.random.default_rng(1).uniform((52, 50), (80, 78), (30, 2))

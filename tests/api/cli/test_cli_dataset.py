@@ -156,6 +156,7 @@ def published(tmp_path, monkeypatch):
     return Store(tmp_path)
 
 
+@pytest.mark.slow
 def test_pin_pins_what_is_named_and_check_tells_what_does_not_hold(published):
     shown = sunatlas("pin", "oi-maskless-pyramid", "--workers", 1)
     assert shown.exit_code == 0, shown.stderr

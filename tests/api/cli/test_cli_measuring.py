@@ -74,6 +74,7 @@ def test_a_study_s_pipelines_are_scored_against_the_bound_and_its_gaps_listed():
     }
 
 
+@pytest.mark.slow
 def test_a_run_that_finds_nothing_published_measures_once(unpublished):
     arguments = ("run", "Allgeier2009", "--condition", "nominal", "--format", "json")
     first = sunatlas(*arguments)
@@ -89,6 +90,7 @@ def test_a_run_that_finds_nothing_published_measures_once(unpublished):
     assert again["scores"] == measured["scores"]
 
 
+@pytest.mark.slow
 def test_what_is_published_is_read_there():
     found = json.loads(sunatlas("benchmark", *CHEAP, "--format", "json").stdout)
     published = Store(PUBLISHED).scores()
@@ -100,6 +102,7 @@ def test_what_is_published_is_read_there():
     assert found["sources"]["measured"] == 0
 
 
+@pytest.mark.slow
 def test_the_formats_say_the_same(unpublished):
     store = ("--store", unpublished / "other")
     shown = sunatlas("benchmark", *CHEAP, *store, "--format", "json")
@@ -286,6 +289,7 @@ def test_an_up_to_date_record_is_left_as_it_is(published):
     assert {path.name for path in after.keys() - before.keys()} <= {"lock", "journal.jsonl"}
 
 
+@pytest.mark.slow
 def test_everything_else_is_derived(tmp_path, untimed):
     shown = sunatlas("leaderboard", "render", "--out", tmp_path / "out")
     assert shown.exit_code == 0, shown.stderr

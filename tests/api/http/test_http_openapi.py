@@ -99,6 +99,7 @@ def test_examples_of_refusals_are_what_is_refused(atlas, document):
     assert checked == 30
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "path",
     [

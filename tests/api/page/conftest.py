@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 import uvicorn
-from playwright.sync_api import Browser, sync_playwright
+from playwright.sync_api import Browser, expect, sync_playwright
 
 from api.http.service import create_app
 from tests.api.page.visiting import NARROW, PATIENCE_MS, WIDE, Visit
@@ -28,14 +28,14 @@ def address() -> Iterator[str]:
         server = uvicorn.Server(uvicorn.Config(create_app(), log_level="warning", ws="none"))
         thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]}, daemon=True)
         thread.start()
-        deadline = time.monotonic() + 60
+        deadline = time.monotonic() + PATIENCE_MS / 1e3
         while not server.started:
             assert thread.is_alive(), "the service did not start"
-            assert time.monotonic() < deadline, "the service did not start in a minute"
+            assert time.monotonic() < deadline, "the service did not start"
             time.sleep(0.05)
         yield f"http://127.0.0.1:{listener.getsockname()[1]}"
         server.should_exit = True
-        thread.join(timeout=20)
+        thread.join(timeout=PATIENCE_MS / 1e3)
 
 
 @pytest.fixture(scope="module")
@@ -46,8 +46,9 @@ def browser() -> Iterator[Browser]:
         if os.environ.get("CI"):
             pytest.fail(reason)
         pytest.skip(reason)
+    expect.set_options(timeout=PATIENCE_MS)
     with sync_playwright() as playwright:
-        running = playwright.chromium.launch(executable_path=found, args=QUIET)
+        running = playwright.chromium.launch(executable_path=found, args=QUIET, timeout=PATIENCE_MS)
         yield running
         running.close()
 

@@ -9,7 +9,9 @@ from urllib.request import urlopen
 import pytest
 from playwright.sync_api import Route, expect
 
-from tests.api.page.visiting import NARROW, Visit, get_json, tab_to
+from tests.api.page.visiting import NARROW, PATIENCE_MS, Visit, get_json, tab_to
+
+pytestmark = pytest.mark.slow
 
 
 def test_every_chart_draws_without_complaint_and_without_another_host(wide: Visit) -> None:
@@ -25,7 +27,7 @@ def test_every_chart_draws_without_complaint_and_without_another_host(wide: Visi
             assert page.locator(".sankey-link").count() > 10
     assert wide.complaints == []
     assert {urlsplit(url).netloc for url in wide.requests} == {urlsplit(wide.address).netloc}
-    with urlopen(wide.address, timeout=20) as response:
+    with urlopen(wide.address, timeout=PATIENCE_MS / 1e3) as response:
         policy = response.headers["Content-Security-Policy"]
     assert "script-src 'self';" in policy  # no inline script, no evaluation of text
 

@@ -6,6 +6,8 @@ import pytest
 
 from tests.api.page.visiting import WIDE, Visit, get_json
 
+pytestmark = pytest.mark.slow
+
 
 def test_ranks_that_units_do_not_tell_apart_are_shown_as_ties(wide: Visit) -> None:
     page = wide.go("/?dataset=ccd-orbit")

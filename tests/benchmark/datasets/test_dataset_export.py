@@ -78,6 +78,7 @@ def test_other_people_s_tools_check_the_sums(made):
     assert run.returncode == 0, run.stderr
 
 
+@pytest.mark.slow
 def test_the_arrays_are_the_first_samples_of_the_data_set_with_its_bound(made):
     card = made.card
     preset = datasets.get(card["name"])

@@ -23,6 +23,7 @@ def read(png):
     return cv2.imdecode(np.frombuffer(png, dtype=np.uint8), cv2.IMREAD_COLOR)[:, :, ::-1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", datasets.names())
 def test_every_data_set_has_a_picture_with_much_on_it(name):
     png = preview_png(datasets.get(name))

@@ -71,6 +71,7 @@ ARRAYS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "condition"), CASES)
 def test_samples_are_what_the_card_says(name: str, condition: str) -> None:
     preset = datasets.get(name)
@@ -145,6 +146,7 @@ def test_all_samples_differ_from_one_condition_and_split_to_another() -> None:
     assert len(digests) == len(CASES) * len(SPLITS)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_conditions_share_the_sun_and_calibration_is_apart_from_test(name: str) -> None:
     preset = datasets.get(name)
@@ -265,6 +267,7 @@ def test_low_noise_is_the_nominal_unit_with_less_noise() -> None:
     assert preset.setups["low-noise"].sensor.camera == preset.setups["nominal"].sensor.camera
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_bounds_order_with_the_noise(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of directions from all over the calibration split."""

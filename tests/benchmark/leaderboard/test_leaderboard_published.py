@@ -175,6 +175,7 @@ def test_every_dataset_and_condition_is_scored_that_an_implemented_pipeline_can_
     assert unscored <= {dataset for dataset, _, _ in published.pins()}
 
 
+@pytest.mark.slow
 def test_measured_now_is_what_is_committed(published, fresh):
     scores = published.scores()
     counts = {place[:2]: pin.n for place, pin in published.pins().items() if place[2] == "test"}
@@ -200,7 +201,7 @@ def test_bringing_an_up_to_date_record_up_to_date_renders_nothing(tmp_path, monk
     assert after == before
 
 
-@pytest.mark.parametrize("source", ["published", "fresh"])
+@pytest.mark.parametrize("source", ["published", pytest.param("fresh", marks=pytest.mark.slow)])
 def test_under_low_noise_the_thresholded_centroid_beats_the_plain_one(source, request):
     """Chang2008, He2005. With every model that does not hide the extractor behind its own error:
 
@@ -221,7 +222,7 @@ def test_least_squares_beat_the_nominal_projection_once_tilt_and_focal_length_er
     assert scores[extractor, "lsq"] < scores[extractor, "spm"]
 
 
-@pytest.mark.parametrize("source", ["published", "fresh"])
+@pytest.mark.parametrize("source", ["published", pytest.param("fresh", marks=pytest.mark.slow)])
 def test_no_pipeline_beats_the_cramer_rao_bound_beyond_statistical_error(source, request):
     assert beaten(request.getfixturevalue(source)) == []
 
