@@ -155,10 +155,6 @@ class Taxonomy:
         """Return the category of `value`; InvalidValueError if it is not one of `attribute`."""
         return self.entry(attribute, value).category
 
-    def contains(self, level: str, value: str) -> bool:
-        """Whether `value` is one of `level`."""
-        return value in self._names_of(level)
-
     def require(self, level: str, value: str, parameter: str | None = None) -> None:
         """Raise InvalidValueError, naming the nearest value, unless `level` has `value`."""
         if value not in self._names_of(level):

@@ -6,8 +6,6 @@ instead of swallowing the rest of the file.
 
 from __future__ import annotations
 
-import csv
-import io
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -164,12 +162,3 @@ def _cell_index(prefix: str) -> int:
     """Index of the cell a line's prefix ends in."""
     rest = re.sub(r'"[^"]*"', "", prefix)
     return rest.partition('"')[0].count(",")
-
-
-def format_records(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """Return the text of a CSV file in the form `read_records` takes."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(header)
-    writer.writerows(rows)
-    return text.getvalue()

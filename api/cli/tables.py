@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 import math
 import sys
@@ -16,6 +14,9 @@ from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
+
+from api.cells import cell, plain
+from survey_data.csv_writing import csv_text
 
 Row = Mapping[str, Any]
 
@@ -52,11 +53,8 @@ def emit(
     if form is Format.JSON:
         emit_json(list(rows) if document is None else document)
     elif form is Format.CSV:
-        stream = io.StringIO(newline="")
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(columns)
-        writer.writerows([[cell(row.get(name)) for name in columns] for row in rows])
-        sys.stdout.write(stream.getvalue())
+        cells = [[cell(row.get(name)) for name in columns] for row in rows]
+        sys.stdout.write(csv_text(columns, cells))
     else:
         table = Table(title=title, title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
         for name in columns:
@@ -73,34 +71,6 @@ def emit(
 def emit_json(document: Any) -> None:
     """Print a document as JSON; NaN and infinities, which JSON lacks, as null."""
     sys.stdout.write(json.dumps(plain(document), indent=2, ensure_ascii=False) + "\n")
-
-
-def plain(value: Any) -> Any:
-    """Return a value made of what JSON knows: sets sorted, numbers that are not finite None."""
-    if isinstance(value, Mapping):
-        return {str(name): plain(member) for name, member in value.items()}
-    if isinstance(value, set | frozenset):
-        return sorted(plain(member) for member in value)
-    if isinstance(value, Sequence) and not isinstance(value, str):
-        return [plain(member) for member in value]
-    if isinstance(value, bool | int | str) or value is None:
-        return value
-    if isinstance(value, float):
-        return value if math.isfinite(value) else None
-    raise TypeError(f"expected text, numbers, lists and mappings; got {type(value).__name__}")
-
-
-def cell(value: Any) -> str:
-    """Return a value as the text of a CSV cell: lists joined by "; ", nothing found empty."""
-    if value is None or (isinstance(value, float) and not math.isfinite(value)):
-        return ""
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, Mapping):
-        return json.dumps(plain(value), ensure_ascii=False)
-    if isinstance(value, Sequence | frozenset | set) and not isinstance(value, str):
-        return "; ".join(cell(member) for member in plain(value))
-    return str(value)
 
 
 def console(*, stderr: bool = False) -> Console:

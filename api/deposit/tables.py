@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-import csv
 import dataclasses
-import io
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from api.cells import cell
 from api.deposit.fields import schema
-from api.http.tables import cell
 from benchmark import datasets
 from benchmark.leaderboard.board import build
 from benchmark.results.store import Store
 from registry.catalogue import catalogue
+from survey_data.csv_writing import csv_text
 
 #: Columns of sweeps that stand in the bundle under another name or value.
 _RENAMED = frozenset({"series", "sweep", "point", "unit"})
@@ -182,12 +181,9 @@ def _table(
     foreign: Mapping[str, tuple[str, str]] | None = None,
 ) -> MeasuredTable:
     columns = list(dict.fromkeys(column for row in rows for column in row))
-    stream = io.StringIO(newline="")
-    writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(columns)
-    writer.writerows([cell(row.get(column)) for column in columns] for row in rows)
+    text = csv_text(columns, ([cell(row.get(column)) for column in columns] for row in rows))
     described = schema(columns, f"{name}.csv", primary=primary, foreign=foreign)
-    return MeasuredTable(name, title, description, stream.getvalue(), described)
+    return MeasuredTable(name, title, description, text, described)
 
 
 def read_descriptor(path: Path) -> dict[str, Any]:

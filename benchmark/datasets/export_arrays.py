@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path
@@ -11,6 +9,8 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from survey_data.csv_writing import csv_text
 
 Arrays = Mapping[str, NDArray[Any]]
 
@@ -71,9 +71,6 @@ def columns_of(arrays: Arrays) -> dict[str, NDArray[Any]]:
 def write_table(path: Path, arrays: Arrays) -> None:
     """Write arrays (N,) and (N, K) as CSV with a header; every number reads back the same."""
     columns = columns_of(arrays)
-    stream = io.StringIO(newline="")
-    writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(columns)
     # tolist gives Python's numbers, whose text is the shortest that reads back the same
-    writer.writerows(zip(*(array.tolist() for array in columns.values()), strict=True))
-    path.write_text(stream.getvalue(), "utf-8", newline="\n")
+    rows = zip(*(array.tolist() for array in columns.values()), strict=True)
+    path.write_text(csv_text(list(columns), rows), "utf-8", newline="\n")

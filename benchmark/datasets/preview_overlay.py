@@ -28,6 +28,10 @@ _CUT_PX = 116
 """Pixels that a tile shows each way, where the frame has more."""
 
 
+class OverlayError(ValueError):
+    """A dataset and an extractor of which no overlay can be drawn."""
+
+
 def overlay_png(
     preset: Preset,
     extractor: type[Extractor],
@@ -46,17 +50,20 @@ def overlay_png(
 
     Raises
     ------
+    OverlayError
+        On a dataset or an extractor of another kind.
     ValueError
-        On an unknown condition, on a dataset or an extractor of another kind, and where the
-        extractor refuses the design.
+        On an unknown condition, and where the extractor refuses the design.
     """
     if preset.observation is not Observation.FRAMES or extractor.about.kind is not FeatureKind.SPOT:
-        raise ValueError(
+        raise OverlayError(
             f"overlays show spots on frames; {preset.name} has {preset.observation} and "
             f"{extractor.about.name} gives {extractor.about.kind}"
         )
     if extractor.about.observation is not preset.observation:
-        raise ValueError(f"{extractor.about.name} reads {extractor.about.observation}, not frames")
+        raise OverlayError(
+            f"{extractor.about.name} reads {extractor.about.observation}, not frames"
+        )
     chosen = tuple(conditions or preset.conditions)
     for condition in chosen:
         preset.condition(condition)

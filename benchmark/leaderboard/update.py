@@ -8,14 +8,14 @@ from pathlib import Path
 
 from benchmark.contract import Cell
 from benchmark.leaderboard import ranking
-from benchmark.leaderboard.board import board_of, build
+from benchmark.leaderboard.board import board_of
 from benchmark.leaderboard.pages import PAGE, page
 from benchmark.plan.combinations import cells
 from benchmark.plan.parts import Parts, installed
 from benchmark.progress import ProgressCallback
 from benchmark.results.components import Components, current
 from benchmark.results.record import opened
-from benchmark.results.store import PUBLISHED, Store, described
+from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import pinning
 from benchmark.running.run import Summary, failures, measure_missing
 from benchmark.sweeps import run as sweeps
@@ -90,8 +90,7 @@ def update(
         record.drop(scores=wanted.__contains__, pins=frozenset(pinning.places(known)).__contains__)
         record.write(components, sweeps.ordered)
         failed = failures(sorted(wanted), record)
-        board = build(described(record.scores, components, record.pins))
-    replace_file(store.directory / PAGE, page(board))
+    write_page(store)
     return Summary(
         store=store.directory,
         planned=len(wanted),

@@ -8,6 +8,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from survey_data.csv_writing import csv_text
+
 Row = dict[str, Any]
 Reader = Callable[[str], Any]
 
@@ -45,11 +47,7 @@ def spelt(value: object) -> str:
 
 def text_of(columns: Sequence[str], rows: Iterable[Mapping[str, Any]]) -> str:
     """Write rows as CSV under a header; columns a row lacks are empty."""
-    stream = io.StringIO(newline="")
-    writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(columns)
-    writer.writerows([spelt(row.get(name)) for name in columns] for row in rows)
-    return stream.getvalue()
+    return csv_text(columns, ([spelt(row.get(name)) for name in columns] for row in rows))
 
 
 def read(path: Path, columns: Mapping[str, Reader]) -> list[tuple[int, Row]]:

@@ -18,10 +18,15 @@ from benchmark import datasets
 from benchmark.metrics.bounds import cramer_rao
 from benchmark.metrics.score import separation_deg
 from benchmark.seeds import generator
+from benchmark.simulator.flight.time_series import TimedScene
 from benchmark.simulator.light.environment import Earth
 from benchmark.simulator.light.sun_disc import tangent_axes
 from benchmark.simulator.sensors.faces import FaceSensor
 from benchmark.simulator.sensors.frames import FrameSensor
+
+
+class NoInfluenceError(TypeError):
+    """The influence of the Earth's light on a dataset's sensor is not worked out."""
 
 
 @dataclass(frozen=True)
@@ -55,6 +60,29 @@ class Influence:
         return float(np.mean(self.moved_deg[both] > 0.1 * self.bound_deg[both]))
 
 
+def influence(name: str, samples: int | None = None) -> Influence:
+    """Say how far the Earth's light moves the estimates of a dataset's sensor.
+
+    `on_cube` or `on_aperture`, whichever its sensor is for.
+
+    Parameters
+    ----------
+    name
+        Of the dataset.
+    samples
+        Only so many of the test split; None takes all.
+
+    Raises
+    ------
+    NoInfluenceError
+        For a sensor of another kind.
+    """
+    preset = datasets.get(name)
+    if isinstance(preset.condition(preset.conditions[0]).sensor, FaceSensor):
+        return on_cube(name, samples)
+    return on_aperture(name, samples)
+
+
 def maximum_currents(currents: Floats) -> Floats:
     """Sun directions (N, 3) of a cube's currents (N, 6), faces +x, -x, +y, -y, +z, -z.
 
@@ -65,22 +93,38 @@ def maximum_currents(currents: Floats) -> Floats:
     return np.asarray(found / np.sqrt(np.sum(found**2, axis=1, keepdims=True)))
 
 
-def on_cube(name: str = "pd-maskless-cube") -> Influence:
+def on_cube(name: str = "pd-maskless-cube", samples: int | None = None) -> Influence:
     """Move the maximum-currents estimate of a photodiode cube's albedo condition.
+
+    Parameters
+    ----------
+    name
+        Of the dataset.
+    samples
+        Only so many of the test split; None takes all.
 
     Raises
     ------
-    TypeError
-        When the dataset's sensor is no cube of photodiodes.
+    NoInfluenceError
+        When the dataset's sensor is no cube of photodiodes, or never sees the Earth.
     """
     preset = datasets.get(name)
+    if "albedo" not in preset.conditions:
+        raise NoInfluenceError(f"dataset {name} has no condition 'albedo'")
     sensor = preset.condition("albedo").sensor
-    if not isinstance(sensor, FaceSensor) or len(sensor.normals) != 6:
-        raise TypeError(f"dataset {name} has no cube of photodiodes")
+    if not isinstance(sensor, FaceSensor) or not _is_cube(sensor):
+        raise NoInfluenceError(f"dataset {name} has no cube of photodiodes")
     scene, pattern = preset.scene("albedo", "test"), preset.fixed_pattern("albedo")
+    scene = scene.part(0, len(scene) if samples is None else samples)
     with_earth = maximum_currents(sensor.expected(scene, pattern))
     without = maximum_currents(sensor.expected(replace(scene, albedo=None), pattern))
-    return Influence(separation_deg(with_earth, without), preset.bound("albedo", "test").angle_deg)
+    bound = preset.bound("albedo", "test", samples).angle_deg
+    return Influence(separation_deg(with_earth, without), bound)
+
+
+def _is_cube(sensor: FaceSensor) -> bool:
+    axes = np.repeat(np.eye(3), 2, axis=0) * np.tile([1.0, -1.0], 3)[:, None]
+    return len(sensor.normals) == 6 and bool(np.allclose(sensor.normals, axes))
 
 
 @dataclass(frozen=True)
@@ -151,6 +195,14 @@ def aperture_earthlight(
     return np.asarray(flux[0])
 
 
+def _is_one_hole(sensor: FrameSensor) -> bool:
+    """Say whether there is one spot: a slit's light has a centre in one direction only."""
+    apertures = sensor.camera.mask.apertures
+    return len(apertures) == 1 and apertures[0].width_mm < 2.0 * apertures[0].height_mm < (
+        4.0 * apertures[0].width_mm
+    )
+
+
 def on_aperture(
     name: str = "cmos-single-aperture",
     samples: int | None = None,
@@ -162,7 +214,7 @@ def on_aperture(
     Parameters
     ----------
     name
-        Of a dataset of frames behind a mask.
+        Of a dataset of frames behind one aperture.
     samples
         Only so many of the test split; None takes all.
     extractor
@@ -172,19 +224,22 @@ def on_aperture(
 
     Raises
     ------
-    TypeError
-        When the dataset has no such sensor.
+    NoInfluenceError
+        When the dataset has no such sensor, or its frames are not cut out around a Sun in random
+        directions.
     ValueError
         When its geometry gives no focal length or pixel pitch.
     """
     preset = datasets.get(name)
     sensor = preset.condition("nominal").sensor
-    if not isinstance(sensor, FrameSensor):
-        raise TypeError(f"dataset {name} has no pixel array behind a mask")
+    if not isinstance(sensor, FrameSensor) or not _is_one_hole(sensor):
+        raise NoInfluenceError(f"dataset {name} has no pixel array behind one aperture")
     geometry = preset.geometry
     geometry.require("focal_length_mm", "pixel_pitch_mm", by="albedo_influence")
     scene = preset.scene("nominal", "test")
     scene = scene.part(0, len(scene) if samples is None else samples)
+    if scene.origin_px is None or isinstance(scene, TimedScene):
+        raise NoInfluenceError(f"dataset {name} has no window at random directions of the Sun")
     pattern = preset.fixed_pattern("nominal")
     reader = ThresholdedCentroid.for_sensor(geometry) if extractor is None else extractor
     seen = earth or datasets.get("pd-maskless-cube").condition("albedo").earth or Earth()

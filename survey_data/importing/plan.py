@@ -78,13 +78,8 @@ class ImportPlan:
     written: int = 0
 
     @property
-    def conflicts(self) -> tuple[Difference, ...]:
-        """Return the differences that are not taken over: the survey's printed cells stay."""
-        return tuple(entry for entry in self.differences if entry.kind == "conflict")
-
-    @property
     def edits(self) -> tuple[Difference, ...]:
-        """Return the cells that applying writes."""
+        """Return the cells that applying writes: in a conflict the survey's printed cells stay."""
         taken = tuple(entry for entry in self.differences if entry.kind != "conflict")
         return taken + self.confirmed
 

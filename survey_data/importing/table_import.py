@@ -7,7 +7,8 @@ import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 
-from survey_data.csv_reading import format_records, read_records
+from survey_data.csv_reading import read_records
+from survey_data.csv_writing import csv_text
 from survey_data.descriptor import (
     DATA_DIRECTORY,
     DESCRIPTOR_FILE,
@@ -158,7 +159,7 @@ def _edited(folder: Path, plan: ImportPlan, doi: str) -> str:
                 if study == cells[0] and (study, attribute) not in standing
                 for row in _rows_of(edit, [], doi)
             ]
-    return format_records(header, edited)
+    return csv_text(header, edited)
 
 
 def _rows_of(edit: Difference, replaced: list[list[str]], doi: str) -> list[list[str]]:

@@ -20,7 +20,7 @@ def test_the_survey_has_33_models_20_extractors_and_ten_detectors(survey: Facts)
 
 
 def test_none_is_a_value_and_not_a_missing_cell(survey: Facts) -> None:
-    assert survey.taxonomy.contains("model", "None")
+    survey.taxonomy.require("model", "None")
     assert sum(s.of("model") == ("None",) for s in survey.studies.values()) == 12
     assert {k for k, s in survey.studies.items() if s.of("extractor") == ("None",)} == {
         "Duan2006",

@@ -42,7 +42,7 @@ def test_a_comparison_writes_nothing_and_shows_every_kind(copy: Any) -> None:
     assert kinds["Alvi2014", "accuracy_deg"] == "new"
     assert kinds["Chang2008", "mask"] == "changed"
     assert kinds["Chang2008", "model"] == "conflict"
-    (conflict,) = plan.conflicts
+    (conflict,) = (entry for entry in plan.differences if entry.kind == "conflict")
     assert (conflict.ours, conflict.theirs) == (("SPM",), ("LUT",))
     assert (conflict.basis, conflict.row, conflict.column) == ("survey-table", 3, "Model")
     assert [(entry.row, entry.reason) for entry in plan.unmatched] == [

@@ -13,7 +13,8 @@ import pandas as pd
 import pytest
 
 import survey_data
-from survey_data.csv_reading import format_records, read_records
+from survey_data.csv_reading import read_records
+from survey_data.csv_writing import csv_text
 from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name, table_names
 from survey_data.findings.report import accuracy_class
 
@@ -51,7 +52,7 @@ def test_the_strict_reader_agrees_with_the_standard_library(table: str) -> None:
         expected = list(csv.reader(stream))
     assert [records.header, *(cells for _, cells in records.rows)] == expected
     assert [number for number, _ in records.rows] == list(range(2, len(expected) + 1))
-    text = format_records(records.header, [cells for _, cells in records.rows])
+    text = csv_text(records.header, [cells for _, cells in records.rows])
     assert text.encode() == path.read_bytes()  # an import rewrites nothing but its cells
 
 

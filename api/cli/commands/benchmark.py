@@ -9,7 +9,7 @@ import typer
 from api.cli.measuring import AVAILABLE_WORKERS, ManyWorkersOption, StoreOption, scored
 from api.cli.tables import Format, FormatOption, emit
 from benchmark.metrics.score import METRICS
-from benchmark.plan.combinations import cells
+from benchmark.plan.combinations import cells, incompatible
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
@@ -63,5 +63,7 @@ def benchmark(
         err=True,
     )
     if not planned:
-        typer.echo("sunatlas: no compatible combination of these names", err=True)
+        refused = incompatible(dataset or None, extractor or None, model or None)
+        reason = f": {refused[0].reason}" if refused else ""
+        typer.echo(f"sunatlas: no compatible combination of these names{reason}", err=True)
         raise typer.Exit(1)

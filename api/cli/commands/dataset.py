@@ -11,11 +11,14 @@ from api.cli.asking import knowledge
 from api.cli.measuring import AVAILABLE_WORKERS, ManyWorkersOption
 from api.cli.tables import Format, FormatOption, emit
 from benchmark import datasets
+from benchmark.contract import UnknownNameError
 from benchmark.datasets import coverage as covered
 from benchmark.datasets import export as dataset_export
+from benchmark.plan.parts import installed
 from benchmark.progress import terminal_progress
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import pinning
+from survey_data.whole_files import replace_file
 
 app = typer.Typer(
     help="List, describe, export or verify the standard datasets.",
@@ -138,6 +141,71 @@ def coverage(form: FormatOption = Format.TABLE) -> None:
     emit(rows, PAIRS, form, document=found.to_dict(), title="Detector-mask pairs")
     if form is Format.TABLE:
         typer.echo(found.sentence(), err=True)
+
+
+@app.command()
+def preview(
+    name: NameArgument,
+    *,
+    out: Annotated[Path, typer.Option(help="PNG file to write.", show_default=False)],
+    condition: Annotated[
+        str | None, typer.Option(help="Under which condition; the first by default.")
+    ] = None,
+    overlay: Annotated[
+        str | None,
+        typer.Option(
+            metavar="EXTRACTOR", help="Draw frames with the places that this extractor finds."
+        ),
+    ] = None,
+) -> None:
+    """Draw a data set: some of its samples, as what they are.
+
+    With --overlay frames about the Sun, with a cross where the extractor finds it and a ring where
+    it is.
+    """
+    preset = datasets.get(name)
+    chosen = condition or preset.conditions[0]
+    if chosen not in preset.conditions:
+        raise UnknownNameError("condition", chosen, preset.conditions)
+    if overlay is None:
+        from benchmark.datasets.preview import preview_png  # noqa: PLC0415 - renders, so on demand
+
+        picture = preview_png(preset, chosen)
+    else:
+        from benchmark.datasets.preview_overlay import overlay_png  # noqa: PLC0415 - as above
+
+        picture = overlay_png(preset, installed().extractor(overlay), [chosen])
+    replace_file(out, picture)
+    typer.echo(f"wrote {out}", err=True)
+
+
+@app.command()
+def albedo(
+    name: NameArgument,
+    *,
+    n: Annotated[
+        int | None, typer.Option("--n", min=1, help="Only the first N samples of the test split.")
+    ] = 100,
+    form: FormatOption = Format.TABLE,
+) -> None:
+    """Say how far light from the sunlit Earth moves an estimate of the Sun, without noise.
+
+    Of a cube of bare photodiodes, or of one aperture above a pixel array whose window follows the
+    Sun; beside the Cramer-Rao bound. Most masked data sets leave this light out: this is why.
+    """
+    from benchmark.sweeps.albedo_influence import influence  # noqa: PLC0415 - renders, so on demand
+
+    found = influence(name, n)
+    row = {
+        "dataset": name,
+        "samples": len(found.moved_deg),
+        "rms_deg": found.rms_deg,
+        "worst_deg": found.worst_deg,
+        "rms_over_bound": found.rms_over_bound,
+        "share_above_a_tenth": found.share_above_a_tenth,
+    }
+    title = f"{name}: light from the Earth moves the estimate"
+    emit([row], tuple(row), form, document=row, title=title)
 
 
 @app.command()

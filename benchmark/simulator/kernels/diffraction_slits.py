@@ -61,18 +61,14 @@ def _fresnel(u: float, table: Table) -> Complex:
 
 @compiled
 def _slit(position: float, number: float, table: Table) -> float:
-    """As `diffraction.slit_intensity`."""
+    """Intensity behind an endless slit, in units of the open light.
+
+    At a position in units of the slit's half width, for a Fresnel number of the half width.
+    """
     root = math.sqrt(2.0 * number)
     re, im = _fresnel(root * (position + 1.0), table)
     other_re, other_im = _fresnel(root * (position - 1.0), table)
     return float(((re - other_re) ** 2 + (im - other_im) ** 2) / 2.0)
-
-
-@compiled
-def intensities(out: Floats, positions: Floats, number: float, table: Table) -> None:
-    """`diffraction.slit_intensity` at (M,) positions, from the table the frames use."""
-    for n in range(out.shape[0]):
-        out[n] = _slit(positions[n], number, table)
 
 
 @compiled

@@ -92,21 +92,6 @@ def fresnel(argument: Floats) -> NDArray[np.complex128]:
     return np.asarray(cosine + 1j * sine)
 
 
-def slit_intensity(position: Floats, number: float) -> Floats:
-    """Intensity behind an endless slit, in units of the open light.
-
-    Parameters
-    ----------
-    position
-        Distance from the middle of the shadow in units of the slit's half width.
-    number
-        Fresnel number ``a^2 / (lambda J)`` of the half width a, of any size.
-    """
-    root = math.sqrt(2.0 * number)
-    field = fresnel(root * (position + 1.0)) - fresnel(root * (position - 1.0))
-    return np.asarray((field.real**2 + field.imag**2) / 2.0)
-
-
 def round_intensity(
     radial: Floats, tangential: Floats, numbers: tuple[float, float], points: int | None = None
 ) -> Floats:

@@ -69,11 +69,6 @@ class MultiSpotSensor:
         """(N, 2) zeros: frames are whole."""
         return np.zeros((len(sun), 2), dtype=np.int64)
 
-    def spots_px(self, sun: Floats, pattern: FixedPattern) -> Floats:
-        """(N, A, 2) where the ray from the Sun's centre through each aperture's centre falls."""
-        shift = self.camera.spot_mm(sun) / self.detector.pitch_mm + self.detector.centre_px
-        return np.asarray(shift[:, None, :] + pattern["apertures"][None, :, 1:3])
-
     def boxes(self, scene: Scene, pattern: FixedPattern, margin_px: int = 0) -> Integers:
         """(N, A, 4) first and past-last column and row each aperture lights, on the detector.
 

@@ -14,11 +14,16 @@ from api.cli.commands import dataset
 from benchmark import datasets
 from benchmark.contract import SPLITS
 from benchmark.datasets.coverage import coverage
+from benchmark.datasets.preview import preview_png
+from benchmark.datasets.preview_overlay import overlay_png
+from benchmark.plan.parts import installed
 from benchmark.results.store import Store
 from benchmark.running import pinning
 from benchmark.running.pinning import Pinned
+from benchmark.sweeps.albedo_influence import influence
 
 CUBE = "pd-maskless-cube"
+APERTURE = "cmos-single-aperture"
 
 
 def sunatlas(*arguments):
@@ -91,6 +96,17 @@ def test_verify_passes_then_names_what_was_changed(made, tmp_path):
         (("export", CUBE), 2, "--out"),
         (("verify", "nowhere"), 1, "not an export"),
         (("pin", "pd-maskless-cub"), 1, "'pd-maskless-cube'"),
+        (("preview", "pd-maskless-cub", "--out", "x"), 1, "'pd-maskless-cube'"),
+        (("preview", CUBE, "--out", "x", "--condition", "nominl"), 1, "'nominal'"),
+        (("preview", "ccd-lens", "--out", "x", "--overlay", "hough-line"), 1, "'hough-lines'"),
+        (("preview", CUBE, "--out", "x", "--overlay", "hough-lines"), 1, "spots on frames"),
+        (("preview", CUBE), 2, "--out"),
+        (("albedo", "pd-maskless-cub"), 1, "'pd-maskless-cube'"),
+        (("albedo", "pd-maskless-pyramid"), 1, "no cube"),
+        (("albedo", "pd-orbit"), 1, "no condition 'albedo'"),
+        (("albedo", "ccd-orbit"), 1, "random directions"),
+        (("albedo", "cmos-slit"), 1, "one aperture"),
+        (("albedo", "cmos-lens"), 1, "one aperture"),
         (("exprot", CUBE), 2, "'export'"),
     ],
 )
@@ -103,6 +119,39 @@ def test_wrong_calls_are_one_line_and_write_nothing(tmp_path, monkeypatch, argum
     assert shown.stderr.count("\n") == 1
     assert says in shown.stderr
     assert not (tmp_path / "x").exists()
+
+
+def test_a_preview_is_the_picture_of_the_condition(tmp_path):
+    path = tmp_path / "new" / "cube.png"
+    shown = sunatlas("preview", CUBE, "--condition", "albedo", "--out", path)
+    assert (shown.exit_code, shown.stdout) == (0, "")
+    assert shown.stderr == f"wrote {path}\n"
+    assert path.read_bytes() == preview_png(datasets.get(CUBE), "albedo")
+    sunatlas("preview", CUBE, "--out", path)
+    assert path.read_bytes() == preview_png(datasets.get(CUBE), "nominal")
+
+
+def test_an_overlay_shows_what_an_extractor_finds(tmp_path):
+    path = tmp_path / "lens.png"
+    shown = sunatlas("preview", "ccd-lens", "--out", path, "--overlay", "hough-lines")
+    assert shown.exit_code == 0
+    preset, extractor = datasets.get("ccd-lens"), installed().extractor("hough-lines")
+    assert path.read_bytes() == overlay_png(preset, extractor, ["nominal"])
+
+
+@pytest.mark.parametrize(("name", "low", "high"), [(CUBE, 1.0, 90.0), (APERTURE, 1e-9, 1e-3)])
+def test_earth_s_light_moves_bare_diodes_and_not_what_a_mask_shades(name, low, high):
+    (row,) = csv.DictReader(
+        io.StringIO(sunatlas("albedo", name, "--n", "10", "--format", "csv").stdout)
+    )
+    found = influence(name, 10)
+    assert row["dataset"] == name
+    assert row["samples"] == "10"
+    assert low < float(row["rms_deg"]) < high
+    for quantity in ("rms_deg", "worst_deg", "rms_over_bound", "share_above_a_tenth"):
+        assert float(row[quantity]) == getattr(found, quantity)
+    as_json = json.loads(sunatlas("albedo", name, "--n", "10", "--format", "json").stdout)
+    assert {key: str(value) for key, value in as_json.items()} == row
 
 
 def test_what_is_in_the_way_stays(made, tmp_path):

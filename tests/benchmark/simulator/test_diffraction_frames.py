@@ -12,13 +12,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from closed_forms import slit_intensity
 
 from benchmark import datasets
 from benchmark.metrics.bounds import cramer_rao
 from benchmark.simulator.light.sun_disc import SolarDisc, from_angles
 from benchmark.simulator.masks.apertures import Aperture, Mask
 from benchmark.simulator.optics.assembly import Assembly
-from benchmark.simulator.optics.diffraction import Spectrum, slit_intensity
+from benchmark.simulator.optics.diffraction import Spectrum
 from benchmark.simulator.optics.plates import CoverGlass, Plate
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout.noise import NoiseStreams

@@ -287,9 +287,9 @@ def test_spots_are_where_the_built_mask_puts_them() -> None:
     sensor = replace(sensor_over(sun, MASKS["squares"], diameter_deg=0.0), errors=errors)
     pattern = sensor.fixed_pattern("unit")
     frame = sensor.lit(one_scene(sun), pattern)[0]
-    for box, spot in zip(
-        sensor.boxes(one_scene(sun), pattern)[0], sensor.spots_px(sun, pattern)[0], strict=True
-    ):
+    centre = sensor.camera.spot_mm(sun)[0] / sensor.detector.pitch_mm + sensor.detector.centre_px
+    spots = centre + pattern["apertures"][:, 1:3]
+    for box, spot in zip(sensor.boxes(one_scene(sun), pattern)[0], spots, strict=True):
         x0, x1, y0, y1 = box
         part = np.zeros_like(frame)
         part[y0:y1, x0:x1] = frame[y0:y1, x0:x1]

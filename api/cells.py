@@ -1,0 +1,42 @@
+"""What stands in a cell of a table, or in a document: plain values, and their one spelling."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+LIST_SEPARATOR = "; "
+
+
+def plain(value: Any) -> Any:
+    """Return a value made of what JSON knows: sets sorted, numbers that are not finite None."""
+    if isinstance(value, Mapping):
+        return {str(name): plain(member) for name, member in value.items()}
+    if isinstance(value, set | frozenset):
+        return sorted(plain(member) for member in value)
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        return [plain(member) for member in value]
+    if isinstance(value, bool | int | str) or value is None:
+        return value
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    raise TypeError(f"expected text, numbers, lists and mappings; got {type(value).__name__}")
+
+
+def cell(value: Any) -> str:
+    """Return a value as the text of a CSV cell: lists joined by "; ", nothing found empty.
+
+    Numbers have all their digits; the record spells its own shorter, to be compared by line
+    (`benchmark.results.tables.spelt`).
+    """
+    if value is None or (isinstance(value, float) and not math.isfinite(value)):
+        return ""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, Mapping):
+        return json.dumps(plain(value), ensure_ascii=False)
+    if isinstance(value, Sequence | frozenset | set) and not isinstance(value, str):
+        return LIST_SEPARATOR.join(cell(member) for member in plain(value))
+    return str(value)
