@@ -84,7 +84,7 @@ GROUPS: Mapping[str, Group] = {
         45,
         {
             "benchmark/running/kernels.py": _in(_RUNNING, "kernels"),
-            "benchmark/running/pinning.py": _in(_RUNNING, "pinning"),
+            "benchmark/running/pinning.py": _in(_RUNNING, "pinning_rules", "pinning"),
             "benchmark/running/tim*.py": _in(_RUNNING, "timing", "times"),
             "benchmark/plan/*": _in(_RUNNING, "plan"),
             "benchmark/running/*": _in(_RUNNING, "backend", "runner"),
@@ -99,7 +99,7 @@ GROUPS: Mapping[str, Group] = {
             "benchmark/results/record.py": _in(_RESULTS, "record"),
             "benchmark/results/pins.py": (
                 *_in(_RESULTS, "store", "record"),
-                *_in(_RUNNING, "pinning"),
+                *_in(_RUNNING, "pinning_rules"),
             ),
             "benchmark/results/*": _in(_RESULTS, "store", "record"),
         },
