@@ -159,14 +159,18 @@ GROUPS: Mapping[str, Group] = {
         {
             "algorithms/extractors/currents/photodiode.py": _in(_EXTRACTORS, "photodiode"),
             "algorithms/extractors/currents/dial_tracks.py": _in(_MODELS, "code_dial_models"),
-            "algorithms/extractors/events/*": _in(_EXTRACTORS, "event_centroid"),
+            "algorithms/extractors/events/*": _in(
+                _EXTRACTORS, "camera_and_event_kernels", "event_centroid"
+            ),
             "algorithms/extractors/frames/cameras/black_sun.py": _in(
                 _EXTRACTORS, "camera_black_sun"
             ),
             "algorithms/extractors/frames/cameras/dark_holes_kernel.py": _in(
-                _EXTRACTORS, "camera_black_sun"
+                _EXTRACTORS, "camera_and_event_kernels", "camera_black_sun"
             ),
-            "algorithms/extractors/frames/cameras/*": _in(_EXTRACTORS, "camera_hough"),
+            "algorithms/extractors/frames/cameras/*": _in(
+                _EXTRACTORS, "camera_and_event_kernels", "camera_hough"
+            ),
             "algorithms/extractors/frames/energy_filter*.py": _in(
                 _EXTRACTORS, "energy_filter_kernel", "energy_filtering"
             ),
