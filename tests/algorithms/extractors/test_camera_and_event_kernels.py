@@ -10,6 +10,7 @@ from scipy import ndimage
 
 from algorithms.extractors.events import first_spikes_kernel as spikes
 from algorithms.extractors.frames.cameras import blooming_kernel as blooming
+from algorithms.extractors.frames.cameras import circles_kernel as circles
 from algorithms.extractors.frames.cameras import dark_holes_kernel as holes
 
 # Blooming lines
@@ -118,6 +119,85 @@ def test_the_place_is_the_mean_of_what_is_near_on_both_sides():
     assert apart == pytest.approx((10.0 + 21.0) / 3 - 11.0)
     assert math.isnan(blooming._agreement(places[[0, 2, 3]], 3, 10.0)[0])
     assert math.isnan(blooming._agreement(places[[1]], 1, 10.0)[0])
+
+
+# Circles
+
+
+@pytest.mark.parametrize("shape", [(9, 14), (14, 9)])
+def test_the_gradient_is_sobel_s_but_for_the_border(shape):
+    frame = np.random.default_rng(1).integers(0, 99, shape).astype(np.uint16)
+    across, down, size = (np.zeros(shape) for _ in range(3))
+    steepest = circles._gradient(frame, across, down, size)
+    inner = (slice(1, -1), slice(1, -1))
+    for axis, found in ((1, across), (0, down)):
+        expected = ndimage.sobel(frame.astype(float), axis=axis) / 8
+        np.testing.assert_allclose(found[inner], expected[inner])
+        assert np.count_nonzero(found) == np.count_nonzero(expected[inner])
+    np.testing.assert_allclose(size, np.hypot(across, down))
+    assert steepest == size.max()
+
+
+@pytest.mark.parametrize("turn_deg", [0.0, 20.0, 60.0, 90.0, 130.0, 200.0, 300.0])
+def test_edges_lie_where_a_blurred_step_is_steepest(turn_deg):
+    c, s = math.cos(math.radians(turn_deg)), math.sin(math.radians(turn_deg))
+    rows, columns = np.mgrid[:17, :25]
+    away = (columns - 12.3) * c + (rows - 8.2) * s
+    frame = 100.0 / (1.0 + np.exp(-away))
+    across, down, size = (np.zeros(frame.shape) for _ in range(3))
+    circles._gradient(frame, across, down, size)
+    edges = np.empty((frame.size, 5))
+    count = circles._edges(across, down, size, 10.0, edges)
+    assert count >= 8
+    x, y, unit_x, unit_y, height = edges[:count].T
+    np.testing.assert_allclose((x - 12.3) * c + (y - 8.2) * s, 0.0, atol=0.08)
+    np.testing.assert_allclose(unit_x, c, atol=0.02)
+    np.testing.assert_allclose(unit_y, s, atol=0.02)
+    assert (height >= 10.0).all()
+    assert circles._edges(across, down, size, 1e3, edges) == 0
+
+
+def test_votes_go_both_ways_along_the_gradient_and_count_one_over_the_radius():
+    edges = np.array([(20.0, 9.0, 0.6, 0.8, 7.0)])
+    votes = np.empty((30, 40))
+    circles._vote(edges, 1, 5.0, 15.0, votes)
+    expected = np.zeros_like(votes)
+    for r in range(5, 16):
+        for way in (-1, 1):
+            a, b = math.floor(20 + way * r * 0.6 + 0.5), math.floor(9 + way * r * 0.8 + 0.5)
+            if 0 <= a < 40 and 0 <= b < 30:
+                expected[b, a] += 1 / r
+    np.testing.assert_allclose(votes, expected)
+    assert np.count_nonzero(votes) == 11 + 7  # nine rows up there is no more
+
+
+def test_candidates_are_the_highest_sums_of_three_by_three():
+    votes = np.zeros((12, 19))
+    for (i, j), value in {(3, 4): 5.0, (8, 14): 9.0, (9, 3): 1.0}.items():
+        votes[i - 1 : i + 2, j - 1 : j + 2] = 0.5
+        votes[i, j] = value
+    places = np.zeros((2, 3))
+    sums = np.empty_like(votes)
+    circles._candidates(votes, sums, places)
+    expected = ndimage.uniform_filter(votes, 3, mode="constant") * 9
+    np.testing.assert_allclose(sums[1:-1, 1:-1], expected[1:-1, 1:-1], atol=1e-12)
+    assert sorted(places.tolist()) == [[9.0, 4.0, 3.0], [13.0, 14.0, 8.0]]
+
+
+@pytest.mark.parametrize("way", [-1.0, 1.0])
+def test_a_circle_s_radius_is_that_of_edges_all_around_it(way):
+    turns = 2 * np.pi * (np.arange(64) + 0.5) / 64
+    out = np.column_stack([np.cos(turns), np.sin(turns)])
+    edges = np.column_stack([np.array([30.0, 20.0]) + 9.0 * out, way * out, np.full(64, 8.0)])
+    room = np.empty((20, circles._SECTORS))
+    edge, radius = circles._radius(edges, 64, 30.0, 20.0, way, 5.0, 15.0, 0.9, room)
+    assert (edge, radius) == (8.0, pytest.approx(9.0, abs=1.0))
+    # the other way round there is none, nor among other radii, nor of half a circle
+    assert circles._radius(edges, 64, 30.0, 20.0, -way, 5.0, 15.0, 0.9, room) == (0.0, 0.0)
+    assert circles._radius(edges, 64, 30.0, 20.0, way, 11.0, 15.0, 0.9, room) == (0.0, 0.0)
+    assert circles._radius(edges[:32], 32, 30.0, 20.0, way, 5.0, 15.0, 0.9, room) == (0.0, 0.0)
+    half = circles._radius(edges[:32], 32, 30.0, 20.0, way, 5.0, 15.0, 0.5, room)
+    assert half[0] == pytest.approx(4.0)
 
 
 # Dark holes

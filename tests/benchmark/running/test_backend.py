@@ -4,13 +4,19 @@ from __future__ import annotations
 
 import os
 import platform
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
 import fake_atlas
+import fake_plan
 import pytest
 
-from benchmark.running import backend
+from benchmark.plan.combinations import Cell
+from benchmark.plan.parts import UnknownNameError
+from benchmark.results.store import Store
+from benchmark.running import backend, run
+from benchmark.running.progress import silent
 from benchmark.running.task import Task
 
 
@@ -125,6 +131,29 @@ def test_a_scheduler_is_asked_though_there_is_one_worker(
     monkeypatch.setattr(backend, "Parallel", lambda **options: _closing)
     assert len(list(backend.outcomes(tasks(1), 1, "tcp://somewhere:1"))) == 1
     assert asked == ["tcp://somewhere:1", "left"]
+
+
+@pytest.mark.parametrize("name", ["dataset", "extractor", "model"])
+def test_a_cell_of_what_is_not_installed_is_named_before_anything_is_done(
+    name: str, tmp_path: Any
+) -> None:
+    known = Cell("fake-diodes", "quiet", "fake-currents", "fake-least-squares")
+    wrong = replace(known, **{name: "fake-nothing"})
+    parts, store = fake_plan.parts(), Store(tmp_path / "store")
+    assert run.stale([known], store, parts=parts) == [known]
+    for call in (run.stale, run.run):
+        with pytest.raises(UnknownNameError, match=f"no {name} named 'fake-nothing'"):
+            call([known, wrong], store, parts=parts)
+    assert not store.directory.exists()
+
+
+def test_cells_are_measured_once_each_and_the_time_is_told(tmp_path: Any) -> None:
+    cell = Cell("fake-diodes", "quiet", "fake-currents", "fake-least-squares")
+    store = Store(tmp_path)
+    done = run.run([cell, cell], store, progress=silent, parts=fake_plan.parts())
+    assert (done.planned, done.already_stored, done.computed) == (1, 0, 1)
+    assert 0.0 < done.seconds < 600.0
+    assert done.store == tmp_path
 
 
 def _closing(calls: Any) -> Any:
