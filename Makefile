@@ -1,11 +1,15 @@
-# Every target installs first when needed: a fresh clone needs only Python >= 3.11, make and git.
+# Every target installs first what it needs: a fresh clone needs only Python >= 3.11, make and git.
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
-STAMP := $(VENV)/.installed
+# What is installed already: what serving and every command need, the rest of development, peers.
+SERVING := $(VENV)/.serving
+DEVELOPING := $(VENV)/.developing
 PEERS := $(VENV)/.peers
 WORKERS ?= 2
 PORT ?= 8000
+# Bytecode is left to the first import of a module: most of it would never be read.
+PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile
 # One thread per worker: parallel work is by processes, and scores must not depend on the machine's cores.
 export OMP_NUM_THREADS = 1
 export OPENBLAS_NUM_THREADS = 1
@@ -13,54 +17,70 @@ export MKL_NUM_THREADS = 1
 export NUMBA_NUM_THREADS = 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install serve test lint bench leaderboard docs lock clean
+.PHONY: help install serve test test-all coverage lint bench leaderboard docs lock clean
 
 help: ## show this list
-	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 14
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 14
 
-install: $(STAMP) ## set up .venv from the pinned, hashed lock file
+install: $(DEVELOPING) ## set up .venv with everything that development needs, pinned and hashed
 
-$(STAMP): requirements.lock pyproject.toml
+$(SERVING): requirements.lock pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 		{ echo "Python >= 3.11 is needed; $(PYTHON) is $$($(PYTHON) --version). Set PYTHON=/path/to/python3.11." >&2; exit 1; }
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.lock
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
+	$(PIP) --require-hashes -r requirements.lock
+	$(PIP) --no-deps --no-build-isolation -e .
 	touch $@
 
-serve: $(STAMP) ## serve the page and the API on http://127.0.0.1:8000
+$(DEVELOPING): $(SERVING) requirements-dev.lock
+	$(PIP) --require-hashes -r requirements-dev.lock
+	touch $@
+
+$(PEERS): $(DEVELOPING) requirements-peers.lock
+	$(PIP) --require-hashes -r requirements-peers.lock
+	touch $@
+
+serve: $(SERVING) ## serve the page and the API on http://127.0.0.1:8000 (installs only what that needs)
 	$(BIN)/sunatlas serve --port $(PORT) --times
 
-test: $(STAMP) ## run the tests
+test: $(DEVELOPING) ## run the tests, the slow ones left out
+	$(BIN)/python -m pytest -n $(WORKERS) -m "not slow"
+
+test-all: $(DEVELOPING) ## run every test, as CI does
 	$(BIN)/python -m pytest -n $(WORKERS)
 
-lint: $(STAMP) ## ruff, mypy (strict), the floors
+coverage: $(DEVELOPING) ## run every test and tell which lines and branches of the floors it reached
+	$(BIN)/python -m pytest -n $(WORKERS) --cov --cov-report=term:skip-covered --cov-report=html:out/coverage
+
+lint: $(DEVELOPING) ## ruff, mypy (strict), the floors
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-$(PEERS): $(STAMP) requirements-peers.lock
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-peers.lock
-	touch $@
+bench: $(PEERS) ## every speed and accuracy limit, as ratios measured in the same run; lists the broken ones
+	$(BIN)/python -m tests.speed
 
-bench: $(PEERS) ## speed and accuracy beside peers, as ratios measured in the same run
-	$(BIN)/python -m tests.speed.simulator
-	$(BIN)/python -m tests.speed.extractors
-	$(BIN)/python -m tests.speed.service
-
-leaderboard: $(STAMP) ## bring scores and leaderboard up to date with code and data
+leaderboard: $(SERVING) ## bring scores and leaderboard up to date with code and data
 	$(BIN)/sunatlas leaderboard update --workers $(WORKERS)
 
-docs: $(STAMP) ## regenerate the generated parts of docs/
+docs: $(DEVELOPING) ## regenerate the generated parts of docs/
 	$(BIN)/python -m api.docs.documentation
 
-lock: $(STAMP) ## renew both lock files from pyproject.toml (needs uv on the PATH)
-	uv pip compile --universal --python-version 3.11 --extra dev --generate-hashes \
-		--no-emit-index-url --no-header -o requirements.lock pyproject.toml
-	uv pip compile --universal --python-version 3.11 --extra peers --constraints requirements.lock \
-		--generate-hashes --no-emit-index-url --no-header -o requirements-peers.lock pyproject.toml
+# `make lock UPGRADE=--upgrade` takes the newest versions; without it, pins that still fit stay.
+COMPILE := uv pip compile --quiet --universal --python-version 3.11 --generate-hashes \
+	--no-emit-index-url --no-header $(UPGRADE)
+lock: ## renew the lock files from pyproject.toml (needs uv on the PATH)
+	$(COMPILE) --extra build -o requirements.lock pyproject.toml
+	$(COMPILE) --extra build --extra dev --constraints requirements.lock -o requirements-dev.lock pyproject.toml
+	$(COMPILE) --extra peers --constraints requirements-dev.lock -o requirements-peers.lock pyproject.toml
+	mkdir -p out
+	uv pip compile --quiet --python-version 3.11 --no-header --upgrade --resolution lowest-direct \
+		--extra build -o out/lowest.txt pyproject.toml
+	uv pip compile --quiet --python-version 3.11 --generate-hashes --no-emit-index-url --no-header \
+		$(UPGRADE) --extra build --extra dev --constraints out/lowest.txt \
+		-o requirements-lowest.lock pyproject.toml
 
 clean: ## remove the virtual environment and caches
-	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
+	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache .coverage out/coverage
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

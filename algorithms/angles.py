@@ -8,11 +8,10 @@ Two pairs of angles are in use and agree only on the axes: projected angles
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from algorithms.contract import Floats
 from algorithms.row_arithmetic import normalised
-
-Floats = NDArray[np.float64]
 
 
 def angles_from_sun(sun: ArrayLike) -> Floats:
@@ -32,6 +31,12 @@ def angles_from_sun(sun: ArrayLike) -> Floats:
     ------
     ValueError
         If `sun` is not (N, 3).
+
+    Examples
+    --------
+    >>> angles_from_sun([[0.0, 1.0, 1.0], [0.0, 0.0, -1.0]])
+    array([[45.,  0.],
+           [nan, nan]])
     """
     return np.degrees(np.arctan(tangents_from_sun(sun)))
 
@@ -53,6 +58,12 @@ def sun_from_angles(angles_deg: ArrayLike) -> Floats:
     ------
     ValueError
         If `angles_deg` is not (N, 2).
+
+    Examples
+    --------
+    >>> sun_from_angles([[0.0, 45.0], [0.0, 90.0]]).round(3)
+    array([[0.707, 0.   , 0.707],
+           [  nan,   nan,   nan]])
     """
     angles = _rows(angles_deg, 2, "angles_deg")
     front = np.abs(angles) < 90.0
@@ -62,7 +73,28 @@ def sun_from_angles(angles_deg: ArrayLike) -> Floats:
 
 
 def tangents_from_sun(sun: ArrayLike) -> Floats:
-    """``(tan(alpha), tan(beta))`` (N, 2) of Sun vectors (N, 3); NaN row where ``s_z <= 0``."""
+    """Tangents of the projected angles of Sun vectors (eq:stdproj).
+
+    Parameters
+    ----------
+    sun : array_like, shape (N, 3)
+        Vectors to the Sun in the sensor frame; their length does not matter.
+
+    Returns
+    -------
+    ndarray, shape (N, 2)
+        ``(tan(alpha), tan(beta)) = (s_y / s_z, s_x / s_z)``; a NaN row where ``s_z <= 0``.
+
+    Raises
+    ------
+    ValueError
+        If `sun` is not (N, 3).
+
+    Examples
+    --------
+    >>> tangents_from_sun([[0.5, 1.0, 2.0]])
+    array([[0.5 , 0.25]])
+    """
     vectors = _rows(sun, 3, "sun")
     tangents = np.full((len(vectors), 2), np.nan)
     front = vectors[:, 2] > 0
@@ -71,7 +103,28 @@ def tangents_from_sun(sun: ArrayLike) -> Floats:
 
 
 def sun_from_tangents(tangents: ArrayLike) -> Floats:
-    """Sun unit vectors (N, 3) of ``(tan(alpha), tan(beta))`` (N, 2); NaN rows stay NaN."""
+    """Sun unit vectors of tangents; the inverse of `tangents_from_sun`.
+
+    Parameters
+    ----------
+    tangents : array_like, shape (N, 2)
+        ``(tan(alpha), tan(beta))``.
+
+    Returns
+    -------
+    ndarray, shape (N, 3)
+        Unit vectors; NaN rows stay NaN.
+
+    Raises
+    ------
+    ValueError
+        If `tangents` is not (N, 2).
+
+    Examples
+    --------
+    >>> sun_from_tangents([[0.0, 0.75]])
+    array([[0.6, 0. , 0.8]])
+    """
     columns = _rows(tangents, 2, "tangents")
     return normalised(
         np.column_stack([columns[:, 1], columns[:, 0], np.ones(len(columns))]),
@@ -95,6 +148,12 @@ def rotations_from_sun(sun: ArrayLike) -> Floats:
     ------
     ValueError
         If `sun` is not (N, 3).
+
+    Examples
+    --------
+    >>> rotations_from_sun([[0.0, 1.0, 0.0], [1.0, 0.0, 1.0]])
+    array([[90.,  0.],
+           [ 0., 45.]])
     """
     x, y, z = _rows(sun, 3, "sun").T
     rotations = np.column_stack([np.arctan2(y, np.hypot(x, z)), np.arctan2(x, z)])
@@ -102,7 +161,28 @@ def rotations_from_sun(sun: ArrayLike) -> Floats:
 
 
 def sun_from_rotations(rotations_deg: ArrayLike) -> Floats:
-    """Sun unit vectors (N, 3) of rotation angles (N, 2); the inverse of `rotations_from_sun`."""
+    """Sun unit vectors of rotation angles; the inverse of `rotations_from_sun`.
+
+    Parameters
+    ----------
+    rotations_deg : array_like, shape (N, 2)
+        ``(alpha, beta)`` in degrees, any.
+
+    Returns
+    -------
+    ndarray, shape (N, 3)
+        ``(sin(beta) cos(alpha), sin(alpha), cos(beta) cos(alpha))``.
+
+    Raises
+    ------
+    ValueError
+        If `rotations_deg` is not (N, 2).
+
+    Examples
+    --------
+    >>> sun_from_rotations([[30.0, 0.0]]).round(3)
+    array([[0.   , 0.5  , 0.866]])
+    """
     alpha, beta = np.radians(_rows(rotations_deg, 2, "rotations_deg")).T
     return np.column_stack(
         [np.sin(beta) * np.cos(alpha), np.sin(alpha), np.cos(beta) * np.cos(alpha)]
@@ -129,6 +209,11 @@ def separation_deg(first: ArrayLike, second: ArrayLike) -> Floats:
     ------
     ValueError
         If an array is not (N, 3) or their lengths differ.
+
+    Examples
+    --------
+    >>> separation_deg([[0.0, 0.0, 1.0]], [[0.0, 1e-9, 1.0]])
+    array([5.72957795e-08])
     """
     a, b = _rows(first, 3, "first"), _rows(second, 3, "second")
     if len(a) != len(b):

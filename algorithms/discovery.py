@@ -17,7 +17,7 @@ from typing import cast
 
 import algorithms.extractors
 import algorithms.models
-from algorithms.contract import Extractor, Model
+from algorithms.contract import About, Extractor, Model
 
 
 def discover_extractors() -> dict[str, type[Extractor]]:
@@ -52,7 +52,7 @@ def discover_models() -> dict[str, type[Model]]:
 
 
 def implementations(package: ModuleType, contract: type, method: str) -> dict[str, type]:
-    """Public classes of a package's modules that have `method`, by their ``name``.
+    """Public classes of a package's modules that have `method`, by the name in ``about``.
 
     Parameters
     ----------
@@ -76,12 +76,18 @@ def implementations(package: ModuleType, contract: type, method: str) -> dict[st
         if not callable(getattr(implementation, method, None)):
             continue
         where = f"{implementation.__module__}.{implementation.__qualname__}"
-        missing = sorted(member for member in members if not hasattr(implementation, member))
+        missing = sorted(
+            {member for member in members if not hasattr(implementation, member)}
+            | getattr(implementation, "__abstractmethods__", frozenset())
+        )
         if missing:
             raise TypeError(f"{where} lacks {', '.join(missing)} of the {contract.__name__}")
+        about = vars(implementation).get("about")
+        if not isinstance(about, About):
+            raise TypeError(f"{where} must say of itself what it is: about must be an About")
         if not dataclasses.is_dataclass(implementation):
             raise TypeError(f"{where} must be a dataclass: its fields are its parameters")
-        name = vars(implementation)["name"]
+        name = about.name
         if name in found:
             other = found[name]
             raise ValueError(

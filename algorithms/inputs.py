@@ -6,17 +6,14 @@ the form is right and the data are not enough), and never changes the caller's a
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from algorithms.contract import (
-    FeatureKind,
     Floats,
     NotFittedError,
-    UnsuitableDesignError,
     UnusableDataError,
 )
 
@@ -46,6 +43,12 @@ def as_frames(observations: ArrayLike) -> Frames:
     ------
     ValueError
         If the input is not three-dimensional, is empty, is masked or does not hold real numbers.
+
+    Examples
+    --------
+    >>> as_frames([[[True, False], [False, False]]])
+    array([[[1, 0],
+            [0, 0]]], dtype=uint8)
     """
     array = _numbers(observations, "observations", 3, "(N, H, W)")
     if array.dtype.kind == "b":
@@ -62,13 +65,33 @@ def as_frames(observations: ArrayLike) -> Frames:
 
 
 def as_currents(observations: ArrayLike, columns: int, by: str) -> Floats:
-    """Detector readings (N, `columns`) as float64.
+    """Detector readings as float64.
+
+    Parameters
+    ----------
+    observations : array_like, shape (N, columns)
+        Real numbers.
+    columns : int
+        Elements of the detector.
+    by : str
+        Who reads them, for the message.
+
+    Returns
+    -------
+    ndarray, shape (N, columns)
+        A copy.
 
     Raises
     ------
     ValueError
         If the input is not (N, `columns`), is empty, is masked or does not hold real numbers;
         the message names `by`.
+
+    Examples
+    --------
+    >>> as_currents([[1, 2, 3]], 4, "voltage-balance")  # doctest: +ELLIPSIS
+    Traceback (most recent call last):
+    ValueError: voltage-balance reads observations of shape (N, 4), ...; got (1, 3)
     """
     array = _numbers(observations, f"observations of {by}", 2, f"(N, {columns})")
     if array.shape[1] != columns:
@@ -80,12 +103,32 @@ def as_currents(observations: ArrayLike, columns: int, by: str) -> Floats:
 
 
 def as_features(features: ArrayLike, columns: int, by: str) -> Floats:
-    """Features (N, `columns`) as float64, with every row that is not finite set to NaN.
+    """Features as float64, with every row that is not finite set to NaN.
+
+    Parameters
+    ----------
+    features : array_like, shape (N, columns)
+        Real numbers.
+    columns : int
+        Features of a sample.
+    by : str
+        Who reads them, for the message.
+
+    Returns
+    -------
+    ndarray, shape (N, columns)
+        A copy, of rows that are finite or NaN throughout.
 
     Raises
     ------
     ValueError
         If the input is not (N, `columns`), is empty, is masked or does not hold real numbers.
+
+    Examples
+    --------
+    >>> as_features([[1, 2], [3, float("inf")]], 2, "spm")
+    array([[ 1.,  2.],
+           [nan, nan]])
     """
     array = _numbers(features, f"features of {by}", 2, f"(N, {columns})")
     if array.shape[1] != columns:
@@ -98,13 +141,37 @@ def as_features(features: ArrayLike, columns: int, by: str) -> Floats:
 def as_calibration(
     features: ArrayLike, sun: ArrayLike, columns: int, by: str
 ) -> tuple[Floats, Floats]:
-    """Paired features (n, `columns`) and Sun unit vectors (n, 3), rows without features left out.
+    """Paired features and Sun unit vectors, rows without features left out.
+
+    Parameters
+    ----------
+    features : array_like, shape (N, columns)
+        Real numbers.
+    sun : array_like, shape (N, 3)
+        Unit vectors.
+    columns : int
+        Features of a sample.
+    by : str
+        Who reads them, for the message.
+
+    Returns
+    -------
+    features : ndarray, shape (n, columns)
+        Those that are finite.
+    sun : ndarray, shape (n, 3)
+        Of the same samples.
 
     Raises
     ------
     ValueError
         If either shape is wrong, their lengths differ, or a Sun vector is not finite and of unit
         length within `UNIT_TOLERANCE`.
+
+    Examples
+    --------
+    >>> found, sun = as_calibration([[1, 2], [np.nan, 2]], [[0, 0, 1], [0, 1, 0]], 2, "spm")
+    >>> found, sun
+    (array([[1., 2.]]), array([[0., 0., 1.]]))
     """
     found = as_features(features, columns, by)
     vectors = np.array(_numbers(sun, f"sun of {by}", 2, "(N, 3)"), dtype=np.float64)
@@ -123,7 +190,37 @@ def as_calibration(
 
 
 def as_frontal_calibration(features: ArrayLike, sun: ArrayLike, by: str) -> tuple[Floats, Floats]:
-    """`as_calibration` of two columns for a planar detector: every Sun must have ``s_z > 0``."""
+    """`as_calibration` of two columns for a planar detector, with the Sun in front of it.
+
+    Parameters
+    ----------
+    features : array_like, shape (N, 2)
+        Real numbers.
+    sun : array_like, shape (N, 3)
+        Unit vectors.
+    by : str
+        Who reads them, for the message.
+
+    Returns
+    -------
+    features : ndarray, shape (n, 2)
+        Those that are finite.
+    sun : ndarray, shape (n, 3)
+        Of the same samples.
+
+    Raises
+    ------
+    UnusableDataError
+        If a sample with features has its Sun behind the detector, ``s_z <= 0``.
+    ValueError
+        As `as_calibration`.
+
+    Examples
+    --------
+    >>> as_frontal_calibration([[1, 2]], [[0, 1, 0]], "spm")  # doctest: +ELLIPSIS
+    Traceback (most recent call last):
+    algorithms.contract.UnusableDataError: spm is a planar model: ...
+    """
     found, vectors = as_calibration(features, sun, 2, by)
     behind = vectors[:, 2] <= 0
     if behind.any():
@@ -135,7 +232,30 @@ def as_frontal_calibration(features: ArrayLike, sun: ArrayLike, by: str) -> tupl
 
 
 def require_samples(count: int, needed: int, by: str, why: str) -> None:
-    """Raise UnusableDataError when fewer than `needed` samples with features are there to fit."""
+    """Refuse too few samples.
+
+    Parameters
+    ----------
+    count : int
+        Samples with features.
+    needed : int
+        Least number of them.
+    by : str
+        Who fits them, for the message.
+    why : str
+        What they are needed for, for the message.
+
+    Raises
+    ------
+    UnusableDataError
+        If `count` is below `needed`.
+
+    Examples
+    --------
+    >>> require_samples(2, 3, "lsq", "five parameters, two angles a sample")  # doctest: +ELLIPSIS
+    Traceback (most recent call last):
+    algorithms.contract.UnusableDataError: lsq needs at least 3 samples with features (...); got 2
+    """
     if count < needed:
         raise UnusableDataError(
             f"{by} needs at least {needed} samples with features ({why}); got {count}"
@@ -143,22 +263,53 @@ def require_samples(count: int, needed: int, by: str, why: str) -> None:
 
 
 def require_fitted(model: object, attribute: str) -> None:
-    """Raise NotFittedError unless `model` carries the fitted `attribute`."""
+    """Refuse to go on with a model that has not been fitted.
+
+    Parameters
+    ----------
+    model : object
+        A model.
+    attribute : str
+        What `fit` gives it.
+
+    Raises
+    ------
+    NotFittedError
+        If `model` does not carry `attribute`.
+
+    Examples
+    --------
+    >>> require_fitted(object(), "table_deg_")
+    Traceback (most recent call last):
+    algorithms.contract.NotFittedError: this object is not fitted yet; call fit(features, sun) first
+    """
     if not hasattr(model, attribute):
         raise NotFittedError(
             f"this {type(model).__name__} is not fitted yet; call fit(features, sun) first"
         )
 
 
-def require_kind(kind: FeatureKind, accepts: Iterable[FeatureKind], by: str) -> None:
-    """Raise UnsuitableDesignError when `kind` is not one of the feature kinds `by` accepts."""
-    kinds = sorted(accepts)
-    if kind not in kinds:
-        raise UnsuitableDesignError(f"{by} accepts {', '.join(kinds)} features; got {kind}")
-
-
 def require_positive(by: str, **parameters: float) -> None:
-    """Raise ValueError naming the first parameter that is not positive and finite."""
+    """Refuse parameters that are not positive and finite.
+
+    Parameters
+    ----------
+    by : str
+        Whose parameters they are, for the message.
+    **parameters : float
+        By name.
+
+    Raises
+    ------
+    ValueError
+        Naming the first of them that is not.
+
+    Examples
+    --------
+    >>> require_positive("spm", focal_length_mm=2.0, unit_mm=0.0)
+    Traceback (most recent call last):
+    ValueError: spm: unit_mm must be positive and finite; got 0.0
+    """
     for name, value in parameters.items():
         if not (np.isfinite(value) and value > 0):
             raise ValueError(f"{by}: {name} must be positive and finite; got {value!r}")

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from algorithms.contract import Floats
 
 
 def quotient_rows(numerators: Floats, divisors: Floats, valid: NDArray[np.bool_]) -> Floats:

@@ -1,7 +1,7 @@
 """The catalogue: every extractor and model implemented, found by discovery.
 
 Nothing is registered by hand. The first call of `catalogue()` imports the implementations, and
-with them SciPy, OpenCV and Numba; importing this module does not.
+with them NumPy; importing this module does not. SciPy and Numba are loaded when they run.
 """
 
 from __future__ import annotations
@@ -135,34 +135,36 @@ class Catalogue:
         )
 
     def _describe_extractor(self, cls: type[Extractor]) -> Implementation:
+        about = cls.about
         return Implementation(
-            name=cls.name,
+            name=about.name,
             role="extractor",
-            taxonomy=cls.taxonomy,
-            category=self.taxonomy.category("extractor", cls.taxonomy),
-            observation=str(cls.observation),
-            kind=str(cls.kind),
+            taxonomy=about.taxonomy,
+            category=self.taxonomy.category("extractor", about.taxonomy),
+            observation=str(about.observation),
+            kind=str(about.kind),
             accepts=None,
-            labels=tuple(cls.labels),
-            studies=tuple(cls.studies),
-            origin=cls.origin,
-            version=cls.version,
+            labels=tuple(about.labels),
+            studies=tuple(about.studies),
+            origin=about.origin,
+            version=about.version,
             summary=_summary(cls),
         )
 
     def _describe_model(self, cls: type[Model]) -> Implementation:
+        about = cls.about
         return Implementation(
-            name=cls.name,
+            name=about.name,
             role="model",
-            taxonomy=cls.taxonomy,
-            category=self.taxonomy.category("model", cls.taxonomy),
+            taxonomy=about.taxonomy,
+            category=self.taxonomy.category("model", about.taxonomy),
             observation=None,
             kind=None,
-            accepts=tuple(sorted(str(kind) for kind in cls.accepts)),
-            labels=tuple(cls.labels),
-            studies=tuple(cls.studies),
-            origin=cls.origin,
-            version=cls.version,
+            accepts=tuple(sorted(str(kind) for kind in about.accepts)),
+            labels=tuple(about.labels),
+            studies=tuple(about.studies),
+            origin=about.origin,
+            version=about.version,
             summary=_summary(cls),
         )
 
@@ -185,8 +187,8 @@ def _by_value(
 ) -> dict[str, tuple[str, ...]]:
     names: dict[str, list[str]] = {}
     for name, cls in sorted(found.items()):
-        taxonomy.require(attribute, cls.taxonomy, parameter=f"{attribute} {name}")
-        names.setdefault(cls.taxonomy, []).append(name)
+        taxonomy.require(attribute, cls.about.taxonomy, parameter=f"{attribute} {name}")
+        names.setdefault(cls.about.taxonomy, []).append(name)
     return {value: tuple(n) for value, n in names.items()}
 
 

@@ -193,10 +193,10 @@ def _resolve(
         RunnablePipeline(
             detector=detector,
             mask=mask,
-            extractor=extractor.name,
-            model=model.name,
-            extractor_taxonomy=extractor.taxonomy,
-            model_taxonomy=model.taxonomy,
+            extractor=extractor.about.name,
+            model=model.about.name,
+            extractor_taxonomy=extractor.about.taxonomy,
+            model_taxonomy=model.about.taxonomy,
             assumed=MappingProxyType(_assumed(e, m, extractor, model)),
         )
         for detector, mask in simulated
@@ -230,7 +230,7 @@ def _extractor_options(
     """Return what implements each extractor of the study; add a gap for each without."""
     options = []
     for stated in study.of("extractor"):
-        values = _values_to_run("extractor", stated, SIMPLEST_EXTRACTORS, catalogue)
+        values = _values_to_run(study, "extractor", stated, SIMPLEST_EXTRACTORS, catalogue)
         classes = tuple(cls for value in values for cls in catalogue.extractors_for(value))
         if classes:
             options.append(_ExtractorOption(stated, classes))
@@ -243,7 +243,7 @@ def _model_options(study: Study, catalogue: Catalogue, gaps: list[Gap]) -> list[
     """Return what implements each model of the study; add a gap for each without."""
     options = []
     for stated in study.of("model"):
-        values = _values_to_run("model", stated, SIMPLEST_MODELS, catalogue)
+        values = _values_to_run(study, "model", stated, SIMPLEST_MODELS, catalogue)
         classes = tuple(cls for value in values for cls in catalogue.models_for(value))
         if classes:
             options.append(_ModelOption(stated, classes))
@@ -253,10 +253,11 @@ def _model_options(study: Study, catalogue: Catalogue, gaps: list[Gap]) -> list[
 
 
 def _values_to_run(
-    attribute: str, stated: str, simplest: tuple[str, ...], catalogue: Catalogue
+    study: Study, attribute: str, stated: str, simplest: tuple[str, ...], catalogue: Catalogue
 ) -> tuple[str, ...]:
+    """Return the values that stand for one stated; for "None", of those not stated as well."""
     if stated == NO_IMPLEMENTATION_STATED:
-        return simplest
+        return tuple(value for value in simplest if value not in study.of(attribute))
     return catalogue.taxonomy.kinds(attribute, stated)
 
 
@@ -274,28 +275,30 @@ def _fitting_pairs(
         (extractor, model)
         for extractor in extractors.classes
         for model in models.classes
-        if _reads(extractor, detector) and extractor.kind in model.accepts
+        if _reads(extractor, detector) and extractor.about.kind in model.about.accepts
     ]
     if extractors.stated == NO_IMPLEMENTATION_STATED:
-        fitting = list({model.name: (e, model) for e, model in reversed(fitting)}.values())[::-1]
+        by_name = {model.about.name: (e, model) for e, model in reversed(fitting)}
+        fitting = list(by_name.values())[::-1]
     if models.stated == NO_IMPLEMENTATION_STATED:
-        fitting = list({e.name: (e, model) for e, model in reversed(fitting)}.values())[::-1]
+        by_name = {e.about.name: (e, model) for e, model in reversed(fitting)}
+        fitting = list(by_name.values())[::-1]
         if extractors.stated == NO_IMPLEMENTATION_STATED:
             fitting = fitting[:1]
     return fitting
 
 
 def _reads(extractor: type[Extractor], detector: str) -> bool:
-    return str(extractor.observation) in READOUTS.get(detector, ())
+    return str(extractor.about.observation) in READOUTS.get(detector, ())
 
 
 def _assumed(
     e: _ExtractorOption, m: _ModelOption, extractor: type[Extractor], model: type[Model]
 ) -> dict[str, str]:
     assumed = {}
-    if extractor.taxonomy != e.stated:
+    if extractor.about.taxonomy != e.stated:
         assumed["extractor"] = e.stated
-    if model.taxonomy != m.stated:
+    if model.about.taxonomy != m.stated:
         assumed["model"] = m.stated
     return assumed
 
@@ -311,22 +314,24 @@ def _compatibility_gaps(
     used_extractors = {row[0].stated for rows in fitting.values() for row in rows}
     used_models = {row[1].stated for rows in fitting.values() for row in rows}
     readable = _join(sorted({r for d in detectors for r in READOUTS.get(d, ())}))
-    given = _join(sorted({str(cls.kind) for e in extractors for cls in e.classes}))
-    read = _join(sorted({str(kind) for m in models for cls in m.classes for kind in cls.accepts}))
-    observed = _join(sorted({str(cls.observation) for e in extractors for cls in e.classes}))
+    given = _join(sorted({str(cls.about.kind) for e in extractors for cls in e.classes}))
+    read = _join(
+        sorted({str(kind) for m in models for cls in m.classes for kind in cls.about.accepts})
+    )
+    observed = _join(sorted({str(cls.about.observation) for e in extractors for cls in e.classes}))
     for e in extractors:
         if e.stated in used_extractors:
             continue
         if not any(_reads(cls, d) for cls in e.classes for d in detectors):
-            reads = _join(sorted({str(cls.observation) for cls in e.classes}))
+            reads = _join(sorted({str(cls.about.observation) for cls in e.classes}))
             reason = f"reads {reads}; {_join(detectors)} gives {readable or 'nothing known'}"
         else:
-            gives = _join(sorted({str(cls.kind) for cls in e.classes}))
+            gives = _join(sorted({str(cls.about.kind) for cls in e.classes}))
             reason = f"gives {gives} features; the study's implemented models read {read}"
         gaps.append(Gap("extractor", e.stated, reason))
     for m in models:
         if m.stated not in used_models:
-            reads = _join(sorted({str(kind) for cls in m.classes for kind in cls.accepts}))
+            reads = _join(sorted({str(kind) for cls in m.classes for kind in cls.about.accepts}))
             reason = (
                 f"reads {reads} features; the study's implemented extractors give {given} "
                 f"from {observed}, its detectors {readable or 'nothing known'}"

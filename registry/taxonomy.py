@@ -6,10 +6,11 @@ and whether its calibration runs online, an extractor's family.
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
+
+from survey_data.nearest import nearest
 
 ATTRIBUTES = ("task", "error", "accuracy", "detector", "mask", "model", "extractor")
 """The categorical attributes of the survey's mapping."""
@@ -23,6 +24,9 @@ DERIVED_LEVELS: Mapping[str, str] = MappingProxyType(
 """Pseudo-level -> the attribute whose values imply it."""
 
 LEVELS = (*ATTRIBUTES, *DERIVED_LEVELS)
+
+#: Similarity from which a value is suggested; many of the vocabulary's are short words.
+_ALIKE = 0.5
 
 NO_IMPLEMENTATION_STATED = "None"
 """The taxonomy's own value for a study without a model, an extractor or an error."""
@@ -165,7 +169,8 @@ class Taxonomy:
         names = self._names_of(level)
         spelled = {name.casefold(): value for value, name in names.items()}
         spelled |= {value.casefold(): value for value in names}
-        return nearest(text, spelled)
+        found = nearest(text, spelled, cutoff=_ALIKE)
+        return spelled[found] if found else None
 
     def kinds(self, attribute: str, value: str) -> tuple[str, ...]:
         """`value` and, where it is a parent such as ECM or ICM, its kinds (ECM/Noise, ...)."""
@@ -220,25 +225,11 @@ def attribute_of(level: str) -> str:
     return DERIVED_LEVELS.get(level, level)
 
 
-def nearest(text: str, candidates: Iterable[str] | Mapping[str, str]) -> str | None:
-    """Return the candidate most like `text`, ignoring case; None if none is like it.
-
-    A mapping gives what each spelling stands for.
-    """
-    spelled = (
-        {key.casefold(): value for key, value in candidates.items()}
-        if isinstance(candidates, Mapping)
-        else {key.casefold(): key for key in candidates}
-    )
-    found = difflib.get_close_matches(text.casefold(), spelled, n=1, cutoff=0.5)
-    return spelled[found[0]] if found else None
-
-
 def unknown_name(
     parameter: str, value: object, names: Sequence[str] | Iterable[str]
 ) -> InvalidValueError:
     """Return the error for a name that is none of `names`."""
     known = list(names)
     return InvalidValueError(
-        parameter, value, f"one of {', '.join(known)}", nearest(str(value), known)
+        parameter, value, f"one of {', '.join(known)}", nearest(str(value), known, cutoff=_ALIKE)
     )

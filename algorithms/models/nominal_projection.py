@@ -10,8 +10,8 @@ from typing import TypedDict
 
 import numpy as np
 
-from algorithms.contract import FeatureKind, Floats, SensorGeometry
-from algorithms.inputs import require_kind, require_positive
+from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
+from algorithms.inputs import require_positive
 
 POSITIONS = frozenset({FeatureKind.SPOT, FeatureKind.BALANCE})
 """The kinds of features that place one spot on a plane."""
@@ -25,21 +25,24 @@ class NominalProjection(TypedDict):
     centre: tuple[float, float]
 
 
-def nominal_projection(geometry: SensorGeometry, kind: FeatureKind, by: str) -> NominalProjection:
+def nominal_projection(
+    geometry: SensorGeometry, kind: FeatureKind, about: AboutModel
+) -> NominalProjection:
     """Focal length, unit and centre of a sensor's features.
 
     Raises
     ------
     UnsuitableDesignError
-        If `kind` is not a position or the geometry lacks a field it takes: ``focal_length_mm``
-        always, ``pixel_pitch_mm`` and ``centre_px`` for spots, ``aperture_width_mm`` for balances.
+        If the model does not accept `kind` or the geometry lacks a field it takes:
+        ``focal_length_mm`` always, ``pixel_pitch_mm`` and ``centre_px`` for spots,
+        ``aperture_width_mm`` for balances.
     """
-    require_kind(kind, POSITIONS, by)
+    about.require_kind(kind)
     if kind is FeatureKind.SPOT:
-        geometry.require("focal_length_mm", "pixel_pitch_mm", "centre_px", by=by)
+        geometry.require("focal_length_mm", "pixel_pitch_mm", "centre_px", by=about.name)
         unit, centre = geometry.pixel_pitch_mm, geometry.centre_px
     else:
-        geometry.require("focal_length_mm", "aperture_width_mm", by=by)
+        geometry.require("focal_length_mm", "aperture_width_mm", by=about.name)
         unit, centre = (geometry.aperture_width_mm or 0.0) / 2.0, (0.0, 0.0)
     return NominalProjection(
         focal_length_mm=geometry.focal_length_mm or 0.0,

@@ -8,21 +8,22 @@ from typing import Any
 
 from api.cli.working import working_directory
 from api.cli.wrong_call import WrongCallError
+from api.http import asking
 from api.http.answers import Answer
-from api.http.endpoint import Endpoint
-from api.http.endpoints import all_endpoints
 from api.http.knowledge import Knowledge
 from api.http.measurements import Measurements
 from api.http.problems import Problem, Violation
 
 
-def ask(name: str, arguments: Mapping[str, Any], parts: Mapping[str, str] | None = None) -> Answer:
+def ask(
+    endpoint: asking.PathFunction, query: Mapping[str, Any] | None = None, **parts: str
+) -> Answer:
     """Return the service's answer.
 
     Parameters
     ----------
-    name : of the endpoint
-    arguments : by parameter name; None and empty lists ask nothing
+    endpoint : the path function that answers
+    query : by parameter name; None and empty lists ask nothing
     parts : variable parts of the path
 
     Raises
@@ -30,27 +31,18 @@ def ask(name: str, arguments: Mapping[str, Any], parts: Mapping[str, str] | None
     WrongCallError
         For a value that is not valid, naming the option and the nearest valid value.
     """
-    endpoint = _endpoints()[name]
-    given = {name: value for name, value in arguments.items() if value not in (None, [], ())}
-    where = dict(parts or {})
+    given = {name: value for name, value in (query or {}).items() if value not in (None, [], ())}
+    arguments = parts if query is None else {**parts, "query": given}
     try:
-        for part in endpoint.parts:
-            part.check(where[part.name])
-        return endpoint.build(where, endpoint.parameters.from_body(given))
+        return asking.ask(endpoint, knowledge(), **arguments)
     except Problem as problem:
-        options = set(given)
-        raise WrongCallError("; ".join(_said(e, options) for e in problem.errors)) from problem
+        raise WrongCallError("; ".join(_said(e, set(given)) for e in problem.errors)) from problem
 
 
 @cache
 def knowledge() -> Knowledge:
     """Return what is known, with the times of this machine, loaded on first use."""
     return Knowledge(Measurements(times_directory=working_directory()))
-
-
-@cache
-def _endpoints() -> dict[str, Endpoint]:
-    return {endpoint.name: endpoint for endpoint in all_endpoints(knowledge())}
 
 
 def _said(error: Violation, options: set[str]) -> str:

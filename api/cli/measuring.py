@@ -17,7 +17,7 @@ from typing import Annotated, Any
 import typer
 
 from api.cli.working import working_directory
-from benchmark.plan.combinations import Cell
+from benchmark.contract import Cell
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running.run import RunInterruptedError, run, stale
 from benchmark.running.times import times_of_code

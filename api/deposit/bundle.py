@@ -8,11 +8,8 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
-import tempfile
 import zipfile
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -32,6 +29,7 @@ from benchmark.datasets.checksums import (
     write_checksums,
 )
 from benchmark.results.store import PUBLISHED
+from survey_data.whole_files import replacing
 
 DESCRIPTOR = "datapackage.json"
 SURVEY = Path(survey_data.__file__).parent
@@ -57,7 +55,7 @@ class Bundle:
 
 
 def build(out: Path, *, survey: Path = SURVEY, published: Path = PUBLISHED) -> Bundle:
-    """Build the bundle at `out` and its zip at `out`.zip, each whole or not at all.
+    """Build the bundle at `out` and its zip at `out`.zip, both or neither.
 
     Parameters
     ----------
@@ -87,14 +85,10 @@ def build(out: Path, *, survey: Path = SURVEY, published: Path = PUBLISHED) -> B
     who = identity()
     measured = measured_tables(published)
     out.parent.mkdir(parents=True, exist_ok=True)
-    with _temporary(out) as work:
-        bundle = work / "bundle"
+    with replacing(out, archive) as (bundle, zipped):
         bundle.mkdir()
         _fill(bundle, who, survey, measured)
-        zipped = work / "bundle.zip"
         _pack(bundle, zipped, who)
-        _replace(bundle, out, work / "before")
-        zipped.replace(archive)
     return Bundle(out, archive, tuple(contents(out)))
 
 
@@ -205,24 +199,3 @@ def _require_our_archive(archive: Path) -> None:
         if names and all(name.startswith(f"{NAME}-") for name in names):
             return
     raise DepositError(f"{archive}: not the zip of an earlier bundle; nothing was written")
-
-
-@contextmanager
-def _temporary(out: Path) -> Iterator[Path]:
-    # Beside the target: a rename is only atomic within a file system.
-    work = Path(tempfile.mkdtemp(dir=out.parent, prefix=f".{out.name}."))
-    try:
-        yield work
-    finally:
-        shutil.rmtree(work)
-
-
-def _replace(bundle: Path, out: Path, before: Path) -> None:
-    if out.exists():
-        out.rename(before)
-    try:
-        bundle.rename(out)
-    except OSError:
-        if before.exists():
-            before.rename(out)
-        raise

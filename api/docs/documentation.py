@@ -26,6 +26,7 @@ from api.docs.parts import (
     models,
     resolutions,
 )
+from survey_data.whole_files import replace_file
 
 DIRECTORY = Path(__file__).resolve().parents[2] / "docs"
 
@@ -114,7 +115,7 @@ def regenerate(directory: Path = DIRECTORY, *, write: bool = True) -> list[str]:
             behind[picture] = new
     if write:
         for page, new in behind.items():
-            (directory / page).write_text(new, "utf-8", newline="\n")
+            replace_file(directory / page, new)
     return sorted(behind)
 
 

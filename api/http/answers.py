@@ -1,106 +1,134 @@
-"""From a request to bytes: parameters, media type, the cache, and only then the computing."""
+"""Answers of path functions, and the route that makes them bytes once and keeps those."""
 
 from __future__ import annotations
 
-from collections import OrderedDict
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Callable, Coroutine, Mapping, Sequence
+from typing import Any, ClassVar, Protocol, cast
 
 from fastapi import Request, Response
+from fastapi.responses import JSONResponse
+from fastapi.routing import APIRoute
 from pydantic_core import to_json
 
-from api.http.negotiation import CONTENT_TYPES, CSV, JSON, media_type
-from api.http.parameters import Arguments, Parameters
+from api.http.negotiation import CONTENT_TYPES, CSV, JSON, PNG, media_type
+from api.http.pagination import Page
 from api.http.representations import Representation, RepresentationCache
+from api.http.requests import StrictRequest
 from api.http.tables import to_csv
 
-OFFERED = (JSON, CSV)
-MOST_SPELLINGS = 4096  # of requests whose meaning is remembered
+Row = Mapping[str, Any]
 
 
-@dataclass(frozen=True)
-class Answer:
-    """What an endpoint says, before it is bytes.
+class Answer(JSONResponse):
+    """A document that can be a table too. NaN and infinities are null in JSON.
 
-    Attributes
+    Parameters
     ----------
     document : the JSON object
     columns : columns of the CSV that stand even without rows
-    rows : rows of the CSV
+    rows : gives the rows of the CSV
     link : value of the Link header, if any
+    status_code : which FastAPI documents by its default
     """
 
-    document: Mapping[str, Any]
-    columns: Sequence[str]
-    rows: Callable[[], Sequence[Mapping[str, Any]]]
-    link: str | None = None
+    offered: ClassVar = (JSON, CSV)
 
-    def represent(self, wanted: str) -> Representation:
-        """Return the answer in a media type. NaN and infinities are null in JSON."""
-        if wanted == CSV:
-            body = to_csv(self.columns, self.rows())
-        else:
-            body = to_json(self.document, inf_nan_mode="null")
-        headers = {} if self.link is None else {"Link": self.link}
-        return Representation(body, CONTENT_TYPES[wanted], headers)
-
-
-Build = Callable[[Arguments], Answer]
-
-
-class Answers:
-    """Answers of one application: each computed once for all requests that mean the same.
-
-    Two steps of memory: how a request is spelt -> what it means (canonical parameters and media
-    type) -> bytes. The first saves parsing, the second computing. Facts do not change while the
-    service runs, so nothing here ever goes stale.
-    """
-
-    def __init__(self, cache: RepresentationCache | None = None) -> None:
-        self.cache = RepresentationCache() if cache is None else cache
-        self._meanings: OrderedDict[tuple[str, bytes, str | None], tuple[str, str, str]] = (
-            OrderedDict()
-        )
-
-    def get(self, request: Request, parameters: Parameters, build: Build) -> Response:
-        """Answer a GET whose parameters stand in the query."""
-        path: str = request.scope["path"]
-        spelling = (path, request.scope["query_string"], request.headers.get("accept"))
-        meaning = self._meanings.get(spelling)
-        if meaning is not None:
-            found = self.cache.get(meaning)
-            if found is not None:
-                return found.respond(request)
-        wanted = media_type(spelling[2], OFFERED)
-        arguments = parameters.from_query(spelling[1])
-        meaning = (path, parameters.canonical(arguments), wanted)
-        response = self._meant(request, meaning, arguments, build)
-        self._meanings[spelling] = meaning
-        if len(self._meanings) > MOST_SPELLINGS:
-            self._meanings.popitem(last=False)
-        return response
-
-    def post(
-        self, request: Request, body: object, parameters: Parameters, build: Build
-    ) -> Response:
-        """Answer a POST whose parameters stand in its JSON `body`: same meaning, same bytes."""
-        wanted = media_type(request.headers.get("accept"), OFFERED)
-        arguments = parameters.from_body(body)
-        meaning = (request.scope["path"], parameters.canonical(arguments), wanted)
-        return self._meant(request, meaning, arguments, build, conditional=False)
-
-    def _meant(
+    def __init__(
         self,
-        request: Request,
-        meaning: tuple[str, str, str],
-        arguments: Arguments,
-        build: Build,
-        *,
-        conditional: bool = True,
-    ) -> Response:
-        representation = self.cache.get(meaning)
-        if representation is None:
-            representation = build(arguments).represent(meaning[2])
-            self.cache.put(meaning, representation)
-        return representation.respond(request, conditional=conditional)
+        document: Mapping[str, Any],
+        columns: Sequence[str],
+        rows: Callable[[], Sequence[Row]],
+        link: str | None = None,
+        status_code: int = 200,
+    ) -> None:
+        self.document = document
+        self.columns = columns
+        self.rows = rows
+        self.links = {} if link is None else {"Link": link}
+        super().__init__(document, status_code, self.links)
+
+    def render(self, content: Any) -> bytes:
+        """Return the JSON."""
+        return to_json(content, inf_nan_mode="null")
+
+    def representation(self, wanted: str) -> Representation:
+        """Return the answer in a media type."""
+        body = to_csv(self.columns, self.rows()) if wanted == CSV else bytes(self.body)
+        return Representation(body, CONTENT_TYPES[wanted], self.links)
+
+
+def listing(
+    shown: Page[Any],
+    items: Sequence[Row],
+    columns: Sequence[str],
+    rows: Callable[[], Sequence[Row]] | None = None,
+) -> Answer:
+    """Return a page of a list as an answer; rows of the CSV are the items where left out."""
+    document = {"items": items, "total": shown.total, "next": shown.next}
+    return Answer(document, columns, rows or (lambda: items), shown.link)
+
+
+class Picture(Response):
+    """A PNG."""
+
+    media_type = PNG
+    offered: ClassVar = (PNG,)
+
+    def representation(self, wanted: str) -> Representation:
+        """Return the picture."""
+        return Representation(bytes(self.body), wanted, {"Vary": "Accept"}, compressible=False)
+
+
+class Kept(Protocol):
+    """A response that `AnswerRoute` can keep, and the media types it can be had in."""
+
+    offered: ClassVar[tuple[str, ...]]
+
+    def representation(self, wanted: str) -> Representation:
+        """Return the response in a media type."""
+        ...
+
+
+Handler = Callable[[Request], Coroutine[Any, Any, Response]]
+
+
+class StrictRoute(APIRoute):
+    """A route whose requests are read to the letter."""
+
+    def get_route_handler(self) -> Handler:
+        """Return what handles a request."""
+        handle = super().get_route_handler()
+
+        async def strictly(request: Request) -> Response:
+            return await handle(StrictRequest(request.scope, request.receive))
+
+        return strictly
+
+
+class AnswerRoute(StrictRoute):
+    """A route that computes each answer once, and gives it in the media type asked for.
+
+    What is asked by GET is kept by its path, query and media type. Facts do not change while the
+    service runs, so nothing that is kept goes stale. The path function returns a `Kept`.
+    """
+
+    def get_route_handler(self) -> Handler:
+        """Return what handles a request."""
+        compute = super().get_route_handler()
+        offered = cast("type[Kept]", self.response_class).offered
+
+        async def answer(request: Request) -> Response:
+            kept: RepresentationCache = request.app.state.kept
+            wanted = media_type(request.headers.get("accept"), offered)
+            if request.method != "GET":
+                made = cast("Kept", await compute(request))
+                return made.representation(wanted).respond(request, conditional=False)
+            asked = (request.scope["path"], request.scope["query_string"], wanted)
+            found = kept.get(asked)
+            if found is None:
+                made = cast("Kept", await compute(request))
+                found = made.representation(wanted)
+                kept.put(asked, found)
+            return found.respond(request)
+
+        return answer

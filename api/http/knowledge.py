@@ -5,10 +5,11 @@ Loading is lazy, so that an application is there at once; `load_all` does it at 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import cached_property
 
 from api.http.measurements import Measurements
+from api.http.models import words
 from registry.catalogue import Catalogue, catalogue
 from registry.measured import Measurements as Measured
 from registry.resolution import Resolution, resolve_all
@@ -48,17 +49,9 @@ class Knowledge:
         pairs = self.measurements.architectures
         return resolve_all(pairs, catalogue=self.catalogue, facts=self.facts)
 
-    def study_keys(self) -> Sequence[str]:
-        """Keys of all studies."""
-        return self.facts.keys
-
-    def conditions(self) -> Sequence[str]:
-        """Conditions that measured performance can be read in, the nominal one first."""
-        return tuple(dict.fromkeys(("nominal", *self.measurements.conditions)))
-
     @cached_property
     def _measured(self) -> Mapping[str, Measured]:
-        return {name: Measured(self.measurements.comparable(name)) for name in self.conditions()}
+        return {name: Measured(self.measurements.comparable(name)) for name in words.conditions()}
 
     def measured_in(self, condition: str) -> Measured:
         """Return what is measured in a condition, as recommendations take it."""

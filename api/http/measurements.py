@@ -8,15 +8,15 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from benchmark.datasets.pins import Pin
 from benchmark.leaderboard.board import build
 from benchmark.metrics.score import is_available
-from benchmark.results.pins import Pin
 from benchmark.results.store import PUBLISHED, Store
 from registry.measured import Measured
 
 if TYPE_CHECKING:
     from benchmark.datasets import Preset
-    from benchmark.running.times import Pipeline, Time
+    from benchmark.running.times import Place, Time
 
 _TAKEN = tuple(
     f.name for f in dataclasses.fields(Measured) if f.name not in {"latency_us", "available"}
@@ -49,7 +49,7 @@ class Measurements:
         return [row for row in self._every_unit if row["unit"] == 0]
 
     @cached_property
-    def times(self) -> Mapping[Pipeline, Time]:
+    def times(self) -> Mapping[Place, Time]:
         """Times of this machine that are of the code as it is."""
         if self.times_directory is None:
             return {}
@@ -96,21 +96,11 @@ class Measurements:
         return assessment.document(assessment.assess(self.directory, times=self.times))
 
     @cached_property
-    def assessed_methods(self) -> tuple[str, ...]:
-        """Methods of the survey's assessment."""
-        return tuple(method["method"] for method in self.assessment["methods"])
-
-    @cached_property
     def presets(self) -> Mapping[str, Preset]:
         """The standard data sets by name. The first use loads the simulator."""
         from benchmark import datasets  # noqa: PLC0415 - slow, and not needed to make the service
 
         return {name: datasets.get(name) for name in datasets.names()}
-
-    @cached_property
-    def dataset_names(self) -> tuple[str, ...]:
-        """Names of the standard data sets."""
-        return tuple(self.presets)
 
     @cached_property
     def pins(self) -> Mapping[tuple[str, str, str], Pin]:
@@ -185,12 +175,6 @@ class Measurements:
             if dataset is None or board["name"] == dataset
             for row in board.get("rows", ())
         ]
-
-    @cached_property
-    def conditions(self) -> tuple[str, ...]:
-        """Conditions that any standard data set has, in order of appearance."""
-        presets = self.presets.values()
-        return tuple(dict.fromkeys(name for preset in presets for name in preset.conditions))
 
     @cached_property
     def architectures(self) -> frozenset[tuple[str, str]]:

@@ -1,4 +1,4 @@
-"""The OpenAPI document: parameters as they are checked, examples as they are answered."""
+"""FastAPI's OpenAPI document with what FastAPI cannot know: answers to the examples, refusals."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ from typing import Any
 
 from fastapi import FastAPI
 from fastapi.openapi.utils import get_openapi
-from pydantic_core import to_json
+from fastapi.routing import APIRoute
 
-from api.http.endpoint import Endpoint
+from api.http.answers import Answer, AnswerRoute
+from api.http.asking import ask
+from api.http.knowledge import Knowledge
+from api.http.models.problems import ProblemDocument
 from api.http.negotiation import CSV, JSON
-from api.http.pictures import Picture
 from api.http.problems import MEDIA_TYPE, Problem
-from api.http.shapes import ProblemDocument
+from api.http.refusals import refusal, schemas
 
-MOST_EXAMPLE_ITEMS = 50
-PROBLEM_REFERENCE = {"$ref": "#/components/schemas/ProblemDocument"}
 REFUSALS = {
     400: "A parameter that is not declared, or a request that cannot be read.",
     404: "No such thing; the nearest is named.",
@@ -28,127 +28,96 @@ REFUSALS = {
     422: "A value that is not valid; the nearest is named.",
 }
 ETAG = {"schema": {"type": "string"}, "description": "Strong validator of the bytes."}
-NOT_MODIFIED = "The bytes of the ETag in If-None-Match are still the answer."
-ALWAYS_POSSIBLE = (400, 405, 406)
-OF_A_BODY = (413, 415, 422)
+LINK = {"schema": {"type": "string"}, "description": "The next page, where there is one."}
+NOT_MODIFIED = {"description": "The bytes of the ETag in If-None-Match are still the answer."}
 
 
-def describe(
-    app: FastAPI, endpoints: Sequence[Endpoint], pictures: Sequence[Picture] = ()
-) -> dict[str, Any]:
-    """Return the OpenAPI document of `app`, whose routes of facts are `endpoints`.
+def describe(app: FastAPI, routes: Sequence[APIRoute]) -> dict[str, Any]:
+    """Return the OpenAPI document of `app`, which serves `routes`.
 
-    The examples are the answers the endpoints give now.
+    The examples are what is answered and refused now.
     """
     document = get_openapi(
-        title=app.title,
-        version=app.version,
-        description=app.description,
-        routes=app.routes,
+        title=app.title, version=app.version, description=app.description, routes=app.routes
     )
-    schemas = document["components"]["schemas"]
+    components = document["components"]["schemas"]
+    for replaced in ("HTTPValidationError", "ValidationError"):
+        components.pop(replaced, None)
     own = ProblemDocument.model_json_schema(ref_template="#/components/schemas/{model}")
-    schemas.update(own.pop("$defs"))
-    schemas["ProblemDocument"] = own
-    for endpoint in endpoints:
-        _complete(document["paths"][endpoint.path][endpoint.method.lower()], endpoint)
-    for picture in pictures:
-        _complete_picture(document["paths"][picture.path]["get"], picture)
+    components |= {**own.pop("$defs"), "ProblemDocument": own}
+    for route in routes:
+        if isinstance(route, AnswerRoute):
+            for method in route.methods or ():
+                operation = document["paths"][route.path][method.lower()]
+                _complete(operation, route, app.state.knowledge)
     return document
 
 
-def _complete_picture(operation: dict[str, Any], picture: Picture) -> None:
-    operation["parameters"] = _path_parameters(picture)
-    operation["responses"] = {
-        "200": {
-            "description": "The picture.",
-            "content": picture.content(),
-            "headers": {"ETag": ETAG},
-        },
-        "304": {"description": NOT_MODIFIED},
-        **{str(status): _refusal(status, picture) for status in (400, 404, 405, 406)},
-    }
+def _complete(operation: dict[str, Any], route: APIRoute, known: Knowledge) -> None:
+    """Add the example, its answer, and the refusals to an operation."""
+    declared = schemas(route.endpoint)
+    example = _example(route)
+    for parameter in operation.get("parameters", ()):
+        given = example if parameter["in"] == "path" else example.get("query", {})
+        if parameter["name"] in given:
+            parameter["example"] = given[parameter["name"]]
+    statuses = {400, 405, 406, *([404] if declared["path"] else [])}
+    success = operation["responses"]["200"]
+    success["headers"] = {"ETag": ETAG}
+    if "body" in declared:
+        operation["requestBody"]["content"][JSON]["example"] = example["body"]
+        statuses |= {413, 415, 422}
+    elif declared["query"]:
+        statuses |= {422}
+    if route.response_class is Answer:
+        success["headers"]["Link"] = LINK
+        answer = ask(route.endpoint, known, **example)
+        # Through bytes and back: the example is what travels, NaN as null included.
+        success["content"][JSON]["example"] = json.loads(answer.representation(JSON).body)
+        table = answer.representation(CSV).body.decode()
+        success["content"][CSV] = {"schema": {"type": "string"}, "example": table}
+    refused = {str(status): _refused(status, route, example, known) for status in sorted(statuses)}
+    same = {"304": NOT_MODIFIED} if "body" not in declared else {}
+    operation["responses"] = {"200": success, **same, **refused}
 
 
-def _path_parameters(endpoint: Endpoint | Picture) -> list[dict[str, Any]]:
-    return [
-        {
-            "name": part.name,
-            "in": "path",
-            "required": True,
-            "description": part.description,
-            "schema": {"type": "string", "enum": list(part.words())},
-            "example": endpoint.example[part.name],
-        }
-        for part in endpoint.parts
-    ]
+def _example(route: APIRoute) -> dict[str, Any]:
+    """Return the arguments of a path function in the documented example."""
+    found: dict[str, Any] = {}
+    for parameter in route.dependant.path_params:
+        found[parameter.name] = (parameter.field_info.examples or [None])[0]
+    for model in (*route.dependant.query_params, *route.dependant.body_params):
+        described: Any = model.field_info.annotation
+        found[model.name] = described.model_config["json_schema_extra"]["examples"][0]
+    return found
 
 
-def _complete(operation: dict[str, Any], endpoint: Endpoint) -> None:
-    """Add to FastAPI's description of an operation what it cannot know."""
-    parameters = _path_parameters(endpoint)
-    statuses = set(ALWAYS_POSSIBLE)
-    if endpoint.parts:
-        statuses.add(404)
-    if endpoint.method == "POST":
-        statuses.update(OF_A_BODY)
-        operation["requestBody"] = {
-            "required": True,
-            "content": {
-                JSON: {
-                    "schema": endpoint.parameters.body_schema(),
-                    "example": endpoint.example_arguments,
-                }
-            },
-        }
-    else:
-        parameters += endpoint.parameters.openapi()
-        statuses.add(304)
-        if endpoint.parameters.declared:
-            statuses.add(422)
-    if parameters:
-        operation["parameters"] = parameters
-    answer = endpoint.example_answer()
-    # Through bytes and back: the example is what travels, NaN as null included.
-    content = operation["responses"]["200"]["content"]
-    content[JSON]["example"] = json.loads(answer.represent(JSON).body)
-    content[CSV] = {
-        "schema": {"type": "string"},
-        "example": answer.represent(CSV).body.decode(),
-    }
-    operation["responses"]["200"]["headers"] = {
-        "ETag": ETAG,
-        "Link": {"schema": {"type": "string"}, "description": "The next page, where there is one."},
-    }
-    for status in sorted(statuses):
-        operation["responses"][str(status)] = (
-            {"description": NOT_MODIFIED} if status == 304 else _refusal(status, endpoint)
-        )
-
-
-def _refusal(status: int, endpoint: Endpoint | Picture) -> dict[str, Any]:
-    content: dict[str, Any] = {"schema": PROBLEM_REFERENCE}
-    example = _example_refusal(status, endpoint)
-    if example is not None:
-        content["example"] = example
+def _refused(
+    status: int, route: APIRoute, example: dict[str, Any], known: Knowledge
+) -> dict[str, Any]:
+    """Return a refusal, with an example where a slightly wrong request makes it."""
+    declared = schemas(route.endpoint)
+    place = "body" if "body" in declared else "query"
+    name, schema = next(iter(declared[place].items()), ("limit", {}))
+    problem = None
+    if status == 400:
+        wrong = {"type": "extra_forbidden", "loc": (place, f"{name}s")}
+        problem = refusal([wrong], route.endpoint)
+    elif status == 404:
+        part = next(iter(declared["path"]))
+        problem = _problem(route, known, {**example, part: f"{example[part]}x"})
+    elif status == 422:
+        value = ["0"] if schema["type"] == "array" else "0"
+        problem = _problem(route, known, {**example, place: {name: value}})
+    content: dict[str, Any] = {"schema": {"$ref": "#/components/schemas/ProblemDocument"}}
+    if problem is not None:
+        content["example"] = problem.document(route.path.format(**example))
     return {"description": REFUSALS[status], "content": {MEDIA_TYPE: content}}
 
 
-def _example_refusal(status: int, endpoint: Endpoint | Picture) -> dict[str, Any] | None:
-    """Return a problem that the endpoint raises, by making its example slightly wrong."""
-    path = endpoint.path.format(**endpoint.example)
+def _problem(route: APIRoute, known: Knowledge, arguments: dict[str, Any]) -> Problem | None:
     try:
-        if status == 400:
-            names = [parameter.name for parameter in endpoint.parameters.declared] or ["limit"]
-            endpoint.parameters.from_query(f"{names[0]}s=1".encode())
-        elif status == 404:
-            part = endpoint.parts[0]
-            part.check(endpoint.example[part.name] + "x")
-        elif status == 422 and endpoint.method == "POST":
-            endpoint.parameters.from_body({"limit": 0})
-        elif status == 422:
-            endpoint.parameters.from_query(f"{endpoint.parameters.declared[0].name}=0".encode())
+        ask(route.endpoint, known, **arguments)
     except Problem as problem:
-        example: dict[str, Any] = json.loads(to_json(problem.document(path)))
-        return example
+        return problem
     return None

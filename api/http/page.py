@@ -7,10 +7,7 @@ from importlib.resources import files
 from importlib.util import find_spec
 from pathlib import Path
 
-from fastapi import FastAPI, Request, Response
-
 from api.http.nearest import nearest
-from api.http.parameters import Parameters
 from api.http.problems import Problem, Violation
 from api.http.representations import Representation
 
@@ -28,7 +25,6 @@ CONTENT_TYPES = {
     ".woff2": "font/woff2",
 }
 ALREADY_COMPRESSED = {".png", ".woff2", ".ico"}
-NO_PARAMETERS = Parameters()
 
 
 def plotly_bundle() -> Path:
@@ -79,17 +75,3 @@ def page_file(name: str) -> Representation:
         {"Vary": "Accept-Encoding"},
         compressible=path.suffix not in ALREADY_COMPRESSED,
     )
-
-
-def install(app: FastAPI) -> None:
-    """Serve the page in `app`."""
-
-    async def index(request: Request) -> Response:
-        return page_file("index.html").respond(request)
-
-    async def static(request: Request) -> Response:
-        NO_PARAMETERS.from_query(request.scope["query_string"])
-        return page_file(request.path_params["name"]).respond(request)
-
-    app.add_api_route("/", index, include_in_schema=False)
-    app.add_api_route("/page/{name:path}", static, include_in_schema=False)

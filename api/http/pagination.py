@@ -6,30 +6,15 @@ import base64
 import binascii
 import hashlib
 import json
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
+from urllib.parse import urlencode
 
-from api.http.parameters import Arguments, Parameter, Parameters
+from api.http.models.base import Paged
 from api.http.problems import Problem, Violation
-from api.http.values import Integer, Text
 
 Row = TypeVar("Row")
-
-LARGEST_PAGE = 500
-DEFAULT_PAGE = 200
-
-LIMIT = Parameter(
-    "limit",
-    Integer(1, LARGEST_PAGE),
-    "Items on a page.",
-    default=DEFAULT_PAGE,
-)
-CURSOR = Parameter(
-    "cursor",
-    Text(200),
-    "Where to go on: the `next` of the previous page, unchanged and with the same filters.",
-)
 
 
 @dataclass(frozen=True)
@@ -50,8 +35,16 @@ class Page(Generic[Row]):
     link: str | None
 
 
-def page(rows: Sequence[Row], path: str, parameters: Parameters, arguments: Arguments) -> Page[Row]:
-    """Return the page of `rows` that `arguments` ask for.
+def narrowed(
+    rows: Iterable[Mapping[str, Any]], query: Paged, names: Sequence[str]
+) -> list[Mapping[str, Any]]:
+    """Return the rows that have one of the wanted words of every field that is narrowed."""
+    wanted = {name: words for name in names if (words := getattr(query, name))}
+    return [row for row in rows if all(row[name] in words for name, words in wanted.items())]
+
+
+def page(rows: Sequence[Row], path: str, query: Paged) -> Page[Row]:
+    """Return the page of `rows` that a query asks for.
 
     A cursor is bound to the path and the filters it was given out for.
 
@@ -60,17 +53,21 @@ def page(rows: Sequence[Row], path: str, parameters: Parameters, arguments: Argu
     Problem
         400 where the cursor was not given out for this list.
     """
-    filters = {**arguments, "cursor": None, "limit": DEFAULT_PAGE}
-    bound_to = hashlib.blake2b(
-        f"{path}?{parameters.canonical(filters)}".encode(), digest_size=6
-    ).hexdigest()
-    start = 0 if arguments["cursor"] is None else _offset(arguments["cursor"], bound_to)
-    end = start + arguments["limit"]
+    asked = query.model_dump(exclude_defaults=True)
+    filters = {name: value for name, value in asked.items() if name not in {"limit", "cursor"}}
+    bound_to = hashlib.blake2b(f"{path}?{_encoded(filters)}".encode(), digest_size=6).hexdigest()
+    start = 0 if query.cursor is None else _offset(query.cursor, bound_to)
+    end = start + query.limit
     if end >= len(rows):
         return Page(rows[start:], len(rows), None, None)
     cursor = _cursor(end, bound_to)
-    target = f"{path}?{parameters.canonical({**arguments, 'cursor': cursor})}"
+    target = f"{path}?{_encoded({**asked, 'cursor': cursor})}"
     return Page(rows[start:end], len(rows), cursor, f'<{target}>; rel="next"')
+
+
+def _encoded(asked: Mapping[str, Any]) -> str:
+    """Return the one query string that means what is asked; lists are sorted already."""
+    return urlencode(asked, doseq=True)
 
 
 def _cursor(offset: int, bound_to: str) -> str:

@@ -5,13 +5,10 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from http import HTTPStatus
 from typing import Any
 
-from fastapi import FastAPI, Request, Response
+from fastapi import Request, Response
 from starlette.exceptions import HTTPException
-
-from api.http.nearest import nearest
 
 MEDIA_TYPE = "application/problem+json"
 TYPE_PREFIX = "urn:problem-type:sun-sensor-atlas:"
@@ -55,7 +52,7 @@ class Violation:
         return f"{shown['parameter']}: expected {self.expected}, got {got}{hint}"
 
 
-class Problem(Exception):  # noqa: N818 - the RFC's own word
+class Problem(HTTPException):
     """A request that is refused.
 
     Parameters
@@ -75,19 +72,17 @@ class Problem(Exception):  # noqa: N818 - the RFC's own word
         errors: Sequence[Violation] = (),
         headers: Mapping[str, str] | None = None,
     ) -> None:
-        self.status = status
         self.kind = kind
         self.errors = tuple(errors)
-        self.detail = detail or "; ".join(error.sentence() for error in self.errors)
-        self.headers = dict(headers or {})
-        super().__init__(self.detail)
+        said = detail or "; ".join(error.sentence() for error in self.errors)
+        super().__init__(status, said, headers)
 
     def document(self, instance: str) -> dict[str, Any]:
         """Return the members of the problem document; `instance` is the path asked for."""
         return {
             "type": TYPE_PREFIX + self.kind,
             "title": self.kind.replace("-", " ").capitalize(),
-            "status": self.status,
+            "status": self.status_code,
             "detail": self.detail,
             "instance": instance,
             "errors": [error.document() for error in self.errors],
@@ -97,73 +92,7 @@ class Problem(Exception):  # noqa: N818 - the RFC's own word
 def respond(request: Request, problem: Problem) -> Response:
     """Return `problem` as the response to `request`."""
     # Not the answers' fast serialiser: input may hold lone surrogates, which only escaping carries.
-    body = json.dumps(problem.document(request.url.path)).encode()
-    headers = {"Cache-Control": "no-store", **problem.headers}
-    return Response(body, problem.status, headers, media_type=MEDIA_TYPE)
-
-
-def install(app: FastAPI) -> None:
-    """Make every refusal and failure of `app` a problem document."""
-
-    async def refused(request: Request, error: Exception) -> Response:
-        if not isinstance(error, Problem):
-            raise error
-        return respond(request, error)
-
-    async def by_framework(request: Request, error: Exception) -> Response:
-        if not isinstance(error, HTTPException):
-            raise error
-        if error.status_code == HTTPStatus.NOT_FOUND:
-            problem = unknown_path(app, request)
-        elif error.status_code == HTTPStatus.METHOD_NOT_ALLOWED:
-            problem = method_not_allowed(app, request)
-        else:
-            phrase = HTTPStatus(error.status_code).phrase
-            problem = Problem(
-                error.status_code,
-                phrase.lower().replace(" ", "-"),
-                str(error.detail),
-                headers=error.headers,
-            )
-        return respond(request, problem)
-
-    async def failed(request: Request, _error: Exception) -> Response:
-        detail = "The service failed on this request; the cause is in its log."
-        return respond(request, Problem(500, "internal-server-error", detail))
-
-    app.add_exception_handler(Problem, refused)
-    app.add_exception_handler(HTTPException, by_framework)
-    app.add_exception_handler(Exception, failed)
-
-
-def paths(app: FastAPI) -> dict[str, set[str]]:
-    """Return the methods of every path template that `app` serves."""
-    served: dict[str, set[str]] = {}
-    for route in app.routes:
-        methods = getattr(route, "methods", None)
-        path = getattr(route, "path", None)
-        if methods and isinstance(path, str):
-            served.setdefault(path, set()).update(methods)
-    return served
-
-
-def unknown_path(app: FastAPI, request: Request) -> Problem:
-    """Return the problem of a path that is not served, naming the nearest one."""
-    path = request.url.path
-    served = paths(app)
-    error = Violation("path", path, "a path of /openapi.json", nearest(path, served))
-    return Problem(404, "unknown-path", errors=[error])
-
-
-def method_not_allowed(app: FastAPI, request: Request) -> Problem:
-    """Return the problem of a method that a path does not offer; `Allow` lists what it does."""
-    offered: set[str] = set()
-    for route in app.routes:
-        regex = getattr(route, "path_regex", None)
-        if regex is not None and regex.match(request.scope["path"]):
-            offered |= set(getattr(route, "methods", None) or ())
-    if "GET" in offered:
-        offered.add("HEAD")
-    allow = ", ".join(sorted(offered))
-    error = Violation("method", request.method, f"one of {allow}")
-    return Problem(405, "method-not-allowed", errors=[error], headers={"Allow": allow})
+    # The path is not taken from `request.url`, which fails where the query is not UTF-8.
+    body = json.dumps(problem.document(request.scope["path"])).encode()
+    headers = {"Cache-Control": "no-store", **(problem.headers or {})}
+    return Response(body, problem.status_code, headers, media_type=MEDIA_TYPE)

@@ -22,7 +22,7 @@ from benchmark.assessment.measures import SCORED, SWEPT, Unmeasured
 from benchmark.metrics.score import stored
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.results.tables import Row
-from benchmark.running.times import Pipeline, Time
+from benchmark.running.times import Place, Time
 from survey_data.tables import load
 
 if TYPE_CHECKING:
@@ -89,7 +89,7 @@ class Assessed:
 def assess(
     directory: Path | str = PUBLISHED,
     extractors: Mapping[str, type[Extractor]] | None = None,
-    times: Mapping[Pipeline, Time] | None = None,
+    times: Mapping[Place, Time] | None = None,
 ) -> list[Assessed]:
     """Assess every method of the survey's table from published results.
 
@@ -245,7 +245,7 @@ def _implementations(
     return sorted(
         name
         for name, extractor in known.items()
-        if extractor.taxonomy == taxonomy
-        and extractor.origin == "survey"
-        and (study is None or study in extractor.studies)
+        if extractor.about.taxonomy == taxonomy
+        and extractor.about.origin == "survey"
+        and (study is None or study in extractor.about.studies)
     )

@@ -6,24 +6,25 @@ registers it.
 
 from __future__ import annotations
 
-import difflib
 import importlib
 import pkgutil
 from functools import cache
 
 from benchmark.datasets import standard
 from benchmark.datasets.card import parameters_of
-from benchmark.datasets.preset import Condition, Preset, Samples, data_digest
+from benchmark.datasets.preset import Condition, Preset
+from benchmark.datasets.samples import Samples, samples_hash
+from survey_data.nearest import nearest
 
 __all__ = [
     "Condition",
     "Preset",
     "Samples",
     "UnknownDatasetError",
-    "data_digest",
     "get",
     "names",
     "parameters_of",
+    "samples_hash",
 ]
 
 
@@ -31,9 +32,8 @@ class UnknownDatasetError(LookupError, ValueError):
     """No dataset has this name; `nearest` is the closest one, or None."""
 
     def __init__(self, name: str, known: tuple[str, ...]) -> None:
-        close = difflib.get_close_matches(name, known, n=1, cutoff=0.4)
         self.name = name
-        self.nearest = close[0] if close else None
+        self.nearest = nearest(name, known)
         hint = f"; did you mean {self.nearest!r}?" if self.nearest else ""
         super().__init__(f"no dataset {name!r}{hint}; there are {', '.join(known)}")
 

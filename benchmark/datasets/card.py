@@ -40,6 +40,48 @@ def merged(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any
     return whole
 
 
+def told_once(
+    parameters: Mapping[str, Mapping[str, Any]], geometry: Mapping[str, Any]
+) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]:
+    """Return what conditions share, and by condition what it has of its own.
+
+    Parameters
+    ----------
+    parameters
+        Of every condition by name; the first one's are what they share.
+    geometry
+        The dataset's, which is told of a condition only where its own is another.
+
+    Returns
+    -------
+    shared
+        Parameters without the geometry.
+    own
+        By condition the members ``parameters`` and, where it is another, ``geometry``;
+        `parameters_of` puts all together.
+    """
+    shared: dict[str, Any] = {}
+    own: dict[str, dict[str, Any]] = {}
+    for name, whole in parameters.items():
+        plain = {member: value for member, value in whole.items() if member != "geometry"}
+        shared = shared or plain
+        own[name] = {"parameters": differences(shared, plain)}
+        if whole["geometry"] != geometry:
+            own[name]["geometry"] = whole["geometry"]
+    return shared, own
+
+
+def stream_names(name: str, version: int) -> dict[str, Any]:
+    """Return the names of a dataset's random streams."""
+    return {
+        "generator": "NumPy PCG64, SeedSequence over the SHA-256 of the stream's names",
+        "unit": [name, version, "unit"],
+        "samples": [name, version, "<split>"],
+        "noise": [name, version, "<condition>", "<split>"],
+        "other_units": 'unit: [..., "unit", <number>]; noise: [..., "unit", <number>]',
+    }
+
+
 def parameters_of(card: Mapping[str, Any], condition: str) -> dict[str, Any]:
     """Return the parameters of a condition from a dataset's card, as `Preset.parameters`.
 

@@ -11,18 +11,17 @@ from __future__ import annotations
 import json
 import math
 import os
-import shutil
-import tempfile
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from numpy.typing import NDArray
 
 from algorithms.contract import Observation
 from benchmark import datasets
+from benchmark.contract import SPLITS, UnknownNameError
 from benchmark.datasets import Preset, Samples
 from benchmark.datasets.checksums import (
     CHECKSUMS,
@@ -34,14 +33,13 @@ from benchmark.datasets.checksums import (
     write_checksums,
 )
 from benchmark.datasets.export_arrays import columns_of, read_archive, write_archive, write_table
+from benchmark.datasets.pins import Pin, Place
 from benchmark.datasets.preview import preview_png
+from benchmark.datasets.samples import samples_hash
 from benchmark.metrics.bounds import Bound
 from benchmark.metrics.score import stored
-from benchmark.plan.parts import SPLITS, UnknownNameError
-from benchmark.results.digests import samples_hash
-from benchmark.results.pins import Pin
-from benchmark.results.store import PUBLISHED, Store
-from benchmark.running.progress import ProgressCallback, silent
+from benchmark.progress import ProgressCallback, silent
+from survey_data.whole_files import replacing
 
 CARD = "card.json"
 #: Layout of an export; raised when a file or a field changes its meaning.
@@ -93,7 +91,7 @@ def export(
     n: int | None = None,
     force: bool = False,
     progress: ProgressCallback = silent,
-    published: Path = PUBLISHED,
+    pins: Mapping[Place, Pin] = MappingProxyType({}),
 ) -> Exported:
     """Write a dataset to the directory `out`, whole or not at all.
 
@@ -111,8 +109,8 @@ def export(
         Replace an earlier export. Anything else in the way is refused all the same.
     progress
         Called as ``progress(done, total, what)`` in splits.
-    published
-        Where the pinned hashes are.
+    pins
+        Of the published data: their hashes are told in the card beside those of what is written.
 
     Raises
     ------
@@ -131,9 +129,7 @@ def export(
     out = Path(os.path.abspath(out))  # noqa: PTH100 - resolve() would follow a symbolic link
     _require_free(out, force=force)
     out.parent.mkdir(parents=True, exist_ok=True)
-    pins = Store(published).pins()
-    with _temporary(out) as work:
-        made = work / "export"
+    with replacing(out) as (made,):
         made.mkdir()
         files: list[dict[str, Any]] = []
         total = len(chosen) * len(wanted)
@@ -151,8 +147,7 @@ def export(
         text = json.dumps(card, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
         (made / CARD).write_text(text, "utf-8", newline="\n")
         write_checksums(made)
-        _replace(made, out, work / "before")
-        progress(total, total, "")
+    progress(total, total, "")
     return Exported(out, tuple(contents(out)), card)
 
 
@@ -332,24 +327,3 @@ def _require_free(out: Path, *, force: bool) -> None:
         raise ExportError(
             f"{out}: holds an earlier export; replace it with --force; nothing was written"
         )
-
-
-@contextmanager
-def _temporary(out: Path) -> Iterator[Path]:
-    # Beside the target: a rename is only atomic within a file system.
-    work = Path(tempfile.mkdtemp(dir=out.parent, prefix=f".{out.name}."))
-    try:
-        yield work
-    finally:
-        shutil.rmtree(work)
-
-
-def _replace(made: Path, out: Path, before: Path) -> None:
-    if out.exists():
-        out.rename(before)
-    try:
-        made.rename(out)
-    except OSError:
-        if before.exists():
-            before.rename(out)
-        raise

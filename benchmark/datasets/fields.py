@@ -7,12 +7,11 @@ from dataclasses import dataclass
 from typing import Any, Literal, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from algorithms.contract import Floats
 from benchmark.simulator.light.environment import uniform_direction
 from benchmark.simulator.light.sun_disc import from_angles
 
-Floats = NDArray[np.float64]
 Split = Literal["calibration", "test"]
 
 

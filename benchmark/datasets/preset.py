@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import dataclasses
-import hashlib
-import json
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Self, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
 from algorithms.contract import Observation, SensorGeometry
-from benchmark.datasets.card import differences
+from benchmark.contract import SPLITS
+from benchmark.datasets.card import stream_names, told_once
 from benchmark.datasets.fields import Field, Split
+from benchmark.datasets.parameters import described
 from benchmark.datasets.repeats import REPEAT, Repeats
+from benchmark.datasets.samples import Samples
 from benchmark.datasets.units import assembled, tolerances
 from benchmark.metrics.bounds import STEP_RAD, Bound, cramer_rao
 from benchmark.seeds import generator
@@ -27,72 +26,10 @@ from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern, Sensor
 from benchmark.simulator.sensors.faces import Faces
 
-Floats = NDArray[np.float64]
-
-#: Splits that a field of directions is drawn for, and all there are.
+#: Splits that a field of directions is drawn for.
 DRAWN: tuple[Split, ...] = get_args(Split)
-SPLITS: tuple[str, ...] = (*DRAWN, REPEAT)
-#: Fields of the geometry that are written even where they are None; later ones are not.
-_FIRST_GEOMETRY = frozenset(
-    {
-        "focal_length_mm",
-        "pixel_pitch_mm",
-        "centre_px",
-        "aperture_width_mm",
-        "aperture_shape",
-        "face_normals",
-        "half_fov_deg",
-    }
-)
 #: Samples simulated together; memory only, the numbers do not depend on it.
 BATCH = 64
-
-
-@dataclass(frozen=True)
-class Samples:
-    """One split of a dataset.
-
-    Attributes
-    ----------
-    observations
-        (N, ...) what the sensor puts out; shape and unit as the dataset's card says.
-    sun
-        (N, 3) true unit vectors from the sensor to the Sun, float64.
-    origin_px
-        (N, 2) int64 detector coordinate (x, y) of each window's first pixel, or None.
-    context
-        What else is known of each sample by column name, e.g. ``time_s``: arrays of N rows. None
-        where there is nothing.
-    """
-
-    observations: NDArray[Any]
-    sun: Floats
-    origin_px: NDArray[np.int64] | None
-    context: Mapping[str, NDArray[Any]] | None = None
-
-    def arrays(self) -> dict[str, NDArray[Any] | None]:
-        """Everything that hashes cover by name: columns of the context come last, sorted."""
-        found: dict[str, NDArray[Any] | None] = {
-            "observations": self.observations,
-            "sun": self.sun,
-            "origin_px": self.origin_px,
-        }
-        for name in sorted(self.context or ()):
-            found[f"context.{name}"] = (self.context or {})[name]
-        return found
-
-
-def data_digest(samples: Samples) -> str:
-    """SHA-256 (hex) over names, dtypes, shapes and bytes of the arrays; little-endian."""
-    digest = hashlib.sha256()
-    for name, array in samples.arrays().items():
-        if array is None:
-            digest.update(f"{name}:none;".encode())
-            continue
-        plain = np.ascontiguousarray(array, dtype=array.dtype.newbyteorder("<"))
-        digest.update(f"{name}:{plain.dtype.str}:{plain.shape};".encode())
-        digest.update(plain.tobytes())
-    return digest.hexdigest()
 
 
 @dataclass(frozen=True)
@@ -300,7 +237,7 @@ class Preset:
     def parameters(self, condition: str) -> dict[str, Any]:
         """Everything the numbers of a condition depend on, as plain JSON values."""
         setup = self.condition(condition)
-        plain: dict[str, Any] = _plain(
+        plain: dict[str, Any] = described(
             {
                 "simulator_version": SIMULATOR_VERSION,
                 "dataset": self.name,
@@ -325,19 +262,16 @@ class Preset:
         differs: members of ``parameters`` (an object that names its type stands whole) and, where
         it is another, the geometry; `benchmark.datasets.parameters_of` puts them together.
         """
-        geometry, splits = _plain(self.geometry), self.directions.card()
-        shared: dict[str, Any] | None = None
-        conditions = {}
-        for name, setup in self.setups.items():
-            own = self.parameters(name)
-            design = own.pop("geometry")
-            shared = own if shared is None else shared
-            about = {
+        geometry, splits = described(self.geometry), self.directions.card()
+        shared, own = told_once({name: self.parameters(name) for name in self.setups}, geometry)
+        conditions = {
+            name: {
                 "description": setup.description,
-                "tolerances": _plain(tolerances(setup.sensor)),
-                "parameters": differences(shared, own),
+                "tolerances": described(tolerances(setup.sensor)),
+                **own[name],
             }
-            conditions[name] = about if design == geometry else {**about, "geometry": design}
+            for name, setup in self.setups.items()
+        }
         return {
             "name": self.name,
             "version": self.version,
@@ -351,14 +285,8 @@ class Preset:
             "splits": {**splits, REPEAT: self.repeats.card(splits["test"]["samples"])},
             "parameters": shared,
             "conditions": conditions,
-            "regime": _plain(self.regime),
-            "seeds": {
-                "generator": "NumPy PCG64, SeedSequence over the SHA-256 of the stream's names",
-                "unit": [self.name, self.version, "unit"],
-                "samples": [self.name, self.version, "<split>"],
-                "noise": [self.name, self.version, "<condition>", "<split>"],
-                "other_units": 'unit: [..., "unit", <number>]; noise: [..., "unit", <number>]',
-            },
+            "regime": described(self.regime),
+            "seeds": stream_names(self.name, self.version),
         }
 
 
@@ -375,26 +303,3 @@ def first(scene: Scene, n: int | None) -> Scene:
     if n is not None and n < 1:
         raise ValueError(f"n must be at least 1; got {n}")
     return scene if n is None else scene.part(0, n)
-
-
-def _plain(value: Any) -> Any:
-    """Dataclasses, mappings and tuples as JSON objects and arrays; a dataclass names its type."""
-    if value is None or type(value) in (str, bool, int):
-        return value
-    if type(value) is float and math.isfinite(value):
-        return value
-    if dataclasses.is_dataclass(value) and not isinstance(value, type):
-        fields = {f.name: _plain(getattr(value, f.name)) for f in dataclasses.fields(value)}
-        if isinstance(value, SensorGeometry):
-            # a field added for one architecture must not change the parameters of the others
-            fields = {
-                name: item
-                for name, item in fields.items()
-                if item is not None or name in _FIRST_GEOMETRY
-            }
-        return {"type": type(value).__name__, **fields}
-    if isinstance(value, Mapping):
-        return {str(key): _plain(item) for key, item in value.items()}
-    if isinstance(value, tuple | list):
-        return [_plain(item) for item in value]
-    return json.loads(json.dumps(value, allow_nan=False))

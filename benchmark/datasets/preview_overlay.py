@@ -9,21 +9,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from algorithms.contract import Extractor, FeatureKind, Observation
+from algorithms.contract import Extractor, FeatureKind, Floats, Observation
 from benchmark.datasets import Preset, Samples
-from benchmark.datasets.preview_canvas import LINES, MUTED, Canvas, heat
+from benchmark.datasets.preview_sheet import LINES, MUTED, Sheet, heat
+from benchmark.drawing import plain_style
 from benchmark.simulator.sensors.black_sun import BlackSunSensor
 from benchmark.simulator.sensors.blooming import BloomingSensor
-
-Floats = NDArray[np.float64]
 
 _ACROSS = 4
 _TILE, _GAP, _LEFT, _TOP = 232, 14, 24, 84
 _FOUND, _TRUE = LINES[1], LINES[2]
+_SAID = "orange cross: found; green ring: the Sun's true image; each picture on its own scale"
 _CUT_PX = 116
 """Pixels that a tile shows each way, where the frame has more."""
 
@@ -50,25 +50,26 @@ def overlay_png(
         On an unknown condition, on a dataset or an extractor of another kind, and where the
         extractor refuses the design.
     """
-    if preset.observation is not Observation.FRAMES or extractor.kind is not FeatureKind.SPOT:
+    if preset.observation is not Observation.FRAMES or extractor.about.kind is not FeatureKind.SPOT:
         raise ValueError(
             f"overlays show spots on frames; {preset.name} has {preset.observation} and "
-            f"{extractor.name} gives {extractor.kind}"
+            f"{extractor.about.name} gives {extractor.about.kind}"
         )
-    if extractor.observation is not preset.observation:
-        raise ValueError(f"{extractor.name} reads {extractor.observation}, not frames")
+    if extractor.about.observation is not preset.observation:
+        raise ValueError(f"{extractor.about.name} reads {extractor.about.observation}, not frames")
     chosen = tuple(conditions or preset.conditions)
-    row = _TILE + 52
-    canvas = Canvas(2 * _LEFT + _ACROSS * (_TILE + _GAP) - _GAP, _TOP + len(chosen) * row)
-    canvas.text(_LEFT, 32, f"{preset.name}: {extractor.name}", 22, bold=True)
-    said = "orange cross: found; green ring: the Sun's true image; each picture on its own scale"
-    canvas.text(_LEFT, 54, said, 13, colour=MUTED)
-    for place, condition in enumerate(chosen):
+    for condition in chosen:
         preset.condition(condition)
-        top = _TOP + place * row
-        canvas.text(_LEFT, top - 6, condition, 14, bold=True)
-        _condition(canvas, preset, extractor, condition, top)
-    return canvas.png()
+    row = _TILE + 52
+    with plain_style():
+        sheet = Sheet(2 * _LEFT + _ACROSS * (_TILE + _GAP) - _GAP, _TOP + len(chosen) * row)
+        sheet.text(_LEFT, 32, f"{preset.name}: {extractor.about.name}", 22, bold=True)
+        sheet.text(_LEFT, 54, _SAID, 13, colour=MUTED)
+        for place, condition in enumerate(chosen):
+            top = _TOP + place * row
+            sheet.text(_LEFT, top - 6, condition, 14, bold=True)
+            _condition(sheet, preset, extractor, condition, top)
+        return sheet.png()
 
 
 def true_places(preset: Preset, condition: str, samples: Samples) -> Floats:
@@ -86,7 +87,7 @@ def _origins(samples: Samples) -> Floats:
 
 
 def _condition(
-    canvas: Canvas, preset: Preset, extractor: type[Extractor], condition: str, top: int
+    sheet: Sheet, preset: Preset, extractor: type[Extractor], condition: str, top: int
 ) -> None:
     samples = preset.generate(condition, "test", _ACROSS)
     geometry = preset.geometry_for(condition)
@@ -95,12 +96,12 @@ def _condition(
     for n, frame in enumerate(samples.observations):
         x = _LEFT + n * (_TILE + _GAP)
         middle = truth[n] if np.isfinite(truth[n]).all() else found[n]
-        _tile(canvas, (x, top), frame.astype(np.float64), middle, (found[n], truth[n]))
-        canvas.text(x, top + _TILE + 17, _apart(found[n], truth[n]), 13)
+        _tile(sheet, (x, top), frame.astype(np.float64), middle, (found[n], truth[n]))
+        sheet.text(x, top + _TILE + 17, _apart(found[n], truth[n]), 13)
 
 
 def _tile(
-    canvas: Canvas,
+    sheet: Sheet,
     corner: tuple[int, int],
     frame: Floats,
     middle: Floats,
@@ -113,27 +114,24 @@ def _tile(
     left = int(np.clip(round(float(wanted[0])) - cut // 2, 0, width - cut))
     first = int(np.clip(round(float(wanted[1])) - cut // 2, 0, height - cut))
     part = frame[first : first + cut, left : left + cut]
-    zoom = _TILE // cut
     low, high = float(part.min()), float(part.max())
+    axes = sheet.axes(x, y, _TILE, _TILE)
     # the square root shows halo and ghosts beside what is saturated
     scaled = np.sqrt((part - low) / max(high - low, 1e-12))
-    canvas.picture(x, y, heat(scaled.repeat(zoom, axis=0).repeat(zoom, axis=1)))
-
-    def at(place: Floats) -> tuple[float, float]:
-        """Return a pixel coordinate's place on the canvas, whose pixels have their centres too."""
-        a, b = (zoom * (place - [left, first] + 0.5) - 0.5).tolist()
-        return x + a, y + b
-
+    edges = (left - 0.5, left + cut - 0.5, first + cut - 0.5, first - 0.5)
+    axes.imshow(scaled, cmap=heat(), extent=edges, interpolation="nearest")
+    axes.set_axis_off()
     found, true = places
     if np.isfinite(true).all():
-        a, b = at(true)
-        turns = np.linspace(0.0, 2.0 * math.pi, 41)
-        canvas.line([(a + 14 * math.cos(t), b + 14 * math.sin(t)) for t in turns], _TRUE, 2)
+        ring: dict[str, Any] = {
+            "markerfacecolor": "none",
+            "markeredgecolor": _TRUE,
+            "markeredgewidth": 1.5,
+        }
+        axes.plot(*true, marker="o", markersize=20, **ring)
     if np.isfinite(found).all():
-        a, b = at(found)
-        inside = x <= a <= x + zoom * cut and y <= b <= y + zoom * cut
-        for dx, dy in ((9, 0), (0, 9)) if inside else ():
-            canvas.line([(a - dx, b - dy), (a + dx, b + dy)], _FOUND, 2)
+        axes.plot(*found, marker="+", markersize=13, markeredgecolor=_FOUND, markeredgewidth=1.5)
+    axes.set(xlim=edges[:2], ylim=edges[2:])
 
 
 def _apart(found: Floats, true: Floats) -> str:

@@ -9,10 +9,10 @@ from collections.abc import Iterable, Mapping
 from itertools import groupby
 from typing import Any
 
+from benchmark.contract import Cell
 from benchmark.leaderboard.ranking import UNITS, order, ranks, spreads
 from benchmark.metrics.rings import EDGES_DEG, field_error, widest_field
 from benchmark.metrics.score import METRIC_VERSION, is_available
-from benchmark.plan.combinations import Cell
 from benchmark.results.components import SCHEMA_VERSION
 from benchmark.results.store import Store
 

@@ -15,20 +15,21 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from benchmark.contract import Cell
 from benchmark.leaderboard import ranking
 from benchmark.leaderboard.board import board_of
 from benchmark.leaderboard.pages import PAGE, page
 from benchmark.leaderboard.update import update
 from benchmark.metrics.rings import RINGS
 from benchmark.metrics.score import METRICS, RING_DIGITS, SIGNIFICANT_DIGITS
-from benchmark.plan.combinations import Cell, cells
+from benchmark.plan.combinations import cells
 from benchmark.plan.parts import Parts, installed
+from benchmark.progress import ProgressCallback
 from benchmark.results.components import current
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.results.tables import Row
 from benchmark.running import pinning
 from benchmark.running.kernels import update_with_older_kernels
-from benchmark.running.progress import ProgressCallback
 from benchmark.running.run import RunInterruptedError
 from benchmark.sweeps import run as sweeps
 

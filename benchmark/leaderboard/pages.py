@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import Any
 
 from benchmark.leaderboard.ranking import LEADING, UNITS
-from benchmark.results.files import replace
 from benchmark.results.tables import spelt, text_of
 from benchmark.sweeps import tables as sweep_tables
+from survey_data.whole_files import replace_file
 
 Board = Mapping[str, Any]
 Row = Mapping[str, Any]
@@ -213,6 +213,6 @@ def render(board: Board, out: Path) -> list[Path]:
     """Write every derived file to a directory, each whole or not at all; returns their paths."""
     paths = []
     for name, made in FORMATS.items():
-        replace(out / name, made(board))
+        replace_file(out / name, made(board))
         paths.append(out / name)
     return paths

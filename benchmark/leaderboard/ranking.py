@@ -12,8 +12,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from benchmark.contract import Cell
 from benchmark.metrics.score import is_available
-from benchmark.plan.combinations import Cell
 from benchmark.plan.parts import Parts
 
 Row = Mapping[str, Any]

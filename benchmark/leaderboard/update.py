@@ -6,19 +6,20 @@ import time
 from collections.abc import Iterable
 from pathlib import Path
 
+from benchmark.contract import Cell
 from benchmark.leaderboard import ranking
 from benchmark.leaderboard.board import board_of, build
 from benchmark.leaderboard.pages import PAGE, page
-from benchmark.plan.combinations import Cell, cells
+from benchmark.plan.combinations import cells
 from benchmark.plan.parts import Parts, installed
+from benchmark.progress import ProgressCallback
 from benchmark.results.components import Components, current
-from benchmark.results.files import replace
 from benchmark.results.record import opened
 from benchmark.results.store import PUBLISHED, Store, described
 from benchmark.running import pinning
-from benchmark.running.progress import ProgressCallback
 from benchmark.running.run import Summary, failures, measure_missing
 from benchmark.sweeps import run as sweeps
+from survey_data.whole_files import replace_file
 
 
 def update(
@@ -90,7 +91,7 @@ def update(
         record.write(components, sweeps.ordered)
         failed = failures(sorted(wanted), record)
         board = build(described(record.scores, components, record.pins))
-    replace(store.directory / PAGE, page(board))
+    replace_file(store.directory / PAGE, page(board))
     return Summary(
         store=store.directory,
         planned=len(wanted),
@@ -115,4 +116,4 @@ def _require_heads(store: Store, parts: Parts, components: Components) -> None:
 
 def write_page(store: Store) -> bool:
     """Write the page of the best pipelines beside the record; True when it changed."""
-    return replace(store.directory / PAGE, page(board_of(store)))
+    return replace_file(store.directory / PAGE, page(board_of(store)))

@@ -8,12 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from algorithms.contract import Floats
 from benchmark.simulator.light.environment import Irradiance
 from benchmark.simulator.light.sun_disc import tangent_axes
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern, Sensor
-
-Floats = NDArray[np.float64]
 
 #: Half step of the central differences over direction, radians: small against the Sun's disc
 #: (4.65e-3), which smooths every edge of a shadow, and large against the distances between the

@@ -7,24 +7,10 @@ from dataclasses import dataclass
 from itertools import product
 
 from algorithms.contract import Extractor, FeatureKind, Model, UnsuitableDesignError
-from benchmark.plan.parts import Parts, Preset, UnknownNameError, installed
+from benchmark.contract import Cell, Preset, UnknownNameError
+from benchmark.plan.parts import Parts, installed
 
 Names = str | Iterable[str] | None
-
-
-@dataclass(frozen=True, order=True)
-class Cell:
-    """One thing to measure, by names, and by the number of the sensor's unit."""
-
-    dataset: str
-    condition: str
-    extractor: str
-    model: str
-    unit: int = 0
-
-    def __str__(self) -> str:
-        name = f"{self.dataset}/{self.condition}/{self.extractor}/{self.model}"
-        return f"{name}/unit {self.unit}" if self.unit else name
 
 
 @dataclass(frozen=True, order=True)
@@ -59,7 +45,7 @@ def cells(
     """
     chosen = _Choice.of(parts or installed(), datasets, conditions, extractors, models)
     return sorted(
-        Cell(preset.name, condition, extractor.name, model.name)
+        Cell(preset.name, condition, extractor.about.name, model.about.name)
         for preset in chosen.presets
         for extractor, model in _compatible(preset, chosen)
         for condition in preset.conditions
@@ -73,11 +59,11 @@ def _compatible(preset: Preset, chosen: _Choice) -> Iterator[tuple[type[Extracto
     for extractor in chosen.extractors:
         if _why_not_extractor(preset, extractor):
             continue
-        if extractor.kind not in fitting:
-            fitting[extractor.kind] = [
+        if extractor.about.kind not in fitting:
+            fitting[extractor.about.kind] = [
                 model for model in chosen.models if not _why_not_model(preset, extractor, model)
             ]
-        yield from ((extractor, model) for model in fitting[extractor.kind])
+        yield from ((extractor, model) for model in fitting[extractor.about.kind])
 
 
 def incompatible(
@@ -92,10 +78,10 @@ def incompatible(
     found = []
     for preset, extractor in product(chosen.presets, chosen.extractors):
         if reason := _why_not_extractor(preset, extractor):
-            found.append(Incompatible(preset.name, extractor.name, "", reason))
+            found.append(Incompatible(preset.name, extractor.about.name, "", reason))
             continue
         found.extend(
-            Incompatible(preset.name, extractor.name, model.name, reason)
+            Incompatible(preset.name, extractor.about.name, model.about.name, reason)
             for model in chosen.models
             if (reason := _why_not_model(preset, extractor, model))
         )
@@ -146,23 +132,25 @@ def _listed(names: Names, everything: Iterable[str]) -> list[str]:
 
 
 def _why_not_extractor(preset: Preset, extractor: type[Extractor]) -> str:
-    if extractor.observation != preset.observation:
-        return f"reads {extractor.observation}; the dataset has {preset.observation}"
+    if extractor.about.observation != preset.observation:
+        return f"reads {extractor.about.observation}; the dataset has {preset.observation}"
     return _missing_design(preset, extractor) or _refusal(
         lambda: extractor.for_sensor(preset.geometry)
     )
 
 
 def _why_not_model(preset: Preset, extractor: type[Extractor], model: type[Model]) -> str:
-    if extractor.kind not in model.accepts:
-        return f"accepts {', '.join(sorted(model.accepts))}; the extractor gives {extractor.kind}"
+    kind, accepts = extractor.about.kind, model.about.accepts
+    if kind not in accepts:
+        return f"accepts {', '.join(sorted(accepts))}; the extractor gives {kind}"
     return _missing_design(preset, model) or _refusal(
-        lambda: model.for_sensor(preset.geometry, extractor.kind)
+        lambda: model.for_sensor(preset.geometry, kind)
     )
 
 
 def _missing_design(preset: Preset, implementation: type[Extractor | Model]) -> str:
-    missing = [name for name in implementation.needs if getattr(preset.geometry, name) is None]
+    needs = implementation.about.needs
+    missing = [name for name in needs if getattr(preset.geometry, name) is None]
     return f"needs {', '.join(missing)}; the sensor has none" if missing else ""
 
 

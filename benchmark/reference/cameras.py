@@ -7,8 +7,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from algorithms.contract import Floats, Observation, SensorGeometry
-from benchmark.datasets.preset import Preset
-from benchmark.datasets.standard import ccd_lens, cmos_lens
 from benchmark.reference.light import position_bound
 from benchmark.reference.series import (
     SNRS,
@@ -29,17 +27,25 @@ from benchmark.simulator.sensors.lens_camera import LensCamera
 
 _BOUND_SAMPLES = 3
 
+Camera = BloomingSensor | BlackSunSensor
+
 
 @dataclass(frozen=True)
 class CameraSeries:
-    """The nominal camera of a standard dataset, without distortion and misalignment.
+    """A camera that is handed in, without its distortion and misalignment.
 
     The SNR is that of a pixel at the full well: the read noise is what is left of the full well
     over it.
+
+    Attributes
+    ----------
+    camera, design
+        The camera, and what its builder knows of it.
     """
 
     name: str
-    preset: Preset
+    camera: Camera
+    design: SensorGeometry
     description: str
     observation: Observation = Observation.FRAMES
     unit: str = "px"
@@ -57,20 +63,17 @@ class CameraSeries:
             *missing(base),
         )
 
-    def _sensor(self) -> BloomingSensor | BlackSunSensor:
-        sensor = self.preset.setups["nominal"].sensor
-        if not isinstance(sensor, BloomingSensor | BlackSunSensor):
-            raise TypeError(f"{self.preset.name} has no lens camera; got {type(sensor).__name__}")
-        camera = sensor.camera
-        straight = replace(camera.lens, k1=0.0, k2=0.0)
-        return replace(sensor, camera=replace(camera, lens=straight, assembly=Assembly()))
+    def _sensor(self) -> Camera:
+        optics = self.camera.camera
+        straight = replace(optics.lens, k1=0.0, k2=0.0)
+        return replace(self.camera, camera=replace(optics, lens=straight, assembly=Assembly()))
 
     def _highest_snr(self) -> float:
         return float(self._sensor().camera.detector.full_well_e ** 0.5)
 
     def geometry(self, setting: Setting) -> SensorGeometry:  # noqa: ARG002 - the protocol's
-        """Return the design of the dataset, without distortion."""
-        return replace(self.preset.geometry, lens_distortion=(0.0, 0.0))
+        """Return the design of the camera, without distortion."""
+        return replace(self.design, lens_distortion=(0.0, 0.0))
 
     def draw(self, setting: Setting) -> Drawn:
         """Return pictures, where the Sun's centre falls (N, 2) and its bound."""
@@ -119,17 +122,3 @@ class CameraSeries:
     def estimates(self, features: Floats) -> Floats:
         """Return the positions themselves."""
         return features
-
-
-BLOOMING = CameraSeries(
-    "blooming",
-    ccd_lens.PRESET,
-    "the Sun through a lens on a CCD without drains, trails along the columns: the nominal "
-    "`ccd-lens` camera without distortion; the SNR is that of a pixel at the full well",
-)
-BLACK_SUN = CameraSeries(
-    "black-sun",
-    cmos_lens.PRESET,
-    "the Sun through a lens on a CMOS array that inverts: the nominal `cmos-lens` camera without "
-    "distortion; the SNR is that of a pixel at the full well",
-)

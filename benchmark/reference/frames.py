@@ -14,9 +14,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from algorithms.contract import Floats
 from benchmark.seeds import generator
-
-Floats = NDArray[np.float64]
 
 #: Half step of the central differences of the bound, px.
 _STEP_PX = 1e-3

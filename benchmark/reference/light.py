@@ -12,7 +12,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from algorithms.contract import Floats
+
 Profile = Literal["flat", "gaussian"]
 
 BACKGROUND_E = 20.0

@@ -13,9 +13,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from benchmark.contract import Cell, Preset
 from benchmark.metrics.score import METRIC_VERSION
-from benchmark.plan.combinations import Cell
-from benchmark.plan.parts import Parts, Preset
+from benchmark.plan.parts import Parts
 from benchmark.results.digests import dataset_digest, harness_digest, method_digest
 
 #: Layout of the stored files; raised when a field changes its meaning.
@@ -180,8 +180,8 @@ def _of_dataset(preset: Preset) -> Facts:
 
 def _of_method(method: Any) -> Facts:
     return {
-        "version": method.version,
-        "taxonomy": method.taxonomy,
+        "version": method.about.version,
+        "taxonomy": method.about.taxonomy,
         "digest": method_digest(method),
     }
 

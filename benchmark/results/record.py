@@ -7,7 +7,6 @@ when the journal is read and cut off before more is appended. One process writes
 
 from __future__ import annotations
 
-import fcntl
 import json
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -16,11 +15,14 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from benchmark.plan.combinations import Cell
+from filelock import FileLock, Timeout
+
+from benchmark.contract import Cell
+from benchmark.datasets.pins import Pin, Place
 from benchmark.results.components import Components
-from benchmark.results.pins import Pin, Place
 from benchmark.results.store import Store
 from benchmark.results.tables import Row, StoreError
+from survey_data.whole_files import replace_file
 
 Point = tuple[str, str, str, str]  # (series, sweep, point, extractor)
 
@@ -209,21 +211,20 @@ def opened(store: Store) -> Iterator[Record]:
     StoreError, ComponentsError
         For a file that cannot be read.
     """
-    path: Path = store.work_directory / "lock"
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with path.open("a+") as file:
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError as error:
-            file.seek(0)
-            raise StoreLockedError(
-                f"another runner (process {file.read().strip() or 'unknown'}) is writing to "
-                f"{store.directory}; wait for it or use another store"
-            ) from error
-        file.seek(0)
-        file.truncate()
-        file.write(str(os.getpid()))
-        file.flush()
+    directory = store.work_directory
+    directory.mkdir(parents=True, exist_ok=True)
+    # beside the lock: Windows lets nobody read a file that is locked
+    holder = directory / "holder"
+    try:
+        held = FileLock(directory / "lock").acquire(timeout=0)
+    except Timeout as error:
+        process = holder.read_text() if holder.is_file() else "unknown"
+        raise StoreLockedError(
+            f"another runner (process {process}) is writing to {store.directory}; wait for it or "
+            "use another store"
+        ) from error
+    with held:
+        replace_file(holder, str(os.getpid()))
         record = Record(store)
         if record.journal.is_file():
             os.truncate(record.journal, len(_whole_lines(record.journal)))

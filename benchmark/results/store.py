@@ -14,18 +14,19 @@ All depend on code and data only, never on time or machine. A running runner kee
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
-from difflib import get_close_matches
 from functools import cached_property
 from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from benchmark.contract import Cell
+from benchmark.datasets.pins import Pin, Place
 from benchmark.metrics.score import METRIC_VERSION, METRICS
-from benchmark.plan.combinations import Cell
 from benchmark.results.components import Components, ComponentsError, Facts
-from benchmark.results.files import replace
-from benchmark.results.pins import Pin, Place, pins_text, read_pins
+from benchmark.results.pins import pins_text, read_pins
 from benchmark.results.tables import Reader, Row, StoreError, number, read, text_of, whole, word
+from survey_data.nearest import nearest
+from survey_data.whole_files import replace_file
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -190,8 +191,8 @@ class Store:
         wanted = {}
         for field, values in where.items():
             if field not in known:
-                close = get_close_matches(field, sorted(known), n=1)
-                hint = f"did you mean {close[0]!r}?" if close else f"known: {sorted(known)}"
+                close = nearest(field, known)
+                hint = f"did you mean {close!r}?" if close else f"known: {sorted(known)}"
                 raise UnknownFieldError(f"results have no field {field!r}; {hint}")
             if values is not None:
                 wanted[field] = {values} if isinstance(values, str) else set(values)
@@ -240,13 +241,13 @@ class Store:
             ]
             tables[dataset] = text_of(list(_SCORE_COLUMNS), rows)
         for name, text in tables.items():
-            replace(self.scores_directory / f"{name}.csv", text)
+            replace_file(self.scores_directory / f"{name}.csv", text)
         for path in self.scores_directory.glob("*.csv"):
             if path.stem not in tables:
                 path.unlink()
-        replace(self.pins_path, pins_text(pins))
-        replace(self.sweeps_path, text_of(list(_SWEEP_COLUMNS), swept))
-        replace(self.components_path, components.text())
+        replace_file(self.pins_path, pins_text(pins))
+        replace_file(self.sweeps_path, text_of(list(_SWEEP_COLUMNS), swept))
+        replace_file(self.components_path, components.text())
 
 
 def described(

@@ -15,14 +15,16 @@ from pathlib import Path
 
 from joblib import Parallel, delayed
 
-from benchmark.plan.parts import SPLITS, Parts, Preset, UnknownNameError, installed
+from benchmark.contract import SPLITS, Preset, UnknownNameError
+from benchmark.datasets.pins import Pin, Place, alike
+from benchmark.datasets.samples import HEAD, head_hash
+from benchmark.plan.parts import Parts, installed
+from benchmark.progress import ProgressCallback, terminal_progress
 from benchmark.results.components import Components, current
-from benchmark.results.digests import HEAD, head_hash
-from benchmark.results.pins import Pin, Place, alike
 from benchmark.results.record import Record, opened
 from benchmark.results.store import Store
-from benchmark.running.progress import ProgressCallback, terminal_progress
-from benchmark.running.task import generated_pins, reason_of, rms_bound
+from benchmark.running.generated import generated_pins, rms_bound
+from benchmark.running.task import reason_of
 from benchmark.running.threads import one_thread
 
 Condition = tuple[str, str]  # (dataset, condition)

@@ -15,15 +15,15 @@ from dataclasses import dataclass
 from itertools import groupby
 from pathlib import Path
 
+from benchmark.contract import Cell
 from benchmark.metrics.score import METRICS
-from benchmark.plan.combinations import Cell
 from benchmark.plan.parts import Parts, installed
+from benchmark.progress import ProgressCallback, terminal_progress
 from benchmark.results.components import Components, current
 from benchmark.results.record import Record, opened
 from benchmark.results.store import Store
 from benchmark.results.tables import Row
 from benchmark.running.backend import outcomes
-from benchmark.running.progress import ProgressCallback, terminal_progress
 from benchmark.running.task import Outcome, Task, TaskResult
 
 
@@ -213,7 +213,7 @@ def _keep_all(
             new = [pin for pin in result.pins if not record.is_pinned(pin.place, components)]
             record.keep(components, pins=new, scores=scores)
             done += len(scores)
-            report(done, total, f"{task.preset.name} {task.condition} {task.extractor.name}")
+            report(done, total, f"{task.preset.name} {task.condition} {task.extractor.about.name}")
     except KeyboardInterrupt as error:
         raise RunInterruptedError(
             f"interrupted with {done} of {total} cells measured; they are kept in "
@@ -222,7 +222,9 @@ def _keep_all(
 
 
 def _cell(task: Task, outcome: Outcome) -> Cell:
-    return Cell(task.preset.name, task.condition, task.extractor.name, outcome.model, task.unit)
+    return Cell(
+        task.preset.name, task.condition, task.extractor.about.name, outcome.model, task.unit
+    )
 
 
 def _numbers(outcome: Outcome) -> Row:

@@ -18,21 +18,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from algorithms.contract import (
-    Extractor,
-    Floats,
-    Model,
-    SensorGeometry,
-    in_detector_coordinates,
-)
-from benchmark.plan.combinations import Cell, cells
-from benchmark.plan.parts import Parts, Preset, Samples, installed
-from benchmark.results import files
+from algorithms.contract import Extractor, Floats, Model, SensorGeometry
+from algorithms.pipeline import Pipeline, extracted
+from benchmark.contract import Cell, Preset, Samples
+from benchmark.plan.combinations import cells
+from benchmark.plan.parts import Parts, installed
+from benchmark.progress import ProgressCallback, terminal_progress
 from benchmark.results.components import Components, current
 from benchmark.results.tables import number, read, text_of, word
-from benchmark.running.progress import ProgressCallback, terminal_progress
 from benchmark.running.threads import one_thread
 from benchmark.running.timing import best_of, best_time
+from survey_data.whole_files import replace_file
 
 #: Name of the file.
 TIMES = "times.csv"
@@ -43,7 +39,7 @@ _FEWEST = 8
 #: Values the reference turns to floats at a time: 32 MB of them.
 _REFERENCE_VALUES = 2**22
 
-Pipeline = tuple[str, str, str]  # (dataset, extractor, model)
+Place = tuple[str, str, str]  # (dataset, extractor, model)
 
 
 @dataclass(frozen=True)
@@ -74,7 +70,7 @@ class Time:
     digest: str
 
     @property
-    def pipeline(self) -> Pipeline:
+    def pipeline(self) -> Place:
         """What was timed."""
         return self.dataset, self.extractor, self.model
 
@@ -90,7 +86,7 @@ _COLUMNS = {
 }
 
 
-def read_times(directory: Path) -> dict[Pipeline, Time]:
+def read_times(directory: Path) -> dict[Place, Time]:
     """Read what was timed on this machine, up to date or not; nothing where there is no file.
 
     Raises
@@ -104,7 +100,7 @@ def read_times(directory: Path) -> dict[Pipeline, Time]:
 
 def times_of_code(
     directory: Path, parts: Parts | None = None, components: Components | None = None
-) -> dict[Pipeline, Time]:
+) -> dict[Place, Time]:
     """Return the times that are of datasets and implementations as they now are.
 
     Raises
@@ -163,7 +159,7 @@ def update(
                 kept[time.pipeline] = replace(time, digest=_digest(time.pipeline, components))
                 done += 1
             rows = [asdict(kept[pipeline]) for pipeline in sorted(kept)]
-            files.replace(directory / TIMES, text_of(list(_COLUMNS), rows))
+            replace_file(directory / TIMES, text_of(list(_COLUMNS), rows))
             report(done, len(missing), dataset)
     return len(missing)
 
@@ -194,7 +190,7 @@ def _timed(parts: Parts, group: list[Cell]) -> Iterator[Time]:
         for name, of_extractor in groupby(group, key=lambda cell: cell.extractor):
             models = [parts.model(cell.model) for cell in of_extractor]
             for model, numbers in _numbers(data, parts.extractor(name), models):
-                yield Time(preset.name, name, model.name, *numbers, digest="")
+                yield Time(preset.name, name, model.about.name, *numbers, digest="")
 
 
 @dataclass(frozen=True)
@@ -223,9 +219,9 @@ def _numbers(
         return
     for model_class in models:
         try:
-            model = model_class.for_sensor(data.geometry, extractor_class.kind)
-            model.fit(known, data.calibration.sun)
-            _, predict_s = best_time(partial(model.predict, features))
+            model = model_class.for_sensor(data.geometry, extractor.about.kind)
+            pipeline = Pipeline(extractor, model).fit_features(known, data.calibration.sun)
+            _, predict_s = best_time(partial(pipeline.predict_features, features))
         except Exception:  # noqa: BLE001 - likewise
             yield model_class, _UNTIMED
             continue
@@ -247,24 +243,23 @@ def _batch(preset: Preset, condition: str) -> int:
 
 
 def _features(extractor: Extractor, samples: Samples) -> Floats:
-    features = extractor.extract(samples.observations)
-    return in_detector_coordinates(features, extractor.kind, samples.origin_px)
+    return extracted(extractor, samples.observations, samples.origin_px)
 
 
 def _rounded(value: float) -> float:
     return float(f"{value:.3g}")
 
 
-def _pipeline(cell: Cell) -> Pipeline:
+def _pipeline(cell: Cell) -> Place:
     return cell.dataset, cell.extractor, cell.model
 
 
-def _is_installed(pipeline: Pipeline, parts: Parts) -> bool:
+def _is_installed(pipeline: Place, parts: Parts) -> bool:
     dataset, extractor, model = pipeline
     return dataset in parts.presets and extractor in parts.extractors and model in parts.models
 
 
-def _digest(pipeline: Pipeline, components: Components) -> str:
+def _digest(pipeline: Place, components: Components) -> str:
     dataset, extractor, model = pipeline
     whole = components.cell_key(Cell(dataset, "", extractor, model))
     return hashlib.sha256(whole.encode()).hexdigest()[:8]

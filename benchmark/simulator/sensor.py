@@ -8,10 +8,9 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from algorithms.contract import Floats
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.scene import Scene
-
-Floats = NDArray[np.float64]
 
 #: What one built unit deviates by, array by array; the same for all its samples.
 FixedPattern = Mapping[str, Floats]

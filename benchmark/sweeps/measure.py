@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from algorithms.contract import Extractor, Floats, UnusableDataError
+from algorithms.pipeline import checked
 from benchmark.metrics.score import stored
 from benchmark.reference.series import KEPT_PX, Drawn, Series, Setting
-from benchmark.results.digests import seed
 from benchmark.results.store import SWEPT
 from benchmark.running.threads import one_thread
 from benchmark.sweeps.plan import SERIES, Point
@@ -37,13 +37,13 @@ def _measured(
 ) -> Row:
     row = _row(point, setting, extractor)
     try:
-        _seed_opencv(seed(*str(point).split("/")))
         method = extractor.for_sensor(series.geometry(setting))
         # a method with a memory of frames is run with it where there is a sequence
         extract: Callable[..., Floats] = method.extract
         if setting.tracking:
             extract = getattr(method, "track", extract)
-        features = extract(drawn.observations.copy())
+        observations = drawn.observations.copy()
+        features = checked(method, extract(observations), len(observations))
         errors = series.estimates(features) - drawn.truth
     except UnusableDataError as error:
         return row | {"status": "refused", "reason": _reason(error)}
@@ -70,7 +70,7 @@ def _row(point: Point, setting: Setting | None, extractor: type[Extractor]) -> R
         "series": point.series,
         "sweep": point.sweep,
         "point": point.point,
-        "extractor": extractor.name,
+        "extractor": extractor.about.name,
         "status": "refused",
         "value": setting.value if setting else None,
         "n": setting.frames if setting else 0,
@@ -82,9 +82,3 @@ def _row(point: Point, setting: Setting | None, extractor: type[Extractor]) -> R
 
 def _reason(error: Exception) -> str:
     return f"{type(error).__name__}: {' '.join(str(error).split())}"
-
-
-def _seed_opencv(value: int) -> None:
-    import cv2  # noqa: PLC0415 - only the process that measures needs OpenCV
-
-    cv2.setRNGSeed(value)

@@ -1,18 +1,21 @@
-"""Pictures of error against noise, feature size and phase: a panel a method, with its bound.
-
-Plain SVG written here, so that the same rows give the same bytes.
-"""
+"""Pictures of error against noise, feature size and phase: a panel a method, with its bound."""
 
 from __future__ import annotations
 
+import io
 import math
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
-from xml.sax.saxutils import escape
+from typing import TYPE_CHECKING, Any
 
+from benchmark.drawing import plain_style
 from benchmark.reference.series import SWEEPS
 from benchmark.sweeps.plan import SERIES
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 Row = Mapping[str, Any]
 
@@ -21,10 +24,22 @@ DRAWN = ("noise", "size", "phase")
 _LINEAR = frozenset({"phase"})
 
 _COLUMNS = 5
-_WIDTH, _HEIGHT = 214, 168
-_LEFT, _RIGHT, _TOP, _BOTTOM = 46, 10, 34, 30
-_MARGIN, _HEAD = 12, 58
-_ERROR, _BOUND, _INK, _FAINT, _GRID = "#0b5fa5", "#b3541e", "#1a1d21", "#5c6570", "#e3e7eb"
+#: Points: a panel with its names and ticks, the same around its axes, and the whole picture's rim.
+_WIDTH, _HEIGHT = 214, 172
+_LEFT, _RIGHT, _TOP, _BOTTOM = 46, 10, 36, 30
+_MARGIN, _HEAD, _FOOT = 12, 58, 20
+#: Two that every kind of colour vision tells apart (Okabe and Ito), and dark to light greys.
+_ERROR, _BOUND, _INK, _FAINT, _GRID = "#0072b2", "#d55e00", "#1a1d21", "#5c6570", "#e3e7eb"
+#: The same rows give the same bytes: no identifiers at random, text left to the reader's fonts.
+_STYLE = {
+    "svg.hashsalt": "sun-sensor-atlas",
+    "svg.fonttype": "none",
+    "font.family": "sans-serif",
+    "font.sans-serif": "DejaVu Sans",
+    "path.simplify": False,
+}
+
+_FONT = "font-family: 'DejaVu Sans', sans-serif; "
 
 
 @dataclass(frozen=True)
@@ -39,55 +54,69 @@ class _Panel:
     complete: tuple[bool, ...]
 
 
-@dataclass(frozen=True)
-class _Axis:
-    """Maps values to pixels, logarithmically or not."""
-
-    low: float
-    high: float
-    start: float
-    stop: float
-    logarithmic: bool = True
-
-    def at(self, value: float) -> float:
-        one, other, v = self.low, self.high, value
-        if self.logarithmic:
-            one, other, v = math.log10(one), math.log10(other), math.log10(v)
-        return self.start + (v - one) / (other - one) * (self.stop - self.start)
-
-
 def picture(rows: Sequence[Row], sweep: str) -> str:
-    """Draw one sweep of every method: error (line and dots) and bound (dashed) by panel.
+    """Draw one sweep of every method as SVG: error (line and dots) and bound (dashed) by panel.
 
     Dots are hollow where less than 90 % are found; an error of zero has no place on the axis.
     ValueError for a sweep that is not drawn.
     """
+    with plain_style(**_STYLE):
+        drawn = figure(rows, sweep)
+        written = io.StringIO()
+        about = f"Error against {SWEEPS[sweep]} of every method, with its bound"
+        drawn.savefig(
+            written, format="svg", metadata={"Title": about, "Date": None, "Creator": None}
+        )
+    return _compact(written.getvalue())
+
+
+def figure(rows: Sequence[Row], sweep: str) -> Figure:
+    """Draw the same as a figure of Matplotlib."""
+    from matplotlib.figure import Figure  # noqa: PLC0415 - a second that only pictures need
+
     if sweep not in DRAWN:
         raise ValueError(f"sweep must be one of {', '.join(DRAWN)}; got {sweep!r}")
     panels = _panels(rows, sweep)
-    lines = max(1, math.ceil(len(panels) / _COLUMNS))
     width = 2 * _MARGIN + _COLUMNS * _WIDTH
-    height = _HEAD + lines * _HEIGHT + _MARGIN
-    opening = (
-        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" '
-        f'viewBox="0 0 {width} {height}" font-family="system-ui, sans-serif" role="img" '
-        f'aria-label="Error against {escape(SWEEPS[sweep])} of every method, with its bound">'
-    )
-    parts = [
-        opening,
-        f'<rect width="{width}" height="{height}" fill="#ffffff"/>',
-        _text((_MARGIN, 22), f"Error against {SWEEPS[sweep]}", 15, weight=600),
-        *_legend(_MARGIN, 42),
-    ]
+    height = _HEAD + max(1, math.ceil(len(panels) / _COLUMNS)) * _HEIGHT + _FOOT
+    drawn = Figure(figsize=(width / 72, height / 72), dpi=72, facecolor="white")
+    place: dict[str, Any] = {"ha": "left", "va": "baseline"}
+    title, left = f"Error against {SWEEPS[sweep]}", _MARGIN / width
+    drawn.text(left, 1 - 22 / height, title, size=15, weight="bold", color=_INK, **place)
+    said = f"across: {SWEEPS[sweep]}; upwards: rms error of one coordinate, in the unit named"
+    drawn.text(left, 9 / height, said, size=10, color=_FAINT, **place)
+    _legend(drawn, (left, 1 - 33 / height))
     for number, panel in enumerate(panels):
-        x = _MARGIN + number % _COLUMNS * _WIDTH
-        y = _HEAD + number // _COLUMNS * _HEIGHT
+        column, line = number % _COLUMNS, number // _COLUMNS
+        axes = drawn.add_axes(
+            (
+                (_MARGIN + column * _WIDTH + _LEFT) / width,
+                1 - (_HEAD + (line + 1) * _HEIGHT - _BOTTOM) / height,
+                (_WIDTH - _LEFT - _RIGHT) / width,
+                (_HEIGHT - _TOP - _BOTTOM) / height,
+            )
+        )
         alike = [other for other in panels if other.series == panel.series]
         values = [v for other in alike for v in (*other.errors, *other.bounds) if v]
-        parts += _drawn(panel, (x, y), sweep, _decades(values))
+        _fill(axes, panel, sweep, _decades(values))
     if not panels:
-        parts.append(_text((_MARGIN, 70), "nothing is stored", 11, colour=_FAINT))
-    return "\n".join([*parts, "</svg>"]) + "\n"
+        drawn.text(left, 1 - 70 / height, "nothing is stored", size=11, color=_FAINT, **place)
+    return drawn
+
+
+def _compact(svg: str) -> str:
+    """Leave out of an SVG what draws nothing: indents, names and empty groups, turns by nothing.
+
+    Numbers keep two digits, a hundredth of a point: rounding that differs between machines is not
+    a change of the picture.
+    """
+    svg = re.sub(r' transform="rotate\(-?0 [^)]*\)"', "", svg)
+    svg = re.sub(r'\n *<g id="[^"]*"/>', "", svg)
+    svg = re.sub(r'<g id="[^"]*">', "<g>", svg)
+    # once, where all text finds it
+    svg = svg.replace(_FONT, "").replace("<g>", f'<g style="{_FONT.strip("; ")}">', 1)
+    svg = re.sub(r"-?\d+\.\d{3,}", lambda found: f"{float(found[0]):.2f}", svg)
+    return "".join(f"{line.strip()}\n" for line in svg.splitlines())
 
 
 def _panels(rows: Sequence[Row], sweep: str) -> list[_Panel]:
@@ -117,75 +146,115 @@ def _panels(rows: Sequence[Row], sweep: str) -> list[_Panel]:
     return panels
 
 
-def _drawn(
-    panel: _Panel, corner: tuple[float, float], sweep: str, decades: tuple[float, float]
-) -> list[str]:
-    (x, y), (low, high) = corner, decades
-    right, bottom = x + _WIDTH - _RIGHT, y + _HEIGHT - _BOTTOM
-    linear = sweep in _LINEAR
-    room = (max(panel.places) - min(panel.places)) * 0.04 if linear else 0.0
-    across = _Axis(
-        min(panel.places) - room if linear else min(panel.places) / 1.12,
-        max(panel.places) + room if linear else max(panel.places) * 1.12,
-        x + _LEFT,
-        right,
-        not linear,
-    )
-    up = _Axis(low, high, bottom, y + _TOP)
-    parts = [
-        _text((x + _LEFT, y + 13), panel.name, 11.5, weight=600),
-        _text((x + _LEFT, y + 26), f"{panel.about} ({panel.unit})", 10, colour=_FAINT),
-    ]
-    exponents = range(round(math.log10(low)), round(math.log10(high)) + 1)
-    step = 1 if len(exponents) <= 5 else 2
-    for exponent in exponents:
-        at = up.at(10.0**exponent)
-        parts.append(_line((x + _LEFT, at), (right, at), _GRID))
-        if (exponent - exponents[0]) % step == 0:
-            parts.append(
-                _text((x + _LEFT - 5, at + 3.5), _power(exponent), 9.5, _FAINT, anchor="end")
-            )
-    for place in _ticks(panel.places, sweep):
-        at = across.at(place)
-        parts.append(_line((at, bottom), (at, bottom + 3), _FAINT))
-        parts.append(_text((at, bottom + 14), f"{place:g}", 9.5, _FAINT, anchor="middle"))
-    parts.append(_line((x + _LEFT, bottom), (right, bottom), _FAINT))
-    parts += _curve(
-        panel.places, panel.bounds, across, up, f'stroke="{_BOUND}" stroke-dasharray="5 3"'
-    )
+def _fill(axes: Axes, panel: _Panel, sweep: str, decades: tuple[int, int]) -> None:
+    name: dict[str, Any] = {
+        "xycoords": "axes fraction",
+        "textcoords": "offset points",
+        "ha": "left",
+    }
+    axes.annotate(panel.name, (0, 1), (0, 19), size=11.5, weight="bold", color=_INK, **name)
+    axes.annotate(f"{panel.about} ({panel.unit})", (0, 1), (0, 7), size=10, color=_FAINT, **name)
+    low, high = decades
+    axes.set_yscale("log")
+    axes.set_ylim(10.0**low, 10.0**high)
+    exponents = range(low, high + 1, 1 if high - low < 5 else 2)
+    axes.set_yticks([10.0**e for e in exponents], [_power(e) for e in exponents])
+    first, last = min(panel.places), max(panel.places)
+    if sweep in _LINEAR:
+        room = (last - first) * 0.04
+        axes.set_xlim(first - room, last + room)
+    else:
+        axes.set_xscale("log")
+        axes.set_xlim(first / 1.12, last * 1.12)
+    places = _ticks(panel.places, sweep)
+    axes.set_xticks(places, [f"{place:g}" for place in places])
+    axes.minorticks_off()
+    axes.tick_params(labelsize=9.5, labelcolor=_FAINT, color=_FAINT, length=3)
+    axes.tick_params(axis="y", left=False)
+    # all rules as one broken line: a grid's would be half of the file
+    heights = [value for e in range(low, high + 1) for value in (10.0**e, 10.0**e, math.nan)]
+    ends = [0.0, 1.0, math.nan] * (high - low + 1)
+    across = axes.get_yaxis_transform()
+    axes.plot(ends, heights, transform=across, color=_GRID, linewidth=1, zorder=0.5)
+    axes.spines[["left", "right", "top"]].set_visible(False)
+    axes.spines["bottom"].set_color(_FAINT)
+    axes.patch.set_visible(False)
+    _curve(axes, panel.places, panel.bounds, color=_BOUND, linestyle=(0, (3, 2)))
     if not any(panel.errors):
-        middle = ((x + _LEFT + right) / 2.0, (y + _TOP + bottom) / 2.0)
-        parts.append(_text(middle, "nothing found", 10, _FAINT, anchor="middle"))
-    parts += _curve(panel.places, panel.errors, across, up, f'stroke="{_ERROR}"')
-    for place, error, whole in zip(panel.places, panel.errors, panel.complete, strict=True):
-        if error:
-            fill = _ERROR if whole else "#ffffff"
-            parts.append(
-                f'<circle cx="{across.at(place):.1f}" cy="{up.at(error):.1f}" r="2.6" '
-                f'fill="{fill}" stroke="{_ERROR}"/>'
-            )
-    return parts
+        axes.text(
+            0.5,
+            0.5,
+            "nothing found",
+            transform=axes.transAxes,
+            size=10,
+            color=_FAINT,
+            ha="center",
+            va="center",
+        )
+    _curve(axes, panel.places, panel.errors, color=_ERROR)
+    for whole in (True, False):
+        chosen = [
+            error if complete is whole else None
+            for error, complete in zip(panel.errors, panel.complete, strict=True)
+        ]
+        _curve(axes, panel.places, chosen, **_dots(whole=whole))
 
 
 def _curve(
-    places: Sequence[float], values: Sequence[float | None], across: _Axis, up: _Axis, style: str
-) -> list[str]:
-    points = " ".join(
-        f"{across.at(place):.1f},{up.at(value):.1f}"
-        for place, value in zip(places, values, strict=True)
-        if value
-    )
-    return (
-        [f'<polyline points="{points}" fill="none" stroke-width="1.6" {style}/>'] if points else []
+    axes: Axes, places: Sequence[float], values: Sequence[float | None], **style: Any
+) -> None:
+    points = [(place, v) for place, v in zip(places, values, strict=True) if v]
+    if points:
+        axes.plot(*zip(*points, strict=True), linewidth=1.6, clip_on=False, **style)
+
+
+def _dots(*, whole: bool) -> dict[str, Any]:
+    return {
+        "linestyle": "none",
+        "marker": "o",
+        "markersize": 5.2,
+        "markeredgewidth": 1.0,
+        "markeredgecolor": _ERROR,
+        "markerfacecolor": _ERROR if whole else "white",
+    }
+
+
+def _legend(drawn: Figure, corner: tuple[float, float]) -> None:
+    from matplotlib.lines import Line2D  # noqa: PLC0415 - see `figure`
+
+    error: dict[str, Any] = {
+        **_dots(whole=True),
+        "linestyle": "-",
+        "color": _ERROR,
+        "linewidth": 1.6,
+    }
+    bound: dict[str, Any] = {"color": _BOUND, "linestyle": (0, (3, 2)), "linewidth": 1.6}
+    entries = [
+        Line2D([], [], label="rms error of one coordinate", **error),
+        Line2D([], [], label="less than 90 % found", **_dots(whole=False)),
+        Line2D([], [], label="Cramer-Rao bound", **bound),
+    ]
+    drawn.legend(
+        handles=entries,
+        loc="upper left",
+        bbox_to_anchor=corner,
+        ncols=len(entries),
+        fontsize=11,
+        labelcolor=_FAINT,
+        frameon=False,
+        borderpad=0,
+        borderaxespad=0,
+        handlelength=2.4,
+        columnspacing=2.0,
     )
 
 
-def _decades(values: Sequence[float]) -> tuple[float, float]:
-    """Return whole powers of ten around positive values."""
+def _decades(values: Sequence[float]) -> tuple[int, int]:
+    """Return exponents of the whole powers of ten around positive values."""
     if not values:
-        return 0.1, 1.0
+        return -1, 0
     low, high = math.floor(math.log10(min(values))), math.ceil(math.log10(max(values)))
-    return 10.0**low, 10.0 ** max(high, low + 1)
+    return low, max(high, low + 1)
 
 
 def _ticks(places: Sequence[float], sweep: str) -> list[float]:
@@ -194,45 +263,6 @@ def _ticks(places: Sequence[float], sweep: str) -> list[float]:
     return list(places)[::2] if len(places) > 5 else list(places)
 
 
-def _legend(x: float, y: float) -> list[str]:
-    return [
-        _line((x, y - 4), (x + 26, y - 4), _ERROR, 'stroke-width="1.6"'),
-        f'<circle cx="{x + 13}" cy="{y - 4}" r="2.6" fill="{_ERROR}" stroke="{_ERROR}"/>',
-        _text((x + 32, y), "rms error of one coordinate", 11, _FAINT),
-        f'<circle cx="{x + 205}" cy="{y - 4}" r="2.6" fill="#ffffff" stroke="{_ERROR}"/>',
-        _text((x + 213, y), "less than 90 % found", 11, _FAINT),
-        _line(
-            (x + 345, y - 4), (x + 371, y - 4), _BOUND, 'stroke-width="1.6" stroke-dasharray="5 3"'
-        ),
-        _text((x + 377, y), "Cramer-Rao bound", 11, _FAINT),
-    ]
-
-
 def _power(exponent: int) -> str:
     digits = str(exponent).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
     return f"10{digits}"
-
-
-def _line(
-    one: tuple[float, float], other: tuple[float, float], colour: str, style: str = ""
-) -> str:
-    (x1, y1), (x2, y2) = one, other
-    return (
-        f'<line x1="{x1:.1f}" y1="{y1:.1f}" x2="{x2:.1f}" y2="{y2:.1f}" stroke="{colour}" {style}/>'
-    )
-
-
-def _text(
-    place: tuple[float, float],
-    words: str,
-    size: float,
-    colour: str = _INK,
-    *,
-    anchor: str = "start",
-    weight: int = 400,
-) -> str:
-    x, y = place
-    return (
-        f'<text x="{x:.1f}" y="{y:.1f}" font-size="{size:g}" font-weight="{weight}" '
-        f'fill="{colour}" text-anchor="{anchor}">{escape(words)}</text>'
-    )

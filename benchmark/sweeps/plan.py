@@ -7,12 +7,25 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from algorithms.contract import Extractor, FeatureKind, Observation, UnsuitableDesignError
-from benchmark.reference.cameras import BLACK_SUN, BLOOMING
+from benchmark.datasets import Preset
+from benchmark.datasets.standard import ccd_lens, cmos_lens
+from benchmark.reference.cameras import CameraSeries
 from benchmark.reference.events import EVENTS
 from benchmark.reference.lines import SLIT, SLITS
 from benchmark.reference.readings import FacesSeries, QuadrantSeries
 from benchmark.reference.series import Series, Setting
 from benchmark.reference.spots import DiscSeries, GridSeries
+from benchmark.simulator.sensors.black_sun import BlackSunSensor
+from benchmark.simulator.sensors.blooming import BloomingSensor
+
+
+def _camera_of(preset: Preset, name: str, description: str) -> CameraSeries:
+    """Return the series of a dataset's nominal camera."""
+    camera = preset.condition("nominal").sensor
+    if not isinstance(camera, BloomingSensor | BlackSunSensor):
+        raise TypeError(f"{preset.name} has no lens camera; got {type(camera).__name__}")
+    return CameraSeries(name, camera, preset.geometry, description)
+
 
 _ALL: tuple[Series, ...] = (
     DiscSeries(),
@@ -22,8 +35,18 @@ _ALL: tuple[Series, ...] = (
     QuadrantSeries(),
     FacesSeries(),
     EVENTS,
-    BLOOMING,
-    BLACK_SUN,
+    _camera_of(
+        ccd_lens.PRESET,
+        "blooming",
+        "the Sun through a lens on a CCD without drains, trails along the columns: the nominal "
+        "`ccd-lens` camera without distortion; the SNR is that of a pixel at the full well",
+    ),
+    _camera_of(
+        cmos_lens.PRESET,
+        "black-sun",
+        "the Sun through a lens on a CMOS array that inverts: the nominal `cmos-lens` camera "
+        "without distortion; the SNR is that of a pixel at the full well",
+    ),
 )
 
 #: By name, in the order of the tables.
@@ -80,10 +103,9 @@ def planned(extractors: Mapping[str, type[Extractor]]) -> Planned:
     for extractor in extractors.values():
         names = _series_names(extractor)
         if not names:
-            reason = (
-                f"no reference series of {extractor.observation} that are read as {extractor.kind}"
-            )
-            refused[Point("", "", "", extractor.name)] = reason
+            about = extractor.about
+            reason = f"no reference series of {about.observation} that are read as {about.kind}"
+            refused[Point("", "", "", extractor.about.name)] = reason
         for series in (SERIES[name] for name in names):
             accepted, left_out = _sorted_out(series, extractor)
             settings |= accepted
@@ -91,7 +113,7 @@ def planned(extractors: Mapping[str, type[Extractor]]) -> Planned:
                 refused |= left_out
             else:  # one line instead of one a point
                 reason = next(iter(left_out.values()))
-                refused[Point(series.name, "", "", extractor.name)] = reason
+                refused[Point(series.name, "", "", extractor.about.name)] = reason
     return Planned(dict(sorted(settings.items())), dict(sorted(refused.items())))
 
 
@@ -100,13 +122,13 @@ def _sorted_out(
 ) -> tuple[dict[Point, Setting], dict[Point, str]]:
     """Return the points whose design a method accepts, and reasons for the others."""
     # a method for one spot meets the grid only to say what several features do for it
-    visiting = series.name == "grid" and "grid" not in _FRAMES_OF.get(extractor.taxonomy, ())
+    visiting = series.name == "grid" and "grid" not in _FRAMES_OF.get(extractor.about.taxonomy, ())
     accepted: dict[Point, Setting] = {}
     left_out: dict[Point, str] = {}
     for setting in series.settings():
         if visiting and setting.sweep != "features":
             continue
-        point = Point(series.name, setting.sweep, setting.point, extractor.name)
+        point = Point(series.name, setting.sweep, setting.point, extractor.about.name)
         if reason := _refusal(series, setting, extractor):
             left_out[point] = reason
         else:
@@ -115,17 +137,17 @@ def _sorted_out(
 
 
 def _series_names(extractor: type[Extractor]) -> tuple[str, ...]:
-    if extractor.observation is Observation.FRAMES and extractor.taxonomy in _FRAMES_OF:
-        return _FRAMES_OF[extractor.taxonomy]
-    if extractor.observation is Observation.CURRENTS:
-        return _READINGS_OF.get(extractor.kind, ())
-    return _SERIES_OF[extractor.observation]
+    if extractor.about.observation is Observation.FRAMES and extractor.about.taxonomy in _FRAMES_OF:
+        return _FRAMES_OF[extractor.about.taxonomy]
+    if extractor.about.observation is Observation.CURRENTS:
+        return _READINGS_OF.get(extractor.about.kind, ())
+    return _SERIES_OF[extractor.about.observation]
 
 
 def _refusal(series: Series, setting: Setting, extractor: type[Extractor]) -> str:
     """Why a method does not fit the design of a point, or empty."""
     geometry = series.geometry(setting)
-    missing = [name for name in extractor.needs if getattr(geometry, name) is None]
+    missing = [name for name in extractor.about.needs if getattr(geometry, name) is None]
     if missing:
         return f"needs {', '.join(missing)}; the series has none"
     try:

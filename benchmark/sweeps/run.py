@@ -21,13 +21,13 @@ from joblib import Parallel, delayed, parallel_config
 from algorithms.contract import Extractor
 from algorithms.discovery import discover_extractors
 from benchmark.plan.parts import Parts
+from benchmark.progress import ProgressCallback, terminal_progress
 from benchmark.reference.series import SWEEPS, Setting
 from benchmark.results.components import Components, current
-from benchmark.results.digests import module_digest
+from benchmark.results.digests import series_digest
 from benchmark.results.record import Record, opened, point_of
 from benchmark.results.store import PUBLISHED, SWEPT, Store
 from benchmark.results.tables import Row
-from benchmark.running.progress import ProgressCallback, terminal_progress
 from benchmark.sweeps.measure import measure, refused_row
 from benchmark.sweeps.plan import SERIES, Planned, Point, planned
 
@@ -59,8 +59,8 @@ class Swept:
 
 
 def series_digests() -> dict[str, str]:
-    """Digest of the code of each series of reference features."""
-    return {name: module_digest(type(series).__module__) for name, series in SERIES.items()}
+    """Digest of each series of reference features."""
+    return {name: series_digest(series) for name, series in SERIES.items()}
 
 
 def components_of(extractors: Extractors) -> Components:

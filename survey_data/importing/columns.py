@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
@@ -12,6 +11,7 @@ import pandas as pd
 
 from survey_data.importing.text_similarity import normalise, similarity
 from survey_data.importing.values import UnreadableValueError, ValueReader, column_unit
+from survey_data.nearest import nearest
 from survey_data.problems import SurveyImportError
 from survey_data.tables import SurveyTables
 
@@ -186,8 +186,8 @@ def _check_overrides(
 
 
 def _nearest(text: str, names: list[str]) -> str:
-    near = difflib.get_close_matches(text, names, n=1, cutoff=0.5)
-    return f" (did you mean {near[0]!r}?)" if near else ""
+    near = nearest(text, names, cutoff=0.5)
+    return f" (did you mean {near!r}?)" if near else ""
 
 
 def _check_sufficient(frame: pd.DataFrame, mapping: ColumnMapping) -> None:

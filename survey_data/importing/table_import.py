@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import shutil
 import tempfile
 from collections.abc import Mapping
@@ -29,6 +28,7 @@ from survey_data.importing.reading import read_table
 from survey_data.problems import SurveyImportError
 from survey_data.tables import SurveyTables, load
 from survey_data.validation.validate import validate
+from survey_data.whole_files import replace_file
 
 _TABLE = "attributes"
 
@@ -111,7 +111,7 @@ def apply_import(directory: str | Path | None, plan: ImportPlan) -> ImportPlan:
     text = _edited(folder, plan, _authors_doi(tables))
     try:
         _require_valid(folder, text)
-        _replace(folder / file_name(_TABLE), text)
+        replace_file(folder / file_name(_TABLE), text)
     except OSError as error:
         raise SurveyImportError(f"cannot write in {folder}: {error.strerror or error}") from error
     return plan.after_writing()
@@ -187,18 +187,3 @@ def _require_valid(folder: Path, text: str) -> None:
         raise SurveyImportError(
             f"the tables would not be valid: {problems[0]}", problems=tuple(problems)
         )
-
-
-def _replace(path: Path, text: str) -> None:
-    """Write a file in full beside the old one and put it in its place."""
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-    scratch = Path(name)
-    try:
-        with os.fdopen(handle, "w", encoding="utf-8", newline="") as stream:
-            stream.write(text)
-            stream.flush()
-            os.fsync(stream.fileno())
-        shutil.copymode(path, scratch)
-        scratch.replace(path)
-    finally:
-        scratch.unlink(missing_ok=True)

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,6 +17,10 @@ from algorithms.angles import sun_from_angles
 from algorithms.contract import FeatureKind, Observation, SensorGeometry
 
 Floats = NDArray[np.float64]
+
+# The suite's modules import each other by name; what they assert is spelt out where it fails.
+sys.path.append(str(Path(__file__).parent / "suite"))
+pytest.register_assert_rewrite("expectations", "extractor_checks", "model_checks")
 
 FACES = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
 PYRAMID = tuple(
@@ -64,13 +70,16 @@ def design_for(geometry: SensorGeometry) -> Callable[[Any], SensorGeometry]:
     """The sensor one class is made for: lines behind a slit, code dials, a pyramid of faces."""
 
     def make(implementation: Any) -> SensorGeometry:
-        if "code_bits" in implementation.needs:
+        if "code_bits" in implementation.about.needs:
             return replace(geometry, line_axes=("x", "y"), **DIAL)
-        if implementation.name in {"panoramic", "pyramidal"}:  # three faces lit, whatever the Sun
+        if implementation.about.name in {
+            "panoramic",
+            "pyramidal",
+        }:  # three faces lit, whatever the Sun
             return replace(geometry, face_normals=PYRAMID)
-        if implementation.name in MULTI_SPOT:
+        if implementation.about.name in MULTI_SPOT:
             return replace(geometry, focal_length_mm=0.5, aperture_width_mm=0.05, apertures=HOLES)
-        if getattr(implementation, "observation", None) is Observation.PROFILES:
+        if getattr(implementation.about, "observation", None) is Observation.PROFILES:
             return replace(
                 geometry,
                 pixel_pitch_mm=0.05,
@@ -78,7 +87,7 @@ def design_for(geometry: SensorGeometry) -> Callable[[Any], SensorGeometry]:
                 line_pixels=LINE_PIXELS,
                 slits=((0.0, 0.0, 0.3),),
             )
-        return replace(geometry, **OWN_DESIGN.get(implementation.name, {}))
+        return replace(geometry, **OWN_DESIGN.get(implementation.about.name, {}))
 
     return make
 
@@ -198,18 +207,22 @@ def observations_for(geometry: SensorGeometry) -> Callable[[Any], NDArray[Any]]:
     """Observations (N, ...) with something to find in every row, for one extractor class."""
 
     def make(extractor: Any) -> NDArray[Any]:
-        if extractor.name == "tm":  # its template is the sensor's aperture
+        if extractor.about.name == "tm":  # its template is the sensor's aperture
             return _squares(geometry)
-        if extractor.name in MULTI_SPOT:
+        if extractor.about.name in MULTI_SPOT:
             return _many_spots(geometry)
-        if make_own := OWN_SAMPLES.get(extractor.name, OWN_SAMPLES.get(extractor.observation)):
+        if make_own := OWN_SAMPLES.get(
+            extractor.about.name, OWN_SAMPLES.get(extractor.about.observation)
+        ):
             return make_own()
-        if extractor.observation is Observation.CURRENTS:
-            columns = {FeatureKind.BALANCE: 4, FeatureKind.SIGNALS: len(FACES)}[extractor.kind]
-            if "code_bits" in extractor.needs:
+        if extractor.about.observation is Observation.CURRENTS:
+            columns = {FeatureKind.BALANCE: 4, FeatureKind.SIGNALS: len(FACES)}[
+                extractor.about.kind
+            ]
+            if "code_bits" in extractor.about.needs:
                 columns = 2 * (DIAL["code_bits"] + 4)
             return np.random.default_rng(12).integers(20, 250, (9, columns)).astype(np.uint8)
-        raise NotImplementedError(f"make sample {extractor.observation} here for {extractor}")
+        raise NotImplementedError(f"make sample {extractor.about.observation} here for {extractor}")
 
     return make
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -17,22 +18,16 @@ GOOD = """
 from dataclasses import dataclass
 from typing import ClassVar
 
-@dataclass(frozen=True)
-class {cls}:
-    name: ClassVar[str] = "{name}"
-    taxonomy: ClassVar[str] = "BCM"
-    studies: ClassVar[tuple] = ()
-    labels: ClassVar[tuple] = ()
-    origin: ClassVar[str] = "ours"
-    version: ClassVar[int] = 1
-    observation: ClassVar[str] = "frames"
-    kind: ClassVar[str] = "spot"
-    needs: ClassVar[tuple] = ()
-    features = ("x_px", "y_px")
+from algorithms.contract import AboutExtractor, Extractor, FeatureKind, Observation
 
-    @classmethod
-    def for_sensor(cls, geometry):
-        return cls()
+@dataclass(frozen=True)
+class {cls}(Extractor):
+    about: ClassVar = AboutExtractor(
+        name="{name}",
+        taxonomy="BCM",
+        observation=Observation.FRAMES,
+        kind=FeatureKind.SPOT,
+    )
 
     def extract(self, observations):
         return observations
@@ -71,7 +66,7 @@ def test_the_first_set_is_found():
 def test_names_are_keys_and_sorted():
     for found in (discover_extractors(), discover_models()):
         assert list(found) == sorted(found)
-        assert all(cls.name == name for name, cls in found.items())
+        assert all(cls.about.name == name for name, cls in found.items())
 
 
 def test_reexported_private_and_unrelated_classes_are_skipped(package):
@@ -94,11 +89,28 @@ def test_two_classes_of_one_name_are_refused(package):
         implementations(load(), Extractor, "extract")
 
 
-def test_missing_metadata_is_named(package):
+@pytest.mark.parametrize(
+    ("part", "said"),
+    [
+        (r"    about: ClassVar = .*?\n    \)\n", r"one\.One lacks about of the Extractor"),
+        (r"    def extract.*", r"one\.One lacks extract of the Extractor"),
+        (r"        kind=.*?\n", "missing 1 required keyword-only argument: 'kind'"),
+    ],
+)
+def test_what_is_missing_is_named(package, part, said):
     folder, load = package
-    text = GOOD.format(cls="One", name="one").replace("    version: ClassVar[int] = 1\n", "")
+    text, count = re.subn(part, "", GOOD.format(cls="One", name="one"), flags=re.DOTALL)
+    assert count == 1
     (folder / "one.py").write_text(text)
-    with pytest.raises(TypeError, match=r"one\.One lacks version"):
+    with pytest.raises(TypeError, match=said):
+        implementations(load(), Extractor, "extract")
+
+
+def test_another_s_metadata_are_not_one_s_own(package):
+    folder, load = package
+    one = GOOD.format(cls="One", name="one")
+    (folder / "one.py").write_text(f"{one}\nclass Two(One):\n    pass\n")
+    with pytest.raises(TypeError, match=r"one\.Two must say of itself what it is"):
         implementations(load(), Extractor, "extract")
 
 
@@ -119,4 +131,4 @@ def test_finding_everything_loads_no_numerics_but_numpy():
         "assert not heavy, heavy\n"
     )
     root = Path(algorithms.__file__).parent.parent
-    subprocess.run([sys.executable, "-c", code], check=True, cwd=root, timeout=60)
+    subprocess.run([sys.executable, "-c", code], check=True, cwd=root, timeout=600)

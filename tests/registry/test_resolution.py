@@ -2,13 +2,13 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from algorithms.contract import FeatureKind, Observation
+from algorithms.contract import AboutExtractor, AboutModel, FeatureKind, Observation
 from registry.catalogue import Catalogue, catalogue
 from registry.resolution import (
     READOUTS,
@@ -30,6 +30,13 @@ def implementation(
 ) -> type[Any]:
     """A class that declares what the catalogue reads; nothing here runs it."""
 
+    stated: dict[str, Any] = {
+        "name": name,
+        "taxonomy": taxonomy,
+        "labels": ("eq:x",),
+        "origin": "survey",
+    }
+
     @dataclass(frozen=True)
     class Stated:
         """Says what it is.
@@ -37,26 +44,19 @@ def implementation(
         Not shown in a list.
         """
 
-    extra = (
-        {"accepts": kinds} if reads is None else {"observation": reads, "kind": next(iter(kinds))}
-    )
-    stated: dict[str, object] = {
-        "name": name,
-        "taxonomy": taxonomy,
-        "studies": (),
-        "labels": ("eq:x",),
-        "origin": "survey",
-        "version": 1,
-        "needs": (),
-        **extra,
-    }
-    for key, value in stated.items():
-        setattr(Stated, key, value)
+        about: ClassVar = (
+            AboutModel(accepts=kinds, **stated)
+            if reads is None
+            else AboutExtractor(observation=reads, kind=next(iter(kinds)), **stated)
+        )
+
     return Stated
 
 
 def stand_ins(facts: Facts, extractors: list[type[Any]], models: list[type[Any]]) -> Catalogue:
-    return Catalogue({e.name: e for e in extractors}, {m.name: m for m in models}, facts.taxonomy)
+    return Catalogue(
+        {e.about.name: e for e in extractors}, {m.about.name: m for m in models}, facts.taxonomy
+    )
 
 
 SPOT, BALANCE, SIGNALS = FeatureKind.SPOT, FeatureKind.BALANCE, FeatureKind.SIGNALS
@@ -195,6 +195,17 @@ def test_architectures_not_simulated_are_gaps(facts_of: Build) -> None:
     assert gaps(found) == [("architecture", "CMOS + Slit"), ("architecture", "CMOS + Lens")]
 
 
+def test_none_beside_a_stated_value_does_not_run_that_value_twice(facts_of: Build) -> None:
+    both = study(detector=["PD"], extractor=["None", "Direct"], model=["ECM"])
+    found = resolved(facts_of, both)
+    assert [(p.extractor, p.model) for p in found.pipelines] == [
+        ("direct", "noise"),
+        ("direct", "kelly"),
+    ]
+    assert all("extractor" not in p.assumed for p in found.pipelines)
+    assert ("extractor", "None") in gaps(found)
+
+
 def test_an_unknown_study_names_the_nearest(facts_of: Build) -> None:
     with pytest.raises(InvalidValueError, match="did you mean 'Chang2008'"):
         resolve("Chang208")
@@ -234,8 +245,8 @@ def test_nothing_of_a_study_is_passed_over_in_silence(
         assert p.detector in row["detector"]
         assert p.mask in row["mask"]
         assert simulated is None or (p.detector, p.mask) in simulated
-        assert extractor.observation in READOUTS[p.detector]
-        assert extractor.kind in model.accepts
+        assert extractor.about.observation in READOUTS[p.detector]
+        assert extractor.about.kind in model.about.accepts
         assert p.assumed.get("extractor", p.extractor_taxonomy) in row["extractor"]
         assert p.assumed.get("model", p.model_taxonomy) in row["model"]
     for attribute, values in row.items():
@@ -348,9 +359,9 @@ def test_the_catalogue_holds_what_discovery_finds() -> None:
     known = catalogue()
     assert known.extractors
     for name, extractor in known.extractors.items():
-        assert extractor.name == name
-        assert extractor in known.extractors_for(extractor.taxonomy)
+        assert extractor.about.name == name
+        assert extractor in known.extractors_for(extractor.about.taxonomy)
     for name, model in known.models.items():
-        assert model.name == name
-        assert model in known.models_for(model.taxonomy)
+        assert model.about.name == name
+        assert model in known.models_for(model.about.taxonomy)
     assert all(entry.summary for entry in known.listing())

@@ -6,6 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+from tests.speed.verdicts import Verdict
+
 OPENCV = "opencv threshold + moments"
 
 
@@ -42,21 +44,6 @@ class Limit:
     figure: Literal["over_bound", "over_opencv", "error_over_opencv"]
     most: float
     cannot: str = ""
-
-
-@dataclass(frozen=True)
-class Verdict:
-    """A limit and what was measured."""
-
-    what: str
-    value: float
-    most: float
-    cannot: str = ""
-
-    @property
-    def holds(self) -> bool:
-        """Whether the value is at most the limit; not where nothing was found."""
-        return self.value <= self.most
 
 
 _SMALL = ("disc", "gaussian")
@@ -125,8 +112,3 @@ def over_noise(method: str, errors: Sequence[float]) -> Verdict:
     low, high = errors
     ends = f"{NOISE_RANGE_E[1]:g} over {NOISE_RANGE_E[0]:g} e- of read noise"
     return Verdict(f"{method} on disc: error at {ends}", high / low, 1.5)
-
-
-def broken(found: Sequence[Verdict]) -> bool:
-    """Whether a limit is not kept that no reason excuses."""
-    return any(not verdict.holds and not verdict.cannot for verdict in found)

@@ -31,17 +31,18 @@ from tests.speed.extractor_limits import (
     NOISE_RANGE_E,
     OPENCV,
     Figures,
-    Verdict,
-    broken,
     over_noise,
     verdicts,
 )
 from tests.speed.extractor_peers import Method, opencv_loop, peers
+from tests.speed.verdicts import Verdict, broken
 
 #: Frames of many spots, which have no bound of their own here, and the methods for them.
 MANY = "cmos-multi-aperture"
 _MANY_SPOTS = frozenset({"MCAM", "FMMS", "FEIC"})
 _MANY_FRAMES = 10
+#: Frames of a set and turns of a method, where nothing else is asked for.
+_FRAMES, _REPEATS = 1000, 5
 #: Pitch of the sensor that the sets' spots are the shadow of; any will do.
 _PITCH_MM = 0.01
 #: Frames that tell how slow a method is, and seconds that one run of it may take.
@@ -99,7 +100,10 @@ def methods(chosen: ReferenceSet) -> dict[str, Method]:
     )
     found: dict[str, Extractor] = {}
     for name, extractor in discover_extractors().items():
-        if extractor.observation is Observation.FRAMES and extractor.kind is FeatureKind.SPOT:
+        if (
+            extractor.about.observation is Observation.FRAMES
+            and extractor.about.kind is FeatureKind.SPOT
+        ):
             try:
                 found[name] = extractor.for_sensor(sensor)
             except ValueError:  # not a method for one spot
@@ -174,7 +178,7 @@ def measure_many_spots(count: int, repeats: int) -> list[Measured]:
     rows = []
     with one_thread():
         for name, extractor in discover_extractors().items():
-            if extractor.taxonomy not in _MANY_SPOTS:
+            if extractor.about.taxonomy not in _MANY_SPOTS:
                 continue
             method = extractor.for_sensor(preset.geometry).extract
             method(frames[:1])
@@ -235,13 +239,27 @@ def judged(rows: Sequence[Measured]) -> list[Verdict]:
     return found
 
 
+def run() -> list[Verdict]:
+    """Measure and print everything; return the verdicts."""
+    rows = [row for chosen in REFERENCE_SETS.values() for row in measure(chosen, _FRAMES, _REPEATS)]
+    rows += measure_many_spots(_MANY_FRAMES, _REPEATS)
+    found = judged(rows)
+    _print_table(rows, found, peers()[1])
+    return found
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Measure, print, and return the exit status."""
     parser = argparse.ArgumentParser(prog="python -m tests.speed.extractors")
     parser.add_argument("--sets", nargs="+", choices=REFERENCE_SETS, default=[*REFERENCE_SETS])
     parser.add_argument("--methods", nargs="+", help="only these (default: all)")
-    parser.add_argument("--frames", type=int, default=1000, help="frames of a set (default 1000)")
-    parser.add_argument("--repeats", type=int, default=5, help="turns of each (default 5)")
+    for name, default, what in (
+        ("frames", _FRAMES, "frames of a set"),
+        ("repeats", _REPEATS, "turns of each"),
+    ):
+        parser.add_argument(
+            f"--{name}", type=int, default=default, help=f"{what} (default {default})"
+        )
     parser.add_argument("--format", choices=("table", "json"), default="table")
     given = parser.parse_args(arguments)
     for name in ("frames", "repeats"):

@@ -1,4 +1,4 @@
-"""Speed as ratios within one run, and the verdicts of `make bench`."""
+"""What `make bench` times agrees with its references; its verdicts. Nothing is timed here."""
 
 import json
 
@@ -6,38 +6,20 @@ import numpy as np
 import pytest
 
 from benchmark import datasets
+from tests.speed import recommendations, startup
 from tests.speed import simulator as speed
+from tests.speed.comparing import Subject
 from tests.speed.light import diffracted_frames, light_of_frames
 from tests.speed.references import centroid_of_spots, counted_light, rendering_of_frames
 
 
-@pytest.fixture(scope="module")
-def centroid():
-    return speed.Subject(**centroid_of_spots())
-
-
-@pytest.fixture(scope="module")
-def rendering():
-    return speed.Subject(**rendering_of_frames())
-
-
-def test_bctm_is_not_slower_than_opencv_in_a_loop_and_gives_its_result(centroid):
-    found = speed.compare(centroid, repeats=5)
-    assert found.agrees, found
-    assert found.ratio <= found.limit == 1.0, found
-
-
-def test_simulating_is_twenty_times_faster_than_counting_and_gives_its_light(rendering):
-    found = speed.compare(rendering, repeats=2)
-    assert found.agrees, found
-    assert found.ratio <= found.limit == 0.05, found
-
-
-@pytest.mark.parametrize("prepare", [light_of_frames, diffracted_frames])
-def test_light_alone_keeps_its_ratio_to_brute_force_and_gives_its_result(prepare):
-    found = speed.compare(speed.Subject(**prepare()), repeats=2)
-    assert found.agrees, found
-    assert found.ratio <= found.limit, found
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "prepare", [centroid_of_spots, rendering_of_frames, light_of_frames, diffracted_frames]
+)
+def test_what_is_timed_gives_the_result_of_its_reference(prepare):
+    subject = Subject(**prepare())
+    assert subject.worst <= subject.tolerance, subject
 
 
 def test_the_counted_light_is_an_oracle_for_the_total_of_a_frame():
@@ -52,12 +34,24 @@ def test_the_counted_light_is_an_oracle_for_the_total_of_a_frame():
 
 
 def subject(ratio, worst):
-    """A subject whose work takes `ratio` times its reference's, by doing so many more items."""
+    """A subject that takes `ratio` times its reference's time, by a clock of its own."""
+    now = [0.0]
 
-    def work():
-        return np.linalg.svd(np.eye(60))
+    def spend(seconds):
+        now[0] += seconds
 
-    return speed.Subject("s", "r", work, work, 1000, int(1000 * ratio), 0.5, worst, 1e-3)
+    return Subject(
+        "s",
+        "r",
+        call=lambda: spend(10 * ratio),
+        reference=lambda: spend(1.0),
+        items=10,
+        reference_items=1,
+        limit=0.5,
+        worst=worst,
+        tolerance=1e-3,
+        clock=lambda: now[0],
+    )
 
 
 @pytest.mark.parametrize(
@@ -74,6 +68,8 @@ def test_a_broken_limit_or_another_result_is_the_exit_status(
         [found] = json.loads(out)["comparisons"]
         assert found["passes"] is (status == 0)
         assert found["agrees"] is (worst == 0)
+        assert found["ratio"] == pytest.approx(ratio)
+        assert found["reference_best_us"] == pytest.approx(1e6)
     else:
         assert ("BROKEN" in out) is (ratio > 0.5)
         assert ("DISAGREES" in out) is (worst > 0)
@@ -83,3 +79,13 @@ def test_no_repeats_are_refused(capsys):
     with pytest.raises(SystemExit):
         speed.main(["--repeats", "0"])
     assert "--repeats must be at least 1; got 0" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("harness", [recommendations, startup])
+def test_the_small_harnesses_prepare_what_runs(harness):
+    """Called once, not timed."""
+    for prepared in harness.subjects():
+        prepared.call()
+        prepared.reference()
+        before = prepared.clock()
+        assert prepared.clock() >= before >= 0

@@ -15,11 +15,10 @@ from tests.speed.extractor_limits import (
     LIMITS,
     OPENCV,
     Figures,
-    Verdict,
-    broken,
     over_noise,
     verdicts,
 )
+from tests.speed.verdicts import Verdict, broken
 
 
 def test_every_limit_is_on_a_method_and_a_set_that_are_measured():

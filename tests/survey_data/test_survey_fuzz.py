@@ -14,7 +14,7 @@ from survey_data.descriptor import column_types, file_name, table_names
 SETTINGS = {
     "deadline": None,
     "derandomize": True,
-    "suppress_health_check": [HealthCheck.function_scoped_fixture],
+    "suppress_health_check": [HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
 }
 INTERESTING = st.one_of(
     st.binary(max_size=8),

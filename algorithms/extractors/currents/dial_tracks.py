@@ -7,7 +7,14 @@ from typing import ClassVar, Literal, Self
 
 from numpy.typing import ArrayLike
 
-from algorithms.contract import FeatureKind, Floats, Observation, Origin, SensorGeometry
+from algorithms.contract import (
+    AboutExtractor,
+    Extractor,
+    FeatureKind,
+    Floats,
+    Observation,
+    SensorGeometry,
+)
 from algorithms.extractors.currents.photodiode import DirectSignals
 
 FINE_TRACKS = 4
@@ -15,7 +22,7 @@ FINE_TRACKS = 4
 
 
 @dataclass(frozen=True)
-class DialTracks:
+class DialTracks(Extractor):
     """Calibrated signal of every track of every code dial: dark reading off, gain divided out.
 
     The light behind a track says how much of the pattern above it the slit's light meets. The
@@ -34,6 +41,11 @@ class DialTracks:
     saturation : float or None
         A reading that reaches it says only "at least": the row is NaN.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: fe:direct (Fan2013): ``I = (Q - Q_dark) / G``; the survey states it in words only.
@@ -45,17 +57,28 @@ class DialTracks:
     positive.
 
     Cost: 2 operations a track.
+
+    References
+    ----------
+    Fan2013; survey fe:direct.
+
+    Examples
+    --------
+    >>> tracks = DialTracks(bits=2, axes=("x",), dark=10.0, gain=100.0)
+    >>> tracks.extract([[110.0, 10.0, 60.0, 85.0, 60.0, 35.0]])
+    array([[1.  , 0.  , 0.5 , 0.75, 0.5 , 0.25]])
     """
 
-    name: ClassVar[str] = "dial-tracks"
-    taxonomy: ClassVar[str] = "Direct"
-    studies: ClassVar[tuple[str, ...]] = ("Fan2013",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:direct",)
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.CURRENTS
-    kind: ClassVar[FeatureKind] = FeatureKind.SIGNALS
-    needs: ClassVar[tuple[str, ...]] = ("code_bits", "line_axes")
+    about: ClassVar = AboutExtractor(
+        name="dial-tracks",
+        taxonomy="Direct",
+        studies=("Fan2013",),
+        labels=("fe:direct",),
+        origin="survey",
+        needs=("code_bits", "line_axes"),
+        observation=Observation.CURRENTS,
+        kind=FeatureKind.SIGNALS,
+    )
 
     bits: int = 5
     axes: tuple[Literal["x", "y"], ...] = ("x", "y")
@@ -65,9 +88,11 @@ class DialTracks:
 
     def __post_init__(self) -> None:
         if self.bits < 1:
-            raise ValueError(f"{self.name}: bits must be at least 1; got {self.bits!r}")
+            raise ValueError(f"{self.about.name}: bits must be at least 1; got {self.bits!r}")
         if not self.axes or len(set(self.axes)) < len(self.axes) or set(self.axes) - {"x", "y"}:
-            raise ValueError(f"{self.name}: axes must be 'x' or 'y', each once; got {self.axes!r}")
+            raise ValueError(
+                f"{self.about.name}: axes must be 'x' or 'y', each once; got {self.axes!r}"
+            )
         self._direct()
 
     @property
@@ -80,7 +105,7 @@ class DialTracks:
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
         """All tracks of the sensor's dials; signals as read."""
-        geometry.require("code_bits", "line_axes", by=cls.name)
+        geometry.require("code_bits", "line_axes", by=cls.about.name)
         return cls(bits=geometry.code_bits or 0, axes=geometry.line_axes or ())
 
     def extract(self, observations: ArrayLike) -> Floats:

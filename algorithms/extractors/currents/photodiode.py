@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from algorithms.contract import (
+    AboutExtractor,
+    Extractor,
     FeatureKind,
     Floats,
     Observation,
-    Origin,
     SensorGeometry,
     UnsuitableDesignError,
 )
@@ -23,7 +24,7 @@ Normalisation = Literal["none", "sum", "maximum", "length"]
 
 
 @dataclass(frozen=True)
-class DirectSignals:
+class DirectSignals(Extractor):
     """Calibrated signal of each photodiode: dark reading off, gain divided out, normalised.
 
     Each reading is proportional to the irradiance projected on its detector; the transimpedance
@@ -44,6 +45,11 @@ class DirectSignals:
     saturation : float or None
         A reading that reaches it says only "at least": the row is NaN.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: fe:direct (Allgeier2009): ``Q = G I + Q_dark``, so ``I = (Q - Q_dark) / G``; the
@@ -57,17 +63,29 @@ class DirectSignals:
     not told apart.
 
     Cost: 3 operations an element.
+
+    References
+    ----------
+    Allgeier2009; survey fe:direct.
+
+    Examples
+    --------
+    >>> photodiodes = DirectSignals(elements=3, dark=0.1, gain=2.0)
+    >>> photodiodes.extract([[2.1, 1.1, 0.1], [0.1, 0.1, 0.1]])
+    array([[1. , 0.5, 0. ],
+           [nan, nan, nan]])
     """
 
-    name: ClassVar[str] = "direct"
-    taxonomy: ClassVar[str] = "Direct"
-    studies: ClassVar[tuple[str, ...]] = ("Allgeier2009",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:direct",)
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.CURRENTS
-    kind: ClassVar[FeatureKind] = FeatureKind.SIGNALS
-    needs: ClassVar[tuple[str, ...]] = ("face_normals",)
+    about: ClassVar = AboutExtractor(
+        name="direct",
+        taxonomy="Direct",
+        studies=("Allgeier2009",),
+        labels=("fe:direct",),
+        origin="survey",
+        needs=("face_normals",),
+        observation=Observation.CURRENTS,
+        kind=FeatureKind.SIGNALS,
+    )
 
     elements: int = 6
     dark: float | tuple[float, ...] = 0.0
@@ -77,13 +95,15 @@ class DirectSignals:
 
     def __post_init__(self) -> None:
         if self.elements < 1:
-            raise ValueError(f"{self.name}: elements must be at least 1; got {self.elements!r}")
+            raise ValueError(
+                f"{self.about.name}: elements must be at least 1; got {self.elements!r}"
+            )
         if self.normalisation not in get_args(Normalisation):
             raise ValueError(
-                f"{self.name}: normalisation must be one of "
+                f"{self.about.name}: normalisation must be one of "
                 f"{', '.join(get_args(Normalisation))}; got {self.normalisation!r}"
             )
-        _require_calibration(self.name, self.elements, self.dark, self.gain)
+        _require_calibration(self.about.name, self.elements, self.dark, self.gain)
 
     @property
     def features(self) -> tuple[str, ...]:
@@ -93,12 +113,12 @@ class DirectSignals:
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
         """One element a face; signals as read, without dark reading or gain."""
-        geometry.require("face_normals", by=cls.name)
+        geometry.require("face_normals", by=cls.about.name)
         return cls(elements=len(geometry.face_normals or ()))
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Signals (N, K) of readings (N, K); ValueError on wrong input."""
-        readings = as_currents(observations, self.elements, self.name)
+        readings = as_currents(observations, self.elements, self.about.name)
         signals = _calibrated(readings, self.dark, self.gain, self.saturation)
         found = (signals > 0).any(axis=1)
         if self.normalisation == "sum":
@@ -114,7 +134,7 @@ class DirectSignals:
 
 
 @dataclass(frozen=True)
-class VoltageBalance:
+class VoltageBalance(Extractor):
     """Balances of a quadrant photodiode: how far the spot's light leans along x and along y.
 
     The difference of two halves over the sum of all four is free of the light's strength, and
@@ -133,6 +153,11 @@ class VoltageBalance:
     saturation : float or None
         A reading that reaches it says only "at least": the row is NaN.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: alg:VB (fe:vb, Boslooper2017): ``s_a = (Q2 + Q3 - Q1 - Q4) / sum Q`` along x,
@@ -148,17 +173,27 @@ class VoltageBalance:
     positive. At -1 or 1 all light is on one half and only the direction is known.
 
     Cost: 17 operations a sample.
+
+    References
+    ----------
+    Boslooper2017; survey fe:vb, alg:VB.
+
+    Examples
+    --------
+    >>> VoltageBalance().extract([[1.0, 3.0, 2.0, 2.0], [0.0, 0.0, 0.0, 0.0]])
+    array([[0.25, 0.  ],
+           [ nan,  nan]])
     """
 
-    name: ClassVar[str] = "voltage-balance"
-    taxonomy: ClassVar[str] = "Voltage balance"
-    studies: ClassVar[tuple[str, ...]] = ("Boslooper2017",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:vb", "alg:VB")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.CURRENTS
-    kind: ClassVar[FeatureKind] = FeatureKind.BALANCE
-    needs: ClassVar[tuple[str, ...]] = ()
+    about: ClassVar = AboutExtractor(
+        name="voltage-balance",
+        taxonomy="Voltage balance",
+        studies=("Boslooper2017",),
+        labels=("fe:vb", "alg:VB"),
+        origin="survey",
+        observation=Observation.CURRENTS,
+        kind=FeatureKind.BALANCE,
+    )
 
     order: tuple[int, int, int, int] = (0, 1, 2, 3)
     dark: float | tuple[float, ...] = 0.0
@@ -168,15 +203,10 @@ class VoltageBalance:
     def __post_init__(self) -> None:
         if sorted(self.order) != [0, 1, 2, 3]:
             raise ValueError(
-                f"{self.name}: order must hold the columns 0, 1, 2 and 3 once each; "
+                f"{self.about.name}: order must hold the columns 0, 1, 2 and 3 once each; "
                 f"got {self.order!r}"
             )
-        _require_calibration(self.name, 4, self.dark, self.gain)
-
-    @property
-    def features(self) -> tuple[str, ...]:
-        """Names of the two output columns: the x balance, then the y balance."""
-        return ("s_a", "s_b")
+        _require_calibration(self.about.name, 4, self.dark, self.gain)
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
@@ -187,18 +217,18 @@ class VoltageBalance:
         """
         if geometry.code_bits is not None:
             raise UnsuitableDesignError(
-                f"{cls.name} reads four quadrants; the sensor has a code dial"
+                f"{cls.about.name} reads four quadrants; the sensor has a code dial"
             )
         faces = geometry.face_normals
         if geometry.focal_length_mm is None and faces is not None and len(faces) != 4:
             raise UnsuitableDesignError(
-                f"{cls.name} reads four quadrants; the sensor has {len(faces)} faces"
+                f"{cls.about.name} reads four quadrants; the sensor has {len(faces)} faces"
             )
         return cls()
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Balances (N, 2) of readings (N, 4); ValueError on wrong input."""
-        readings = as_currents(observations, 4, self.name)
+        readings = as_currents(observations, 4, self.about.name)
         light = _calibrated(readings, self.dark, self.gain, self.saturation)
         q1, q2, q3, q4 = light[:, list(self.order)].T
         total = q1 + q2 + q3 + q4

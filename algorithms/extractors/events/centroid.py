@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from algorithms.contract import (
+    AboutExtractor,
+    Extractor,
     FeatureKind,
     Floats,
     Observation,
-    Origin,
     SensorGeometry,
     UnsuitableDesignError,
 )
@@ -23,7 +24,7 @@ Layout = Literal["l-slit", "spot"]
 
 
 @dataclass(frozen=True)
-class EventCentroid:
+class EventCentroid(Extractor):
     """Mean address of the events, each weighted by the light that its time tells.
 
     A pixel fires when its charge reaches a threshold, so that the inverse of its time since the
@@ -45,6 +46,11 @@ class EventCentroid:
     hot : float
         Events with more than this many times the light of a lit pixel are left out: hot pixels.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: alg:ECM (fe:escm, Farian2022): ``X = sum(x / (t - t_reset)) / sum(1 / (t -
@@ -65,17 +71,29 @@ class EventCentroid:
     more light is found if it has more than half.
 
     Cost: 40 operations an event, in 3 to 5 moves, and the sorting of the times.
+
+    References
+    ----------
+    Farian2022; survey fe:escm, alg:ECM.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> spot = [(10, 5, 20.0), (11, 5, 10.0), (12, 5, 20.0), (11, 4, 40.0), (11, 6, 20.0)]
+    >>> EventCentroid(width_px=3.0, layout="spot").extract([spot]).round(3)
+    array([[11.   ,  5.091]])
     """
 
-    name: ClassVar[str] = "escm"
-    taxonomy: ClassVar[str] = "ESCM"
-    studies: ClassVar[tuple[str, ...]] = ("Farian2022",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:escm", "alg:ECM")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.EVENTS
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
-    needs: ClassVar[tuple[str, ...]] = ("pixel_pitch_mm",)
+    about: ClassVar = AboutExtractor(
+        name="escm",
+        taxonomy="ESCM",
+        studies=("Farian2022",),
+        labels=("fe:escm", "alg:ECM"),
+        origin="survey",
+        needs=("pixel_pitch_mm",),
+        observation=Observation.EVENTS,
+        kind=FeatureKind.SPOT,
+    )
 
     width_px: float
     layout: Layout = "l-slit"
@@ -84,15 +102,10 @@ class EventCentroid:
     hot: float = 2.0
 
     def __post_init__(self) -> None:
-        _require_design(self.name, self.width_px, self.layout, self.offset_px)
-        require_positive(self.name, margin_px=self.margin_px)
+        _require_design(self.about.name, self.width_px, self.layout, self.offset_px)
+        require_positive(self.about.name, margin_px=self.margin_px)
         if not self.hot > 1.0:
-            raise ValueError(f"{self.name}: hot must be above 1; got {self.hot!r}")
-
-    @property
-    def features(self) -> tuple[str, ...]:
-        """Names of the two output columns."""
-        return ("x_px", "y_px")
+            raise ValueError(f"{self.about.name}: hot must be above 1; got {self.hot!r}")
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
@@ -100,14 +113,14 @@ class EventCentroid:
 
         UnsuitableDesignError for other designs.
         """
-        layout, width_px, offset_px = _design(geometry, cls.name, cls.needs)
+        layout, width_px, offset_px = _design(geometry, cls.about.name, cls.about.needs)
         return cls(width_px=width_px, layout=layout, offset_px=offset_px)
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Positions (N, 2) from events (N, M, 3); ValueError on wrong input."""
         from algorithms.extractors.events import first_spikes_kernel  # noqa: PLC0415 - Numba, at first use
 
-        events = first_spikes_kernel.as_events(_events(observations, self.name))
+        events = first_spikes_kernel.as_events(_events(observations, self.about.name))
         means = (
             first_spikes_kernel.line_means
             if self.layout == "l-slit"
@@ -126,7 +139,7 @@ class EventCentroid:
 
 
 @dataclass(frozen=True)
-class EventWinner:
+class EventWinner(Extractor):
     """Column and row that are the first to gather a number of events: winners take all.
 
     What an array does that puts out its first spikes alone, without their times: whole pixels,
@@ -140,6 +153,11 @@ class EventWinner:
     offset_px : float
         Where a line falls from the detector's middle when the Sun is on the boresight, px; taken
         off both coordinates.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -155,30 +173,36 @@ class EventWinner:
     in one column win unseen.
 
     Cost: 4 operations an event.
+
+    References
+    ----------
+    Farian2018; survey fe:escm.
+
+    Examples
+    --------
+    >>> spot = [(11, 5, 10.0), (10, 5, 20.0), (11, 4, 30.0), (30, 2, 35.0), (11, 6, 40.0)]
+    >>> EventWinner(winners=2).extract([spot])
+    array([[11.,  5.]])
     """
 
-    name: ClassVar[str] = "escm-wta"
-    taxonomy: ClassVar[str] = "ESCM"
-    studies: ClassVar[tuple[str, ...]] = ("Farian2018",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:escm",)
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.EVENTS
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
-    needs: ClassVar[tuple[str, ...]] = ("pixel_pitch_mm",)
+    about: ClassVar = AboutExtractor(
+        name="escm-wta",
+        taxonomy="ESCM",
+        studies=("Farian2018",),
+        labels=("fe:escm",),
+        origin="survey",
+        needs=("pixel_pitch_mm",),
+        observation=Observation.EVENTS,
+        kind=FeatureKind.SPOT,
+    )
 
     winners: int = 8
     offset_px: float = 0.0
 
     def __post_init__(self) -> None:
         if self.winners < 1:
-            raise ValueError(f"{self.name}: winners must be at least 1; got {self.winners!r}")
-        _require_design(self.name, 1.0, "spot", self.offset_px)
-
-    @property
-    def features(self) -> tuple[str, ...]:
-        """Names of the two output columns."""
-        return ("x_px", "y_px")
+            raise ValueError(f"{self.about.name}: winners must be at least 1; got {self.winners!r}")
+        _require_design(self.about.name, 1.0, "spot", self.offset_px)
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
@@ -186,7 +210,7 @@ class EventWinner:
 
         UnsuitableDesignError for other designs.
         """
-        layout, width_px, offset_px = _design(geometry, cls.name, cls.needs)
+        layout, width_px, offset_px = _design(geometry, cls.about.name, cls.about.needs)
         if layout == "l-slit":
             # across the other line, whose edges light a pixel more than its width on either side
             return cls(winners=2 * (round(width_px) + 1), offset_px=offset_px)
@@ -196,7 +220,7 @@ class EventWinner:
         """Positions (N, 2) from events (N, M, 3); ValueError on wrong input."""
         from algorithms.extractors.events import first_spikes_kernel  # noqa: PLC0415 - Numba, at first use
 
-        events = first_spikes_kernel.as_events(_events(observations, self.name))
+        events = first_spikes_kernel.as_events(_events(observations, self.about.name))
         found = np.empty((len(events), 2))
         first_spikes_kernel.first_addresses(
             events, first_spikes_kernel.counted(events), self.winners, found

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from algorithms.contract import FeatureKind, Floats, Observation, Origin, SensorGeometry
+from algorithms.contract import AboutExtractor, Extractor, FeatureKind, Floats, Observation
 from algorithms.inputs import as_frames
 
 #: Window moves after which a spot is given up: a whole spot settles in two or three.
@@ -16,7 +16,7 @@ _MOVES = 10
 
 
 @dataclass(frozen=True)
-class DoubleBalance:
+class DoubleBalance(Extractor):
     """Balance of five areas in a window of 21 x 21 pixels around the brightest pixel.
 
     The window is found by winner-takes-it-all and moved until the light left and right of its
@@ -43,27 +43,29 @@ class DoubleBalance:
     with another beside it in the window. A second spot outside is ignored.
 
     Cost: 1 operation a pixel for the maxima, 3 a pixel of the window and move.
+
+    References
+    ----------
+    Xie2014, deBoer2013; survey fe:dbcm, alg:DBCM.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> y, x = np.mgrid[:31, :33]
+    >>> frames = 200 * np.exp(-((x - 16.3) ** 2 + (y - 14.8) ** 2) / 6)[None]
+    >>> DoubleBalance().extract(frames).round(2)
+    array([[16.29, 14.8 ]])
     """
 
-    name: ClassVar[str] = "dbcm"
-    taxonomy: ClassVar[str] = "DBCM"
-    studies: ClassVar[tuple[str, ...]] = ("Xie2014", "deBoer2013")
-    labels: ClassVar[tuple[str, ...]] = ("fe:dbcm", "alg:DBCM")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.FRAMES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
-    needs: ClassVar[tuple[str, ...]] = ()
-
-    @property
-    def features(self) -> tuple[str, ...]:
-        """Names of the two output columns."""
-        return ("x_px", "y_px")
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry) -> Self:  # noqa: ARG003 - nothing to choose
-        """Return the published method, whatever the sensor."""
-        return cls()
+    about: ClassVar = AboutExtractor(
+        name="dbcm",
+        taxonomy="DBCM",
+        studies=("Xie2014", "deBoer2013"),
+        labels=("fe:dbcm", "alg:DBCM"),
+        origin="survey",
+        observation=Observation.FRAMES,
+        kind=FeatureKind.SPOT,
+    )
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Positions (N, 2) in frames (N, H, W); ValueError on wrong input."""

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from algorithms.contract import FeatureKind, Floats, Observation, Origin, SensorGeometry
+from algorithms.contract import AboutExtractor, Extractor, FeatureKind, Floats, Observation
 from algorithms.extractors.frames.background import (
     Background,
     background_level,
@@ -20,7 +20,7 @@ from algorithms.row_arithmetic import quotient_rows
 
 
 @dataclass(frozen=True)
-class BasicCentroid:
+class BasicCentroid(Extractor):
     """Intensity-weighted mean position of all light in the frame.
 
     Simple and sub-pixel, but every pixel of background and noise pulls the result towards the
@@ -35,6 +35,11 @@ class BasicCentroid:
         Odd side, at least 3, of a square window that starts on the brightest pixel and is moved
         onto its own centroid until it stays; None sums the whole frame, as published.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: alg:BCM (fe:bcm, Chang2008): ``x_c = sum(x I) / sum(I)``, ``y_c = sum(y I) /
@@ -47,34 +52,38 @@ class BasicCentroid:
     signs that almost cancel). A second spot or a cut one is averaged in unseen.
 
     Cost: 4 operations a pixel, one pass.
+
+    References
+    ----------
+    Chang2008; survey fe:bcm, alg:BCM.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> y, x = np.mgrid[:21, :25]
+    >>> frames = 200 * np.exp(-((x - 12.3) ** 2 + (y - 9.8) ** 2) / 6)[None]
+    >>> BasicCentroid().extract(frames).round(2)
+    array([[12.3,  9.8]])
+    >>> BasicCentroid(background="median").extract(frames + 50).round(2)
+    array([[12.3,  9.8]])
     """
 
-    name: ClassVar[str] = "bcm"
-    taxonomy: ClassVar[str] = "BCM"
-    studies: ClassVar[tuple[str, ...]] = ("Chang2008",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:bcm", "alg:BCM")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.FRAMES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
-    needs: ClassVar[tuple[str, ...]] = ()
+    about: ClassVar = AboutExtractor(
+        name="bcm",
+        taxonomy="BCM",
+        studies=("Chang2008",),
+        labels=("fe:bcm", "alg:BCM"),
+        origin="survey",
+        observation=Observation.FRAMES,
+        kind=FeatureKind.SPOT,
+    )
 
     background: Background = "none"
     window_px: int | None = None
 
     def __post_init__(self) -> None:
-        require_background(self.background, self.name)
-        require_window(self.window_px, self.name)
-
-    @property
-    def features(self) -> tuple[str, ...]:
-        """Names of the two output columns."""
-        return ("x_px", "y_px")
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry) -> Self:  # noqa: ARG003 - nothing to choose
-        """Return the published method, whatever the sensor."""
-        return cls()
+        require_background(self.background, self.about.name)
+        require_window(self.window_px, self.about.name)
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Centroids (N, 2) of frames (N, H, W); ValueError on wrong input."""
@@ -83,7 +92,7 @@ class BasicCentroid:
 
 
 @dataclass(frozen=True)
-class ThresholdedCentroid:
+class ThresholdedCentroid(Extractor):
     """Intensity-weighted mean position of the light above a fraction of the frame's maximum.
 
     The threshold is subtracted and everything below it set to zero, so that background and noise
@@ -101,6 +110,11 @@ class ThresholdedCentroid:
         Odd side, at least 3, of a square window that starts on the brightest pixel and is moved
         onto its own centroid until it stays; None sums the whole frame, as published.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: alg:BCTM (fe:bctm, He2005): ``I' = max(I - mu I_max, 0)``, ``x_c = sum(x I') /
@@ -115,17 +129,29 @@ class ThresholdedCentroid:
 
     Cost: 1 operation a pixel for the maxima, 8 a pixel in rows that hold a pixel above the
     threshold; integer sums are exact.
+
+    References
+    ----------
+    He2005; survey fe:bctm, alg:BCTM.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> y, x = np.mgrid[:21, :25]
+    >>> frames = 200 * np.exp(-((x - 12.3) ** 2 + (y - 9.8) ** 2) / 6)[None]
+    >>> ThresholdedCentroid().extract(frames + 50).round(2)
+    array([[12.3,  9.8]])
     """
 
-    name: ClassVar[str] = "bctm"
-    taxonomy: ClassVar[str] = "BCTM"
-    studies: ClassVar[tuple[str, ...]] = ("He2005",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:bctm", "alg:BCTM")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.FRAMES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
-    needs: ClassVar[tuple[str, ...]] = ()
+    about: ClassVar = AboutExtractor(
+        name="bctm",
+        taxonomy="BCTM",
+        studies=("He2005",),
+        labels=("fe:bctm", "alg:BCTM"),
+        origin="survey",
+        observation=Observation.FRAMES,
+        kind=FeatureKind.SPOT,
+    )
 
     threshold: float = 0.3
     background: Background = "none"
@@ -133,19 +159,11 @@ class ThresholdedCentroid:
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.threshold < 1.0:
-            raise ValueError(f"{self.name}: threshold must be in [0, 1); got {self.threshold!r}")
-        require_background(self.background, self.name)
-        require_window(self.window_px, self.name)
-
-    @property
-    def features(self) -> tuple[str, ...]:
-        """Names of the two output columns."""
-        return ("x_px", "y_px")
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry) -> Self:  # noqa: ARG003 - nothing to choose
-        """Return the published method, whatever the sensor."""
-        return cls()
+            raise ValueError(
+                f"{self.about.name}: threshold must be in [0, 1); got {self.threshold!r}"
+            )
+        require_background(self.background, self.about.name)
+        require_window(self.window_px, self.about.name)
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Centroids (N, 2) of frames (N, H, W); ValueError on wrong input."""
@@ -179,7 +197,7 @@ class ThresholdedCentroid:
 
 
 @dataclass(frozen=True)
-class FilteredCentroid:
+class FilteredCentroid(Extractor):
     """Intensity-weighted mean position of the frame smoothed by a 3 x 3 mean.
 
     Each pixel is replaced by the mean of itself and its eight neighbours, zero outside the frame,
@@ -196,6 +214,11 @@ class FilteredCentroid:
         brightest pixel and is moved onto its own centroid until it stays; None sums the whole
         frame, as published.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: alg:IFM (fe:ifm, Chang2008): ``I_mn = (1/9) sum_{i=m-1..m+1} sum_{j=n-1..n+1}
@@ -211,34 +234,36 @@ class FilteredCentroid:
     signs that almost cancel).
 
     Cost: 4 operations a pixel, one pass.
+
+    References
+    ----------
+    Chang2008; survey fe:ifm, alg:IFM.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> y, x = np.mgrid[:21, :25]
+    >>> frames = 200 * np.exp(-((x - 12.3) ** 2 + (y - 9.8) ** 2) / 6)[None]
+    >>> FilteredCentroid(window_px=11).extract(frames).round(2)
+    array([[12.29,  9.81]])
     """
 
-    name: ClassVar[str] = "ifm"
-    taxonomy: ClassVar[str] = "IFM"
-    studies: ClassVar[tuple[str, ...]] = ("Chang2008",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:ifm", "alg:IFM")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.FRAMES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
-    needs: ClassVar[tuple[str, ...]] = ()
+    about: ClassVar = AboutExtractor(
+        name="ifm",
+        taxonomy="IFM",
+        studies=("Chang2008",),
+        labels=("fe:ifm", "alg:IFM"),
+        origin="survey",
+        observation=Observation.FRAMES,
+        kind=FeatureKind.SPOT,
+    )
 
     background: Background = "none"
     window_px: int | None = None
 
     def __post_init__(self) -> None:
-        require_background(self.background, self.name)
-        require_window(self.window_px, self.name)
-
-    @property
-    def features(self) -> tuple[str, ...]:
-        """Names of the two output columns."""
-        return ("x_px", "y_px")
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry) -> Self:  # noqa: ARG003 - nothing to choose
-        """Return the published method, whatever the sensor."""
-        return cls()
+        require_background(self.background, self.about.name)
+        require_window(self.window_px, self.about.name)
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Centroids (N, 2) of frames (N, H, W); ValueError on wrong input."""

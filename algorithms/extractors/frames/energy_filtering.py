@@ -9,7 +9,14 @@ from typing import ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from algorithms.contract import FeatureKind, Floats, Observation, Origin, SensorGeometry
+from algorithms.contract import (
+    AboutExtractor,
+    Extractor,
+    FeatureKind,
+    Floats,
+    Observation,
+    SensorGeometry,
+)
 from algorithms.extractors.profiles.single_spot import require_one_spot
 from algorithms.inputs import as_frames, require_positive
 
@@ -22,7 +29,7 @@ _DRIFT = 2.0 * math.log(100.0)
 
 
 @dataclass(frozen=True)
-class AdaptiveEnergyFilter:
+class AdaptiveEnergyFilter(Extractor):
     """Centroid of the pixels' energies above their noise, averaged over frames of a still Sun.
 
     What varies from frame to frame at a pixel is noise until the light moves. The energies of a
@@ -38,6 +45,11 @@ class AdaptiveEnergyFilter:
         Part of the largest energy, in [0, 1), that it must have as well.
     memory : int
         Most frames, at least 1, that count: later ones replace earlier ones at this rate.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -58,38 +70,48 @@ class AdaptiveEnergyFilter:
     Sun that moves by some six such errors a frame are better taken alone.
 
     Cost: 6 operations a pixel; in a sequence 3 more, and 12 a pixel of the spot.
+
+    References
+    ----------
+    Bao2022.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> y, x = np.mgrid[:21, :25]
+    >>> spot = 200 * np.exp(-((x - 12.3) ** 2 + (y - 9.8) ** 2) / 6)
+    >>> frames = np.random.default_rng(1).normal(spot, 5.0, (30, 21, 25))
+    >>> found, frames_averaged = AdaptiveEnergyFilter().extract_sequence(frames)
+    >>> found[-1].round(1), int(frames_averaged[-1])
+    (array([12.3,  9.8]), 30)
     """
 
-    name: ClassVar[str] = "energy-filter"
-    taxonomy: ClassVar[str] = "None"
-    studies: ClassVar[tuple[str, ...]] = ("Bao2022",)
-    labels: ClassVar[tuple[str, ...]] = ()
-    origin: ClassVar[Origin] = "ours"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.FRAMES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
-    needs: ClassVar[tuple[str, ...]] = ()
+    about: ClassVar = AboutExtractor(
+        name="energy-filter",
+        taxonomy="None",
+        studies=("Bao2022",),
+        origin="ours",
+        observation=Observation.FRAMES,
+        kind=FeatureKind.SPOT,
+    )
 
     significance: float = 5.0
     fraction: float = 0.1
     memory: int = 100
 
     def __post_init__(self) -> None:
-        require_positive(self.name, significance=self.significance)
+        require_positive(self.about.name, significance=self.significance)
         if not 0.0 <= self.fraction < 1.0:
-            raise ValueError(f"{self.name}: fraction must be in [0, 1); got {self.fraction!r}")
+            raise ValueError(
+                f"{self.about.name}: fraction must be in [0, 1); got {self.fraction!r}"
+            )
         if self.memory < 1:
-            raise ValueError(f"{self.name}: memory must be at least 1; got {self.memory!r}")
-
-    @property
-    def features(self) -> tuple[str, ...]:
-        """Names of the two output columns."""
-        return ("x_px", "y_px")
+            raise ValueError(f"{self.about.name}: memory must be at least 1; got {self.memory!r}")
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
         """Return the filter; UnsuitableDesignError where the mask has many apertures or slits."""
-        require_one_spot(geometry, cls.name)
+        require_one_spot(geometry, cls.about.name)
         return cls()
 
     def extract(self, observations: ArrayLike) -> Floats:

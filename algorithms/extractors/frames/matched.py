@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from algorithms.contract import (
+    AboutExtractor,
+    Extractor,
     FeatureKind,
     Floats,
     Observation,
-    Origin,
     SensorGeometry,
     UnsuitableDesignError,
 )
@@ -23,7 +24,7 @@ _SPREAD = 3.0
 
 
 @dataclass(frozen=True)
-class MatchedProfile:
+class MatchedProfile(Extractor):
     """Maximum-likelihood centre of a round spot whose profile is taken from the frame itself.
 
     A thresholded centroid starts it. The light is averaged in rings around that start, and
@@ -37,6 +38,11 @@ class MatchedProfile:
         Fraction of the peak above the background, in (0, 1), for the start.
     steps : int
         Gauss-Newton steps, at least 1, each with the profile about the last centre.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -56,36 +62,45 @@ class MatchedProfile:
     not round is found without bias where it is symmetric, above the bound.
 
     Cost: 2 operations a pixel, 45 a pixel of the spot's surroundings and step.
+
+    References
+    ----------
+    None of the survey: ours, to hold the others against.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> y, x = np.mgrid[:31, :33]
+    >>> spot = 200 * np.clip(5.5 - np.hypot(x - 16.3, y - 14.8), 0, 1)
+    >>> frames = np.random.default_rng(1).normal(spot, 5.0, (1, 31, 33))
+    >>> MatchedProfile().extract(frames).round(1)
+    array([[16.3, 14.8]])
     """
 
-    name: ClassVar[str] = "matched-profile"
-    taxonomy: ClassVar[str] = "None"
-    studies: ClassVar[tuple[str, ...]] = ()
-    labels: ClassVar[tuple[str, ...]] = ()
-    origin: ClassVar[Origin] = "ours"
-    version: ClassVar[int] = 2
-    observation: ClassVar[Observation] = Observation.FRAMES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
-    needs: ClassVar[tuple[str, ...]] = ()
+    about: ClassVar = AboutExtractor(
+        name="matched-profile",
+        taxonomy="None",
+        origin="ours",
+        version=2,
+        observation=Observation.FRAMES,
+        kind=FeatureKind.SPOT,
+    )
 
     threshold: float = 0.3
     steps: int = 1
 
     def __post_init__(self) -> None:
         if not 0.0 < self.threshold < 1.0:
-            raise ValueError(f"{self.name}: threshold must be in (0, 1); got {self.threshold!r}")
+            raise ValueError(
+                f"{self.about.name}: threshold must be in (0, 1); got {self.threshold!r}"
+            )
         if self.steps < 1:
-            raise ValueError(f"{self.name}: steps must be at least 1; got {self.steps!r}")
-
-    @property
-    def features(self) -> tuple[str, ...]:
-        """Names of the two output columns."""
-        return ("x_px", "y_px")
+            raise ValueError(f"{self.about.name}: steps must be at least 1; got {self.steps!r}")
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
         """Return the estimator; UnsuitableDesignError for designs without a single spot."""
-        require_one_spot(geometry, cls.name)
+        require_one_spot(geometry, cls.about.name)
         return cls()
 
     def extract(self, observations: ArrayLike) -> Floats:
@@ -106,7 +121,7 @@ class MatchedProfile:
 
 
 @dataclass(frozen=True)
-class GaussianFit:
+class GaussianFit(Extractor):
     """Least-squares fit of a Gaussian on a background to the whole frame.
 
     What astronomers' libraries offer as their precise centroid: six parameters, amplitude,
@@ -119,6 +134,11 @@ class GaussianFit:
         The fit ends when a step moves centre and widths by less.
     iterations : int
         Steps, at least 1, after which the fit is given up.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -134,35 +154,42 @@ class GaussianFit:
     second spot draws it unseen; one cut by the edge is fitted as such.
 
     Cost: 10 operations a pixel and step, some 8 steps.
+
+    References
+    ----------
+    None of the survey: ours, to hold the others against.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> y, x = np.mgrid[:21, :25]
+    >>> frames = 200 * np.exp(-((x - 12.3) ** 2 + (y - 9.8) ** 2) / 6)[None]
+    >>> GaussianFit().extract(frames + 50).round(3)
+    array([[12.3,  9.8]])
     """
 
-    name: ClassVar[str] = "gaussian-fit"
-    taxonomy: ClassVar[str] = "None"
-    studies: ClassVar[tuple[str, ...]] = ()
-    labels: ClassVar[tuple[str, ...]] = ()
-    origin: ClassVar[Origin] = "ours"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.FRAMES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
-    needs: ClassVar[tuple[str, ...]] = ()
+    about: ClassVar = AboutExtractor(
+        name="gaussian-fit",
+        taxonomy="None",
+        origin="ours",
+        observation=Observation.FRAMES,
+        kind=FeatureKind.SPOT,
+    )
 
     tolerance_px: float = 1e-6
     iterations: int = 50
 
     def __post_init__(self) -> None:
-        require_positive(self.name, tolerance_px=self.tolerance_px)
+        require_positive(self.about.name, tolerance_px=self.tolerance_px)
         if self.iterations < 1:
-            raise ValueError(f"{self.name}: iterations must be at least 1; got {self.iterations!r}")
-
-    @property
-    def features(self) -> tuple[str, ...]:
-        """Names of the two output columns."""
-        return ("x_px", "y_px")
+            raise ValueError(
+                f"{self.about.name}: iterations must be at least 1; got {self.iterations!r}"
+            )
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
         """Return the fit; UnsuitableDesignError for designs without a single spot."""
-        require_one_spot(geometry, cls.name)
+        require_one_spot(geometry, cls.about.name)
         return cls()
 
     def extract(self, observations: ArrayLike) -> Floats:

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from algorithms.contract import FeatureKind, Floats, Observation, Origin, SensorGeometry
+from algorithms.contract import AboutExtractor, Extractor, FeatureKind, Floats, Observation
 from algorithms.inputs import as_frames
 
 
 @dataclass(frozen=True)
-class PixelMax:
+class PixelMax(Extractor):
     """Column and row whose summed light is largest.
 
     The frame is reduced to its two profiles and the largest entry of each is the position: fast,
@@ -33,27 +33,29 @@ class PixelMax:
     contrast (all dark or all saturated) or holds a NaN or infinity.
 
     Cost: 2 operations a pixel, one pass.
+
+    References
+    ----------
+    Coutinho2022; survey fe:pm, alg:PM.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> y, x = np.mgrid[:21, :25]
+    >>> frames = 200 * np.exp(-((x - 12.3) ** 2 + (y - 9.8) ** 2) / 6)[None]
+    >>> PixelMax().extract(frames)
+    array([[12., 10.]])
     """
 
-    name: ClassVar[str] = "pm"
-    taxonomy: ClassVar[str] = "PM"
-    studies: ClassVar[tuple[str, ...]] = ("Coutinho2022",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:pm", "alg:PM")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.FRAMES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
-    needs: ClassVar[tuple[str, ...]] = ()
-
-    @property
-    def features(self) -> tuple[str, ...]:
-        """Names of the two output columns."""
-        return ("x_px", "y_px")
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry) -> Self:  # noqa: ARG003 - nothing to choose
-        """Return the published method, whatever the sensor."""
-        return cls()
+    about: ClassVar = AboutExtractor(
+        name="pm",
+        taxonomy="PM",
+        studies=("Coutinho2022",),
+        labels=("fe:pm", "alg:PM"),
+        origin="survey",
+        observation=Observation.FRAMES,
+        kind=FeatureKind.SPOT,
+    )
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Positions (N, 2) in frames (N, H, W); ValueError on wrong input."""

@@ -8,7 +8,14 @@ from typing import ClassVar, Literal, Self, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
-from algorithms.contract import FeatureKind, Floats, Observation, Origin, SensorGeometry
+from algorithms.contract import (
+    AboutExtractor,
+    Extractor,
+    FeatureKind,
+    Floats,
+    Observation,
+    SensorGeometry,
+)
 from algorithms.extractors.frames.background import (
     Background,
     background_level,
@@ -23,7 +30,7 @@ _WORST = 0.5
 
 
 @dataclass(frozen=True)
-class TemplateMatch:
+class TemplateMatch(Extractor):
     """Position at which the aperture's outline differs in fewest pixels from the lit ones.
 
     Both frame and template have two levels only, so neither the light within the spot nor noise
@@ -46,6 +53,11 @@ class TemplateMatch:
     binarise : bool
         Compare with the lit pixels, as published. False goes on from there to where the outline
         holds most of the grey frame's light: ours, and some eight times finer on a clean disc.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -70,20 +82,33 @@ class TemplateMatch:
 
     Cost: 3 operations a pixel, and some 1600 positions of 10 operations a row of the template;
     a grey frame 36 more of 60 operations a row.
+
+    References
+    ----------
+    Chang2008; survey fe:tm, alg:TM.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> y, x = np.mgrid[:31, :33]
+    >>> frames = 200 * np.clip(5.5 - np.hypot(x - 16.3, y - 14.8), 0, 1)[None]
+    >>> TemplateMatch(width_px=10.0).extract(frames).round(1)
+    array([[16.4, 14.9]])
     """
 
-    name: ClassVar[str] = "tm"
-    taxonomy: ClassVar[str] = "TM"
-    studies: ClassVar[tuple[str, ...]] = ("Chang2008",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:tm", "alg:TM")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.FRAMES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
-    needs: ClassVar[tuple[str, ...]] = (
-        "pixel_pitch_mm",
-        "aperture_width_mm",
-        "aperture_shape",
+    about: ClassVar = AboutExtractor(
+        name="tm",
+        taxonomy="TM",
+        studies=("Chang2008",),
+        labels=("fe:tm", "alg:TM"),
+        origin="survey",
+        needs=(
+            "pixel_pitch_mm",
+            "aperture_width_mm",
+            "aperture_shape",
+        ),
+        observation=Observation.FRAMES,
+        kind=FeatureKind.SPOT,
     )
 
     width_px: float
@@ -93,20 +118,17 @@ class TemplateMatch:
     binarise: bool = True
 
     def __post_init__(self) -> None:
-        require_positive(self.name, width_px=self.width_px)
+        require_positive(self.about.name, width_px=self.width_px)
         if self.shape not in get_args(Shape):
             raise ValueError(
-                f"{self.name}: shape must be one of {', '.join(get_args(Shape))}; "
+                f"{self.about.name}: shape must be one of {', '.join(get_args(Shape))}; "
                 f"got {self.shape!r}"
             )
         if not 0.0 < self.threshold < 1.0:
-            raise ValueError(f"{self.name}: threshold must be in (0, 1); got {self.threshold!r}")
-        require_background(self.background, self.name)
-
-    @property
-    def features(self) -> tuple[str, ...]:
-        """Names of the two output columns."""
-        return ("x_px", "y_px")
+            raise ValueError(
+                f"{self.about.name}: threshold must be in (0, 1); got {self.threshold!r}"
+            )
+        require_background(self.background, self.about.name)
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
@@ -114,11 +136,13 @@ class TemplateMatch:
 
         ValueError without an aperture's width and shape or a pixel pitch.
         """
-        geometry.require(*cls.needs, by=cls.name)
+        geometry.require(*cls.about.needs, by=cls.about.name)
         width, pitch = geometry.aperture_width_mm, geometry.pixel_pitch_mm
         shape = geometry.aperture_shape
         if width is None or pitch is None or shape is None:  # said above; for the type checker
-            raise ValueError(f"{cls.name} needs the sensor geometry's {', '.join(cls.needs)}")
+            raise ValueError(
+                f"{cls.about.name} needs the sensor geometry's {', '.join(cls.about.needs)}"
+            )
         return cls(width_px=width / pitch, shape=shape)
 
     def extract(self, observations: ArrayLike) -> Floats:

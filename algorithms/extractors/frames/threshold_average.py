@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Literal, Self, get_args
+from typing import ClassVar, Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from algorithms.contract import FeatureKind, Floats, Observation, Origin, SensorGeometry
+from algorithms.contract import AboutExtractor, Extractor, FeatureKind, Floats, Observation
 from algorithms.inputs import as_frames
 from algorithms.row_arithmetic import medians
 
@@ -17,7 +17,7 @@ Crossing = Literal["pixel", "linear"]
 
 
 @dataclass(frozen=True)
-class MultipleThresholdCentroid:
+class MultipleThresholdCentroid(Extractor):
     """Midpoint between a profile's two flanks, averaged over many thresholds.
 
     The frame is reduced to its column and row sums; each threshold makes them binary, and the
@@ -35,6 +35,11 @@ class MultipleThresholdCentroid:
     crossing : {"pixel", "linear"}
         Whether a rise counts at its pixel, as published, or is interpolated to the entry before.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: alg:MTACM1, alg:MTACM2 (fe:mtacm, Massari2004): ``N_TH > sigma sqrt(e) / dx``,
@@ -51,17 +56,29 @@ class MultipleThresholdCentroid:
     give the middle between their outer flanks unseen.
 
     Cost: 2 operations a pixel for the profiles, the median of each, and 4 a threshold.
+
+    References
+    ----------
+    Massari2004; survey fe:mtacm, alg:MTACM1, alg:MTACM2.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> y, x = np.mgrid[:21, :25]
+    >>> frames = 200 * np.exp(-((x - 12.3) ** 2 + (y - 9.8) ** 2) / 6)[None]
+    >>> MultipleThresholdCentroid(crossing="linear").extract(frames).round(2)
+    array([[12.3,  9.8]])
     """
 
-    name: ClassVar[str] = "mt-acm"
-    taxonomy: ClassVar[str] = "MT-ACM"
-    studies: ClassVar[tuple[str, ...]] = ("Massari2004",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:mtacm", "alg:MTACM1", "alg:MTACM2")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.FRAMES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
-    needs: ClassVar[tuple[str, ...]] = ()
+    about: ClassVar = AboutExtractor(
+        name="mt-acm",
+        taxonomy="MT-ACM",
+        studies=("Massari2004",),
+        labels=("fe:mtacm", "alg:MTACM1", "alg:MTACM2"),
+        origin="survey",
+        observation=Observation.FRAMES,
+        kind=FeatureKind.SPOT,
+    )
 
     accuracy_px: float = 0.01
     lowest: float = 0.25
@@ -71,29 +88,19 @@ class MultipleThresholdCentroid:
     def __post_init__(self) -> None:
         if not 1e-4 <= self.accuracy_px < np.inf:
             raise ValueError(
-                f"{self.name}: accuracy_px must be at least 1e-4 and finite; "
+                f"{self.about.name}: accuracy_px must be at least 1e-4 and finite; "
                 f"got {self.accuracy_px!r}"
             )
         if not 0.0 <= self.lowest < self.highest <= 1.0:
             raise ValueError(
-                f"{self.name}: lowest and highest must rise within [0, 1]; "
+                f"{self.about.name}: lowest and highest must rise within [0, 1]; "
                 f"got {self.lowest!r} and {self.highest!r}"
             )
         if self.crossing not in get_args(Crossing):
             raise ValueError(
-                f"{self.name}: crossing must be one of {', '.join(get_args(Crossing))}; "
+                f"{self.about.name}: crossing must be one of {', '.join(get_args(Crossing))}; "
                 f"got {self.crossing!r}"
             )
-
-    @property
-    def features(self) -> tuple[str, ...]:
-        """Names of the two output columns."""
-        return ("x_px", "y_px")
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry) -> Self:  # noqa: ARG003 - nothing to choose
-        """Return the published method, whatever the sensor."""
-        return cls()
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Positions (N, 2) in frames (N, H, W); ValueError on wrong input."""

@@ -9,10 +9,10 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from algorithms.contract import FeatureKind, Floats, Observation, Origin
+from algorithms.contract import AboutExtractor, FeatureKind, Floats, Observation
 from algorithms.extractors.frames.centroid import BasicCentroid, ThresholdedCentroid
 from algorithms.extractors.frames.threshold_average import Crossing, MultipleThresholdCentroid
-from algorithms.extractors.profiles.slit_lines import SlitLines, dark_level
+from algorithms.extractors.profiles.slit_lines import NEEDS, SlitLines, dark_level
 
 Middles = Callable[[Floats, Floats], Floats]
 
@@ -29,13 +29,25 @@ class ProfileCentroid(SlitLines):
 
     Parameters
     ----------
-    line_axes, line_pixels, slits
-        The lines and what is before them: see `SlitLines`.
-    reach_px, margin_px
-        Largest displacement, and how much a spot is wider than its slit: see `SlitLines`.
+    line_axes : tuple of {"x", "y"}
+        The detector axis along which each line lies, in the order of a profile's columns.
+    line_pixels : int
+        Pixels of a line, at least 1.
+    slits : tuple of (float, float, float)
+        Offset from the line's middle, px, tangent of the slant and width along the line, px, of
+        each slit; all lines lie behind the same. At most two different slants.
+    reach_px : float
+        Largest displacement of the shadow on either axis, px, positive; used where slants differ.
+    margin_px : float
+        What a spot is wider than its slit on each side, px, positive.
     subtract_dark : bool
         Whether the line's median is taken off first; residuals below it count negative. The
         published method subtracts nothing.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -52,16 +64,31 @@ class ProfileCentroid(SlitLines):
     second Sun and noise alone are averaged in unseen; behind two slants they give NaN.
 
     Cost: 4 operations a pixel.
+
+    References
+    ----------
+    Enright2008b; survey fe:bcm, alg:BCM.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> places = np.arange(80) - np.array([[43.3], [36.8]])
+    >>> profiles = 200 * np.clip(3.5 - abs(places), 0, 1).reshape(1, -1)
+    >>> lines = dict(line_axes=("x", "y"), line_pixels=80, slits=((0.0, 0.0, 6.0),))
+    >>> ProfileCentroid(**lines, reach_px=20.0, margin_px=2.0).extract(profiles).round(2)
+    array([[43.3, 36.8]])
     """
 
-    name: ClassVar[str] = "bcm-profile"
-    taxonomy: ClassVar[str] = "BCM"
-    studies: ClassVar[tuple[str, ...]] = ("Enright2008b",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:bcm", "alg:BCM")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.PROFILES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
+    about: ClassVar = AboutExtractor(
+        name="bcm-profile",
+        taxonomy="BCM",
+        studies=("Enright2008b",),
+        labels=("fe:bcm", "alg:BCM"),
+        origin="survey",
+        needs=NEEDS,
+        observation=Observation.PROFILES,
+        kind=FeatureKind.SPOT,
+    )
 
     subtract_dark: bool = False
 
@@ -85,13 +112,25 @@ class ProfileThresholdedCentroid(SlitLines):
 
     Parameters
     ----------
-    line_axes, line_pixels, slits
-        The lines and what is before them: see `SlitLines`.
-    reach_px, margin_px
-        Largest displacement, and how much a spot is wider than its slit: see `SlitLines`.
+    line_axes : tuple of {"x", "y"}
+        The detector axis along which each line lies, in the order of a profile's columns.
+    line_pixels : int
+        Pixels of a line, at least 1.
+    slits : tuple of (float, float, float)
+        Offset from the line's middle, px, tangent of the slant and width along the line, px, of
+        each slit; all lines lie behind the same. At most two different slants.
+    reach_px : float
+        Largest displacement of the shadow on either axis, px, positive; used where slants differ.
+    margin_px : float
+        What a spot is wider than its slit on each side, px, positive.
     threshold : float
         The fraction mu of the maximum, in [0, 1). The survey gives no value; 0.3 is ours, as on
         frames.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -108,23 +147,41 @@ class ProfileThresholdedCentroid(SlitLines):
     spot, a second Sun and noise alone are averaged in unseen; behind two slants they give NaN.
 
     Cost: 5 operations a pixel.
+
+    References
+    ----------
+    He2005; survey fe:bctm, alg:BCTM.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> places = np.arange(80) - np.array([[43.3], [36.8]])
+    >>> profiles = 200 * np.clip(3.5 - abs(places), 0, 1).reshape(1, -1)
+    >>> lines = dict(line_axes=("x", "y"), line_pixels=80, slits=((0.0, 0.0, 6.0),))
+    >>> method = ProfileThresholdedCentroid(**lines, reach_px=20.0, margin_px=2.0)
+    >>> method.extract(profiles + 40).round(1)
+    array([[43.4, 36.8]])
     """
 
-    name: ClassVar[str] = "bctm-profile"
-    taxonomy: ClassVar[str] = "BCTM"
-    studies: ClassVar[tuple[str, ...]] = ("He2005",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:bctm", "alg:BCTM")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.PROFILES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
+    about: ClassVar = AboutExtractor(
+        name="bctm-profile",
+        taxonomy="BCTM",
+        studies=("He2005",),
+        labels=("fe:bctm", "alg:BCTM"),
+        origin="survey",
+        needs=NEEDS,
+        observation=Observation.PROFILES,
+        kind=FeatureKind.SPOT,
+    )
 
     threshold: float = 0.3
 
     def __post_init__(self) -> None:
         super().__post_init__()
         if not 0.0 <= self.threshold < 1.0:
-            raise ValueError(f"{self.name}: threshold must be in [0, 1); got {self.threshold!r}")
+            raise ValueError(
+                f"{self.about.name}: threshold must be in [0, 1); got {self.threshold!r}"
+            )
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Centroids (N, 2) of profiles (N, A L); ValueError on wrong input."""
@@ -145,16 +202,28 @@ class ProfileThresholdAverage(SlitLines):
 
     Parameters
     ----------
-    line_axes, line_pixels, slits
-        The lines and what is before them: see `SlitLines`.
-    reach_px, margin_px
-        Largest displacement, and how much a spot is wider than its slit: see `SlitLines`.
+    line_axes : tuple of {"x", "y"}
+        The detector axis along which each line lies, in the order of a profile's columns.
+    line_pixels : int
+        Pixels of a line, at least 1.
+    slits : tuple of (float, float, float)
+        Offset from the line's middle, px, tangent of the slant and width along the line, px, of
+        each slit; all lines lie behind the same. At most two different slants.
+    reach_px : float
+        Largest displacement of the shadow on either axis, px, positive; used where slants differ.
+    margin_px : float
+        What a spot is wider than its slit on each side, px, positive.
     accuracy_px : float
         Wanted accuracy dx of a position, at least 1e-4 px: sets the number of thresholds.
     lowest, highest : float
         Fractions of the light's height above dark between which thresholds lie, as on frames.
     crossing : {"pixel", "linear"}
         Whether a rise counts at its pixel, as published, or is interpolated to the pixel before.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -173,16 +242,32 @@ class ProfileThresholdAverage(SlitLines):
     give the middle between the outermost flanks unseen; behind two slants they give NaN.
 
     Cost: the median of each line, 2 operations a pixel and 4 a threshold.
+
+    References
+    ----------
+    Massari2004; survey fe:mtacm, alg:MTACM1, alg:MTACM2.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> places = np.arange(80) - np.array([[43.3], [36.8]])
+    >>> profiles = 200 * np.clip(3.5 - abs(places), 0, 1).reshape(1, -1)
+    >>> lines = dict(line_axes=("x", "y"), line_pixels=80, slits=((0.0, 0.0, 6.0),))
+    >>> method = ProfileThresholdAverage(**lines, reach_px=20.0, margin_px=2.0, crossing="linear")
+    >>> method.extract(profiles + 40).round(1)
+    array([[43.4, 36.7]])
     """
 
-    name: ClassVar[str] = "mt-acm-profile"
-    taxonomy: ClassVar[str] = "MT-ACM"
-    studies: ClassVar[tuple[str, ...]] = ("Massari2004",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:mtacm", "alg:MTACM1", "alg:MTACM2")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.PROFILES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
+    about: ClassVar = AboutExtractor(
+        name="mt-acm-profile",
+        taxonomy="MT-ACM",
+        studies=("Massari2004",),
+        labels=("fe:mtacm", "alg:MTACM1", "alg:MTACM2"),
+        origin="survey",
+        needs=NEEDS,
+        observation=Observation.PROFILES,
+        kind=FeatureKind.SPOT,
+    )
 
     accuracy_px: float = 0.01
     lowest: float = 0.25

@@ -8,8 +8,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from algorithms.contract import FeatureKind, Floats, Observation, Origin
-from algorithms.extractors.profiles.slit_lines import SlitLines, dark_level
+from algorithms.contract import AboutExtractor, FeatureKind, Floats, Observation
+from algorithms.extractors.profiles.slit_lines import NEEDS, SlitLines, dark_level
 from algorithms.extractors.profiles.spot_spectra import SpotSpectra
 from algorithms.inputs import require_positive
 
@@ -27,13 +27,25 @@ class EigenAnalysis(SlitLines):
 
     Parameters
     ----------
-    line_axes, line_pixels, slits
-        The lines and what is before them: see `SlitLines`.
-    reach_px, margin_px
-        Largest displacement, and how much a spot is wider than its slit: see `SlitLines`.
+    line_axes : tuple of {"x", "y"}
+        The detector axis along which each line lies, in the order of a profile's columns.
+    line_pixels : int
+        Pixels of a line, at least 1.
+    slits : tuple of (float, float, float)
+        Offset from the line's middle, px, tangent of the slant and width along the line, px, of
+        each slit; all lines lie behind the same. At most two different slants.
+    reach_px : float
+        Largest displacement of the shadow on either axis, px, positive; used where slants differ.
+    margin_px : float
+        What a spot is wider than its slit on each side, px, positive.
     lobes : float
         Frequencies are used up to this many times the first zero of the slit's spectrum. Ours:
         the published series has them all, of which those above hold little but noise.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -58,22 +70,37 @@ class EigenAnalysis(SlitLines):
 
     Cost: 2 operations a pixel and slit, the median of each line, 8 a frequency and pixel of the
     windows, the eigenvectors of a small matrix, some 5 a side, and its side times 2 tries a pixel.
+
+    References
+    ----------
+    Enright2006b; survey fe:eigena, alg:eigen.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> places = np.arange(80) - np.array([[43.3], [36.8]])
+    >>> profiles = 200 * np.clip(3.5 - abs(places), 0, 1).reshape(1, -1)
+    >>> lines = dict(line_axes=("x", "y"), line_pixels=80, slits=((0.0, 0.0, 6.0),))
+    >>> EigenAnalysis(**lines, reach_px=20.0, margin_px=2.0).extract(profiles).round(1)
+    array([[43.3, 36.8]])
     """
 
-    name: ClassVar[str] = "eigen-analysis"
-    taxonomy: ClassVar[str] = "Eigen-analysis"
-    studies: ClassVar[tuple[str, ...]] = ("Enright2006b",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:eigena", "alg:eigen")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.PROFILES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
+    about: ClassVar = AboutExtractor(
+        name="eigen-analysis",
+        taxonomy="Eigen-analysis",
+        studies=("Enright2006b",),
+        labels=("fe:eigena", "alg:eigen"),
+        origin="survey",
+        needs=NEEDS,
+        observation=Observation.PROFILES,
+        kind=FeatureKind.SPOT,
+    )
 
     lobes: float = 1.0
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        require_positive(self.name, lobes=self.lobes)
+        require_positive(self.about.name, lobes=self.lobes)
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Positions (N, 2) in profiles (N, A L); ValueError on wrong input."""

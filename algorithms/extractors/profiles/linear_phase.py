@@ -10,15 +10,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from algorithms.contract import (
+    AboutExtractor,
+    Extractor,
     FeatureKind,
     Floats,
     Observation,
-    Origin,
     SensorGeometry,
     UnsuitableDesignError,
 )
 from algorithms.extractors.profiles.single_spot import require_one_spot, spot_size_px
-from algorithms.extractors.profiles.slit_lines import SlitLines, box_means, dark_level
+from algorithms.extractors.profiles.slit_lines import NEEDS, SlitLines, box_means, dark_level
 from algorithms.extractors.profiles.spot_spectra import SpotSpectra
 from algorithms.inputs import as_frames, require_positive
 
@@ -37,13 +38,25 @@ class LinearPhase(SlitLines):
 
     Parameters
     ----------
-    line_axes, line_pixels, slits
-        The lines and what is before them: see `SlitLines`.
-    reach_px, margin_px
-        Largest displacement, and how much a spot is wider than its slit: see `SlitLines`.
+    line_axes : tuple of {"x", "y"}
+        The detector axis along which each line lies, in the order of a profile's columns.
+    line_pixels : int
+        Pixels of a line, at least 1.
+    slits : tuple of (float, float, float)
+        Offset from the line's middle, px, tangent of the slant and width along the line, px, of
+        each slit; all lines lie behind the same. At most two different slants.
+    reach_px : float
+        Largest displacement of the shadow on either axis, px, positive; used where slants differ.
+    margin_px : float
+        What a spot is wider than its slit on each side, px, positive.
     lobes : float
         Frequencies are fitted up to this many times the first zero of the slit's spectrum.
         Ours: the study gives no limit. Above, light is as weak as its noise, and blur turns signs.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -66,22 +79,37 @@ class LinearPhase(SlitLines):
 
     Cost: 2 operations a pixel and slit, the median of each line, and 8 a frequency and pixel of
     the windows, of which there are some 2 and 50.
+
+    References
+    ----------
+    Enright2007b; survey fe:linearphase, alg:linearphase.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> places = np.arange(80) - np.array([[43.3], [36.8]])
+    >>> profiles = 200 * np.clip(3.5 - abs(places), 0, 1).reshape(1, -1)
+    >>> lines = dict(line_axes=("x", "y"), line_pixels=80, slits=((0.0, 0.0, 6.0),))
+    >>> LinearPhase(**lines, reach_px=20.0, margin_px=2.0).extract(profiles).round(1)
+    array([[43.3, 36.8]])
     """
 
-    name: ClassVar[str] = "linear-phase"
-    taxonomy: ClassVar[str] = "Linear-phase"
-    studies: ClassVar[tuple[str, ...]] = ("Enright2007b",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:linearphase", "alg:linearphase")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.PROFILES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
+    about: ClassVar = AboutExtractor(
+        name="linear-phase",
+        taxonomy="Linear-phase",
+        studies=("Enright2007b",),
+        labels=("fe:linearphase", "alg:linearphase"),
+        origin="survey",
+        needs=NEEDS,
+        observation=Observation.PROFILES,
+        kind=FeatureKind.SPOT,
+    )
 
     lobes: float = 1.0
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        require_positive(self.name, lobes=self.lobes)
+        require_positive(self.about.name, lobes=self.lobes)
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Positions (N, 2) in profiles (N, A L); ValueError on wrong input."""
@@ -93,7 +121,7 @@ class LinearPhase(SlitLines):
 
 
 @dataclass(frozen=True)
-class FrameLinearPhase:
+class FrameLinearPhase(Extractor):
     """Position of a spot by the slopes of the phases of its column and row sums.
 
     As `LinearPhase`, once for each axis. The sums of a symmetric spot, blurred or not, have the
@@ -109,6 +137,11 @@ class FrameLinearPhase:
         What the spot is wider than that on each side.
     lobes : float
         Frequencies are fitted up to this many times the first zero of the aperture's spectrum.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -127,22 +160,35 @@ class FrameLinearPhase:
 
     Cost: 2 operations a pixel for the sums, 4 a pixel of the window and 16 a frequency and
     column of it, of which there are some 3.
+
+    References
+    ----------
+    Enright2007b; survey fe:linearphase, alg:linearphase.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> y, x = np.mgrid[:31, :33]
+    >>> frames = 200 * np.clip(5.5 - np.hypot(x - 16.3, y - 14.8), 0, 1)[None]
+    >>> FrameLinearPhase(width_px=10.0).extract(frames).round(1)
+    array([[16.3, 14.8]])
     """
 
-    name: ClassVar[str] = "linear-phase-frame"
-    taxonomy: ClassVar[str] = "Linear-phase"
-    studies: ClassVar[tuple[str, ...]] = ("Enright2007b",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:linearphase", "alg:linearphase")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.FRAMES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
-    needs: ClassVar[tuple[str, ...]] = (
-        "focal_length_mm",
-        "pixel_pitch_mm",
-        "aperture_width_mm",
-        "aperture_shape",
-        "half_fov_deg",
+    about: ClassVar = AboutExtractor(
+        name="linear-phase-frame",
+        taxonomy="Linear-phase",
+        studies=("Enright2007b",),
+        labels=("fe:linearphase", "alg:linearphase"),
+        origin="survey",
+        needs=(
+            "focal_length_mm",
+            "pixel_pitch_mm",
+            "aperture_width_mm",
+            "aperture_shape",
+            "half_fov_deg",
+        ),
+        observation=Observation.FRAMES,
+        kind=FeatureKind.SPOT,
     )
 
     width_px: float
@@ -152,18 +198,13 @@ class FrameLinearPhase:
 
     def __post_init__(self) -> None:
         require_positive(
-            self.name, width_px=self.width_px, margin_px=self.margin_px, lobes=self.lobes
+            self.about.name, width_px=self.width_px, margin_px=self.margin_px, lobes=self.lobes
         )
         if self.shape not in get_args(Shape):
             raise ValueError(
-                f"{self.name}: shape must be one of {', '.join(get_args(Shape))}; "
+                f"{self.about.name}: shape must be one of {', '.join(get_args(Shape))}; "
                 f"got {self.shape!r}"
             )
-
-    @property
-    def features(self) -> tuple[str, ...]:
-        """Names of the two output columns."""
-        return ("x_px", "y_px")
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
@@ -172,14 +213,14 @@ class FrameLinearPhase:
         ValueError where a field of `needs` is None, or where the mask has many apertures or
         slits: their spots are not one.
         """
-        geometry.require(*cls.needs, by=cls.name)
-        require_one_spot(geometry, cls.name)
+        geometry.require(*cls.about.needs, by=cls.about.name)
+        require_one_spot(geometry, cls.about.name)
         shape = geometry.aperture_shape
         if shape is None:  # said above; for the type checker
             raise UnsuitableDesignError(
-                f"{cls.name} needs the sensor geometry's aperture_shape; got None"
+                f"{cls.about.name} needs the sensor geometry's aperture_shape; got None"
             )
-        width, margin = spot_size_px(geometry, cls.name)
+        width, margin = spot_size_px(geometry, cls.about.name)
         return cls(width, shape, margin)
 
     def extract(self, observations: ArrayLike) -> Floats:

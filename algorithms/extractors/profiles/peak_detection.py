@@ -8,9 +8,16 @@ from typing import ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from algorithms.contract import FeatureKind, Floats, Observation, Origin, SensorGeometry
+from algorithms.contract import (
+    AboutExtractor,
+    Extractor,
+    FeatureKind,
+    Floats,
+    Observation,
+    SensorGeometry,
+)
 from algorithms.extractors.profiles.single_spot import require_one_spot, spot_size_px
-from algorithms.extractors.profiles.slit_lines import SlitLines, dark_level
+from algorithms.extractors.profiles.slit_lines import NEEDS, SlitLines, dark_level
 from algorithms.inputs import as_frames, require_positive
 
 
@@ -24,10 +31,22 @@ class PeakDetection(SlitLines):
 
     Parameters
     ----------
-    line_axes, line_pixels, slits
-        The lines and what is before them: see `SlitLines`.
-    reach_px, margin_px
-        Largest displacement, and how much a spot is wider than its slit: see `SlitLines`.
+    line_axes : tuple of {"x", "y"}
+        The detector axis along which each line lies, in the order of a profile's columns.
+    line_pixels : int
+        Pixels of a line, at least 1.
+    slits : tuple of (float, float, float)
+        Offset from the line's middle, px, tangent of the slant and width along the line, px, of
+        each slit; all lines lie behind the same. At most two different slants.
+    reach_px : float
+        Largest displacement of the shadow on either axis, px, positive; used where slants differ.
+    margin_px : float
+        What a spot is wider than its slit on each side, px, positive.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -47,16 +66,31 @@ class PeakDetection(SlitLines):
     alone, a hot pixel).
 
     Cost: 1 operation a pixel and slit, and the median of each line.
+
+    References
+    ----------
+    Enright2006b; survey fe:peak, alg:PDsp, alg:PDmp.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> places = np.arange(80) - np.array([[43.3], [36.8]])
+    >>> profiles = 200 * np.clip(3.5 - abs(places), 0, 1).reshape(1, -1)
+    >>> lines = dict(line_axes=("x", "y"), line_pixels=80, slits=((0.0, 0.0, 6.0),))
+    >>> PeakDetection(**lines, reach_px=20.0, margin_px=2.0).extract(profiles)
+    array([[43., 37.]])
     """
 
-    name: ClassVar[str] = "pd"
-    taxonomy: ClassVar[str] = "PD"
-    studies: ClassVar[tuple[str, ...]] = ("Enright2006b",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:peak", "alg:PDsp", "alg:PDmp")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.PROFILES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
+    about: ClassVar = AboutExtractor(
+        name="pd",
+        taxonomy="PD",
+        studies=("Enright2006b",),
+        labels=("fe:peak", "alg:PDsp", "alg:PDmp"),
+        origin="survey",
+        needs=NEEDS,
+        observation=Observation.PROFILES,
+        kind=FeatureKind.SPOT,
+    )
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Positions (N, 2) in profiles (N, A L); ValueError on wrong input."""
@@ -65,7 +99,7 @@ class PeakDetection(SlitLines):
 
 
 @dataclass(frozen=True)
-class FramePeak:
+class FramePeak(Extractor):
     """Brightest pixel of a frame with one spot.
 
     The simplest feature there is, and the baseline of the others: within a spot of even light it
@@ -75,6 +109,11 @@ class FramePeak:
     ----------
     width_px : float or None
         Width of the widest spot: maxima further apart are two spots. None tells none apart.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -89,28 +128,35 @@ class FramePeak:
     than `width_px`. A second spot that is darker, a hot pixel and noise alone cannot be told.
 
     Cost: 1 operation a pixel, and a second look at rows that hold the maximum.
+
+    References
+    ----------
+    Enright2006b; survey fe:peak, alg:PDsp.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> y, x = np.mgrid[:21, :25]
+    >>> frames = 200 * np.exp(-((x - 12.3) ** 2 + (y - 9.8) ** 2) / 6)[None]
+    >>> FramePeak().extract(frames)
+    array([[12., 10.]])
     """
 
-    name: ClassVar[str] = "pd-frame"
-    taxonomy: ClassVar[str] = "PD"
-    studies: ClassVar[tuple[str, ...]] = ("Enright2006b",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:peak", "alg:PDsp")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.FRAMES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
-    needs: ClassVar[tuple[str, ...]] = ()
+    about: ClassVar = AboutExtractor(
+        name="pd-frame",
+        taxonomy="PD",
+        studies=("Enright2006b",),
+        labels=("fe:peak", "alg:PDsp"),
+        origin="survey",
+        observation=Observation.FRAMES,
+        kind=FeatureKind.SPOT,
+    )
 
     width_px: float | None = None
 
     def __post_init__(self) -> None:
         if self.width_px is not None:
-            require_positive(self.name, width_px=self.width_px)
-
-    @property
-    def features(self) -> tuple[str, ...]:
-        """Names of the two output columns."""
-        return ("x_px", "y_px")
+            require_positive(self.about.name, width_px=self.width_px)
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
@@ -118,11 +164,11 @@ class FramePeak:
 
         ValueError where the mask has many apertures or slits: their spots are not one.
         """
-        require_one_spot(geometry, cls.name)
+        require_one_spot(geometry, cls.about.name)
         known = (geometry.focal_length_mm, geometry.pixel_pitch_mm, geometry.half_fov_deg)
         if None in known or geometry.aperture_shape is None or geometry.aperture_width_mm is None:
             return cls()
-        width, margin = spot_size_px(geometry, cls.name)
+        width, margin = spot_size_px(geometry, cls.about.name)
         return cls(width_px=width + 2.0 * margin)
 
     def extract(self, observations: ArrayLike) -> Floats:

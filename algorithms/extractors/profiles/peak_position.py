@@ -9,9 +9,16 @@ from typing import Any, ClassVar, Literal, Self, get_args
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from algorithms.contract import FeatureKind, Floats, Observation, Origin, SensorGeometry
+from algorithms.contract import (
+    AboutExtractor,
+    Extractor,
+    FeatureKind,
+    Floats,
+    Observation,
+    SensorGeometry,
+)
 from algorithms.extractors.profiles.single_spot import require_one_spot
-from algorithms.extractors.profiles.slit_lines import SlitLines, box_means, dark_level
+from algorithms.extractors.profiles.slit_lines import NEEDS, SlitLines, box_means, dark_level
 from algorithms.inputs import as_frames, require_positive
 
 Image = Literal["rational", "gaussian", "diffraction"]
@@ -32,10 +39,17 @@ class PeakPositionEstimate(SlitLines):
 
     Parameters
     ----------
-    line_axes, line_pixels, slits
-        The lines and what is before them: see `SlitLines`.
-    reach_px, margin_px
-        Largest displacement, and how much a spot is wider than its slit: see `SlitLines`.
+    line_axes : tuple of {"x", "y"}
+        The detector axis along which each line lies, in the order of a profile's columns.
+    line_pixels : int
+        Pixels of a line, at least 1.
+    slits : tuple of (float, float, float)
+        Offset from the line's middle, px, tangent of the slant and width along the line, px, of
+        each slit; all lines lie behind the same. At most two different slants.
+    reach_px : float
+        Largest displacement of the shadow on either axis, px, positive; used where slants differ.
+    margin_px : float
+        What a spot is wider than its slit on each side, px, positive.
     image : {"rational", "gaussian", "diffraction"}
         Light of a peak against u, the distance from its middle in halves of the slit's width: a
         ratio of polynomials; a Gaussian; or the far field of a slit, ``(sin(x) / x)^2``. The
@@ -50,6 +64,11 @@ class PeakPositionEstimate(SlitLines):
         less than this fraction of a half width.
     iterations : int
         Steps, at least 1, after which the fit is given up.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -74,16 +93,32 @@ class PeakPositionEstimate(SlitLines):
     does not end, or not within a spot's width of its start with all amplitudes positive.
 
     Cost: 1 operation a pixel and slit to start, 40 a pixel near a peak and step, some 8 steps.
+
+    References
+    ----------
+    Enright2007a; survey fe:ppe, alg:PPE.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> places = np.arange(80) - np.array([[43.3], [36.8]])
+    >>> profiles = 200 * np.clip(3.5 - abs(places), 0, 1).reshape(1, -1)
+    >>> lines = dict(line_axes=("x", "y"), line_pixels=80, slits=((0.0, 0.0, 6.0),))
+    >>> PeakPositionEstimate(**lines, reach_px=20.0, margin_px=2.0).extract(profiles).round(1)
+    array([[43.3, 36.8]])
     """
 
-    name: ClassVar[str] = "ppe"
-    taxonomy: ClassVar[str] = "PPE"
-    studies: ClassVar[tuple[str, ...]] = ("Enright2007a",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:ppe", "alg:PPE")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 2
-    observation: ClassVar[Observation] = Observation.PROFILES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
+    about: ClassVar = AboutExtractor(
+        name="ppe",
+        taxonomy="PPE",
+        studies=("Enright2007a",),
+        labels=("fe:ppe", "alg:PPE"),
+        origin="survey",
+        version=2,
+        needs=NEEDS,
+        observation=Observation.PROFILES,
+        kind=FeatureKind.SPOT,
+    )
 
     image: Image = "rational"
     coefficients: Coefficients = SLIT_IMAGE
@@ -93,11 +128,11 @@ class PeakPositionEstimate(SlitLines):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        _require_image(self.name, self.image, self.coefficients)
-        _require_limits(self.name, self.tolerance, self.iterations)
+        _require_image(self.about.name, self.image, self.coefficients)
+        _require_limits(self.about.name, self.tolerance, self.iterations)
         if not (math.isfinite(self.overlap) and self.overlap >= 0):
             raise ValueError(
-                f"{self.name}: overlap must be finite and not negative; got {self.overlap!r}"
+                f"{self.about.name}: overlap must be finite and not negative; got {self.overlap!r}"
             )
 
     def extract(self, observations: ArrayLike) -> Floats:
@@ -169,7 +204,7 @@ class PeakPositionEstimate(SlitLines):
 
 
 @dataclass(frozen=True)
-class FramePeakPositionEstimate:
+class FramePeakPositionEstimate(Extractor):
     """Least-squares fit of a known peak to the sums of a frame's columns and of its rows.
 
     One spot casts one peak on each profile; its position and amplitude are fitted there. All
@@ -191,6 +226,11 @@ class FramePeakPositionEstimate:
     iterations : int
         Steps, at least 1, after which the fit is given up.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: alg:PPE (fe:ppe, Enright2007a) with the single peaks ``a_1 A`` along x and
@@ -205,17 +245,30 @@ class FramePeakPositionEstimate:
     fitted.
 
     Cost: 2 operations a pixel, 20 a pixel of the profiles and step, some 8 steps.
+
+    References
+    ----------
+    Enright2007a; survey fe:ppe, alg:PPE.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> y, x = np.mgrid[:21, :25]
+    >>> frames = 200 * np.exp(-((x - 12.3) ** 2 + (y - 9.8) ** 2) / 6)[None]
+    >>> FramePeakPositionEstimate(image="gaussian").extract(frames).round(2)
+    array([[12.3,  9.8]])
     """
 
-    name: ClassVar[str] = "ppe-frame"
-    taxonomy: ClassVar[str] = "PPE"
-    studies: ClassVar[tuple[str, ...]] = ("Enright2007a",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:ppe", "alg:PPE")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 2
-    observation: ClassVar[Observation] = Observation.FRAMES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
-    needs: ClassVar[tuple[str, ...]] = ()
+    about: ClassVar = AboutExtractor(
+        name="ppe-frame",
+        taxonomy="PPE",
+        studies=("Enright2007a",),
+        labels=("fe:ppe", "alg:PPE"),
+        origin="survey",
+        version=2,
+        observation=Observation.FRAMES,
+        kind=FeatureKind.SPOT,
+    )
 
     image: Image = "rational"
     coefficients: Coefficients = SLIT_IMAGE
@@ -224,20 +277,15 @@ class FramePeakPositionEstimate:
     iterations: int = 30
 
     def __post_init__(self) -> None:
-        _require_image(self.name, self.image, self.coefficients)
-        _require_limits(self.name, self.tolerance, self.iterations)
+        _require_image(self.about.name, self.image, self.coefficients)
+        _require_limits(self.about.name, self.tolerance, self.iterations)
         if self.width_px is not None:
-            require_positive(self.name, width_px=self.width_px)
-
-    @property
-    def features(self) -> tuple[str, ...]:
-        """Names of the two output columns."""
-        return ("x_px", "y_px")
+            require_positive(self.about.name, width_px=self.width_px)
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
         """Return the method; UnsuitableDesignError where the mask has many apertures or slits."""
-        require_one_spot(geometry, cls.name)
+        require_one_spot(geometry, cls.about.name)
         return cls()
 
     def extract(self, observations: ArrayLike) -> Floats:

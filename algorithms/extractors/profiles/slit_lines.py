@@ -15,7 +15,7 @@ from typing import Any, ClassVar, Literal, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from algorithms.contract import Floats, SensorGeometry, UnsuitableDesignError
+from algorithms.contract import AboutExtractor, Floats, SensorGeometry, UnsuitableDesignError
 from algorithms.inputs import as_currents, require_positive
 from algorithms.row_arithmetic import medians
 
@@ -27,6 +27,17 @@ _SUN_RAD = 0.00465
 #: Displacements and margins allow for this much of tilt and of sampling.
 _TILT_DEG = 1.5
 _SAMPLING_PX = 1.5
+
+
+#: What every extractor of profiles needs of a sensor's design.
+NEEDS = (
+    "focal_length_mm",
+    "pixel_pitch_mm",
+    "half_fov_deg",
+    "line_axes",
+    "line_pixels",
+    "slits",
+)
 
 
 @dataclass(frozen=True)
@@ -48,15 +59,7 @@ class SlitLines:
         What a spot is wider than its slit on each side.
     """
 
-    name: ClassVar[str]
-    needs: ClassVar[tuple[str, ...]] = (
-        "focal_length_mm",
-        "pixel_pitch_mm",
-        "half_fov_deg",
-        "line_axes",
-        "line_pixels",
-        "slits",
-    )
+    about: ClassVar[AboutExtractor]
 
     line_axes: tuple[LineAxis, ...]
     line_pixels: int
@@ -67,12 +70,13 @@ class SlitLines:
     def __post_init__(self) -> None:
         if not self.line_axes or any(axis not in {"x", "y"} for axis in self.line_axes):
             raise ValueError(
-                f"{self.name}: line_axes must be 'x' or 'y', one a line; got {self.line_axes!r}"
+                f"{self.about.name}: line_axes must be 'x' or 'y', one a line; got "
+                f"{self.line_axes!r}"
             )
         if not self.slits:
-            raise ValueError(f"{self.name}: slits must not be empty; got {self.slits!r}")
+            raise ValueError(f"{self.about.name}: slits must not be empty; got {self.slits!r}")
         require_positive(
-            self.name,
+            self.about.name,
             line_pixels=self.line_pixels,
             reach_px=self.reach_px,
             margin_px=self.margin_px,
@@ -80,11 +84,12 @@ class SlitLines:
         )
         if len(self.tangents) > 2:
             raise ValueError(
-                f"{self.name} tells slits of at most two slants apart; got {len(self.tangents)}"
+                f"{self.about.name} tells slits of at most two slants apart; got "
+                f"{len(self.tangents)}"
             )
         if np.linalg.matrix_rank(self._design()) < 2:
             raise ValueError(
-                f"{self.name} needs two coordinates: lines along x and y, or one line behind "
+                f"{self.about.name} needs two coordinates: lines along x and y, or one line behind "
                 f"slits of two slants; got {self.line_axes!r} and one slant"
             )
 
@@ -100,7 +105,7 @@ class SlitLines:
         ValueError where a field of `needs` is None, or where the slits do not give both
         coordinates.
         """
-        geometry.require(*cls.needs, by=cls.name)
+        geometry.require(*cls.about.needs, by=cls.about.name)
         height, pitch, fov = (
             geometry.focal_length_mm,
             geometry.pixel_pitch_mm,
@@ -109,7 +114,7 @@ class SlitLines:
         axes, pixels, slits = geometry.line_axes, geometry.line_pixels, geometry.slits
         if not (height and pitch and fov and axes and pixels and slits):
             raise UnsuitableDesignError(
-                f"{cls.name} needs lines of pixels behind slits; got {geometry}"
+                f"{cls.about.name} needs lines of pixels behind slits; got {geometry}"
             )
         drawn = tuple(
             (
@@ -152,7 +157,7 @@ class SlitLines:
     def lines(self, observations: ArrayLike) -> Floats:
         """Lines (N A, L) of profiles (N, A L); a line is zero where its profile is not finite."""
         count = len(self.line_axes)
-        profiles = as_currents(observations, count * self.line_pixels, self.name)
+        profiles = as_currents(observations, count * self.line_pixels, self.about.name)
         profiles[~np.isfinite(profiles).all(axis=1)] = 0.0
         return profiles.reshape(-1, self.line_pixels)
 

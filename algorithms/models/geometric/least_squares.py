@@ -9,7 +9,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from algorithms.angles import rotations_from_sun, sun_from_rotations
-from algorithms.contract import FeatureKind, Floats, Origin, SensorGeometry, UnusableDataError
+from algorithms.contract import (
+    AboutModel,
+    FeatureKind,
+    Floats,
+    Model,
+    SensorGeometry,
+    UnusableDataError,
+)
 from algorithms.inputs import (
     as_features,
     as_frontal_calibration,
@@ -30,7 +37,7 @@ MAX_EVALUATIONS = 1000
 
 
 @dataclass
-class LeastSquaresGeometry:
+class LeastSquaresGeometry(Model):
     """Pinhole projection with focal length, two boresight offsets and zero point calibrated.
 
     The five numbers that carry most of a built sensor's error are found by nonlinear least
@@ -58,6 +65,11 @@ class LeastSquaresGeometry:
     residual_rms_deg_ : float
         Root mean square of the angle residuals over both axes.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: eq:lsq (model:lsq, Rufino2004a). With ``F' = F + Delta F`` and the spot's
@@ -81,16 +93,35 @@ class LeastSquaresGeometry:
 
     Cost: 5 transcendental functions and 20 operations a sample; the fit, some ten passes of
     about 80 operations a sample and a QR factorisation (2 N, 5) each.
+
+    References
+    ----------
+    Rufino2004a; survey model:lsq, eq:lsq.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from algorithms.angles import angles_from_sun, sun_from_angles
+    >>> steps = [-20, 0, 20]
+    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> spots = 212.0 * sun[:, :2] / sun[:, 2:] + (100.7, 79.5)  # 0.12 mm too long
+    >>> model = LeastSquaresGeometry(focal_length_mm=2.0, unit_mm=0.01, centre=(100.0, 80.0))
+    >>> round(float(model.fit(spots, sun).focal_length_error_mm_), 4)
+    0.12
+    >>> angles_from_sun(model.predict(spots[[0, 8]])).round(3)
+    array([[-20., -20.],
+           [ 20.,  20.]])
     """
 
-    name: ClassVar[str] = "lsq"
-    taxonomy: ClassVar[str] = "LSQ"
-    studies: ClassVar[tuple[str, ...]] = ("Rufino2004a",)
-    labels: ClassVar[tuple[str, ...]] = ("model:lsq", "eq:lsq")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    accepts: ClassVar[frozenset[FeatureKind]] = POSITIONS
-    needs: ClassVar[tuple[str, ...]] = ("focal_length_mm",)
+    about: ClassVar = AboutModel(
+        name="lsq",
+        taxonomy="LSQ",
+        studies=("Rufino2004a",),
+        labels=("model:lsq", "eq:lsq"),
+        origin="survey",
+        needs=("focal_length_mm",),
+        accepts=POSITIONS,
+    )
 
     focal_length_mm: float
     unit_mm: float
@@ -102,19 +133,19 @@ class LeastSquaresGeometry:
     residual_rms_deg_: float = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        require_projection(self.name, self.focal_length_mm, self.unit_mm, self.centre)
+        require_projection(self.about.name, self.focal_length_mm, self.unit_mm, self.centre)
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
         """Return the model that starts from the sensor's drawing."""
-        return cls(**nominal_projection(geometry, kind, cls.name))
+        return cls(**nominal_projection(geometry, kind, cls.about))
 
     def fit(self, features: ArrayLike, sun: ArrayLike) -> Self:
         """Fit Delta F, (alpha_0, beta_0) and (x_zp, y_zp) to the Sun's rotation angles."""
         from scipy.optimize import least_squares  # noqa: PLC0415 - SciPy, at the first fit only
 
-        found, vectors = as_frontal_calibration(features, sun, self.name)
-        require_samples(len(found), 3, self.name, "five parameters, two angles a sample")
+        found, vectors = as_frontal_calibration(features, sun, self.about.name)
+        require_samples(len(found), 3, self.about.name, "five parameters, two angles a sample")
         measured = np.radians(rotations_from_sun(vectors))
         # Displacements in units of F, so that all five parameters are of order one.
         scale = self.unit_mm / self.focal_length_mm
@@ -138,8 +169,10 @@ class LeastSquaresGeometry:
         )
         stretch, alpha_0, beta_0, x_zp, y_zp = solution.x
         if not solution.success or not np.isfinite(solution.x).all() or stretch <= -1:
-            raise UnusableDataError(f"{self.name}: the fit did not converge ({solution.message})")
-        _require_settled(jacobian(solution.x), self.name)
+            raise UnusableDataError(
+                f"{self.about.name}: the fit did not converge ({solution.message})"
+            )
+        _require_settled(jacobian(solution.x), self.about.name)
 
         self.focal_length_error_mm_ = float(stretch * self.focal_length_mm)
         self.boresight_deg_ = (float(np.degrees(alpha_0)), float(np.degrees(beta_0)))
@@ -153,7 +186,7 @@ class LeastSquaresGeometry:
     def predict(self, features: ArrayLike) -> Floats:
         """Sun unit vectors (N, 3) of features (N, 2)."""
         require_fitted(self, "boresight_deg_")
-        found = as_features(features, 2, self.name)
+        found = as_features(features, 2, self.about.name)
         spot = (found - np.asarray(self.zero_point_)) * (self.unit_mm / self.focal_length_mm)
         parameters = np.array(
             [

@@ -8,8 +8,15 @@ from typing import ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from algorithms.contract import FeatureKind, Floats, Origin, SensorGeometry, UnsuitableDesignError
-from algorithms.inputs import as_calibration, as_features, require_fitted, require_kind
+from algorithms.contract import (
+    AboutModel,
+    FeatureKind,
+    Floats,
+    Model,
+    SensorGeometry,
+    UnsuitableDesignError,
+)
+from algorithms.inputs import as_calibration, as_features, require_fitted
 from algorithms.row_arithmetic import normalised
 
 AXIS_TOLERANCE = 1e-6
@@ -17,7 +24,7 @@ AXIS_TOLERANCE = 1e-6
 
 
 @dataclass
-class SixFaces:
+class SixFaces(Model):
     """Sun vector whose components are the brighter face of each opposite pair of a cube.
 
     Each face's signal is the cosine of its angle to the Sun, so the lit one of a pair is that
@@ -28,6 +35,16 @@ class SixFaces:
     face_normals : tuple of six vectors
         Unit normals of the detectors in the order of the features; the six directions +x, -x,
         +y, -y, +z, -z, each once, in any order.
+
+    Attributes
+    ----------
+    n_samples_ : int
+        Samples with features that `fit` was given.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -43,16 +60,29 @@ class SixFaces:
     face is taken for Sun where it is the brighter of its pair.
 
     Cost: 14 operations and one root a sample.
+
+    References
+    ----------
+    Allgeier2009; survey model:base, eq:msfstd.
+
+    Examples
+    --------
+    >>> faces = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
+    >>> signals = [[0.6, 0.0, 0.0, 0.0, 0.8, 0.0], [0.0, 0.0, 0.0, 1.0, 0.0, 0.0]]
+    >>> SixFaces(faces).fit(signals, [[0.6, 0.0, 0.8], [0.0, -1.0, 0.0]]).predict(signals)
+    array([[ 0.6,  0. ,  0.8],
+           [ 0. , -1. ,  0. ]])
     """
 
-    name: ClassVar[str] = "basic"
-    taxonomy: ClassVar[str] = "Basic"
-    studies: ClassVar[tuple[str, ...]] = ("Allgeier2009",)
-    labels: ClassVar[tuple[str, ...]] = ("model:base", "eq:msfstd")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    accepts: ClassVar[frozenset[FeatureKind]] = frozenset({FeatureKind.SIGNALS})
-    needs: ClassVar[tuple[str, ...]] = ("face_normals",)
+    about: ClassVar = AboutModel(
+        name="basic",
+        taxonomy="Basic",
+        studies=("Allgeier2009",),
+        labels=("model:base", "eq:msfstd"),
+        origin="survey",
+        needs=("face_normals",),
+        accepts=frozenset({FeatureKind.SIGNALS}),
+    )
 
     face_normals: tuple[tuple[float, float, float], ...]
 
@@ -64,20 +94,20 @@ class SixFaces:
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
         """Return the model of the sensor's six faces."""
-        require_kind(kind, cls.accepts, cls.name)
-        geometry.require("face_normals", by=cls.name)
+        cls.about.require_kind(kind)
+        geometry.require("face_normals", by=cls.about.name)
         return cls(geometry.face_normals or ())
 
     def fit(self, features: ArrayLike, sun: ArrayLike) -> Self:
         """Check the calibration data; nothing is learnt from them."""
-        found, _ = as_calibration(features, sun, 6, self.name)
+        found, _ = as_calibration(features, sun, 6, self.about.name)
         self.n_samples_ = len(found)
         return self
 
     def predict(self, features: ArrayLike) -> Floats:
         """Sun unit vectors (N, 3) of signals (N, 6)."""
         require_fitted(self, "n_samples_")
-        signals = as_features(features, 6, self.name)
+        signals = as_features(features, 6, self.about.name)
         plus, minus = self._columns()
         positive, negative = signals[:, plus], signals[:, minus]
         brighter = np.maximum(np.maximum(positive, negative), 0.0)
@@ -93,6 +123,6 @@ class SixFaces:
                 columns = [int(column) for column in match.argmax(axis=1)]
                 return columns[:3], columns[3:]
         raise UnsuitableDesignError(
-            f"{self.name} needs six face normals, +-x, +-y and +-z each once; "
+            f"{self.about.name} needs six face normals, +-x, +-y and +-z each once; "
             f"got {self.face_normals!r}"
         )

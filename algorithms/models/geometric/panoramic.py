@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from algorithms.contract import (
+    AboutModel,
     FeatureKind,
     Floats,
-    Origin,
+    Model,
     SensorGeometry,
     UnsuitableDesignError,
     UnusableDataError,
@@ -20,7 +21,6 @@ from algorithms.inputs import (
     as_calibration,
     as_features,
     require_fitted,
-    require_kind,
     require_samples,
 )
 from algorithms.models.geometric.detector_faces import Normals, directions, require_normals
@@ -36,7 +36,7 @@ FLATTEST = 1e-6
 
 
 @dataclass
-class WeightedCells:
+class WeightedCells(Model):
     """Sun vector that fits the cosines of all lit cells best, by weighted least squares.
 
     Cells spread over a sphere see the Sun from every side, several at a time; each contributes
@@ -58,6 +58,11 @@ class WeightedCells:
     reference_ : ndarray, shape (K,)
         Current of every cell under perpendicular sunlight, in units of the features.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: eq:msfpano (model:pano, Zhang2022b): ``s = (A^T W A)^-1 A^T W (I_i / I_max,i)``
@@ -76,16 +81,33 @@ class WeightedCells:
     cubes do.
 
     Cost: 21 operations a cell, 30 a sample.
+
+    References
+    ----------
+    Zhang2022b; survey model:pano, eq:msfpano.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> normals = ((0.6, 0.0, 0.8), (-0.6, 0.0, 0.8), (0.0, 0.6, 0.8), (0.0, -0.6, 0.8))
+    >>> sun = np.array([[0.0, 0.0, 1.0], [0.28, 0.0, 0.96], [0.0, -0.28, 0.96]])
+    >>> signals = np.maximum(sun @ np.array(normals).T, 0.0) * (1.0, 1.1, 0.9, 1.0)
+    >>> model = WeightedCells(normals).fit(signals, sun)
+    >>> model.reference_.round(3)
+    array([1. , 1.1, 0.9, 1. ])
+    >>> model.predict(signals[1:2]).round(3)
+    array([[0.28, 0.  , 0.96]])
     """
 
-    name: ClassVar[str] = "panoramic"
-    taxonomy: ClassVar[str] = "Panoramic"
-    studies: ClassVar[tuple[str, ...]] = ("Zhang2022b",)
-    labels: ClassVar[tuple[str, ...]] = ("model:pano", "eq:msfpano")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    accepts: ClassVar[frozenset[FeatureKind]] = frozenset({FeatureKind.SIGNALS})
-    needs: ClassVar[tuple[str, ...]] = ("face_normals",)
+    about: ClassVar = AboutModel(
+        name="panoramic",
+        taxonomy="Panoramic",
+        studies=("Zhang2022b",),
+        labels=("model:pano", "eq:msfpano"),
+        origin="survey",
+        needs=("face_normals",),
+        accepts=frozenset({FeatureKind.SIGNALS}),
+    )
 
     face_normals: Normals
     weighting: Weighting = "signal"
@@ -94,15 +116,15 @@ class WeightedCells:
     reference_: Floats = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        require_normals(self.face_normals, self.name)
+        require_normals(self.face_normals, self.about.name)
         if self.weighting not in get_args(Weighting):
             raise ValueError(
-                f"{self.name}: weighting must be one of {', '.join(get_args(Weighting))}; "
+                f"{self.about.name}: weighting must be one of {', '.join(get_args(Weighting))}; "
                 f"got {self.weighting!r}"
             )
         if not 0 < self.largest_incidence_deg < 90:
             raise ValueError(
-                f"{self.name}: largest_incidence_deg must be in (0, 90); "
+                f"{self.about.name}: largest_incidence_deg must be in (0, 90); "
                 f"got {self.largest_incidence_deg!r}"
             )
 
@@ -112,15 +134,16 @@ class WeightedCells:
 
         UnsuitableDesignError where, by the drawing, a direction of the field lights fewer than 3.
         """
-        require_kind(kind, cls.accepts, cls.name)
-        geometry.require("face_normals", by=cls.name)
+        cls.about.require_kind(kind)
+        geometry.require("face_normals", by=cls.about.name)
         model = cls(geometry.face_normals or ())
         field_of_view = directions(geometry.half_fov_deg)
         cosines = field_of_view @ np.asarray(model.face_normals, dtype=np.float64).T
         fewest = int((cosines >= model._smallest_cosine).sum(axis=1).min())
         if fewest < FEWEST_LIT:
             raise UnsuitableDesignError(
-                f"{cls.name} needs three cells lit within {model.largest_incidence_deg:g} deg of "
+                f"{cls.about.name} needs three cells lit within "
+                f"{model.largest_incidence_deg:g} deg of "
                 f"incidence in every direction of the field; {len(model.face_normals)} faces "
                 f"leave {fewest}"
             )
@@ -129,18 +152,18 @@ class WeightedCells:
     def fit(self, features: ArrayLike, sun: ArrayLike) -> Self:
         """Learn the reference current of every cell."""
         normals = np.asarray(self.face_normals, dtype=np.float64)
-        found, vectors = as_calibration(features, sun, len(normals), self.name)
+        found, vectors = as_calibration(features, sun, len(normals), self.about.name)
         cosines = vectors @ normals.T
         cosines[cosines < self._smallest_cosine] = 0.0
         squares = (cosines**2).sum(axis=0)
         lit = squares > 0
-        require_samples(int(lit.sum()), 1, self.name, "that light a cell")
+        require_samples(int(lit.sum()), 1, self.about.name, "that light a cell")
         reference = np.full(len(normals), np.nan)
         reference[lit] = (found * cosines).sum(axis=0)[lit] / squares[lit]
         reference[~lit] = reference[lit].mean()
         if not (reference > 0).all():
             raise UnusableDataError(
-                f"{self.name}: cells turned to the Sun must have positive signals; the "
+                f"{self.about.name}: cells turned to the Sun must have positive signals; the "
                 f"calibration gives a reference current of {reference.min():.6g}"
             )
         self.reference_ = reference
@@ -149,7 +172,7 @@ class WeightedCells:
     def predict(self, features: ArrayLike) -> Floats:
         """Sun unit vectors (N, 3) of signals (N, K)."""
         require_fitted(self, "reference_")
-        signals = as_features(features, len(self.face_normals), self.name)
+        signals = as_features(features, len(self.face_normals), self.about.name)
         relative = signals / self.reference_
         lit = relative >= self._smallest_cosine
         weights = np.where(lit, relative if self.weighting == "signal" else 1.0, 0.0)

@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from algorithms.contract import (
+    AboutModel,
     FeatureKind,
     Floats,
-    Origin,
+    Model,
     SensorGeometry,
     UnsuitableDesignError,
     UnusableDataError,
@@ -20,7 +21,6 @@ from algorithms.inputs import (
     as_calibration,
     as_features,
     require_fitted,
-    require_kind,
     require_samples,
 )
 from algorithms.models.geometric.detector_faces import (
@@ -35,7 +35,7 @@ Coefficient = Literal["common", "each"]
 
 
 @dataclass
-class RegularPyramid:
+class RegularPyramid(Model):
     """Each component of the Sun vector is the signals' mean, weighted by the faces' normals.
 
     The columns of a regular pyramid's normals are orthogonal, so least squares over all faces
@@ -59,6 +59,11 @@ class RegularPyramid:
     coefficients_ : ndarray, shape (M,)
         xi of every face: cosine of incidence per unit of signal.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: eq:msfpyra1, eq:msfpyra2 (model:pyra, Wang2019): ``s = xi (b_x^T / b_x^T b_x,
@@ -75,16 +80,33 @@ class RegularPyramid:
     raises UnusableDataError where no sample lights all faces.
 
     Cost: 6 operations a face and one root a sample.
+
+    References
+    ----------
+    Wang2019; survey model:pyra, eq:msfpyra1, eq:msfpyra2.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> normals = ((0.6, 0.0, 0.8), (0.0, 0.6, 0.8), (-0.6, 0.0, 0.8), (0.0, -0.6, 0.8))
+    >>> sun = np.array([[0.0, 0.0, 1.0], [0.28, 0.0, 0.96], [0.0, -0.28, 0.96]])
+    >>> signals = 2.5 * sun @ np.array(normals).T
+    >>> model = RegularPyramid(normals).fit(signals, sun)
+    >>> model.coefficients_.round(3)
+    array([0.4, 0.4, 0.4, 0.4])
+    >>> model.predict(signals[1:2]).round(3)
+    array([[0.28, 0.  , 0.96]])
     """
 
-    name: ClassVar[str] = "pyramidal"
-    taxonomy: ClassVar[str] = "Pyramidal"
-    studies: ClassVar[tuple[str, ...]] = ("Wang2019",)
-    labels: ClassVar[tuple[str, ...]] = ("model:pyra", "eq:msfpyra1", "eq:msfpyra2")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    accepts: ClassVar[frozenset[FeatureKind]] = frozenset({FeatureKind.SIGNALS})
-    needs: ClassVar[tuple[str, ...]] = ("face_normals",)
+    about: ClassVar = AboutModel(
+        name="pyramidal",
+        taxonomy="Pyramidal",
+        studies=("Wang2019",),
+        labels=("model:pyra", "eq:msfpyra1", "eq:msfpyra2"),
+        origin="survey",
+        needs=("face_normals",),
+        accepts=frozenset({FeatureKind.SIGNALS}),
+    )
 
     face_normals: Normals
     coefficient: Coefficient = "common"
@@ -96,12 +118,12 @@ class RegularPyramid:
         self._normals()
         if self.coefficient not in get_args(Coefficient):
             raise ValueError(
-                f"{self.name}: coefficient must be one of {', '.join(get_args(Coefficient))}; "
-                f"got {self.coefficient!r}"
+                f"{self.about.name}: coefficient must be one of "
+                f"{', '.join(get_args(Coefficient))}; got {self.coefficient!r}"
             )
         if not 0 <= self.dark_fraction < 1:
             raise ValueError(
-                f"{self.name}: dark_fraction must be in [0, 1); got {self.dark_fraction!r}"
+                f"{self.about.name}: dark_fraction must be in [0, 1); got {self.dark_fraction!r}"
             )
 
     @classmethod
@@ -110,16 +132,16 @@ class RegularPyramid:
 
         UnsuitableDesignError where it is none.
         """
-        require_kind(kind, cls.accepts, cls.name)
-        geometry.require("face_normals", by=cls.name)
+        cls.about.require_kind(kind)
+        geometry.require("face_normals", by=cls.about.name)
         return cls(geometry.face_normals or ())
 
     def fit(self, features: ArrayLike, sun: ArrayLike) -> Self:
         """Learn the measurement coefficients."""
         normals = self._normals()
-        found, vectors = as_calibration(features, sun, len(normals), self.name)
+        found, vectors = as_calibration(features, sun, len(normals), self.about.name)
         lit = self._all_lit(found)
-        require_samples(int(lit.sum()), 1, self.name, "with every face lit")
+        require_samples(int(lit.sum()), 1, self.about.name, "with every face lit")
         signals, cosines = found[lit], vectors[lit] @ normals.T
         products, squares = (signals * cosines).sum(axis=0), (signals**2).sum(axis=0)
         if self.coefficient == "common":
@@ -128,8 +150,8 @@ class RegularPyramid:
             coefficients = products / squares
         if not (coefficients > 0).all():
             raise UnusableDataError(
-                f"{self.name}: the lit faces must look towards the Sun; the calibration gives "
-                f"coefficients of {coefficients.min():.6g} and more"
+                f"{self.about.name}: the lit faces must look towards the Sun; the calibration "
+                f"gives coefficients of {coefficients.min():.6g} and more"
             )
         self.coefficients_ = coefficients
         return self
@@ -138,7 +160,7 @@ class RegularPyramid:
         """Sun unit vectors (N, 3) of signals (N, M)."""
         require_fitted(self, "coefficients_")
         normals = self._normals()
-        signals = as_features(features, len(normals), self.name)
+        signals = as_features(features, len(normals), self.about.name)
         signals[~self._all_lit(signals)] = np.nan
         rows = [b / (b @ b) * self.coefficients_ for b in normals.T]
         return normalised(np.column_stack([row_sums(signals, row) for row in rows]))
@@ -149,7 +171,7 @@ class RegularPyramid:
 
     def _normals(self) -> Floats:
         """(M, 3) normals, or UnsuitableDesignError unless they are a regular pyramid's."""
-        normals = require_normals(self.face_normals, self.name)
+        normals = require_normals(self.face_normals, self.about.name)
         up = normals[:, 2]
         turns = np.sort(np.arctan2(normals[:, 1], normals[:, 0]))
         steps = np.diff(turns, append=turns[0] + 2.0 * np.pi)
@@ -157,7 +179,7 @@ class RegularPyramid:
         even = np.allclose(steps, 2.0 * np.pi / len(normals), rtol=0, atol=10 * UNIT_TOLERANCE)
         if not (level and even):
             raise UnsuitableDesignError(
-                f"{self.name} needs the faces of a regular pyramid around +z, equally tilted and "
-                f"evenly spaced; got {self.face_normals!r}"
+                f"{self.about.name} needs the faces of a regular pyramid around +z, equally "
+                f"tilted and evenly spaced; got {self.face_normals!r}"
             )
         return normals

@@ -8,14 +8,21 @@ from typing import ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from algorithms.contract import FeatureKind, Floats, Origin, SensorGeometry, UnsuitableDesignError
-from algorithms.inputs import as_calibration, as_features, require_fitted, require_kind
+from algorithms.contract import (
+    AboutModel,
+    FeatureKind,
+    Floats,
+    Model,
+    SensorGeometry,
+    UnsuitableDesignError,
+)
+from algorithms.inputs import as_calibration, as_features, require_fitted
 from algorithms.models.geometric.detector_faces import UNIT_TOLERANCE, Normals, row_sums
 from algorithms.row_arithmetic import normalised
 
 
 @dataclass
-class SolarPanels:
+class SolarPanels(Model):
     """Sum of the lit panels' normals, each weighted by its current, scaled to length one.
 
     On a body with panels square to each other every current is a component of the Sun vector, so
@@ -27,6 +34,16 @@ class SolarPanels:
     face_normals : tuple of six vectors
         Unit normals of the panels in the order of the features: three pairs of opposite ones,
         the pairs square to each other, in any order and turned any way.
+
+    Attributes
+    ----------
+    n_samples_ : int
+        Samples with features that `fit` was given.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -44,16 +61,28 @@ class SolarPanels:
     result.
 
     Cost: 40 operations and one root a sample.
+
+    References
+    ----------
+    Nurgizat2021; survey model:solarpanel, eq:msfsc.
+
+    Examples
+    --------
+    >>> panels = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
+    >>> currents = [[0.3, 0.0, 0.0, 0.0, 0.4, 0.0]]
+    >>> SolarPanels(panels).fit(currents, [[0.6, 0.0, 0.8]]).predict(currents).round(3)
+    array([[0.6, 0. , 0.8]])
     """
 
-    name: ClassVar[str] = "solar-panel"
-    taxonomy: ClassVar[str] = "Solar panel"
-    studies: ClassVar[tuple[str, ...]] = ("Nurgizat2021",)
-    labels: ClassVar[tuple[str, ...]] = ("model:solarpanel", "eq:msfsc")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    accepts: ClassVar[frozenset[FeatureKind]] = frozenset({FeatureKind.SIGNALS})
-    needs: ClassVar[tuple[str, ...]] = ("face_normals",)
+    about: ClassVar = AboutModel(
+        name="solar-panel",
+        taxonomy="Solar panel",
+        studies=("Nurgizat2021",),
+        labels=("model:solarpanel", "eq:msfsc"),
+        origin="survey",
+        needs=("face_normals",),
+        accepts=frozenset({FeatureKind.SIGNALS}),
+    )
 
     face_normals: Normals
 
@@ -65,20 +94,20 @@ class SolarPanels:
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
         """Return the model of the sensor's six panels."""
-        require_kind(kind, cls.accepts, cls.name)
-        geometry.require("face_normals", by=cls.name)
+        cls.about.require_kind(kind)
+        geometry.require("face_normals", by=cls.about.name)
         return cls(geometry.face_normals or ())
 
     def fit(self, features: ArrayLike, sun: ArrayLike) -> Self:
         """Check the calibration data; nothing is learnt from them."""
-        found, _ = as_calibration(features, sun, 6, self.name)
+        found, _ = as_calibration(features, sun, 6, self.about.name)
         self.n_samples_ = len(found)
         return self
 
     def predict(self, features: ArrayLike) -> Floats:
         """Sun unit vectors (N, 3) of signals (N, 6)."""
         require_fitted(self, "n_samples_")
-        lit = np.maximum(as_features(features, 6, self.name), 0.0)
+        lit = np.maximum(as_features(features, 6, self.about.name), 0.0)
         return normalised(np.column_stack([row_sums(lit, n) for n in self._normals().T]))
 
     def _normals(self) -> Floats:
@@ -90,6 +119,6 @@ class SolarPanels:
             if np.allclose(cosines, [-1.0, 0.0, 0.0, 0.0, 0.0, 1.0], rtol=0, atol=UNIT_TOLERANCE):
                 return normals
         raise UnsuitableDesignError(
-            f"{self.name} needs six panel normals, three opposite pairs square to each other; "
-            f"got {self.face_normals!r}"
+            f"{self.about.name} needs six panel normals, three opposite pairs square to each "
+            f"other; got {self.face_normals!r}"
         )

@@ -8,7 +8,7 @@ from typing import ClassVar, Self
 from numpy.typing import ArrayLike
 
 from algorithms.angles import sun_from_tangents
-from algorithms.contract import FeatureKind, Floats, Origin, SensorGeometry
+from algorithms.contract import AboutModel, FeatureKind, Floats, Model, SensorGeometry
 from algorithms.inputs import as_features, as_frontal_calibration, require_fitted
 from algorithms.models.nominal_projection import (
     POSITIONS,
@@ -19,7 +19,7 @@ from algorithms.models.nominal_projection import (
 
 
 @dataclass
-class StandardProjection:
+class StandardProjection(Model):
     """Direction from the aperture's centre through the spot, by the nominal geometry.
 
     One multiplication an axis turns the spot's place into the tangents of the Sun angles; errors
@@ -35,6 +35,16 @@ class StandardProjection:
     centre : tuple of two float
         Feature (x, y) of the spot when the Sun is on the boresight.
 
+    Attributes
+    ----------
+    n_samples_ : int
+        Samples with features that `fit` was given.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: eq:stdproj (model:spm, deBoer2013): ``alpha = arctan(Y s / h)``,
@@ -47,16 +57,31 @@ class StandardProjection:
     Failure: a NaN row for a NaN feature row.
 
     Cost: 11 operations a sample.
+
+    References
+    ----------
+    deBoer2013; survey model:spm, eq:stdproj, alg:VB.
+
+    Examples
+    --------
+    >>> from algorithms.angles import angles_from_sun
+    >>> model = StandardProjection(focal_length_mm=2.0, unit_mm=0.01, centre=(100.0, 80.0))
+    >>> model = model.fit([[100.0, 80.0]], [[0.0, 0.0, 1.0]])
+    >>> angles_from_sun(model.predict([[100.0, 80.0], [300.0, 80.0], [100.0, 180.0]])).round(2)
+    array([[ 0.  ,  0.  ],
+           [ 0.  , 45.  ],
+           [26.57,  0.  ]])
     """
 
-    name: ClassVar[str] = "spm"
-    taxonomy: ClassVar[str] = "SPM"
-    studies: ClassVar[tuple[str, ...]] = ("deBoer2013",)
-    labels: ClassVar[tuple[str, ...]] = ("model:spm", "eq:stdproj", "alg:VB")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    accepts: ClassVar[frozenset[FeatureKind]] = POSITIONS
-    needs: ClassVar[tuple[str, ...]] = ("focal_length_mm",)
+    about: ClassVar = AboutModel(
+        name="spm",
+        taxonomy="SPM",
+        studies=("deBoer2013",),
+        labels=("model:spm", "eq:stdproj", "alg:VB"),
+        origin="survey",
+        needs=("focal_length_mm",),
+        accepts=POSITIONS,
+    )
 
     focal_length_mm: float
     unit_mm: float
@@ -65,23 +90,23 @@ class StandardProjection:
     n_samples_: int = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        require_projection(self.name, self.focal_length_mm, self.unit_mm, self.centre)
+        require_projection(self.about.name, self.focal_length_mm, self.unit_mm, self.centre)
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
         """Return the model of the sensor's drawing."""
-        return cls(**nominal_projection(geometry, kind, cls.name))
+        return cls(**nominal_projection(geometry, kind, cls.about))
 
     def fit(self, features: ArrayLike, sun: ArrayLike) -> Self:
         """Check the calibration data; nothing is learnt from them."""
-        found, _ = as_frontal_calibration(features, sun, self.name)
+        found, _ = as_frontal_calibration(features, sun, self.about.name)
         self.n_samples_ = len(found)
         return self
 
     def predict(self, features: ArrayLike) -> Floats:
         """Sun unit vectors (N, 3) of features (N, 2)."""
         require_fitted(self, "n_samples_")
-        found = as_features(features, 2, self.name)
+        found = as_features(features, 2, self.about.name)
         return sun_from_tangents(
             nominal_tangents(found, self.focal_length_mm, self.unit_mm, self.centre)
         )

@@ -10,7 +10,14 @@ from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
 
 from algorithms.angles import angles_from_sun, sun_from_angles
-from algorithms.contract import FeatureKind, Floats, Origin, SensorGeometry, UnusableDataError
+from algorithms.contract import (
+    AboutModel,
+    FeatureKind,
+    Floats,
+    Model,
+    SensorGeometry,
+    UnusableDataError,
+)
 from algorithms.inputs import (
     as_features,
     as_frontal_calibration,
@@ -41,7 +48,7 @@ MAX_DEGREE = 15
 
 
 @dataclass
-class ErrorTable:
+class ErrorTable(Model):
     """Nominal angles corrected by a table of their errors, interpolated between its nodes.
 
     Whatever the error comes from, the table holds it as measured over the field of view; its
@@ -71,6 +78,11 @@ class ErrorTable:
     hull_ : ndarray, shape (m, 3)
         Facets of the calibrated region in (alpha, beta).
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: model:lut (He2013), in words there: ``angle = nominal + e(nominal)``, nominal by
@@ -85,16 +97,34 @@ class ErrorTable:
 
     Cost: 40 operations a sample, and 2 a facet of the hull; the fit solves one sparse system in
     A B unknowns.
+
+    References
+    ----------
+    He2013; survey model:lut, eq:stdproj.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from algorithms.angles import angles_from_sun, sun_from_angles
+    >>> steps = np.arange(-10, 11, 2)
+    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> bent = 200.0 * (sun[:, :2] / sun[:, 2:]) ** 3  # what the drawing does not know
+    >>> spots = 200.0 * sun[:, :2] / sun[:, 2:] + bent
+    >>> model = ErrorTable(focal_length_mm=2.0, unit_mm=0.01, interval_deg=2.0).fit(spots, sun)
+    >>> angles_from_sun(model.predict([spots[0], [900.0, 0.0]])).round(2)
+    array([[-10., -10.],
+           [ nan,  nan]])
     """
 
-    name: ClassVar[str] = "lut"
-    taxonomy: ClassVar[str] = "LUT"
-    studies: ClassVar[tuple[str, ...]] = ("He2013",)
-    labels: ClassVar[tuple[str, ...]] = ("model:lut", "eq:stdproj")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    accepts: ClassVar[frozenset[FeatureKind]] = POSITIONS
-    needs: ClassVar[tuple[str, ...]] = ("focal_length_mm",)
+    about: ClassVar = AboutModel(
+        name="lut",
+        taxonomy="LUT",
+        studies=("He2013",),
+        labels=("model:lut", "eq:stdproj"),
+        origin="survey",
+        needs=("focal_length_mm",),
+        accepts=POSITIONS,
+    )
 
     focal_length_mm: float
     unit_mm: float
@@ -108,23 +138,23 @@ class ErrorTable:
     hull_: Floats = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        require_projection(self.name, self.focal_length_mm, self.unit_mm, self.centre)
-        require_positive(self.name, interval_deg=self.interval_deg, smoothing=self.smoothing)
+        require_projection(self.about.name, self.focal_length_mm, self.unit_mm, self.centre)
+        require_positive(self.about.name, interval_deg=self.interval_deg, smoothing=self.smoothing)
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
         """Return the table over the sensor's nominal angles, at the published interval."""
-        return cls(**nominal_projection(geometry, kind, cls.name))
+        return cls(**nominal_projection(geometry, kind, cls.about))
 
     def fit(self, features: ArrayLike, sun: ArrayLike) -> Self:
         """Solve for the table's nodes."""
-        found, vectors = as_frontal_calibration(features, sun, self.name)
-        require_samples(len(found), 3, self.name, "a region to interpolate in")
+        found, vectors = as_frontal_calibration(features, sun, self.about.name)
+        require_samples(len(found), 3, self.about.name, "a region to interpolate in")
         nominal = self._nominal_deg(found)
-        hull = convex_hull(nominal, self.name)
+        hull = convex_hull(nominal, self.about.name)
         alpha = GridAxis.covering(nominal[:, 0], self.interval_deg)
         beta = GridAxis.covering(nominal[:, 1], self.interval_deg)
-        require_size(alpha.nodes * beta.nodes, self.name, self.interval_deg)
+        require_size(alpha.nodes * beta.nodes, self.about.name, self.interval_deg)
 
         # Row-wise product of the two axes' weights: four nodes a sample.
         across = interpolation_matrix(alpha, nominal[:, 0])
@@ -132,7 +162,7 @@ class ErrorTable:
         design = row_products(across, along)
         roughness = surface_roughness(alpha.nodes, beta.nodes)
         errors = angles_from_sun(vectors) - nominal
-        nodes = solve_table(design, roughness, self.smoothing, errors, self.name)
+        nodes = solve_table(design, roughness, self.smoothing, errors, self.about.name)
 
         self.alpha_axis_, self.beta_axis_, self.hull_ = alpha, beta, hull
         self.table_deg_ = nodes.reshape(alpha.nodes, beta.nodes, 2)
@@ -141,7 +171,7 @@ class ErrorTable:
     def predict(self, features: ArrayLike) -> Floats:
         """Sun unit vectors (N, 3) of features (N, 2)."""
         require_fitted(self, "table_deg_")
-        nominal = self._nominal_deg(as_features(features, 2, self.name))
+        nominal = self._nominal_deg(as_features(features, 2, self.about.name))
         i, u = self.alpha_axis_.cells(nominal[:, 0])
         j, v = self.beta_axis_.cells(nominal[:, 1])
         u, v = u[:, None], v[:, None]
@@ -158,7 +188,7 @@ class ErrorTable:
 
 
 @dataclass
-class BlendedPolynomials:
+class BlendedPolynomials(Model):
     """Nominal angles corrected by polynomials of one angle, blended between rows of the other.
 
     A table of polynomial coefficients takes far less room than one of nodes; weighting the two
@@ -192,6 +222,11 @@ class BlendedPolynomials:
     hull_ : ndarray, shape (m, 3)
         Facets of the calibrated region in (alpha, beta).
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: model:lut (He2013), in words there: for nominal angles (eq:stdproj) between rows k
@@ -208,16 +243,34 @@ class BlendedPolynomials:
 
     Cost: 12 (n + 1) operations a sample, and 2 a facet of the hull; the fit solves one sparse
     system in A (n + 1) unknowns.
+
+    References
+    ----------
+    He2013; survey model:lut, eq:stdproj.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from algorithms.angles import angles_from_sun, sun_from_angles
+    >>> steps = np.arange(-10, 11, 2)
+    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> bent = 200.0 * (sun[:, :2] / sun[:, 2:]) ** 3  # what the drawing does not know
+    >>> spots = 200.0 * sun[:, :2] / sun[:, 2:] + bent
+    >>> model = BlendedPolynomials(focal_length_mm=2.0, unit_mm=0.01, interval_deg=5.0, degree=4)
+    >>> angles_from_sun(model.fit(spots, sun).predict([spots[0], [900.0, 0.0]])).round(2)
+    array([[-10., -10.],
+           [ nan,  nan]])
     """
 
-    name: ClassVar[str] = "lut-polynomial"
-    taxonomy: ClassVar[str] = "LUT"
-    studies: ClassVar[tuple[str, ...]] = ("He2013",)
-    labels: ClassVar[tuple[str, ...]] = ("model:lut", "eq:stdproj")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    accepts: ClassVar[frozenset[FeatureKind]] = POSITIONS
-    needs: ClassVar[tuple[str, ...]] = ("focal_length_mm",)
+    about: ClassVar = AboutModel(
+        name="lut-polynomial",
+        taxonomy="LUT",
+        studies=("He2013",),
+        labels=("model:lut", "eq:stdproj"),
+        origin="survey",
+        needs=("focal_length_mm",),
+        accepts=POSITIONS,
+    )
 
     focal_length_mm: float
     unit_mm: float
@@ -233,31 +286,31 @@ class BlendedPolynomials:
     hull_: Floats = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        require_projection(self.name, self.focal_length_mm, self.unit_mm, self.centre)
-        require_positive(self.name, interval_deg=self.interval_deg, smoothing=self.smoothing)
+        require_projection(self.about.name, self.focal_length_mm, self.unit_mm, self.centre)
+        require_positive(self.about.name, interval_deg=self.interval_deg, smoothing=self.smoothing)
         if not 1 <= self.degree <= MAX_DEGREE:
             raise ValueError(
-                f"{self.name}: degree must be from 1 to {MAX_DEGREE}; got {self.degree!r}"
+                f"{self.about.name}: degree must be from 1 to {MAX_DEGREE}; got {self.degree!r}"
             )
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
         """Return the rows over the sensor's nominal angles, at the published interval."""
-        return cls(**nominal_projection(geometry, kind, cls.name))
+        return cls(**nominal_projection(geometry, kind, cls.about))
 
     def fit(self, features: ArrayLike, sun: ArrayLike) -> Self:
         """Solve for all rows' coefficients."""
         from scipy.sparse import csr_array  # noqa: PLC0415 - SciPy, at the first fit only
 
-        found, vectors = as_frontal_calibration(features, sun, self.name)
+        found, vectors = as_frontal_calibration(features, sun, self.about.name)
         terms = self.degree + 1
         require_samples(
-            len(found), 2 * terms, self.name, f"degree {self.degree} on at least two rows"
+            len(found), 2 * terms, self.about.name, f"degree {self.degree} on at least two rows"
         )
         nominal = self._nominal_deg(found)
-        hull = convex_hull(nominal, self.name)
+        hull = convex_hull(nominal, self.about.name)
         alpha = GridAxis.covering(nominal[:, 0], self.interval_deg)
-        require_size(alpha.nodes * terms, self.name, self.interval_deg)
+        require_size(alpha.nodes * terms, self.about.name, self.interval_deg)
         low, high = float(nominal[:, 1].min()), float(nominal[:, 1].max())
         middle, half = (low + high) / 2, (high - low) / 2
         basis = np.asarray(chebyshev.chebvander((nominal[:, 1] - middle) / half, self.degree))
@@ -267,15 +320,15 @@ class BlendedPolynomials:
         rank = int(np.linalg.matrix_rank(trend, rtol=1.0 / WORST_CONDITION))
         if rank < 2 * terms:
             raise UnusableDataError(
-                f"{self.name} needs samples that settle {2 * terms} terms (degree {self.degree} "
-                f"on two rows); the {len(found)} given settle only {rank}"
+                f"{self.about.name} needs samples that settle {2 * terms} terms (degree "
+                f"{self.degree} on two rows); the {len(found)} given settle only {rank}"
             )
 
         across = interpolation_matrix(alpha, nominal[:, 0])
         design = row_products(across, csr_array(basis))
         roughness = row_roughness(alpha.nodes, terms)
         errors = angles_from_sun(vectors) - nominal
-        solution = solve_table(design, roughness, self.smoothing, errors, self.name)
+        solution = solve_table(design, roughness, self.smoothing, errors, self.about.name)
 
         self.alpha_axis_, self.hull_ = alpha, hull
         self.beta_middle_deg_, self.beta_half_range_deg_ = middle, half
@@ -285,7 +338,7 @@ class BlendedPolynomials:
     def predict(self, features: ArrayLike) -> Floats:
         """Sun unit vectors (N, 3) of features (N, 2)."""
         require_fitted(self, "coefficients_deg_")
-        nominal = self._nominal_deg(as_features(features, 2, self.name))
+        nominal = self._nominal_deg(as_features(features, 2, self.about.name))
         row, weight = self.alpha_axis_.cells(nominal[:, 0])
         scaled = (nominal[:, 1] - self.beta_middle_deg_) / self.beta_half_range_deg_
         blend = weight[:, None, None]

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from algorithms.angles import sun_from_tangents, tangents_from_sun
-from algorithms.contract import FeatureKind, Floats, SensorGeometry, UnusableDataError
-from algorithms.inputs import as_calibration, require_kind, require_positive
+from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry, UnusableDataError
+from algorithms.inputs import as_calibration, require_positive
 
 FINE_TRACKS = 4
 
@@ -164,15 +164,10 @@ class DialCode:
         return places[readable], phases[readable], vectors[readable]
 
 
-def dial_code(
-    geometry: SensorGeometry,
-    kind: FeatureKind,
-    accepts: frozenset[FeatureKind],
-    by: str,
-) -> DialDesign:
+def dial_code(geometry: SensorGeometry, kind: FeatureKind, about: AboutModel) -> DialDesign:
     """Return the design numbers of a dial's models; UnsuitableDesignError naming what is None."""
-    require_kind(kind, accepts, by)
-    geometry.require(*NEEDS, by=by)
+    about.require_kind(kind)
+    geometry.require(*NEEDS, by=about.name)
     return DialDesign(
         bits=geometry.code_bits or 0,
         cell_mm=geometry.code_cell_mm or 0.0,

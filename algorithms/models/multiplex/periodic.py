@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from algorithms.contract import FeatureKind, Floats, Origin, SensorGeometry
+from algorithms.contract import AboutModel, FeatureKind, Floats, Model, SensorGeometry
 from algorithms.inputs import as_features, require_fitted
 from algorithms.models.multiplex.dial_code import (
     NEEDS,
@@ -23,7 +23,7 @@ _START = (0.0, 0.0, 0.0, 1.0, 0.0)
 
 
 @dataclass
-class PeriodicCode:
+class PeriodicCode(Model):
     """Coarse cell and fine phase of each dial, its periodic error and its assembly taken out.
 
     The Gray code tells which period of the fine rows the light falls on, their phase where in
@@ -54,6 +54,11 @@ class PeriodicCode:
     conversion_ : ndarray, shape (2, 4)
         (a, b, c, d) of the dials along x and y, a = -1.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: eq:pamulti, eq:fourier (model:periodic, Fan2013): ``alpha_s = alpha_1 + alpha_2 +
@@ -73,16 +78,40 @@ class PeriodicCode:
     raises UnusableDataError where the samples do not settle the ten parameters.
 
     Cost: 2 arc tangents, 2 sines and 60 operations a sample.
+
+    References
+    ----------
+    Fan2013; survey model:periodic, eq:pamulti, eq:fourier.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from algorithms.angles import angles_from_sun, sun_from_angles
+    >>> design = dict(bits=5, cell_mm=0.15, period_mm=0.3, focal_length_mm=2.0)
+    >>> def signals(sun):
+    ...     rows = []
+    ...     for place in (2.0 * sun[:, :2] / sun[:, 2:]).T:
+    ...         cell = np.floor(place / 0.15).astype(int) + 16
+    ...         rows += [((cell ^ (cell >> 1)) >> bit) & 1 for bit in (4, 3, 2, 1, 0)]
+    ...         p = 2 * np.pi * place / 0.3
+    ...         rows += [(1 + way * wave) / 2 for way in (-1, 1) for wave in (np.cos(p), np.sin(p))]
+    ...     return np.transpose(rows)
+    ...
+    >>> sun = sun_from_angles(np.random.default_rng(1).uniform(-30, 30, (60, 2)))
+    >>> model = PeriodicCode(**design).fit(signals(sun), sun)
+    >>> angles_from_sun(model.predict(signals(sun_from_angles([[12.3, -4.5]])))).round(3)
+    array([[12.3, -4.5]])
     """
 
-    name: ClassVar[str] = "periodic"
-    taxonomy: ClassVar[str] = "Periodic"
-    studies: ClassVar[tuple[str, ...]] = ("Fan2013",)
-    labels: ClassVar[tuple[str, ...]] = ("model:periodic", "eq:pamulti", "eq:fourier")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    accepts: ClassVar[frozenset[FeatureKind]] = frozenset({FeatureKind.SIGNALS})
-    needs: ClassVar[tuple[str, ...]] = NEEDS
+    about: ClassVar = AboutModel(
+        name="periodic",
+        taxonomy="Periodic",
+        studies=("Fan2013",),
+        labels=("model:periodic", "eq:pamulti", "eq:fourier"),
+        origin="survey",
+        needs=NEEDS,
+        accepts=frozenset({FeatureKind.SIGNALS}),
+    )
 
     bits: int
     cell_mm: float
@@ -95,7 +124,7 @@ class PeriodicCode:
     conversion_: Floats = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        self._code().require(self.name)
+        self._code().require(self.about.name)
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
@@ -103,17 +132,17 @@ class PeriodicCode:
 
         UnsuitableDesignError where it has none.
         """
-        return cls(**dial_code(geometry, kind, cls.accepts, cls.name))
+        return cls(**dial_code(geometry, kind, cls.about))
 
     def fit(self, features: ArrayLike, sun: ArrayLike) -> Self:
         """Learn (k, t) and (a, b, c, d) of both dials."""
-        places, phases, vectors = self._code().calibration(features, sun, self.name)
+        places, phases, vectors = self._code().calibration(features, sun, self.about.name)
 
         def tangents(parameters: NDArray[np.complex128]) -> NDArray[np.complex128]:
             numerators, denominators = _fraction(parameters.reshape(2, 5), places, phases)
             return np.asarray(numerators / denominators)
 
-        found = fit_tangents(tangents, np.tile(_START, 2), vectors, self.name).reshape(2, 5)
+        found = fit_tangents(tangents, np.tile(_START, 2), vectors, self.about.name).reshape(2, 5)
         sine, cosine, shift, slope, bend = found.T
         self.correction_ = np.column_stack([np.hypot(sine, cosine), np.arctan2(cosine, sine)])
         self.conversion_ = np.column_stack([np.full(2, -1.0), shift, bend, -slope])
@@ -123,7 +152,7 @@ class PeriodicCode:
         """Sun unit vectors (N, 3) of signals (N, 2 (bits + 4))."""
         require_fitted(self, "conversion_")
         code = self._code()
-        places, phases = code.read(as_features(features, code.columns, self.name))
+        places, phases = code.read(as_features(features, code.columns, self.about.name))
         k, t = self.correction_.T
         a, b, c, d = self.conversion_.T
         tangent = places + k * np.sin(2.0 * phases + t)

@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from algorithms.contract import FeatureKind, Floats, Origin, SensorGeometry
+from algorithms.contract import AboutModel, FeatureKind, Floats, Model, SensorGeometry
 from algorithms.inputs import as_features, require_fitted
 from algorithms.models.multiplex.dial_code import (
     NEEDS,
@@ -23,7 +23,7 @@ MAX_HARMONICS = 16
 
 
 @dataclass
-class FourierPhase:
+class FourierPhase(Model):
     """Coarse cell and fine phase of each dial, the phase error a Fourier series of the phase.
 
     Whatever the fine rows are like, their phase errs periodically: once a period by gains that
@@ -57,6 +57,11 @@ class FourierPhase:
         Projection H: ``(tan(beta), tan(alpha), 1)`` in proportion to ``H (T_x, T_y, 1)``,
         ``H_33 = 1``.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: eq:fourier (model:fourier, Fan2013): fine rows ``F1, F3 = a_0/2 -+ sum a_n cos(n
@@ -76,16 +81,40 @@ class FourierPhase:
     UnusableDataError where the samples do not settle every parameter.
 
     Cost: 2 arc tangents, 4 sines a harmonic and 60 operations a sample.
+
+    References
+    ----------
+    Fan2013; survey model:fourier, eq:fourier, eq:pamulti.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from algorithms.angles import angles_from_sun, sun_from_angles
+    >>> design = dict(bits=5, cell_mm=0.15, period_mm=0.3, focal_length_mm=2.0)
+    >>> def signals(sun):
+    ...     rows = []
+    ...     for place in (2.0 * sun[:, :2] / sun[:, 2:]).T:
+    ...         cell = np.floor(place / 0.15).astype(int) + 16
+    ...         rows += [((cell ^ (cell >> 1)) >> bit) & 1 for bit in (4, 3, 2, 1, 0)]
+    ...         p = 2 * np.pi * place / 0.3
+    ...         rows += [(1 + way * wave) / 2 for way in (-1, 1) for wave in (np.cos(p), np.sin(p))]
+    ...     return np.transpose(rows)
+    ...
+    >>> sun = sun_from_angles(np.random.default_rng(1).uniform(-30, 30, (60, 2)))
+    >>> model = FourierPhase(**design).fit(signals(sun), sun)
+    >>> angles_from_sun(model.predict(signals(sun_from_angles([[12.3, -4.5]])))).round(3)
+    array([[12.3, -4.5]])
     """
 
-    name: ClassVar[str] = "fourier-phase"
-    taxonomy: ClassVar[str] = "Fourier"
-    studies: ClassVar[tuple[str, ...]] = ("Fan2013",)
-    labels: ClassVar[tuple[str, ...]] = ("model:fourier", "eq:fourier", "eq:pamulti")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    accepts: ClassVar[frozenset[FeatureKind]] = frozenset({FeatureKind.SIGNALS})
-    needs: ClassVar[tuple[str, ...]] = NEEDS
+    about: ClassVar = AboutModel(
+        name="fourier-phase",
+        taxonomy="Fourier",
+        studies=("Fan2013",),
+        labels=("model:fourier", "eq:fourier", "eq:pamulti"),
+        origin="survey",
+        needs=NEEDS,
+        accepts=frozenset({FeatureKind.SIGNALS}),
+    )
 
     bits: int
     cell_mm: float
@@ -99,20 +128,21 @@ class FourierPhase:
     conversion_: Floats = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        self._code().require(self.name)
+        self._code().require(self.about.name)
         if not 1 <= self.harmonics <= MAX_HARMONICS:
             raise ValueError(
-                f"{self.name}: harmonics must be in [1, {MAX_HARMONICS}]; got {self.harmonics!r}"
+                f"{self.about.name}: harmonics must be in [1, {MAX_HARMONICS}]; got "
+                f"{self.harmonics!r}"
             )
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
         """Return the model of the sensor's dials; UnsuitableDesignError where it has none."""
-        return cls(**dial_code(geometry, kind, cls.accepts, cls.name))
+        return cls(**dial_code(geometry, kind, cls.about))
 
     def fit(self, features: ArrayLike, sun: ArrayLike) -> Self:
         """Learn the series of both dials and the projection."""
-        places, phases, vectors = self._code().calibration(features, sun, self.name)
+        places, phases, vectors = self._code().calibration(features, sun, self.about.name)
         waves = self._waves(phases)
 
         def tangents(parameters: NDArray[np.complex128]) -> NDArray[np.complex128]:
@@ -123,7 +153,7 @@ class FourierPhase:
         start = np.zeros(8 + 4 * self.harmonics)
         start[[0, 4]] = 1.0
         self.conversion_, self.series_ = self._split(
-            fit_tangents(tangents, start, vectors, self.name)
+            fit_tangents(tangents, start, vectors, self.about.name)
         )
         return self
 
@@ -131,7 +161,7 @@ class FourierPhase:
         """Sun unit vectors (N, 3) of signals (N, 2 (bits + 4))."""
         require_fitted(self, "conversion_")
         code = self._code()
-        places, phases = code.read(as_features(features, code.columns, self.name))
+        places, phases = code.read(as_features(features, code.columns, self.about.name))
         corrected = _corrected(places, self._waves(phases), self.series_)
         return sun_from_fractions(*_projected(self.conversion_, corrected))
 

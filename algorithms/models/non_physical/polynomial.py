@@ -9,12 +9,11 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
 
-from algorithms.contract import FeatureKind, Floats, Origin, SensorGeometry
+from algorithms.contract import AboutModel, Floats, Model
 from algorithms.inputs import (
     as_features,
     as_frontal_calibration,
     require_fitted,
-    require_kind,
     require_samples,
 )
 from algorithms.models.nominal_projection import POSITIONS
@@ -32,7 +31,7 @@ MAX_DEGREE = 15
 
 
 @dataclass
-class AxisPolynomial:
+class AxisPolynomial(Model):
     """Each Sun angle as a polynomial of the feature of its own axis.
 
     Compact and fast, it follows any smooth response of one axis, but not what the other axis does
@@ -55,6 +54,11 @@ class AxisPolynomial:
     coefficients_ : ndarray, shape (2, n + 1)
         Chebyshev coefficients in the scaled feature, rows ``alpha`` (on y) and ``beta`` (on x).
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: model:poly (You2011), in words there: ``alpha = sum_k a_k y^k``, ``beta = sum_k
@@ -68,16 +72,32 @@ class AxisPolynomial:
     angle reaches 90 degrees. fit raises UnusableDataError below n + 1 different features an axis.
 
     Cost: 6 (n + 1) operations and 2 tangents a sample.
+
+    References
+    ----------
+    You2011; survey model:poly.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from algorithms.angles import angles_from_sun, sun_from_angles
+    >>> steps = np.arange(-30, 31, 5)
+    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> spots = 200.0 * sun[:, :2] / sun[:, 2:] + (100.0, 80.0)
+    >>> model = AxisPolynomial(degree=5).fit(spots, sun)
+    >>> angles_from_sun(model.predict([spots[0], [900.0, 80.0]])).round(1)
+    array([[-30., -30.],
+           [ nan,  nan]])
     """
 
-    name: ClassVar[str] = "polynomial-1d"
-    taxonomy: ClassVar[str] = "Polynomial"
-    studies: ClassVar[tuple[str, ...]] = ("You2011",)
-    labels: ClassVar[tuple[str, ...]] = ("model:poly",)
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    accepts: ClassVar[frozenset[FeatureKind]] = POSITIONS
-    needs: ClassVar[tuple[str, ...]] = ()
+    about: ClassVar = AboutModel(
+        name="polynomial-1d",
+        taxonomy="Polynomial",
+        studies=("You2011",),
+        labels=("model:poly",),
+        origin="survey",
+        accepts=POSITIONS,
+    )
 
     degree: int = 6
     target: Target = "angle"
@@ -88,39 +108,29 @@ class AxisPolynomial:
     coefficients_: Floats = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        _require_polynomial(self.name, self.degree, self.extrapolation)
-        require_target(self.target, self.name)
-
-    @classmethod
-    def for_sensor(
-        cls,
-        geometry: SensorGeometry,  # noqa: ARG003 - learnt from the calibration alone
-        kind: FeatureKind,
-    ) -> Self:
-        """Return the model of the published degree, whatever the sensor."""
-        require_kind(kind, cls.accepts, cls.name)
-        return cls()
+        _require_polynomial(self.about.name, self.degree, self.extrapolation)
+        require_target(self.target, self.about.name)
 
     def fit(self, features: ArrayLike, sun: ArrayLike) -> Self:
         """Fit one polynomial an axis."""
-        found, vectors = as_frontal_calibration(features, sun, self.name)
+        found, vectors = as_frontal_calibration(features, sun, self.about.name)
         require_samples(
-            len(found), self.degree + 1, self.name, f"degree {self.degree} on each axis"
+            len(found), self.degree + 1, self.about.name, f"degree {self.degree} on each axis"
         )
-        middle, half = feature_scaling(found, self.name)
+        middle, half = feature_scaling(found, self.about.name)
         scaled = (found - middle) / half
         wanted = target_from_sun(vectors, self.target)
         coefficients = np.empty((2, self.degree + 1))
         for axis, column in ((0, 1), (1, 0)):
             design = _axis_terms(scaled[:, column], self.degree)
-            coefficients[axis] = solve_regression(design, wanted[:, axis], self.name)
+            coefficients[axis] = solve_regression(design, wanted[:, axis], self.about.name)
         self.middle_, self.half_range_, self.coefficients_ = middle, half, coefficients
         return self
 
     def predict(self, features: ArrayLike) -> Floats:
         """Sun unit vectors (N, 3) of features (N, 2)."""
         require_fitted(self, "coefficients_")
-        found = as_features(features, 2, self.name)
+        found = as_features(features, 2, self.about.name)
         scaled = _within((found - self.middle_) / self.half_range_, self.extrapolation)
         alpha, beta = self.coefficients_
         values = np.column_stack(
@@ -130,7 +140,7 @@ class AxisPolynomial:
 
 
 @dataclass
-class SurfacePolynomial:
+class SurfacePolynomial(Model):
     """Each Sun angle as a polynomial surface over both features.
 
     The cross terms take up what turns one axis into the other: in-plane rotation, tilt and
@@ -153,6 +163,11 @@ class SurfacePolynomial:
     coefficients_ : ndarray, shape (2, (n + 1)(n + 2) / 2)
         Coefficients of ``T_i(u_x) T_j(u_y)``, i + j <= n, j fastest, rows ``alpha`` and ``beta``.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: model:poly (Chang2006), in words there: ``alpha = sum a_ij x^i y^j``, ``beta = sum
@@ -166,16 +181,33 @@ class SurfacePolynomial:
     they lie so that they do not settle every term.
 
     Cost: 2.5 (n + 1)(n + 2) operations and 2 tangents a sample.
+
+    References
+    ----------
+    Chang2006; survey model:poly.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from algorithms.angles import angles_from_sun, sun_from_angles
+    >>> steps = np.arange(-20, 21, 5)
+    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> x, y = (200.0 * sun[:, :2] / sun[:, 2:]).T
+    >>> turned = np.column_stack([x - 0.1 * y, y + 0.1 * x])
+    >>> model = SurfacePolynomial(degree=5).fit(turned, sun)
+    >>> angles_from_sun(model.predict([turned[0], [900.0, 80.0]])).round(2)
+    array([[-20., -20.],
+           [ nan,  nan]])
     """
 
-    name: ClassVar[str] = "polynomial-2d"
-    taxonomy: ClassVar[str] = "Polynomial"
-    studies: ClassVar[tuple[str, ...]] = ("Chang2006",)
-    labels: ClassVar[tuple[str, ...]] = ("model:poly",)
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    accepts: ClassVar[frozenset[FeatureKind]] = POSITIONS
-    needs: ClassVar[tuple[str, ...]] = ()
+    about: ClassVar = AboutModel(
+        name="polynomial-2d",
+        taxonomy="Polynomial",
+        studies=("Chang2006",),
+        labels=("model:poly",),
+        origin="survey",
+        accepts=POSITIONS,
+    )
 
     degree: int = 5
     target: Target = "angle"
@@ -186,35 +218,25 @@ class SurfacePolynomial:
     coefficients_: Floats = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        _require_polynomial(self.name, self.degree, self.extrapolation)
-        require_target(self.target, self.name)
-
-    @classmethod
-    def for_sensor(
-        cls,
-        geometry: SensorGeometry,  # noqa: ARG003 - learnt from the calibration alone
-        kind: FeatureKind,
-    ) -> Self:
-        """Return the model of the default degree, whatever the sensor."""
-        require_kind(kind, cls.accepts, cls.name)
-        return cls()
+        _require_polynomial(self.about.name, self.degree, self.extrapolation)
+        require_target(self.target, self.about.name)
 
     def fit(self, features: ArrayLike, sun: ArrayLike) -> Self:
         """Fit both surfaces."""
-        found, vectors = as_frontal_calibration(features, sun, self.name)
+        found, vectors = as_frontal_calibration(features, sun, self.about.name)
         terms = (self.degree + 1) * (self.degree + 2) // 2
-        require_samples(len(found), terms, self.name, f"total degree {self.degree}")
-        middle, half = feature_scaling(found, self.name)
+        require_samples(len(found), terms, self.about.name, f"total degree {self.degree}")
+        middle, half = feature_scaling(found, self.about.name)
         design = _surface_terms((found - middle) / half, self.degree)
         wanted = target_from_sun(vectors, self.target)
-        coefficients = solve_regression(design, wanted, self.name).T.copy()
+        coefficients = solve_regression(design, wanted, self.about.name).T.copy()
         self.middle_, self.half_range_, self.coefficients_ = middle, half, coefficients
         return self
 
     def predict(self, features: ArrayLike) -> Floats:
         """Sun unit vectors (N, 3) of features (N, 2)."""
         require_fitted(self, "coefficients_")
-        found = as_features(features, 2, self.name)
+        found = as_features(features, 2, self.about.name)
         scaled = _within((found - self.middle_) / self.half_range_, self.extrapolation)
         terms = _surface_terms(scaled, self.degree)
         # Term by term: a matrix product rounds a sample differently in batches of another size.

@@ -12,6 +12,7 @@ from rich.text import Text
 
 from api.cli.asking import ask
 from api.cli.tables import Format, FormatOption, console, emit
+from api.http.routers.assessment import assessment
 from benchmark.assessment.definitions import DEFINITIONS
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
@@ -39,7 +40,7 @@ def assess(
     is not measured. Read from the published results, nothing is measured now; definitions and
     limits stand in docs/assessment.md. CSV has a row a method and property.
     """
-    answer = ask("assessment", {"method": method})
+    answer = ask(assessment, {"method": method})
     document = answer.document
     if form is not Format.TABLE or method:
         emit(answer.rows(), COLUMNS, form, document=document)

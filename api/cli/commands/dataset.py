@@ -13,9 +13,9 @@ from api.cli.tables import Format, FormatOption, emit
 from benchmark import datasets
 from benchmark.datasets import coverage as covered
 from benchmark.datasets import export as dataset_export
+from benchmark.progress import terminal_progress
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import pinning
-from benchmark.running.progress import terminal_progress
 
 app = typer.Typer(
     help="List, describe, export or verify the standard datasets.",
@@ -87,7 +87,14 @@ def export(
     """
     with terminal_progress() as progress:
         made = dataset_export.export(
-            name, out, conditions=condition, splits=split, n=n, force=force, progress=progress
+            name,
+            out,
+            conditions=condition,
+            splits=split,
+            n=n,
+            force=force,
+            progress=progress,
+            pins=Store(PUBLISHED).pins(),
         )
     rows = [{"file": f, "bytes": (made.directory / f).stat().st_size} for f in made.files]
     document = {"directory": str(made.directory), "files": rows}

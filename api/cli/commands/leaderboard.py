@@ -18,12 +18,12 @@ from api.cli.measuring import (
 from api.cli.tables import Format, FormatOption, emit
 from api.cli.working import working_directory
 from api.cli.wrong_call import WrongCallError
+from benchmark.contract import UnknownNameError
 from benchmark.leaderboard import check as checking
 from benchmark.leaderboard import pages
 from benchmark.leaderboard import update as updating
 from benchmark.leaderboard.board import at_field, within_error
 from benchmark.metrics.rings import EDGES_DEG
-from benchmark.plan.parts import UnknownNameError
 from benchmark.results.store import PUBLISHED
 from benchmark.running import times as running_times
 
@@ -224,10 +224,11 @@ def _show(
     form: Format,
 ) -> None:
     from api.cli.asking import knowledge  # noqa: PLC0415 - slow; measuring does without it
+    from api.http.models import words  # noqa: PLC0415
 
     measurements = knowledge().measurements
-    _require("dataset", datasets, measurements.dataset_names)
-    _require("condition", conditions, measurements.conditions)
+    _require("dataset", datasets, words.datasets())
+    _require("condition", conditions, words.conditions())
     first = {
         board["name"]: board["conditions"][0] for board in measurements.leaderboard["datasets"]
     }

@@ -10,6 +10,7 @@ import typer
 from api.cli import attributes
 from api.cli.asking import ask
 from api.cli.tables import Format, FormatOption, emit
+from api.http.routers.recommendations import recommendations
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
@@ -61,7 +62,7 @@ def recommend(
     nothing is left, the requirement that rules everything out is named, exit code 0.
     """
     document = ask(
-        "recommendations",
+        recommendations,
         {
             "task": task,
             "detector": detector,

@@ -10,9 +10,10 @@ import typer
 from api.cli.asking import ask, knowledge
 from api.cli.measuring import Scored, StoreOption, WorkersOption, scored
 from api.cli.tables import Format, FormatOption, emit
+from api.http.routers import studies
+from benchmark.contract import Cell, UnknownNameError
 from benchmark.metrics.score import METRICS
-from benchmark.plan.combinations import Cell, cells, datasets_for
-from benchmark.plan.parts import UnknownNameError
+from benchmark.plan.combinations import cells, datasets_for
 from registry.resolution import Resolution
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
@@ -48,7 +49,7 @@ def run(
     Cells that the published results hold are read there. Others are measured into the working
     store (see --store) and not measured again.
     """
-    ask("study", {}, {"key": study})  # refuses an unknown key with the nearest one
+    ask(studies.study, key=study)  # refuses an unknown key with the nearest one
     resolution = knowledge().resolutions[study]
     planned = _planned(resolution, condition)
     result = scored(planned, workers, store)

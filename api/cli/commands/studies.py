@@ -12,7 +12,8 @@ from api.cli import attributes
 from api.cli.asking import ask
 from api.cli.tables import Format, FormatOption, emit, emit_json
 from api.cli.wrong_call import WrongCallError
-from api.http.pagination import LARGEST_PAGE
+from api.http.models.parameters import LARGEST_PAGE
+from api.http.routers import studies as answers
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
@@ -82,14 +83,14 @@ def studies(
 
 
 def _list(filters: Mapping[str, Any], form: Format) -> None:
-    found = ask("studies", {**filters, "limit": LARGEST_PAGE}).document["items"]
+    found = ask(answers.studies, {**filters, "limit": LARGEST_PAGE}).document["items"]
     flat = [{**study, **study["values"]} for study in found]
     columns = CSV_COLUMNS if form is Format.CSV else COLUMNS
     emit(flat, columns, form, document=found, title=f"{len(found)} studies")
 
 
 def _show(key: str, form: Format) -> None:
-    study = ask("study", {}, {"key": key}).document
+    study = ask(answers.study, key=key).document
     if form is Format.JSON:
         emit_json(study)
         return

@@ -7,12 +7,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from algorithms.contract import Floats
 from benchmark.datasets.fields import Split
 from benchmark.simulator.sensors.face_layouts import lattice
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -9,9 +9,11 @@ from typing import Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from algorithms.contract import Floats
 from benchmark.datasets.fields import Split
-from benchmark.datasets.preset import DRAWN, Preset, Samples, drawn_split
+from benchmark.datasets.preset import DRAWN, Preset, drawn_split
 from benchmark.datasets.repeats import REPEAT
+from benchmark.datasets.samples import Samples
 from benchmark.seeds import generator
 from benchmark.simulator.flight.attitude import Attitude, rotated, turned
 from benchmark.simulator.flight.magnetic_field import TiltedDipole
@@ -25,8 +27,6 @@ from benchmark.simulator.flight.orbit import (
 from benchmark.simulator.flight.time_series import DriftingSensor, TimedScene
 from benchmark.simulator.light.sun_disc import tangent_axes
 from benchmark.simulator.sensors.faces import Faces
-
-Floats = NDArray[np.float64]
 
 #: Said in every card: what the bound of a time series does not cover.
 BOUND_NOTE = (

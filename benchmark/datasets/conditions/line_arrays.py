@@ -1,46 +1,91 @@
-"""What the datasets of linear arrays share: pixels, assembly, conditions, design."""
+"""Linear arrays behind slits: pixels, assembly, conditions, design."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
+from types import MappingProxyType
 from typing import Any
 
-from algorithms.contract import SensorGeometry
-from benchmark.datasets.preset import Condition
-from benchmark.simulator.light.environment import Irradiance
+from algorithms.contract import Observation, SensorGeometry
+from benchmark.datasets.conditions.alignment import careful, misaligned
+from benchmark.datasets.conditions.propagation import GLASS, LIGHT
+from benchmark.datasets.fields import AngleField
+from benchmark.datasets.preset import Condition, Preset
 from benchmark.simulator.light.sun_disc import SolarDisc
+from benchmark.simulator.masks.apertures import Mask
 from benchmark.simulator.masks.slits import SlitErrors, slit_rows
-from benchmark.simulator.optics.assembly import Assembly
-from benchmark.simulator.optics.plates import CoverGlass, Plate, fresnel_number
+from benchmark.simulator.optics.plates import CoverGlass, fresnel_number
+from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout.detectors import DarkCurrent, PixelArray
-from benchmark.simulator.sensors.lines import LineSensor
-
-LIGHT = Irradiance(stray=0.002, stray_spread=0.0004)
-PLATE = Plate(0.5, 1.52)
+from benchmark.simulator.sensors.blooming_lines import BloomingLineSensor
+from benchmark.simulator.sensors.lines import LineAxis, LineSensor
 
 #: For pixels of some 10 um, over a dozen of which the Sun blurs an edge at 60 deg: the steps that
 #: single points make must not show (0.2 % of the peak).
 SUN = SolarDisc(rings=(28, 28, 28, 28, 28, 28))
 
-#: Small errors that remain after careful assembly.
-ASSEMBLED = Assembly(
-    tilt_x_deg=0.05,
-    tilt_y_deg=-0.03,
-    rotation_deg=0.05,
-    focal_length_error_mm=0.003,
-    offset_x_mm=0.004,
-    offset_y_mm=-0.003,
-)
+ASSEMBLED = careful(0.003)
 SLITS_ASSEMBLED = SlitErrors(deflection_deg=0.03, inclination_deg=0.05)
-MISASSEMBLED = Assembly(
-    tilt_x_deg=1.0,
-    tilt_y_deg=-0.7,
-    rotation_deg=0.5,
-    focal_length_error_mm=0.03,
-    offset_x_mm=0.05,
-    offset_y_mm=-0.04,
-)
+MISASSEMBLED = misaligned(0.03)
 SLITS_MISASSEMBLED = SlitErrors(deflection_deg=0.5, inclination_deg=1.0)
+
+
+def line_arrays(
+    *,
+    name: str,
+    version: int,
+    detector: str,
+    mask: str,
+    sensor: LineSensor,
+    half_fov_deg: float,
+    follows: tuple[str, ...],
+    description: str,
+    more: Mapping[str, Condition] = MappingProxyType({}),
+) -> Preset:
+    """Return a dataset of linear arrays behind slits, with conditions of its own at the end."""
+    return Preset(
+        name=name,
+        version=version,
+        detector=detector,
+        mask=mask,
+        observation=Observation.PROFILES,
+        units=units(sensor),
+        geometry=design(sensor, half_fov_deg),
+        setups={**conditions(sensor, half_fov_deg), **more},
+        directions=AngleField(half_fov_deg),
+        follows=follows,
+        description=description,
+        regime=regime(sensor),
+    )
+
+
+def behind(
+    mask: Mask,
+    focal_length_mm: float,
+    detector: PixelArray,
+    *,
+    axes: tuple[LineAxis, ...] = ("x", "y"),
+    sun: SolarDisc | None = None,
+    glass: CoverGlass | None = None,
+    pixel_height_mm: float = 0.2,
+    fill_factor: float = 1.0,
+) -> LineSensor:
+    """Return a carefully assembled sensor: a mask over one array an axis."""
+    return LineSensor(
+        camera=Camera(
+            focal_length_mm=focal_length_mm,
+            mask=mask,
+            sun=sun or SolarDisc(),
+            glass=glass or CoverGlass(),
+            assembly=ASSEMBLED,
+        ),
+        detector=detector,
+        pixel_height_mm=pixel_height_mm,
+        axes=axes,
+        fill_factor=fill_factor,
+        errors=SLITS_ASSEMBLED,
+    )
 
 
 def ccd(columns: int, pitch_mm: float) -> PixelArray:
@@ -59,6 +104,25 @@ def ccd(columns: int, pitch_mm: float) -> PixelArray:
         gain_e_per_dn=25.0,
         offset_dn=16.0,
         bits=12,
+    )
+
+
+def active_pixels(columns: int, pitch_mm: float) -> PixelArray:
+    """Return a linear CMOS array as of 2013: noisier than a CCD, 10 bits."""
+    return PixelArray(
+        columns=columns,
+        rows=1,
+        pitch_mm=pitch_mm,
+        sunlit_e=40_000.0,
+        full_well_e=60_000.0,
+        prnu=0.02,
+        dsnu=0.2,
+        dark=DarkCurrent(5_000.0),
+        exposure_s=0.01,
+        read_noise_e=60.0,
+        gain_e_per_dn=60.0,
+        offset_dn=8.0,
+        bits=10,
     )
 
 
@@ -141,7 +205,7 @@ def conditions(sensor: LineSensor, half_fov_deg: float) -> dict[str, Condition]:
                 "The nominal sensor with 0.5 mm of glass (index 1.52) on the detector: refraction "
                 "pulls the light inwards, reflection dims it."
             ),
-            replace(sensor, camera=replace(sensor.camera, glass=CoverGlass((PLATE,)))),
+            replace(sensor, camera=replace(sensor.camera, glass=GLASS)),
         )
     return {
         name: Condition(
@@ -189,3 +253,20 @@ def regime(sensor: LineSensor) -> dict[str, Any]:
         "reason": "a^2 / (lambda h) of a slit at normal incidence is above 10; diffraction is "
         "left out (linear arrays with less are refused)",
     }
+
+
+def saturated(sensor: LineSensor) -> Condition:
+    """Return the condition in which full pixels of a CCD spill their charge along the line."""
+    return Condition(
+        "The nominal sensor exposed eight times as long, without anti-blooming drains: full pixels "
+        "spill their charge along the line, so that the spot is flat and wider on either side.",
+        BloomingLineSensor(
+            camera=sensor.camera,
+            detector=replace(sensor.detector, sunlit_e=8.0 * sensor.detector.sunlit_e),
+            pixel_height_mm=sensor.pixel_height_mm,
+            axes=sensor.axes,
+            fill_factor=sensor.fill_factor,
+            errors=sensor.errors,
+        ),
+        LIGHT,
+    )

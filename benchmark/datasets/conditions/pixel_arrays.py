@@ -1,45 +1,169 @@
-"""The named conditions that pixel arrays behind masks share."""
+"""Pixel arrays behind masks: pixels, assembly, conditions, design; frames or windows of them."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import TypeVar
+from typing import Any, TypeVar
 
-from benchmark.datasets.preset import Condition
+from algorithms.contract import Observation, SensorGeometry
+from benchmark.datasets.conditions.alignment import MISALIGNED, careful, misaligned
+from benchmark.datasets.conditions.propagation import GLASS, LIGHT
+from benchmark.datasets.fields import AngleField
+from benchmark.datasets.preset import Condition, Preset
 from benchmark.simulator.light.environment import Irradiance
+from benchmark.simulator.light.sun_disc import SolarDisc
+from benchmark.simulator.masks.apertures import Aperture, Mask
 from benchmark.simulator.optics.assembly import Assembly
+from benchmark.simulator.optics.projection import Camera
+from benchmark.simulator.readout.detectors import DarkCurrent, PixelArray
 from benchmark.simulator.sensors.frames import FrameSensor
 from benchmark.simulator.sensors.multi_spot_frames import MultiSpotSensor
+from benchmark.simulator.sensors.uneven_frames import UnevenFrameSensor, UnevenIrradiance
 
 PixelSensor = TypeVar("PixelSensor", FrameSensor, MultiSpotSensor)
 
-#: Small errors that remain after careful assembly; 0.2 % of focal length is set by the dataset.
-CAREFUL = Assembly(
-    tilt_x_deg=0.05, tilt_y_deg=-0.03, rotation_deg=0.05, offset_x_mm=0.004, offset_y_mm=-0.003
-)
-LIGHT = Irradiance(stray=0.002, stray_spread=0.0004)
+
+def windows(
+    *,
+    name: str,
+    version: int,
+    detector: str,
+    mask: str,
+    sensor: FrameSensor,
+    setups: Mapping[str, Condition],
+    geometry: SensorGeometry,
+    directions: AngleField,
+    follows: tuple[str, ...],
+    description: str,
+    regime: Mapping[str, Any],
+    kind: type[Preset] = Preset,
+) -> Preset:
+    """Return a dataset of windows around the light of one opening; `kind` is its class."""
+    columns, rows = sensor.window_px
+    return kind(
+        name=name,
+        version=version,
+        detector=detector,
+        mask=mask,
+        observation=Observation.FRAMES,
+        units=units(columns, rows),
+        geometry=geometry,
+        setups=setups,
+        directions=directions,
+        follows=follows,
+        description=description,
+        regime=regime,
+    )
 
 
-def pixel_conditions(sensor: PixelSensor, light: Irradiance = LIGHT) -> dict[str, Condition]:
+def windowed(
+    mask: Mask,
+    focal_length_mm: float,
+    detector: PixelArray,
+    *,
+    window_px: tuple[int, int] = (64, 64),
+    sun: SolarDisc | None = None,
+    assembly: Assembly | None = None,
+) -> FrameSensor:
+    """Return a sensor read out in windows; carefully assembled where nothing else is said."""
+    return FrameSensor(
+        camera=Camera(
+            focal_length_mm=focal_length_mm,
+            mask=mask,
+            sun=sun or SolarDisc(),
+            assembly=assembly or assembled(focal_length_mm),
+        ),
+        detector=detector,
+        window_px=window_px,
+        window_jitter_px=8,
+    )
+
+
+def assembled(focal_length_mm: float) -> Assembly:
+    """Return the small errors that remain after careful assembly, 0.2 % of focal length."""
+    return careful(round(0.002 * focal_length_mm, 6))
+
+
+def hole(diameter_mm: float, thickness_mm: float = 0.0) -> Mask:
+    """Return one round hole in a foil."""
+    return Mask((Aperture("round", diameter_mm, diameter_mm),), thickness_mm)
+
+
+def cmos(columns: int, pitch_mm: float, sunlit_e: float = 20_000.0) -> PixelArray:
+    """Return a square array of active pixels: 10 bits, read noise of one digital number."""
+    return PixelArray(
+        columns=columns,
+        rows=columns,
+        pitch_mm=pitch_mm,
+        sunlit_e=sunlit_e,
+        full_well_e=30_000.0,
+        prnu=0.01,
+        dsnu=0.1,
+        dark=DarkCurrent(2_000.0),
+        exposure_s=0.01,
+        read_noise_e=30.0,
+        gain_e_per_dn=30.0,
+        offset_dn=8.0,
+        bits=10,
+    )
+
+
+def ccd(columns: int, pitch_mm: float, prnu: float = 0.01) -> PixelArray:
+    """Return a square area CCD: deep wells, little noise, 12 bits."""
+    return PixelArray(
+        columns=columns,
+        rows=columns,
+        pitch_mm=pitch_mm,
+        sunlit_e=60_000.0,
+        full_well_e=100_000.0,
+        prnu=prnu,
+        dsnu=0.1,
+        dark=DarkCurrent(5_000.0),
+        exposure_s=0.01,
+        read_noise_e=20.0,
+        gain_e_per_dn=30.0,
+        offset_dn=16.0,
+        bits=12,
+    )
+
+
+def units(columns: int, rows: int) -> str:
+    """Return what the observations are, for the card."""
+    return f"digital numbers, uint16 (N, {rows}, {columns}), [sample, row, column]"
+
+
+def design(sensor: PixelSensor, half_fov_deg: float, **known: Any) -> SensorGeometry:
+    """Return what the builder of a sensor knows of it: of its mask, what is `known`."""
+    return SensorGeometry(
+        focal_length_mm=sensor.camera.focal_length_mm,
+        pixel_pitch_mm=sensor.detector.pitch_mm,
+        centre_px=sensor.detector.centre_px,
+        half_fov_deg=half_fov_deg,
+        **known,
+    )
+
+
+def pixel_conditions(
+    sensor: PixelSensor,
+    light: Irradiance = LIGHT,
+    *,
+    careful_also: str = "",
+    off_centre: str = "mask 50 and -40 um off centre",
+) -> dict[str, Condition]:
     """Return nominal, low-noise, high-noise, misaligned and hot for a nominal sensor.
 
     Low noise is ten times the electrons at 12 bits; high noise a fifth of them with five times
     the read noise and the offset raised, so that noise is not clipped; misaligned is far above
-    the noise; hot is 80 deg C.
+    the noise; hot is 80 deg C. Two of them say in a dataset's own words what else is so of the
+    careful assembly, and how far its mask is off centre where it is misaligned.
     """
     detector, camera = sensor.detector, sensor.camera
-    errors = Assembly(
-        tilt_x_deg=1.0,
-        tilt_y_deg=-0.7,
-        rotation_deg=0.5,
-        focal_length_error_mm=round(0.025 * camera.focal_length_mm, 6),
-        offset_x_mm=0.05,
-        offset_y_mm=-0.04,
-    )
+    errors = misaligned(round(0.025 * camera.focal_length_mm, 6))
     return {
         "nominal": Condition(
             "Carefully assembled sensor: tilts of hundredths of a degree, focal length 0.2 % "
-            "long, 1 % pixel gain spread.",
+            f"long, 1 % pixel gain spread{careful_also}.",
             sensor,
             light,
         ),
@@ -72,8 +196,8 @@ def pixel_conditions(sensor: PixelSensor, light: Irradiance = LIGHT) -> dict[str
             light,
         ),
         "misaligned": Condition(
-            "The nominal sensor tilted by 1.0 and -0.7 deg, turned by 0.5 deg, focal length "
-            "2.5 % long, mask 50 and -40 um off centre: far above the noise.",
+            f"The nominal sensor {MISALIGNED}, focal length 2.5 % long, {off_centre}: far above "
+            "the noise.",
             replace(sensor, camera=replace(camera, assembly=errors)),
             light,
         ),
@@ -95,4 +219,33 @@ def missing_apertures(sensor: MultiSpotSensor, light: Irradiance = LIGHT) -> Con
         "20 to 80 % of the light.",
         replace(sensor, errors=replace(sensor.errors, missing=0.2, dirty=0.1)),
         light,
+    )
+
+
+def glass(sensor: FrameSensor, effect: str, light: Irradiance = LIGHT) -> Condition:
+    """Return the condition of a cover glass on the detector, with its `effect` in words."""
+    camera = replace(sensor.camera, glass=GLASS)
+    return Condition(
+        f"The nominal sensor with 0.5 mm of glass (index 1.52) on the detector: {effect}.",
+        replace(sensor, camera=camera),
+        light,
+    )
+
+
+def stray_gradient(sensor: UnevenFrameSensor, stray: float) -> Condition:
+    """Return the condition of stray light ten times as strong, which slopes."""
+    return Condition(
+        "The nominal sensor under ten times the stray light, which slopes across the detector "
+        "by a quarter from the middle to the edge (standard deviation), anew for each sample.",
+        sensor,
+        UnevenIrradiance(stray=stray, stray_spread=stray / 5.0, slope_spread=stray / 4.0),
+    )
+
+
+def inclined(sensor: FrameSensor, mask: Mask) -> Condition:
+    """Return the condition of a slit that stands askew: of the `mask` handed in."""
+    return Condition(
+        "The nominal sensor with its slit turned by 5 deg against the pixel columns.",
+        replace(sensor, camera=replace(sensor.camera, mask=mask)),
+        LIGHT,
     )

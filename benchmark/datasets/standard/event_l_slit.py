@@ -2,147 +2,30 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
-from algorithms.contract import Observation, SensorGeometry
+from benchmark.datasets.conditions.event_arrays import behind, design, event_array
 from benchmark.datasets.fields import AngleField
-from benchmark.datasets.preset import Condition, Preset
-from benchmark.simulator.light.environment import Irradiance
-from benchmark.simulator.masks.apertures import Aperture, Mask
-from benchmark.simulator.optics.assembly import Assembly
-from benchmark.simulator.optics.plates import fresnel_number
-from benchmark.simulator.optics.projection import Camera
-from benchmark.simulator.readout.detectors import DarkCurrent
-from benchmark.simulator.sensors.events import EventSensor, SpikingArray
+from benchmark.simulator.masks.layouts import l_slit
 
-_WIDTH_MM, _FOCAL_MM, _HALF_FOV_DEG = 0.15, 1.0, 40.0
 #: The L's corner lies over (-_CORNER_MM, -_CORNER_MM); its arms are _ARM_MM long.
-_CORNER_MM, _ARM_MM = 0.58, 3.2
-
-_DETECTOR = SpikingArray(
-    columns=64,
-    rows=64,
-    pitch_mm=0.05,
-    sunlit_us=100.0,
-    threshold_e=50_000.0,
-    threshold_mismatch=0.02,
-    prnu=0.01,
-    dark=DarkCurrent(100_000.0),
-    jitter=0.01,
-    clock_us=0.1,
-    latency_us=0.2,
-    events=384,
-    timeout_us=5_000.0,
-)
+_CORNER_MM, _ARM_MM, _WIDTH_MM = 0.58, 3.2, 0.15
 # two openings side by side: the arm along y holds the corner, the other one begins at its edge
-_MASK = Mask(
-    (
-        Aperture(
-            "rectangle",
-            _WIDTH_MM,
-            _ARM_MM,
-            x_mm=-_CORNER_MM,
-            y_mm=-_CORNER_MM + (_ARM_MM - _WIDTH_MM) / 2.0,
-        ),
-        Aperture(
-            "rectangle",
-            _ARM_MM - _WIDTH_MM,
-            _WIDTH_MM,
-            x_mm=-_CORNER_MM + _ARM_MM / 2.0,
-            y_mm=-_CORNER_MM,
-        ),
-    )
+_MASK = l_slit(
+    _WIDTH_MM,
+    -_CORNER_MM,
+    along_y_mm=(-_CORNER_MM + (_ARM_MM - _WIDTH_MM) / 2.0, _ARM_MM),
+    along_x_mm=(-_CORNER_MM + _ARM_MM / 2.0, _ARM_MM - _WIDTH_MM),
 )
-_SENSOR = EventSensor(
-    camera=Camera(
-        focal_length_mm=_FOCAL_MM,
-        mask=_MASK,
-        assembly=Assembly(
-            tilt_x_deg=0.05,
-            tilt_y_deg=-0.03,
-            rotation_deg=0.05,
-            focal_length_error_mm=0.002,
-            offset_x_mm=0.004,
-            offset_y_mm=-0.003,
-        ),
-    ),
-    detector=_DETECTOR,
-)
-_LIGHT = Irradiance(stray=0.002, stray_spread=0.0004)
+_SENSOR = behind(_MASK, 1.0, events=384)
+_LINES = ((-_CORNER_MM, 0.0, _WIDTH_MM),)
 
-PRESET = Preset(
+PRESET = event_array(
     name="event-l-slit",
     version=1,
-    detector="Event",
     mask="L-Slit",
-    observation=Observation.EVENTS,
-    units=(
-        "float64 (N, 384, 3): column and row of the pixel, microseconds since the reset; by time, "
-        "rows of NaN after the last event"
-    ),
-    geometry=SensorGeometry(
-        focal_length_mm=_FOCAL_MM,
-        pixel_pitch_mm=_DETECTOR.pitch_mm,
-        centre_px=_DETECTOR.centre_px,
-        half_fov_deg=_HALF_FOV_DEG,
-        line_axes=("x", "y"),
-        slits=((-_CORNER_MM, 0.0, _WIDTH_MM),),
-    ),
-    setups={
-        "nominal": Condition(
-            "Jitter of 1 % of the time, threshold mismatch of 2 %, clock of 0.1 us.",
-            _SENSOR,
-            _LIGHT,
-        ),
-        "low-noise": Condition(
-            "The same unit with a tenth of the jitter, ten times the charge at the threshold and "
-            "a tenth of the delays on the bus.",
-            replace(
-                _SENSOR,
-                detector=replace(
-                    _DETECTOR, jitter=0.001, threshold_e=500_000.0, latency_us=0.02, clock_us=0.01
-                ),
-            ),
-            _LIGHT,
-        ),
-        "high-noise": Condition(
-            "The same unit with five times the jitter and delays on the bus of 2 us.",
-            replace(_SENSOR, detector=replace(_DETECTOR, jitter=0.05, latency_us=2.0)),
-            _LIGHT,
-        ),
-        "misaligned": Condition(
-            "The nominal unit tilted by 1.0 and -0.7 deg, turned by 0.5 deg, focal length 2.5 % "
-            "long, mask one and 0.8 pixels off centre.",
-            replace(
-                _SENSOR,
-                camera=replace(
-                    _SENSOR.camera,
-                    assembly=Assembly(
-                        tilt_x_deg=1.0,
-                        tilt_y_deg=-0.7,
-                        rotation_deg=0.5,
-                        focal_length_error_mm=0.025,
-                        offset_x_mm=0.05,
-                        offset_y_mm=-0.04,
-                    ),
-                ),
-            ),
-            _LIGHT,
-        ),
-        "mismatched": Condition(
-            "The nominal unit with its threshold mismatch grown to 10 %.",
-            replace(_SENSOR, detector=replace(_DETECTOR, threshold_mismatch=0.1)),
-            _LIGHT,
-        ),
-        "hot": Condition(
-            "The nominal unit at 80 deg C: dark current doubles every 7 K and hastens dim pixels.",
-            replace(
-                _SENSOR, detector=replace(_DETECTOR, dark=replace(_DETECTOR.dark, temperature_c=80))
-            ),
-            _LIGHT,
-        ),
-    },
-    directions=AngleField(_HALF_FOV_DEG, steps=13, test_samples=400),
+    sensor=_SENSOR,
+    geometry=design(_SENSOR, 40.0, line_axes=("x", "y"), slits=_LINES),
+    directions=AngleField(40.0, steps=13, test_samples=400),
+    width_mm=_WIDTH_MM,
     follows=("Farian2018", "Farian2022"),
     description=(
         "64 x 64 integrate-and-fire pixels in time-to-first-spike mode behind an L of two slits; "
@@ -151,15 +34,9 @@ PRESET = Preset(
         "50 um (such pixels are large); slits of 0.15 mm 1 mm up keep the Fresnel number at 10 and "
         "make lines three pixels wide; the corner lies 0.58 mm off both axes so that it stays on "
         "the array over +-40 deg with at least 25 pixels of either arm. The mask has no thickness "
-        "(chrome on glass, its refraction left out). The array is reset after 384 events, which "
-        "is all fully lit pixels and most of the lines' edges, or after 5 ms, before pixels in "
-        "stray light fire. The bound is that of the times of the pixels that fire before the "
-        "reset, with what the silence of the others tells."
+        "(chrome on glass, its refraction left out). The array is reset after 384 events, which is "
+        "all fully lit pixels and most of the lines' edges, or after 5 ms, before pixels in stray "
+        "light fire. The bound is that of the times of the pixels that fire before the reset, with "
+        "what the silence of the others tells."
     ),
-    regime={
-        "propagation": "geometric",
-        "fresnel_number": round(fresnel_number(_WIDTH_MM / 2.0, _FOCAL_MM), 2),
-        "wavelength_nm": 550,
-        "reason": "a^2 / (lambda h) at normal incidence is above 10; diffraction is left out",
-    },
 )

@@ -7,11 +7,9 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from algorithms.contract import Floats
 from benchmark.simulator.flight.orbit import CircularOrbit
-
-Floats = NDArray[np.float64]
 
 
 class Attitude(Protocol):

@@ -6,12 +6,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from algorithms.contract import Floats
 from benchmark.simulator.flight.orbit import CircularOrbit
 from benchmark.simulator.readout.detectors import DarkCurrent
-
-Floats = NDArray[np.float64]
 
 #: Of 25 deg C, where drifts are zero and dark currents are stated.
 REFERENCE_K = 298.15

@@ -6,9 +6,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from algorithms.contract import Floats
 
 #: Of Earth about its axis, against the stars.
 EARTH_TURN_DEG_S = 360.98564736629 / 86_400.0

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from algorithms.contract import Floats
 
 GRAVITY_KM3_S2 = 398_600.4418
 EQUATOR_KM = 6378.137

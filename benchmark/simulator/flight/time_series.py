@@ -8,8 +8,8 @@ from dataclasses import dataclass, field, replace
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from algorithms.contract import Floats
 from benchmark.seeds import generator
 from benchmark.simulator.flight.drift import (
     AssemblyDrift,
@@ -23,8 +23,6 @@ from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern, Sensor
 from benchmark.simulator.sensors.faces import FaceSensor
 from benchmark.simulator.sensors.frames import FrameSensor
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,19 +6,19 @@ Lines are rows (a, b, c) of ``a x + b y <= c`` with ``a^2 + b^2 = 1``, discs row
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
 import numpy as np
-from numba import njit
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from algorithms.compiled import compiled
+from algorithms.contract import Floats
+
 Interval = tuple[float, float]
 
 _EMPTY = (0.0, 0.0)
 
 
-def _cut_by_line_py(line: Floats, other: Floats, other_first: bool) -> Interval:
+@compiled
+def _cut_by_line(line: Floats, other: Floats, other_first: bool) -> Interval:
     """Part of a boundary line on the allowed side of another, as a run of arc length."""
     a, b, c = line
     slope = other[1] * a - other[0] * b
@@ -31,10 +31,8 @@ def _cut_by_line_py(line: Floats, other: Floats, other_first: bool) -> Interval:
     return -1e300, 1e300
 
 
-_cut_by_line = njit(cache=True)(_cut_by_line_py)
-
-
-def _cut_by_disc_py(line: Floats, disc: Floats) -> Interval:
+@compiled
+def _cut_by_disc(line: Floats, disc: Floats) -> Interval:
     """Part of a boundary line inside a disc, as a run of arc length."""
     a, b, c = line
     x, y = a * c - disc[0], b * c - disc[1]
@@ -46,10 +44,8 @@ def _cut_by_disc_py(line: Floats, disc: Floats) -> Interval:
     return half - root, half + root
 
 
-_cut_by_disc = njit(cache=True)(_cut_by_disc_py)
-
-
-def _line_part_py(i: int, lines: Floats, discs: Floats) -> float:
+@compiled
+def _line_part(i: int, lines: Floats, discs: Floats) -> float:
     """Green's integral along boundary line `i`: half its offset times its length."""
     low, high = -1e300, 1e300
     for j in range(lines.shape[0]):
@@ -66,10 +62,8 @@ def _line_part_py(i: int, lines: Floats, discs: Floats) -> float:
     return float(0.5 * lines[i, 2] * max(high - low, 0.0))
 
 
-_line_part = njit(cache=True)(_line_part_py)
-
-
-def _meeting_py(disc: Floats, other: Floats, is_line: bool) -> Interval:
+@compiled
+def _meeting(disc: Floats, other: Floats, is_line: bool) -> Interval:
     """Where the rim of a disc leaves another boundary's inside: angle of its middle, half width.
 
     Half width 0: the whole rim is inside; pi: none of it is (touching from outside counts so).
@@ -90,10 +84,8 @@ def _meeting_py(disc: Floats, other: Floats, is_line: bool) -> Interval:
     return middle, math.acos(min(max(cosine, -1.0), 1.0))
 
 
-_meeting = njit(cache=True)(_meeting_py)
-
-
-def _cuts_py(i: int, lines: Floats, discs: Floats) -> Floats:
+@compiled
+def _cuts(i: int, lines: Floats, discs: Floats) -> Floats:
     """Sorted angles at which the rim of disc `i` meets other boundaries, ends included.
 
     Empty when all of the rim lies outside one of them.
@@ -114,10 +106,8 @@ def _cuts_py(i: int, lines: Floats, discs: Floats) -> Floats:
     return np.sort(cuts[:count])
 
 
-_cuts = njit(cache=True)(_cuts_py)
-
-
-def _holds_py(x: float, y: float, i: int, lines: Floats, discs: Floats) -> bool:
+@compiled
+def _holds(x: float, y: float, i: int, lines: Floats, discs: Floats) -> bool:
     """Whether a point of the rim of disc `i` belongs to the boundary of the intersection."""
     for j in range(lines.shape[0]):
         if lines[j, 0] * x + lines[j, 1] * y > lines[j, 2]:
@@ -134,10 +124,8 @@ def _holds_py(x: float, y: float, i: int, lines: Floats, discs: Floats) -> bool:
     return True
 
 
-_holds = njit(cache=True)(_holds_py)
-
-
-def _disc_part_py(i: int, lines: Floats, discs: Floats) -> float:
+@compiled
+def _disc_part(i: int, lines: Floats, discs: Floats) -> float:
     """Green's integral along the arcs of disc `i` that bound the intersection."""
     x, y, radius = discs[i]
     total = 0.0
@@ -153,10 +141,8 @@ def _disc_part_py(i: int, lines: Floats, discs: Floats) -> float:
     return total
 
 
-_disc_part = njit(cache=True)(_disc_part_py)
-
-
-def _convex_area_py(lines: Floats, discs: Floats) -> float:
+@compiled
+def convex_area(lines: Floats, discs: Floats) -> float:
     """Area of the intersection of half-planes (M, 3) and discs (D, 3), by Green's theorem.
 
     Returns 0 when it is empty. It must be bounded.
@@ -169,11 +155,8 @@ def _convex_area_py(lines: Floats, discs: Floats) -> float:
     return float(max(total, 0.0))
 
 
-convex_area: Callable[[Floats, Floats], float] = njit(cache=True)(_convex_area_py)
-_area = convex_area
-
-
-def _lines_of_box_py(box: Floats, extra: int) -> Floats:
+@compiled
+def _lines_of_box(box: Floats, extra: int) -> Floats:
     """Half-planes (4 + extra, 3) of x_min, x_max, y_min, y_max; the extra rows left open."""
     lines = np.zeros((4 + extra, 3))
     lines[0, 0], lines[0, 2] = -1.0, -box[0]
@@ -183,23 +166,19 @@ def _lines_of_box_py(box: Floats, extra: int) -> Floats:
     return lines
 
 
-_lines_of_box = njit(cache=True)(_lines_of_box_py)
-
-
-def _lit_by_disc_py(box: Floats, aperture: Floats, lower: Floats, upper: Floats) -> float:
+@compiled
+def _lit_by_disc(box: Floats, aperture: Floats, lower: Floats, upper: Floats) -> float:
     """Area of a box lit through a round aperture with both rims displaced."""
     same = lower[0] == upper[0] and lower[1] == upper[1]
     discs = np.empty((1 if same else 2, 3))
     discs[0, 0], discs[0, 1] = aperture[1] + lower[0], aperture[2] + lower[1]
     discs[-1, 0], discs[-1, 1] = aperture[1] + upper[0], aperture[2] + upper[1]
     discs[:, 2] = aperture[3]
-    return float(_area(_lines_of_box(box, 0), discs))
+    return float(convex_area(_lines_of_box(box, 0), discs))
 
 
-_lit_by_disc = njit(cache=True)(_lit_by_disc_py)
-
-
-def _lit_by_box_py(box: Floats, aperture: Floats, lower: Floats, upper: Floats) -> float:
+@compiled
+def _lit_by_box(box: Floats, aperture: Floats, lower: Floats, upper: Floats) -> float:
     """Area of a box lit through a rectangular aperture with both rims displaced."""
     c, s = aperture[5], aperture[6]
     dx, dy = upper[0] - lower[0], upper[1] - lower[1]
@@ -219,15 +198,11 @@ def _lit_by_box_py(box: Floats, aperture: Floats, lower: Floats, upper: Floats) 
     lines[5] = np.array([-c, -s, a - u])
     lines[6] = np.array([-s, c, v + b])
     lines[7] = np.array([s, -c, b - v])
-    return float(_area(lines, np.empty((0, 3))))
+    return float(convex_area(lines, np.empty((0, 3))))
 
 
-_lit_by_box = njit(cache=True)(_lit_by_box_py)
-
-
-def _lit_boxes_py(
-    area: Floats, boxes: Floats, apertures: Floats, rims: Floats, light: Floats
-) -> None:
+@compiled
+def lit_boxes(area: Floats, boxes: Floats, apertures: Floats, rims: Floats, light: Floats) -> None:
     """Write the lit area of boxes (detector elements) behind a mask, weighted by the light.
 
     Parameters
@@ -253,8 +228,3 @@ def _lit_boxes_py(
                     else:
                         lit = _lit_by_box(boxes[j], apertures[m], rims[0, n, k], rims[1, n, k])
                     area[n, j] += light[n, k] * lit
-
-
-lit_boxes: Callable[[Floats, Floats, Floats, Floats, Floats], None] = njit(cache=True)(
-    _lit_boxes_py
-)

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
 import numpy as np
-from numba import njit
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from algorithms.compiled import compiled
+from algorithms.contract import Floats
+
 Interval = tuple[float, float]
 
 _NODES, _SHARES = np.polynomial.legendre.leggauss(3)
 
 
-def _open_length_py(u: float, track: Floats, numbers: Floats) -> float:
+@compiled
+def _open_length(u: float, track: Floats, numbers: Floats) -> float:
     """Open length of a track from the dial's left end to `u`, weighted by its transmission."""
     kind, period, cell, square = track[0], numbers[0], numbers[1], numbers[2]
     reach = cell * (track.shape[0] - 5) / 2.0
@@ -41,10 +41,8 @@ def _open_length_py(u: float, track: Floats, numbers: Floats) -> float:
     return float(u / 2.0 + period / (4.0 * math.pi) * wave)
 
 
-_open_length = njit(cache=True)(_open_length_py)
-
-
-def _chord_py(v: float, lower: Floats, upper: Floats, numbers: Floats) -> Interval:
+@compiled
+def _chord(v: float, lower: Floats, upper: Floats, numbers: Floats) -> Interval:
     """Both ends of the slit's light on the line at `v`; left > right where there is none."""
     x, y, a, b, c, s = numbers[3:]
     du, dv = upper[0] - lower[0], upper[1] - lower[1]
@@ -61,10 +59,8 @@ def _chord_py(v: float, lower: Floats, upper: Floats, numbers: Floats) -> Interv
     return middle + left, middle + right
 
 
-_chord = njit(cache=True)(_chord_py)
-
-
-def _read_py(out: Floats, tracks: Floats, rims: Floats, light: Floats, numbers: Floats) -> None:
+@compiled
+def read_dial(out: Floats, tracks: Floats, rims: Floats, light: Floats, numbers: Floats) -> None:
     """Write the light behind every track of one dial, in units of the slit's width.
 
     Parameters
@@ -99,6 +95,3 @@ def _read_py(out: Floats, tracks: Floats, rims: Floats, light: Floats, numbers: 
                         passed -= _open_length(left, track, numbers)
                         total += light[n, k] * share * passed
             out[n, t] = total
-
-
-read_dial: Callable[[Floats, Floats, Floats, Floats, Floats], None] = njit(cache=True)(_read_py)

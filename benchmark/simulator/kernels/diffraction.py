@@ -6,18 +6,18 @@ Loaded on first use (Numba).
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
 import numpy as np
-from numba import njit
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from algorithms.compiled import compiled
+from algorithms.contract import Floats
+
 Four = tuple[float, float, float, float]
 Rays = tuple[float, float, float]
 
 
-def _squared_sums_py(
+@compiled
+def squared_sums(
     out: Floats, radial: Floats, sines: Floats, number: float, side_on: Floats
 ) -> None:
     """Write ``|sum_j exp(i pi N (x - q_j)^2) B_j(y)|^2`` for all x, y: (R, T).
@@ -40,10 +40,8 @@ def _squared_sums_py(
             out[row, column] = real[column] ** 2 + imaginary[column] ** 2
 
 
-squared_sums: Callable[..., None] = njit(cache=True)(_squared_sums_py)
-
-
-def _shares_py(fraction: float) -> Four:
+@compiled
+def _shares(fraction: float) -> Four:
     """Weights of the four nodes -1, 0, 1, 2 in Lagrange's cubic through them."""
     t = fraction
     return (
@@ -54,11 +52,8 @@ def _shares_py(fraction: float) -> Four:
     )
 
 
-shares: Callable[[float], Four] = njit(cache=True)(_shares_py)
-_shares = shares
-
-
-def _spread_over_sun_py(
+@compiled
+def spread_over_sun(
     out: Floats, quadrant: Floats, shifts: Floats, weights: Floats, margin: int
 ) -> None:
     """Fill ``sum_k w_k G(v - v_k)`` on half the plane from one quadrant of a symmetric G.
@@ -93,10 +88,8 @@ def _spread_over_sun_py(
             out[row, column] = total
 
 
-spread_over_sun: Callable[..., None] = njit(cache=True)(_spread_over_sun_py)
-
-
-def _blended_py(out: Floats, tables: Floats, place: float) -> None:
+@compiled
+def _blended(out: Floats, tables: Floats, place: float) -> None:
     """Interpolate (T, ...) tables at the node coordinate `place` by Lagrange's cubic."""
     first = min(max(int(place), 1), tables.shape[0] - 3)
     a, b, c, d = _shares(place - first)
@@ -112,10 +105,8 @@ def _blended_py(out: Floats, tables: Floats, place: float) -> None:
             )
 
 
-_blended = njit(cache=True)(_blended_py)
-
-
-def _looked_up_py(table: Floats, along: float, across: float) -> float:
+@compiled
+def _looked_up(table: Floats, along: float, across: float) -> float:
     """Value of a half-plane table at steps (along, across) from its middle.
 
     Beyond the table's edge it falls with the cube of the distance, as Airy's envelope does.
@@ -141,10 +132,8 @@ def _looked_up_py(table: Floats, along: float, across: float) -> float:
     return fade * total
 
 
-_looked_up = njit(cache=True)(_looked_up_py)
-
-
-def _reach_py(sine: float, layers: Floats) -> Rays:
+@compiled
+def _reach(sine: float, layers: Floats) -> Rays:
     """Where a ray lands at this sine of incidence: distance, its derivative, distance / sine.
 
     `layers` are rows (thickness, index), the empty gap first.
@@ -158,10 +147,8 @@ def _reach_py(sine: float, layers: Floats) -> Rays:
     return sine * tangential, radial, tangential
 
 
-_reach = njit(cache=True)(_reach_py)
-
-
-def _sine_py(distance: float, height: float, layers: Floats) -> float:
+@compiled
+def _sine(distance: float, height: float, layers: Floats) -> float:
     """Sine of incidence of the ray that lands this far out (Newton on `_reach`)."""
     sine = distance / math.sqrt(distance * distance + height * height)
     for _ in range(30):
@@ -173,10 +160,8 @@ def _sine_py(distance: float, height: float, layers: Floats) -> float:
     return sine
 
 
-_sine = njit(cache=True)(_sine_py)
-
-
-def _arriving_py(x: float, y: float, height: float, layers: Floats) -> Rays:
+@compiled
+def _arriving(x: float, y: float, height: float, layers: Floats) -> Rays:
     """Direction cosines of the light from the aperture to (x, y), and what they spread by.
 
     The last is the cosine behind the aperture over ``J_r J_t``: how much of the light leaving it
@@ -192,10 +177,8 @@ def _arriving_py(x: float, y: float, height: float, layers: Floats) -> Rays:
     return x / scale, y / scale, math.sqrt(1.0 - sine * sine) / (slope * scale)
 
 
-_arriving = njit(cache=True)(_arriving_py)
-
-
-def _add_round_py(
+@compiled
+def add_round(
     flux: Floats,
     tables: Floats,
     samples: tuple[Floats, Floats, Floats],
@@ -256,6 +239,3 @@ def _add_round_py(
                                 table, along * numbers[n, 2], across * numbers[n, 3]
                             )
                     flux[n, row, column] += numbers[n, 0] * max(total, 0.0)
-
-
-add_round: Callable[..., None] = njit(cache=True)(_add_round_py)

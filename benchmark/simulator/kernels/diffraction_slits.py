@@ -6,23 +6,34 @@ Loaded on first use (Numba).
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
 import numpy as np
-from numba import njit
-from numpy.typing import NDArray
 
-from benchmark.simulator.kernels.diffraction import shares
+from algorithms.compiled import compiled
+from algorithms.contract import Floats
 
-Floats = NDArray[np.float64]
 Complex = tuple[float, float]
 #: (2, M) auxiliary functions of the Fresnel integrals from -1 step on, and steps a unit.
 Table = tuple[Floats, float]
 
-_shares = shares
+
+@compiled
+def _shares(fraction: float) -> tuple[float, float, float, float]:
+    """Weights of the four nodes -1, 0, 1, 2 in Lagrange's cubic, as `diffraction.shares`.
+
+    A copy: kernels call only their own file (see `compiled`).
+    """
+    t = fraction
+    return (
+        -t * (t - 1.0) * (t - 2.0) / 6.0,
+        (t + 1.0) * (t - 1.0) * (t - 2.0) / 2.0,
+        -(t + 1.0) * t * (t - 2.0) / 2.0,
+        (t + 1.0) * t * (t - 1.0) / 6.0,
+    )
 
 
-def _fresnel_py(u: float, table: Table) -> Complex:
+@compiled
+def _fresnel(u: float, table: Table) -> Complex:
     """Fresnel's C and S of u by their smooth auxiliary functions f and g.
 
     Beyond the table the asymptotic series is used.
@@ -48,10 +59,8 @@ def _fresnel_py(u: float, table: Table) -> Complex:
     return (re, im) if u >= 0.0 else (-re, -im)
 
 
-_fresnel = njit(cache=True)(_fresnel_py)
-
-
-def _slit_py(position: float, number: float, table: Table) -> float:
+@compiled
+def _slit(position: float, number: float, table: Table) -> float:
     """As `diffraction.slit_intensity`."""
     root = math.sqrt(2.0 * number)
     re, im = _fresnel(root * (position + 1.0), table)
@@ -59,19 +68,15 @@ def _slit_py(position: float, number: float, table: Table) -> float:
     return float(((re - other_re) ** 2 + (im - other_im) ** 2) / 2.0)
 
 
-_slit = njit(cache=True)(_slit_py)
-
-
-def _intensities_py(out: Floats, positions: Floats, number: float, table: Table) -> None:
+@compiled
+def intensities(out: Floats, positions: Floats, number: float, table: Table) -> None:
+    """`diffraction.slit_intensity` at (M,) positions, from the table the frames use."""
     for n in range(out.shape[0]):
         out[n] = _slit(positions[n], number, table)
 
 
-#: `diffraction.slit_intensity` at (M,) positions, from the table the frames use.
-intensities: Callable[[Floats, Floats, float, Table], None] = njit(cache=True)(_intensities_py)
-
-
-def _sums_py(profiles: Floats, span: Complex, half: float, number: float, table: Table) -> float:
+@compiled
+def _sums(profiles: Floats, span: Complex, half: float, number: float, table: Table) -> float:
     """Fill (2, M) a slit's profile at equal steps over a span, and its running integral.
 
     Span and half width in one unit; the integral starts at the second value and is exact for
@@ -89,10 +94,8 @@ def _sums_py(profiles: Floats, span: Complex, half: float, number: float, table:
     return float(step)
 
 
-_sums = njit(cache=True)(_sums_py)
-
-
-def _per_pixel_py(out: Floats, profiles: Floats, step: float, start: float, pitch: float) -> None:
+@compiled
+def _per_pixel(out: Floats, profiles: Floats, step: float, start: float, pitch: float) -> None:
     """Means of a profile over pixels, from its running integral (Hermite's cubic between).
 
     `start` is the first pixel's edge, seen from where the integral starts.
@@ -112,10 +115,8 @@ def _per_pixel_py(out: Floats, profiles: Floats, step: float, start: float, pitc
         before = value
 
 
-_per_pixel = njit(cache=True)(_per_pixel_py)
-
-
-def _add_rectangle_py(
+@compiled
+def add_rectangle(
     flux: Floats,
     samples: tuple[Floats, Floats, Floats, Floats],
     sizes: Floats,
@@ -172,6 +173,3 @@ def _add_rectangle_py(
                     here = share * along[row]
                     for column in range(columns):
                         flux[n, row, column] += here * across[column]
-
-
-add_rectangle: Callable[..., None] = njit(cache=True)(_add_rectangle_py)

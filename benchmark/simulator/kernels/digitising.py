@@ -10,16 +10,14 @@ drawn is within 1e-6 of the normal one; values end at 6.3 standard deviations.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from functools import lru_cache
 from statistics import NormalDist
-from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from algorithms.compiled import compiled
+from algorithms.contract import Floats
 
 _STEPS = 1 << 14
 _TAIL = 2.0**-10
@@ -41,7 +39,8 @@ def quantiles() -> Floats:
     return table
 
 
-def _normal_py(word: int, table: Floats) -> float:
+@compiled
+def _normal(word: int, table: Floats) -> float:
     """Turn 32 random bits into a normal value."""
     step = word >> 18
     if 16 <= step < 16368:
@@ -55,10 +54,8 @@ def _normal_py(word: int, table: Floats) -> float:
     return float(-value if upper else value)
 
 
-_normal: Callable[[int, Floats], float] = njit(cache=True)(_normal_py)
-
-
-def _digitise_py(
+@compiled
+def digitise(
     out: NDArray[np.uint16],
     light: Floats,
     bits: NDArray[np.int64],
@@ -96,14 +93,9 @@ def _digitise_py(
             out[row, column] = np.uint16(min(max(value, 0.0), top))
 
 
-digitise: Callable[..., Any] = njit(cache=True)(_digitise_py)
-
-
-def _normals_py(out: Floats, bits: NDArray[np.int64], table: Floats) -> None:
+@compiled
+def normals(out: Floats, bits: NDArray[np.int64], table: Floats) -> None:
+    """Write (n,) normal values alone, of (ceil(n / 2),) random words."""
     for n in range(out.shape[0]):
         word = int((bits[n >> 1] >> (32 * (n & 1))) & 0xFFFFFFFF)
         out[n] = _normal(word, table)
-
-
-#: Normal values alone, (n,), of (ceil(n / 2),) random words.
-normals: Callable[[Floats, NDArray[np.int64], Floats], None] = njit(cache=True)(_normals_py)

@@ -6,13 +6,9 @@ Only additions, products, quotients and square roots: the same numbers on every 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
-import numpy as np
-from numba import njit
-from numpy.typing import NDArray
-
-Floats = NDArray[np.float64]
+from algorithms.compiled import compiled
+from algorithms.contract import Floats
 
 #: Gauss nodes of a pixel along one axis, from its centre.
 _NODE = 0.5 / math.sqrt(3.0)
@@ -21,7 +17,9 @@ _NODE = 0.5 / math.sqrt(3.0)
 _FAR_PX = 24.0
 
 
-def _add_aureole_py(frame: Floats, x: float, y: float, radius: float, share: float) -> None:
+@compiled
+def add_aureole(frame: Floats, x: float, y: float, radius: float, share: float) -> None:
+    """Add to a frame (H, W) the share of `flare.Aureole` light that each pixel gets."""
     peak = share / (2.0 * math.pi * radius * radius)
     scale = 1.0 / (radius * radius)
     rows, columns = frame.shape
@@ -47,13 +45,9 @@ def _add_aureole_py(frame: Floats, x: float, y: float, radius: float, share: flo
             frame[row, column] += peak * total
 
 
-#: Add to a frame (H, W) the share of `flare.Aureole` light that each pixel gets.
-add_aureole: Callable[[Floats, float, float, float, float], None] = njit(cache=True)(
-    _add_aureole_py
-)
-
-
-def _add_disc_py(frame: Floats, x: float, y: float, radius: float, share: float) -> None:
+@compiled
+def add_disc(frame: Floats, x: float, y: float, radius: float, share: float) -> None:
+    """Add an even disc of light; its rim is a ramp of one pixel."""
     level = share / (math.pi * radius * radius)
     rows, columns = frame.shape
     left, right = max(math.floor(x - radius), 0), min(math.ceil(x + radius) + 1, columns)
@@ -65,17 +59,15 @@ def _add_disc_py(frame: Floats, x: float, y: float, radius: float, share: float)
             frame[row, column] += level * min(max(inside, 0.0), 1.0)
 
 
-#: Add an even disc of light; its rim is a ramp of one pixel.
-add_disc: Callable[[Floats, float, float, float, float], None] = njit(cache=True)(_add_disc_py)
-
-
-def _add_streak_py(
+@compiled
+def add_streak(
     frame: Floats,
     centre: tuple[float, float],
     axis: tuple[float, float],
     size: tuple[float, float],
     share: float,
 ) -> None:
+    """Add a product of Lorentz profiles: centre, axis, half widths along and across."""
     x, y = centre
     c, s = axis
     length, width = size
@@ -89,9 +81,3 @@ def _add_streak_py(
                     dx = column + sign_x - x
                     along, across = (c * dx + s * dy) / length, (c * dy - s * dx) / width
                     frame[row, column] += peak / ((1.0 + along * along) * (1.0 + across * across))
-
-
-_Pair = tuple[float, float]
-
-#: Add a product of Lorentz profiles: centre, unit vector along, half widths along and across.
-add_streak: Callable[[Floats, _Pair, _Pair, _Pair, float], None] = njit(cache=True)(_add_streak_py)

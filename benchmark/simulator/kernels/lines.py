@@ -10,18 +10,18 @@ pixels.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
 import numpy as np
-from numba import njit
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from algorithms.compiled import compiled
+from algorithms.contract import Floats
+
 #: Middle, unit vectors across and along (u and v each), half width and half length.
 Shadow = tuple[float, float, float, float, float, float, float, float]
 
 
-def _shadow_py(slit: Floats, paths: Floats, flat: float, rise: float) -> Shadow:
+@compiled
+def _shadow(slit: Floats, paths: Floats, flat: float, rise: float) -> Shadow:
     """Where the light of one slit falls; half sizes of 0 where nothing gets through.
 
     `paths` (3, 2) is one point's of `expose`, `flat` and `rise` are the cosine and sine of the
@@ -44,19 +44,15 @@ def _shadow_py(slit: Floats, paths: Floats, flat: float, rise: float) -> Shadow:
     return middle_u, middle_v, wide_u, wide_v, long_u, long_v, a, b
 
 
-_shadow = njit(cache=True)(_shadow_py)
-
-
-def _reaches_across_py(shadow: Shadow, half: float) -> bool:
+@compiled
+def _reaches_across(shadow: Shadow, half: float) -> bool:
     """Whether both ends of a slit's light lie beyond the array, one on either side."""
     _, middle, _, wide, _, along, a, b = shadow
     return along > 0.0 and b * along - a * abs(wide) - abs(middle) >= half
 
 
-_reaches_across = njit(cache=True)(_reaches_across_py)
-
-
-def _ramp_py(
+@compiled
+def _ramp(
     line: Floats, steps: Floats, ends: tuple[float, float], dead: float, weight: float
 ) -> None:
     """Add light that rises from none to `weight` between two places and stays there.
@@ -83,10 +79,8 @@ def _ramp_py(
         steps[last + 1] += weight
 
 
-_ramp = njit(cache=True)(_ramp_py)
-
-
-def _cut_py(kept: Floats, corners: Floats, count: int, sign: float, limit: float) -> int:
+@compiled
+def _cut(kept: Floats, corners: Floats, count: int, sign: float, limit: float) -> int:
     """Write the part of a polygon with ``sign v <= limit``; return its number of corners."""
     total = 0
     for i in range(count):
@@ -103,10 +97,8 @@ def _cut_py(kept: Floats, corners: Floats, count: int, sign: float, limit: float
     return total
 
 
-_cut = njit(cache=True)(_cut_py)
-
-
-def _edge_py(line: Floats, first: Floats, second: Floats, dead: float, weight: float) -> None:
+@compiled
+def _edge(line: Floats, first: Floats, second: Floats, dead: float, weight: float) -> None:
     """Add the area between an edge and the array's axis to every pixel it passes.
 
     Negative from left to right.
@@ -126,10 +118,8 @@ def _edge_py(line: Floats, first: Floats, second: Floats, dead: float, weight: f
             line[pixel] += sign * height * (stop - start)
 
 
-_edge = njit(cache=True)(_edge_py)
-
-
-def _polygon_py(line: Floats, shadow: Shadow, half: float, dead: float, weight: float) -> None:
+@compiled
+def _polygon(line: Floats, shadow: Shadow, half: float, dead: float, weight: float) -> None:
     """Add the light of a slit that may end on the array."""
     u, v, wide_u, wide_v, long_u, long_v, a, b = shadow
     corners, one, two = np.empty((4, 2)), np.empty((8, 2)), np.empty((8, 2))
@@ -143,10 +133,8 @@ def _polygon_py(line: Floats, shadow: Shadow, half: float, dead: float, weight: 
         _edge(line, two[i], two[(i + 1) % count], dead, share)
 
 
-_polygon = njit(cache=True)(_polygon_py)
-
-
-def _expose_py(
+@compiled
+def expose(
     flux: Floats,
     slits: Floats,
     paths: Floats,
@@ -201,9 +189,3 @@ def _expose_py(
         for column in range(width):
             total += steps[column]
             line[column] = max(line[column] + total, 0.0)
-
-
-Exposure = Callable[
-    [Floats, Floats, Floats, Floats, tuple[float, float, float, float, float]], None
-]
-expose: Exposure = njit(cache=True)(_expose_py)

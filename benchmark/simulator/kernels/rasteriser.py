@@ -9,13 +9,13 @@ aperture of two displaced round rims is bounded by one arc of each.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from algorithms.compiled import compiled
+from algorithms.contract import Floats
+
 Integers = NDArray[np.int64]
 #: Centre and radius of a round rim.
 Circle = tuple[float, float, float]
@@ -27,7 +27,8 @@ Piece = tuple[float, float, float, float]
 _SHORT, _SHORTER = 0.04, 0.001
 
 
-def _bulge_py(square: float) -> float:
+@compiled
+def _bulge(square: float) -> float:
     """Area between an arc and its chord over the squared radius.
 
     `square` is that of the sine of half the arc.
@@ -43,10 +44,8 @@ def _bulge_py(square: float) -> float:
     return math.sqrt(square) * square * series
 
 
-_bulge = njit(cache=True)(_bulge_py)
-
-
-def _put_py(line: Floats, column: int, piece: Piece, extra: float, weight: float) -> None:
+@compiled
+def _put(line: Floats, column: int, piece: Piece, extra: float, weight: float) -> None:
     """Add a piece of boundary within one column to a row of differences (W + 2 long).
 
     `extra` is the area between the piece and its chord, counted to the right.
@@ -63,36 +62,28 @@ def _put_py(line: Floats, column: int, piece: Piece, extra: float, weight: float
     line[column + 1] += weight * area
 
 
-_put = njit(cache=True)(_put_py)
-
-
-def _cut_py(piece: Piece, x: float, y: float) -> tuple[Piece, Piece]:
+@compiled
+def _cut(piece: Piece, x: float, y: float) -> tuple[Piece, Piece]:
     """Split a piece at a point of it; rounding must not turn a part upside down."""
     y = min(max(y, piece[1]), piece[3])
     return (piece[0], piece[1], x, y), (x, y, piece[2], piece[3])
 
 
-_cut = njit(cache=True)(_cut_py)
-
-
-def _first_column_py(piece: Piece) -> int:
+@compiled
+def _first_column(piece: Piece) -> int:
     """Column in which a piece starts; one that leaves to the left starts left of a grid line."""
     column = math.floor(piece[0])
     return column - 1 if piece[2] < piece[0] == column else column
 
 
-_first_column = njit(cache=True)(_first_column_py)
-
-
-def _beyond_py(column: int, piece: Piece) -> bool:
+@compiled
+def _beyond(column: int, piece: Piece) -> bool:
     """Whether a piece goes on past the column it starts in."""
     return piece[2] > column + 1.0 or piece[2] < column
 
 
-_beyond = njit(cache=True)(_beyond_py)
-
-
-def _row_of_side_py(line: Floats, piece: Piece, weight: float) -> None:
+@compiled
+def _row_of_side(line: Floats, piece: Piece, weight: float) -> None:
     """Add a straight piece of boundary within one row."""
     column = _first_column(piece)
     turn = 1 if piece[2] > piece[0] else -1
@@ -105,10 +96,8 @@ def _row_of_side_py(line: Floats, piece: Piece, weight: float) -> None:
     _put(line, column, piece, 0.0, weight)
 
 
-_row_of_side = njit(cache=True)(_row_of_side_py)
-
-
-def _side_py(differences: Floats, piece: Piece, weight: float) -> None:
+@compiled
+def _side(differences: Floats, piece: Piece, weight: float) -> None:
     """Add a straight side, upwards, to the rows of differences (H, W + 2)."""
     low, high = max(piece[1], 0.0), min(piece[3], float(differences.shape[0]))
     if low >= high:
@@ -120,10 +109,8 @@ def _side_py(differences: Floats, piece: Piece, weight: float) -> None:
         _row_of_side(differences[row], (x0, y0, x1, y1), weight)
 
 
-_side = njit(cache=True)(_side_py)
-
-
-def _box_py(differences: Floats, aperture: Floats, rims: Floats, weight: float) -> None:
+@compiled
+def _box(differences: Floats, aperture: Floats, rims: Floats, weight: float) -> None:
     """Add a box: what two displaced ones have in common is a box again."""
     _, x, y, a, b, c, s = aperture
     dx, dy = rims[1, 0] - rims[0, 0], rims[1, 1] - rims[0, 1]
@@ -140,10 +127,8 @@ def _box_py(differences: Floats, aperture: Floats, rims: Floats, weight: float) 
             _side(differences, (x + x1, y + y1, x + x0, y + y0), weight)
 
 
-_box = njit(cache=True)(_box_py)
-
-
-def _row_of_arc_py(
+@compiled
+def _row_of_arc(
     line: Floats, circle: Circle, ways: tuple[float, float], piece: Piece, weight: float
 ) -> None:
     """Add a piece of a quarter circle within one row; `ways` as in `_quarter`."""
@@ -165,10 +150,8 @@ def _row_of_arc_py(
         column += turn
 
 
-_row_of_arc = njit(cache=True)(_row_of_arc_py)
-
-
-def _quarter_py(
+@compiled
+def _quarter(
     differences: Floats,
     circle: Circle,
     ways: tuple[float, float],
@@ -215,10 +198,8 @@ def _quarter_py(
             column += turn
 
 
-_quarter = njit(cache=True)(_quarter_py)
-
-
-def _half_py(
+@compiled
+def _half(
     differences: Floats, circle: Circle, way: float, span: tuple[float, float], weight: float
 ) -> None:
     """Add a part of the right (`way` 1) or left (-1) half of a circle."""
@@ -229,10 +210,8 @@ def _half_py(
         _quarter(differences, circle, (way, 1.0), (max(low, 0.0), high), -way * weight)
 
 
-_half = njit(cache=True)(_half_py)
-
-
-def _arc_py(differences: Floats, circle: Circle, ends: Piece, weight: float) -> None:
+@compiled
+def _arc(differences: Floats, circle: Circle, ends: Piece, weight: float) -> None:
     """Add an arc of at most half a circle, counterclockwise between two points about its centre."""
     x0, y0, x1, y1 = ends
     radius = circle[2]
@@ -246,10 +225,8 @@ def _arc_py(differences: Floats, circle: Circle, ends: Piece, weight: float) -> 
         _half(differences, circle, -1.0, (y1, radius), weight)
 
 
-_arc = njit(cache=True)(_arc_py)
-
-
-def _hole_py(differences: Floats, aperture: Floats, rims: Floats, weight: float) -> None:
+@compiled
+def _hole(differences: Floats, aperture: Floats, rims: Floats, weight: float) -> None:
     """Add what two equal displaced discs have in common."""
     x, y, radius = aperture[1], aperture[2], aperture[3]
     lower = (x + rims[0, 0], y + rims[0, 1], radius)
@@ -268,12 +245,8 @@ def _hole_py(differences: Floats, aperture: Floats, rims: Floats, weight: float)
         _arc(differences, upper, (px - dx, py - dy, -px - dx, -py - dy), weight)
 
 
-_hole = njit(cache=True)(_hole_py)
-
-
-def _render_py(
-    flux: Floats, apertures: Floats, rims: Floats, light: Floats, origin: Floats
-) -> None:
+@compiled
+def render(flux: Floats, apertures: Floats, rims: Floats, light: Floats, origin: Floats) -> None:
     """Write the light in every pixel of every frame.
 
     Parameters
@@ -313,10 +286,8 @@ def _render_py(
                 flux[n, row, column] = max(total, 0.0)
 
 
-render: Callable[[Floats, Floats, Floats, Floats, Floats], None] = njit(cache=True)(_render_py)
-
-
-def _add_apertures_py(
+@compiled
+def add_apertures(
     frame: Floats, mask: tuple[Floats, Floats], rims: Floats, light: Floats, boxes: Integers
 ) -> None:
     """Add the light of many apertures to a frame, each within its own box of pixels.
@@ -347,14 +318,8 @@ def _add_apertures_py(
                 frame[top + row, left + column] += part[0, row, column]
 
 
-add_apertures: Callable[[Floats, tuple[Floats, Floats], Floats, Floats, Integers], None] = njit(
-    cache=True
-)(_add_apertures_py)
-
-
-def _take_light_py(
-    frame: Floats, boxes: Integers, places: NDArray[np.int32], values: Floats
-) -> int:
+@compiled
+def take_light(frame: Floats, boxes: Integers, places: NDArray[np.int32], values: Floats) -> int:
     """Move what is lit within boxes (B, 4) out of a frame, which is dark there afterwards.
 
     Writes places in the flattened frame and the light there, and returns how many.
@@ -371,8 +336,3 @@ def _take_light_py(
                     frame[row, column] = 0.0
                     count += 1
     return count
-
-
-take_light: Callable[[Floats, Integers, NDArray[np.int32], Floats], int] = njit(cache=True)(
-    _take_light_py
-)

@@ -6,12 +6,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from algorithms.contract import Floats
 from benchmark.simulator.light.sun_disc import tangent_axes
 from benchmark.simulator.readout.detectors import RESPONSES, Response
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from algorithms.contract import Floats
 
 #: A worker's data and code take 600 MB; with this it stays below 1.5 GB.
 LIMIT_BYTES = 384 * 2**20

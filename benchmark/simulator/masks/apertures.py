@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from algorithms.contract import Floats
+
 ROUND, RECTANGLE = 0.0, 1.0
 
 

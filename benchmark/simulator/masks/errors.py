@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from algorithms.contract import Floats
 from benchmark.seeds import generator
 from benchmark.simulator.masks.apertures import RECTANGLE, Mask
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

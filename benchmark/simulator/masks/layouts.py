@@ -53,3 +53,24 @@ def slit(
     return Mask(
         (Aperture("rectangle", width_mm, length_mm, rotation_deg=rotation_deg),), thickness_mm
     )
+
+
+def l_slit(
+    width_mm: float,
+    line_mm: float,
+    along_y_mm: tuple[float, float],
+    along_x_mm: tuple[float, float],
+    thickness_mm: float = 0.0,
+) -> Mask:
+    """Return two slits at right angles, whose middle lines lie at `line_mm` of x and of y.
+
+    `along_y_mm` and `along_x_mm` are the middle and the length of either.
+    """
+    (y_mm, y_long_mm), (x_mm, x_long_mm) = along_y_mm, along_x_mm
+    return Mask(
+        (
+            Aperture("rectangle", width_mm, y_long_mm, x_mm=line_mm, y_mm=y_mm),
+            Aperture("rectangle", x_long_mm, width_mm, x_mm=x_mm, y_mm=line_mm),
+        ),
+        thickness_mm,
+    )

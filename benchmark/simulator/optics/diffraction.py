@@ -21,10 +21,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from algorithms.contract import Floats
 from benchmark.simulator.masks.apertures import Mask
 from benchmark.simulator.optics.plates import fresnel_number
-
-Floats = NDArray[np.float64]
 
 #: From this Fresnel number on the shadow is taken as geometric.
 GEOMETRIC_FROM = 10.0

@@ -7,13 +7,11 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from algorithms.contract import Floats
 from benchmark.simulator.light.sun_disc import SolarDisc
 from benchmark.simulator.optics.diffraction import Spectrum, fresnel, round_intensity
 from benchmark.simulator.optics.plates import CoverGlass
-
-Floats = NDArray[np.float64]
 
 #: Steps of a table in ``k a`` times the direction cosine, at the shortest wavelength: of the far
 #: pattern, and of a shadow's fringes, of which many wavelengths and the Sun leave only the coarse

@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from algorithms.contract import Floats
 from benchmark.simulator.light.sun_disc import SolarDisc
 from benchmark.simulator.masks.apertures import Mask
 from benchmark.simulator.optics.assembly import Assembly
 from benchmark.simulator.optics.plates import CoverGlass
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
+from collections.abc import Mapping
 
+import numpy as np
+
+from algorithms.contract import Floats
 from benchmark.seeds import generator
 from benchmark.simulator.readout.detectors import CurrentReadout
 from benchmark.simulator.readout.noise import NoiseStreams
-from benchmark.simulator.sensor import FixedPattern
-
-Floats = NDArray[np.float64]
 
 
 def element_gains(readout: CurrentReadout, count: int, *names: str | int) -> Floats:
@@ -18,7 +17,7 @@ def element_gains(readout: CurrentReadout, count: int, *names: str | int) -> Flo
     return 1.0 + readout.gain_mismatch * generator(*names, "gain").standard_normal(count)
 
 
-def currents(readout: CurrentReadout, response: Floats, pattern: FixedPattern) -> Floats:
+def currents(readout: CurrentReadout, response: Floats, pattern: Mapping[str, Floats]) -> Floats:
     """(N, K) mean microamperes for `response` in units of mean sunlight at normal incidence."""
     return np.asarray(readout.sunlit_ua * response * pattern["gain"] + readout.dark.level())
 

@@ -5,11 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from algorithms.contract import Floats
 from benchmark.seeds import generator
-
-Floats = NDArray[np.float64]
 
 #: From this mean on a Poisson variate is drawn as a Gaussian of the same mean and variance.
 GAUSSIAN_FROM: float = 20.0

@@ -7,12 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from algorithms.contract import Floats
 from benchmark.simulator.readout.noise import NoiseStreams, counted
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
 from benchmark.simulator.sensors.lens_camera import LensCamera
-
-Floats = NDArray[np.float64]
 
 
 def spill(charge: Floats, full_well: float) -> tuple[Floats, Floats]:

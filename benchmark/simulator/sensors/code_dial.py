@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from algorithms.contract import Floats
 from benchmark.seeds import generator
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout import currents as readout
@@ -18,7 +19,6 @@ from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
 from benchmark.simulator.sensors.lines import LineAxis
 
-Floats = NDArray[np.float64]
 FineRows = Literal["sine", "square"]
 
 

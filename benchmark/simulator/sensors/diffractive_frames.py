@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from algorithms.contract import Floats
 from benchmark.simulator.masks.apertures import Aperture
 from benchmark.simulator.optics.diffraction import COSINES_BELOW, SUNLIT_SILICON, Spectrum
 from benchmark.simulator.optics.diffraction_tables import (
@@ -20,8 +21,6 @@ from benchmark.simulator.optics.diffraction_tables import (
 from benchmark.simulator.optics.plates import fresnel_number
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensors.uneven_frames import UnevenFrameSensor
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from algorithms.contract import Floats
 from benchmark.seeds import generator
 from benchmark.simulator.light.memory import memory
 from benchmark.simulator.optics.projection import Camera
@@ -15,8 +15,6 @@ from benchmark.simulator.readout.detectors import DarkCurrent
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
-
-Floats = NDArray[np.float64]
 
 #: Electrons a microsecond below which no pixel is taken to be: without light and dark current it
 #: never fires, but its time stays a number.

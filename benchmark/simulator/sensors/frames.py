@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from algorithms.contract import Floats
 from benchmark.seeds import generator
 from benchmark.simulator.light.memory import memory
 from benchmark.simulator.optics.projection import Camera, ProjectedLight
@@ -15,8 +16,6 @@ from benchmark.simulator.readout.detectors import PixelArray
 from benchmark.simulator.readout.noise import NoiseStreams, counted
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from algorithms.contract import Floats
 from benchmark.seeds import generator
 from benchmark.simulator.light.memory import memory
 from benchmark.simulator.light.sun_disc import SolarDisc
@@ -17,8 +17,6 @@ from benchmark.simulator.optics.lens import Lens
 from benchmark.simulator.readout.detectors import PixelArray
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
-
-Floats = NDArray[np.float64]
 
 #: The blur is rendered this many standard deviations wide; 1e-15 of the light is beyond.
 _REACH = 8.0

@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from algorithms.contract import Floats
 from benchmark.seeds import generator
 from benchmark.simulator.light.memory import memory
 from benchmark.simulator.masks.slits import SlitErrors
@@ -20,7 +21,6 @@ from benchmark.simulator.readout.noise import NoiseStreams, counted
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
 
-Floats = NDArray[np.float64]
 LineAxis = Literal["x", "y"]
 
 

@@ -8,13 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from algorithms.contract import Floats
 from benchmark.simulator.light.memory import digest_of, memory
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
 from benchmark.simulator.sensors.multi_spot_frames import MultiSpotSensor
-
-Floats = NDArray[np.float64]
 
 #: Pixels kept around every spot, for derivatives over direction: a step of 5e-4 rad moves a spot
 #: 12 mm below its aperture, at 60 deg, by 1.2 pixels of 20 micrometres.

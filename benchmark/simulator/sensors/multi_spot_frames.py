@@ -8,6 +8,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from algorithms.contract import Floats
 from benchmark.simulator.light.memory import Places, digest_of, memory
 from benchmark.simulator.masks.errors import MaskErrors
 from benchmark.simulator.optics.projection import Camera
@@ -17,7 +18,6 @@ from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
 from benchmark.simulator.sensors.frames import FrameSensor
 
-Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 #: Below this read noise the Gaussian shot noise of dim pixels is not good enough.

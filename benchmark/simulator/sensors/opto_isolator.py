@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from algorithms.contract import Floats
 from benchmark.seeds import generator
 from benchmark.simulator.light.sun_disc import SolarDisc
 from benchmark.simulator.optics.assembly import Assembly
@@ -17,8 +17,6 @@ from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
 from benchmark.simulator.sensors.faces import Faces
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from algorithms.contract import Floats
 from benchmark.simulator.masks.apertures import Aperture
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout import currents as readout
@@ -15,8 +15,6 @@ from benchmark.simulator.readout.detectors import CurrentReadout
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

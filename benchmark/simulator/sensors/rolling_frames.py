@@ -9,10 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from algorithms.contract import Floats
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensors.frames import FrameSensor
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

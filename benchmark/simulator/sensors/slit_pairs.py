@@ -6,16 +6,14 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from algorithms.contract import Floats
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout import currents as readout
 from benchmark.simulator.readout.detectors import CurrentReadout
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
-
-Floats = NDArray[np.float64]
 
 _DIAGONAL = math.sqrt(0.5)  # sine and cosine of 45 deg
 

@@ -9,14 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from algorithms.contract import Floats
 from benchmark.simulator.light.environment import Irradiance
 from benchmark.simulator.readout.detectors import PixelArray
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensors.frames import FrameSensor
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

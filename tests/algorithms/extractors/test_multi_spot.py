@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 from scipy.special import ndtr
 
-from algorithms.contract import FeatureKind, SensorGeometry, in_detector_coordinates
+from algorithms.contract import FeatureKind, SensorGeometry
 from algorithms.extractors.frames.multi_spot.image_correlation import ImageCorrelation
 from algorithms.extractors.frames.multi_spot.mean_shift import MeanShift
 from algorithms.extractors.frames.multi_spot.multiple_centroids import MultipleCentroids
+from algorithms.pipeline import in_detector_coordinates
 
 WIDTH = 9.0
 
@@ -64,6 +65,7 @@ def noisy(frames, seed, noise=8.0):
 # Any of them
 
 
+@pytest.mark.slow
 @every_method
 def test_noiseless_spots_are_inverted_anywhere(which):
     places = np.random.default_rng(1).uniform((52, 50), (80, 78), (30, 2))

@@ -77,6 +77,7 @@ def grids():
     return {side: draw(side) for side in DRAWS}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", METHODS)
 def test_precision_grows_with_the_root_of_the_number_of_spots(method, grids):
     """sigma_N sqrt(N) is the same whatever N: within 15 % of the mean.
@@ -92,6 +93,7 @@ def test_fmms_alone_is_more_precise_than_its_share(grids):
     assert scatter(MeanShift, grids[1]) < 0.8 * 4 * scatter(MeanShift, grids[4])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", METHODS)
 def test_a_fifth_of_the_spots_missing_costs_no_more_than_their_light(method, grids):
     """Noise grows by sqrt(1 / 0.8) = 1.12; nothing of the missing spots adds to it."""

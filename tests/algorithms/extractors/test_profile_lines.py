@@ -11,7 +11,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from algorithms.contract import SensorGeometry
-from algorithms.extractors.frames.peak import PixelMax
 from algorithms.extractors.frames.threshold_average import MultipleThresholdCentroid
 from algorithms.extractors.profiles.centroid import (
     ProfileCentroid,
@@ -19,12 +18,10 @@ from algorithms.extractors.profiles.centroid import (
     ProfileThresholdedCentroid,
 )
 from algorithms.extractors.profiles.eigen_analysis import EigenAnalysis
-from algorithms.extractors.profiles.linear_phase import FrameLinearPhase, LinearPhase
-from algorithms.extractors.profiles.peak_detection import FramePeak, PeakDetection
+from algorithms.extractors.profiles.linear_phase import LinearPhase
+from algorithms.extractors.profiles.peak_detection import PeakDetection
 from algorithms.extractors.profiles.slit_lines import SlitLines
 from algorithms.kernels import slit_patterns
-from benchmark import datasets
-from benchmark.reference.frames import REFERENCE_SETS
 
 #: The most a noiseless shadow may be off, px. PD knows whole pixels, and a width to err in.
 FINE_PX = {
@@ -123,7 +120,7 @@ def noisy(profiles: np.ndarray, sigma: float = 20.0, dark: float = 40.0) -> np.n
 # Where an exact projection is reported
 
 
-@pytest.mark.parametrize("method", FINE_PX, ids=lambda method: method.name)
+@pytest.mark.parametrize("method", FINE_PX, ids=lambda method: method.about.name)
 @pytest.mark.parametrize("name", DESIGNS)
 def test_a_shadow_is_reported_where_it_falls(name, method):
     design = DESIGNS[name]
@@ -159,7 +156,9 @@ def test_bcm_is_pulled_to_the_middle_by_dark_signal_unless_it_is_taken_off():
     np.testing.assert_allclose(without.extract(lit), true, rtol=0, atol=1e-9)
 
 
-@pytest.mark.parametrize("method", [LinearPhase, EigenAnalysis], ids=lambda method: method.name)
+@pytest.mark.parametrize(
+    "method", [LinearPhase, EigenAnalysis], ids=lambda method: method.about.name
+)
 def test_narrower_and_blurred_light_keeps_its_place(method):
     """The reference is as wide as the slit; a thick mask and the Sun change that evenly."""
     moved = displacements(40)
@@ -308,7 +307,7 @@ def test_mt_acm_of_a_line_is_that_of_a_frame_with_its_sums(crossing):
 TELLING = (PeakDetection, LinearPhase, EigenAnalysis)
 
 
-@pytest.mark.parametrize("method", TELLING, ids=lambda method: method.name)
+@pytest.mark.parametrize("method", TELLING, ids=lambda method: method.about.name)
 @pytest.mark.parametrize("name", DESIGNS)
 def test_noise_alone_two_suns_and_a_missing_slit_are_nan(name, method):
     design = DESIGNS[name]
@@ -326,7 +325,7 @@ def test_noise_alone_two_suns_and_a_missing_slit_are_nan(name, method):
         assert np.isnan(extractor.extract(noisy(shadow(missing, moved)))).all()
 
 
-@pytest.mark.parametrize("method", TELLING, ids=lambda method: method.name)
+@pytest.mark.parametrize("method", TELLING, ids=lambda method: method.about.name)
 def test_slits_off_the_line_are_never_taken_for_their_neighbours(method):
     """Off the end by one slit of the comb: nothing, not a whole period's error."""
     design = DESIGNS["sixteen slits"]
@@ -338,7 +337,7 @@ def test_slits_off_the_line_are_never_taken_for_their_neighbours(method):
     np.testing.assert_allclose(found[seen], where(design, moved)[seen], rtol=0, atol=6.0)
 
 
-@pytest.mark.parametrize("method", TELLING, ids=lambda method: method.name)
+@pytest.mark.parametrize("method", TELLING, ids=lambda method: method.about.name)
 def test_peaks_that_merge_or_cross_are_right_or_nan(method):
     """The V's slits cross in the mask: the slanted one's spot passes over the other's."""
     design = replace(DESIGNS["a V"], slits=((-0.4, 0.0, 0.2), (0.4, 45.0, 0.2)))
@@ -380,108 +379,9 @@ def test_designs_that_do_not_give_two_coordinates_are_refused():
                 method.for_sensor(design)
 
 
-def test_frame_variants_refuse_many_spots(geometry):
-    holes = replace(geometry, apertures=((0.0, 0.0, 0.1), (1.0, 0.0, 0.1)))
-    lines = replace(geometry, slits=((0.0, 0.0, 0.1),))
-    for design, method in itertools.product((holes, lines), (FramePeak, FrameLinearPhase)):
-        with pytest.raises(ValueError, match="one spot"):
-            method.for_sensor(design)
-
-
 def test_windows_hold_a_spots_light_and_not_its_neighbours():
     comb = SlitLines.for_sensor.__func__(PeakDetection, DESIGNS["sixteen slits"])
     assert 2 * comb.half_px <= 0.4 / 0.02
     single = PeakDetection.for_sensor(PARALLEL)
     blur = 0.0093 * 2.0 / np.cos(np.arctan(np.sqrt(2) * np.tan(np.radians(55.0)))) ** 2
     assert single.half_px >= (0.17 + blur) / 2.0 / 0.02
-
-
-# Every standard dataset of profiles, as simulated
-
-
-@pytest.mark.parametrize(
-    "name",
-    [name for name in datasets.names() if datasets.get(name).observation == "profiles"],
-)
-def test_simulated_suns_are_found_where_light_falls(name):
-    """To a few percent of the mask's height: assembly, or what a cubic leaves of the glass."""
-    preset = datasets.get(name)
-    design = preset.geometry
-    samples = preset.generate("nominal", "test", 60)
-    tangents = samples.sun[:, :2] / samples.sun[:, 2:]
-    true = where(design, design.focal_length_mm * tangents)
-    for method in TELLING:
-        found = method.for_sensor(design).extract(samples.observations)
-        assert np.isfinite(found).all()
-        bent = found - true
-        if design.cover_glass is not None:
-            fit = np.column_stack([true, true**3, np.ones(len(true))])
-            slopes = np.linalg.lstsq(fit, found, rcond=None)[0]
-            assert (np.diag(slopes[:2]) > 0.5).all()
-            bent = found - fit @ slopes
-        # A peak is anywhere in the light of its slit.
-        wide = max(slit[2] for slit in design.slits) if method is PeakDetection else 0.0
-        allowed = (0.04 * design.focal_length_mm + wide) / design.pixel_pitch_mm
-        assert np.sqrt(np.mean(bent**2)) < allowed
-
-
-# Frames
-
-
-@settings(deadline=None, derandomize=True, max_examples=50)
-@given(st.integers(0, 2**32 - 1))
-def test_the_peak_of_a_frame_is_its_largest_pixel(seed):
-    frames = np.random.default_rng(seed).permutation(9 * 7 * 2).reshape(2, 9, 7)
-    expected = [np.unravel_index(np.argmax(frame), frame.shape)[::-1] for frame in frames]
-    np.testing.assert_array_equal(FramePeak().extract(frames), expected)
-
-
-def test_a_saturated_disc_peaks_in_its_middle_and_two_suns_do_not():
-    y, x = np.mgrid[:40, :50]
-    one = np.where(np.hypot(x - 20, y - 15) < 5, 255, 3).astype(np.uint8)
-    two = np.maximum(one, np.where(np.hypot(x - 40, y - 30) < 5, 255, 3)).astype(np.uint8)
-    found = FramePeak(width_px=10.0).extract(np.stack([one, two]))
-    np.testing.assert_array_equal(found[0], [20.0, 15.0])
-    assert np.isnan(found[1]).all()
-
-
-def test_a_spot_that_diffraction_widens_is_expected_as_wide_as_it_is():
-    """cmos-single-aperture-pinhole: 0.47 mm between the dark rings of a hole of 0.02 mm."""
-    pinhole = datasets.get("cmos-single-aperture-pinhole")
-    method = FrameLinearPhase.for_sensor(pinhole.geometry)
-    assert method.width_px == pytest.approx(0.47 / 2 / 0.024, rel=0.01)
-    assert method.width_px / 2 + method.margin_px > 0.47 / 2 / 0.024
-    samples = pinhole.generate("nominal", "test", 60)
-    geometry = pinhole.geometry
-    scale = geometry.focal_length_mm / geometry.pixel_pitch_mm
-    true = geometry.centre_px + scale * samples.sun[:, :2] / samples.sun[:, 2:]
-    found = method.extract(samples.observations) + samples.origin_px
-    assert np.abs(found - true).max() < 1.5
-    peaks = FramePeak.for_sensor(geometry).extract(samples.observations) + samples.origin_px
-    assert np.abs(peaks - true).max() < 5.0
-
-
-def test_linear_phase_of_frames_is_within_thrice_the_bound_wherever_the_spot_is():
-    for name, width, times in (
-        ("disc", 16.0, 3.0),
-        ("disc-512", 16.0, 3.0),
-        ("gaussian", 8.0, 2.0),
-    ):
-        reference = REFERENCE_SETS[name]
-        frames, centres = reference.frames(60)
-        error = FrameLinearPhase(width).extract(frames) - centres
-        assert np.sqrt(np.mean(error**2)) < times * reference.bound_px(centres[:15])
-        whole = PixelMax().extract(frames) - centres
-        assert np.mean(error**2) < 0.05 * np.mean(whole**2) or name == "gaussian"
-
-
-def test_linear_phase_of_frames_tells_noise_cut_spots_and_two_suns():
-    reference = REFERENCE_SETS["disc"]
-    frames, centres = reference.frames(30)
-    method = FrameLinearPhase(16.0)
-    rng = np.random.default_rng(4)
-    assert np.isnan(method.extract(rng.normal(20.0, 10.0, frames.shape))).all()
-    cut = frames[:, :, int(centres[0, 0]) :][:1]
-    assert np.isnan(method.extract(cut)).all()
-    two = frames[0].astype(int) + np.roll(frames[0], (26, 26), axis=(0, 1))
-    assert np.isnan(method.extract(two[None])).all()

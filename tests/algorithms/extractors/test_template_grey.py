@@ -42,6 +42,7 @@ def test_a_clean_disc_is_found_far_finer_than_from_two_levels():
     assert rms(GREY.extract(frames), centres) < 0.1 * two
 
 
+@pytest.mark.slow
 def test_the_disc_is_found_near_the_bound_and_as_well_in_a_twentieth_of_the_read_noise():
     """At most 1.3 of the bound, 1.5 of the low noise's error over 20:1 (limits of the issue)."""
     found = {}

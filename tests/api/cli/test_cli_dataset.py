@@ -12,8 +12,8 @@ from typer.testing import CliRunner
 from api.cli.command_line import app
 from api.cli.commands import dataset
 from benchmark import datasets
+from benchmark.contract import SPLITS
 from benchmark.datasets.coverage import coverage
-from benchmark.plan.parts import SPLITS
 from benchmark.results.store import Store
 from benchmark.running import pinning
 from benchmark.running.pinning import Pinned
@@ -156,6 +156,7 @@ def published(tmp_path, monkeypatch):
     return Store(tmp_path)
 
 
+@pytest.mark.slow
 def test_pin_pins_what_is_named_and_check_tells_what_does_not_hold(published):
     shown = sunatlas("pin", "oi-maskless-pyramid", "--workers", 1)
     assert shown.exit_code == 0, shown.stderr

@@ -2,6 +2,7 @@
 
 import json
 
+import pytest
 from typer.testing import CliRunner
 
 from api.cli.command_line import app
@@ -11,6 +12,7 @@ def deposit(*arguments):
     return CliRunner().invoke(app, ["deposit", *map(str, arguments)], catch_exceptions=False)
 
 
+@pytest.mark.slow
 def test_what_is_built_is_verified_and_what_is_damaged_is_not(tmp_path):
     out = tmp_path / "new" / "bundle"
     built = deposit("build", "--out", out, "--format", "json")

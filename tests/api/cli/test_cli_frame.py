@@ -4,7 +4,6 @@ import importlib
 import json
 import os
 import re
-import resource
 import subprocess
 import sys
 from pathlib import Path
@@ -16,7 +15,7 @@ from typer.testing import CliRunner
 from api.cli import command_line
 from api.cli.command_line import COMMANDS, DEBUG, app
 from api.deposit.bundle import DepositError
-from benchmark.plan.parts import UnknownNameError
+from benchmark.contract import UnknownNameError
 from benchmark.results.tables import StoreError
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -31,7 +30,7 @@ def sunatlas(*arguments: str, **environment: str) -> subprocess.CompletedProcess
         env={**os.environ, **environment},
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=600,
         check=False,
     )
 
@@ -62,22 +61,6 @@ def test_importing_api_imports_nothing_heavy():
         [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True
     )
     assert not {m for m in shown.stdout.split() if m.partition(".")[0] in HEAVY}
-
-
-def cpu_seconds(*command: str) -> float:
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    subprocess.run(command, cwd=ROOT, stdout=subprocess.DEVNULL, check=True)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-
-
-def test_help_costs_little_more_than_typer_itself(record_property):
-    ours, reference = [], []
-    for _ in range(5):
-        reference.append(cpu_seconds(sys.executable, "-c", "import typer"))
-        ours.append(cpu_seconds(*SUNATLAS, "--help"))
-    record_property("help_cpu_s", min(ours))
-    assert min(ours) < 2.5 * min(reference)
 
 
 def test_the_line_in_the_help_is_the_first_of_the_command_s_own():
@@ -187,7 +170,7 @@ def test_a_reader_that_leaves_early_hears_nothing(form):
     )
     assert process.stdout is not None
     process.stdout.close()
-    _, said = process.communicate(timeout=120)
+    _, said = process.communicate(timeout=600)
     assert process.returncode == 1
     assert said == b""
 

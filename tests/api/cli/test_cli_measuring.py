@@ -13,8 +13,9 @@ from typer.testing import CliRunner
 from api.cli import asking, measuring, working
 from api.cli.command_line import app
 from api.cli.commands import leaderboard
+from benchmark.contract import Cell
 from benchmark.leaderboard.pages import FORMATS
-from benchmark.plan.combinations import Cell, cells, datasets_for
+from benchmark.plan.combinations import cells, datasets_for
 from benchmark.plan.parts import Parts, installed
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import times
@@ -56,8 +57,8 @@ def test_a_study_s_pipelines_are_scored_against_the_bound_and_its_gaps_listed():
     }
     assert scored == expected & planned
     values = catalogue().extractors
-    assert {values[extractor].taxonomy for _, extractor, _ in scored} == {
-        values[extractor].taxonomy for _, extractor, _ in expected
+    assert {values[extractor].about.taxonomy for _, extractor, _ in scored} == {
+        values[extractor].about.taxonomy for _, extractor, _ in expected
     }
     for row in found["scores"]:
         assert row["condition"] == "nominal"
@@ -73,6 +74,7 @@ def test_a_study_s_pipelines_are_scored_against_the_bound_and_its_gaps_listed():
     }
 
 
+@pytest.mark.slow
 def test_a_run_that_finds_nothing_published_measures_once(unpublished):
     arguments = ("run", "Allgeier2009", "--condition", "nominal", "--format", "json")
     first = sunatlas(*arguments)
@@ -88,6 +90,7 @@ def test_a_run_that_finds_nothing_published_measures_once(unpublished):
     assert again["scores"] == measured["scores"]
 
 
+@pytest.mark.slow
 def test_what_is_published_is_read_there():
     found = json.loads(sunatlas("benchmark", *CHEAP, "--format", "json").stdout)
     published = Store(PUBLISHED).scores()
@@ -99,6 +102,7 @@ def test_what_is_published_is_read_there():
     assert found["sources"]["measured"] == 0
 
 
+@pytest.mark.slow
 def test_the_formats_say_the_same(unpublished):
     store = ("--store", unpublished / "other")
     shown = sunatlas("benchmark", *CHEAP, *store, "--format", "json")
@@ -285,6 +289,7 @@ def test_an_up_to_date_record_is_left_as_it_is(published):
     assert {path.name for path in after.keys() - before.keys()} <= {"lock", "journal.jsonl"}
 
 
+@pytest.mark.slow
 def test_everything_else_is_derived(tmp_path, untimed):
     shown = sunatlas("leaderboard", "render", "--out", tmp_path / "out")
     assert shown.exit_code == 0, shown.stderr

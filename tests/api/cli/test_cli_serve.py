@@ -27,10 +27,10 @@ def test_serve_prints_where_it_answers_and_ctrl_c_ends_it_with_130():
         try:
             assert process.stdout is not None
             url = process.stdout.readline().split()[3]
-            with urllib.request.urlopen(f"{url}/healthz", timeout=60) as answer:
+            with urllib.request.urlopen(f"{url}/healthz", timeout=600) as answer:
                 health = json.load(answer)
             process.send_signal(signal.SIGINT)
-            _, said = process.communicate(timeout=60)
+            _, said = process.communicate(timeout=600)
         finally:
             process.kill()
     assert health["status"] == "ok"
@@ -47,7 +47,7 @@ def test_a_port_that_is_taken_is_refused_in_one_line():
             cwd=ROOT,
             capture_output=True,
             text=True,
-            timeout=60,
+            timeout=600,
             check=False,
         )
     assert shown.returncode == 1

@@ -42,6 +42,7 @@ def files(directory):
     }
 
 
+@pytest.mark.slow
 def test_the_data_package_is_valid(built):
     report = Package(str(built.directory / "datapackage.json")).validate()
     assert report.valid, report.flatten(["place", "rowNumber", "fieldName", "message"])
@@ -49,10 +50,11 @@ def test_the_data_package_is_valid(built):
     assert deposit.verify(built.directory) == []
 
 
+@pytest.mark.slow
 def test_frictionless_on_the_command_line_agrees(built):
     command = (sys.executable, "-m", "frictionless", "validate", "datapackage.json", "--json")
     shown = subprocess.run(
-        command, cwd=built.directory, capture_output=True, text=True, check=False, timeout=120
+        command, cwd=built.directory, capture_output=True, text=True, check=False, timeout=600
     )
     assert shown.returncode == 0, shown.stdout
     assert json.loads(shown.stdout)["valid"]
@@ -120,6 +122,7 @@ def test_a_list_of_checksums_that_is_none_is_refused(bundle, line):
         read_checksums(bundle)
 
 
+@pytest.mark.slow
 def test_two_builds_are_the_same_bytes(built, tmp_path):
     before = os.umask(0o077)
     try:

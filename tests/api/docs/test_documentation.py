@@ -10,6 +10,7 @@ from api.docs.documentation import PAGES, DocumentationError, regenerate, renewe
 PAGE = "prose\n<!-- generated: one -->\nold\n<!-- end: one -->\nmore prose\n"
 
 
+@pytest.mark.slow
 def test_the_committed_docs_are_current():
     assert regenerate(write=False) == [], "run `make docs`"
 

@@ -9,8 +9,8 @@ from api.http.measurements import Measurements
 from api.http.service import create_app
 from benchmark import datasets
 from benchmark.datasets import preview as dataset_preview
+from benchmark.datasets.pins import Pin
 from benchmark.results.components import Components
-from benchmark.results.pins import Pin
 from benchmark.results.store import PUBLISHED, Store
 
 NAME = "cmos-single-aperture"

@@ -55,6 +55,7 @@ def refused_by_problem(context, response, case):
         assert document["type"].endswith(":invalid-cursor")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("method", "path", "mode"),
     [

@@ -6,11 +6,11 @@ import pytest
 from api.http.knowledge import Knowledge
 from api.http.measurements import Measurements
 from api.http.service import create_app
+from benchmark.contract import Cell
+from benchmark.datasets.pins import Pin
 from benchmark.metrics.score import METRICS
-from benchmark.plan.combinations import Cell
 from benchmark.plan.parts import installed
 from benchmark.results.components import Components, ComponentsError, current
-from benchmark.results.pins import Pin
 from benchmark.results.store import Store, StoreError
 from benchmark.results.tables import text_of
 from benchmark.running import times

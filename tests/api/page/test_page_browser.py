@@ -2,143 +2,16 @@
 
 from __future__ import annotations
 
-import json
-import os
-import shutil
-import socket
-import threading
-import time
-from collections.abc import Iterator
-from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
-from urllib.parse import parse_qs, urlsplit
+from urllib.parse import urlsplit
 from urllib.request import urlopen
 
 import pytest
-import uvicorn
-from playwright.sync_api import Browser, ConsoleMessage, Page, Route, expect, sync_playwright
+from playwright.sync_api import Route, expect
 
-from api.http.service import create_app
+from tests.api.page.visiting import NARROW, PATIENCE_MS, Visit, get_json, tab_to
 
-NAMES = ("chromium", "chromium-browser", "google-chrome")
-WIDE, NARROW = (1280, 900), (390, 844)
-QUIET = ["--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking"]
-PATIENCE_MS = 15_000
-
-
-@dataclass
-class Visit:
-    """A page, with what it asked for and complained about."""
-
-    page: Page
-    address: str
-    requests: list[str] = field(default_factory=list)
-    complaints: list[str] = field(default_factory=list)
-
-    def go(self, path: str = "/") -> Page:
-        self.page.goto(self.address + path)
-        self.settle()
-        return self.page
-
-    def settle(self) -> None:
-        """Wait until nothing is being loaded or drawn."""
-        self.page.wait_for_function(
-            """() => (document.querySelector('#summary').textContent
-                      || document.querySelector('#blocked .notice'))
-                     && !document.querySelector('[aria-busy="true"]')""",
-            timeout=PATIENCE_MS,
-        )
-
-    def heard(self, message: ConsoleMessage) -> None:
-        if message.type in {"error", "warning"}:
-            self.complaints.append(message.text)
-
-    def query(self) -> dict[str, list[str]]:
-        return parse_qs(urlsplit(self.page.url).query)
-
-    def flow_nodes(self) -> set[str]:
-        """Ids of the nodes that the diagram shows."""
-        drawn = self.page.locator(".diagram").get_attribute("data-nodes")
-        assert drawn is not None
-        return set(drawn.split("|"))
-
-    def paths(self) -> int:
-        """Number of paths that the summary states."""
-        return int(self.page.locator("#summary strong").first.inner_text().split()[0])
-
-
-@pytest.fixture(scope="module")
-def address() -> Iterator[str]:
-    with socket.socket() as listener:
-        listener.bind(("127.0.0.1", 0))
-        server = uvicorn.Server(uvicorn.Config(create_app(), log_level="warning", ws="none"))
-        thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]}, daemon=True)
-        thread.start()
-        deadline = time.monotonic() + 60
-        while not server.started:
-            assert thread.is_alive(), "the service did not start"
-            assert time.monotonic() < deadline, "the service did not start in a minute"
-            time.sleep(0.05)
-        yield f"http://127.0.0.1:{listener.getsockname()[1]}"
-        server.should_exit = True
-        thread.join(timeout=20)
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    found = next(filter(None, map(shutil.which, NAMES)), None)
-    if found is None:
-        reason = f"no browser ({', '.join(NAMES)} on the PATH): install chromium to test the page"
-        if os.environ.get("CI"):
-            pytest.fail(reason)
-        pytest.skip(reason)
-    with sync_playwright() as playwright:
-        running = playwright.chromium.launch(executable_path=found, args=QUIET)
-        yield running
-        running.close()
-
-
-def _visit(browser: Browser, address: str, size: tuple[int, int], scheme: Any) -> Iterator[Visit]:
-    context = browser.new_context(
-        viewport={"width": size[0], "height": size[1]}, color_scheme=scheme, reduced_motion="reduce"
-    )
-    visit = Visit(context.new_page(), address)
-    visit.page.set_default_timeout(PATIENCE_MS)
-    visit.page.on("request", lambda request: visit.requests.append(request.url))
-    visit.page.on("pageerror", lambda error: visit.complaints.append(str(error)))
-    visit.page.on("console", visit.heard)
-    yield visit
-    context.close()
-
-
-@pytest.fixture
-def wide(browser: Browser, address: str) -> Iterator[Visit]:
-    yield from _visit(browser, address, WIDE, "light")
-
-
-@pytest.fixture
-def narrow(browser: Browser, address: str) -> Iterator[Visit]:
-    yield from _visit(browser, address, NARROW, "light")
-
-
-@pytest.fixture
-def dark(browser: Browser, address: str) -> Iterator[Visit]:
-    yield from _visit(browser, address, WIDE, "dark")
-
-
-def _get(address: str) -> Any:
-    with urlopen(address, timeout=20) as response:
-        return json.load(response)
-
-
-def _tab_to(page: Page, selector: str, most: int = 250) -> None:
-    """Press Tab until the focus is on an element."""
-    for _ in range(most):
-        page.keyboard.press("Tab")
-        if page.evaluate("s => document.activeElement.matches(s)", selector):
-            return
-    raise AssertionError(f"Tab does not reach {selector}")
+pytestmark = pytest.mark.slow
 
 
 def test_every_chart_draws_without_complaint_and_without_another_host(wide: Visit) -> None:
@@ -154,7 +27,7 @@ def test_every_chart_draws_without_complaint_and_without_another_host(wide: Visi
             assert page.locator(".sankey-link").count() > 10
     assert wide.complaints == []
     assert {urlsplit(url).netloc for url in wide.requests} == {urlsplit(wide.address).netloc}
-    with urlopen(wide.address, timeout=20) as response:
+    with urlopen(wide.address, timeout=PATIENCE_MS / 1e3) as response:
         policy = response.headers["Content-Security-Policy"]
     assert "script-src 'self';" in policy  # no inline script, no evaluation of text
 
@@ -168,7 +41,7 @@ def test_a_requirement_narrows_flow_paths_and_address_together(wide: Visit) -> N
     narrowed = wide.flow_nodes()
     assert {n for n in narrowed if n.startswith("detector:")} == {"detector:CMOS"}
     assert narrowed < nodes
-    answer = _get(f"{wide.address}/v1/recommendations?detector=CMOS&limit=500")
+    answer = get_json(f"{wide.address}/v1/recommendations?detector=CMOS&limit=500")
     assert wide.paths() == answer["count"] < paths
     page.get_by_role("button", name=f"Show all {answer['count']} paths").click()
     shown = page.locator(".path").all_inner_texts()
@@ -186,7 +59,7 @@ def test_a_shared_address_asks_the_same_question(wide: Visit) -> None:
     question = page.locator("#question").inner_text()
     for part in ("Accuracy", "Lens", "0.1°"):
         assert part in question
-    answer = _get(
+    answer = get_json(
         f"{wide.address}/v1/recommendations?task=Accuracy&exclude_mask=Lens&max_error_deg=0.1"
     )
     assert wide.paths() == answer["count"]
@@ -205,7 +78,7 @@ def test_a_click_on_a_node_requires_its_value_and_another_takes_it_back(wide: Vi
 
 def test_fractional_counts_of_the_page_are_those_of_the_service(wide: Visit) -> None:
     page = wide.go("/?counting=fractional&view=table")
-    flow = _get(f"{wide.address}/v1/flows/cross-analysis?counting=fractional&grouped=true")
+    flow = get_json(f"{wide.address}/v1/flows/cross-analysis?counting=fractional&grouped=true")
     drawn = page.evaluate(
         """async () => {
             const data = await import('/page/flow_data.js');
@@ -231,13 +104,13 @@ def test_fractional_counts_of_the_page_are_those_of_the_service(wide: Visit) -> 
 def test_evidence_of_a_path_names_studies_with_their_basis(wide: Visit) -> None:
     page = wide.go("/?task=Accuracy&view=table")
     page.locator(".expand").first.click()
-    answer = _get(f"{wide.address}/v1/recommendations?task=Accuracy&limit=1")
+    answer = get_json(f"{wide.address}/v1/recommendations?task=Accuracy&limit=1")
     keys = answer["paths"][0]["studies"]
     assert page.locator(".study").count() == len(keys)
     page.locator(".study details summary").first.click()
     table = page.locator(".provenance table").first
     expect(table).to_be_visible()
-    study = _get(f"{wide.address}/v1/studies/{keys[0]}")
+    study = get_json(f"{wide.address}/v1/studies/{keys[0]}")
     text = table.inner_text()
     for row in study["attributes"]:
         assert row["basis"] in text
@@ -247,7 +120,7 @@ def test_evidence_of_a_path_names_studies_with_their_basis(wide: Visit) -> None:
 def test_no_match_names_the_constraint_and_a_relaxation_leads_out(wide: Visit) -> None:
     asked = "detector=Event&mask=Lens"
     page = wide.go(f"/?{asked}&view=table")
-    blocked = _get(f"{wide.address}/v1/recommendations?{asked}")["blocked"]
+    blocked = get_json(f"{wide.address}/v1/recommendations?{asked}")["blocked"]
     assert page.locator("#blocked .culprit").inner_text() == blocked["constraint"]
     buttons = page.locator(".relaxation")
     assert buttons.count() == len(blocked["relaxations"])
@@ -280,17 +153,17 @@ def test_the_keyboard_alone_requires_a_value_opens_evidence_and_sorts(wide: Visi
     page = wide.go("/?view=table")
     page.keyboard.press("Tab")
     assert page.evaluate("document.activeElement.className") == "skip"
-    _tab_to(page, '.facet-include[data-attribute="task"][data-value="Cost"]')
+    tab_to(page, '.facet-include[data-attribute="task"][data-value="Cost"]')
     page.keyboard.press("Space")
     wide.settle()
     assert wide.query()["task"] == ["Cost"]
     focused = "document.activeElement.getAttribute('aria-pressed')"
     assert page.evaluate(focused) == "true", "the focus stays on the value"
-    _tab_to(page, ".paths .expand")
+    tab_to(page, ".paths .expand")
     page.keyboard.press("Enter")
     assert page.evaluate("document.activeElement.getAttribute('aria-expanded')") == "true"
     assert page.locator(".study").first.is_visible()
-    _tab_to(page, '[data-sort="availability"]')
+    tab_to(page, '[data-sort="availability"]')
     page.keyboard.press("Enter")
     page.keyboard.press("Enter")  # the focus stays on the heading: a second press turns the order
     heading = page.locator("th", has=page.locator('[data-sort="availability"]'))
@@ -299,45 +172,9 @@ def test_the_keyboard_alone_requires_a_value_opens_evidence_and_sorts(wide: Visi
     assert "Answered, descending" in page.locator("#board-status").inner_text()
 
 
-def test_ranks_that_units_do_not_tell_apart_are_shown_as_ties(wide: Visit) -> None:
-    page = wide.go("/?dataset=ccd-orbit")
-    board = wide.page.request.get(f"{wide.address}/v1/leaderboard/ccd-orbit?condition=nominal")
-    rows = board.json()["items"]
-    tied = [row for row in rows if row["tied"]]
-    assert tied  # or there is nothing to see
-    texts = page.locator(".score").all_inner_texts()
-    for row, text in zip(rows, texts, strict=False):
-        mark = "=" if row["tied"] else ""
-        assert text.split()[0] == f"{row['rank']}{mark}"
-        assert ("–" in text) == (row["low_deg"] is not None)
-        assert ("false Suns" in text) == bool(row["false_sun"])
-    assert page.locator(".key-units").count() == 1
-    page.select_option("#board-condition", "stable")
-    wide.settle()
-    assert page.locator(".key-units").count() == 0
-    assert "rest on one unit" in page.locator("#board-body .legend").inner_text()
-
-
-def test_the_leaderboard_is_judged_over_a_part_of_the_field(wide: Visit) -> None:
-    page = wide.go("/?dataset=cmos-single-aperture")
-    page.select_option("#board-field", "20")
-    wide.settle()
-    assert wide.query()["board_field"] == ["20"]
-    assert page.get_by_role("columnheader", name="RMS within 20°").count() == 1
-    asked = "/v1/leaderboard/cmos-single-aperture?condition=nominal&field_deg=20"
-    first = wide.page.request.get(f"{wide.address}{asked}").json()["items"][0]
-    best = page.locator(".score").first.inner_text().split()
-    assert best[:3] == ["1", first["extractor"], first["model"]]
-    assert float(best[3].rstrip("°")) == pytest.approx(first["field_rms_deg"], rel=0.01)
-    page.select_option("#board-field", "90")  # wider than the sensor's own
-    wide.settle()
-    assert "own field ends at 60" in page.locator("#board-body .legend").inner_text()
-    assert page.locator(".score").first.inner_text().split()[0] == "–"
-
-
 def test_a_value_of_the_table_is_required_and_keeps_the_focus(wide: Visit) -> None:
     page = wide.go("/?view=table")
-    _tab_to(page, '.level-value[data-node="detector:CCD"]')
+    tab_to(page, '.level-value[data-node="detector:CCD"]')
     page.keyboard.press("Enter")
     wide.settle()
     assert wide.query()["detector"] == ["CCD"]
@@ -354,48 +191,9 @@ def test_a_server_that_is_gone_is_said_and_asked_again(wide: Visit) -> None:
     page.unroute("**/v1/recommendations*")
     page.get_by_role("button", name="Try again").click()
     wide.settle()
-    answer = _get(f"{wide.address}/v1/recommendations?task=Cost")
+    answer = get_json(f"{wide.address}/v1/recommendations?task=Cost")
     assert wide.paths() == answer["count"]
     assert page.get_by_role("alert").count() == 0
-
-
-def test_the_leaderboard_shows_every_row_the_service_has(wide: Visit) -> None:
-    page = wide.go("/?view=table")
-    for card in _get(f"{wide.address}/v1/datasets?limit=500")["items"]:
-        name = card["name"]
-        page.locator("#dataset").select_option(name)
-        page.wait_for_function(
-            "name => !document.querySelector('#leaderboard [aria-busy]')"
-            " && document.querySelector('#dataset').value === name",
-            arg=name,
-        )
-        condition = page.locator("#board-condition").input_value()
-        rows = _get(f"{wide.address}/v1/leaderboard/{name}?condition={condition}&limit=500")
-        more = page.locator("#leaderboard .more")
-        if more.count():
-            more.click()
-        assert page.locator(".score").count() == rows["total"]
-        assert page.evaluate("document.documentElement.scrollWidth") <= WIDE[0]
-        if not rows["total"]:
-            assert "No pipeline is scored" in page.locator("#board-body").inner_text()
-
-
-@pytest.mark.parametrize("name", ["cmos-compound-eye", "qpd-single-aperture"])
-def test_the_card_of_a_data_set_opens_with_its_picture(wide: Visit, name: str) -> None:
-    page = wide.go("/?view=table")
-    page.locator("#dataset").select_option(name)
-    summary = page.get_by_text(f"Card of {name}: a picture")
-    summary.click()
-    picture = page.locator("#board-card img.preview")
-    picture.wait_for()
-    page.wait_for_function("() => document.querySelector('img.preview').naturalWidth > 0")
-    card = _get(f"{wide.address}/v1/datasets/{name}")
-    assert picture.get_attribute("src") == card["preview"]
-    facts = page.locator(".card-facts").inner_text()
-    assert f"{card['geometry']['half_fov_deg']:g}" in facts
-    assert len(facts) < 20_000, "hundreds of apertures belong in the JSON"
-    assert page.evaluate("document.documentElement.scrollWidth") <= WIDE[0]
-    assert wide.complaints == []
 
 
 @pytest.mark.parametrize(

@@ -153,12 +153,12 @@ def test_without_results_nothing_is_measured_and_every_reason_is_given(tmp_path)
 def test_hough_transforms_are_told_apart_by_their_study(tmp_path):
     known = discover_extractors()
     found = {one.method: set(one.extractors) for one in assess(tmp_path)}
-    hough = {n for n, e in known.items() if e.taxonomy == "HT" and e.origin == "survey"}
+    hough = {n for n, e in known.items() if e.about.taxonomy == "HT" and e.about.origin == "survey"}
     assert found["BHT"] | found["CHT"] <= hough
-    assert all("Liu2016" in known[name].studies for name in found["BHT"])
-    assert all("Adatrao2016" in known[name].studies for name in found["CHT"])
+    assert all("Liu2016" in known[name].about.studies for name in found["BHT"])
+    assert all("Adatrao2016" in known[name].about.studies for name in found["CHT"])
     for one in assess(tmp_path):
-        assert all(known[n].origin == "survey" for n in one.extractors)
+        assert all(known[n].about.origin == "survey" for n in one.extractors)
 
 
 def test_verdicts_compare_with_the_survey_and_costs_are_medians(tmp_path):

@@ -14,23 +14,25 @@ import pandas as pd
 import pytest
 
 from benchmark import datasets
+from benchmark.contract import SPLITS, UnknownNameError
 from benchmark.datasets import Samples, UnknownDatasetError
 from benchmark.datasets import export as dataset_export
 from benchmark.datasets.checksums import CHECKSUMS, ChecksumFileError, write_checksums
 from benchmark.datasets.export import CARD, ExportError, export, verify
 from benchmark.datasets.export_arrays import read_archive, write_archive
+from benchmark.datasets.samples import samples_hash
 from benchmark.metrics.score import SIGNIFICANT_DIGITS
-from benchmark.plan.parts import SPLITS, UnknownNameError
-from benchmark.results.digests import samples_hash
 from benchmark.results.store import PUBLISHED, Store
 
 FEW = 5
+PINS = Store(PUBLISHED).pins()
 #: One of each kind of observation, with windows, several arrays, context, elements without frames.
 KINDS = ("cmos-single-aperture", "ccd-periodic", "qpd-single-aperture", "event-l-slit", "pd-orbit")
 
 
 def exported(name, out, **options):
-    return export(name, out, **{"conditions": ["nominal"], "n": FEW, **options})
+    defaults = {"conditions": ["nominal"], "n": FEW, "pins": PINS}
+    return export(name, out, **{**defaults, **options})
 
 
 @pytest.fixture(scope="module", params=KINDS)
@@ -76,6 +78,7 @@ def test_other_people_s_tools_check_the_sums(made):
     assert run.returncode == 0, run.stderr
 
 
+@pytest.mark.slow
 def test_the_arrays_are_the_first_samples_of_the_data_set_with_its_bound(made):
     card = made.card
     preset = datasets.get(card["name"])
@@ -151,9 +154,10 @@ def test_exporting_twice_gives_the_same_bytes(quads, tmp_path):
 
 
 def test_a_whole_split_carries_the_published_hash(tmp_path):
-    made = export("pd-maskless-cube", tmp_path / "cube", conditions=["cosine"], splits=["test"])
+    out = tmp_path / "cube"
+    made = export("pd-maskless-cube", out, conditions=["cosine"], splits=["test"], pins=PINS)
     (arrays,) = (file for file in made.card["files"] if file["kind"] == "arrays")
-    pin = Store(PUBLISHED).pins()["pd-maskless-cube", "cosine", "test"]
+    pin = PINS["pd-maskless-cube", "cosine", "test"]
     assert arrays["data_hash"] == arrays["published_data_hash"] == pin.data_hash
     assert arrays["samples"] == pin.n
     assert {Path(name).parts[0] for name in made.files} == {CARD, CHECKSUMS, "cosine"}

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import math
+import subprocess
+import sys
+from pathlib import Path
 
 import cv2
 import numpy as np
@@ -10,13 +13,17 @@ import pytest
 
 from benchmark import datasets
 from benchmark.datasets.preview import FIRST_SAMPLES, preview_png
-from benchmark.datasets.preview_canvas import PAPER, Canvas, Plot, decades, heat, number, ticks
+from benchmark.datasets.preview_sheet import Sheet, heat, number, span
+
+ROOT = Path(datasets.__file__).parents[2]
+PAPER = (255, 255, 255)
 
 
 def read(png):
     return cv2.imdecode(np.frombuffer(png, dtype=np.uint8), cv2.IMREAD_COLOR)[:, :, ::-1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", datasets.names())
 def test_every_data_set_has_a_picture_with_much_on_it(name):
     png = preview_png(datasets.get(name))
@@ -70,13 +77,26 @@ def test_a_spot_is_drawn_where_it_is():
     assert (at_x / 3, at_y / 3) == pytest.approx((x + 1 / 3, y + 1 / 3), abs=0.7)
 
 
+def colours(values):
+    """(H, W, 3) of a sheet that shows (H, W) values and nothing else."""
+    high, wide = values.shape
+    sheet = Sheet(wide, high)
+    sheet.picture(0, 0, values, span([0.0, 1.0]))
+    return read(sheet.png())
+
+
 def test_colours_rise_with_the_value():
-    image = heat(np.linspace(0, 1, 256)[None]).astype(float)[0]
-    light = image @ [0.2126, 0.7152, 0.0722]
+    light = colours(np.linspace(0, 1, 256)[None]).astype(float)[0] @ [0.2126, 0.7152, 0.0722]
     assert (np.diff(light) >= -0.6).all()
     assert light[0] < 5
     assert light[-1] > 240
-    assert tuple(heat(np.array([[math.nan]]))[0, 0]) == PAPER
+    assert tuple(colours(np.array([[math.nan]]))[0, 0]) == PAPER
+
+
+def test_every_value_is_a_pixel_where_it_belongs():
+    values = np.linspace(0, 1, 12).reshape(3, 4)
+    expected = np.round(255 * heat()(values)[:, :, :3])
+    assert np.abs(colours(values) - expected).max() <= 1
 
 
 @pytest.mark.parametrize(
@@ -85,15 +105,23 @@ def test_colours_rise_with_the_value():
         (0.0, 10.0, 5, [0, 2, 4, 6, 8, 10]),
         (-40.0, 40.0, 8, [-40, -30, -20, -10, 0, 10, 20, 30, 40]),
         (0.03, 0.09, 3, [0.04, 0.06, 0.08]),
-        (7.0, 7.0, 3, [7.0]),
     ],
 )
 def test_ticks_are_round_and_inside(low, high, most, expected):
-    assert ticks(low, high, most) == pytest.approx(expected)
+    plot = Sheet(200, 200).plot(50, 10, 100, 100, most_y=most)
+    plot.set_ylim(low, high)
+    shown = [tick for tick in plot.get_yticks() if low <= tick <= high]
+    assert shown == pytest.approx(expected)
 
 
 def test_decades_are_ones_twos_and_fives():
-    assert decades(80.0, 2500.0) == pytest.approx([100, 200, 500, 1000, 2000])
+    from matplotlib.colors import LogNorm
+
+    sheet = Sheet(200, 200)
+    sheet.scale(50, 20, 150, LogNorm(80.0, 2500.0), "us")
+    (axes,) = sheet.figure.axes
+    shown = [tick for tick in axes.get_yticks() if 80.0 <= tick <= 2500.0]
+    assert shown == pytest.approx([100, 200, 500, 1000, 2000])
 
 
 @pytest.mark.parametrize(
@@ -104,11 +132,32 @@ def test_numbers_are_short(value, text):
 
 
 def test_a_curve_breaks_where_there_is_nothing():
-    canvas = Canvas(100, 50)
-    plot = Plot(canvas, (0, 0, 100, 40), (0.0, 10.0), (0.0, 1.0), x_ticks=False)
-    canvas.image[:] = 255
-    plot.curve(np.arange(11.0), np.where(np.arange(11) == 5, np.nan, 0.5), (0, 0, 0))
-    dark = np.nonzero((canvas.image < 128).all(axis=2).any(axis=0))[0]
+    sheet = Sheet(100, 50)
+    plot = sheet.plot(0, 0, 100, 40)
+    plot.set(xlim=(0, 10), ylim=(0, 1))
+    plot.set_axis_off()
+    plot.plot(np.where(np.arange(11) == 5, np.nan, 0.5), color="black", solid_capstyle="butt")
+    dark = np.nonzero((read(sheet.png()) < 128).all(axis=2).any(axis=0))[0]
     assert dark.min() == 0
     assert not set(range(43, 57)) & set(dark.tolist())
     assert {20, 70} <= set(dark.tolist())
+
+
+def test_a_user_s_settings_change_no_picture():
+    import matplotlib as mpl
+
+    preset = datasets.get("qpd-single-aperture")
+    plain = preview_png(preset)
+    with mpl.rc_context({"lines.linestyle": ":", "font.size": 30, "figure.facecolor": "black"}):
+        assert preview_png(preset) == plain
+        assert mpl.rcParams["font.size"] == 30, "and are as they were"
+
+
+def test_matplotlib_is_loaded_by_pictures_alone():
+    code = (
+        "import sys\n"
+        "import api.http.service, benchmark.datasets.export, benchmark.datasets.preview_overlay\n"
+        "import benchmark.running.task, benchmark.sweeps.pictures, benchmark.sweeps.run\n"
+        "assert 'matplotlib' not in sys.modules\n"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT, timeout=120)

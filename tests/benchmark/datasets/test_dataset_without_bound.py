@@ -37,7 +37,9 @@ class Unbounded(Diodes):
 
 def measured(directory: Path, preset: Unbounded) -> Store:
     parts = Parts(
-        {"fake-unbounded": preset}, {Currents.name: Currents}, {LeastSquares.name: LeastSquares}
+        {"fake-unbounded": preset},
+        {Currents.about.name: Currents},
+        {LeastSquares.about.name: LeastSquares},
     )
     store = Store(directory)
     summary = runner.run(cells(parts=parts), store, parts=parts)

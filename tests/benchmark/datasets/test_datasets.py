@@ -16,7 +16,7 @@ import pytest
 
 from algorithms.contract import Observation
 from benchmark import datasets
-from benchmark.datasets import Samples, UnknownDatasetError, data_digest
+from benchmark.datasets import Samples, UnknownDatasetError, samples_hash
 from benchmark.datasets.card import differences, merged
 from benchmark.datasets.conditions.full_frames import FullFramePreset
 from benchmark.simulator.sensors.frames import FrameSensor
@@ -40,7 +40,7 @@ def card_of(name: str) -> dict[str, Any]:
 
 
 def test_every_module_of_the_package_is_a_dataset() -> None:
-    files = sorted((ROOT / "benchmark" / "datasets").glob("[!_]*.py"))
+    files = sorted((ROOT / "benchmark" / "datasets" / "standard").glob("[!_]*.py"))
     assert [f.stem.replace("_", "-") for f in files] == list(datasets.names())
     assert set(datasets.names()) >= {
         "cmos-single-aperture",
@@ -71,6 +71,7 @@ ARRAYS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "condition"), CASES)
 def test_samples_are_what_the_card_says(name: str, condition: str) -> None:
     preset = datasets.get(name)
@@ -141,10 +142,11 @@ def test_cards_and_parameters_are_plain_json(name: str) -> None:
 
 
 def test_all_samples_differ_from_one_condition_and_split_to_another() -> None:
-    digests = {data_digest(first(*case, split)) for case in CASES for split in SPLITS}
+    digests = {samples_hash(first(*case, split)) for case in CASES for split in SPLITS}
     assert len(digests) == len(CASES) * len(SPLITS)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_conditions_share_the_sun_and_calibration_is_apart_from_test(name: str) -> None:
     preset = datasets.get(name)
@@ -174,7 +176,7 @@ for name in reversed(datasets.names()):
     for condition in datasets.get(name).conditions[:-3:-1]:  # two are as good as all
         for split in ("test", "calibration"):
             samples = datasets.get(name).generate(condition, split, {FEW})
-            print(name, condition, split, datasets.data_digest(samples))
+            print(name, condition, split, datasets.samples_hash(samples))
 """
     run = subprocess.run(
         [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False
@@ -183,7 +185,7 @@ for name in reversed(datasets.names()):
     lines = dict(line.rsplit(" ", 1) for line in run.stdout.splitlines())
     assert len(lines) == 4 * len(NAMES)
     for place, digest in lines.items():
-        assert digest == data_digest(first(*place.split())), place
+        assert digest == samples_hash(first(*place.split())), place
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -212,19 +214,19 @@ def test_all_samples_begin_with_the_first_and_do_not_depend_on_the_batch(
         assert array is there is None or np.array_equal(array, there[:FEW], equal_nan=True), key
     monkeypatch.setattr("benchmark.datasets.preset.BATCH", 17)
     again = preset.generate(condition, "calibration")
-    assert data_digest(again) == data_digest(everything)
+    assert samples_hash(again) == samples_hash(everything)
 
 
 def test_digest_sees_values_shapes_and_types() -> None:
     base = np.arange(6.0)
     sun = np.ones((2, 3))
     digests = {
-        data_digest(Samples(array, sun, origin))
+        samples_hash(Samples(array, sun, origin))
         for array in (base, base.reshape(2, 3), base.astype(np.float32), base + 1)
         for origin in (None, np.zeros((2, 2), dtype=np.int64))
     }
     assert len(digests) == 8
-    assert data_digest(Samples(base[::1], sun, None)) == data_digest(
+    assert samples_hash(Samples(base[::1], sun, None)) == samples_hash(
         Samples(np.repeat(base, 2)[::2], sun.copy(), None)
     )
 
@@ -265,6 +267,7 @@ def test_low_noise_is_the_nominal_unit_with_less_noise() -> None:
     assert preset.setups["low-noise"].sensor.camera == preset.setups["nominal"].sensor.camera
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_bounds_order_with_the_noise(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of directions from all over the calibration split."""

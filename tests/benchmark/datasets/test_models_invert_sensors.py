@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from algorithms.angles import separation_deg
-from algorithms.contract import Pipeline
+from algorithms.pipeline import Pipeline
 from benchmark import datasets
 from benchmark.datasets.conditions.line_arrays import MISASSEMBLED
 from benchmark.plan import combinations as plan

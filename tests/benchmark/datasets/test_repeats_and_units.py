@@ -94,6 +94,7 @@ def test_another_unit_sees_the_same_suns_otherwise(name: str) -> None:
     assert again.observations.tobytes() == two.observations.tobytes()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PRESETS)
 def test_every_condition_of_another_unit_can_be_generated(name: str) -> None:
     preset = PRESETS[name].as_unit(3)

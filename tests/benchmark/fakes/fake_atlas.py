@@ -14,7 +14,14 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from algorithms.contract import FeatureKind, Observation, SensorGeometry, UnusableDataError
+from algorithms.contract import (
+    AboutExtractor,
+    AboutModel,
+    FeatureKind,
+    Observation,
+    SensorGeometry,
+    UnusableDataError,
+)
 
 _TILT = np.deg2rad(30.0)
 NORMALS = np.array(
@@ -144,39 +151,47 @@ class Diodes:
         return FakeBound(np.where(observable, angle, np.inf), observable)
 
 
+CURRENTS = AboutExtractor(
+    name="fake-currents",
+    taxonomy="Direct",
+    observation=Observation.CURRENTS,
+    kind=FeatureKind.SIGNALS,
+)
+
+
 class _Extractor:
-    studies: ClassVar[tuple[str, ...]] = ()
-    labels: ClassVar[tuple[str, ...]] = ()
-    origin: ClassVar[str] = "ours"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.CURRENTS
-    kind: ClassVar[FeatureKind] = FeatureKind.SIGNALS
-    needs: ClassVar[tuple[str, ...]] = ()
-    features = ("a", "b", "c", "d")
+    features = ("x_px", "y_px")
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Any:
         return cls()
 
     def extract(self, observations: Any) -> Any:
-        log(f"extract {self.name} {len(observations)}")
+        log(f"extract {self.about.name} {len(observations)}")
         time.sleep(float(os.environ.get("FAKE_ATLAS_SLEEP", "0")))
         return np.asarray(observations, dtype=np.float64).copy()
 
 
 @dataclass(frozen=True)
 class Currents(_Extractor):
-    name: ClassVar[str] = "fake-currents"
-    taxonomy: ClassVar[str] = "Direct"
+    about: ClassVar = CURRENTS
     gain: float = 1.0
+    faces: int = 4
+
+    @property
+    def features(self) -> tuple[str, ...]:
+        return tuple("abcdef"[: self.faces])
+
+    @classmethod
+    def for_sensor(cls, geometry: SensorGeometry) -> Any:
+        return cls(faces=len(geometry.face_normals or ()))
 
 
 @dataclass(frozen=True)
-class Gaps(_Extractor):
+class Gaps(Currents):
     """Finds nothing in every fourth sample."""
 
-    name: ClassVar[str] = "fake-gaps"
-    taxonomy: ClassVar[str] = "Direct"
+    about: ClassVar = replace(CURRENTS, name="fake-gaps")
 
     def extract(self, observations: Any) -> Any:
         features = super().extract(observations)
@@ -186,18 +201,23 @@ class Gaps(_Extractor):
 
 @dataclass(frozen=True)
 class Framed(_Extractor):
-    name: ClassVar[str] = "fake-framed"
-    taxonomy: ClassVar[str] = "BCM"
-    observation: ClassVar[Observation] = Observation.FRAMES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
+    about: ClassVar = AboutExtractor(
+        name="fake-framed",
+        taxonomy="BCM",
+        observation=Observation.FRAMES,
+        kind=FeatureKind.SPOT,
+    )
 
 
 @dataclass(frozen=True)
 class Balanced(_Extractor):
-    name: ClassVar[str] = "fake-balanced"
-    taxonomy: ClassVar[str] = "Voltage balance"
-    kind: ClassVar[FeatureKind] = FeatureKind.BALANCE
-    needs: ClassVar[tuple[str, ...]] = ("aperture_width_mm",)
+    about: ClassVar = AboutExtractor(
+        name="fake-balanced",
+        taxonomy="Voltage balance",
+        needs=("aperture_width_mm",),
+        observation=Observation.CURRENTS,
+        kind=FeatureKind.BALANCE,
+    )
     features = ("s_a", "s_b")
 
     def extract(self, observations: Any) -> Any:
@@ -208,14 +228,12 @@ class Balanced(_Extractor):
 
 @dataclass
 class LeastSquares:
-    name: ClassVar[str] = "fake-least-squares"
-    taxonomy: ClassVar[str] = "LSQ"
-    studies: ClassVar[tuple[str, ...]] = ()
-    labels: ClassVar[tuple[str, ...]] = ()
-    origin: ClassVar[str] = "ours"
-    version: ClassVar[int] = 1
-    accepts: ClassVar[frozenset[FeatureKind]] = frozenset({FeatureKind.SIGNALS})
-    needs: ClassVar[tuple[str, ...]] = ("face_normals",)
+    about: ClassVar = AboutModel(
+        name="fake-least-squares",
+        taxonomy="LSQ",
+        needs=("face_normals",),
+        accepts=frozenset({FeatureKind.SIGNALS}),
+    )
     normals: tuple[tuple[float, ...], ...] = ()
     matrix_: Any = field(default=None, init=False)
 
@@ -234,7 +252,7 @@ class LeastSquares:
 
 @dataclass
 class Broken(LeastSquares):
-    name: ClassVar[str] = "fake-broken"
+    about: ClassVar = replace(LeastSquares.about, name="fake-broken")
 
     def fit(self, features: Any, sun: Any) -> Any:
         log("fit fake-broken")
@@ -245,7 +263,7 @@ class Broken(LeastSquares):
 
 @dataclass
 class Unbuildable(LeastSquares):
-    name: ClassVar[str] = "fake-unbuildable"
+    about: ClassVar = replace(LeastSquares.about, name="fake-unbuildable")
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Any:
@@ -256,7 +274,7 @@ class Unbuildable(LeastSquares):
 class Choosy(LeastSquares):
     """Cannot work on any data, and says so in its contract's words."""
 
-    name: ClassVar[str] = "fake-choosy"
+    about: ClassVar = replace(LeastSquares.about, name="fake-choosy")
 
     def fit(self, features: Any, sun: Any) -> Any:
         log("fit fake-choosy")
@@ -267,7 +285,7 @@ class Choosy(LeastSquares):
 class Singular(LeastSquares):
     """Its linear algebra gives up: a ValueError like a refusal, and none."""
 
-    name: ClassVar[str] = "fake-singular"
+    about: ClassVar = replace(LeastSquares.about, name="fake-singular")
 
     def fit(self, features: Any, sun: Any) -> Any:
         log("fit fake-singular")

@@ -13,6 +13,6 @@ def parts(*models: Any, presets: tuple[Any, ...] = (Diodes(),)) -> Parts:
     extractors = (Currents, Gaps, Framed, Balanced)
     return Parts(
         {preset.name: preset for preset in presets},
-        {extractor.name: extractor for extractor in extractors},
-        {model.name: model for model in models or (LeastSquares,)},
+        {extractor.about.name: extractor for extractor in extractors},
+        {model.about.name: model for model in models or (LeastSquares,)},
     )

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
+from benchmark.contract import Cell
+from benchmark.datasets.pins import Pin
 from benchmark.metrics.score import METRICS
-from benchmark.plan.combinations import Cell
 from benchmark.results.components import Components
-from benchmark.results.pins import Pin
 from benchmark.results.store import SWEPT
 
 

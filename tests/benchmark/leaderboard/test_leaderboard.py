@@ -18,10 +18,10 @@ from benchmark.leaderboard.board import board_of
 from benchmark.leaderboard.pages import FORMATS, PAGE, page, render
 from benchmark.leaderboard.ranking import UNITS
 from benchmark.leaderboard.update import update, write_page
+from benchmark.progress import silent
 from benchmark.results.store import Store
-from benchmark.running import task
+from benchmark.running import generated
 from benchmark.running.pinning import UnversionedChangeError
-from benchmark.running.progress import silent
 
 pytestmark = pytest.mark.usefixtures("readings_only", "log")
 CELL = "fake-diodes/noisy/fake-currents/fake-least-squares"
@@ -31,7 +31,7 @@ PARTS = fake_plan.parts(presets=PRESETS)
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory, readings_only):
-    task._kept.clear()
+    generated.forget()
     directory = tmp_path_factory.mktemp("published")
     update(directory, progress=silent, parts=PARTS)
     return directory
@@ -108,10 +108,11 @@ def plug_in(tmp_path, monkeypatch):
     """An extractor kept in a file of its own, and how to rewrite that file."""
     path = tmp_path / "plugged_in.py"
     text = (
-        '"""A plug-in."""\n\nfrom fake_atlas import Currents\n\n\n'
+        '"""A plug-in."""\n\nfrom dataclasses import replace\n\n'
+        "from fake_atlas import Currents\n\n\n"
         "class Plugged(Currents):\n"
         '    """Adds nothing."""\n\n'
-        '    name = "fake-plugged"\n\n'
+        '    about = replace(Currents.about, name="fake-plugged")\n\n'
         "    def extract(self, observations):\n"
         "        return super().extract(observations) + 0.0\n"
     )
@@ -154,7 +155,8 @@ def test_an_extractor_s_new_code_renews_its_own_rows_and_its_digest_alone(tmp_pa
 
 
 def test_a_changed_model_or_harness_renews_what_they_are_in(published, monkeypatch):
-    newer = type("Newer", (LeastSquares,), {"version": 2, "__module__": "fake_atlas"})
+    about = dataclasses.replace(LeastSquares.about, version=2)
+    newer = type("Newer", (LeastSquares,), {"about": about, "__module__": "fake_atlas"})
     parts = fake_plan.parts(newer, presets=PRESETS)
     before = states(published)
     done = update(published, progress=silent, parts=parts)
@@ -224,7 +226,7 @@ def test_pipelines_that_differ_less_than_units_share_a_rank_in_every_form(tmp_pa
     class Alike(LeastSquares):
         """Turns what the other finds by a thousandth of a degree."""
 
-        name = "fake-alike"
+        about = dataclasses.replace(LeastSquares.about, name="fake-alike")
 
         def predict(self, features):
             found = super().predict(features)

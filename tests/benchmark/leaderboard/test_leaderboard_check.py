@@ -10,16 +10,16 @@ from fake_results import copied
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from benchmark.contract import Cell
 from benchmark.leaderboard import check as checking
 from benchmark.leaderboard.check import NATIVE, OLDER, Difference, compare_scores
 from benchmark.leaderboard.pages import PAGE
 from benchmark.leaderboard.update import update, write_page
 from benchmark.metrics.rings import RINGS
 from benchmark.metrics.score import METRICS
-from benchmark.plan.combinations import Cell
+from benchmark.progress import silent
 from benchmark.results.store import Store
-from benchmark.running import task
-from benchmark.running.progress import silent
+from benchmark.running import generated
 from benchmark.running.run import RunInterruptedError
 
 pytestmark = pytest.mark.usefixtures("readings_only", "log")
@@ -30,7 +30,7 @@ SCORES = "scores/fake-diodes.csv"
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory, readings_only):
-    task._kept.clear()
+    generated.forget()
     directory = tmp_path_factory.mktemp("published")
     update(directory, progress=silent, parts=PARTS)
     return directory
@@ -172,7 +172,8 @@ def test_a_changed_bound_is_named_by_its_data_set(published):
 
 
 def test_results_of_other_code_are_named_without_measuring(published, log):
-    newer = type("Newer", (LeastSquares,), {"version": 2, "__module__": "fake_atlas"})
+    about = dataclasses.replace(LeastSquares.about, version=2)
+    newer = type("Newer", (LeastSquares,), {"about": about, "__module__": "fake_atlas"})
     parts = fake_plan.parts(newer, presets=(Diodes(), Diodes(name="fake-second", n=200)))
     found = check(published, stored_only=True, parts=parts)
     assert [(d.file, d.cell) for d in found] == [

@@ -14,10 +14,10 @@ from benchmark.leaderboard.ranking import LEADING, UNITS
 from benchmark.leaderboard.update import update
 from benchmark.plan import combinations as plan
 from benchmark.plan.parts import Parts, installed
+from benchmark.progress import silent
 from benchmark.results.store import PUBLISHED, Store
-from benchmark.running import pinning, task
+from benchmark.running import generated, pinning
 from benchmark.running import run as runner
-from benchmark.running.progress import silent
 
 #: Standard errors by which the best of some hundred unbiased scores may fall below the bound.
 BY_CHANCE = 4.0
@@ -175,6 +175,7 @@ def test_every_dataset_and_condition_is_scored_that_an_implemented_pipeline_can_
     assert unscored <= {dataset for dataset, _, _ in published.pins()}
 
 
+@pytest.mark.slow
 def test_measured_now_is_what_is_committed(published, fresh):
     scores = published.scores()
     counts = {place[:2]: pin.n for place, pin in published.pins().items() if place[2] == "test"}
@@ -200,7 +201,7 @@ def test_bringing_an_up_to_date_record_up_to_date_renders_nothing(tmp_path, monk
     assert after == before
 
 
-@pytest.mark.parametrize("source", ["published", "fresh"])
+@pytest.mark.parametrize("source", ["published", pytest.param("fresh", marks=pytest.mark.slow)])
 def test_under_low_noise_the_thresholded_centroid_beats_the_plain_one(source, request):
     """Chang2008, He2005. With every model that does not hide the extractor behind its own error:
 
@@ -221,7 +222,7 @@ def test_least_squares_beat_the_nominal_projection_once_tilt_and_focal_length_er
     assert scores[extractor, "lsq"] < scores[extractor, "spm"]
 
 
-@pytest.mark.parametrize("source", ["published", "fresh"])
+@pytest.mark.parametrize("source", ["published", pytest.param("fresh", marks=pytest.mark.slow)])
 def test_no_pipeline_beats_the_cramer_rao_bound_beyond_statistical_error(source, request):
     assert beaten(request.getfixturevalue(source)) == []
 
@@ -240,7 +241,7 @@ def test_a_model_that_peeks_at_the_truth_is_caught(tmp_path, monkeypatch):
         return mixed / np.linalg.norm(mixed, axis=1, keepdims=True)
 
     monkeypatch.setattr(model, "predict", peek)
-    task._kept.clear()
+    generated.forget()
     store = Store(tmp_path)
     assert runner.run([cell], store).failed == ()
     assert len(beaten(store)) == 1

@@ -6,12 +6,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from benchmark.contract import Cell
 from benchmark.leaderboard import ranking
 from benchmark.leaderboard.board import at_field, build, within_error
 from benchmark.leaderboard.ranking import LEADING, UNITS, Spread
 from benchmark.metrics.rings import RINGS
 from benchmark.metrics.score import METRICS
-from benchmark.plan.combinations import Cell
 
 
 def row(model, rms, *, unit=0, condition="c", dataset="d", **more):

@@ -48,6 +48,7 @@ def test_frames_are_the_expected_light_with_its_noise_and_always_the_same():
     assert pulls.std() == pytest.approx(1.0, abs=0.01)
 
 
+@pytest.mark.slow
 def test_errors_over_the_bound_on_the_reference_sets():
     """The matched profile near the bound, moments and balance a few times above it."""
     rows = {

@@ -1,16 +1,13 @@
 """Results on disk: sorted, canonical, whole or not at all, and clear about what is broken."""
 
-import os
-
 import pytest
 from fake_results import cell, components, numbers, pin, swept
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from benchmark.datasets.pins import alike
 from benchmark.metrics.score import METRICS
 from benchmark.results.components import ComponentsError
-from benchmark.results.files import replace
-from benchmark.results.pins import alike
 from benchmark.results.store import NUMBERS, PUBLISHED, Store, UnknownFieldError
 from benchmark.results.tables import StoreError, number, read, spelt, text_of
 
@@ -259,19 +256,3 @@ def test_no_bound_is_like_no_bound_alone():
     assert alike(None, None)
     assert not alike(None, 0.0)
     assert not alike(0.0, None)
-
-
-def test_a_failed_write_leaves_the_old_file_and_no_temporary_one(tmp_path, monkeypatch):
-    path = tmp_path / "made" / "on the way" / "file"
-    assert replace(path, "old")
-    assert not replace(path, "old"), "unchanged content is not written again"
-    assert path.stat().st_mode & 0o777 == 0o644, "for everyone to read"
-
-    def refuse(descriptor):
-        raise OSError("disk full")
-
-    monkeypatch.setattr(os, "fsync", refuse)
-    with pytest.raises(OSError, match="disk full"):
-        replace(path, "new")
-    assert path.read_text() == "old"
-    assert [p.name for p in path.parent.iterdir()] == ["file"]

@@ -9,15 +9,16 @@ import pytest
 from fake_atlas import Diodes
 
 from benchmark import datasets
+from benchmark.contract import SPLITS, UnknownNameError
+from benchmark.datasets.samples import HEAD, head_hash, samples_hash
 from benchmark.plan import combinations as plan
-from benchmark.plan.parts import SPLITS, Parts, UnknownNameError, installed
-from benchmark.results.digests import HEAD, head_hash, samples_hash
+from benchmark.plan.parts import Parts, installed
+from benchmark.progress import silent
 from benchmark.results.record import opened
 from benchmark.results.store import PUBLISHED, Store
-from benchmark.running import pinning, task
+from benchmark.running import generated, pinning
 from benchmark.running import run as runner
 from benchmark.running.pinning import UnversionedChangeError, changed_heads
-from benchmark.running.progress import silent
 
 SMALL = ("pd-maskless-cube", "oi-maskless-pyramid")  # a second each
 
@@ -44,7 +45,7 @@ def parts(*presets):
 
 @pytest.fixture
 def store(tmp_path):
-    task._kept.clear()
+    generated.forget()
     return Store(tmp_path / "store")
 
 
@@ -261,7 +262,7 @@ def test_hashes_depend_on_neither_workers_nor_order_nor_company(tmp_path):
 
     def made(name, *wanted, workers):
         store = Store(tmp_path / name)
-        task._kept.clear()
+        generated.forget()
         update(store, workers=workers, parts=_some(*wanted))
         return {place: pin.data_hash for place, pin in store.pins().items()}
 

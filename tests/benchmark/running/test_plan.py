@@ -7,9 +7,8 @@ import fake_plan
 import pytest
 
 from algorithms.contract import UnsuitableDesignError
+from benchmark.contract import Cell, UnknownNameError
 from benchmark.plan import combinations as plan
-from benchmark.plan.combinations import Cell
-from benchmark.plan.parts import UnknownNameError
 
 
 @pytest.fixture
@@ -37,8 +36,11 @@ def test_cells_and_incompatible_pairs_together_are_everything(parts):
 
 def test_features_a_model_cannot_read_are_refused_with_the_reason(parts):
     class Spots(fake_atlas.LeastSquares):
-        name = "fake-spots"
-        accepts = frozenset({fake_atlas.FeatureKind.SPOT})
+        about = dataclasses.replace(
+            fake_atlas.LeastSquares.about,
+            name="fake-spots",
+            accepts=frozenset({fake_atlas.FeatureKind.SPOT}),
+        )
 
     refused = plan.incompatible(
         extractors="fake-currents", models="fake-spots", parts=fake_plan.parts(Spots)
@@ -48,14 +50,14 @@ def test_features_a_model_cannot_read_are_refused_with_the_reason(parts):
 
 def test_a_design_that_an_implementation_refuses_is_not_planned_and_says_why():
     class Pairs(fake_atlas.LeastSquares):
-        name = "fake-pairs"
+        about = dataclasses.replace(fake_atlas.LeastSquares.about, name="fake-pairs")
 
         @classmethod
         def for_sensor(cls, geometry, kind):
             raise UnsuitableDesignError(f"needs two faces; got {len(geometry.face_normals)}")
 
     class Halves(fake_atlas.Currents):
-        name = "fake-halves"
+        about = dataclasses.replace(fake_atlas.Currents.about, name="fake-halves")
 
         @classmethod
         def for_sensor(cls, geometry):
@@ -76,14 +78,14 @@ def test_a_defect_of_an_implementation_is_planned_so_that_its_row_says_what_fail
     """Only the contract's own word for a design is a refusal; a plain ValueError is none."""
 
     class Defective(fake_atlas.LeastSquares):
-        name = "fake-defective"
+        about = dataclasses.replace(fake_atlas.LeastSquares.about, name="fake-defective")
 
         @classmethod
         def for_sensor(cls, geometry, kind):
             raise error("typo")
 
     class Blind(fake_atlas.Currents):
-        name = "fake-blind"
+        about = dataclasses.replace(fake_atlas.Currents.about, name="fake-blind")
 
         @classmethod
         def for_sensor(cls, geometry):

@@ -10,12 +10,12 @@ import pytest
 
 from benchmark.metrics.score import repeatability_deg
 from benchmark.plan import combinations as plan
+from benchmark.progress import silent, terminal_progress
 from benchmark.results.record import Record
 from benchmark.results.store import Store
+from benchmark.running import generated, task
 from benchmark.running import run as runner
-from benchmark.running import task
 from benchmark.running.backend import DaskMissingError, bundles
-from benchmark.running.progress import silent, terminal_progress
 
 pytestmark = pytest.mark.usefixtures("log")
 
@@ -138,7 +138,7 @@ def test_a_second_run_renders_nothing_and_changes_no_byte(store, log):
 
 def test_each_split_is_generated_and_extracted_from_once_for_all_models(store, log):
     class Second(fake_atlas.LeastSquares):
-        name = "fake-second"
+        about = dataclasses.replace(fake_atlas.LeastSquares.about, name="fake-second")
 
     parts = fake_plan.parts(fake_atlas.LeastSquares, Second)
     measure(store, parts)
@@ -151,7 +151,8 @@ def test_each_split_is_generated_and_extracted_from_once_for_all_models(store, l
 
 def test_only_what_changed_is_measured_again(store, log):
     measure(store)
-    newer = type("Newer", (fake_atlas.Gaps,), {"version": 2, "__module__": "fake_atlas"})
+    about = dataclasses.replace(fake_atlas.Gaps.about, version=2)
+    newer = type("Newer", (fake_atlas.Gaps,), {"about": about, "__module__": "fake_atlas"})
     parts = fake_plan.parts()
     parts = dataclasses.replace(parts, extractors={**parts.extractors, "fake-gaps": newer})
     stale = runner.stale(plan.cells(parts=parts), store, parts=parts)
@@ -201,8 +202,6 @@ def test_a_failure_is_a_row_with_its_reason_and_is_tried_again(store, log, monke
 
 def test_an_extractor_or_dataset_that_fails_fails_its_cells_alone(store):
     class Wrong(fake_atlas.Currents):
-        name = "fake-currents"
-
         def extract(self, observations):
             return np.zeros((len(observations), 2))
 
@@ -233,7 +232,8 @@ def test_a_partial_run_keeps_other_results(store):
 def test_a_partial_run_drops_what_its_new_code_no_longer_vouches_for(store):
     """A changed extractor measured under one condition: its other score is of older code."""
     measure(store)
-    newer = type("Newer", (fake_atlas.Gaps,), {"version": 2, "__module__": "fake_atlas"})
+    about = dataclasses.replace(fake_atlas.Gaps.about, version=2)
+    newer = type("Newer", (fake_atlas.Gaps,), {"about": about, "__module__": "fake_atlas"})
     parts = fake_plan.parts()
     parts = dataclasses.replace(parts, extractors={**parts.extractors, "fake-gaps": newer})
     runner.run(
@@ -308,42 +308,30 @@ def test_a_worker_lets_go_of_large_data_before_it_generates_more(monkeypatch):
     generate = fake_atlas.Diodes.generate
 
     def watched(self, condition, split, n=None):
-        held.append(len(task._kept))
+        held.append(len(generated._kept))
         return generate(self, condition, split, n)
 
     monkeypatch.setattr(fake_atlas.Diodes, "generate", watched)
     for limit, expected in ((2**30, [0, 0, 0, 1, 1, 1]), (1000, [0] * 6)):
-        monkeypatch.setattr(task, "_KEPT_BYTES", limit)
-        task._kept.clear()
+        monkeypatch.setattr(generated, "_KEPT_BYTES", limit)
+        generated.forget()
         held.clear()
         for condition in preset.conditions:
-            task.generated_pins(preset, condition)
+            generated.generated_pins(preset, condition)
         assert held == expected
 
 
 def test_data_kept_are_those_of_the_same_parameters_and_unit():
     first, other = fake_atlas.Diodes(), fake_atlas.Diodes(seed=8)
-    one, two = (task.generated_pins(preset, "quiet") for preset in (first, other))
+    one, two = (generated.generated_pins(preset, "quiet") for preset in (first, other))
     assert [a.data_hash == b.data_hash for a, b in zip(one, two, strict=True)] == [False] * 3
-    again = task.generated_pins(fake_atlas.Diodes(), "quiet")
+    again = generated.generated_pins(fake_atlas.Diodes(), "quiet")
     assert again is one, "an equal preset finds them"
 
 
 def test_dask_without_its_package_is_a_clear_error(store):
     with pytest.raises(DaskMissingError, match="pip install distributed"):
         measure(store, scheduler="tcp://127.0.0.1:1")
-
-
-def test_measuring_uses_one_thread_and_restores_the_number_after(store):
-    import cv2
-
-    from benchmark.running.threads import _bundled_blas, one_thread
-
-    before = [library.get() for library in _bundled_blas()]
-    with one_thread():
-        assert cv2.getNumThreads() == 1
-        assert all(library.get() == 1 for library in _bundled_blas())
-    assert [library.get() for library in _bundled_blas()] == before
 
 
 def test_no_workers_is_refused(store):

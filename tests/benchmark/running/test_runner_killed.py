@@ -18,7 +18,7 @@ PROGRAM = """
 import sys
 import fake_atlas
 import fake_plan
-from benchmark import plan
+from benchmark.plan import combinations as plan
 from benchmark.running import run as runner
 from benchmark.results.store import Store
 
@@ -46,7 +46,7 @@ def start(directory, workers, log, sleep):
 
 
 def finish(process):
-    out, err = process.communicate(timeout=120)
+    out, err = process.communicate(timeout=600)
     assert process.returncode == 0, err
     return [int(number) for number in out.split()]
 
@@ -73,8 +73,8 @@ def test_a_killed_run_is_finished_by_the_next_with_identical_bytes(
 ):
     store = Store(tmp_path / "store")
     journal = Record(store).journal
-    process = start(store.directory, workers, tmp_path / "log", 0.15)
-    deadline = time.monotonic() + 60
+    process = start(store.directory, workers, tmp_path / "log", 0.4)
+    deadline = time.monotonic() + 600
     while not (journal.is_file() and journal.read_bytes().count(b'"score"') >= 2):
         assert process.poll() is None, "the run ended before it could be killed"
         assert time.monotonic() < deadline

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import dataclasses
 
 import fake_atlas
 import fake_plan
@@ -10,9 +11,9 @@ import numpy as np
 import pytest
 
 from benchmark.plan.combinations import cells
+from benchmark.progress import silent
 from benchmark.results.tables import StoreError
 from benchmark.running import times
-from benchmark.running.progress import silent
 
 pytestmark = pytest.mark.usefixtures("log")
 
@@ -53,11 +54,11 @@ def test_what_does_not_run_has_no_time(tmp_path):
 
 def test_only_what_changed_is_timed_again(tmp_path):
     class Newer(fake_atlas.LeastSquares):
-        version = fake_atlas.LeastSquares.version + 1
+        about = dataclasses.replace(fake_atlas.LeastSquares.about, version=2)
 
     times.update(tmp_path, silent, parts=parts(fake_atlas.Broken))
     newer = fake_plan.parts(Newer, fake_atlas.Broken)
-    outdated = {p for p in pipelines(newer) if p[2] == Newer.name}
+    outdated = {p for p in pipelines(newer) if p[2] == Newer.about.name}
     assert set(times.times_of_code(tmp_path, newer)) == pipelines(newer) - outdated
     assert times.update(tmp_path, silent, parts=newer) == len(outdated) > 0
     assert set(times.times_of_code(tmp_path, newer)) == pipelines(newer)

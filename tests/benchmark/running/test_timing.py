@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 from benchmark.plan.combinations import Cell
+from benchmark.progress import silent
 from benchmark.results.components import current
 from benchmark.running import times, timing
-from benchmark.running.progress import silent
 
 
 class Clock:

@@ -351,7 +351,7 @@ def test_no_planned_pair_fails_on_the_analog_datasets(name: str) -> None:
     samples = preset.generate("nominal", "calibration")
     for cell in plan.cells(name, "nominal"):
         extractor = installed().extractor(cell.extractor)
-        model = installed().model(cell.model).for_sensor(preset.geometry, extractor.kind)
+        model = installed().model(cell.model).for_sensor(preset.geometry, extractor.about.kind)
         features = extractor.for_sensor(preset.geometry).extract(samples.observations)
         found = model.fit(features, samples.sun).predict(features)
         assert np.isfinite(found).all(axis=1).mean() > 0.95, cell

@@ -11,9 +11,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from algorithms.contract import Pipeline
 from algorithms.extractors.currents.photodiode import VoltageBalance
 from algorithms.models.geometric.standard_projection import StandardProjection
+from algorithms.pipeline import Pipeline
 from benchmark import datasets
 from benchmark.simulator.light.sun_disc import SolarDisc, from_angles
 from benchmark.simulator.masks.apertures import Aperture, Mask

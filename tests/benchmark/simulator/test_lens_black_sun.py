@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from benchmark import datasets
-from benchmark.datasets import Samples, data_digest
+from benchmark.datasets import Samples, samples_hash
 from benchmark.metrics.bounds import cramer_rao
 from benchmark.seeds import generator
 from benchmark.simulator.light.sun_disc import from_angles, tangent_axes
@@ -168,7 +168,7 @@ def test_batches_do_not_change_the_pictures() -> None:
             frames = np.concatenate(
                 [sensor.observe(scene.part(a, b), pattern, streams) for a, b in pairwise(cuts)]
             )
-            digests.add(data_digest(Samples(frames, scene.sun, scene.origin_px)))
+            digests.add(samples_hash(Samples(frames, scene.sun, scene.origin_px)))
         assert len(digests) == 1
 
 

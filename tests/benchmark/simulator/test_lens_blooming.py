@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from benchmark import datasets
-from benchmark.datasets import Samples, data_digest
+from benchmark.datasets import Samples, samples_hash
 from benchmark.simulator.light.sun_disc import from_angles
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.scene import Scene
@@ -178,7 +178,7 @@ def test_batches_do_not_change_the_pictures() -> None:
             frames = np.concatenate(
                 [sensor.observe(scene.part(a, b), pattern, streams) for a, b in pairwise(cuts)]
             )
-            digests.add(data_digest(Samples(frames, scene.sun, scene.origin_px)))
+            digests.add(samples_hash(Samples(frames, scene.sun, scene.origin_px)))
         assert len(digests) == 1
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from benchmark.datasets import get
-from benchmark.results.digests import samples_hash
+from benchmark.datasets.samples import samples_hash
 from benchmark.simulator.light.memory import LightMemory, memory
 
 

@@ -12,7 +12,7 @@ from xml.etree import ElementTree as ET
 import numpy as np
 import pytest
 
-from algorithms.contract import FeatureKind, Observation
+from algorithms.contract import AboutExtractor, FeatureKind, Observation
 from algorithms.discovery import discover_extractors
 from benchmark.reference.series import SWEEPS
 from benchmark.results.record import point_of
@@ -27,15 +27,13 @@ from benchmark.sweeps import tables as sweep_tables
 class Plain:
     """Balances by the closed form."""
 
-    name: ClassVar[str] = "plain"
-    taxonomy: ClassVar[str] = "Voltage balance"
-    studies: ClassVar[tuple[str, ...]] = ()
-    labels: ClassVar[tuple[str, ...]] = ()
-    origin: ClassVar[str] = "survey"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.CURRENTS
-    kind: ClassVar[FeatureKind] = FeatureKind.BALANCE
-    needs: ClassVar[tuple[str, ...]] = ()
+    about: ClassVar = AboutExtractor(
+        name="plain",
+        taxonomy="Voltage balance",
+        origin="survey",
+        observation=Observation.CURRENTS,
+        kind=FeatureKind.BALANCE,
+    )
     features: ClassVar[tuple[str, ...]] = ("s_a", "s_b")
 
     @classmethod
@@ -49,18 +47,17 @@ class Plain:
 
 
 class Broken(Plain):
-    name = "broken"
+    about = dataclasses.replace(Plain.about, name="broken")
 
     def extract(self, observations):
         raise RuntimeError("no light")
 
 
 class Spots(Plain):
-    name = "spots-of-readings"
-    kind = FeatureKind.SPOT
+    about = dataclasses.replace(Plain.about, name="spots-of-readings", kind=FeatureKind.SPOT)
 
 
-FEW = {c.name: c for c in (Plain, Broken, Spots)}
+FEW = {c.about.name: c for c in (Plain, Broken, Spots)}
 
 
 def quiet(*_):
@@ -117,11 +114,11 @@ def test_what_is_current_stays_and_failures_are_tried_again(made):
 
 
 def test_a_method_of_other_code_is_measured_again_alone(tmp_path):
-    second = type("Second", (Plain,), {"name": "second"})
+    second = type("Second", (Plain,), {"about": dataclasses.replace(Plain.about, name="second")})
     both = {"plain": Plain, "second": second}
     first = sweeps.update(tmp_path, 1, quiet, extractors=both)
     before = rows_of(tmp_path)
-    newer = type("Newer", (second,), {"version": 2})
+    newer = type("Newer", (second,), {"about": dataclasses.replace(second.about, version=2)})
     again = sweeps.update(tmp_path, 1, quiet, extractors={"plain": Plain, "second": newer})
     assert again.computed == first.computed // 2
     version = "extractor_version"
@@ -142,7 +139,8 @@ def test_a_series_of_other_code_is_measured_again_alone(made, monkeypatch, name)
 
 def test_a_reason_that_changes_is_renewed(made, monkeypatch):
     """What a method is refused for is the plan's to say, whatever code stood there before."""
-    monkeypatch.setattr(Spots, "observation", Observation.EVENTS)
+    events = dataclasses.replace(Spots.about, observation=Observation.EVENTS)
+    monkeypatch.setattr(Spots, "about", events)
     monkeypatch.setattr(sweep_plan, "_SERIES_OF", dict.fromkeys(Observation, ()))
     sweeps.update(made[0], 1, quiet, extractors=FEW)
     assert sweep_tables.unmeasured(rows_of(made[0])) == [
@@ -216,9 +214,14 @@ def test_pictures_are_the_same_every_time_and_well_formed(made):
         text = sweep_pictures.picture(rows, sweep)
         assert text == sweep_pictures.picture(rows, sweep)
         ET.fromstring(text)
-    drawn = sweep_pictures.picture(rows, "noise")
-    assert drawn.count("<circle") == 7 + 2  # the legend's two
-    assert "nothing found" in drawn  # the broken one's panel
+    assert "nothing found" in sweep_pictures.picture(rows, "noise")  # the broken one's panel
+    dots = [
+        line.get_xdata()
+        for axes in sweep_pictures.figure(rows, "noise").axes
+        for line in axes.lines
+        if line.get_marker() == "o"
+    ]
+    assert sum(map(len, dots)) == 7
     with pytest.raises(ValueError, match="sweep must be one of noise, size, phase"):
         sweep_pictures.picture(rows, "pedestal")
 
@@ -227,8 +230,8 @@ def test_every_method_of_the_survey_has_a_noise_sweep():
     """Accept point: all 19 values of the taxonomy, error and bound from SNR 5 upwards."""
     known = discover_extractors()
     plan = sweep_plan.planned(known)
-    swept = {known[p.extractor].taxonomy for p in plan.settings if p.sweep == "noise"}
-    implemented = {extractor.taxonomy for extractor in known.values()}
+    swept = {known[p.extractor].about.taxonomy for p in plan.settings if p.sweep == "noise"}
+    implemented = {extractor.about.taxonomy for extractor in known.values()}
     assert implemented <= swept
     for point, reason in plan.refused.items():
         assert reason, point

@@ -8,7 +8,14 @@ from typing import ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from algorithms.contract import FeatureKind, Floats, Observation, Origin, SensorGeometry
+from algorithms.contract import (
+    AboutExtractor,
+    Extractor,
+    FeatureKind,
+    Floats,
+    Observation,
+    SensorGeometry,
+)
 from algorithms.inputs import as_frames, require_positive
 
 #: Standard deviations of the blur beyond which its taps are left out.
@@ -16,7 +23,7 @@ _REACH = 3.0
 
 
 @dataclass(frozen=True)
-class BlackSunCentroid:
+class BlackSunCentroid(Extractor):
     """Corner of the dark hole in binary masks of descending thresholds, averaged over them.
 
     Pixels of a CMOS camera that take far too much light invert: the Sun is a black disc with a
@@ -40,6 +47,11 @@ class BlackSunCentroid:
     blur_px : float
         Standard deviation of the Gaussian blur.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: alg:BCSM (fe:bscm, Saleem2019): blur; masks ``I > T + f`` for falling f; contours;
@@ -59,17 +71,31 @@ class BlackSunCentroid:
 
     Cost: 20 operations a pixel for the blur, 4 for the masks, and 10 a pixel of the holes and
     threshold.
+
+    References
+    ----------
+    Saleem2019; survey fe:bscm, alg:BCSM.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> y, x = np.mgrid[:40, :44]
+    >>> away = np.hypot(x - 21.3, y - 19.8)
+    >>> frames = 240 * (np.clip(9.5 - away, 0, 1) - np.clip(4.0 - away, 0, 1))[None]
+    >>> BlackSunCentroid().extract(frames).round(2)
+    array([[21.31, 19.81]])
     """
 
-    name: ClassVar[str] = "bscm"
-    taxonomy: ClassVar[str] = "BSCM"
-    studies: ClassVar[tuple[str, ...]] = ("Saleem2019",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:bscm", "alg:BCSM")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.FRAMES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
-    needs: ClassVar[tuple[str, ...]] = ("lens_distortion",)
+    about: ClassVar = AboutExtractor(
+        name="bscm",
+        taxonomy="BSCM",
+        studies=("Saleem2019",),
+        labels=("fe:bscm", "alg:BCSM"),
+        origin="survey",
+        needs=("lens_distortion",),
+        observation=Observation.FRAMES,
+        kind=FeatureKind.SPOT,
+    )
 
     highest: float = 0.9
     lowest: float = 0.1
@@ -82,21 +108,18 @@ class BlackSunCentroid:
     def __post_init__(self) -> None:
         if not 0.0 < self.lowest < self.highest < 1.0:
             raise ValueError(
-                f"{self.name}: lowest and highest must rise within (0, 1); "
+                f"{self.about.name}: lowest and highest must rise within (0, 1); "
                 f"got {self.lowest!r} and {self.highest!r}"
             )
         if self.loops < 1:
-            raise ValueError(f"{self.name}: loops must be at least 1; got {self.loops!r}")
+            raise ValueError(f"{self.about.name}: loops must be at least 1; got {self.loops!r}")
         if not 0.0 < self.survival <= 1.0:
-            raise ValueError(f"{self.name}: survival must be in (0, 1]; got {self.survival!r}")
+            raise ValueError(
+                f"{self.about.name}: survival must be in (0, 1]; got {self.survival!r}"
+            )
         require_positive(
-            self.name, moved_px=self.moved_px, radius_px=self.radius_px, blur_px=self.blur_px
+            self.about.name, moved_px=self.moved_px, radius_px=self.radius_px, blur_px=self.blur_px
         )
-
-    @property
-    def features(self) -> tuple[str, ...]:
-        """Names of the two output columns."""
-        return ("x_px", "y_px")
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
@@ -106,7 +129,7 @@ class BlackSunCentroid:
         camera's detector does with too much light, the design does not say; behind a CCD nothing
         inverts either, and nothing is found.
         """
-        geometry.require(*cls.needs, by=cls.name)
+        geometry.require(*cls.about.needs, by=cls.about.name)
         return cls()
 
     def extract(self, observations: ArrayLike) -> Floats:

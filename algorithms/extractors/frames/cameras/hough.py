@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from algorithms.contract import (
+    AboutExtractor,
+    Extractor,
     FeatureKind,
     Floats,
     Observation,
-    Origin,
     SensorGeometry,
     UnsuitableDesignError,
 )
@@ -23,7 +24,7 @@ _TURN_DEG = 0.25
 
 
 @dataclass(frozen=True)
-class HoughLines:
+class HoughLines(Extractor):
     """Blooming line of a saturated Sun, and the place on it that the light around points to.
 
     Charge that a CCD's pixels cannot hold runs up and down their columns: a line through the Sun,
@@ -42,6 +43,11 @@ class HoughLines:
         The accumulator threshold tau, at least 2: rows that must vote for a line.
     reach_px : float
         Gradients count up to this far from the line. Ours.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -66,17 +72,31 @@ class HoughLines:
     then. Of two Suns the longer line wins unseen.
 
     Cost: 3 operations a pixel for the runs, 4 a run and angle, and 40 a pixel within reach.
+
+    References
+    ----------
+    Liu2016; survey fe:ht, alg:BHT.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> y, x = np.mgrid[:60, :44]
+    >>> halo = 1500 / (1 + ((x - 21) ** 2 + (y - 30.3) ** 2) / 4) ** 1.5
+    >>> halo[(abs(x - 21) <= 1) & (abs(y - 30) <= 20)] = 240
+    >>> HoughLines().extract(np.minimum(halo, 240)[None]).round(1)
+    array([[21. , 30.3]])
     """
 
-    name: ClassVar[str] = "hough-lines"
-    taxonomy: ClassVar[str] = "HT"
-    studies: ClassVar[tuple[str, ...]] = ("Liu2016",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:ht", "alg:BHT")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.FRAMES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
-    needs: ClassVar[tuple[str, ...]] = ("lens_distortion",)
+    about: ClassVar = AboutExtractor(
+        name="hough-lines",
+        taxonomy="HT",
+        studies=("Liu2016",),
+        labels=("fe:ht", "alg:BHT"),
+        origin="survey",
+        needs=("lens_distortion",),
+        observation=Observation.FRAMES,
+        kind=FeatureKind.SPOT,
+    )
 
     saturated: float = 0.8
     tilt_deg: float = 0.0
@@ -85,18 +105,21 @@ class HoughLines:
 
     def __post_init__(self) -> None:
         if not 0.0 < self.saturated < 1.0:
-            raise ValueError(f"{self.name}: saturated must be in (0, 1); got {self.saturated!r}")
+            raise ValueError(
+                f"{self.about.name}: saturated must be in (0, 1); got {self.saturated!r}"
+            )
         if not 0.0 <= self.tilt_deg <= 45.0:
-            raise ValueError(f"{self.name}: tilt_deg must be in [0, 45]; got {self.tilt_deg!r}")
+            raise ValueError(
+                f"{self.about.name}: tilt_deg must be in [0, 45]; got {self.tilt_deg!r}"
+            )
         if self.least_votes < 2:
-            raise ValueError(f"{self.name}: least_votes must be 2 or more; got {self.least_votes}")
+            raise ValueError(
+                f"{self.about.name}: least_votes must be 2 or more; got {self.least_votes}"
+            )
         if not 1.0 <= self.reach_px <= 1e4:
-            raise ValueError(f"{self.name}: reach_px must be in [1, 1e4]; got {self.reach_px!r}")
-
-    @property
-    def features(self) -> tuple[str, ...]:
-        """Names of the two output columns."""
-        return ("x_px", "y_px")
+            raise ValueError(
+                f"{self.about.name}: reach_px must be in [1, 1e4]; got {self.reach_px!r}"
+            )
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
@@ -105,7 +128,7 @@ class HoughLines:
         Behind a mask no pixel overflows. Which cameras bloom, the design does not say; with a CMOS
         detector no line is found.
         """
-        geometry.require(*cls.needs, by=cls.name)
+        geometry.require(*cls.about.needs, by=cls.about.name)
         return cls()
 
     def extract(self, observations: ArrayLike) -> Floats:
@@ -138,7 +161,7 @@ class HoughLines:
 
 
 @dataclass(frozen=True)
-class HoughCircle:
+class HoughCircle(Extractor):
     """Circle of unknown radius that most edges agree on.
 
     Every edge pixel votes for the centres that lie along its gradient, one for each radius; the
@@ -161,6 +184,11 @@ class HoughCircle:
         Whether a dark circle is sought first, for cameras whose Sun may be black, and a bright
         one only where there is none.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: alg:CHT (fe:ht, Adatrao2016): edges, accumulator ``H[a, b, r]``, ``a = x - r
@@ -179,17 +207,30 @@ class HoughCircle:
     white Sun, and blooming breaks its rim.
 
     Cost: 30 operations a pixel for edges, 4 an edge and radius, 500 an edge for the candidates.
+
+    References
+    ----------
+    Adatrao2016; survey fe:ht, alg:CHT.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> y, x = np.mgrid[:31, :33]
+    >>> frames = 200 * np.clip(5.5 - np.hypot(x - 16.3, y - 14.8), 0, 1)[None]
+    >>> HoughCircle().extract(frames).round(1)
+    array([[16.3, 14.8]])
     """
 
-    name: ClassVar[str] = "hough-circle"
-    taxonomy: ClassVar[str] = "HT"
-    studies: ClassVar[tuple[str, ...]] = ("Adatrao2016",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:ht", "alg:CHT")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.FRAMES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
-    needs: ClassVar[tuple[str, ...]] = ("pixel_pitch_mm",)
+    about: ClassVar = AboutExtractor(
+        name="hough-circle",
+        taxonomy="HT",
+        studies=("Adatrao2016",),
+        labels=("fe:ht", "alg:CHT"),
+        origin="survey",
+        needs=("pixel_pitch_mm",),
+        observation=Observation.FRAMES,
+        kind=FeatureKind.SPOT,
+    )
 
     edge: float = 0.3
     threshold: float = 0.5
@@ -199,21 +240,20 @@ class HoughCircle:
 
     def __post_init__(self) -> None:
         if not 0.0 < self.edge < 1.0:
-            raise ValueError(f"{self.name}: edge must be in (0, 1); got {self.edge!r}")
+            raise ValueError(f"{self.about.name}: edge must be in (0, 1); got {self.edge!r}")
         if not 0.0 < self.threshold <= 1.0:
-            raise ValueError(f"{self.name}: threshold must be in (0, 1]; got {self.threshold!r}")
+            raise ValueError(
+                f"{self.about.name}: threshold must be in (0, 1]; got {self.threshold!r}"
+            )
         if not 1.0 <= self.smallest_px < np.inf:
-            raise ValueError(f"{self.name}: smallest_px must be 1 or more; got {self.smallest_px}")
+            raise ValueError(
+                f"{self.about.name}: smallest_px must be 1 or more; got {self.smallest_px}"
+            )
         if self.largest_px is not None and not self.smallest_px < self.largest_px <= 1e4:
             raise ValueError(
-                f"{self.name}: largest_px must be None or in (smallest_px, 1e4]; "
+                f"{self.about.name}: largest_px must be None or in (smallest_px, 1e4]; "
                 f"got {self.largest_px!r}"
             )
-
-    @property
-    def features(self) -> tuple[str, ...]:
-        """Names of the two output columns."""
-        return ("x_px", "y_px")
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
@@ -221,18 +261,18 @@ class HoughCircle:
 
         In a camera's frames edges are weak beside those of saturated pixels: a tenth counts.
         """
-        geometry.require(*cls.needs, by=cls.name)
+        geometry.require(*cls.about.needs, by=cls.about.name)
         if geometry.lens_distortion is not None:
             return cls(edge=0.1, dark_first=True)
         for field in ("apertures", "slits", "code_bits"):
             if getattr(geometry, field) is not None:
                 raise UnsuitableDesignError(
-                    f"{cls.name} reads one circle; the sensor's design has {field}"
+                    f"{cls.about.name} reads one circle; the sensor's design has {field}"
                 )
         if geometry.aperture_shape != "round":
             raise UnsuitableDesignError(
-                f"{cls.name} reads the circle of a round aperture or a camera's Sun; the sensor's "
-                f"aperture_shape is {geometry.aperture_shape}"
+                f"{cls.about.name} reads the circle of a round aperture or a camera's Sun; the "
+                f"sensor's aperture_shape is {geometry.aperture_shape}"
             )
         return cls()
 

@@ -11,10 +11,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from algorithms.contract import (
+    AboutExtractor,
+    Extractor,
     FeatureKind,
     Floats,
     Observation,
-    Origin,
     SensorGeometry,
     UnsuitableDesignError,
 )
@@ -44,7 +45,7 @@ _LONGEST = 8.0
 
 
 @dataclass(frozen=True)
-class ImageCorrelation:
+class ImageCorrelation(Extractor):
     """Middle of the summed correlations of all spots with their templates.
 
     Windows stand where the spots are predicted. Each is correlated with the image its aperture
@@ -71,6 +72,11 @@ class ImageCorrelation:
         Largest distance of a spot from its aperture's place, px, in that search; below a quarter
         of the least distance of two apertures.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: alg:FEIC (fe:feic, Xing2008): ``x_s = int(Dx + x_s + 0.5)``, ``C_s(m, n) = sum_ij
@@ -95,17 +101,32 @@ class ImageCorrelation:
     to rest, and where fewer than 0.3 of the spots that should be whole in the frame are there.
 
     Cost: as MCAM, and ``2 (N_c + 1)^2`` operations a pixel of the template and spot.
+
+    References
+    ----------
+    Xing2008; survey fe:feic, alg:FEIC.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> holes = ((-8, -6, 5), (8, -5, 5), (-7, 7, 5), (9, 6, 5))
+    >>> y, x = np.mgrid[:40, :46]
+    >>> away = [np.maximum(abs(x - 23.4 - u), abs(y - 18.8 - v)) for u, v, _ in holes]
+    >>> frames = 200 * np.clip(3.0 - np.array(away), 0, 1).sum(axis=0)[None]
+    >>> ImageCorrelation(holes, shape="square", correlations=4).extract(frames).round(1)
+    array([[23.4, 18.8]])
     """
 
-    name: ClassVar[str] = "feic"
-    taxonomy: ClassVar[str] = "FEIC"
-    studies: ClassVar[tuple[str, ...]] = ("Xing2008",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:feic", "alg:FEIC")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.FRAMES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
-    needs: ClassVar[tuple[str, ...]] = PATTERN_NEEDS
+    about: ClassVar = AboutExtractor(
+        name="feic",
+        taxonomy="FEIC",
+        studies=("Xing2008",),
+        labels=("fe:feic", "alg:FEIC"),
+        origin="survey",
+        needs=PATTERN_NEEDS,
+        observation=Observation.FRAMES,
+        kind=FeatureKind.SPOT,
+    )
 
     apertures_px: Apertures = field(repr=False)
     shape: Shape = "round"
@@ -117,24 +138,22 @@ class ImageCorrelation:
 
     def __post_init__(self) -> None:
         require_pattern(
-            self.name, self.apertures_px, self.blur_px, self.threshold, self.tolerance_px
+            self.about.name, self.apertures_px, self.blur_px, self.threshold, self.tolerance_px
         )
         if self.shape not in get_args(Shape):
             raise ValueError(
-                f"{self.name}: shape must be one of {', '.join(get_args(Shape))}; "
+                f"{self.about.name}: shape must be one of {', '.join(get_args(Shape))}; "
                 f"got {self.shape!r}"
             )
         if self.correlations < 2 or self.correlations % 2:
             raise ValueError(
-                f"{self.name}: correlations must be even and at least 2; got {self.correlations!r}"
+                f"{self.about.name}: correlations must be even and at least 2; got "
+                f"{self.correlations!r}"
             )
         if not 0.0 < self.presence < 1.0:
-            raise ValueError(f"{self.name}: presence must be in (0, 1); got {self.presence!r}")
-
-    @property
-    def features(self) -> tuple[str, ...]:
-        """Names of the two output columns."""
-        return ("x_px", "y_px")
+            raise ValueError(
+                f"{self.about.name}: presence must be in (0, 1); got {self.presence!r}"
+            )
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
@@ -143,10 +162,12 @@ class ImageCorrelation:
         UnsuitableDesignError where its light is no spots. Correlations reach half a spot's width
         to each side, 8 px at most, less where the window would hold light of a neighbour.
         """
-        design = design_pattern(geometry, cls.name)
+        design = design_pattern(geometry, cls.about.name)
         shape = geometry.aperture_shape
         if shape is None:  # said above; for the type checker
-            raise UnsuitableDesignError(f"{cls.name} needs the sensor geometry's aperture_shape")
+            raise UnsuitableDesignError(
+                f"{cls.about.name} needs the sensor geometry's aperture_shape"
+            )
         apertures = np.array(design["apertures_px"])
         width = float(apertures[:, 2].max()) + design["blur_px"]
         room = nearest_distance(apertures) - width - 1.0

@@ -8,7 +8,14 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from algorithms.contract import FeatureKind, Floats, Observation, Origin, SensorGeometry
+from algorithms.contract import (
+    AboutExtractor,
+    Extractor,
+    FeatureKind,
+    Floats,
+    Observation,
+    SensorGeometry,
+)
 from algorithms.extractors.frames.multi_spot.aperture_pattern import (
     PATTERN_NEEDS,
     SHARE,
@@ -28,7 +35,7 @@ from algorithms.inputs import as_frames, require_positive
 
 
 @dataclass(frozen=True)
-class MeanShift:
+class MeanShift(Extractor):
     """Mean of all spots, each moved to where its gray values resemble those of a goal spot.
 
     A spot is described by a histogram of its gray values, weighted by a kernel about its centre.
@@ -60,6 +67,11 @@ class MeanShift:
         Largest distance of a spot from its aperture's place, px; below a quarter of the least
         distance of two apertures.
 
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
     Notes
     -----
     Implements: alg:FMMS1, alg:FMMS2 (fe:fmms, You2011): ``q_u = C sum K_E delta[b(x_i) - u]``,
@@ -87,17 +99,32 @@ class MeanShift:
 
     Cost: as MCAM, and 10 operations a pixel of a window of radius h, a spot and a step: three or
     four steps.
+
+    References
+    ----------
+    You2011; survey fe:fmms, alg:FMMS1, alg:FMMS2.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> holes = ((-8, -6, 5), (8, -5, 5), (-7, 7, 5), (9, 6, 5))
+    >>> y, x = np.mgrid[:40, :46]
+    >>> away = [np.maximum(abs(x - 23.4 - u), abs(y - 18.8 - v)) for u, v, _ in holes]
+    >>> frames = 200 * np.clip(3.0 - np.array(away), 0, 1).sum(axis=0)[None]
+    >>> MeanShift(holes, bandwidth_px=6.0).extract(frames).round(1)
+    array([[23.4, 19. ]])
     """
 
-    name: ClassVar[str] = "fmms"
-    taxonomy: ClassVar[str] = "FMMS"
-    studies: ClassVar[tuple[str, ...]] = ("You2011",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:fmms", "alg:FMMS1", "alg:FMMS2")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.FRAMES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
-    needs: ClassVar[tuple[str, ...]] = PATTERN_NEEDS
+    about: ClassVar = AboutExtractor(
+        name="fmms",
+        taxonomy="FMMS",
+        studies=("You2011",),
+        labels=("fe:fmms", "alg:FMMS1", "alg:FMMS2"),
+        origin="survey",
+        needs=PATTERN_NEEDS,
+        observation=Observation.FRAMES,
+        kind=FeatureKind.SPOT,
+    )
 
     apertures_px: Apertures = field(repr=False)
     bandwidth_px: float
@@ -110,20 +137,17 @@ class MeanShift:
 
     def __post_init__(self) -> None:
         require_pattern(
-            self.name, self.apertures_px, self.blur_px, self.threshold, self.tolerance_px
+            self.about.name, self.apertures_px, self.blur_px, self.threshold, self.tolerance_px
         )
         require_positive(
-            self.name, bandwidth_px=self.bandwidth_px, convergence_px=self.convergence_px
+            self.about.name, bandwidth_px=self.bandwidth_px, convergence_px=self.convergence_px
         )
         if not 3 <= self.bins <= 256:
-            raise ValueError(f"{self.name}: bins must be from 3 to 256; got {self.bins!r}")
+            raise ValueError(f"{self.about.name}: bins must be from 3 to 256; got {self.bins!r}")
         if not 0.0 < self.similarity < 1.0:
-            raise ValueError(f"{self.name}: similarity must be in (0, 1); got {self.similarity!r}")
-
-    @property
-    def features(self) -> tuple[str, ...]:
-        """Names of the two output columns."""
-        return ("x_px", "y_px")
+            raise ValueError(
+                f"{self.about.name}: similarity must be in (0, 1); got {self.similarity!r}"
+            )
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
@@ -132,7 +156,7 @@ class MeanShift:
         UnsuitableDesignError where its light is no spots. The bandwidth is a spot's width at
         normal incidence, or what neighbours leave of it.
         """
-        design = design_pattern(geometry, cls.name)
+        design = design_pattern(geometry, cls.about.name)
         apertures = np.array(design["apertures_px"])
         width = float(apertures[:, 2].max()) + design["blur_px"]
         room = nearest_distance(apertures) - width / 2.0 - 1.0

@@ -8,7 +8,14 @@ from typing import ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from algorithms.contract import FeatureKind, Floats, Observation, Origin, SensorGeometry
+from algorithms.contract import (
+    AboutExtractor,
+    Extractor,
+    FeatureKind,
+    Floats,
+    Observation,
+    SensorGeometry,
+)
 from algorithms.extractors.frames.multi_spot.aperture_pattern import (
     PATTERN_NEEDS,
     Apertures,
@@ -22,7 +29,7 @@ from algorithms.inputs import as_frames
 
 
 @dataclass(frozen=True)
-class MultipleCentroids:
+class MultipleCentroids(Extractor):
     """Mean of the thresholded centroids of all whole spots, each less its aperture's place.
 
     Every aperture of the mask repeats the measurement, so noise falls with the square root of
@@ -41,6 +48,11 @@ class MultipleCentroids:
     tolerance_px : float
         Largest distance of a spot from its aperture's place, px; below a quarter of the least
         distance of two apertures.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -62,17 +74,32 @@ class MultipleCentroids:
     code that several sub-fields share, a window of a grid that has no end in view).
 
     Cost: 2 operations a pixel, 8 in rows with spots, and 20 a pair of spot and aperture.
+
+    References
+    ----------
+    Rufino2009b; survey fe:mcam, alg:MCAM.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> holes = ((-8, -6, 5), (8, -5, 5), (-7, 7, 5), (9, 6, 5))
+    >>> y, x = np.mgrid[:40, :46]
+    >>> away = [np.maximum(abs(x - 23.4 - u), abs(y - 18.8 - v)) for u, v, _ in holes]
+    >>> frames = 200 * np.clip(3.0 - np.array(away), 0, 1).sum(axis=0)[None]
+    >>> MultipleCentroids(holes).extract(frames).round(1)
+    array([[23.3, 18.9]])
     """
 
-    name: ClassVar[str] = "mcam"
-    taxonomy: ClassVar[str] = "MCAM"
-    studies: ClassVar[tuple[str, ...]] = ("Rufino2009b",)
-    labels: ClassVar[tuple[str, ...]] = ("fe:mcam", "alg:MCAM")
-    origin: ClassVar[Origin] = "survey"
-    version: ClassVar[int] = 1
-    observation: ClassVar[Observation] = Observation.FRAMES
-    kind: ClassVar[FeatureKind] = FeatureKind.SPOT
-    needs: ClassVar[tuple[str, ...]] = PATTERN_NEEDS
+    about: ClassVar = AboutExtractor(
+        name="mcam",
+        taxonomy="MCAM",
+        studies=("Rufino2009b",),
+        labels=("fe:mcam", "alg:MCAM"),
+        origin="survey",
+        needs=PATTERN_NEEDS,
+        observation=Observation.FRAMES,
+        kind=FeatureKind.SPOT,
+    )
 
     apertures_px: Apertures = field(repr=False)
     blur_px: float = 0.0
@@ -81,13 +108,8 @@ class MultipleCentroids:
 
     def __post_init__(self) -> None:
         require_pattern(
-            self.name, self.apertures_px, self.blur_px, self.threshold, self.tolerance_px
+            self.about.name, self.apertures_px, self.blur_px, self.threshold, self.tolerance_px
         )
-
-    @property
-    def features(self) -> tuple[str, ...]:
-        """Names of the two output columns."""
-        return ("x_px", "y_px")
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
@@ -95,7 +117,7 @@ class MultipleCentroids:
 
         UnsuitableDesignError where its light is no spots.
         """
-        return cls(**design_pattern(geometry, cls.name))
+        return cls(**design_pattern(geometry, cls.about.name))
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Averaged positions (N, 2) in frames (N, H, W); ValueError on wrong input."""

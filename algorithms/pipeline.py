@@ -1,0 +1,206 @@
+"""An extractor and a model put together: what is scored, and what a user calls.
+
+The stages meet in features (N, F), float64. To calibrate several models on what one extractor
+found, extract once with `extracted` and hand the features to each pipeline's `fit_features` and
+`predict_features`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from algorithms.contract import Extractor, FeatureKind, Floats, Model, SensorGeometry
+
+
+@dataclass
+class Pipeline:
+    """An extractor and a model: what a study resolves to, and what is scored.
+
+    Calibrated once on observations of known Suns, it turns others into directions.
+
+    Parameters
+    ----------
+    extractor : Extractor
+        Made for the sensor (`for_sensor`).
+    model : Model
+        Fitted or not; it must accept the extractor's kind of features.
+
+    Raises
+    ------
+    ValueError
+        If the model does not accept the extractor's kind of features.
+
+    Examples
+    --------
+    >>> from algorithms.extractors.frames.centroid import BasicCentroid
+    >>> from algorithms.models.geometric.standard_projection import StandardProjection
+    >>> design = SensorGeometry(focal_length_mm=2.0, pixel_pitch_mm=1.0, centre_px=(2.0, 2.0))
+    >>> pipeline = Pipeline.for_sensor(BasicCentroid, StandardProjection, design)
+    >>> frame = np.zeros((1, 5, 5))
+    >>> frame[0, 2, 2] = 1.0
+    >>> pipeline = pipeline.fit(frame, [[0.0, 0.0, 1.0]])
+    >>> pipeline.predict(np.roll(frame, 2, axis=2)).round(3)  # 2 px of 1 mm, 2 mm from the hole
+    array([[0.707, 0.   , 0.707]])
+    """
+
+    extractor: Extractor
+    model: Model
+
+    def __post_init__(self) -> None:
+        extractor, model = self.extractor.about, self.model.about
+        if extractor.kind not in model.accepts:
+            raise ValueError(
+                f"model {model.name} accepts {sorted(model.accepts)} features; "
+                f"extractor {extractor.name} gives {extractor.kind}"
+            )
+
+    @classmethod
+    def for_sensor(
+        cls, extractor: type[Extractor], model: type[Model], geometry: SensorGeometry
+    ) -> Self:
+        """Both parts with the parameters this sensor's design asks for."""
+        return cls(extractor.for_sensor(geometry), model.for_sensor(geometry, extractor.about.kind))
+
+    def with_model(self, model: Model) -> Self:
+        """Return the pipeline with another model behind the same extractor."""
+        return replace(self, model=model)
+
+    def features(self, observations: ArrayLike, origin_px: ArrayLike | None = None) -> Floats:
+        """Features (N, F) as `extracted` gives them."""
+        return extracted(self.extractor, observations, origin_px)
+
+    def fit(
+        self, observations: ArrayLike, sun: ArrayLike, origin_px: ArrayLike | None = None
+    ) -> Self:
+        """Fit the model to observations of known Suns (N, 3), unit vectors; returns self."""
+        return self.fit_features(self.features(observations, origin_px), sun)
+
+    def predict(self, observations: ArrayLike, origin_px: ArrayLike | None = None) -> Floats:
+        """Sun unit vectors (N, 3); NaN rows where undefined."""
+        return self.predict_features(self.features(observations, origin_px))
+
+    def fit_features(self, features: ArrayLike, sun: ArrayLike) -> Self:
+        """`fit` from where features (N, F) are known."""
+        self.model.fit(features, sun)
+        return self
+
+    def predict_features(self, features: ArrayLike) -> Floats:
+        """`predict` from where features (N, F) are known."""
+        return self.model.predict(features)
+
+
+def extracted(
+    extractor: Extractor, observations: ArrayLike, origin_px: ArrayLike | None = None
+) -> Floats:
+    """Features of observations, checked, in detector coordinates.
+
+    Parameters
+    ----------
+    extractor : Extractor
+        Made for the sensor.
+    observations : array_like
+        Batch of N in the shape of the extractor's kind of observation.
+    origin_px : array_like, shape (N, 2), optional
+        Detector coordinates of the first pixel of each window, px; spots are moved by them, so
+        that windows of a large detector are read in detector coordinates.
+
+    Returns
+    -------
+    ndarray, shape (N, F)
+        Every row is finite, or NaN throughout where nothing was found.
+
+    Raises
+    ------
+    ValueError
+        If the observations are not what the extractor reads, if `origin_px` has another shape
+        than spots need, or if the extractor breaks its contract (`checked`).
+
+    Examples
+    --------
+    >>> from algorithms.extractors.frames.centroid import BasicCentroid
+    >>> extracted(BasicCentroid(), [[[0, 0], [0, 7]], [[0, 0], [0, 0]]], [[10, 20], [10, 20]])
+    array([[11., 21.],
+           [nan, nan]])
+    """
+    features = checked(extractor, extractor.extract(observations), len(np.asarray(observations)))
+    return in_detector_coordinates(features, extractor.about.kind, origin_px)
+
+
+def checked(extractor: Extractor, features: Floats, count: int) -> Floats:
+    """Hold what an extractor gave for `count` observations to its contract.
+
+    Parameters
+    ----------
+    extractor : Extractor
+        Whose features they are.
+    features : ndarray, shape (count, F)
+        What it gave.
+    count : int
+        Observations it was given.
+
+    Returns
+    -------
+    ndarray, shape (count, F)
+        Rows that are not finite throughout are NaN throughout.
+
+    Raises
+    ------
+    ValueError
+        If they are not float64 of this shape.
+
+    Examples
+    --------
+    >>> from algorithms.extractors.frames.centroid import BasicCentroid
+    >>> checked(BasicCentroid(), np.zeros((3, 4)), 3)
+    Traceback (most recent call last):
+    ValueError: bcm must give float64 features of shape (3, 2); got float64 (3, 4)
+    """
+    expected = (count, len(extractor.features))
+    if features.shape != expected or features.dtype != np.float64:
+        raise ValueError(
+            f"{extractor.about.name} must give float64 features of shape {expected}; "
+            f"got {features.dtype} {features.shape}"
+        )
+    finite = np.isfinite(features).all(axis=1, keepdims=True)
+    return features if finite.all() else np.where(finite, features, np.nan)
+
+
+def in_detector_coordinates(
+    features: Floats, kind: FeatureKind, origin_px: ArrayLike | None
+) -> Floats:
+    """Spots moved by their windows' origins; other kinds of features unchanged.
+
+    Parameters
+    ----------
+    features : ndarray, shape (N, F)
+        Of one window each.
+    kind : FeatureKind
+        What they are.
+    origin_px : array_like, shape (N, 2), optional
+        Detector coordinates of each window's first pixel, px.
+
+    Returns
+    -------
+    ndarray, shape (N, F)
+        In detector coordinates.
+
+    Raises
+    ------
+    ValueError
+        If there are not as many origins as spots.
+
+    Examples
+    --------
+    >>> in_detector_coordinates(np.array([[1.5, 2.0]]), FeatureKind.SPOT, [[100, 200]])
+    array([[101.5, 202. ]])
+    """
+    if origin_px is None or kind is not FeatureKind.SPOT:
+        return features
+    origin = np.asarray(origin_px, dtype=np.float64)
+    if origin.shape != features.shape:
+        raise ValueError(f"origin_px must have shape {features.shape}; got {origin.shape}")
+    return features + origin

@@ -1,0 +1,52 @@
+"""Exception handlers: whatever goes wrong is answered with a problem document."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from http import HTTPStatus
+
+from fastapi import FastAPI, Request, Response
+from fastapi.exceptions import RequestValidationError
+from fastapi.routing import APIRoute
+from starlette.exceptions import HTTPException
+
+from api.http.nearest import nearest
+from api.http.problems import Problem, Violation, respond
+from api.http.refusals import refusal
+
+
+def install(app: FastAPI, routes: Sequence[APIRoute]) -> None:
+    """Make every refusal and failure of `app`, which serves `routes`, a problem document."""
+
+    async def refused(request: Request, error: HTTPException) -> Response:
+        if not isinstance(error, Problem):
+            error = _of_framework(error, request, routes)
+        return respond(request, error)
+
+    async def invalid(request: Request, error: RequestValidationError) -> Response:
+        return respond(request, refusal(error.errors(), request.scope["endpoint"]))
+
+    async def failed(request: Request, _error: Exception) -> Response:
+        detail = "The service failed on this request; the cause is in its log."
+        return respond(request, Problem(500, "internal-server-error", detail))
+
+    app.exception_handler(HTTPException)(refused)
+    app.exception_handler(RequestValidationError)(invalid)
+    app.exception_handler(Exception)(failed)
+
+
+def _of_framework(error: HTTPException, request: Request, routes: Sequence[APIRoute]) -> Problem:
+    """Return what Starlette refuses as a problem."""
+    path: str = request.scope["path"]
+    if error.status_code == HTTPStatus.NOT_FOUND:
+        near = nearest(path, {route.path for route in routes})
+        violation = Violation("path", path, "a path of /openapi.json", near)
+        return Problem(404, "unknown-path", errors=[violation])
+    if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED:
+        there = [route.methods or set() for route in routes if route.path_regex.match(path)]
+        offered = set().union(*there)
+        allow = ", ".join(sorted(offered | {"HEAD"} if "GET" in offered else offered))
+        violation = Violation("method", request.method, f"one of {allow}")
+        return Problem(405, "method-not-allowed", errors=[violation], headers={"Allow": allow})
+    kind = HTTPStatus(error.status_code).phrase.lower().replace(" ", "-")
+    return Problem(error.status_code, kind, str(error.detail), headers=error.headers)

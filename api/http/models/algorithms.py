@@ -1,0 +1,47 @@
+"""Implementations."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import ConfigDict, Field
+
+from api.http.models.base import Listing, Question, Shape
+from api.http.models.parameters import DEFAULT_PAGE, GIVEN, Cursor, Limit
+
+Role = Literal["extractor", "model"]
+
+
+class AlgorithmsQuery(Question):
+    """Which implementations."""
+
+    model_config = ConfigDict(json_schema_extra={"examples": [{"role": "extractor", "limit": 1}]})
+
+    role: Annotated[Role | None, GIVEN] = Field(
+        None, description="Only extractors, or only models."
+    )
+    limit: Limit = DEFAULT_PAGE
+    cursor: Cursor = None
+
+
+class Algorithm(Shape):
+    """An implementation."""
+
+    name: str
+    role: Role
+    taxonomy: str
+    category: str | None
+    observation: str | None = Field(description="What an extractor reads.")
+    kind: str | None = Field(description="What an extractor's features mean.")
+    accepts: list[str] | None = Field(description="Kinds of features a model reads.")
+    labels: list[str]
+    studies: list[str]
+    origin: str
+    version: int
+    summary: str
+
+
+class Algorithms(Listing):
+    """A page of implementations."""
+
+    items: list[Algorithm]

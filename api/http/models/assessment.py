@@ -1,0 +1,110 @@
+"""Sweeps on reference features, and the survey's assessment beside the measured one."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import ConfigDict, Field
+
+from api.http.models.base import Listing, OpenShape, Question, Shape
+from api.http.models.parameters import DEFAULT_PAGE, Cursor, Limit, Several
+from api.http.models.scores import only
+from api.http.models.words import ExtractorName, MethodName, Series, SweepName
+
+Agreement = Literal["agrees", "near", "opposed", "not measured"]
+
+
+class SweepsQuery(Question):
+    """Which sweeps."""
+
+    model_config = ConfigDict(
+        json_schema_extra={
+            "examples": [
+                {"series": ["disc"], "sweep": ["noise"], "extractor": ["bctm"], "limit": 1}
+            ]
+        }
+    )
+
+    series: Several[Series] = only("feature")
+    sweep: Several[SweepName] = only("sweep")
+    extractor: Several[ExtractorName] = only("extractor, by the name of its implementation")
+    limit: Limit = DEFAULT_PAGE
+    cursor: Cursor = None
+
+
+class AssessmentQuery(Question):
+    """Which methods."""
+
+    model_config = ConfigDict(json_schema_extra={"examples": [{"method": ["BCTM"]}]})
+
+    method: Several[MethodName] = only("method, as the survey's table calls it")
+
+
+class Sweep(OpenShape):
+    """Error of an extractor at a point of a sweep. Numbers are null where undefined."""
+
+    series: str = Field(description="Name of the reference feature.")
+    sweep: str = Field(description="What is varied; empty where the feature is not measured.")
+    point: str
+    value: float | None = Field(description="Place on the sweep's axis; null where it is a word.")
+    extractor: str
+    extractor_taxonomy: str
+    extractor_version: int
+    status: Literal["ok", "refused", "failed"]
+    reason: str
+    n: int = Field(description="Samples.")
+    unit: str
+    found_fraction: float | None
+    kept_fraction: float | None = Field(description="Share within 3 px of the truth.")
+    rms: float | None = Field(description="Root mean square error of one coordinate.")
+    bias: float | None = Field(description="Root mean square over the coordinates of the mean.")
+    bound: float | None = Field(description="Cramer-Rao bound of one coordinate.")
+    over_bound: float | None = Field(description="rms over the bound.")
+
+
+class Sweeps(Listing):
+    """A page of sweeps."""
+
+    items: list[Sweep]
+
+
+class Verdict(Shape):
+    """One property of one method; a score is 2, 1 or 0."""
+
+    property: str
+    survey: int
+    measured: int | None
+    agreement: Agreement
+    value: float | None = Field(description="The measured quantity.")
+    unit: str
+    extractor: str
+    measured_on: str
+    reason: str = Field(description="Why it is not measured; empty where it is.")
+
+
+class Method(Shape):
+    """One method of the survey's table."""
+
+    method: str
+    taxonomy: str
+    case_study: str
+    extractors: list[str]
+    counts: dict[str, int]
+    properties: list[Verdict]
+
+
+class PropertyDefinition(Shape):
+    """How a property is measured."""
+
+    property: str
+    source: str
+    measure: str
+    limits: str
+
+
+class Assessment(Shape):
+    """The survey's assessment beside the measured one."""
+
+    definitions: list[PropertyDefinition]
+    methods: list[Method]
+    totals: dict[str, int] = Field(description="Number of verdicts by agreement.")

@@ -1,0 +1,68 @@
+"""Decision flows."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import ConfigDict, Field
+
+from api.http.models.base import Shape
+from api.http.models.parameters import Flag
+from api.http.models.studies import StudyFilters
+
+
+class FlowsQuery(StudyFilters):
+    """Which studies flow, and how they are counted."""
+
+    model_config = ConfigDict(
+        json_schema_extra={"examples": [{"error": ["Electrical"], "detector": ["CMOS"]}]}
+    )
+
+    counting: Literal["studies", "fractional"] = Field(
+        "studies",
+        description="Distinct studies on a link; or each study as a weight of one, split evenly "
+        "over the combinations of its values, so that inflow equals outflow.",
+    )
+    grouped: Flag = Field(
+        False, description="Categories instead of models, families instead of extractors."
+    )
+
+
+class Node(Shape):
+    """A value at a level of a decision flow."""
+
+    id: str
+    level: str
+    value: str
+    name: str
+    count: float = Field(description="Distinct studies, or the sum of their fractions.")
+    studies: list[str]
+
+
+class Link(Shape):
+    """Studies that go from one value to another."""
+
+    source: str
+    target: str
+    value: float = Field(description="Distinct studies, or the sum of their fractions.")
+    studies: list[str]
+
+
+class LeftOut(Shape):
+    """Studies without a value at a level."""
+
+    level: str
+    count: int
+    studies: list[str]
+
+
+class Flows(Shape):
+    """A decision flow: a Sankey diagram, or the rings of a sunburst."""
+
+    chart: str
+    levels: list[str]
+    counting: Literal["studies", "fractional"]
+    studies: int = Field(description="Studies that met the filters.")
+    nodes: list[Node]
+    links: list[Link]
+    left_out: list[LeftOut]

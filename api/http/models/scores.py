@@ -1,0 +1,154 @@
+"""Scores and leaderboards."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import ConfigDict, Field
+
+from api.http.models.base import Listing, OpenShape, Question
+from api.http.models.parameters import DEFAULT_PAGE, GIVEN, NUMBER, Cursor, Limit, OneOf, Several
+from api.http.models.words import Condition, DatasetName, ExtractorName, ModelName
+from benchmark.metrics.rings import EDGES_DEG
+
+FIELDS = tuple(str(edge) for edge in EDGES_DEG[1:])
+
+
+def only(what: str) -> Any:
+    """Return the field of a parameter that narrows a list to some of its rows."""
+    return Field(default_factory=list, description=f"Only this {what}.")
+
+
+class ScoresQuery(Question):
+    """Which scores."""
+
+    model_config = ConfigDict(json_schema_extra={"examples": [{"limit": 1}]})
+
+    dataset: Several[DatasetName] = only("data set")
+    condition: Several[Condition] = only("condition")
+    extractor: Several[ExtractorName] = only("extractor, by the name of its implementation")
+    model: Several[ModelName] = only("model, by the name of its implementation")
+    limit: Limit = DEFAULT_PAGE
+    cursor: Cursor = None
+
+
+class LeaderboardQuery(Question):
+    """Which rows of a data set's leaderboard, and what they are ranked by."""
+
+    model_config = ConfigDict(json_schema_extra={"examples": [{"limit": 1}]})
+
+    condition: Several[Condition] = only("condition")
+    extractor: Several[ExtractorName] = only("extractor, by the name of its implementation")
+    model: Several[ModelName] = only("model, by the name of its implementation")
+    field_deg: Annotated[str | None, OneOf(lambda: FIELDS), GIVEN] = Field(
+        None,
+        description="Rank by the error within this angle of the boresight, degrees: rings of the "
+        "field count by their solid angle, so that sensors compare at an equal field.",
+    )
+    max_error_deg: Annotated[float | None, NUMBER] = Field(
+        None,
+        gt=0,
+        le=180,
+        description="Rank by the widest field in whose every ring the RMS error stays within "
+        "this, degrees.",
+    )
+    limit: Limit = DEFAULT_PAGE
+    cursor: Cursor = None
+
+
+class Score(OpenShape):
+    """What a pipeline achieves on a data set in a condition. Numbers are null where undefined.
+
+    Errors, the bound and their ratio are over the same samples: observable and answered.
+    """
+
+    dataset: str
+    dataset_version: int
+    condition: str
+    unit: int = Field(description="Which unit of the sensor; 0 is the standard one.")
+    detector: str
+    mask: str
+    half_fov_deg: float | None
+    extractor: str
+    extractor_taxonomy: str
+    extractor_version: int
+    model: str
+    model_taxonomy: str
+    model_version: int
+    status: Literal["ok", "refused", "failed"]
+    reason: str = Field(description="Why there is no score; empty where there is one.")
+    n_calibration: int | None
+    n_test: int | None
+    n_observable: int | None = Field(description="Test samples whose direction is observable.")
+    availability: float | None = Field(description="Answered share of the observable samples.")
+    false_sun: float | None = Field(
+        description="Answered share of the samples that are not observable; null without any."
+    )
+    rms_deg: float | None
+    median_deg: float | None
+    p95_deg: float | None
+    p997_deg: float | None
+    max_deg: float | None
+    bias_alpha_deg: float | None
+    bias_beta_deg: float | None
+    rms_alpha_deg: float | None
+    rms_beta_deg: float | None
+    repeatability_deg: float | None = Field(
+        description="Standard deviation of answers to a pose held still, over both axes."
+    )
+    bound_deg: float | None = Field(description="Cramer-Rao bound, rms.")
+    over_bound: float | None = Field(description="RMS error over the bound.")
+    over_bound_se: float | None = Field(description="Standard error of that ratio.")
+
+
+class Scores(Listing):
+    """A page of scores."""
+
+    items: list[Score]
+
+
+class LeaderboardRow(Score):
+    """A score with its place. Members `rms_<inner>_<outer>_deg` are errors by off-axis angle."""
+
+    rank: int | None = Field(
+        description="Place in the condition by RMS error, or by that over the field asked for. "
+        "Pipelines that answer less than 95 % come behind all others; null without an error."
+    )
+    tied: bool = Field(description="Whether units built alike disagree, so that others share it.")
+    unit_rms_deg: list[float | None] | None = Field(
+        description="RMS error on each unit of the sensor, the standard one first; null where one "
+        "unit is scored."
+    )
+    low_deg: float | None = Field(description="Smallest RMS error of a unit.")
+    high_deg: float | None = Field(description="Largest RMS error of a unit.")
+    latency_us: float | None = Field(
+        description="Extraction and prediction of one sample on this machine, microseconds; null "
+        "where it is not timed."
+    )
+    time_ratio: float | None = Field(description="The same over the time of a reference.")
+
+
+class LeaderboardDataset(OpenShape):
+    """The leaderboard of a data set."""
+
+    name: str
+    version: int
+    detector: str
+    mask: str
+    conditions: list[str]
+    rows: list[LeaderboardRow]
+
+
+class Leaderboard(OpenShape):
+    """The published leaderboard; no schema and no data sets where none is published."""
+
+    model_config = ConfigDict(extra="allow", serialize_by_alias=True)
+
+    schema_version: int | str | None = Field(alias="schema")
+    datasets: list[LeaderboardDataset]
+
+
+class LeaderboardRows(Listing):
+    """A page of a data set's leaderboard, best first within a condition."""
+
+    items: list[LeaderboardRow]

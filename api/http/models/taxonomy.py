@@ -1,0 +1,22 @@
+"""The vocabulary."""
+
+from __future__ import annotations
+
+from pydantic import Field
+
+from api.http.models.base import Shape
+
+
+class TaxonomyValue(Shape):
+    """A word of the vocabulary."""
+
+    value: str
+    name: str
+    category: str
+    section: str = Field(description="Label in the survey; empty where it has none.")
+
+
+class Taxonomy(Shape):
+    """The vocabulary of the survey's mapping, by attribute."""
+
+    attributes: dict[str, list[TaxonomyValue]]

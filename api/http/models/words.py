@@ -1,0 +1,62 @@
+"""Closed lists of words that parameters take, each loaded when it is first needed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import cache
+from typing import Annotated
+
+from api.http.models.parameters import OneOf
+from benchmark.reference.series import SWEEPS
+from benchmark.sweeps.plan import SERIES
+from registry.catalogue import catalogue
+from registry.flows import CHARTS
+from registry.studies import facts
+
+
+def _values_of(attribute: str) -> Callable[[], Sequence[str]]:
+    return lambda: facts().taxonomy.values(attribute)
+
+
+@cache
+def datasets() -> tuple[str, ...]:
+    """Names of the standard data sets. The first use loads the simulator."""
+    from benchmark.datasets import names  # noqa: PLC0415 - slow, and not needed to make the service
+
+    return names()
+
+
+@cache
+def conditions() -> tuple[str, ...]:
+    """Conditions that any standard data set has, the nominal one first."""
+    from benchmark.datasets import get  # noqa: PLC0415 - as above
+
+    found = (condition for name in datasets() for condition in get(name).conditions)
+    return tuple(dict.fromkeys(("nominal", *found)))
+
+
+@cache
+def assessed_methods() -> tuple[str, ...]:
+    """Methods of the survey's assessment, in the order of its table."""
+    from survey_data import load  # noqa: PLC0415 - slow, as above
+
+    return tuple(dict.fromkeys(load().feature_assessment["extractor"]))
+
+
+Task = Annotated[str, OneOf(_values_of("task"))]
+Error = Annotated[str, OneOf(_values_of("error"))]
+Accuracy = Annotated[str, OneOf(_values_of("accuracy"))]
+Detector = Annotated[str, OneOf(_values_of("detector"))]
+Mask = Annotated[str, OneOf(_values_of("mask"))]
+Model = Annotated[str, OneOf(_values_of("model"))]
+Extractor = Annotated[str, OneOf(_values_of("extractor"))]
+
+StudyKey = Annotated[str, OneOf(lambda: facts().keys)]
+Chart = Annotated[str, OneOf(lambda: tuple(CHARTS))]
+DatasetName = Annotated[str, OneOf(datasets)]
+Condition = Annotated[str, OneOf(conditions)]
+ExtractorName = Annotated[str, OneOf(lambda: tuple(catalogue().extractors))]
+ModelName = Annotated[str, OneOf(lambda: tuple(catalogue().models))]
+MethodName = Annotated[str, OneOf(assessed_methods)]
+Series = Annotated[str, OneOf(lambda: tuple(SERIES))]
+SweepName = Annotated[str, OneOf(lambda: tuple(SWEEPS))]

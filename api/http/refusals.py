@@ -1,0 +1,126 @@
+"""What Pydantic finds wrong with a request, as a problem that names what would be right.
+
+What is expected is read from the JSON Schema of the parameter: a refusal cannot say other than
+the documentation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache
+from typing import Annotated, Any, get_args, get_origin, get_type_hints
+
+from pydantic import BaseModel, TypeAdapter
+
+from api.http.nearest import nearest
+from api.http.problems import Problem, Violation
+
+MOST_LISTED = 20  # words for a part of a path that a refusal lists
+
+Schema = Mapping[str, Any]
+
+
+def refusal(errors: Sequence[Mapping[str, Any]], endpoint: Callable[..., Any]) -> Problem:
+    """Return the problem of a request that does not fit a path function.
+
+    Parameters
+    ----------
+    errors : as FastAPI lists Pydantic's; their `loc` begins with "path", "query" or "body"
+    endpoint : the path function
+
+    Returns
+    -------
+    Problem
+        404 for a part of the path; else 400 for names that are not declared; else 422 for values.
+    """
+    declared = schemas(endpoint)
+    for error in errors:
+        if error["loc"][0] == "path":
+            name, text = error["loc"][1], error["input"]
+            schema = declared["path"][name]
+            words = schema["enum"]
+            expected = "one of those listed" if len(words) > MOST_LISTED else _expected(schema)
+            violation = Violation(name, text, expected, nearest(text, words))
+            return Problem(404, f"unknown-{name}", errors=[violation])
+    unknown = [error["loc"] for error in errors if error["type"] == "extra_forbidden"]
+    if unknown:
+        names = sorted(declared[unknown[0][0]])
+        expected = f"one of {', '.join(names)}" if names else "no parameters"
+        expected = f"a parameter name, {expected}"
+        wrong = [Violation(name, None, expected, nearest(name, names)) for _, name in unknown]
+        return Problem(400, "unknown-parameter", errors=wrong)
+    wrong = [_violation(error, declared) for error in errors]
+    return Problem(422, "invalid-value", errors=wrong)
+
+
+@cache
+def schemas(endpoint: Callable[..., Any]) -> Mapping[str, Mapping[str, Schema]]:
+    """Return the JSON Schema of every parameter of a path function, by place and name.
+
+    Arguments whose type is a model are called after the place they come from.
+    """
+    found: dict[str, dict[str, Schema]] = {"path": {}, "query": {}}
+    for name, hint in get_type_hints(endpoint, include_extras=True).items():
+        kind = get_args(hint)[0] if get_origin(hint) is Annotated else hint
+        if isinstance(kind, type) and issubclass(kind, BaseModel):
+            found[name] = kind.model_json_schema().get("properties", {})
+        elif kind is str:
+            found["path"][name] = TypeAdapter(hint).json_schema()
+    return found
+
+
+def _violation(error: Mapping[str, Any], declared: Mapping[str, Mapping[str, Schema]]) -> Violation:
+    """Return an error of Pydantic's as a violation."""
+    place, *where = error["loc"]
+    given = error["input"]
+    if not where:
+        return Violation(place, _shown(given), "a JSON object")
+    name = where[0]
+    schema = declared[place][name]
+    if error["type"] == "too_long":
+        expected = f"at most {schema['maxItems']} values"
+        return Violation(name, f"{len(given)} values", expected)
+    if schema["type"] == "array" and len(where) == 1:
+        return Violation(name, _shown(given), f"a list, each item {_expected(schema['items'])}")
+    if place == "query" and isinstance(given, list):
+        return Violation(name, ", ".join(given), "one value, given once")
+    valid = schema.get("items", schema)
+    near = nearest(given, _words(valid)) if isinstance(given, str) else None
+    return Violation(name, _shown(given), _expected(valid), near)
+
+
+def _words(schema: Schema) -> Sequence[str]:
+    return ("true", "false") if schema["type"] == "boolean" else schema.get("enum", ())
+
+
+def _expected(schema: Schema) -> str:
+    """Say in words what a schema takes."""
+    if "enum" in schema:
+        return f"one of {', '.join(schema['enum'])}"
+    match schema["type"]:
+        case "boolean":
+            return "true or false"
+        case "integer":
+            return f"an integer from {schema['minimum']} to {schema['maximum']}"
+        case "number":
+            return f"a number above {schema['exclusiveMinimum']}, at most {schema['maximum']:g}"
+    if not schema["maxLength"]:
+        return "nothing: there is no valid value"
+    return f"text of {schema['minLength']} to {schema['maxLength']} characters"
+
+
+def _shown(value: object) -> str:
+    """Return a value as the refusal repeats it."""
+    match value:
+        case str():
+            return value
+        case Mapping() | list():
+            kind = "an object" if isinstance(value, Mapping) else "a list"
+            return f"{kind} of {len(value)} items"
+        case None:
+            return "null"
+        case bool():
+            return str(value).lower()
+        case int() if value.bit_length() > 256:  # str() of it may raise
+            return "a very long integer"
+    return str(value)

@@ -1,0 +1,42 @@
+"""/healthz and /openapi.json: what the service says of itself."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from fastapi import APIRouter, Request, Response
+from pydantic_core import to_json
+
+from api.http.answers import StrictRoute
+from api.http.dependencies import JSON_ONLY, NO_PARAMETERS, Known
+from api.http.models.health import Health
+from api.http.negotiation import JSON
+from api.http.representations import Representation, RepresentationCache
+
+router = APIRouter(route_class=StrictRoute, dependencies=[NO_PARAMETERS])
+
+
+@router.get(
+    "/healthz", summary="State of the service", response_model=Health, dependencies=[JSON_ONLY]
+)
+async def health(request: Request, response: Response, known: Known) -> dict[str, Any]:
+    """Whether it answers, and with how much. It is asked anew each time and never stored."""
+    response.headers["Cache-Control"] = "no-store"
+    return {
+        "status": "ok",
+        "version": request.app.version,
+        "studies": len(known.facts.studies),
+        "datasets": len(known.measurements.presets),
+        "scores": len(known.measurements.scores),
+    }
+
+
+@router.get("/openapi.json", include_in_schema=False)
+def openapi(request: Request) -> Response:
+    """Give FastAPI's description of the service with an ETag, which it does not give itself."""
+    kept: RepresentationCache = request.app.state.kept
+    found = kept.get("openapi")
+    if found is None:
+        found = Representation(to_json(request.app.openapi()), JSON, {"Vary": "Accept-Encoding"})
+        kept.put("openapi", found)
+    return found.respond(request)

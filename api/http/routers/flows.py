@@ -1,0 +1,34 @@
+"""/v1/flows/{chart}: the survey's decision flows."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Path, Query
+
+from api.http.answers import Answer, AnswerRoute
+from api.http.dependencies import Known
+from api.http.models.flows import Flows, FlowsQuery
+from api.http.models.words import Chart
+from registry.flows import chart as flows_of
+
+router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
+
+COLUMNS = ("source", "target", "value", "studies")
+
+
+@router.get("/flows/{chart}", summary="A decision flow", response_model=Flows)
+async def flows(
+    known: Known,
+    chart: Annotated[Chart, Path(description="Which diagram.", examples=["error"])],
+    query: Annotated[FlowsQuery, Query()],
+) -> Answer:
+    """Nodes and links of one of the survey's diagrams, with the studies behind each.
+
+    A filter keeps the studies that have one of the values, and of those studies only these
+    values. As CSV: the links.
+    """
+    found = flows_of(
+        chart, query.wanted(), query.counting, grouped=query.grouped, facts=known.facts
+    )
+    return Answer(found.to_dict(), COLUMNS, lambda: [link.to_dict() for link in found.links])

@@ -1,0 +1,23 @@
+"""The page: its static files, and Plotly's."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter, Request, Response
+
+from api.http.answers import StrictRoute
+from api.http.dependencies import NO_PARAMETERS
+from api.http.page import page_file
+
+router = APIRouter(route_class=StrictRoute, include_in_schema=False)
+
+
+@router.get("/")
+async def index(request: Request) -> Response:
+    """Give the page; what stands in its query is for its script."""
+    return page_file("index.html").respond(request)
+
+
+@router.get("/page/{name:path}", dependencies=[NO_PARAMETERS])
+async def static(request: Request, name: str) -> Response:
+    """Give a file of the page."""
+    return page_file(name).respond(request)

@@ -1,0 +1,115 @@
+"""/v1/studies: the mapped studies, and what of each can be run."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Path, Query
+
+from api.http.answers import Answer, AnswerRoute, listing
+from api.http.dependencies import NO_PARAMETERS, Known
+from api.http.knowledge import Knowledge
+from api.http.models.studies import Studies, StudiesQuery, StudyDetail
+from api.http.models.words import StudyKey
+from api.http.pagination import page
+from registry.studies import Study
+from registry.taxonomy import ATTRIBUTES, NUMERIC_ATTRIBUTES
+
+router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
+
+COLUMNS = (
+    *("key", "title", "authors", "year", "venue", "doi", "url", "identity", "state"),
+    *(*ATTRIBUTES, *NUMERIC_ATTRIBUTES),
+)
+DETAIL_COLUMNS = ("attribute", "value", "basis", "source", "note")
+
+
+@router.get("/studies", summary="The mapped studies", response_model=Studies)
+async def studies(known: Known, query: Annotated[StudiesQuery, Query()]) -> Answer:
+    """List the studies, 129 of them where the survey states 128. Filters narrow the list."""
+    found = [study for study in known.facts.studies.values() if _is_wanted(study, query, known)]
+    shown = page(found, "/v1/studies", query)
+    items = [_row(study, known) for study in shown.items]
+    return listing(
+        shown,
+        items,
+        COLUMNS,
+        lambda: [
+            {name: value for name, value in item.items() if name != "values"} | item["values"]
+            for item in items
+        ],
+    )
+
+
+@router.get(
+    "/studies/{key}",
+    summary="One study",
+    response_model=StudyDetail,
+    dependencies=[NO_PARAMETERS],
+)
+async def study(
+    known: Known,
+    key: Annotated[StudyKey, Path(description="Key of the study.", examples=["Chang2008"])],
+) -> Answer:
+    """Every value of the mapping with its basis, and what of the study can be run.
+
+    That is the pipelines that run what the study did, and the values that nothing implements yet.
+    As CSV: the values.
+    """
+    found = known.facts.study(key)
+    resolution = known.resolutions[key]
+    described = found.to_dict()
+    simulating = known.measurements.simulating
+    document = {
+        **_row(found, known),
+        "note": described["note"],
+        "attributes": described["attributes"],
+        "pipelines": [
+            {**pipeline.to_dict(), "datasets": simulating(pipeline.detector, pipeline.mask)}
+            for pipeline in resolution.pipelines
+        ],
+        "gaps": [gap.to_dict() for gap in resolution.gaps],
+    }
+    return Answer(document, DETAIL_COLUMNS, lambda: document["attributes"])
+
+
+def _row(study: Study, known: Knowledge) -> dict[str, Any]:
+    summary = study.summary()
+    values = summary.pop("values")
+    return {**summary, "state": known.resolutions[study.key].state, "values": values}
+
+
+def _is_wanted(study: Study, query: StudiesQuery, known: Knowledge) -> bool:
+    """Say whether a study is among those asked for."""
+    return (
+        _in_years(study, query.year_min, query.year_max)
+        and _has_words(study, query.q)
+        and (not query.state or known.resolutions[study.key].state in query.state)
+        and _has_values(study, query.wanted(), known)
+    )
+
+
+def _has_values(study: Study, wanted: dict[str, list[str]], known: Knowledge) -> bool:
+    """Say whether a study has, of every attribute, one of the wanted values or of their kinds."""
+    kinds = known.taxonomy.kinds
+    return all(
+        not set(study.of(attribute)).isdisjoint(
+            kind for value in values for kind in kinds(attribute, value)
+        )
+        for attribute, values in wanted.items()
+    )
+
+
+def _in_years(study: Study, first: int | None, last: int | None) -> bool:
+    if first is None and last is None:
+        return True
+    if study.year is None:
+        return False
+    return (first is None or first <= study.year) and (last is None or study.year <= last)
+
+
+def _has_words(study: Study, words: str | None) -> bool:
+    if words is None:
+        return True
+    text = f"{study.key} {study.title} {study.authors} {study.venue}".casefold()
+    return all(word in text for word in words.casefold().split())

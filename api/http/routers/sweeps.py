@@ -1,0 +1,28 @@
+"""/v1/sweeps: errors on reference features."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Query
+
+from api.http.answers import Answer, AnswerRoute, listing
+from api.http.dependencies import Known
+from api.http.models.assessment import Sweeps, SweepsQuery
+from api.http.pagination import narrowed, page
+
+router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
+
+COLUMNS = ("series", "sweep", "point", "extractor", "rms", "bound", "over_bound")
+
+
+@router.get("/sweeps", summary="Sweeps on reference features", response_model=Sweeps)
+async def sweeps(known: Known, query: Annotated[SweepsQuery, Query()]) -> Answer:
+    """Error of every extractor over noise, feature size, sub-pixel phase and more.
+
+    On features in closed form, with the Cramer-Rao bound of each point. A row without a sweep says
+    why an extractor is not measured on a feature.
+    """
+    rows = narrowed(known.measurements.sweeps, query, ("series", "sweep", "extractor"))
+    shown = page(rows, "/v1/sweeps", query)
+    return listing(shown, shown.items, COLUMNS)

@@ -1,0 +1,37 @@
+"""/v1/taxonomy: the vocabulary."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter
+
+from api.http.answers import Answer, AnswerRoute
+from api.http.dependencies import NO_PARAMETERS, Known
+from api.http.models.taxonomy import Taxonomy
+
+router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
+
+COLUMNS = ("attribute", "value", "name", "category", "section")
+
+
+@router.get(
+    "/taxonomy",
+    summary="The vocabulary",
+    response_model=Taxonomy,
+    dependencies=[NO_PARAMETERS],
+)
+async def taxonomy(known: Known) -> Answer:
+    """Every value that an attribute of a study may take.
+
+    With its name, category and section of the survey. Other endpoints take these values as
+    filters.
+    """
+    attributes = known.taxonomy.to_dict()
+    return Answer(
+        {"attributes": attributes},
+        COLUMNS,
+        lambda: [
+            {"attribute": attribute, **entry}
+            for attribute, entries in attributes.items()
+            for entry in entries
+        ],
+    )

@@ -1,0 +1,156 @@
+"""What the folders of `benchmark` hand to each other: cells to measure, datasets and their parts.
+
+Protocols say what one folder asks of another: `benchmark.datasets` fulfils them, and a test may
+hand in something smaller.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from numpy.typing import NDArray
+
+from algorithms.contract import Floats, Observation, SensorGeometry
+from survey_data.nearest import nearest
+
+#: Every split of a dataset.
+SPLITS = ("calibration", "test", "repeat")
+
+
+@dataclass(frozen=True, order=True)
+class Cell:
+    """One thing to measure, by names, and by the number of the sensor's unit."""
+
+    dataset: str
+    condition: str
+    extractor: str
+    model: str
+    unit: int = 0
+
+    def __str__(self) -> str:
+        name = f"{self.dataset}/{self.condition}/{self.extractor}/{self.model}"
+        return f"{name}/unit {self.unit}" if self.unit else name
+
+
+class Samples(Protocol):
+    """Observations with their truth."""
+
+    @property
+    def observations(self) -> NDArray[Any]:
+        """Batch of N in the shape of the preset's kind of observation."""
+        ...
+
+    @property
+    def sun(self) -> Floats:
+        """True unit vectors (N, 3)."""
+        ...
+
+    @property
+    def origin_px(self) -> NDArray[Any] | None:
+        """Detector coordinates (N, 2) of each window's first pixel; None where there are none."""
+        ...
+
+
+class Bound(Protocol):
+    """Cramer-Rao bound of the separation angle of N samples."""
+
+    @property
+    def angle_deg(self) -> Floats:
+        """Standard deviation (N,) in degrees; inf where not observable."""
+        ...
+
+    @property
+    def observable(self) -> NDArray[Any]:
+        """Where (N,) the direction is observable at all."""
+        ...
+
+
+class Repeats(Protocol):
+    """How often the poses of the split ``repeat`` are observed."""
+
+    @property
+    def passes(self) -> int:
+        """Times every pose is observed, pass after pass."""
+        ...
+
+    def chosen(self, test_samples: int) -> NDArray[Any]:
+        """Places (P,) of the poses in a test split of so many samples."""
+        ...
+
+
+class Preset(Protocol):
+    """A standard dataset."""
+
+    @property
+    def name(self) -> str:
+        """Unique name."""
+        ...
+
+    @property
+    def version(self) -> int:
+        """Raised when its data change on purpose."""
+        ...
+
+    @property
+    def detector(self) -> str:
+        """Value of the survey's taxonomy."""
+        ...
+
+    @property
+    def mask(self) -> str:
+        """Value of the survey's taxonomy."""
+        ...
+
+    @property
+    def observation(self) -> Observation:
+        """What an extractor reads here."""
+        ...
+
+    @property
+    def geometry(self) -> SensorGeometry:
+        """Nominal design."""
+        ...
+
+    @property
+    def conditions(self) -> tuple[str, ...]:
+        """Names of the conditions."""
+        ...
+
+    @property
+    def repeats(self) -> Repeats:
+        """Poses and passes of the split ``repeat``."""
+        ...
+
+    def geometry_for(self, condition: str) -> SensorGeometry:
+        """Return the nominal design under one condition."""
+        ...
+
+    def as_unit(self, number: int) -> Preset:
+        """Return the dataset as another unit of its sensor sees it; 0 is the standard one."""
+        ...
+
+    def generate(self, condition: str, split: str, n: int | None = None) -> Samples:
+        """Generate the samples of one split, or the first n of them."""
+        ...
+
+    def parameters(self, condition: str) -> Mapping[str, Any]:
+        """Everything the numbers depend on."""
+        ...
+
+    def bound(self, condition: str, split: str = "test", n: int | None = None) -> Bound:
+        """Cramer-Rao bound of each sample of a split, or of the first n of them."""
+        ...
+
+
+class UnknownNameError(LookupError):
+    """A name that is not installed; the message names the nearest that is."""
+
+    def __init__(self, what: str, name: str, known: Iterable[str]) -> None:
+        self.what = what
+        self.name = name
+        self.known = tuple(sorted(known))
+        self.nearest = nearest(name, self.known)
+        hint = f"did you mean {self.nearest!r}?" if self.nearest else f"known: {self.known}"
+        super().__init__(f"no {what} named {name!r}; {hint}")

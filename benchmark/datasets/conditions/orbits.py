@@ -1,0 +1,146 @@
+"""Sensors of the ground flown on one sun-synchronous orbit: drift, conditions, spans."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import fields, replace
+from functools import partial
+
+from benchmark.datasets.conditions.flight import Flight, FlightPreset, Span
+from benchmark.datasets.conditions.propagation import GLASS
+from benchmark.datasets.preset import Condition, Preset
+from benchmark.simulator.flight.attitude import Attitude
+from benchmark.simulator.flight.drift import AssemblyDrift, PhotodiodeDrift, ThermalCycle
+from benchmark.simulator.flight.orbit import CircularOrbit
+from benchmark.simulator.flight.time_series import DriftingFaceSensor, DriftingFrameSensor
+from benchmark.simulator.light.environment import Earth
+from benchmark.simulator.sensors.faces import FaceSensor
+from benchmark.simulator.sensors.frames import FrameSensor
+
+#: An aluminium spacer of 2 mm lengthens, unequal expansion shifts the mask, the bracket bends; and
+#: all of it creeps.
+SPACER = AssemblyDrift(
+    tilt_x_deg_k=5e-4,
+    tilt_y_deg_k=-3e-4,
+    focal_length_mm_k=4.6e-5,
+    offset_x_mm_k=3e-5,
+    offset_y_mm_k=-2e-5,
+    tilt_x_deg_year=0.01,
+    tilt_y_deg_year=0.02,
+    focal_length_mm_year=1e-3,
+    offset_x_mm_year=-2e-3,
+    offset_y_mm_year=1e-3,
+)
+PHOTODIODES = PhotodiodeDrift(
+    gain_per_k=1e-3, gain_per_k_spread=2e-4, loss_per_year=0.02, loss_per_year_spread=0.01
+)
+#: 40 K warmer than usual throughout.
+_WARM = ThermalCycle(sunlit_k=348.15, eclipse_k=288.15)
+_HOT = "The nominal sensor on a satellite 40 K warmer throughout."
+
+
+def in_orbit(
+    *,
+    name: str,
+    version: int,
+    ground: Preset,
+    setups: Mapping[str, Condition],
+    attitude: Attitude,
+    step_s: float,
+    follows: tuple[str, ...],
+    description: str,
+) -> FlightPreset:
+    """Return a dataset of three orbits to calibrate on, and three a quarter of a year later."""
+    samples = round(17_400.0 / step_s)
+    return FlightPreset(
+        name=name,
+        version=version,
+        detector=ground.detector,
+        mask=ground.mask,
+        observation=ground.observation,
+        units=ground.units,
+        geometry=ground.geometry,
+        setups=setups,
+        directions=Flight(
+            orbit=CircularOrbit(altitude_km=600.0, inclination_deg=97.79, node_deg=337.5),
+            attitude=attitude,
+            epoch_day=0.0,
+            calibration=Span(start_day=0.0, samples=samples, step_s=step_s),
+            test=Span(start_day=90.0, samples=samples, step_s=step_s),
+        ),
+        follows=follows,
+        description=description,
+        regime=ground.regime,
+    )
+
+
+def frames_aloft(ground: Preset, drift: AssemblyDrift) -> dict[str, Condition]:
+    """Return the conditions of a ground dataset's sensor under a filter of glass, in orbit."""
+
+    def flying(condition: str) -> DriftingFrameSensor:
+        still = ground.condition(condition).sensor
+        same = {f.name: getattr(still, f.name) for f in fields(FrameSensor)}
+        same["camera"] = replace(same["camera"], glass=GLASS)
+        return DriftingFrameSensor(**same, drift=drift, thermal=ThermalCycle())
+
+    nominal, light = flying("nominal"), ground.condition("nominal").irradiance
+    seen, its = partial(Condition, irradiance=light), f"{ground.name}'s"
+    return {
+        "nominal": seen(
+            f"The nominal sensor of {ground.name} under a filter of 0.5 mm of glass (index 1.52), "
+            "its head moving with temperature and age.",
+            nominal,
+        ),
+        "low-noise": seen(
+            f"The nominal sensor with the noise of {its} low-noise condition.",
+            flying("low-noise"),
+        ),
+        "high-noise": seen(
+            f"The nominal sensor with the noise of {its} high-noise condition.",
+            flying("high-noise"),
+        ),
+        "misaligned": seen(
+            f"The nominal sensor, misaligned at first as {its} of that name.",
+            flying("misaligned"),
+        ),
+        "hot": seen(_HOT, replace(nominal, thermal=_WARM)),
+        "stable": seen(
+            "The nominal sensor with an assembly that does not drift.",
+            replace(nominal, drift=AssemblyDrift()),
+        ),
+    }
+
+
+def photodiodes_aloft(ground: Preset, drift: PhotodiodeDrift) -> dict[str, Condition]:
+    """Return the conditions of a ground dataset's photodiodes in orbit, Earth in view."""
+
+    def flying(condition: str) -> DriftingFaceSensor:
+        still = ground.condition(condition).sensor
+        same = {f.name: getattr(still, f.name) for f in fields(FaceSensor)}
+        return DriftingFaceSensor(**same, drift=drift, thermal=ThermalCycle())
+
+    nominal, light = flying("nominal"), ground.condition("nominal").irradiance
+    seen = partial(Condition, irradiance=light, earth=Earth())
+    return {
+        "nominal": seen(
+            f"The nominal unit design of {ground.name} in orbit: sunlit Earth in view, gain "
+            "+0.1 %/K with 0.02 %/K from face to face, 2 % a year of ageing with 1 % from face to "
+            "face.",
+            nominal,
+        ),
+        "no-albedo": seen("The nominal sensor over a black Earth.", nominal, earth=None),
+        "low-noise": seen(
+            "The nominal sensor with a tenth of the noise and a 16-bit converter.",
+            flying("low-noise"),
+        ),
+        "high-noise": seen("The nominal sensor with ten times the noise.", flying("high-noise")),
+        "misaligned": seen(
+            "The nominal sensor with photodiodes mounted 2 deg off their faces' normals.",
+            flying("misaligned"),
+        ),
+        "hot": seen(_HOT, replace(nominal, thermal=_WARM)),
+        "stable": seen(
+            "The nominal sensor without thermal drift and ageing of its gains.",
+            replace(nominal, drift=PhotodiodeDrift()),
+        ),
+    }

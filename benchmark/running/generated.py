@@ -1,0 +1,162 @@
+"""The data of a data set under one condition, generated once and kept while a worker needs them."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.contract import Floats
+from benchmark.canonical import digest
+from benchmark.contract import SPLITS, Bound, Preset, Samples
+from benchmark.datasets.pins import Pin
+from benchmark.datasets.samples import HEAD, head_hash, samples_hash
+from benchmark.metrics.score import stored
+from benchmark.simulator.light.memory import memory
+
+#: Datasets under one condition kept per process: the plan hands out a dataset's tasks in a row.
+_KEPT = 2
+#: Bytes of kept observations from which on only one dataset is: a worker stays below 1.5 GB.
+_KEPT_BYTES = 128 * 2**20
+
+
+@dataclass(frozen=True)
+class Generated:
+    """Samples of every split of a data set under one condition, and what bounds them.
+
+    Attributes
+    ----------
+    preset
+        Of unit 0.
+    splits
+        Samples by split; another unit than the standard one has no split ``repeat``.
+    bound_deg
+        Cramer-Rao bound (N,) of the test split; None for another unit.
+    observable
+        Test samples (N,) whose direction is observable.
+    pins
+        Of the standard unit; none for another.
+    """
+
+    preset: Preset
+    splits: dict[str, Samples]
+    bound_deg: Floats | None
+    observable: NDArray[np.bool_]
+    pins: tuple[Pin, ...]
+
+
+_Place = tuple[str, str, int, str]  # dataset, condition, unit, digest of the parameters
+_kept: OrderedDict[_Place, Generated] = OrderedDict()
+
+
+def generated(
+    preset: Preset, condition: str, unit: int = 0, *, all_observable: bool = False
+) -> Generated:
+    """Return the data of a data set under one condition, as a unit of its sensor sees them.
+
+    Parameters
+    ----------
+    preset
+        Of unit 0.
+    condition
+        Of the data set.
+    unit
+        Of the sensor.
+    all_observable
+        Whether every test sample is known to be observable, so that another unit than the
+        standard one needs no bound.
+    """
+    place = _place_of(preset, condition, unit)
+    if place not in _kept:
+        _make_room()
+        memory.remember((preset.name, unit))  # the conditions of a dataset see the same Suns
+        seen_by = preset.as_unit(unit) if unit else preset
+        wanted = SPLITS if not unit else ("calibration", "test")
+        splits = {split: seen_by.generate(condition, split) for split in wanted}
+        bounded = _of_unit_zero if not unit else _of_another_unit
+        _kept[place] = bounded(preset, condition, splits, all_observable)
+    _kept.move_to_end(place)
+    return _kept[place]
+
+
+def forget() -> None:
+    """Let go of everything that is kept."""
+    _kept.clear()
+
+
+def generated_pins(preset: Preset, condition: str) -> tuple[Pin, ...]:
+    """Pins of a dataset's splits as this machine generates them."""
+    return generated(preset, condition).pins
+
+
+def _place_of(preset: Preset, condition: str, unit: int) -> _Place:
+    """Name data by what they depend on; known without a digest for what is kept of this object."""
+    for place, data in _kept.items():
+        if data.preset is preset and place[:3] == (preset.name, condition, unit):
+            return place
+    return preset.name, condition, unit, digest(preset.parameters(condition))
+
+
+def _of_unit_zero(
+    preset: Preset,
+    condition: str,
+    splits: dict[str, Samples],
+    all_observable: bool,  # noqa: ARG001 - the bound, which scores need, tells it
+) -> Generated:
+    bound = preset.bound(condition, "test")
+    angle, observable = np.asarray(bound.angle_deg), np.asarray(bound.observable, dtype=np.bool_)
+    pins = tuple(_pin(preset, condition, split, splits[split], bound) for split in SPLITS)
+    return Generated(preset, splits, angle, observable, pins)
+
+
+def _of_another_unit(
+    preset: Preset, condition: str, splits: dict[str, Samples], all_observable: bool
+) -> Generated:
+    """Without bounds; what is observable is taken from the standard unit's."""
+    seen = (
+        np.ones(len(splits["test"].sun), dtype=np.bool_)
+        if all_observable
+        else np.asarray(preset.bound(condition, "test").observable, dtype=np.bool_)
+    )
+    return Generated(preset, splits, None, seen, ())
+
+
+def _pin(preset: Preset, condition: str, split: str, samples: Samples, bound: Bound) -> Pin:
+    told: dict[str, Any] = {}
+    if split == "test":
+        told = {
+            "observable": int(np.asarray(bound.observable, dtype=np.bool_).sum()),
+            "bound_deg": rms_bound(bound),
+            "head_bound_deg": rms_bound(bound, HEAD),
+        }
+    return Pin(
+        preset.name,
+        condition,
+        split,
+        preset.version,
+        len(samples.sun),
+        samples_hash(samples),
+        head_hash(samples),
+        **told,
+    )
+
+
+def rms_bound(bound: Bound, first: int | None = None) -> float | None:
+    """Return the bound over the (first) observable samples as pins keep it; None for none."""
+    seen = np.asarray(bound.observable, dtype=np.bool_)[:first]
+    angle = np.asarray(bound.angle_deg)[:first][seen]
+    return stored(float(np.sqrt(np.mean(angle**2)))) if len(angle) else None
+
+
+def _make_room() -> None:
+    """Let go of what was used longest ago, before more is generated."""
+    while _kept and (len(_kept) >= _KEPT or _kept_bytes() > _KEPT_BYTES):
+        _kept.popitem(last=False)
+
+
+def _kept_bytes() -> int:
+    splits = [split for data in _kept.values() for split in data.splits.values()]
+    return sum(np.asarray(split.observations).nbytes for split in splits)

@@ -1,0 +1,133 @@
+"""What an implementation says of itself is checked; what the contract gives it for nothing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+import numpy as np
+import pytest
+
+from algorithms.contract import (
+    AboutExtractor,
+    AboutModel,
+    Extractor,
+    FeatureKind,
+    Model,
+    Observation,
+    SensorGeometry,
+    UnsuitableDesignError,
+)
+
+ABOUT = AboutExtractor(
+    name="middle", taxonomy="BCM", observation=Observation.FRAMES, kind=FeatureKind.SPOT
+)
+
+
+@dataclass(frozen=True)
+class Middle(Extractor):
+    about: ClassVar = replace(ABOUT, needs=("centre_px",))
+    shift: float = 0.5
+
+    def extract(self, observations):
+        return np.full((len(observations), 2), self.shift)
+
+
+@dataclass
+class Ahead(Model):
+    about: ClassVar = AboutModel(
+        name="ahead",
+        taxonomy="SPM",
+        needs=("half_fov_deg",),
+        accepts=frozenset({FeatureKind.SPOT, FeatureKind.BALANCE}),
+    )
+
+    def fit(self, features, sun):
+        return self
+
+    def predict(self, features):
+        return np.tile([0.0, 0.0, 1.0], (len(features), 1))
+
+
+def test_what_is_said_by_default():
+    assert (ABOUT.studies, ABOUT.labels, ABOUT.needs) == ((), (), ())
+    assert (ABOUT.origin, ABOUT.version) == ("ours", 1)
+
+
+@pytest.mark.parametrize("name", ["", "Bctm", "b_ctm", "b ctm", "-bctm", "bctm-", "b--c"])
+def test_a_name_is_a_slug(name):
+    with pytest.raises(ValueError, match="name must be words"):
+        replace(ABOUT, name=name)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        ({"taxonomy": ""}, "middle: taxonomy must not be empty"),
+        ({"origin": "theirs"}, "middle: origin must be survey or ours; got 'theirs'"),
+        ({"version": 0}, "middle: version must be at least 1; got 0"),
+        ({"needs": ("centre_px", "center")}, "needs must be fields of SensorGeometry; got center"),
+    ],
+)
+def test_what_cannot_be_is_named(wrong, said):
+    with pytest.raises(ValueError, match=said):
+        replace(ABOUT, **wrong)
+
+
+@pytest.mark.parametrize("words", ["studies", "labels", "needs"])
+def test_one_word_is_not_taken_for_a_list_of_letters(words):
+    with pytest.raises(TypeError, match=f"{words} must be a tuple; got 'He2005'"):
+        replace(ABOUT, **{words: "He2005"})
+
+
+def test_a_model_must_read_something():
+    with pytest.raises(ValueError, match="ahead: accepts must name a kind"):
+        replace(Ahead.about, accepts=frozenset())
+
+
+def test_the_kind_names_the_columns():
+    @dataclass(frozen=True)
+    class Balance(Middle):
+        about: ClassVar = replace(ABOUT, kind=FeatureKind.BALANCE)
+
+    @dataclass(frozen=True)
+    class Signals(Middle):
+        about: ClassVar = replace(ABOUT, kind=FeatureKind.SIGNALS)
+
+    assert Middle().features == ("x_px", "y_px")
+    assert Balance().features == ("s_a", "s_b")
+    with pytest.raises(NotImplementedError, match="middle must name its own columns"):
+        _ = Signals().features
+
+
+def test_a_design_that_says_what_is_needed_is_taken_by_default():
+    assert Middle.for_sensor(SensorGeometry(centre_px=(1.0, 2.0))) == Middle(0.5)
+    with pytest.raises(UnsuitableDesignError, match="middle needs the sensor geometry's centre_px"):
+        Middle.for_sensor(SensorGeometry())
+    wide = SensorGeometry(half_fov_deg=60.0)
+    assert Ahead.for_sensor(wide, FeatureKind.SPOT) == Ahead()
+    with pytest.raises(UnsuitableDesignError, match="ahead needs the sensor geometry's half_fov"):
+        Ahead.for_sensor(SensorGeometry(), FeatureKind.SPOT)
+    with pytest.raises(UnsuitableDesignError, match=r"ahead accepts balance, spot .*; got signals"):
+        Ahead.for_sensor(wide, FeatureKind.SIGNALS)
+
+
+def test_an_implementation_without_its_method_cannot_be_made():
+    @dataclass(frozen=True)
+    class Nothing(Extractor):
+        about: ClassVar = ABOUT
+
+    with pytest.raises(TypeError, match="extract"):
+        Nothing()
+
+
+def test_the_contract_is_structural():
+    """A class that has the members keeps it, whatever its bases."""
+
+    class Apart:
+        about = ABOUT
+        features = ("x_px", "y_px")
+        for_sensor = extract = len
+
+    assert isinstance(Apart(), Extractor)
+    assert not isinstance(Apart(), Model)

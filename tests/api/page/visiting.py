@@ -1,0 +1,70 @@
+"""A page in a headless browser, with what it asked for and what it complained about."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field
+from typing import Any
+from urllib.parse import parse_qs, urlsplit
+from urllib.request import urlopen
+
+from playwright.sync_api import ConsoleMessage, Page
+
+WIDE, NARROW = (1280, 900), (390, 844)
+#: Longer than a machine under load ever takes: what does not come at all is what fails.
+PATIENCE_MS = 300_000
+
+
+@dataclass
+class Visit:
+    """A page, with what it asked for and complained about."""
+
+    page: Page
+    address: str
+    requests: list[str] = field(default_factory=list)
+    complaints: list[str] = field(default_factory=list)
+
+    def go(self, path: str = "/") -> Page:
+        self.page.goto(self.address + path)
+        self.settle()
+        return self.page
+
+    def settle(self) -> None:
+        """Wait until nothing is being loaded or drawn."""
+        self.page.wait_for_function(
+            """() => (document.querySelector('#summary').textContent
+                      || document.querySelector('#blocked .notice'))
+                     && !document.querySelector('[aria-busy="true"]')""",
+            timeout=PATIENCE_MS,
+        )
+
+    def heard(self, message: ConsoleMessage) -> None:
+        if message.type in {"error", "warning"}:
+            self.complaints.append(message.text)
+
+    def query(self) -> dict[str, list[str]]:
+        return parse_qs(urlsplit(self.page.url).query)
+
+    def flow_nodes(self) -> set[str]:
+        """Ids of the nodes that the diagram shows."""
+        drawn = self.page.locator(".diagram").get_attribute("data-nodes")
+        assert drawn is not None
+        return set(drawn.split("|"))
+
+    def paths(self) -> int:
+        """Number of paths that the summary states."""
+        return int(self.page.locator("#summary strong").first.inner_text().split()[0])
+
+
+def get_json(address: str) -> Any:
+    with urlopen(address, timeout=PATIENCE_MS / 1e3) as response:
+        return json.load(response)
+
+
+def tab_to(page: Page, selector: str, most: int = 250) -> None:
+    """Press Tab until the focus is on an element."""
+    for _ in range(most):
+        page.keyboard.press("Tab")
+        if page.evaluate("s => document.activeElement.matches(s)", selector):
+            return
+    raise AssertionError(f"Tab does not reach {selector}")

@@ -1,0 +1,62 @@
+"""The question that is hardest to explain, beside a plain one.
+
+``python -m tests.speed.recommendations``. Every parameter is asked and nothing is met. Looking at
+all subsets of 17 requirements would take 131072 answers; explaining must cost no more than a few
+hundred.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping, Sequence
+
+from registry.recommendation import recommend
+from registry.requirements import PARAMETERS
+from registry.studies import Facts, facts
+from tests.speed import comparing
+from tests.speed.comparing import Subject
+from tests.speed.verdicts import Verdict
+
+_LIMIT = 300.0
+_REPEATS = 5
+
+
+def worst_question(known: Facts) -> Mapping[str, object]:
+    """Return requirements that exclude and include everything and ask for the impossible."""
+    asked: dict[str, object] = {
+        name: list(known.taxonomy.values(name.removeprefix("exclude_")))
+        for name in PARAMETERS
+        if not name.startswith(("max_", "min_"))
+    }
+    return asked | {"max_error_deg": 1e-9, "min_fov_deg": 360.0, "max_latency_us": 1e-9}
+
+
+def subjects() -> list[Subject]:
+    """Prepare the pair."""
+    known = facts()
+    asked = worst_question(known)
+    return [
+        Subject(
+            name="explaining why nothing meets every requirement at once",
+            reference_name="an answer to no requirement",
+            call=lambda: recommend(asked, facts=known),
+            reference=lambda: recommend({}, facts=known),
+            items=1,
+            reference_items=1,
+            limit=_LIMIT,
+        )
+    ]
+
+
+def run() -> list[Verdict]:
+    """Measure and print; return the verdicts."""
+    return comparing.run(subjects(), _REPEATS)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Measure, print, and return the exit status."""
+    return comparing.main("tests.speed.recommendations", subjects, _REPEATS, arguments)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

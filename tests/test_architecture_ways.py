@@ -1,0 +1,87 @@
+"""The two ways that `docs/architecture.md` lists are the ways that a frame and a query really take.
+
+Every call is watched. Listed are this project's functions outside the simulator's and the
+algorithms' own modules that are on the stack when a landmark of the way is reached.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from types import FrameType
+
+from algorithms.extractors.frames.centroid import BasicCentroid
+from algorithms.models.geometric.standard_projection import StandardProjection
+from benchmark import datasets
+from benchmark.running import generated
+from benchmark.running.task import Task, measure
+
+ROOT = Path(__file__).parents[1]
+MOST = 9
+#: What a sensor, an extractor, a model does within is its own matter.
+OWN_MATTER = ("benchmark/simulator/", "algorithms/extractors/", "algorithms/models/")
+
+
+def listed(heading: str) -> list[str]:
+    """Items ``path: function`` of the numbered list under a heading of the page."""
+    page = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
+    section = page.split(f"### {heading}\n")[1].split("\n#")[0]
+    return re.findall(r"^\d+\. `([^`]+: [^`]+)`", section, re.MULTILINE)
+
+
+def on_the_way(call: Callable[[], object], landmarks: Iterable[str]) -> list[str]:
+    """Functions on the stack whenever a landmark is entered, in order of their first entry."""
+    entered: dict[str, int] = {}
+    found: set[str] = set()
+    wanted = frozenset(landmarks)
+
+    def watch(frame: FrameType, event: str, argument: object) -> None:
+        if event != "call":
+            return
+        name = spelt(frame)
+        if name is None:
+            return
+        entered.setdefault(name, len(entered))
+        if name in wanted:
+            above: FrameType | None = frame
+            while above is not None:
+                outer = spelt(above)
+                if outer is not None and not outer.startswith(OWN_MATTER):
+                    found.add(outer)
+                above = above.f_back
+            found.add(name)
+
+    sys.setprofile(watch)
+    try:
+        call()
+    finally:
+        sys.setprofile(None)
+    assert wanted <= set(entered), wanted - set(entered)
+    return sorted(found, key=entered.__getitem__)
+
+
+def spelt(frame: FrameType) -> str | None:
+    """``path: function`` of a frame in this project's own code; None elsewhere."""
+    path = Path(frame.f_code.co_filename)
+    if not path.is_relative_to(ROOT) or path.is_relative_to(ROOT / "tests"):
+        return None
+    name = re.sub(r"\.<locals>.*|\.?<\w+>", "", frame.f_code.co_qualname)
+    return f"{path.relative_to(ROOT).as_posix()}: {name}" if name else None
+
+
+def test_a_frame_passes_the_functions_listed_from_data_set_to_score() -> None:
+    ways = listed("A frame, from data set to score")
+    assert len(ways) <= MOST
+    task = Task(
+        datasets.get("cmos-single-aperture"), "nominal", BasicCentroid, (StandardProjection,)
+    )
+    generated.forget()
+    landmarks = [
+        "benchmark/simulator/sensors/frames.py: FrameSensor.observe",
+        "algorithms/extractors/frames/centroid.py: BasicCentroid.extract",
+        "algorithms/models/geometric/standard_projection.py: StandardProjection.predict",
+        "benchmark/metrics/score.py: score",
+    ]
+    assert on_the_way(lambda: measure(task), landmarks) == ways
