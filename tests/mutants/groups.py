@@ -81,17 +81,17 @@ GROUPS: Mapping[str, Group] = {
         },
     ),
     "running": Group(
-        50,
+        45,
         {
             "benchmark/running/kernels.py": _in(_RUNNING, "kernels"),
-            "benchmark/running/pinning.py": _in(_RUNNING, "pinning"),
+            "benchmark/running/pinning.py": _in(_RUNNING, "pinning_rules", "pinning"),
             "benchmark/running/tim*.py": _in(_RUNNING, "timing", "times"),
             "benchmark/plan/*": _in(_RUNNING, "plan"),
-            "benchmark/running/*": _in(_RUNNING, "runner"),
+            "benchmark/running/*": _in(_RUNNING, "backend", "runner"),
         },
     ),
     "results": Group(
-        60,
+        50,
         {
             "benchmark/results/closure.py": _in(_RESULTS, "digests"),
             "benchmark/results/digests.py": _in(_RESULTS, "digests"),
@@ -99,13 +99,13 @@ GROUPS: Mapping[str, Group] = {
             "benchmark/results/record.py": _in(_RESULTS, "record"),
             "benchmark/results/pins.py": (
                 *_in(_RESULTS, "store", "record"),
-                *_in(_RUNNING, "pinning"),
+                *_in(_RUNNING, "pinning_rules"),
             ),
             "benchmark/results/*": _in(_RESULTS, "store", "record"),
         },
     ),
     "registry": Group(
-        70,
+        50,
         {
             "registry/flows.py": _in("registry", "registry_order", "flows"),
             "registry/taxonomy.py": _in("registry", "registry_order", "registry_taxonomy"),
@@ -122,7 +122,7 @@ GROUPS: Mapping[str, Group] = {
         },
     ),
     "datasets": Group(
-        50,
+        45,
         {
             "benchmark/datasets/coverage.py": _in(_DATASETS, "coverage"),
             "benchmark/datasets/export*.py": _in(_DATASETS, "dataset_export"),
@@ -132,7 +132,7 @@ GROUPS: Mapping[str, Group] = {
         },
     ),
     "models": Group(
-        60,
+        50,
         {
             "algorithms/models/multiplex/*": _in(_MODELS, "model_limits", "code_dial_models"),
             "algorithms/models/non_physical/fourier_phase.py": _in(
@@ -155,18 +155,22 @@ GROUPS: Mapping[str, Group] = {
         },
     ),
     "extractors": Group(
-        70,
+        60,
         {
             "algorithms/extractors/currents/photodiode.py": _in(_EXTRACTORS, "photodiode"),
             "algorithms/extractors/currents/dial_tracks.py": _in(_MODELS, "code_dial_models"),
-            "algorithms/extractors/events/*": _in(_EXTRACTORS, "event_centroid"),
+            "algorithms/extractors/events/*": _in(
+                _EXTRACTORS, "camera_and_event_kernels", "event_centroid"
+            ),
             "algorithms/extractors/frames/cameras/black_sun.py": _in(
                 _EXTRACTORS, "camera_black_sun"
             ),
             "algorithms/extractors/frames/cameras/dark_holes_kernel.py": _in(
-                _EXTRACTORS, "camera_black_sun"
+                _EXTRACTORS, "camera_and_event_kernels", "camera_black_sun"
             ),
-            "algorithms/extractors/frames/cameras/*": _in(_EXTRACTORS, "camera_hough"),
+            "algorithms/extractors/frames/cameras/*": _in(
+                _EXTRACTORS, "camera_and_event_kernels", "camera_hough"
+            ),
             "algorithms/extractors/frames/energy_filter*.py": _in(
                 _EXTRACTORS, "energy_filter_kernel", "energy_filtering"
             ),

@@ -180,8 +180,10 @@ def _tested(tests: Sequence[str], output: Path) -> int:
     hypothesis.settings.load_profile("mutants")
     times = _Times()
     plugins = ["-p", "_hypothesis_pytestplugin", "-p", "no:cacheprovider"]
-    options = ["-x", "-q", "--tb=short", "--hypothesis-seed=0", "-k", _QUICK, *plugins]
-    status = int(pytest.main([*options, *tests], plugins=[times]))
+    # of the project's own options only how tests are imported: others are of plugins left out
+    own = ["-o", "addopts=--import-mode=importlib", "-W", "ignore::pytest.PytestConfigWarning"]
+    options = ["-x", "-q", "--tb=short", "--hypothesis-seed=0", "-k", _QUICK]
+    status = int(pytest.main([*own, *plugins, *options, *tests], plugins=[times]))
     output.with_suffix(".seconds.json").write_text(json.dumps(times.seconds))
     return status
 

@@ -97,6 +97,23 @@ def test_no_silent_pipeline_is_before_an_available_one_whatever_the_errors(value
         assert errors == sorted(errors)
 
 
+def test_equals_stand_by_the_names_of_extractor_and_model_whatever_the_order():
+    rows = [
+        row("b", 1.0, extractor="e"),
+        row("a", 1.0, extractor="f"),
+        row("a", 1.0, extractor="e"),
+        row("z", 0.0, extractor="z"),  # no error is not an error of none
+        row("c", None, extractor="a"),
+    ]
+    for order in (rows, rows[::-1]):
+        (dataset,) = build(order)["datasets"]
+        found = [(r["rank"], r["extractor"], r["model"]) for r in dataset["rows"]]
+        assert found == [
+            (1, "z", "z"), (2, "e", "a"), (3, "e", "b"), (4, "f", "a"), (None, "a", "c"),
+        ]  # fmt: skip
+        assert [r["model"] for r in at_field(dataset["rows"], 10)] == ["c", "a", "b", "a", "z"]
+
+
 def test_ranks_are_shared_where_the_units_of_two_overlap():
     """The third is behind both; its rank is its place."""
     rows = [

@@ -1,0 +1,160 @@
+"""Where tasks go: to this process, to others bundle by bundle, never to none."""
+
+from __future__ import annotations
+
+import os
+import platform
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
+
+import fake_atlas
+import fake_plan
+import pytest
+
+from benchmark.plan.combinations import Cell
+from benchmark.plan.parts import UnknownNameError
+from benchmark.results.store import Store
+from benchmark.running import backend, run
+from benchmark.running.progress import silent
+from benchmark.running.task import Task
+
+
+def tasks(count: int, **named: Any) -> list[Task]:
+    given = {"preset": fake_atlas.Diodes(), "condition": "quiet", "unit": 0, **named}
+    return [
+        Task(given["preset"], given["condition"], fake_atlas.Currents, (), given["unit"])
+        for _ in range(count)
+    ]
+
+
+@pytest.fixture
+def here(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
+    """What is measured in this process; other processes are not to be had."""
+    measured: list[Any] = []
+    monkeypatch.setattr(backend, "measure", lambda task: measured.append(task) or task)
+    monkeypatch.setattr(backend, "Parallel", lambda **_options: pytest.fail("other processes"))
+    return measured
+
+
+@pytest.mark.parametrize(("count", "workers"), [(1, 1), (1, 2), (3, 1), (0, 1)])
+def test_one_worker_or_one_task_needs_no_other_process(
+    here: list[Any], count: int, workers: int
+) -> None:
+    some = tasks(count)
+    assert list(backend.outcomes(some, workers)) == some == here
+
+
+def test_two_tasks_of_two_workers_go_to_other_processes(
+    here: list[Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[Any] = []
+
+    class Generator(list[Any]):
+        def close(self) -> None:
+            asked.append("closed")
+
+    def parallel(**options: Any) -> Any:
+        asked.append(options)
+        return lambda calls: Generator([f(*given) for f, given, _ in calls])
+
+    monkeypatch.setattr(backend, "Parallel", parallel)
+    monkeypatch.setattr(backend, "_end_with", asked.append)
+    some = [*tasks(5), *tasks(1, unit=1)]
+    assert list(backend.outcomes(some, 2)) == some == here
+    options, *rest = asked
+    assert options["return_as"] == "generator_unordered"
+    assert options["batch_size"] == 1
+    # nobody's child here: there is no coordinator to end with
+    assert rest == ["closed"]
+
+
+@pytest.mark.parametrize(
+    ("host", "parent", "ends"), [("same", 0, True), ("other", 0, False), ("same", 1, False)]
+)
+def test_a_worker_ends_with_its_coordinator_where_that_is_its_parent(
+    here: list[Any], monkeypatch: pytest.MonkeyPatch, host: str, parent: int, ends: bool
+) -> None:
+    ended: list[int] = []
+    monkeypatch.setattr(backend, "_end_with", ended.append)
+    where = platform.node() if host == "same" else f"not {platform.node()}"
+    process = os.getppid() + parent
+    some = tasks(2)
+    assert backend._measure_for((where, process), some) == some
+    assert ended == ([process] if ends else [])
+
+
+def test_bundles_end_with_the_sensor_or_the_condition_and_after_four() -> None:
+    other = fake_atlas.Diodes(name="other")
+    some = [
+        *tasks(4),
+        *tasks(1, condition="noisy"),
+        *tasks(2, condition="noisy", unit=1),
+        *tasks(5, condition="noisy", preset=other),
+    ]
+    assert [len(bundle) for bundle in backend.bundles(some)] == [4, 1, 2, 4, 1]
+    assert backend.bundles([]) == []
+
+
+@pytest.mark.parametrize(
+    ("sensors", "workers", "many"), [(4, 1, True), (3, 1, False), (8, 2, True), (7, 2, False)]
+)
+def test_from_four_sensors_a_worker_on_each_is_one_workers(
+    sensors: int, workers: int, many: bool
+) -> None:
+    some = [one for unit in range(sensors) for one in tasks(6, unit=unit)]
+    sizes = [len(bundle) for bundle in backend.bundles(some, workers)]
+    assert sizes == ([6] * sensors if many else [4, 2] * sensors)
+
+
+def test_a_scheduler_is_asked_though_there_is_one_worker(
+    here: list[Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[Any] = []
+    monkeypatch.setattr(backend, "find_spec", lambda name: object())
+    client = SimpleNamespace(__enter__=None)
+
+    class Client:
+        def __init__(self, address: str) -> None:
+            asked.append(address)
+
+        def __enter__(self) -> Any:
+            return client
+
+        def __exit__(self, *_error: object) -> None:
+            asked.append("left")
+
+    monkeypatch.setattr(backend, "import_module", lambda name: SimpleNamespace(Client=Client))
+    monkeypatch.setattr(
+        backend, "parallel_config", lambda kind, **options: pytest.MonkeyPatch.context()
+    )
+    monkeypatch.setattr(backend, "Parallel", lambda **options: _closing)
+    assert len(list(backend.outcomes(tasks(1), 1, "tcp://somewhere:1"))) == 1
+    assert asked == ["tcp://somewhere:1", "left"]
+
+
+@pytest.mark.parametrize("name", ["dataset", "extractor", "model"])
+def test_a_cell_of_what_is_not_installed_is_named_before_anything_is_done(
+    name: str, tmp_path: Any
+) -> None:
+    known = Cell("fake-diodes", "quiet", "fake-currents", "fake-least-squares")
+    wrong = replace(known, **{name: "fake-nothing"})
+    parts, store = fake_plan.parts(), Store(tmp_path / "store")
+    assert run.stale([known], store, parts=parts) == [known]
+    for call in (run.stale, run.run):
+        with pytest.raises(UnknownNameError, match=f"no {name} named 'fake-nothing'"):
+            call([known, wrong], store, parts=parts)
+    assert not store.directory.exists()
+
+
+def test_cells_are_measured_once_each_and_the_time_is_told(tmp_path: Any) -> None:
+    cell = Cell("fake-diodes", "quiet", "fake-currents", "fake-least-squares")
+    store = Store(tmp_path)
+    done = run.run([cell, cell], store, progress=silent, parts=fake_plan.parts())
+    assert (done.planned, done.already_stored, done.computed) == (1, 0, 1)
+    assert 0.0 < done.seconds < 600.0
+    assert done.store == tmp_path
+
+
+def _closing(calls: Any) -> Any:
+    yield from (f(*given) for f, given, _ in calls)

@@ -1,0 +1,171 @@
+"""What counts as a change of pinned data, rule by rule, on pins made up."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import fake_plan
+import numpy as np
+import pytest
+from fake_atlas import Diodes, FakeBound
+from fake_results import pin
+
+from benchmark.plan.parts import UnknownNameError
+from benchmark.results.components import Components, current
+from benchmark.results.digests import HEAD
+from benchmark.results.record import opened
+from benchmark.results.store import Store
+from benchmark.running import pinning
+from benchmark.running.pinning import UnversionedChangeError
+from benchmark.running.progress import silent
+from benchmark.running.task import rms_bound
+
+
+def by_place(*pins: Any) -> dict[Any, Any]:
+    return {one.place: one for one in pins}
+
+
+def test_a_change_is_one_of_the_same_place_and_version() -> None:
+    known = by_place(pin(), pin("calibration"), pin(dataset="e"))
+    same = [pin(), pin("repeat", data_hash="new"), pin(dataset="f")]
+    assert pinning.unversioned(known, same) == {}
+    pinning.require_versions(known, same)
+    newer = [pin(version=2, data_hash="x")]
+    assert pinning.unversioned(known, newer) == {}
+    changed = [pin(data_hash="x"), pin("calibration", n=4), pin(dataset="e", bound_deg=0.5)]
+    assert pinning.unversioned(known, changed) == {
+        "d": ["c test: data_hash x, pinned h", "c calibration: n 4, pinned 3"],
+        "e": ["c test: bound_deg 0.5, pinned 0.25"],
+    }
+
+
+def test_the_error_names_every_data_set_with_its_first_change_and_keeps_all() -> None:
+    known = by_place(pin(), pin("calibration"), pin(dataset="a"))
+    changed = [pin("calibration", n=4), pin(data_hash="x"), pin(dataset="a", n=9)]
+    with pytest.raises(UnversionedChangeError) as caught:
+        pinning.require_versions(known, changed)
+    assert str(caught.value) == (
+        "data of 2 data sets changed while their versions did not: a (c test: n 9, pinned 3); "
+        "d (c calibration: n 4, pinned 3). Raise `version` in their presets if the change is meant"
+    )
+    assert list(caught.value.changes) == ["a", "d"]
+    assert len(caught.value.changes["d"]) == 2
+
+
+def test_every_condition_and_split_is_a_place() -> None:
+    parts = fake_plan.parts(presets=(Diodes(), Diodes(name="z", conditions=("quiet",))))
+    places = pinning.places(parts)
+    assert places == {
+        (name, condition, split)
+        for name, condition in (("fake-diodes", "quiet"), ("fake-diodes", "noisy"), ("z", "quiet"))
+        for split in ("calibration", "test", "repeat")
+    }
+    listed = [(preset.name, name) for preset, name in pinning.conditions_of(parts)]
+    assert listed == [("fake-diodes", "quiet"), ("fake-diodes", "noisy"), ("z", "quiet")]
+    assert [p.name for p, _ in pinning.conditions_of(parts, ["z", "z"])] == ["z"]
+    assert pinning.conditions_of(parts, []) == []
+    with pytest.raises(UnknownNameError, match="fake-diodes"):
+        pinning.conditions_of(parts, ["z", "fake-diode"])
+
+
+def pins_of(preset: Any) -> dict[Any, Any]:
+    made = [
+        made
+        for condition in preset.conditions
+        for made in pinning.generated_pins(preset, condition)
+    ]
+    return by_place(*made)
+
+
+def test_heads_tell_in_samples_and_bounds_what_changed_among_the_first() -> None:
+    preset = Diodes(n=40)
+    pinned = pins_of(preset)
+    assert pinning.changed_heads(pinned, [preset]) == {}
+    other = pinning.changed_heads(pinned, [replace(preset, seed=8)])
+    assert [line.split(":")[0] for line in other["fake-diodes"]] == [
+        f"{condition} {split}"
+        for condition in ("quiet", "noisy")
+        for split in ("calibration", "test", "repeat")
+    ]
+    assert all("head_hash" in line for line in other["fake-diodes"])
+    looser = pinning.changed_heads(pinned, [replace(preset, looseness=1.01)])
+    assert [line.partition(" deg")[0].split(" ")[:3] for line in looser["fake-diodes"]] == [
+        ["quiet", "test:", "head_bound_deg"],
+        ["noisy", "test:", "head_bound_deg"],
+    ]
+    # what comes after the head is not looked at, nor another version, nor what has no pin
+    assert pinning.changed_heads(pinned, [replace(preset, late=0.5)]) == {}
+    assert pinning.changed_heads(pinned, [replace(preset, seed=8, version=2)]) == {}
+    assert pinning.changed_heads({}, [replace(preset, seed=8)]) == {}
+
+
+def test_data_sets_of_other_code_are_those_whose_digest_is_another(tmp_path: Any) -> None:
+    parts = fake_plan.parts(presets=(Diodes(), Diodes(name="z")))
+    store, now = Store(tmp_path), current(parts)
+    assert [p.name for p in pinning.presets_of_other_code(store, parts, now)] == [
+        "fake-diodes",
+        "z",
+    ]
+    moved = {**now.datasets, "z": {**now.datasets["z"], "digest": "older"}}
+    store.write({}, [], [], Components(now.harness, datasets=moved))
+    assert [p.name for p in pinning.presets_of_other_code(store, parts, now)] == ["z"]
+
+
+@pytest.mark.parametrize(
+    ("known", "said"),
+    [
+        (None, "not pinned"),
+        (pin(version=3), "version 1, pinned 3"),
+        (pin(version=3, data_hash="x"), "version 1, pinned 3"),
+        (pin(), ""),
+        (pin(n=4), "n 3, pinned 4"),
+    ],
+)
+def test_what_is_wrong_with_a_pin_is_its_version_first(known: Any, said: str) -> None:
+    assert pinning._wrong(known, pin()) == said
+
+
+def test_only_what_is_missing_is_generated_and_counted(tmp_path: Any) -> None:
+    class Broken(Diodes):
+        def generate(self, condition: str, split: str, n: int | None = None) -> Any:
+            raise OSError("no data\ntoday")
+
+    parts = fake_plan.parts(presets=(Diodes(n=40), Broken(name="z", conditions=("quiet",))))
+    components = current(parts)
+    with opened(Store(tmp_path)) as record:
+        seen: list[tuple[int, int, str]] = []
+        first = pinning.pin_missing(
+            record, components, parts, workers=1, progress=lambda *said: seen.append(said)
+        )
+        assert (first.kept, first.renewed) == (0, 2)
+        assert 0.0 < first.seconds < 600.0
+        assert first.warnings == ("z quiet: cannot be generated: OSError: no data today",)
+        assert seen == [
+            (0, 3, ""), (1, 3, "fake-diodes quiet"), (2, 3, "fake-diodes noisy"), (3, 3, "z quiet"),
+        ]  # fmt: skip
+        del record.pins["fake-diodes", "noisy", "repeat"]
+        del record._pin_keys["fake-diodes", "noisy", "repeat"]
+        again = pinning.pin_missing(
+            record, components, parts, workers=1, progress=silent, datasets=["fake-diodes"]
+        )
+        assert (again.kept, again.renewed, again.warnings) == (1, 1, ())
+
+
+@pytest.mark.parametrize(("workers", "right"), [(0, False), (1, True)])
+def test_pinning_takes_one_worker_at_least(tmp_path: Any, workers: int, right: bool) -> None:
+    parts = fake_plan.parts(presets=(Diodes(n=40),))
+    if right:
+        assert pinning.update(Store(tmp_path), workers, silent, parts=parts).renewed == 2
+    else:
+        with pytest.raises(ValueError, match="at least 1; got 0"):
+            pinning.update(Store(tmp_path), workers, silent, parts=parts)
+
+
+def test_a_pinned_bound_is_the_root_mean_square_of_the_observable_first() -> None:
+    angle = np.array([3.0, np.inf, 4.0, 5.0, 100.0])
+    bound = FakeBound(angle, np.isfinite(angle))
+    assert rms_bound(bound, HEAD) == pytest.approx(np.sqrt(50 / 3), rel=1e-4)
+    assert rms_bound(bound, 2) == 3.0
+    assert rms_bound(bound) == pytest.approx(np.sqrt(10050 / 4), rel=1e-4)
+    assert rms_bound(FakeBound(angle, np.zeros(5, bool))) is None
