@@ -11,12 +11,12 @@ from typing import Any
 import fake_atlas
 import fake_plan
 import pytest
+from benchmark.running.progress import silent
 
 from benchmark.plan.combinations import Cell
 from benchmark.plan.parts import UnknownNameError
 from benchmark.results.store import Store
 from benchmark.running import backend, run
-from benchmark.running.progress import silent
 from benchmark.running.task import Task
 
 

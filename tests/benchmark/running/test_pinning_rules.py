@@ -8,6 +8,7 @@ from typing import Any
 import fake_plan
 import numpy as np
 import pytest
+from benchmark.running.progress import silent
 from fake_atlas import Diodes, FakeBound
 from fake_results import pin
 
@@ -18,7 +19,6 @@ from benchmark.results.record import opened
 from benchmark.results.store import Store
 from benchmark.running import pinning
 from benchmark.running.pinning import UnversionedChangeError
-from benchmark.running.progress import silent
 from benchmark.running.task import rms_bound
 
 
