@@ -7,8 +7,7 @@ from typing import Literal
 from pydantic import ConfigDict, Field
 
 from api.http.models.base import Listing, OpenShape, Question, Shape
-from api.http.models.parameters import DEFAULT_PAGE, Cursor, Limit, Several
-from api.http.models.scores import only
+from api.http.models.parameters import DEFAULT_PAGE, Cursor, Limit, Several, several
 from api.http.models.words import ExtractorName, MethodName, Series, SweepName
 
 Agreement = Literal["agrees", "near", "opposed", "not measured"]
@@ -25,9 +24,11 @@ class SweepsQuery(Question):
         }
     )
 
-    series: Several[Series] = only("feature")
-    sweep: Several[SweepName] = only("sweep")
-    extractor: Several[ExtractorName] = only("extractor, by the name of its implementation")
+    series: Several[Series] = several("Only this feature.")
+    sweep: Several[SweepName] = several("Only this sweep.")
+    extractor: Several[ExtractorName] = several(
+        "Only this extractor, by the name of its implementation."
+    )
     limit: Limit = DEFAULT_PAGE
     cursor: Cursor = None
 
@@ -37,7 +38,7 @@ class AssessmentQuery(Question):
 
     model_config = ConfigDict(json_schema_extra={"examples": [{"method": ["BCTM"]}]})
 
-    method: Several[MethodName] = only("method, as the survey's table calls it")
+    method: Several[MethodName] = several("Only this method, as the survey's table calls it.")
 
 
 class Sweep(OpenShape):

@@ -87,6 +87,12 @@ def _distinct(values: Iterable[str]) -> list[str]:
 Word = TypeVar("Word")
 Several = Annotated[list[Word], Field(max_length=MOST_VALUES), AfterValidator(_distinct)]
 
+
+def several(description: str) -> Any:
+    """Return the field of a parameter that may be given several times, or not at all."""
+    return Field(default_factory=list, description=description)
+
+
 GIVEN = Spelt(".*")
 WHOLE = Whole(r"-?\d{1,18}")
 NUMBER = Spelt(r"-?\d+(?:\.\d+)?(?:[eE][+-]?\d+)?")

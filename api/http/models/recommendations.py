@@ -6,29 +6,18 @@ from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field
 
+from api.http.models import words
 from api.http.models.base import OpenShape, Question, Shape
 from api.http.models.flows import LeftOut, Link, Node
-from api.http.models.parameters import LARGEST_PAGE, NUMBER, WHOLE, Several
-from api.http.models.words import (
-    Accuracy,
-    Condition,
-    Detector,
-    Error,
-    Extractor,
-    Mask,
-    Model,
-    Task,
-)
+from api.http.models.parameters import LARGEST_PAGE, NUMBER, WHOLE, Several, several
 
 
 def _wanted(attribute: str) -> Any:
-    description = f"Only paths with one of these values of {attribute}."
-    return Field(default_factory=list, description=description)
+    return several(f"Only paths with one of these values of {attribute}.")
 
 
 def _unwanted(attribute: str) -> Any:
-    description = f"No path with one of these values of {attribute}."
-    return Field(default_factory=list, description=description)
+    return several(f"No path with one of these values of {attribute}.")
 
 
 Number = Annotated[float | None, NUMBER]
@@ -40,25 +29,25 @@ class Requirements(Question):
     model_config = ConfigDict(
         json_schema_extra={
             "examples": [
-                {"task": ["Accuracy"], "detector": ["CMOS"], "mask": ["Encoded"], "limit": 1}
+                {"task": ["Accuracy"], "detector": ["CMOS"], "mask": ["Single-Ap."], "limit": 1}
             ]
         }
     )
 
-    task: Several[Task] = _wanted("task")
-    error: Several[Error] = _wanted("error")
-    accuracy: Several[Accuracy] = _wanted("accuracy")
-    detector: Several[Detector] = _wanted("detector")
-    mask: Several[Mask] = _wanted("mask")
-    model: Several[Model] = _wanted("model")
-    extractor: Several[Extractor] = _wanted("extractor")
-    exclude_task: Several[Task] = _unwanted("task")
-    exclude_error: Several[Error] = _unwanted("error")
-    exclude_accuracy: Several[Accuracy] = _unwanted("accuracy")
-    exclude_detector: Several[Detector] = _unwanted("detector")
-    exclude_mask: Several[Mask] = _unwanted("mask")
-    exclude_model: Several[Model] = _unwanted("model")
-    exclude_extractor: Several[Extractor] = _unwanted("extractor")
+    task: Several[words.Task] = _wanted("task")
+    error: Several[words.Error] = _wanted("error")
+    accuracy: Several[words.Accuracy] = _wanted("accuracy")
+    detector: Several[words.Detector] = _wanted("detector")
+    mask: Several[words.Mask] = _wanted("mask")
+    model: Several[words.Model] = _wanted("model")
+    extractor: Several[words.Extractor] = _wanted("extractor")
+    exclude_task: Several[words.Task] = _unwanted("task")
+    exclude_error: Several[words.Error] = _unwanted("error")
+    exclude_accuracy: Several[words.Accuracy] = _unwanted("accuracy")
+    exclude_detector: Several[words.Detector] = _unwanted("detector")
+    exclude_mask: Several[words.Mask] = _unwanted("mask")
+    exclude_model: Several[words.Model] = _unwanted("model")
+    exclude_extractor: Several[words.Extractor] = _unwanted("extractor")
     # No more than directions, a full turn, and 11 days.
     max_error_deg: Number = Field(
         None,
@@ -78,7 +67,7 @@ class Requirements(Question):
         le=1e12,
         description="Extraction and prediction of one sample at most this, in microseconds.",
     )
-    condition: Condition = Field(
+    condition: words.Condition = Field(
         "nominal",
         description="Condition of the data sets in which measured performance is read.",
     )

@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
 from api.http.models.base import Listing, OpenShape, Question
-from api.http.models.parameters import DEFAULT_PAGE, GIVEN, NUMBER, Cursor, Limit, OneOf, Several
+from api.http.models.parameters import (
+    DEFAULT_PAGE,
+    GIVEN,
+    NUMBER,
+    Cursor,
+    Limit,
+    OneOf,
+    Several,
+    several,
+)
 from api.http.models.words import Condition, DatasetName, ExtractorName, ModelName
 from benchmark.metrics.rings import EDGES_DEG
 
 FIELDS = tuple(str(edge) for edge in EDGES_DEG[1:])
-
-
-def only(what: str) -> Any:
-    """Return the field of a parameter that narrows a list to some of its rows."""
-    return Field(default_factory=list, description=f"Only this {what}.")
 
 
 class ScoresQuery(Question):
@@ -24,10 +28,12 @@ class ScoresQuery(Question):
 
     model_config = ConfigDict(json_schema_extra={"examples": [{"limit": 1}]})
 
-    dataset: Several[DatasetName] = only("data set")
-    condition: Several[Condition] = only("condition")
-    extractor: Several[ExtractorName] = only("extractor, by the name of its implementation")
-    model: Several[ModelName] = only("model, by the name of its implementation")
+    dataset: Several[DatasetName] = several("Only this data set.")
+    condition: Several[Condition] = several("Only this condition.")
+    extractor: Several[ExtractorName] = several(
+        "Only this extractor, by the name of its implementation."
+    )
+    model: Several[ModelName] = several("Only this model, by the name of its implementation.")
     limit: Limit = DEFAULT_PAGE
     cursor: Cursor = None
 
@@ -37,9 +43,11 @@ class LeaderboardQuery(Question):
 
     model_config = ConfigDict(json_schema_extra={"examples": [{"limit": 1}]})
 
-    condition: Several[Condition] = only("condition")
-    extractor: Several[ExtractorName] = only("extractor, by the name of its implementation")
-    model: Several[ModelName] = only("model, by the name of its implementation")
+    condition: Several[Condition] = several("Only this condition.")
+    extractor: Several[ExtractorName] = several(
+        "Only this extractor, by the name of its implementation."
+    )
+    model: Several[ModelName] = several("Only this model, by the name of its implementation.")
     field_deg: Annotated[str | None, OneOf(lambda: FIELDS), GIVEN] = Field(
         None,
         description="Rank by the error within this angle of the boresight, degrees: rings of the "

@@ -6,17 +6,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field
 
+from api.http.models import words
 from api.http.models.base import Listing, Question, Shape
-from api.http.models.parameters import DEFAULT_PAGE, GIVEN, WHOLE, Cursor, Limit, Several
-from api.http.models.words import (
-    Accuracy,
-    Detector,
-    Error,
-    Extractor,
-    Mask,
-    Model,
-    Task,
-)
+from api.http.models.parameters import DEFAULT_PAGE, GIVEN, WHOLE, Cursor, Limit, Several, several
 from registry.taxonomy import ATTRIBUTES
 
 State = Literal["complete", "partial", "none"]
@@ -24,20 +16,19 @@ State = Literal["complete", "partial", "none"]
 
 def _filter(attribute: str, more: str = "") -> Any:
     text = f"Only studies with one of these values of {attribute}{more}."
-    description = f"{text} Different attributes must all match."
-    return Field(default_factory=list, description=description)
+    return several(f"{text} Different attributes must all match.")
 
 
 class StudyFilters(Question):
     """Filters by the attributes of studies."""
 
-    task: Several[Task] = _filter("task")
-    error: Several[Error] = _filter("error")
-    accuracy: Several[Accuracy] = _filter("accuracy")
-    detector: Several[Detector] = _filter("detector")
-    mask: Several[Mask] = _filter("mask")
-    model: Several[Model] = _filter("model", " (a parent such as ECM covers its kinds)")
-    extractor: Several[Extractor] = _filter("extractor")
+    task: Several[words.Task] = _filter("task")
+    error: Several[words.Error] = _filter("error")
+    accuracy: Several[words.Accuracy] = _filter("accuracy")
+    detector: Several[words.Detector] = _filter("detector")
+    mask: Several[words.Mask] = _filter("mask")
+    model: Several[words.Model] = _filter("model", " (a parent such as ECM covers its kinds)")
+    extractor: Several[words.Extractor] = _filter("extractor")
 
     def wanted(self) -> dict[str, list[str]]:
         """Return the values asked for, by attribute."""
@@ -58,9 +49,7 @@ class StudiesQuery(StudyFilters):
     year_max: Annotated[int | None, WHOLE] = Field(
         None, ge=0, le=9999, description="Only studies of this year or earlier."
     )
-    state: Several[State] = Field(
-        default_factory=list, description="Only studies of which this much can be run."
-    )
+    state: Several[State] = several("Only studies of which this much can be run.")
     q: Annotated[str | None, GIVEN] = Field(
         None,
         min_length=1,

@@ -24,8 +24,8 @@ COLUMNS = ("method", "property", "survey", "measured", "agreement", "value", "re
 async def assessment(known: Known, query: Annotated[AssessmentQuery, Query()]) -> Answer:
     """Scores 2 (provides), 1 (partly), 0 (does not) of 19 methods in 21 properties.
 
-    What the survey says, what was measured by the stated definition, and whether they agree. As
-    CSV: a row a method and property.
+    Each tells what the survey says, what was measured by the stated definition, and whether they
+    agree. As CSV: a row a method and property.
     """
     whole = known.measurements.assessment
     methods = [m for m in whole["methods"] if not query.method or m["method"] in query.method]

@@ -38,8 +38,8 @@ async def datasets(known: Known, query: Annotated[DatasetsQuery, Query()]) -> An
 async def dataset(known: Known, name: Name) -> Answer:
     """Its card: all that its numbers depend on, and what is published of them.
 
-    Geometry, conditions with every parameter, seeds, the bound of each condition, the hash of each
-    split, and where its picture is. As CSV: the hashes and bounds.
+    That is geometry, conditions with every parameter, seeds, the bound of each condition, the hash
+    of each split, and where its picture is. As CSV: the hashes and bounds.
     """
     card = known.measurements.card(name)
     return Answer(card, DATA_COLUMNS, lambda: card["data"])
@@ -52,10 +52,10 @@ async def dataset(known: Known, name: Name) -> Answer:
     dependencies=[NO_PARAMETERS],
 )
 def dataset_preview(known: Known, name: Name) -> Picture:
-    """Draw some of its nominal samples.
+    """Picture of some of its nominal samples.
 
-    Frames from small to large incidence, profiles, currents over angle or time, or spikes by
-    their time.
+    They are frames from small to large incidence, profiles, currents over angle or time, or spikes
+    by their time.
     """
     from benchmark.datasets.preview import preview_png  # noqa: PLC0415 - renders, so on demand
 

@@ -51,8 +51,8 @@ async def leaderboard_of_dataset(
 ) -> Answer:
     """Rows of one data set's leaderboard, best first within a condition.
 
-    With `field_deg` by the error over a part of the field, with `max_error_deg` by the field that
-    keeps an error.
+    `field_deg` ranks by the error over a part of the field, `max_error_deg` by the field that keeps
+    an error.
     """
     ranked = known.measurements.board_rows(dataset)
     if query.field_deg is not None:

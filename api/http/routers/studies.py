@@ -26,7 +26,7 @@ DETAIL_COLUMNS = ("attribute", "value", "basis", "source", "note")
 
 @router.get("/studies", summary="The mapped studies", response_model=Studies)
 async def studies(known: Known, query: Annotated[StudiesQuery, Query()]) -> Answer:
-    """List the studies, 129 of them where the survey states 128. Filters narrow the list."""
+    """Studies of the survey's mapping: 129, where it states 128. Filters narrow the list."""
     found = [study for study in known.facts.studies.values() if _is_wanted(study, query, known)]
     shown = page(found, "/v1/studies", query)
     items = [_row(study, known) for study in shown.items]

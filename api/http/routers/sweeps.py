@@ -20,8 +20,8 @@ COLUMNS = ("series", "sweep", "point", "extractor", "rms", "bound", "over_bound"
 async def sweeps(known: Known, query: Annotated[SweepsQuery, Query()]) -> Answer:
     """Error of every extractor over noise, feature size, sub-pixel phase and more.
 
-    On features in closed form, with the Cramer-Rao bound of each point. A row without a sweep says
-    why an extractor is not measured on a feature.
+    The features are in closed form, and each point has its Cramer-Rao bound. A row without a sweep
+    says why an extractor is not measured on a feature.
     """
     rows = narrowed(known.measurements.sweeps, query, ("series", "sweep", "extractor"))
     shown = page(rows, "/v1/sweeps", query)

@@ -22,7 +22,7 @@ COLUMNS = ("attribute", "value", "name", "category", "section")
 async def taxonomy(known: Known) -> Answer:
     """Every value that an attribute of a study may take.
 
-    With its name, category and section of the survey. Other endpoints take these values as
+    Each has its name, category and section of the survey. Other endpoints take these values as
     filters.
     """
     attributes = known.taxonomy.to_dict()
