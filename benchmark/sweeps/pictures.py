@@ -110,6 +110,7 @@ def _compact(svg: str) -> str:
     Numbers keep two digits, a hundredth of a point: rounding that differs between machines is not
     a change of the picture.
     """
+    svg = svg[svg.index("<svg") :]  # no prolog that refers to a definition elsewhere
     svg = re.sub(r' transform="rotate\(-?0 [^)]*\)"', "", svg)
     svg = re.sub(r'\n *<g id="[^"]*"/>', "", svg)
     svg = re.sub(r'<g id="[^"]*">', "<g>", svg)

@@ -40,6 +40,7 @@ def test_every_panel_holds_the_stored_numbers_of_its_method(rows, sweep):
 def test_the_file_is_small_says_what_it_is_and_holds_no_time(rows):
     text = pictures.picture(rows, "noise")
     assert len(text.encode()) < 150_000
+    assert text.startswith("<svg")
     root = ET.fromstring(text)
     assert root.findtext(f"{SVG}title") == "Error against peak SNR of every method, with its bound"
     words = {element.text for element in root.iter(f"{SVG}text")}
