@@ -131,7 +131,6 @@ def test_attributes_are_read_from_what_implies_them() -> None:
 )
 def test_half_alike_is_near(text: str, found: str | None) -> None:
     assert nearest(text, ["abcd", "Slit"]) == found
-    assert nearest(text, {"abcd": "abcd", "SLIT": "Slit"}) == found
 
 
 def study(**values: list[str]) -> Study:

@@ -12,11 +12,10 @@ import fake_atlas
 import fake_plan
 import pytest
 
-from benchmark.plan.combinations import Cell
-from benchmark.plan.parts import UnknownNameError
+from benchmark.contract import Cell, UnknownNameError
+from benchmark.progress import silent
 from benchmark.results.store import Store
 from benchmark.running import backend, run
-from benchmark.running.progress import silent
 from benchmark.running.task import Task
 
 

@@ -11,7 +11,7 @@ import fake_plan
 import numpy as np
 import pytest
 
-from benchmark.plan.combinations import Cell
+from benchmark.contract import Cell
 from benchmark.progress import silent
 from benchmark.results.components import current
 from benchmark.running import times, timing
