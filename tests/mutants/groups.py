@@ -109,7 +109,7 @@ GROUPS: Mapping[str, Group] = {
             "registry/flows.py": _in("registry", "registry_order", "flows"),
             "registry/taxonomy.py": _in("registry", "registry_order", "registry_taxonomy"),
             "registry/studies.py": _in("registry", "registry_order", "registry_studies"),
-            "registry/resolution.py": _in("registry", "resolution"),
+            "registry/resolution.py": _in("registry", "registry_order", "resolution"),
             "registry/catalogue.py": _in("registry", "resolution"),
             "registry/*": _in(
                 "registry",
