@@ -174,25 +174,28 @@ def _is_project(directory: Path) -> bool:
 
 
 def _tested(tests: Sequence[str], output: Path) -> int:
-    # the first example that fails will do: to make it smaller takes minutes
-    phases = (hypothesis.Phase.explicit, hypothesis.Phase.generate)
-    hypothesis.settings.register_profile("mutants", phases=phases, database=None)
-    hypothesis.settings.load_profile("mutants")
-    times = _Times()
+    run = _TimedRun()
     plugins = ["-p", "_hypothesis_pytestplugin", "-p", "no:cacheprovider"]
     # of the project's own options only how tests are imported: others are of plugins left out
     own = ["-o", "addopts=--import-mode=importlib", "-W", "ignore::pytest.PytestConfigWarning"]
     options = ["-x", "-q", "--tb=short", "--hypothesis-seed=0", "-k", _QUICK]
-    status = int(pytest.main([*own, *plugins, *options, *tests], plugins=[times]))
-    output.with_suffix(".seconds.json").write_text(json.dumps(times.seconds))
+    status = int(pytest.main([*own, *plugins, *options, *tests], plugins=[run]))
+    output.with_suffix(".seconds.json").write_text(json.dumps(run.seconds))
     return status
 
 
-class _Times:
-    """A plug-in that adds up the seconds of every test file."""
+class _TimedRun:
+    """A plug-in that adds up the seconds of every test file, and lets Hypothesis stop early."""
 
     def __init__(self) -> None:
         self.seconds: dict[str, float] = {}
+
+    def pytest_configure(self) -> None:
+        # after the tests' own profile; the first example that fails will do: to make it smaller
+        # takes minutes
+        phases = (hypothesis.Phase.explicit, hypothesis.Phase.generate)
+        hypothesis.settings.register_profile("mutants", phases=phases, database=None, deadline=None)
+        hypothesis.settings.load_profile("mutants")
 
     def pytest_runtest_logreport(self, report: Any) -> None:
         file = report.nodeid.partition("::")[0]

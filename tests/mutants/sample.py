@@ -183,6 +183,8 @@ def _words_in(node: ast.AST) -> Sequence[ast.AST | None]:
         return [node] if ast.unparse(node.targets[0]) == "__all__" else []
     if isinstance(node, ast.If):
         return [node] if ast.unparse(node.test) == "TYPE_CHECKING" else []
+    if isinstance(node, ast.keyword):
+        return [node.value] if node.arg == "strict" else []  # of zip: lengths that never differ
     return []
 
 

@@ -108,9 +108,9 @@ def test_a_nominal_projection_is_read_off_the_drawing() -> None:
     sensor = SensorGeometry(
         focal_length_mm=2.0, pixel_pitch_mm=0.01, centre_px=(30.0, 20.0), aperture_width_mm=0.8
     )
-    spot = nominal_projection(sensor, FeatureKind.SPOT, "test")
+    spot = nominal_projection(sensor, FeatureKind.SPOT, StandardProjection.about)
     assert spot == {"focal_length_mm": 2.0, "unit_mm": 0.01, "centre": (30.0, 20.0)}
-    balance = nominal_projection(sensor, FeatureKind.BALANCE, "test")
+    balance = nominal_projection(sensor, FeatureKind.BALANCE, StandardProjection.about)
     assert balance == {"focal_length_mm": 2.0, "unit_mm": 0.4, "centre": (0.0, 0.0)}
     found = nominal_tangents(np.array([[130.0, 70.0]]), **spot)
     np.testing.assert_allclose(found, [[50 * 0.01 / 2, 100 * 0.01 / 2]])  # alpha goes with y

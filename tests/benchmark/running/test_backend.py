@@ -11,13 +11,12 @@ from typing import Any
 import fake_atlas
 import fake_plan
 import pytest
-from benchmark.running.progress import silent
 
-from benchmark.plan.combinations import Cell
-from benchmark.plan.parts import UnknownNameError
+from benchmark.contract import Cell, UnknownNameError
+from benchmark.progress import silent
 from benchmark.results.store import Store
 from benchmark.running import backend, run
-from benchmark.running.task import Task
+from benchmark.running.task import Task, measure
 
 
 def tasks(count: int, **named: Any) -> list[Task]:
@@ -145,6 +144,17 @@ def test_a_cell_of_what_is_not_installed_is_named_before_anything_is_done(
         with pytest.raises(UnknownNameError, match=f"no {name} named 'fake-nothing'"):
             call([known, wrong], store, parts=parts)
     assert not store.directory.exists()
+
+
+def test_a_task_is_of_the_standard_unit_unless_it_says_otherwise() -> None:
+    preset, models = fake_atlas.Diodes(n=40), (fake_atlas.LeastSquares,)
+    plain = measure(Task(preset, "quiet", fake_atlas.Currents, models))
+    assert {pin.split for pin in plain.pins} == {"calibration", "test", "repeat"}
+    (outcome,) = plain.outcomes
+    assert outcome.score is not None
+    assert outcome.score.bound_deg > 0
+    other = measure(Task(preset, "quiet", fake_atlas.Currents, models, 1))
+    assert other.pins == ()
 
 
 def test_cells_are_measured_once_each_and_the_time_is_told(tmp_path: Any) -> None:

@@ -8,18 +8,18 @@ from typing import Any
 import fake_plan
 import numpy as np
 import pytest
-from benchmark.running.progress import silent
 from fake_atlas import Diodes, FakeBound
 from fake_results import pin
 
-from benchmark.plan.parts import UnknownNameError
+from benchmark.contract import UnknownNameError
+from benchmark.datasets.samples import HEAD
+from benchmark.progress import silent
 from benchmark.results.components import Components, current
-from benchmark.results.digests import HEAD
 from benchmark.results.record import opened
 from benchmark.results.store import Store
 from benchmark.running import pinning
+from benchmark.running.generated import rms_bound
 from benchmark.running.pinning import UnversionedChangeError
-from benchmark.running.task import rms_bound
 
 
 def by_place(*pins: Any) -> dict[Any, Any]:

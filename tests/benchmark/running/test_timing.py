@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -11,7 +12,7 @@ import fake_plan
 import numpy as np
 import pytest
 
-from benchmark.plan.combinations import Cell
+from benchmark.contract import Cell
 from benchmark.progress import silent
 from benchmark.results.components import current
 from benchmark.running import times, timing
@@ -68,7 +69,8 @@ def test_ratios_are_of_extraction_and_of_the_whole_to_the_reference(
 ) -> None:
     """Extraction 6 ms, prediction 2 ms, the reference 4 ms, for 400 samples."""
     monkeypatch.setattr(times, "reference", lambda observations: clock.runs(0.004)())
-    parts = fake_plan.parts()
+    both = fake_plan.parts()
+    parts = replace(both, extractors={"fake-currents": both.extractors["fake-currents"]})
     extract, predict = fake_atlas.Currents.extract, fake_atlas.LeastSquares.predict
 
     def extracted(self: Any, observations: Any) -> Any:
