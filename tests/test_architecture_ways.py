@@ -1,26 +1,30 @@
 """The two ways that `docs/architecture.md` lists are the ways that a frame and a query really take.
 
-Every call is watched. Listed are this project's functions outside the simulator's and the
-algorithms' own modules that are on the stack when a landmark of the way is reached.
+Every call is watched. Listed are this project's functions that are on the stack when a landmark of
+the way is reached; what a sensor, an extractor or a model does within is its own matter.
 """
 
 from __future__ import annotations
 
+import asyncio
 import re
 import sys
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from types import FrameType
 
+import httpx
+
 from algorithms.extractors.frames.centroid import BasicCentroid
 from algorithms.models.geometric.standard_projection import StandardProjection
+from api.http.service import create_app
 from benchmark import datasets
+from benchmark.results.closure import FIRST_PARTY
 from benchmark.running import generated
 from benchmark.running.task import Task, measure
 
 ROOT = Path(__file__).parents[1]
 MOST = 9
-#: What a sensor, an extractor, a model does within is its own matter.
 OWN_MATTER = ("benchmark/simulator/", "algorithms/extractors/", "algorithms/models/")
 
 
@@ -65,9 +69,9 @@ def on_the_way(call: Callable[[], object], landmarks: Iterable[str]) -> list[str
 def spelt(frame: FrameType) -> str | None:
     """``path: function`` of a frame in this project's own code; None elsewhere."""
     path = Path(frame.f_code.co_filename)
-    if not path.is_relative_to(ROOT) or path.is_relative_to(ROOT / "tests"):
+    if not any(path.is_relative_to(ROOT / floor) for floor in FIRST_PARTY):
         return None
-    name = re.sub(r"\.<locals>.*|\.?<\w+>", "", frame.f_code.co_qualname)
+    name = re.sub(r"\.?<locals>.*|\.?<\w+>", "", frame.f_code.co_qualname)
     return f"{path.relative_to(ROOT).as_posix()}: {name}" if name else None
 
 
@@ -79,9 +83,33 @@ def test_a_frame_passes_the_functions_listed_from_data_set_to_score() -> None:
     )
     generated.forget()
     landmarks = [
-        "benchmark/simulator/sensors/frames.py: FrameSensor.observe",
+        "benchmark/datasets/preset.py: Preset.generate",
         "algorithms/extractors/frames/centroid.py: BasicCentroid.extract",
         "algorithms/models/geometric/standard_projection.py: StandardProjection.predict",
         "benchmark/metrics/score.py: score",
     ]
     assert on_the_way(lambda: measure(task), landmarks) == ways
+
+
+def test_a_query_passes_the_functions_listed_from_http_to_answer() -> None:
+    ways = listed("A query, from HTTP to answer")
+    assert len(ways) <= MOST
+    app = create_app()
+
+    async def asked(question: str) -> httpx.Response:
+        transport = httpx.ASGITransport(app)
+        async with httpx.AsyncClient(transport=transport, base_url="http://atlas.test") as client:
+            return await client.get(f"/v1/recommendations?{question}")
+
+    def ask() -> None:
+        answer = asyncio.run(asked("task=Accuracy&min_fov_deg=61"))
+        assert answer.status_code == 200
+        assert answer.json()["paths"]
+
+    asyncio.run(asked("task=Cost"))  # facts and measurements are loaded by the first query
+    landmarks = [
+        "registry/recommendation.py: recommend",
+        "api/http/answers.py: Answer.representation",
+        "api/http/representations.py: Representation.respond",
+    ]
+    assert on_the_way(ask, landmarks) == ways
