@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from functools import cached_property
 from typing import Any, NoReturn
 from urllib.parse import parse_qsl
 
@@ -29,7 +30,7 @@ class StrictRequest(Request):
 
     _read: bytes | None = None
 
-    @property
+    @cached_property  # FastAPI reads it once a dependency
     def query_params(self) -> StrictQuery:
         """The query.
 
