@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -10,16 +11,18 @@ from threadpoolctl import threadpool_limits
 
 @contextmanager
 def one_thread() -> Iterator[None]:
-    """Hold BLAS and OpenCV to one thread."""
-    # Only the process that measures needs these. SciPy brings a BLAS of its own, and what is not
-    # loaded yet cannot be limited.
-    import cv2  # noqa: PLC0415
+    """Hold BLAS to one thread, and OpenCV where it is loaded."""
+    # Only the process that measures needs SciPy, which brings a BLAS of its own; what is not loaded
+    # yet cannot be limited.
     import scipy.linalg  # noqa: F401, PLC0415
 
-    opencv_threads = cv2.getNumThreads()
-    cv2.setNumThreads(1)
+    opencv = sys.modules.get("cv2")  # no method loads it so far, and measuring does without
+    threads = opencv.getNumThreads() if opencv else None
+    if opencv:
+        opencv.setNumThreads(1)
     try:
         with threadpool_limits(limits=1, user_api="blas"):
             yield
     finally:
-        cv2.setNumThreads(opencv_threads)
+        if opencv:
+            opencv.setNumThreads(threads)
