@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from difflib import get_close_matches
+from difflib import SequenceMatcher
+
+_LONGEST_COMPARED = 64  # similarity is quadratic in length; no known word is longer
 
 
 def nearest(word: str, known: Iterable[str], *, cutoff: float = 0.4) -> str | None:
     """Return the known word most like another, case aside; None where none is like it.
+
+    Of words that are equally alike, the first in alphabetical order is taken, so that the answer
+    does not depend on the order they are given in.
 
     Parameters
     ----------
@@ -16,8 +21,18 @@ def nearest(word: str, known: Iterable[str], *, cutoff: float = 0.4) -> str | No
     known
         What could have been.
     cutoff
-        Similarity (`difflib.SequenceMatcher.ratio`, 0 to 1) below which words are not alike.
+        Similarity (`difflib.SequenceMatcher.ratio`, 0 to 1) below which words are not alike; words
+        without a letter in common never are.
     """
-    folded = {each.casefold(): each for each in known}
-    found = get_close_matches(word.casefold(), folded, n=1, cutoff=cutoff)
-    return folded[found[0]] if found else None
+    matcher = SequenceMatcher(autojunk=False)
+    matcher.set_seq2(word.strip().casefold()[:_LONGEST_COMPARED])
+    best: str | None = None
+    best_ratio = 0.0
+    for each in sorted(known):
+        matcher.set_seq1(each.casefold()[:_LONGEST_COMPARED])
+        # Each is an upper limit of the next, and costs less.
+        if matcher.real_quick_ratio() > best_ratio and matcher.quick_ratio() > best_ratio:
+            ratio = matcher.ratio()
+            if ratio > best_ratio and ratio >= cutoff:
+                best, best_ratio = each, ratio
+    return best

@@ -10,9 +10,9 @@ from fastapi.exceptions import RequestValidationError
 from fastapi.routing import APIRoute
 from starlette.exceptions import HTTPException
 
-from api.http.nearest import nearest
 from api.http.problems import Problem, Violation, respond
 from api.http.refusals import refusal
+from survey_data.nearest import nearest
 
 
 def install(app: FastAPI, routes: Sequence[APIRoute]) -> None:
@@ -39,7 +39,7 @@ def _of_framework(error: HTTPException, request: Request, routes: Sequence[APIRo
     """Return what Starlette refuses as a problem."""
     path: str = request.scope["path"]
     if error.status_code == HTTPStatus.NOT_FOUND:
-        near = nearest(path, {route.path for route in routes})
+        near = nearest(path, {route.path for route in routes}, cutoff=0)
         violation = Violation("path", path, "a path of /openapi.json", near)
         return Problem(404, "unknown-path", errors=[violation])
     if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED:

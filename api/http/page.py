@@ -7,9 +7,9 @@ from importlib.resources import files
 from importlib.util import find_spec
 from pathlib import Path
 
-from api.http.nearest import nearest
 from api.http.problems import Problem, Violation
 from api.http.representations import Representation
+from survey_data.nearest import nearest
 
 PLOTLY = "plotly.min.js"
 CONTENT_TYPES = {
@@ -66,7 +66,7 @@ def page_file(name: str) -> Representation:
     """
     served = page_files()
     if name not in served:
-        error = Violation("file", name, "a file of the page", nearest(name, served))
+        error = Violation("file", name, "a file of the page", nearest(name, served, cutoff=0))
         raise Problem(404, "unknown-file", errors=[error])
     path = served[name]
     return Representation(

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import csv
 import io
-import json
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-LIST_SEPARATOR = "; "
+from api.cells import cell
 
 
 def flattened(row: Mapping[str, Any], prefix: str = "") -> dict[str, str]:
@@ -23,21 +22,6 @@ def flattened(row: Mapping[str, Any], prefix: str = "") -> dict[str, str]:
         else:
             cells[prefix + name] = cell(value)
     return cells
-
-
-def cell(value: Any) -> str:
-    """Return a value as the text of a CSV cell."""
-    if value is None:
-        return ""
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, float):
-        return "" if value != value else repr(value)  # noqa: PLR0124 - NaN
-    if isinstance(value, Mapping):
-        return json.dumps(value, ensure_ascii=False)
-    if isinstance(value, Sequence) and not isinstance(value, str):
-        return LIST_SEPARATOR.join(cell(item) for item in value)
-    return str(value)
 
 
 def to_csv(columns: Sequence[str], rows: Sequence[Mapping[str, Any]]) -> bytes:

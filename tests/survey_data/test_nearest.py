@@ -31,3 +31,7 @@ def test_the_likeness_asked_for_decides():
 
 def test_of_nothing_nothing_is_like_it():
     assert nearest("word", []) is None
+
+
+def test_of_words_equally_alike_the_first_by_alphabet_is_taken():
+    assert nearest("Slat", ["Slot", "Slit", "Slut"]) == "Slit"
