@@ -2,10 +2,12 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
-# What is installed already: what serving and every command need, the rest of development, peers.
+# What is installed already: what serving and every command need, the rest of development, peers,
+# what puts faults into code.
 SERVING := $(VENV)/.serving
 DEVELOPING := $(VENV)/.developing
 PEERS := $(VENV)/.peers
+MUTANTS := $(VENV)/.mutants
 WORKERS ?= 2
 PORT ?= 8000
 # Bytecode is left to the first import of a module: most of it would never be read.
@@ -17,7 +19,7 @@ export MKL_NUM_THREADS = 1
 export NUMBA_NUM_THREADS = 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install serve test test-all coverage lint bench leaderboard docs lock clean
+.PHONY: help install serve test test-all coverage lint bench mutants leaderboard docs lock clean
 
 help: ## show this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 14
@@ -38,6 +40,10 @@ $(DEVELOPING): $(SERVING) requirements-dev.lock
 
 $(PEERS): $(DEVELOPING) requirements-peers.lock
 	$(PIP) --require-hashes -r requirements-peers.lock
+	touch $@
+
+$(MUTANTS): $(DEVELOPING) requirements-mutants.lock
+	$(PIP) --require-hashes -r requirements-mutants.lock
 	touch $@
 
 serve: $(SERVING) ## serve the page and the API on http://127.0.0.1:8000 (installs only what that needs)
@@ -61,6 +67,10 @@ lint: $(DEVELOPING) ## ruff, mypy (strict), the floors
 bench: $(PEERS) ## every speed and accuracy limit, as ratios measured in the same run; lists the broken ones
 	$(BIN)/python -m tests.speed
 
+mutants: $(MUTANTS) ## put small faults into the code, one at a time; list those that no test notices
+	mkdir -p out
+	$(BIN)/python -m tests.mutants --workers $(WORKERS) --report out/mutants.md
+
 leaderboard: $(SERVING) ## bring scores and leaderboard up to date with code and data
 	$(BIN)/sunatlas leaderboard update --workers $(WORKERS)
 
@@ -74,6 +84,7 @@ lock: ## renew the lock files from pyproject.toml (needs uv on the PATH)
 	$(COMPILE) --extra build -o requirements.lock pyproject.toml
 	$(COMPILE) --extra build --extra dev --constraints requirements.lock -o requirements-dev.lock pyproject.toml
 	$(COMPILE) --extra peers --constraints requirements-dev.lock -o requirements-peers.lock pyproject.toml
+	$(COMPILE) --extra mutants --constraints requirements-dev.lock -o requirements-mutants.lock pyproject.toml
 	mkdir -p out
 	uv pip compile --quiet --python-version 3.11 --no-header --upgrade --resolution lowest-direct \
 		--extra build -o out/lowest.txt pyproject.toml
