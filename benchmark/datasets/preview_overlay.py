@@ -20,10 +20,13 @@ from benchmark.drawing import plain_style
 from benchmark.simulator.sensors.black_sun import BlackSunSensor
 from benchmark.simulator.sensors.blooming import BloomingSensor
 
+#: Sensors whose image of the Sun's centre is known whatever their pixels make of it.
+_CAMERAS = (BlackSunSensor, BloomingSensor)
 _ACROSS = 4
 _TILE, _GAP, _LEFT, _TOP = 232, 14, 24, 84
 _FOUND, _TRUE = LINES[1], LINES[2]
-_SAID = "orange cross: found; green ring: the Sun's true image; each picture on its own scale"
+_SAID = "orange cross: found; each picture on its own scale"
+_SAID_OF_CAMERAS = f"green ring: the Sun's true image; {_SAID}"
 _CUT_PX = 116
 """Pixels that a tile shows each way, where the frame has more."""
 
@@ -71,7 +74,8 @@ def overlay_png(
     with plain_style():
         sheet = Sheet(2 * _LEFT + _ACROSS * (_TILE + _GAP) - _GAP, _TOP + len(chosen) * row)
         sheet.text(_LEFT, 32, f"{preset.name}: {extractor.about.name}", 22, bold=True)
-        sheet.text(_LEFT, 54, _SAID, 13, colour=MUTED)
+        known = any(isinstance(preset.condition(name).sensor, _CAMERAS) for name in chosen)
+        sheet.text(_LEFT, 54, _SAID_OF_CAMERAS if known else _SAID, 13, colour=MUTED)
         for place, condition in enumerate(chosen):
             top = _TOP + place * row
             sheet.text(_LEFT, top - 6, condition, 14, bold=True)
@@ -82,7 +86,7 @@ def overlay_png(
 def true_places(preset: Preset, condition: str, samples: Samples) -> Floats:
     """(N, 2) where the Sun's centre is imaged in each frame, px; NaN where none can say."""
     sensor = preset.condition(condition).sensor
-    if isinstance(sensor, (BlackSunSensor, BloomingSensor)):
+    if isinstance(sensor, _CAMERAS):
         return sensor.camera.image_px(samples.sun) - _origins(samples)
     return np.full((len(samples.sun), 2), math.nan)
 
