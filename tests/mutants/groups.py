@@ -124,8 +124,8 @@ GROUPS: Mapping[str, Group] = {
         45,
         {
             "benchmark/datasets/coverage.py": _in(_DATASETS, "coverage"),
-            "benchmark/datasets/export*.py": _in(_DATASETS, "dataset_export"),
-            "benchmark/datasets/checksums.py": _in(_DATASETS, "dataset_export"),
+            "benchmark/datasets/export*.py": _in(_DATASETS, "export_parts", "dataset_export"),
+            "benchmark/datasets/checksums.py": _in(_DATASETS, "export_parts", "dataset_export"),
             "benchmark/datasets/preview*.py": _in(_DATASETS, "dataset_preview"),
             "benchmark/datasets/samples.py": _in(_RESULTS, "digests"),
             "benchmark/datasets/pins.py": (
