@@ -126,7 +126,9 @@ GROUPS: Mapping[str, Group] = {
             "benchmark/datasets/coverage.py": _in(_DATASETS, "coverage"),
             "benchmark/datasets/export*.py": _in(_DATASETS, "export_parts", "dataset_export"),
             "benchmark/datasets/checksums.py": _in(_DATASETS, "export_parts", "dataset_export"),
-            "benchmark/datasets/preview*.py": _in(_DATASETS, "preview_parts", "dataset_preview"),
+            "benchmark/datasets/preview*.py": _in(
+                _DATASETS, "overlay_parts", "preview_parts", "dataset_preview"
+            ),
             "benchmark/datasets/samples.py": _in(_RESULTS, "digests"),
             "benchmark/datasets/pins.py": (
                 *_in(_RESULTS, "store"),
