@@ -119,6 +119,16 @@ def test_a_row_a_condition_of_the_first_frames_each_with_its_words(
     size.reset_mock()
     overlay.overlay_png(preset, finder, ["noisy"])  # type: ignore[arg-type]
     assert asked[2:] == [("noisy", "test", 4)]
+
+    def known_only(name: str) -> Any:
+        if name == "warm":
+            raise ValueError("no condition 'warm'")
+        return SimpleNamespace(sensor=None)
+
+    preset.condition = known_only
+    with pytest.raises(ValueError, match="no condition 'warm'"):
+        overlay.overlay_png(preset, finder, ["quiet", "warm"])  # type: ignore[arg-type]
+    assert len(asked) == 3, "nothing is drawn before all conditions are known"
     about.observation = Observation.PROFILES
     with pytest.raises(ValueError, match="finder reads profiles, not frames"):
         overlay.overlay_png(preset, finder)  # type: ignore[arg-type]
