@@ -124,9 +124,11 @@ GROUPS: Mapping[str, Group] = {
         45,
         {
             "benchmark/datasets/coverage.py": _in(_DATASETS, "coverage"),
-            "benchmark/datasets/export*.py": _in(_DATASETS, "dataset_export"),
-            "benchmark/datasets/checksums.py": _in(_DATASETS, "dataset_export"),
-            "benchmark/datasets/preview*.py": _in(_DATASETS, "dataset_preview"),
+            "benchmark/datasets/export*.py": _in(_DATASETS, "export_parts", "dataset_export"),
+            "benchmark/datasets/checksums.py": _in(_DATASETS, "export_parts", "dataset_export"),
+            "benchmark/datasets/preview*.py": _in(
+                _DATASETS, "overlay_parts", "preview_parts", "dataset_preview"
+            ),
             "benchmark/datasets/samples.py": _in(_RESULTS, "digests"),
             "benchmark/datasets/pins.py": (
                 *_in(_RESULTS, "store"),
@@ -183,16 +185,16 @@ GROUPS: Mapping[str, Group] = {
                 _EXTRACTORS, "aperture_grid", "multi_spot_oracles", "multi_spot"
             ),
             "algorithms/extractors/frames/multi_spot/*": _in(
-                _EXTRACTORS, "multi_spot_oracles", "multi_spot"
+                _EXTRACTORS, "extractor_limits", "multi_spot_oracles", "multi_spot"
             ),
             "algorithms/extractors/frames/template*.py": _in(
                 _EXTRACTORS, "template_grey", "single_spots"
             ),
             "algorithms/extractors/frames/*": _in(
-                _EXTRACTORS, "frame_kernels", "centroids", "single_spots"
+                _EXTRACTORS, "extractor_limits", "frame_kernels", "centroids", "single_spots"
             ),
             "algorithms/extractors/profiles/peak_*.py": _in(
-                _EXTRACTORS, "peak_position", "profile_lines"
+                _EXTRACTORS, "extractor_limits", "peak_position", "profile_lines"
             ),
             "algorithms/extractors/profiles/*": _in(_EXTRACTORS, "profile_lines"),
         },

@@ -35,7 +35,7 @@ _HEAVY = (
     *("scipy.optimize", "scipy.signal", "scipy.spatial", "scipy.special", "scipy.stats"),
 )
 _NOT_COPIED = (".git", ".venv", "node_modules", ".*_cache", ".hypothesis", "*.egg-info")
-#: Seconds a mutant has beside five times what its tests take: for compiling changed kernels.
+#: Seconds a mutant has beside twice what its tests take: for compiling changed kernels.
 _SPARE = 60.0
 #: Left out: Monte Carlo of tens of seconds, which a mutant run cannot afford.
 _QUICK = "not slow and not maximum_likelihood and not amplifier_limited"
@@ -215,7 +215,7 @@ def baseline(copy: Copy, tests: Iterable[str], output: Path) -> dict[str, float]
 
 def limit_of(tests: Iterable[str], seconds: dict[str, float]) -> float:
     """Seconds after which tests on a mutant count as hanging."""
-    return _SPARE + 5.0 * sum(seconds.get(file, 0.0) for file in tests)
+    return _SPARE + 2.0 * sum(seconds.get(file, 0.0) for file in tests)
 
 
 def tail(output: Path, lines: int = 25) -> str:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import ast
+import difflib
 import time
 from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
@@ -150,8 +151,9 @@ def _difference(before: str, after: str | None) -> str:
             return ""
     except SyntaxError:
         return ""
-    pairs = zip(before.splitlines(), after.splitlines(), strict=True)
-    return "\n".join(f"-{one.strip()}\n+{two.strip()}" for one, two in pairs if one != two)
+    changes = list(difflib.unified_diff(before.splitlines(), after.splitlines(), n=0))[2:]
+    told = [line for line in changes if not line.startswith("@@")]
+    return "\n".join(f"{line[0]}{line[1:].strip()}" for line in told)
 
 
 def _item(mutant: Mutant) -> WorkItem:

@@ -171,6 +171,7 @@ READERS = (
     made("signals alone", accepts={"signals"}),
     made("plain", accepts={"spot"}),
     made("both", accepts={"spot", "balance"}),
+    made("balances alone", accepts={"balance"}),
 )
 
 
@@ -180,10 +181,13 @@ READERS = (
         (
             "BCM", "LUT", "CMOS",
             [("first", "plain"), ("first", "both"), ("second", "plain"), ("second", "both"),
-             ("fourth", "both")],
+             ("fourth", "both"), ("fourth", "balances alone")],
         ),
         # the first extractor that fits, for each model; the first model, for each extractor
-        ("None", "LUT", "CMOS", [("first", "plain"), ("first", "both")]),
+        (
+            "None", "LUT", "CMOS",
+            [("first", "plain"), ("first", "both"), ("fourth", "balances alone")],
+        ),
         ("BCM", "None", "CMOS", [("first", "plain"), ("second", "plain"), ("fourth", "both")]),
         ("None", "None", "CMOS", [("first", "plain")]),
         ("None", "LUT", "PD", [("third", "signals alone")]),

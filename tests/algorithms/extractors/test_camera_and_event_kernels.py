@@ -12,6 +12,7 @@ from algorithms.extractors.events import first_spikes_kernel as spikes
 from algorithms.extractors.frames.cameras import blooming_kernel as blooming
 from algorithms.extractors.frames.cameras import circles_kernel as circles
 from algorithms.extractors.frames.cameras import dark_holes_kernel as holes
+from algorithms.extractors.frames.cameras.hough import HoughCircle
 
 # Blooming lines
 
@@ -182,6 +183,11 @@ def test_candidates_are_the_highest_sums_of_three_by_three():
     expected = ndimage.uniform_filter(votes, 3, mode="constant") * 9
     np.testing.assert_allclose(sums[1:-1, 1:-1], expected[1:-1, 1:-1], atol=1e-12)
     assert sorted(places.tolist()) == [[9.0, 4.0, 3.0], [13.0, 14.0, 8.0]]
+    votes[:, [0, -1]] = 50.0  # of the border itself there are no sums
+    circles._candidates(votes, sums, places)
+    rim = np.ones(sums.shape, dtype=bool)
+    rim[1:-1, 1:-1] = False
+    assert not sums[rim].any()
 
 
 @pytest.mark.parametrize("way", [-1.0, 1.0])
@@ -198,6 +204,15 @@ def test_a_circle_s_radius_is_that_of_edges_all_around_it(way):
     assert circles._radius(edges[:32], 32, 30.0, 20.0, way, 5.0, 15.0, 0.9, room) == (0.0, 0.0)
     half = circles._radius(edges[:32], 32, 30.0, 20.0, way, 5.0, 15.0, 0.5, room)
     assert half[0] == pytest.approx(4.0)
+
+
+def test_a_circle_of_faint_light_is_the_same_circle():
+    rows, columns = np.mgrid[:60, :64]
+    frame = 1.0 / (1.0 + np.exp(np.hypot(columns - 31.3, rows - 28.6) - 9.0))
+    expected = [[31.3, 28.6, 9.0]]
+    for gain in (1000.0, 1.0, 1e-3):
+        found = HoughCircle().circles((gain * frame)[None])
+        np.testing.assert_allclose(found, expected, atol=0.1)
 
 
 # Dark holes

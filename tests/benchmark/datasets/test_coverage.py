@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import csv
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 import survey_data
 from benchmark import datasets
 from benchmark.datasets.coverage import REASONS, CoverageError, coverage
+from registry.studies import facts
 
 OURS = Path(survey_data.__file__).parent
 
@@ -83,3 +85,43 @@ def test_reasons_say_what_the_mapping_says():
     for pair, reason in REASONS.items():
         assert mapped()[pair] == {"Post2013"}
         assert "Post2013" in reason
+
+
+def test_coverage_is_counted_of_what_studies_use_and_data_sets_have():
+    """Two studies and three data sets, one of them of a pair that nobody uses."""
+    cells = {
+        "S0": {"detector": ["CMOS", "PD"], "mask": ["Slit"]},
+        "S1": {"detector": ["CMOS"], "mask": ["Lens", "Slit"]},
+    }
+    studies = {
+        key: SimpleNamespace(of=lambda name, row=row: row.get(name, ()))
+        for key, row in cells.items()
+    }
+    known = SimpleNamespace(studies=studies, taxonomy=facts().taxonomy)
+    simulated = {"b": ("CMOS", "Slit"), "a": ("CMOS", "Slit"), "c": ("Event", "Slit")}
+    reasons = {("PD", "Slit"): "too dim", ("CMOS", "Lens"): "too bright"}
+    found = coverage(simulated, known=known, reasons=reasons)
+    told = {(p.detector, p.mask): (p.studies, p.datasets, p.reason) for p in found.pairs}
+    assert told == {
+        ("CMOS", "Slit"): (("S0", "S1"), ("a", "b"), ""),
+        ("PD", "Slit"): (("S0",), (), "too dim"),
+        ("CMOS", "Lens"): (("S1",), (), "too bright"),
+        ("Event", "Slit"): ((), ("c",), ""),
+    }
+    place = {value: at for at, value in enumerate(values_of("detector"))}
+    order = [place[pair.detector] for pair in found.pairs]
+    assert order == sorted(order)
+    assert {value: names for value, names in found.detectors.items() if names} == {
+        "CMOS": ("a", "b"),
+        "Event": ("c",),
+    }
+    assert {value: names for value, names in found.masks.items() if names} == {
+        "Slit": ("a", "b", "c")
+    }
+    assert found.sentence() == (
+        "2 of 10 detectors and 1 of 10 masks of the taxonomy are simulated, and 1 of the 3 "
+        "detector-mask pairs that the mapped studies use; 1 simulated pairs are used by no mapped "
+        "study."
+    )
+    with pytest.raises(CoverageError, match="CMOS Lens has neither a dataset nor"):
+        coverage(simulated, known=known, reasons={("PD", "Slit"): "too dim"})

@@ -278,6 +278,10 @@ def test_a_data_set_s_digest_depends_on_the_code_of_all_it_is_made_of(plug_in):
 
     preset = replace(fake_atlas.Diodes(), repeats=Part())
     assert modules_of(preset) == ("fake_atlas", "plugin_pkg.deep.leaf")
+    for holding in ({"x": Part()}, [Part()], (1, {"y": ("z", Part())}), {"x": write, "y": Part()}):
+        held = modules_of(replace(fake_atlas.Diodes(), repeats=holding))
+        assert set(held) >= {"fake_atlas", "plugin_pkg.deep.leaf"}
+    assert write.__module__ in held, "a function's too"
     before = dataset_digest(preset)
     rewrite(part, "passes: int = 4", "passes: int = 4  # a comment")
     assert dataset_digest(preset) == before

@@ -1,0 +1,50 @@
+"""Where extractors begin and end: faint light, the far side of wide frames, published defaults."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from algorithms.extractors.frames.multi_spot import mean_shift_kernel
+from algorithms.extractors.frames.threshold_average import MultipleThresholdCentroid
+from algorithms.extractors.frames.windows import follow_spot
+from algorithms.extractors.profiles.peak_detection import FramePeak
+
+
+@pytest.mark.parametrize("shape", [(20, 50), (50, 20)])
+@pytest.mark.parametrize("share", [(0.1, 0.2), (0.5, 0.5), (0.9, 0.85)])
+def test_a_window_s_histogram_is_of_all_pixels_within_its_radius(shape, share):
+    bins = np.random.default_rng(1).integers(0, 5, shape)
+    x, y, radius = share[0] * shape[1], share[1] * shape[0], 6.5
+    sums = np.empty((5, 4))
+    total = mean_shift_kernel._window(bins, x, y, radius, sums)
+    rows, columns = np.indices(shape)
+    dx, dy = columns - x, rows - y
+    near = dx**2 + dy**2 <= radius**2
+    kernel = 1 - (dx**2 + dy**2) / radius**2
+    expected = [
+        [values[near & (bins == u)].sum() for values in (kernel, np.ones(shape), dx, dy)]
+        for u in range(5)
+    ]
+    np.testing.assert_allclose(sums, expected, atol=1e-9)
+    assert total == pytest.approx(kernel[near].sum())
+
+
+@pytest.mark.parametrize("place", [(14.5, 4.0), (5.0, 8.5), (-0.5, 4.0), (5.0, -0.5)])
+def test_a_window_does_not_follow_what_lies_outside_the_frame(place):
+    asked = []
+    found = np.array([place])
+    follow_spot(np.array([[5.0, 4.0]]), 5, (9, 15), lambda windows: asked.append(1) or found)
+    assert len(asked) == 1
+
+
+def test_the_peak_of_a_frame_may_be_of_any_brightness_above_zero():
+    frame = np.zeros((7, 11))
+    frame[4, 8] = 1.0
+    for gain in (1e-6, 0.5, 1.0, 1e6):
+        assert FramePeak().extract(gain * frame[None]).tolist() == [[8.0, 4.0]]
+    assert np.isnan(FramePeak().extract(-frame[None])).all()
+
+
+def test_published_accuracies_are_the_defaults():
+    assert MultipleThresholdCentroid().accuracy_px == 0.01
