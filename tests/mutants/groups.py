@@ -196,7 +196,9 @@ GROUPS: Mapping[str, Group] = {
             "algorithms/extractors/profiles/peak_*.py": _in(
                 _EXTRACTORS, "extractor_limits", "peak_position", "profile_lines"
             ),
-            "algorithms/extractors/profiles/*": _in(_EXTRACTORS, "profile_lines"),
+            "algorithms/extractors/profiles/*": _in(
+                _EXTRACTORS, "extractor_limits", "profile_lines"
+            ),
         },
     ),
 }

@@ -5,10 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from algorithms.contract import SensorGeometry, UnsuitableDesignError
 from algorithms.extractors.frames.multi_spot import mean_shift_kernel
 from algorithms.extractors.frames.threshold_average import MultipleThresholdCentroid
 from algorithms.extractors.frames.windows import follow_spot
 from algorithms.extractors.profiles.peak_detection import FramePeak
+from algorithms.extractors.profiles.single_spot import require_one_spot
 
 
 @pytest.mark.parametrize("shape", [(20, 50), (50, 20)])
@@ -48,3 +50,16 @@ def test_the_peak_of_a_frame_may_be_of_any_brightness_above_zero():
 
 def test_published_accuracies_are_the_defaults():
     assert MultipleThresholdCentroid().accuracy_px == 0.01
+
+
+@pytest.mark.parametrize(
+    ("apertures", "right"),
+    [(None, True), (((0.0, 0.0, 0.1),), True), (((0.0, 0.0, 0.1), (1.0, 0.0, 0.1)), False)],
+)
+def test_a_method_of_one_spot_takes_a_mask_of_one_aperture(apertures, right):
+    geometry = SensorGeometry(apertures=apertures)
+    if right:
+        require_one_spot(geometry, "test")
+    else:
+        with pytest.raises(UnsuitableDesignError, match="test"):
+            require_one_spot(geometry, "test")
