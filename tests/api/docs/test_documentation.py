@@ -19,15 +19,20 @@ def test_what_is_altered_is_noticed_and_renewed(tmp_path, monkeypatch, capsys):
     docs = tmp_path / "docs"
     shutil.copytree(documentation.DIRECTORY, docs)
     monkeypatch.setattr(documentation, "PAGES", {"survey.md": PAGES["survey.md"]})
+    monkeypatch.setattr(documentation.assessment, "PICTURES", {"made.svg": lambda: "<svg/>"})
     monkeypatch.setattr(documentation.regenerate, "__defaults__", (docs,))
     page = docs / "survey.md"
     good = page.read_text("utf-8")
     page.write_text(good.replace("129 studies", "130 studies"), "utf-8")
     assert documentation.main(["--check"]) == 1
-    assert "docs/survey.md is behind" in capsys.readouterr().err
+    said = capsys.readouterr().err
+    assert "docs/survey.md is behind" in said
+    assert "docs/made.svg is behind" in said
     assert "130 studies" in page.read_text("utf-8")
+    assert not (docs / "made.svg").exists()
     assert documentation.main([]) == 0
     assert page.read_text("utf-8") == good
+    assert (docs / "made.svg").read_text("utf-8") == "<svg/>"
 
 
 def test_prose_stays_and_the_part_is_replaced():

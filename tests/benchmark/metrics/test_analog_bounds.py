@@ -63,6 +63,7 @@ def most_likely(setup: Condition, pattern: Any, scene: Scene, seen: np.ndarray) 
     return np.degrees(guess[:, :2])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "alpha", "beta"),
     [

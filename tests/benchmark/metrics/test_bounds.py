@@ -73,6 +73,7 @@ def fitted_angles(setup: Condition, pattern: Any, scene: Scene, seen: np.ndarray
     return guess[:, :2]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "alpha", "beta", "trials"),
     [

@@ -113,6 +113,7 @@ def test_noise_is_that_of_the_sample_that_varies() -> None:
     assert (flat == detector.full_scale_dn).mean() > 0.99
 
 
+@pytest.mark.slow
 def test_the_bound_is_what_a_fit_of_the_pictures_reaches() -> None:
     """One Gauss-Newton step from the truth on real pictures, its slopes those of the picture."""
     sensor, light = sensor_of(), PRESET.setups["nominal"].irradiance
