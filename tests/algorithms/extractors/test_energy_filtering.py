@@ -79,6 +79,24 @@ def test_a_sun_that_jumps_or_drifts_is_followed():
         assert rms(together, track) < 1.8 * rms(FILTER.extract(frames), track)
 
 
+def test_a_drift_hidden_in_the_noise_lags_by_about_a_frames_own_error():
+    """Some ten late frames count, so the mean shift shows at a third of what one must show.
+
+    One frame's would be seen at sqrt(2 ln 100) = 3.03 of its own error. The noise is a
+    chequerboard that changes sign: it has that variance, and no part along the slopes.
+    """
+    y, x = np.mgrid[:40, :40]
+    slope = 1000 * np.exp(-((x - 19.3) ** 2 + (y - 20.2) ** 2) / 18) * (x - 19.3) / 9
+    own_error = 20.0 / np.sqrt((slope**2).sum())
+    speed = own_error / 20
+    track = 19.3 + speed * np.arange(100)
+    light = [1000 * np.exp(-((x - at) ** 2 + (y - 20.2) ** 2) / 18) for at in track]
+    noise = [20.0 * (-1.0) ** (x + y + k) for k in range(100)]
+    averaged = FILTER.extract_sequence(np.add(light, noise))[1].max()
+    lag = speed * (averaged + 1) / 2  # of their mean against the frame that ended it
+    assert 1.0 < lag / own_error < 1.2
+
+
 def test_a_row_depends_on_no_frame_after_it():
     track = np.array([18.0, 20.0]) + np.cumsum(
         np.random.default_rng(6).normal(0, 0.05, (30, 2)), axis=0

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.special import jn_zeros
 
 from algorithms.contract import SensorGeometry, UnsuitableDesignError
 from algorithms.extractors.frames.multi_spot import mean_shift_kernel
 from algorithms.extractors.frames.threshold_average import MultipleThresholdCentroid
 from algorithms.extractors.frames.windows import follow_spot
+from algorithms.extractors.profiles.linear_phase import FrameLinearPhase
 from algorithms.extractors.profiles.peak_detection import FramePeak
 from algorithms.extractors.profiles.single_spot import require_one_spot
+from algorithms.extractors.profiles.spot_spectra import SpotSpectra
 
 
 @pytest.mark.parametrize("shape", [(20, 50), (50, 20)])
@@ -46,6 +49,41 @@ def test_the_peak_of_a_frame_may_be_of_any_brightness_above_zero():
     for gain in (1e-6, 0.5, 1.0, 1e6):
         assert FramePeak().extract(gain * frame[None]).tolist() == [[8.0, 4.0]]
     assert np.isnan(FramePeak().extract(-frame[None])).all()
+
+
+@pytest.mark.parametrize("blurred", [False, True])
+@pytest.mark.parametrize("place", [(20.0, 14.0), (27.5, 14.0), (20.0, 17.5), (31.5, 12.5)])
+def test_the_phase_of_a_symmetric_spot_is_that_of_its_place(place, blurred):
+    """On whole and half pixels its light is as symmetric as it: the place is exact."""
+    y, x = np.mgrid[:32, :50]
+    lit = [np.clip(4.5 - abs(axis - at), 0, 1) for axis, at in zip((x, y), place, strict=True)]
+    if blurred:
+        lit = [np.exp(-((axis - at) ** 2) / 3) for axis, at in zip((x, y), place, strict=True)]
+    frame = 7.0 + 300.0 * lit[0] * lit[1]
+    found = FrameLinearPhase(8.0, "square", margin_px=4.0).extract(frame[None])
+    np.testing.assert_allclose(found, [place], rtol=0, atol=1e-8)
+
+
+@pytest.mark.parametrize("padded", [False, True])
+@pytest.mark.parametrize("lobes", [0.01, 1.0, 1.5, 1000.0])
+@pytest.mark.parametrize("shape", ["square", "round"])
+def test_spectra_end_after_the_lobes_asked_for_or_at_half_the_sampling(shape, lobes, padded):
+    """The light's integral at every frequency that the samples have, but for those above."""
+    width, half_px = 4.3, 6
+    spectra = SpotSpectra.of(
+        np.array([20.0]), np.zeros(1, dtype=np.int64), [width], shape, half_px, padded, lobes
+    )
+    assert spectra.period == (25 if padded else 13)
+    across = ((np.arange(20_000) + 0.5) / 20_000 - 0.5) * width
+    round_light = np.sqrt(1.0 - (2.0 * across / width) ** 2) * 4.0 / np.pi
+    light = round_light if shape == "round" else np.ones_like(across)
+    zero = jn_zeros(1, 1)[0] / np.pi if shape == "round" else 1.0
+    frequencies = np.fft.rfftfreq(spectra.period)
+    read = frequencies * width < lobes * zero
+    read[:2] = True  # a slope needs one beside zero
+    waves = np.cos(2.0 * np.pi * np.outer(frequencies[read], across))
+    expected = width * (waves * light).mean(axis=1) * np.sinc(frequencies[read])
+    np.testing.assert_allclose(spectra.reference, [expected], rtol=0, atol=1e-5)
 
 
 def test_published_accuracies_are_the_defaults():

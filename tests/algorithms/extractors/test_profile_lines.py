@@ -261,13 +261,13 @@ def test_unweighted_phases_of_all_frequencies_fail_where_the_weighted_low_ones_d
 
 
 def test_eigen_analysis_is_the_pseudocode_on_a_grid():
-    """alg:eigen with its padded transforms and all noise eigenvectors, on one window."""
-    moved = np.array([[0.613, -0.404]])
+    """alg:eigen with its padded transforms and all noise eigenvectors, in each window."""
+    moved = np.vstack([[[0.613, -0.404]], displacements(3)])
     profile = noisy(shadow(PARALLEL, moved)).astype(float)
     method = EigenAnalysis.for_sensor(PARALLEL)
-    found = method.extract(profile)[0]
+    found = method.extract(profile).ravel()
     half, width = method.half_px, 0.17 / 0.02
-    for part, mine in zip(profile.reshape(2, -1), found, strict=True):
+    for part, mine in zip(profile.reshape(8, -1), found, strict=True):
         centre = round(mine)
         window = part[centre - half : centre + half + 1] - np.median(part)
         size = len(window)

@@ -204,6 +204,17 @@ def test_tm_finds_an_exact_template():
     np.testing.assert_allclose(TemplateMatch(width_px=13).extract(frame[None]), [[20, 17]], atol=0)
 
 
+@pytest.mark.parametrize("turns", range(4))
+def test_tm_walks_from_stray_light_to_the_spot_whichever_way_it_lies(turns):
+    """A brighter patch at the edge: the lit pixels' mean is 5 px off, and the maximum in it."""
+    y, x = np.mgrid[:61, :61]
+    frame = np.where((x - 30) ** 2 + (y - 30) ** 2 <= 6.5**2, 900, 10)
+    frame[28:33, 54:60] = 1000
+    frame = np.ascontiguousarray(np.rot90(frame, turns))
+    found = TemplateMatch(width_px=13.0).extract(frame[None])
+    np.testing.assert_allclose(found, [[30.0, 30.0]], rtol=0, atol=0.1)
+
+
 def test_tm_takes_its_template_from_the_sensors_aperture():
     geometry = SensorGeometry(
         aperture_width_mm=0.2, pixel_pitch_mm=0.01, aperture_shape="round", focal_length_mm=1.0
