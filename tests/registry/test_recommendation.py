@@ -149,6 +149,7 @@ def path_of(path: object) -> tuple[str, ...]:
     return tuple(getattr(path, level) for level in LEVELS)
 
 
+@pytest.mark.slow
 @settings(deadline=None, derandomize=True, max_examples=200)
 @given(table=rows, ask=asked, measured=measured_rows)
 def test_paths_and_their_studies_are_those_brute_force_finds(

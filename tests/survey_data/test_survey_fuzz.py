@@ -39,6 +39,7 @@ def mutate(data: bytes, edits: list[tuple[float, int, bytes]]) -> bytes:
     return data
 
 
+@pytest.mark.slow
 @given(st.sampled_from(table_names()), mutations())
 @settings(max_examples=16, **SETTINGS)
 def test_random_corruption_gives_problems_or_stays_valid(
@@ -56,6 +57,7 @@ def test_random_corruption_gives_problems_or_stays_valid(
         path.write_bytes(original)
 
 
+@pytest.mark.slow
 @given(st.data())
 @settings(max_examples=12, **SETTINGS)
 def test_random_cells_give_problems_or_stay_valid(copy: Any, data: st.DataObject) -> None:
@@ -89,6 +91,7 @@ def test_any_bytes_are_read_or_reported(copy: Any, content: bytes) -> None:
     assert {p.file for p in records.problems} == {"claims.csv"}
 
 
+@pytest.mark.slow
 @given(content=st.one_of(st.binary(max_size=400), st.text(max_size=300).map(str.encode)))
 @pytest.mark.parametrize("name", ["theirs.csv", "theirs.xlsx"])
 @settings(max_examples=40, **SETTINGS)

@@ -109,6 +109,7 @@ def test_broken_form_of_all_tables_at_once_is_reported_for_each(kind: str, copy:
         survey_data.load(copy.directory)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("table", ALL)
 def test_a_missing_file_is_named_and_nothing_else_is_blamed(table: str, copy: Any) -> None:
     copy.path(table).unlink()
@@ -119,6 +120,7 @@ def test_a_missing_file_is_named_and_nothing_else_is_blamed(table: str, copy: An
         survey_data.load(copy.directory)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("table", ALL)
 def test_a_duplicate_row_and_an_empty_key_are_located_in_every_table(table: str, copy: Any) -> None:
     copy.edit(table, lambda rows: rows.append(list(rows[3])))
@@ -130,6 +132,7 @@ def test_a_duplicate_row_and_an_empty_key_are_located_in_every_table(table: str,
     assert located(problems, 3, column)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("table", ALL)
 def test_a_row_left_out_is_located_in_every_table(table: str, copy: Any) -> None:
     copy.edit(table, lambda rows: rows.pop(1))
@@ -207,6 +210,7 @@ def test_a_cell_has_one_basis(copy: Any) -> None:
     assert any(p.column == "basis" and "two bases" in p.message for p in problems)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("pick", "column", "text", "blamed"),
     [

@@ -58,6 +58,7 @@ def test_a_spot_that_diffraction_widens_is_expected_as_wide_as_it_is():
     assert np.abs(peaks - true).max() < 5.0
 
 
+@pytest.mark.slow
 def test_linear_phase_of_frames_is_within_thrice_the_bound_wherever_the_spot_is():
     for name, width, times in (
         ("disc", 16.0, 3.0),

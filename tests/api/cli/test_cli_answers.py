@@ -115,6 +115,7 @@ def test_what_cannot_be_met_names_the_requirement_that_rules_it_out():
     assert f"nothing is left: {found['blocked']['constraint']}" in shown.stderr
 
 
+@pytest.mark.slow
 def test_data_sets_are_listed_and_described():
     assert [row["name"] for row in table("dataset", "list")] == sorted(datasets.names())
     for name in datasets.names():

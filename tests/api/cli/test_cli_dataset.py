@@ -86,6 +86,7 @@ def test_verify_passes_then_names_what_was_changed(made, tmp_path):
     assert row["problem"].startswith("SHA-256 is")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("arguments", "code", "says"),
     [
@@ -121,6 +122,7 @@ def test_wrong_calls_are_one_line_and_write_nothing(tmp_path, monkeypatch, argum
     assert not (tmp_path / "x").exists()
 
 
+@pytest.mark.slow
 def test_a_preview_is_the_picture_of_the_condition(tmp_path):
     path = tmp_path / "new" / "cube.png"
     shown = sunatlas("preview", CUBE, "--condition", "albedo", "--out", path)
@@ -139,6 +141,7 @@ def test_an_overlay_shows_what_an_extractor_finds(tmp_path):
     assert path.read_bytes() == overlay_png(preset, extractor, ["nominal"])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "low", "high"), [(CUBE, 1.0, 90.0), (APERTURE, 1e-9, 1e-3)])
 def test_earth_s_light_moves_bare_diodes_and_not_what_a_mask_shades(name, low, high):
     (row,) = csv.DictReader(

@@ -160,6 +160,7 @@ def test_errors_of_ours_and_of_the_file_system_are_known():
     assert not any(map(command_line.is_known, theirs))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", ["table", "json"])
 def test_a_reader_that_leaves_early_hears_nothing(form):
     process = subprocess.Popen(

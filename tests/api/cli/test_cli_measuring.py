@@ -115,6 +115,7 @@ def test_the_formats_say_the_same(unpublished):
     assert found[0]["extractor"] in sunatlas("benchmark", *CHEAP, *store).stdout
 
 
+@pytest.mark.slow
 def test_a_study_of_which_nothing_runs_says_why_and_fails(unpublished):
     listed = json.loads(sunatlas("studies", "--state", "none", "--format", "json").stdout)
     shown = sunatlas("run", listed[0]["key"], "--format", "json")
@@ -137,6 +138,7 @@ def test_an_unknown_condition_of_a_study_s_data_is_refused():
     assert "'nominal'" in shown.stderr
 
 
+@pytest.mark.slow
 def test_ctrl_c_says_what_is_kept(unpublished, monkeypatch):
     def interrupted(*_arguments, **_options):
         raise RunInterruptedError("interrupted with 1 of 2 cells measured")
@@ -258,11 +260,13 @@ def test_a_wrong_call_of_leaderboard_is_a_line(arguments, code, says):
     assert shown.stderr.count("\n") == 1
 
 
+@pytest.mark.slow
 def test_the_committed_leaderboard_is_what_its_code_gives(published):
     shown = sunatlas("leaderboard", "--check", "--stored")
     assert (shown.exit_code, shown.stdout) == (0, ""), shown.stdout
 
 
+@pytest.mark.slow
 def test_what_is_not_of_the_code_is_named(published):
     path = published / "components.json"
     text = path.read_text("utf-8")
@@ -278,6 +282,7 @@ def test_what_is_not_of_the_code_is_named(published):
     assert "the first: " in shown.stderr
 
 
+@pytest.mark.slow
 def test_an_up_to_date_record_is_left_as_it_is(published):
     assert stale(cells(), Store(published)) == [], "run `make leaderboard`"
     before = {path: path.read_bytes() for path in published.rglob("*") if path.is_file()}
@@ -307,6 +312,7 @@ def test_everything_else_is_derived(tmp_path, untimed):
     ]
 
 
+@pytest.mark.slow
 def test_times_are_of_this_machine_and_kept_beside_the_record(untimed, monkeypatch):
     known = installed()
     few = Parts(

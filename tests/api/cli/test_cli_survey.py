@@ -179,6 +179,7 @@ def test_an_import_shows_the_mapping_and_the_cells_and_writes_nothing(copy, thei
     assert "Nothing written; --apply writes 1 cells." in table.stdout
 
 
+@pytest.mark.slow
 def test_an_import_that_is_applied_leaves_valid_tables(copy, theirs):
     shown = survey(
         *("import", theirs, "--map", "Sensor technology=detector", "--data", copy, "--apply")

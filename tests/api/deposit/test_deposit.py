@@ -83,6 +83,7 @@ def test_sha256sum_reads_the_checksums(built):
     assert shown.returncode == 0, shown.stdout
 
 
+@pytest.mark.slow
 def test_a_flipped_byte_is_found_in_every_file(bundle):
     names = [name for name in files(bundle) if name != CHECKSUMS]
     assert len(names) > 20
@@ -105,6 +106,7 @@ def test_a_missing_and_an_added_file_are_found(bundle):
     ]
 
 
+@pytest.mark.slow
 def test_a_wrong_table_is_found_though_its_checksum_holds(bundle):
     path = bundle / "survey" / "studies.csv"
     path.write_text(path.read_text("utf-8").replace("2008", "MMVIII", 1), "utf-8")
@@ -144,6 +146,7 @@ def test_the_zip_holds_what_the_directory_holds(built):
     assert len(moments) == 1
 
 
+@pytest.mark.slow
 def test_the_tables_hold_what_their_sources_hold(built):
     package = Package(str(built.directory / "datapackage.json"))
     assert len(package.get_resource("studies").read_rows()) == 129
@@ -201,6 +204,7 @@ def test_the_terms_go_with_the_files(built):
     assert "CC BY 4.0" in (built.directory / "survey" / "LICENSE").read_text("utf-8")
 
 
+@pytest.mark.slow
 def test_an_earlier_bundle_is_replaced_and_a_damaged_one_mended(built, tmp_path):
     out = tmp_path / "bundle"
     shutil.copytree(built.directory, out)
@@ -239,6 +243,7 @@ def foreign_zip(out):
         archive.writestr("thesis.tex", "irreplaceable")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "occupy",
     [
@@ -259,6 +264,7 @@ def test_what_is_not_ours_is_not_overwritten(occupy, tmp_path):
     assert files(tmp_path) == before
 
 
+@pytest.mark.slow
 def test_a_build_that_fails_midway_leaves_the_earlier_bundle(built, tmp_path, monkeypatch):
     out = tmp_path / "bundle"
     shutil.copytree(built.directory, out)
@@ -273,6 +279,7 @@ def test_a_build_that_fails_midway_leaves_the_earlier_bundle(built, tmp_path, mo
     assert [path.name for path in tmp_path.iterdir()] == ["bundle"]
 
 
+@pytest.mark.slow
 def test_a_bundle_that_cannot_be_moved_into_place_leaves_the_earlier_one(
     built, tmp_path, monkeypatch
 ):
@@ -309,6 +316,7 @@ def test_without_published_results_there_is_nothing_to_deposit(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.slow
 def test_a_column_nobody_described_does_not_go_out(tmp_path, monkeypatch):
     rows = [{**row, "mystery": 1} for row in Store(PUBLISHED).swept()]
     monkeypatch.setattr(Store, "swept", lambda _store: rows)

@@ -10,6 +10,7 @@ HEAVY = ("cv2", "scipy", "plotly", "numba", "pandas")
 ROOT = Path(__file__).parents[3]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "code",
     [

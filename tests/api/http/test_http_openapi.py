@@ -47,6 +47,7 @@ def test_every_endpoint_of_the_contract_is_documented(document):
     }
 
 
+@pytest.mark.slow
 def test_examples_are_what_is_answered(atlas, document):
     """The example's question is asked over HTTP; its answer is the example, in JSON and CSV."""
     checked = 0

@@ -141,6 +141,7 @@ def test_cards_and_parameters_are_plain_json(name: str) -> None:
     assert len(texts) == len(preset.conditions)
 
 
+@pytest.mark.slow
 def test_all_samples_differ_from_one_condition_and_split_to_another() -> None:
     digests = {samples_hash(first(*case, split)) for case in CASES for split in SPLITS}
     assert len(digests) == len(CASES) * len(SPLITS)
@@ -161,6 +162,7 @@ def test_conditions_share_the_sun_and_calibration_is_apart_from_test(name: str) 
     assert (nominal["test"] @ nominal["calibration"].T).max() < 1.0
 
 
+@pytest.mark.slow
 def test_generation_depends_on_neither_order_nor_process_nor_import() -> None:
     """A fresh process, conditions backwards, must give the same bytes; and import nothing heavy."""
     code = f"""
@@ -201,6 +203,7 @@ def test_generation_depends_on_neither_the_batch_nor_how_much_is_wanted(
         assert array is there is None or np.array_equal(array, there[:FEW], equal_nan=True), key
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["cmos-single-aperture", "pda-slit", "pd-orbit", "event-l-slit"])
 def test_all_samples_begin_with_the_first_and_do_not_depend_on_the_batch(
     name: str, monkeypatch: pytest.MonkeyPatch
@@ -244,6 +247,7 @@ def test_the_window_says_little_about_the_spot() -> None:
     assert abs(np.corrcoef(miss.T)[0, 1]) < 0.1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("condition", datasets.get("cmos-single-aperture").conditions)
 def test_spots_lie_whole_inside_their_windows_neither_dark_nor_saturated(condition: str) -> None:
     preset = datasets.get("cmos-single-aperture")

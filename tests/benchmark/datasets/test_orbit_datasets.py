@@ -73,6 +73,7 @@ def test_samples_are_in_order_and_continuous(made, name: str) -> None:
         assert step.max() < 3 * np.median(step)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_eclipse_is_dark_and_only_the_test_split_has_it(made, name: str) -> None:
     samples = made[name, "test"]

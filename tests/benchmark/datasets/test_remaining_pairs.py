@@ -197,6 +197,7 @@ def test_bounds_are_finite_everywhere_and_order_with_the_noise(name: str) -> Non
     assert (nominal < high).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_all_light_falls_on_the_pixels_read_out_and_saturates_none(name: str) -> None:
     """Also in the field's corners, in every condition: nothing is lost, windows are no limit."""

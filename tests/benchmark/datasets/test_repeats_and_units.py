@@ -16,6 +16,7 @@ from benchmark.simulator.sensors.frames import FrameSensor
 PRESETS = {name: datasets.get(name) for name in datasets.names()}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", ["cmos-single-aperture", "pd-orbit", "cmos-single-aperture-pinhole"]
 )
@@ -81,6 +82,7 @@ def test_unit_0_is_the_dataset_itself() -> None:
         preset.as_unit(2).as_unit(1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PRESETS)
 def test_another_unit_sees_the_same_suns_otherwise(name: str) -> None:
     standard, other = PRESETS[name], PRESETS[name].as_unit(1)

@@ -95,6 +95,7 @@ def test_bringing_up_to_date_what_is_up_to_date_writes_and_generates_nothing(pub
     assert not write_page(Store(published))
 
 
+@pytest.mark.slow
 def test_two_workers_give_the_same_record(published, tmp_path):
     again = tmp_path / "again"
     update(again, 2, progress=silent, parts=PARTS)

@@ -81,7 +81,19 @@ def test_it_is_small_and_holds_nothing_that_can_be_derived():
     }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", datasets.names())
+#: Of which four samples take a second or more: light from the Earth, or megapixels.
+COSTLY = {
+    "ccd-multi-aperture", "ccd-orbit", "cmos-compound-eye", "cmos-encoded", "cmos-multi-aperture",
+    "ltf-maskless-cube", "pd-maskless-cube", "pd-maskless-pyramid", "pd-orbit",
+    "pva-maskless-panels", "pva-maskless-sphere",
+}  # fmt: skip
+BY_COST = [
+    pytest.param(name, marks=pytest.mark.slow) if name in COSTLY else name
+    for name in datasets.names()
+]
+
+
+@pytest.mark.parametrize("name", BY_COST)
 def test_no_data_or_bound_changed_in_silence(published, name):
     """The first samples of every split: a change of the simulator needs a new version."""
     preset = datasets.get(name)
@@ -183,6 +195,7 @@ def test_measured_now_is_what_is_committed(published, fresh):
     assert compare_scores({cell: scores[cell] for cell in measured}, measured, counts) == []
 
 
+@pytest.mark.slow
 def test_bringing_an_up_to_date_record_up_to_date_renders_nothing(tmp_path, monkeypatch):
     def refuse(*arguments):
         raise AssertionError("a dataset was rendered")
@@ -214,6 +227,7 @@ def test_under_low_noise_the_thresholded_centroid_beats_the_plain_one(source, re
     assert all(scores["bctm", model] < scores["bcm", model] for model in models), scores
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("extractor", ["bctm", "bcm", "ifm", "pm"])
 def test_least_squares_beat_the_nominal_projection_once_tilt_and_focal_length_err(
     published, extractor
@@ -227,6 +241,7 @@ def test_no_pipeline_beats_the_cramer_rao_bound_beyond_statistical_error(source,
     assert beaten(request.getfixturevalue(source)) == []
 
 
+@pytest.mark.slow
 def test_a_model_that_peeks_at_the_truth_is_caught(tmp_path, monkeypatch):
     """The same question asked of a leak: half of the noise is taken out with the true direction."""
     [cell] = plan.cells("qpd-single-aperture", "high-noise", "voltage-balance", "polynomial-2d")

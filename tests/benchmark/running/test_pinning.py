@@ -100,6 +100,7 @@ def test_a_pin_says_what_was_generated(store):
         assert pin.head_bound_deg is None, "the first samples of the test split are dark"
 
 
+@pytest.mark.slow
 def test_a_pin_carries_the_bound_of_the_test_split_and_of_its_head(store):
     preset = datasets.get("oi-maskless-pyramid")
     update(store, parts=_some("oi-maskless-pyramid"))
@@ -253,6 +254,7 @@ def _some(*names):
     return Parts({name: datasets.get(name) for name in names}, {}, {})
 
 
+@pytest.mark.slow
 def test_hashes_depend_on_neither_workers_nor_order_nor_company(tmp_path):
     """The published pins, from one process and two, in any order, alone and together."""
     published = {
@@ -278,6 +280,7 @@ def test_hashes_depend_on_neither_workers_nor_order_nor_company(tmp_path):
     assert backwards == published
 
 
+@pytest.mark.slow
 def test_everything_there_is_is_pinned():
     pins = Store(PUBLISHED).pins()
     assert set(pins) == pinning.places(), "run `sunatlas dataset pin`"

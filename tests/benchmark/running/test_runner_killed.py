@@ -67,6 +67,7 @@ def uninterrupted(tmp_path_factory):
     return Store(directory)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("workers", [1, 2])
 def test_a_killed_run_is_finished_by_the_next_with_identical_bytes(
     uninterrupted, tmp_path, workers

@@ -179,6 +179,7 @@ def test_diffraction_fades_into_the_shadow_as_the_hole_grows() -> None:
     assert apart[1] / apart[2] > 0.8 * math.sqrt(10.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shape", ["round", "rectangle"])
 def test_near_pattern_lies_where_the_shadow_would(shape: str) -> None:
     sensor = behind(2.0, shape)
@@ -296,6 +297,7 @@ def test_bound_of_the_pinhole_falls_with_the_square_root_of_the_photons() -> Non
     assert found[0] / found[1] == pytest.approx(2.0, rel=0.01)
 
 
+@pytest.mark.slow
 def test_frames_depend_on_neither_process_nor_batch() -> None:
     code = f"""
 import hashlib

@@ -73,6 +73,7 @@ def test_places_are_kept_alike():
     assert calls[-1] == "small"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     [

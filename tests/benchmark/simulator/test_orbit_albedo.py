@@ -100,6 +100,7 @@ def test_earthlight_is_what_each_pixel_sees_through_the_hole() -> None:
     assert drawn == pytest.approx(traced, abs=0.03 * max(traced))
 
 
+@pytest.mark.slow
 def test_albedo_moves_the_cubes_estimate_by_up_to_some_tens_of_degrees() -> None:
     """Soken2023 reports up to 20 deg; here 17 deg at worst, 3.8 deg root mean square."""
     influence = on_cube()

@@ -38,6 +38,7 @@ def rendered(radius: float, middle: tuple[float, float], moved: tuple[float, flo
     return frame[0]
 
 
+@pytest.mark.slow
 @settings(deadline=None, derandomize=True, max_examples=150)
 @given(
     st.floats(0.05, 9.0),
@@ -242,6 +243,7 @@ def dense_suns(sun: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return rays / np.linalg.norm(rays, axis=1, keepdims=True), weight / weight.sum()
 
 
+@pytest.mark.slow
 def test_pixels_are_within_half_a_percent_of_a_ray_count_all_over_the_field() -> None:
     worst = {name: max(off_by(name, turn) for turn in range(4)) for name in GRIDS}
     assert max(worst.values()) < 5e-3, worst

@@ -24,6 +24,7 @@ MODULES = [
 ]
 
 
+@pytest.mark.slow
 def test_kernels_work_where_no_cache_can_be_written():
     """A read-only installation and home: Numba has no place left where it could write."""
     code = (

@@ -15,6 +15,7 @@ def rows():
     return Store().swept()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sweep", pictures.DRAWN)
 def test_every_panel_holds_the_stored_numbers_of_its_method(rows, sweep):
     drawn = pictures.figure(rows, sweep)

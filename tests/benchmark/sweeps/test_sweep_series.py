@@ -77,6 +77,7 @@ def test_the_bound_of_a_line_through_known_derivatives_is_least_squares():
     assert bound == pytest.approx(math.sqrt(0.25 * np.linalg.inv(design.T @ design)[0, 0]))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("series", SERIES.values(), ids=SERIES)
 def test_drawing_is_repeatable_and_shapes_agree(series):
     first = series.settings()[0]
@@ -90,6 +91,7 @@ def test_drawing_is_repeatable_and_shapes_agree(series):
     assert {sweep for sweep, _ in points} <= set(SWEEPS)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("series", SERIES.values(), ids=SERIES)
 def test_bounds_fall_with_the_signal(series):
     levels = [s for s in series.settings() if s.sweep == "noise"]
@@ -111,6 +113,7 @@ def test_the_reference_disc_is_the_reference_set_itself():
     np.testing.assert_array_equal(drawn.truth, centres)
 
 
+@pytest.mark.slow
 def test_a_missing_fifth_is_a_fifth_and_a_glint_stands_where_the_feature_never_is():
     whole, less = (GRID.draw(setting(GRID, "missing", p)) for p in ("0", "0.2"))
     lit = [

@@ -148,6 +148,7 @@ def test_a_reason_that_changes_is_renewed(made, monkeypatch):
     ]
 
 
+@pytest.mark.slow
 def test_workers_and_what_was_there_before_do_not_change_a_byte(tmp_path):
     known = discover_extractors()
     some = {name: known[name] for name in ("voltage-balance", "direct", "escm-wta")}
