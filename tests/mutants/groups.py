@@ -193,6 +193,12 @@ GROUPS: Mapping[str, Group] = {
             "algorithms/extractors/frames/*": _in(
                 _EXTRACTORS, "extractor_limits", "frame_kernels", "centroids", "single_spots"
             ),
+            "algorithms/extractors/profiles/linear_phase.py": _in(
+                _EXTRACTORS, "extractor_limits", "profile_lines", "frame_variants"
+            ),
+            "algorithms/extractors/profiles/peak_detection.py": _in(
+                _EXTRACTORS, "extractor_limits", "peak_position", "profile_lines", "frame_variants"
+            ),
             "algorithms/extractors/profiles/peak_*.py": _in(
                 _EXTRACTORS, "extractor_limits", "peak_position", "profile_lines"
             ),
