@@ -223,7 +223,11 @@ def _profile(  # noqa: PLR0917 - the formulas in their order
         excess += at[3] - at[2] * u - others * noise - slope * slope * at[0] * ring * ring / 12.0
         light += others * max(u, 0.0)
     gain = max(excess / light, 0.0) if light > 0 else 0.0
-    floor = 1e-12 * levels[0] * levels[0] + 1e-300
+    # Of the brightest ring: around a point between four pixels the innermost ones are empty.
+    brightest = 0.0
+    for q in range(rings):
+        brightest = max(brightest, levels[q])
+    floor = 1e-12 * brightest * brightest + 1e-300
     bends, weights = lines[4], lines[5]
     for q in range(rings):
         apart = max(means[q + 2 * _NEAR] - means[q], 1e-9)
