@@ -165,8 +165,8 @@ def opto_isolator_conditions(sensor: OptoIsolatorSensor) -> dict[str, Condition]
     """Return the conditions of opto-isolators that serve as light sensors."""
     return {
         "nominal": Condition(
-            "Output as the light to the power 1.5, gains e^0.3 apart, normals within 1 deg, "
-            "noise of 1e-3 of full sunlight, no Earth.",
+            "A phototransistor's gain, halved in a tenth of sunlight; gains e^0.3 apart, normals "
+            "within 1 deg, noise of 1e-3 of full sunlight, no Earth.",
             sensor,
             LIGHT,
         ),

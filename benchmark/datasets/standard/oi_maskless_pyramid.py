@@ -17,7 +17,7 @@ _SENSOR = OptoIsolatorSensor(QUADRANTS, _READOUT, normal_error_deg=1.0)
 
 PRESET = faces(
     name="oi-maskless-pyramid",
-    version=1,
+    version=2,
     detector="OI",
     normals=QUADRANTS,
     order=TOWARDS_QUADRANTS,
@@ -28,10 +28,11 @@ PRESET = faces(
     description=(
         "The phototransistors of four opto-isolators, opened towards the Sun, in Wang2019's "
         "pyramid. No mapped study is known to use opto-isolators (the survey lists them among its "
-        "detectors), so the detector is made of round numbers: an exponent of 1.5, between a "
-        "photodiode's 1 and a square law, because a transistor's gain grows with its current; "
-        "gains that spread by a factor e^0.3 = 1.35, as the current transfer ratios of one type "
-        "do; 1 mA in full sunlight, four times that before the converter is full; mounting within "
-        "1 deg. Tilt and field as in pd-maskless-pyramid."
+        "detectors), and no sun sensor of that kind was found: an idealisation, of a "
+        "phototransistor by Gummel and Poon's law. Its numbers are round: recombination halves the "
+        "gain in a tenth of sunlight, as the current transfer ratio of such parts falls at small "
+        "currents; gains spread by a factor e^0.3 = 1.35, as those ratios do within one type; 1 mA "
+        "in full sunlight, four times that before the converter is full; mounting within 1 deg. "
+        "Tilt and field as in pd-maskless-pyramid."
     ),
 )

@@ -23,11 +23,17 @@ from benchmark.simulator.sensors.faces import Faces
 class OptoIsolatorSensor(Faces):
     """K opto-isolators with outward normals, their phototransistors looking at the Sun.
 
-    The transistor's gain grows with its current, so the output rises as the light to the power
-    of `STEEPNESS`; gains differ from unit to unit by tens of percent. `readout.gain_mismatch`
-    is the standard deviation of the logarithm of the gain (a gain is never negative), and
-    `readout.sunlit_ua` the output of a unit of median gain in mean sunlight at normal incidence.
-    Response, normals and assembly as in `FaceSensor`.
+    The light's current is the transistor's base current. Recombination in the junction takes its
+    share of it, which counts the more the smaller the current (`collected`); gains differ from
+    unit to unit by tens of percent. `readout.gain_mismatch` is the standard deviation of the
+    logarithm of the gain (a gain is never negative), and `readout.sunlit_ua` the output of a unit
+    of median gain in mean sunlight at normal incidence. Response, normals and assembly as in
+    `FaceSensor`.
+
+    Attributes
+    ----------
+    knee
+        Light at which the gain has fallen to half of what it tends to, in units of mean sunlight.
     """
 
     normals: tuple[tuple[float, float, float], ...]
@@ -36,6 +42,11 @@ class OptoIsolatorSensor(Faces):
     normal_error_deg: float = 0.0
     sun: SolarDisc = field(default_factory=SolarDisc)
     assembly: Assembly = field(default_factory=Assembly)
+    knee: float = 0.1
+
+    def __post_init__(self) -> None:
+        if not self.knee >= 0:
+            raise ValueError(f"knee must not be negative; got {self.knee}")
 
     def fixed_pattern(self, *names: str | int) -> FixedPattern:
         """``gain`` (K,) and ``normals`` (K, 3): the unit's gains and built normals."""
@@ -48,7 +59,8 @@ class OptoIsolatorSensor(Faces):
 
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, K) mean microamperes."""
-        return readout.currents(self.readout, steep(self.received(scene, pattern)), pattern)
+        light = collected(self.received(scene, pattern), self.knee)
+        return readout.currents(self.readout, light / collected(np.ones(1), self.knee), pattern)
 
     def variance(self, expected: Floats) -> Floats:
         """Squared microamperes."""
@@ -59,12 +71,17 @@ class OptoIsolatorSensor(Faces):
         return readout.converted(self.readout, self.expected(scene, pattern), streams)
 
 
-#: Exponent of the output in the light: a round number between a photodiode's 1 and a square law,
-#: and one that needs a square root only, which is the same on every processor.
-STEEPNESS = 1.5
+def collected(light: Floats, knee: float) -> Floats:
+    """Collector current of a phototransistor in light x, in the unit of its greatest gain.
 
-
-def steep(light: Floats) -> Floats:
-    """Light to the power of `STEEPNESS`; negative light counts as none."""
+    Gummel and Poon's law with an ideal base current and one of recombination, whose ideality
+    factor is 2: ``x = I + sqrt(k I / 2)``, so that the gain ``I / x`` is 1/2 at ``x = k``, the
+    knee. I rises as the square of little light, in proportion to much of it. Negative light
+    counts as none.
+    """
     lit = np.maximum(light, 0.0)
-    return np.asarray(lit * np.sqrt(lit))
+    lost = math.sqrt(knee / 2.0)
+    # the positive root of s^2 + lost s - x = 0, s^2 the current, without a difference of equals
+    below = lost + np.sqrt(knee / 2.0 + 4.0 * lit)
+    root = 2.0 * lit / np.where(below > 0, below, 1.0)
+    return np.asarray(root * root)

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.optimize import brentq
 
 from algorithms.extractors.currents.photodiode import VoltageBalance
 from benchmark import datasets
@@ -26,7 +27,7 @@ from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensors.face_layouts import lattice, pyramid, sphere
 from benchmark.simulator.sensors.faces import CUBE, Faces
 from benchmark.simulator.sensors.light_to_frequency import FrequencyCounter, FrequencySensor
-from benchmark.simulator.sensors.opto_isolator import OptoIsolatorSensor
+from benchmark.simulator.sensors.opto_isolator import OptoIsolatorSensor, collected
 from benchmark.simulator.sensors.solar_cells import SolarCells, SolarCellSensor
 
 IDEAL = CurrentReadout(100.0, 0.0, 0.0, full_scale_ua=400.0, bits=24)
@@ -291,18 +292,29 @@ def test_impossible_cells_are_refused(changes: dict[str, Any], message: str) -> 
         SolarCells(**changes)
 
 
-def test_opto_isolators_are_steep_and_far_apart() -> None:
+def test_opto_isolators_gain_with_the_light_and_are_far_apart() -> None:
     sensor = OptoIsolatorSensor(sphere(3000), replace(IDEAL, gain_mismatch=0.3), sun=POINT)
     pattern = sensor.fixed_pattern("test")
     logs = np.log(pattern["gain"])
     assert logs.mean() == pytest.approx(0.0, abs=0.02)
     assert logs.std() == pytest.approx(0.3, rel=0.05)
-    sun = np.array([[0.0, 0.0, 1.0]])
     light = np.clip(np.array(sensor.normals)[:, 2], 0, None)
-    seen = sensor.expected(lit_by(sun), pattern)[0]
-    assert seen == pytest.approx(100 * pattern["gain"] * light**1.5)
-    bright = sensor.expected(replace(lit_by(sun), irradiance=np.array([2.0])), pattern)[0]
-    assert bright == pytest.approx(2**1.5 * seen)
+    seen = sensor.expected(lit_by(np.array([[0.0, 0.0, 1.0]])), pattern)[0]
+    # what the junction's law says of the current, solved by bisection
+    law = [brentq(lambda i, x=x: i + math.sqrt(0.05 * i) - x, 0.0, x + 1e-300) for x in light]
+    sunlit = brentq(lambda i: i + math.sqrt(0.05 * i) - 1.0, 0.0, 1.0)
+    assert seen == pytest.approx(100 * pattern["gain"] * np.array(law) / sunlit, abs=1e-9)
+
+
+def test_a_phototransistor_s_gain_is_half_at_the_knee_and_goes_with_the_light_below() -> None:
+    assert collected(np.array([0.2]), 0.2)[0] / 0.2 == pytest.approx(0.5)
+    small = collected(np.array([1e-6, 2e-6]), 0.2)
+    assert small[1] / small[0] == pytest.approx(4.0, rel=1e-4)
+    much = collected(np.array([1e4, 2e4]), 0.2)
+    assert much[1] / much[0] == pytest.approx(2.0, rel=2e-3)
+    assert collected(np.array([-1.0, 0.0, 0.7]), 0.0) == pytest.approx([0.0, 0.0, 0.7])
+    with pytest.raises(ValueError, match="knee must not be negative; got -1"):
+        OptoIsolatorSensor(CUBE, IDEAL, knee=-1.0)
 
 
 @pytest.mark.parametrize("name", BARE)
