@@ -124,11 +124,11 @@ def photodiode_conditions(
 def converter_conditions(sensor: FrequencySensor) -> dict[str, Condition]:
     """Return the conditions of light-to-frequency converters, which count for 20 ms."""
     counter = sensor.readout
-    warm = replace(counter, dark=replace(counter.dark, temperature_c=80.0))
+    warm = replace(counter, dark=replace(counter.dark, temperature_c=80.0), temperature_c=80.0)
     return {
         "nominal": Condition(
-            "Cosine response, gains 5 % apart, normals within 0.1 deg, pulses counted for 20 ms: "
-            "1 % of counting noise in full sunlight, no Earth.",
+            "Cosine response, gains within 5 %, normals within 0.1 deg, whole pulses counted for "
+            "20 ms: 0.02 % of full sunlight, no Earth.",
             sensor,
             LIGHT,
         ),
@@ -153,7 +153,8 @@ def converter_conditions(sensor: FrequencySensor) -> dict[str, Condition]:
             LIGHT,
         ),
         "hot": Condition(
-            "The nominal sensor at 80 deg C: the dark frequency doubles every 7 K.",
+            "The nominal sensor at 80 deg C: the dark frequency doubles every 7 K, frequencies "
+            "rise by 100 ppm/K.",
             replace(sensor, readout=warm),
             LIGHT,
         ),
