@@ -10,6 +10,7 @@ from algorithms.contract import Floats
 from benchmark.seeds import generator
 from benchmark.simulator.readout.detectors import CurrentReadout
 from benchmark.simulator.readout.noise import NoiseStreams
+from benchmark.simulator.readout.quantisation import reading_variance
 
 
 def element_gains(readout: CurrentReadout, count: int, *names: str | int) -> Floats:
@@ -23,9 +24,12 @@ def currents(readout: CurrentReadout, response: Floats, pattern: Mapping[str, Fl
 
 
 def variance(readout: CurrentReadout, expected: Floats) -> Floats:
-    """Squared microamperes: shot noise of the current, amplifier noise, rounding."""
+    """Squared microamperes: shot noise of the current, amplifier noise, rounding and clipping."""
     shot = readout.electron_ua * np.maximum(expected, 0.0)
-    return np.asarray(shot + readout.noise_ua**2 + readout.step_ua**2 / 12.0)
+    deviation = np.sqrt(shot + readout.noise_ua**2) / readout.step_ua
+    top = 2.0 ** (readout.bits - 1)
+    codes = reading_variance(expected / readout.step_ua, deviation, -top, top - 1.0)
+    return np.asarray(codes * readout.step_ua**2)
 
 
 def converted(readout: CurrentReadout, expected: Floats, streams: NoiseStreams) -> Floats:

@@ -14,6 +14,7 @@ from benchmark.simulator.masks.errors import MaskErrors
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout.detectors import PixelArray
 from benchmark.simulator.readout.noise import NoiseStreams
+from benchmark.simulator.readout.quantisation import pixel_variance
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
 from benchmark.simulator.sensors.frames import FrameSensor
@@ -139,8 +140,8 @@ class MultiSpotSensor:
         return np.asarray(detector.offset_dn + electrons / detector.gain_e_per_dn)
 
     def variance(self, expected: Floats) -> Floats:
-        """Squared digital numbers: shot and read noise, and 1/12 for rounding."""
-        return self._whole().variance(expected)
+        """Squared digital numbers: shot and read noise, and what rounding and clipping cost."""
+        return pixel_variance(self.detector, expected)
 
     def observe(
         self, scene: Scene, pattern: FixedPattern, streams: NoiseStreams
