@@ -1,6 +1,6 @@
-"""Compiled Fisher information of readings that are rounded and clipped (loaded on first use: Numba).
+"""Compiled information of readings that are rounded and clipped (loaded on first use: Numba).
 
-Compare `benchmark.simulator.readout.quantisation`, which says what of.
+Compare `benchmark.simulator.readout.quantisation`, which says of what.
 """
 
 from __future__ import annotations
@@ -49,19 +49,19 @@ def summed(mean: float, sigma: float, lowest: float, highest: float) -> float:
         nearest = min(max(math.floor(mean + 0.5), lowest), highest)
         first, last = max(nearest - 1.0, lowest), min(nearest + 1.0, highest)
     total = 0.0
-    z_below, phi_below, upper_below, lower_below = 0.0, 0.0, 1.0, 0.0
+    phi_below, upper_below, lower_below = 0.0, 1.0, 0.0
     code = first
     while code <= last:
         if code < last:
             z = (code + 0.5 - mean) / sigma
             phi, upper, lower = _density(z), _upper(z), _upper(-z)
         else:
-            z, phi, upper, lower = 0.0, 0.0, 0.0, 1.0
+            phi, upper, lower = 0.0, 0.0, 1.0
         # the difference of the smaller tails keeps its digits
         chance = upper_below - upper if lower > 0.5 else lower - lower_below
         if chance > 1e-290:
             total += (phi_below - phi) ** 2 / chance
-        z_below, phi_below, upper_below, lower_below = z, phi, upper, lower
+        phi_below, upper_below, lower_below = phi, upper, lower
         code += 1.0
     return float(total)
 

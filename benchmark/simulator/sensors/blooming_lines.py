@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from algorithms.contract import Floats
 from benchmark.simulator.readout.noise import NoiseStreams, counted
+from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
 from benchmark.simulator.sensors.blooming import spill
@@ -70,6 +71,9 @@ class BloomingLineSensor(LineSensor):
         full = np.sum(lines >= detector.full_well_e, axis=2)
         variance[:, -arrays:] += full * detector.full_well_e + single
         return np.asarray(variance)
+
+    def unit_variance(self, expected: Floats, scene: Scene, references: References) -> None:
+        """None: an overflow is of many pixels together (the arguments are the protocol's)."""
 
     def observe(
         self, scene: Scene, pattern: FixedPattern, streams: NoiseStreams

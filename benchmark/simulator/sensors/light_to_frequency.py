@@ -12,6 +12,7 @@ from benchmark.simulator.light.sun_disc import SolarDisc
 from benchmark.simulator.optics.assembly import Assembly
 from benchmark.simulator.readout.detectors import DarkCurrent, Response
 from benchmark.simulator.readout.noise import NoiseStreams, counted
+from benchmark.simulator.readout.references import References, posterior
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
 from benchmark.simulator.sensors.faces import Faces
@@ -82,9 +83,39 @@ class FrequencySensor(Faces):
         gate = self.readout.gate_s
         return np.asarray((np.maximum(expected, 0.0) * gate + 1.0 / 12.0) / gate**2)
 
+    def unit_variance(self, expected: Floats, scene: Scene, references: References) -> Floats:  # noqa: ARG002 - the protocol's
+        """Squared hertz that unknown gains of the converters add."""
+        dark = self.readout.dark.level()
+        light = self._flat_hz(references)
+        single = float(self.variance(np.array([light + dark]))[0])
+        information = references.flats / single
+        spread = posterior((self.readout.gain_mismatch, 0.0), light, (information, 0.0))
+        return spread.variance(expected - dark)
+
+    def _flat_hz(self, references: References) -> float:
+        return references.level * (self.readout.full_scale_hz - self.readout.dark.level())
+
+    def reference_readings(
+        self, pattern: FixedPattern, references: References, streams: NoiseStreams
+    ) -> dict[str, Floats]:
+        """``dark_hz`` and ``flat_hz`` (K,): mean readings of the converters."""
+        dark, light = self.readout.dark.level(), self._flat_hz(references)
+        means = {
+            "dark_hz": (references.darks, 0.0 * pattern["gain"]),
+            "flat_hz": (references.flats, light * pattern["gain"]),
+        }
+        return {
+            name: np.mean(self._read(np.tile(mean + dark, (count, 1)), streams), axis=0)
+            for name, (count, mean) in means.items()
+            if count
+        }
+
     def observe(self, scene: Scene, pattern: FixedPattern, streams: NoiseStreams) -> Floats:
         """(N, K) hertz: whole counts over the gate time."""
+        return self._read(self.expected(scene, pattern), streams)
+
+    def _read(self, mean_hz: Floats, streams: NoiseStreams) -> Floats:
         gate = self.readout.gate_s
-        counts = np.rint(counted(self.expected(scene, pattern) * gate, 0.0, streams))
+        counts = np.rint(counted(mean_hz * gate, 0.0, streams))
         most = np.floor(self.readout.full_scale_hz * gate)
         return np.asarray(np.clip(counts, 0.0, most) / gate)

@@ -19,6 +19,11 @@ from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout.detectors import PixelArray
 from benchmark.simulator.readout.noise import NoiseStreams, counted
 from benchmark.simulator.readout.quantisation import pixel_variance
+from benchmark.simulator.readout.references import (
+    References,
+    pixel_references,
+    pixel_unit_variance,
+)
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
 
@@ -174,6 +179,21 @@ class LineSensor:
     def variance(self, expected: Floats) -> Floats:
         """Squared digital numbers: shot and read noise, and what rounding and clipping cost."""
         return pixel_variance(self.detector, expected)
+
+    def unit_variance(
+        self,
+        expected: Floats,
+        scene: Scene,  # noqa: ARG002 - the protocol's
+        references: References,
+    ) -> Floats | None:
+        """Squared digital numbers that unknown gains and dark signals of the pixels add."""
+        return pixel_unit_variance(self.detector, expected, references)
+
+    def reference_readings(
+        self, pattern: FixedPattern, references: References, streams: NoiseStreams
+    ) -> dict[str, Floats]:
+        """``dark_dn`` and ``flat_dn``, (W,): mean readings of the whole detector."""
+        return pixel_references(self.detector, pattern, references, streams)
 
     def observe(
         self, scene: Scene, pattern: FixedPattern, streams: NoiseStreams
