@@ -71,8 +71,7 @@ _FIELDS: dict[str, tuple[Type, str]] = {
     "over_bound_unit": ("number", "Root mean square error divided by bound_unit_deg."),
     "floor_deg": (
         "number",
-        "Root of the squares of bound_unit_deg and of the calibration reference's systematic "
-        "error, degrees.",
+        "Root of the squares of bound_unit_deg and of the calibration's own error, degrees.",
     ),
     **{
         ring.column: (

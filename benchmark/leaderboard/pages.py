@@ -53,10 +53,11 @@ LEGEND = (
     "Cramer-Rao lower bound of that angle (root mean square) over the same samples, ± the standard "
     "error of the ratio to it; it takes the unit as known. With the unit unknown but for flat and "
     "dark readings it is the second bound, and the floor adds the systematic error of the "
-    "calibration's own reference to that: precision and accuracy are two numbers. Repeatability is the standard deviation of answers to a pose held "
-    "still. Pipelines that answer less than 95 % rank behind all others. The first "
-    f"{LEADING} of a data set's nominal condition are scored on {UNITS} units built alike: where "
-    "their errors overlap those of the first of them they share its rank, marked =."
+    "calibration's own reference to that: precision and accuracy are two numbers. Repeatability is "
+    "the standard deviation of answers to a pose held still. Pipelines that answer less than 95 % "
+    f"rank behind all others. The first {LEADING} of a data set's nominal condition are scored on "
+    f"{UNITS} units built alike: where their errors overlap those of the first of them they share "
+    "its rank, marked =."
 )
 
 

@@ -53,8 +53,8 @@ def run(
     detector and mask; bound is the Cramer-Rao bound with the unit known, over bound the error
     divided by it; bound unit and over bound unit are those with the unit unknown but for flat and
     dark readings, and floor adds the systematic error of the calibration's reference: precision
-    and accuracy are two numbers. What lacks an implementation or data is a gap: listed on stderr, and in JSON under "gaps". Where
-    nothing runs, the exit code is 1.
+    and accuracy are two numbers. What lacks an implementation or data is a gap: listed on stderr,
+    and in JSON under "gaps". Where nothing runs, the exit code is 1.
 
     Cells that the published results hold are read there. Others are measured into the working
     store (see --store) and not measured again.

@@ -96,9 +96,10 @@ def test_an_unobservable_sample_moves_no_error_however_wrong_its_answer():
     sun = cone(rng, 200)
     predicted = tangent_noise(rng, sun, 0.3)
     seen = np.arange(200) % 4 != 0
-    plain = score(predicted, sun, np.full(200, 0.4), seen)
+    bounds = {"bound_deg": np.full(200, 0.4), "bound_unit_deg": np.full(200, 0.5)}
+    plain = score(predicted, sun, observable=seen, **bounds)
     predicted[~seen] = -sun[~seen]
-    wrong = score(predicted, sun, np.full(200, 0.4), seen)
+    wrong = score(predicted, sun, observable=seen, **bounds)
     assert wrong == plain
     predicted[~seen] = np.nan
     silent = score(predicted, sun, np.full(200, 0.4), seen)
