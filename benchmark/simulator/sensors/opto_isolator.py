@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -57,17 +57,24 @@ class OptoIsolatorSensor(Faces):
 
     def unit_variance(self, expected: Floats, scene: Scene, references: References) -> Floats:  # noqa: ARG002 - the protocol's
         """Squared microamperes that unknown gains add; small spreads of their logarithm."""
-        return readout.unit_variance(self.readout, expected, references)
+        return readout.unit_variance(self.readout, expected, _dimmed(references))
 
     def reference_readings(
         self, pattern: FixedPattern, references: References, streams: NoiseStreams
     ) -> dict[str, Floats]:
-        """``dark_ua`` and ``flat_ua`` (K,): mean readings of the isolators."""
-        return readout.mean_readings(self.readout, pattern["gain"], references, streams)
+        """``dark_ua`` and ``flat_ua`` (K,): mean readings of the isolators, flats half as bright.
+
+        Gains differ so much that one element in a hundred would end at full scale otherwise.
+        """
+        return readout.mean_readings(self.readout, pattern["gain"], _dimmed(references), streams)
 
     def observe(self, scene: Scene, pattern: FixedPattern, streams: NoiseStreams) -> Floats:
         """(N, K) microamperes."""
         return readout.converted(self.readout, self.expected(scene, pattern), streams)
+
+
+def _dimmed(references: References) -> References:
+    return replace(references, level=references.level / 2.0)
 
 
 #: Exponent of the output in the light: a round number between a photodiode's 1 and a square law,

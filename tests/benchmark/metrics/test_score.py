@@ -102,7 +102,7 @@ def test_an_unobservable_sample_moves_no_error_however_wrong_its_answer():
     wrong = score(predicted, sun, observable=seen, **bounds)
     assert wrong == plain
     predicted[~seen] = np.nan
-    silent = score(predicted, sun, np.full(200, 0.4), seen)
+    silent = score(predicted, sun, observable=seen, **bounds)
     assert (plain.false_sun, silent.false_sun) == (1.0, 0.0)
     assert silent == replace(plain, false_sun=0.0)
 
