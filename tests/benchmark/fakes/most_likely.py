@@ -22,13 +22,14 @@ from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensors.light_to_frequency import FrequencyCounter
+from benchmark.simulator.sensors.opto_isolator import OptoIsolatorSensor
 
 Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class Readout:
-    """A converter in whole codes: ``code = signal / step``, signal ``offset + gain light + dark``."""
+    """A converter: ``code = round(signal / step)``, signal ``offset + gain light + dark``."""
 
     step: float
     offset: float
@@ -39,7 +40,7 @@ class Readout:
     gain_spread: float
     dark: float
     dark_spread: float
-    end: float  # of the scale of light
+    end: float  # of the scale that flats are a share of
 
     def deviation(self, signal: Floats) -> Floats:
         """Before rounding, in codes."""
@@ -59,6 +60,7 @@ def readout_of(sensor: Any) -> Readout:
             part.prnu, dark, part.dsnu * dark, last - part.offset_dn,
         )  # fmt: skip
     mismatch, dark = part.gain_mismatch, part.dark.level()
+    dimmed = 0.5 if isinstance(sensor, OptoIsolatorSensor) else 1.0
     if isinstance(part, FrequencyCounter):
         gate = part.gate_s
         last, end = np.floor(part.full_scale_hz * gate), part.full_scale_hz
@@ -66,10 +68,12 @@ def readout_of(sensor: Any) -> Readout:
     assert isinstance(part, CurrentReadout)
     top, charge = 2.0 ** (part.bits - 1), 1.602176634e-13 / part.integration_s
     if hasattr(sensor, "cells"):
-        mismatch = float(np.hypot(mismatch, np.hypot(sensor.cells.mismatch, sensor.cells.loss_spread)))
+        mismatch = float(
+            np.hypot(mismatch, np.hypot(sensor.cells.mismatch, sensor.cells.loss_spread))
+        )
     return Readout(
         part.full_scale_ua / top, 0.0, charge, part.noise_ua**2, -top, top - 1, mismatch, dark,
-        0.0, part.full_scale_ua,
+        0.0, dimmed * part.full_scale_ua,
     )  # fmt: skip
 
 
@@ -104,58 +108,108 @@ def of_window(array: Floats, scene: Scene, shape: tuple[int, ...]) -> Floats:
     return array[y : y + shape[0], x : x + shape[1]].ravel()
 
 
-def estimated_unit(
-    kind: Readout, readings: Mapping[str, Floats], references: References
-) -> tuple[Floats, Floats]:
-    """Gains and dark signals (elements) of mean dark and flat readings; the design's without any.
-
-    Posterior means of Gaussian spreads: two linear equations an element.
-    """
+def _known(kind: Readout, references: References) -> list[tuple[str, Floats, float]]:
+    """By kind of reading: its derivatives over gain and dark signal, and its weight."""
     light = references.level * (kind.end - kind.dark)
-    left = np.diag([kind.gain_spread**-2, max(kind.dark_spread, 1e-30) ** -2])
-    right = np.array([kind.gain_spread**-2, max(kind.dark_spread, 1e-30) ** -2 * kind.dark])
-    total = [np.multiply.outer(right, np.ones(np.shape(next(iter(readings.values()), 0.0))))]
-    for name, mean in readings.items():
-        row = np.array([light if name.startswith("flat") else 0.0, 1.0])
-        count = references.flats if name.startswith("flat") else references.darks
-        level = np.array(kind.offset + row[0] + kind.dark)
-        weight = count / (kind.step**2 * (float(kind.deviation(level)) ** 2 + 1 / 12))
-        left = left + weight * np.outer(row, row)
-        total.append(np.multiply.outer(weight * row, mean - kind.offset))
-    gain, dark = np.tensordot(np.linalg.inv(left), sum(total), axes=1)
-    return gain, dark
+    found = []
+    for name, count, bright in (("flat", references.flats, light), ("dark", references.darks, 0.0)):
+        deviation = float(kind.deviation(np.array(kind.offset + bright + kind.dark)))
+        weight = count / (kind.step**2 * (deviation**2 + 1 / 12))
+        found.append((name, np.array([bright, 1.0]), weight))
+    return found
+
+
+def _prior(kind: Readout) -> Floats:
+    return np.array([kind.gain_spread**-2, max(kind.dark_spread, 1e-30) ** -2])
 
 
 def unit_spread(kind: Readout, references: References | None) -> Floats:
     """(2, 2) covariance of an element's gain and dark signal as `estimated_unit` leaves it."""
     if references is None:
         return np.zeros((2, 2))
-    left = np.diag([kind.gain_spread**-2, max(kind.dark_spread, 1e-30) ** -2])
-    light = references.level * (kind.end - kind.dark)
-    for count, bright in ((references.flats, light), (references.darks, 0.0)):
-        level = np.array(kind.offset + bright + kind.dark)
-        weight = count / (kind.step**2 * (float(kind.deviation(level)) ** 2 + 1 / 12))
-        left = left + weight * np.outer([bright, 1.0], [bright, 1.0])
+    rows = _known(kind, references)
+    left = sum((weight * np.outer(row, row) for _, row, weight in rows), np.diag(_prior(kind)))
     return np.asarray(np.linalg.inv(left))
 
 
+def estimated_unit(
+    kind: Readout, readings: Mapping[str, Floats], references: References, shape: tuple[int, ...]
+) -> tuple[Floats, Floats]:
+    """Gains and dark signals (`shape`) of mean dark and flat readings; the design's without any.
+
+    Posterior means of Gaussian spreads: two linear equations an element.
+    """
+    right = np.multiply.outer(_prior(kind) * [1.0, kind.dark], np.ones(shape))
+    for name, row, weight in _known(kind, references):
+        for mean in (array for key, array in readings.items() if key.startswith(name)):
+            right += np.multiply.outer(weight * row, mean - kind.offset)
+    gain, dark = np.tensordot(unit_spread(kind, references), right, axes=1)
+    return gain, dark
+
+
+@dataclass(frozen=True)
+class Trials:
+    """Codes (N, M) of N trials, and what the estimate takes for the elements' gains and darks."""
+
+    codes: Floats
+    gain: Floats
+    dark: Floats
+
+
+def drawn(
+    setup: Condition,
+    one: Scene,
+    names: tuple[str | int, ...],
+    count: int,
+    references: References | None,
+) -> Trials:
+    """Draw irradiance, stray light, noise and, with references, a unit and its readings."""
+    sensor: Any = setup.sensor
+    kind = readout_of(sensor)
+    built = sensor.fixed_pattern("test", *names, 0)
+    shape = sensor.expected(one, built).shape[1:]
+    light, stray = setup.irradiance.draw(count, generator("test", *names, "light"))
+    streams = NoiseStreams.named("test", *names, "noise")
+    codes, gains, darks = [], [], []
+    for n in range(count):
+        own = sensor.fixed_pattern("test", *names, n if references else 0)
+        # assembly, normals and masks stay those of one unit: they count as known
+        pattern = {**built, **{k: own[k] for k in ("gain", "cells", "dark_e") if k in own}}
+        scene = replace(one, irradiance=light[n : n + 1], stray=stray[n : n + 1])
+        codes.append(np.rint(sensor.observe(scene, pattern, streams).ravel() / kind.step))
+        gain = element_gains(pattern)
+        if references is not None:
+            readings = sensor.reference_readings(pattern, references, streams)
+            gain, dark = estimated_unit(kind, readings, references, gain.shape)
+        elif "dark_e" in pattern:
+            dark = pattern["dark_e"] / sensor.detector.gain_e_per_dn
+        else:
+            dark = np.full(gain.shape, kind.dark)
+        gains.append(of_window(gain, one, shape))
+        darks.append(of_window(dark, one, shape))
+    return Trials(np.array(codes), np.array(gains), np.array(darks))
+
+
 def errors_deg(
-    setup: Condition, one: Scene, names: tuple[str | int, ...], trials: int,
-    references: References | None = None, units: int = 1,
-) -> Floats:  # fmt: skip
+    setup: Condition,
+    one: Scene,
+    names: tuple[str | int, ...],
+    trials: int,
+    references: References | None = None,
+) -> Floats:
     """(trials, 2) errors along two tangent axes of estimates of the direction of `one`.
 
-    Every trial draws its irradiance, stray light and noise, and its unit where `units` is as many
-    as the trials. With `references` the estimate knows the unit by its flats and darks alone.
+    Every trial draws its irradiance, stray light and noise. With `references` every trial is of
+    another unit, of which the estimate knows what its flats and darks tell; without, of one unit
+    that is known.
     """
+    seen = drawn(setup, one, names, trials, references)
     sensor: Any = setup.sensor
     kind, light = readout_of(sensor), setup.irradiance
     built = sensor.fixed_pattern("test", *names, 0)
     plain = plain_pattern(built)
-    drawn, stray = light.draw(trials, generator("test", *names, "light"))
-    first, second = tangent_axes(one.sun)
-    shape = sensor.expected(one, built).shape[1:]
     in_dark = kind.offset if "dark_e" in built else kind.offset + kind.dark
+    first, second = tangent_axes(one.sun)
 
     def base(p: Floats) -> Floats:
         """(N, M) signal of light alone for offsets (rad), irradiance and stray light."""
@@ -166,49 +220,22 @@ def errors_deg(
         scene = Scene(sun, p[:, 2], p[:, 3], origin)
         return np.asarray(sensor.expected(scene, plain).reshape(count, -1) - in_dark)
 
-    seen, gains, darks = [], [], []
-    streams = NoiseStreams.named("test", *names, "noise")
-    for n in range(trials):
-        pattern = built
-        if units > 1:
-            own = sensor.fixed_pattern("test", *names, n)
-            pattern = {**built, **{k: own[k] for k in ("gain", "cells", "dark_e") if k in own}}
-        scene = replace(one, irradiance=drawn[n : n + 1], stray=stray[n : n + 1])
-        seen.append(sensor.observe(scene, pattern, streams).ravel())
-        if references is None:
-            gain = element_gains(pattern)
-            dark = (
-                pattern["dark_e"] / sensor.detector.gain_e_per_dn
-                if "dark_e" in pattern
-                else np.full(gain.shape, kind.dark)
-            )
-        else:
-            readings = sensor.reference_readings(pattern, references, streams)
-            gain, dark = estimated_unit(kind, readings, references)
-            gain, dark = (np.broadcast_to(a, element_gains(pattern).shape) for a in (gain, dark))
-        gains.append(of_window(gain, one, shape))
-        darks.append(of_window(dark, one, shape))
-    codes, gain, dark = np.array(seen) / kind.step, np.array(gains), np.array(darks)
-    codes = np.rint(codes)
     spread = unit_spread(kind, references)
     typical = np.array([0.0, 0.0, 1.0, light.stray])
     prior = np.array([0.0, 0.0, light.spread**-2, light.stray_spread**-2])
     # derivatives of the light at the truth: they hardly differ within the errors found
     steps = np.array([3e-4, 3e-4, 0.01, light.stray_spread])
-    moves = np.repeat([typical], 8, axis=0)
-    for k in range(4):
-        moves[2 * k, k] += steps[k]
-        moves[2 * k + 1, k] -= steps[k]
-    swept = base(moves)
-    slopes = (swept[::2] - swept[1::2]) / (2 * steps[:, None])
+    swept = base(typical + np.concatenate([np.diag(steps), -np.diag(steps)]))
+    slopes = (swept[:4] - swept[4:]) / (2 * steps[:, None])
     guess = np.repeat([typical], trials, axis=0)
     for _ in range(4):
         bare = base(guess)
-        mean = kind.offset + bare * gain + dark
+        mean = kind.offset + bare * seen.gain + seen.dark
         wide = bare**2 * spread[0, 0] + 2 * bare * spread[0, 1] + spread[1, 1]
         deviation = np.sqrt(kind.deviation(mean) ** 2 + wide / kind.step**2)
-        score, weight = _score(codes, mean / kind.step, deviation, (kind.lowest, kind.highest))
-        own = slopes[None] * gain[:, None, :] / kind.step
+        ends = kind.lowest, kind.highest
+        score, weight = _score(seen.codes, mean / kind.step, deviation, ends)
+        own = slopes[None] * seen.gain[:, None, :] / kind.step
         left = np.einsum("nim,nm,njm->nij", own, weight, own) + np.diag(prior)
         right = np.einsum("nim,nm->ni", own, score) - prior * (guess - typical)
         guess = guess + np.linalg.solve(left, right[:, :, None])[:, :, 0]

@@ -103,7 +103,7 @@ def test_units_known_by_flats_and_darks_are_estimated_as_well_as_their_bound_say
     bound = bound_at(setup, one, name, OFFERED)
     assert bound.unit_angle_deg is not None
     assert bound.unit_angle_deg[0] > bound.angle_deg[0]
-    errors = errors_deg(setup, one, (name,), trials, OFFERED, units=trials)
+    errors = errors_deg(setup, one, (name,), trials, OFFERED)
     assert rms(errors) == pytest.approx(bound.unit_angle_deg[0], rel=0.15)
 
 
@@ -116,7 +116,7 @@ def test_without_flats_and_darks_units_are_known_by_their_spread_alone(name: str
     bound = bound_at(setup, one, name, NONE)
     assert bound.unit_angle_deg is not None
     assert bound.unit_angle_deg[0] > 1.2 * bound.angle_deg[0]
-    errors = errors_deg(setup, one, (name,), 400, NONE, units=400)
+    errors = errors_deg(setup, one, (name,), 400, NONE)
     assert rms(errors) == pytest.approx(bound.unit_angle_deg[0], rel=0.15)
 
 
@@ -176,7 +176,9 @@ def test_more_flats_bring_the_second_bound_to_the_first() -> None:
 
 
 def test_bounds_joined_are_those_of_all_their_samples() -> None:
-    half = Bound(np.ones(2), np.ones(2), np.ones(2), np.array([True, False]), np.array([2.0, np.inf]))
+    half = Bound(
+        np.ones(2), np.ones(2), np.ones(2), np.array([True, False]), np.array([2.0, np.inf])
+    )
     whole = Bound.joined([half, half])
     assert whole.unit_angle_deg is not None
     assert whole.unit_angle_deg.tolist() == [2.0, math.inf, 2.0, math.inf]

@@ -53,7 +53,9 @@ def test_far_from_the_ends_it_is_the_sum_over_codes(fraction: float, log_sigma: 
 
 @given(st.floats(-5.0, 7.0), st.floats(math.log(0.05), math.log(40.0)), st.booleans())
 def test_at_the_ends_all_beyond_is_one_code(
-    reach: float, log_sigma: float, upper: bool  # noqa: FBT001 - drawn
+    reach: float,
+    log_sigma: float,
+    upper: bool,
 ) -> None:
     sigma = math.exp(log_sigma)
     mean = 1023.0 - reach * sigma if upper else reach * sigma
