@@ -72,7 +72,25 @@ def pixel_variance(detector: PixelArray, expected: Floats) -> Floats:
     The scale ends at 0 and at the full well or the converter's last code, whichever is lower.
     """
     electrons = np.maximum((expected - detector.offset_dn) * detector.gain_e_per_dn, 0.0)
+    return _of_electrons(detector, expected, electrons, detector.last_code_dn)
+
+
+def charge_variance(detector: PixelArray, charge_e: Floats, shot_e: Floats) -> Floats:
+    """Squared electrons of pixels that are read out with a mean of `charge_e`.
+
+    `shot_e` is the variance of the charge itself. The scale ends at 0 and at the converter's last
+    code: what becomes of a full well is its sensor's to say.
+    """
+    per_dn = detector.gain_e_per_dn
+    numbers = detector.offset_dn + charge_e / per_dn
+    return per_dn**2 * _of_electrons(detector, numbers, shot_e + 0.0, detector.full_scale_dn)
+
+
+def _of_electrons(
+    detector: PixelArray, numbers: Floats, electrons: Floats, last_code: int
+) -> Floats:
+    """Squared digital numbers of means `numbers`; the shot noise's `electrons` are overwritten."""
     electrons += detector.read_noise_e**2
     np.sqrt(electrons, out=electrons)
     electrons /= detector.gain_e_per_dn
-    return reading_variance(expected, electrons, 0.0, float(detector.last_code_dn))
+    return reading_variance(numbers, electrons, 0.0, float(last_code))

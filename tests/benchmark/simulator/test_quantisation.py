@@ -15,7 +15,11 @@ from scipy.stats import norm
 from benchmark import datasets
 from benchmark.seeds import generator
 from benchmark.simulator.readout.currents import variance
-from benchmark.simulator.readout.quantisation import pixel_variance, reading_variance
+from benchmark.simulator.readout.quantisation import (
+    charge_variance,
+    pixel_variance,
+    reading_variance,
+)
 
 FAR = (-1e6, 1e6)
 
@@ -138,6 +142,19 @@ def test_pixels_end_at_their_full_well_and_the_dark_ones_keep_their_read_noise()
     for place in range(3):
         exact = information(mean[place], sigma[place], (0.0, 520.0))
         assert found[place] == pytest.approx(1 / exact if exact > 1e-9 else math.inf, rel=3e-4)
+
+
+def test_charges_are_read_in_codes_from_dark_to_the_converter_s_end() -> None:
+    """Their own variance stands for shot noise: beyond a fold it is not that of the reading."""
+    detector = datasets.get("cmos-slit").setups["nominal"].sensor.detector  # type: ignore[attr-defined]
+    detector = replace(detector, gain_e_per_dn=100.0, offset_dn=3.0, read_noise_e=20.0, bits=8)
+    charge, shot = np.array([0.0, 940.0, 24_000.0]), np.array([0.0, 5_000.0, 24_000.0])
+    found = charge_variance(detector, charge, shot)
+    assert shot.tolist() == [0.0, 5_000.0, 24_000.0], "what is handed in stays as it is"
+    for place in range(3):
+        sigma = math.sqrt(shot[place] + 400.0) / 100.0
+        exact = information(3.0 + charge[place] / 100.0, sigma, (0.0, 255.0)) / 100.0**2
+        assert found[place] == pytest.approx(1 / exact, rel=3e-4)
 
 
 def test_currents_are_read_in_codes_of_either_sign() -> None:
