@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,7 +12,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from benchmark import datasets
+from benchmark.metrics.bounds import cramer_rao
+from benchmark.simulator.light.environment import Irradiance
 from benchmark.simulator.light.sun_disc import from_angles
+from benchmark.simulator.masks.apertures import Aperture, Mask
+from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout.detectors import DarkCurrent, PixelArray
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.readout.references import (
@@ -25,6 +30,7 @@ from benchmark.simulator.readout.references import (
 )
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import UnitSpread
+from benchmark.simulator.sensors.lit_pixels import LitPixels
 
 PIXELS = PixelArray(
     columns=200, rows=100, pitch_mm=0.01, sunlit_e=20_000, full_well_e=30_000, prnu=0.02, dsnu=0.3,
@@ -233,3 +239,25 @@ def test_one_direction_s_light_is_not_needed_to_know_what_a_flat_tells() -> None
     found = setup.sensor.unit_variance(mean, scene, References())  # type: ignore[attr-defined]
     assert found.shape == mean.shape
     assert (found >= 0).all()
+
+
+def test_lit_pixels_know_as_little_of_a_unit_as_the_whole_frame() -> None:
+    """Pixels far from light enter as one mean, whose share of the unit averages out as well."""
+    wide: Any = datasets.get("cmos-multi-aperture").setups["nominal"].sensor
+    camera = Camera(0.4, Mask(apertures=(Aperture("round", 0.1, 0.1),)))
+    detector = replace(wide.detector, columns=80, rows=70, prnu=0.05)
+    sensor = replace(wide, camera=camera, detector=detector)
+    scene = Scene(
+        from_angles(np.array([0.0, 12.0]), np.array([3.0, -20.0])),
+        np.ones(2), np.full(2, 0.002), np.zeros((2, 2), int),
+    )  # fmt: skip
+    pattern = sensor.fixed_pattern("unit")
+    light = Irradiance(spread=0.02, stray=0.002, stray_spread=5e-4)
+    for offered in (References(0, 0), References()):
+        whole, lit = (
+            cramer_rao(seen, scene, pattern, light, references=offered)
+            for seen in (sensor, LitPixels(sensor, scene, pattern))
+        )
+        assert whole.unit_angle_deg is not None
+        assert lit.unit_angle_deg == pytest.approx(whole.unit_angle_deg, rel=1e-3)
+        assert (whole.unit_angle_deg > whole.angle_deg).all()
