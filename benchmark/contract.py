@@ -62,6 +62,11 @@ class Bound(Protocol):
         ...
 
     @property
+    def unit_angle_deg(self) -> Floats | None:
+        """The same with the unit unknown but for flats and darks; None where there is none."""
+        ...
+
+    @property
     def observable(self) -> NDArray[Any]:
         """Where (N,) the direction is observable at all."""
         ...
@@ -140,7 +145,15 @@ class Preset(Protocol):
         ...
 
     def bound(self, condition: str, split: str = "test", n: int | None = None) -> Bound:
-        """Cramer-Rao bound of each sample of a split, or of the first n of them."""
+        """Cramer-Rao bounds of each sample of a split, or of the first n of them."""
+        ...
+
+    def references(self, condition: str) -> Mapping[str, NDArray[Any]]:
+        """Mean flat and dark readings of the unit that a calibration offers; empty for none."""
+        ...
+
+    def reference_error_deg(self, condition: str) -> float:
+        """Systematic error of the directions that a calibration is given, root mean square."""
         ...
 
 

@@ -61,9 +61,18 @@ _FIELDS: dict[str, tuple[Type, str]] = {
         "number",
         "Standard deviation of answers to a pose held still, over both axes, degrees.",
     ),
-    "bound_deg": ("number", "Root mean square of the Cramer-Rao bound, degrees."),
+    "bound_deg": ("number", "Root mean square of the Cramer-Rao bound, unit known, degrees."),
     "over_bound": ("number", "Root mean square error divided by the bound."),
     "over_bound_se": ("number", "Standard error of over_bound."),
+    "bound_unit_deg": (
+        "number",
+        "Root mean square of the Cramer-Rao bound, unit unknown but for flats and darks, degrees.",
+    ),
+    "over_bound_unit": ("number", "Root mean square error divided by bound_unit_deg."),
+    "floor_deg": (
+        "number",
+        "Root of the squares of bound_unit_deg and of the calibration's own error, degrees.",
+    ),
     **{
         ring.column: (
             "number",

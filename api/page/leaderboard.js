@@ -8,7 +8,11 @@ import { degrees, number, percent, plural, times } from "./wording.js";
 const RANK = { field: "rank", name: "Rank", write: (rank, row) => (rank === null ? "–" : `${rank}${row.tied ? "=" : ""}`), title: "By error; pipelines that answer less than 95 % come behind all others. 2= shares its rank: units built alike disagree" };
 const NAMES = [{ field: "extractor", name: "Extractor", text: true }, { field: "model", name: "Model", text: true }];
 const ERROR = { field: "rms_deg", name: "RMS error", write: (value, row) => [degrees(value), units(row)] };
-const BOUND = { field: "over_bound", name: "× bound", title: "RMS error over the Cramér–Rao bound of the same samples", write: times };
+const FLOOR = "Least accuracy: the bound with the unit unknown but for flat and dark readings, and the systematic error of the calibration’s reference. The Cramér–Rao bound limits precision: precision and accuracy are two numbers";
+const BOUND = {
+  field: "over_bound", name: "× bound", title: `RMS error over the Cramér–Rao bound of the same samples, the unit known; floor: ${FLOOR}`,
+  write: (ratio, row) => [times(ratio), row.floor_deg > 0 && h("div", { class: "below", title: FLOOR }, `floor ${degrees(row.floor_deg)}`)],
+};
 const ANSWERED = {
   field: "availability", name: "Answered", title: "Share of the samples whose direction is observable; false Suns: answered share of the others, such as those in eclipse",
   write: (share, row) => [percent(share), row.false_sun > 0 && h("div", { class: "below" }, `${percent(row.false_sun)} false Suns`)],
@@ -58,7 +62,8 @@ function bar(row, scale) {
   const error = scale.at(value);
   const [limit = null, low = null, high = null] = limits(row).map((x) => (x > 0 ? scale.at(x) : null));
   const from = limit ?? error;
-  const told = row.field_deg ? "" : ` against a bound of ${degrees(row.bound_deg)}`;
+  const floor = row.floor_deg > 0 ? ` and a floor of ${degrees(row.floor_deg)}` : "";
+  const told = row.field_deg ? "" : ` against a bound of ${degrees(row.bound_deg)}${floor}`;
   return h("div", { class: "scale", role: "img", "aria-label": `${degrees(value)}${told}` },
     scale.ticks.map((t) => h("i", { class: "tick", css: { "--at": scale.at(t) } })),
     h("i", { class: "span", css: { "--from": Math.min(from, error), "--to": Math.max(from, error) } }),
@@ -175,11 +180,13 @@ function draw() {
   const ranged = rows.some((r) => r.low_deg > 0);
   const scale = scaleOf(rows);
   const bound = rows.find((r) => r.bound_deg > 0)?.bound_deg ?? card?.bounds?.[condition];
+  const floored = rows.find((r) => r.floor_deg > 0);
   const url = address(`/v1/leaderboard/${encodeURIComponent(dataset)}`, { condition, field_deg: field || null, limit: 500 });
   byId("board-card").replaceChildren(h("div", { class: "dataset-card" },
     card && h("p", {}, card.description),
     card?.setups?.[condition]?.description && h("p", {}, h("strong", {}, condition), `: ${card.setups[condition].description}`),
     h("p", { class: "bound-line" }, "Cramér–Rao bound: ", h("strong", {}, degrees(bound)), " RMS",
+      floored && [" · with the unit unknown but for flat and dark readings ", h("strong", {}, degrees(floored.bound_unit_deg)), " · ", h("span", { title: FLOOR }, "accuracy floor "), h("strong", {}, degrees(floored.floor_deg))],
       card && [` · version ${card.version}`, card.follows?.length > 0 && [" · follows ", card.follows.map((k, i) => [i > 0 && ", ", h("a", { href: `/v1/studies/${encodeURIComponent(k)}` }, k)])]]),
     h("div", { class: "links" }, h("a", { href: url }, "JSON"),
       h("button", { type: "button", onclick: () => saveCsv(url, `${dataset}-${condition}.csv`) }, "CSV"),

@@ -78,6 +78,7 @@ def stream_names(name: str, version: int) -> dict[str, Any]:
         "unit": [name, version, "unit"],
         "samples": [name, version, "<split>"],
         "noise": [name, version, "<condition>", "<split>"],
+        "references": [name, version, "<condition>", "references"],
         "other_units": 'unit: [..., "unit", <number>]; noise: [..., "unit", <number>]',
     }
 

@@ -1,8 +1,9 @@
 """A dataset as files: arrays, a card that says what they are, checksums, a picture.
 
 An export is a directory: ``card.json``, ``checksums-sha256.txt`` (which ``sha256sum --check``
-reads) and for each condition ``<condition>/preview.png``, ``<condition>/<split>.npz`` and, where
-samples are a few numbers each, the same as ``<condition>/<split>.csv``. It is a function of the
+reads) and for each condition ``<condition>/preview.png``, ``<condition>/references.npz`` where a
+calibration has flat and dark readings, ``<condition>/<split>.npz`` and, where samples are a few
+numbers each, the same as ``<condition>/<split>.csv``. It is a function of the
 dataset and of what was asked for: exporting twice gives the same bytes.
 """
 
@@ -55,6 +56,8 @@ _MEANINGS = {
     "inf where the direction is not observable",
     "bound_alpha_deg": "(N,) the same of alpha; NaN where the Sun is not in front of the sensor",
     "bound_beta_deg": "(N,) the same of beta",
+    "bound_unit_deg": "(N,) as bound_deg, with the unit unknown but for the flat and dark readings "
+    "of references.npz; inf where the direction is not observable then",
     "observable": "(N,) bool: where the direction is observable from the sample",
 }
 
@@ -139,6 +142,7 @@ def export(
                 progress(done * len(wanted) + more, total, f"{condition} {split}")
                 pinned = pins.get((name, condition, split))
                 files += _write_split(made, preset, (condition, split), n, pinned)
+            files += _write_references(made, preset, condition)
             picture = f"{condition}/preview.png"
             (made / picture).write_bytes(preview_png(preset, condition))
             files.append({"path": picture, "kind": "preview", "condition": condition})
@@ -236,11 +240,23 @@ def _write_split(
     return files
 
 
+def _write_references(made: Path, preset: Preset, condition: str) -> list[dict[str, Any]]:
+    readings = preset.references(condition)
+    if not readings:
+        return []
+    path = f"{condition}/references.npz"
+    write_archive(made / path, readings)
+    shapes = {name: _described(array) for name, array in readings.items()}
+    return [{"path": path, "kind": "references", "condition": condition, "arrays": shapes}]
+
+
 def _bounds(bound: Bound) -> dict[str, NDArray[Any]]:
+    unit = bound.unit_angle_deg
     return {
         "bound_deg": bound.angle_deg,
         "bound_alpha_deg": bound.alpha_deg,
         "bound_beta_deg": bound.beta_deg,
+        **({} if unit is None else {"bound_unit_deg": unit}),
         "observable": bound.observable,
     }
 
@@ -259,6 +275,7 @@ def _card(
     names = {name for file in files for name in file.get("arrays", ())}
     context = card.get("context", {})
     meanings = {"observations": f"{preset.units}; one row a sample", **_MEANINGS}
+    meanings |= _references_meant(preset)
     meanings |= {f"context.{name}": text for name, text in context.items()}
     return {
         "schema": SCHEMA_VERSION,
@@ -277,6 +294,23 @@ def _card(
             }
             for file in files
         ],
+    }
+
+
+def _references_meant(preset: Preset) -> dict[str, str]:
+    offered = preset.offered
+    light = f"uniform light at {offered.level:g} of the scale"
+    return {
+        f"{kind}_{unit}": f"mean of {count} readings {what}, of every element of this unit; {told}"
+        for unit, told in (
+            ("dn", "digital numbers, (rows, columns) or (columns,)"),
+            ("ua", "microamperes, (K,)"),
+            ("hz", "hertz, (K,)"),
+        )
+        for kind, count, what in (
+            ("dark", offered.darks, "without light"),
+            ("flat", offered.flats, f"in {light}"),
+        )
     }
 
 

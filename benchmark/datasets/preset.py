@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any, Self, get_args
 
 import numpy as np
+from numpy.typing import NDArray
 
 from algorithms.contract import Observation, SensorGeometry
 from benchmark.contract import SPLITS
@@ -22,8 +23,9 @@ from benchmark.seeds import generator
 from benchmark.simulator import SIMULATOR_VERSION
 from benchmark.simulator.light.environment import Earth, Irradiance
 from benchmark.simulator.readout.noise import NoiseStreams
+from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
-from benchmark.simulator.sensor import FixedPattern, Sensor
+from benchmark.simulator.sensor import FixedPattern, Sensor, UnitSpread
 from benchmark.simulator.sensors.faces import Faces
 
 #: Splits that a field of directions is drawn for.
@@ -87,6 +89,8 @@ class Preset:
         In words: where the numbers come from; how light is propagated and why that is enough.
     bound_step_rad
         Half step of the bound's differences (see `benchmark.metrics.bounds.cramer_rao`).
+    offered
+        Flat and dark readings that a calibration has beside its poses (`references`).
     repeats, unit
         Poses and passes of the split ``repeat``; which unit of the sensor is seen (`as_unit`).
     batch
@@ -107,6 +111,7 @@ class Preset:
     description: str
     regime: Mapping[str, Any] = field(default_factory=dict)
     bound_step_rad: float = STEP_RAD
+    offered: References = field(default_factory=References)
     repeats: Repeats = field(default_factory=Repeats)
     unit: int = 0
     batch: int | None = None
@@ -220,9 +225,9 @@ class Preset:
         return Samples(observations, scene.sun, scene.origin_px)
 
     def bound(self, condition: str, split: str = "test", n: int | None = None) -> Bound:
-        """Cramer-Rao bound of every sample of a split (see `benchmark.metrics.bounds.cramer_rao`).
+        """Cramer-Rao bounds of every sample of a split (see `benchmark.metrics.bounds.cramer_rao`).
 
-        Parameters as `generate`.
+        With the unit known, and with what `references` tell of it. Parameters as `generate`.
         """
         setup = self.condition(condition)
         return cramer_rao(
@@ -232,7 +237,36 @@ class Preset:
             setup.irradiance,
             self.bound_step_rad,
             self.batch or BATCH,
+            self.offered,
         )
+
+    def references(self, condition: str) -> dict[str, NDArray[Any]]:
+        """Mean flat and dark readings of this unit, as a calibration offers them.
+
+        Of every element of the detector, whatever windows the samples have: ``dark_dn`` and
+        ``flat_dn`` of pixels, ``dark_ua`` and ``flat_ua`` of currents, ``dark_hz`` and
+        ``flat_hz`` of frequencies. Empty for sensors whose elements have no readings of their
+        own (lenses with trails, events). Light and number: `offered`.
+
+        Raises
+        ------
+        ValueError
+            On an unknown condition, naming the known ones.
+        """
+        sensor = self.condition(condition).sensor
+        if not isinstance(sensor, UnitSpread):
+            return {}
+        names = self._of_unit(self.name, self.version, condition, "references")
+        streams = NoiseStreams.named(*names)
+        return sensor.reference_readings(self.fixed_pattern(condition), self.offered, streams)
+
+    def reference_error_deg(self, condition: str) -> float:
+        """Systematic error of the directions a calibration is given, root mean square, degrees.
+
+        Directions are the true ones here.
+        """
+        self.condition(condition)
+        return 0.0
 
     def parameters(self, condition: str) -> dict[str, Any]:
         """Everything the numbers of a condition depend on, as plain JSON values."""
@@ -249,6 +283,7 @@ class Preset:
                 "directions": self.directions,
                 "geometry": self.geometry_for(condition),
                 "bound_step_rad": self.bound_step_rad,
+                "offered": self.offered,
                 "repeats": self.repeats,
                 "unit": self.unit,
             }

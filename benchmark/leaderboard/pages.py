@@ -38,20 +38,26 @@ SHOWN = {
     "bound_deg": "Bound (deg)",
     "over_bound": "RMS / bound",
     "over_bound_se": "±",
+    "bound_unit_deg": "Bound, unit unknown (deg)",
+    "over_bound_unit": "RMS / that",
+    "floor_deg": "Floor (deg)",
     "availability": "Answered",
     "false_sun": "False Suns",
 }
-_BEST = ("rank", "rms_deg", "units", "over_bound", "repeatability_deg", *_SHARES)
+_BEST = ("rank", "rms_deg", "units", "over_bound", "floor_deg", "repeatability_deg", *_SHARES)
 
 LEGEND = (
     "Error is the angle between the predicted and the true direction of the Sun, over the test "
     "samples whose direction is observable and that are answered; answered is the share of the "
     "observable ones, false Suns that of the others that are answered all the same. Bound is the "
     "Cramer-Rao lower bound of that angle (root mean square) over the same samples, ± the standard "
-    "error of the ratio to it. Repeatability is the standard deviation of answers to a pose held "
-    "still. Pipelines that answer less than 95 % rank behind all others. The first "
-    f"{LEADING} of a data set's nominal condition are scored on {UNITS} units built alike: where "
-    "their errors overlap those of the first of them they share its rank, marked =."
+    "error of the ratio to it; it takes the unit as known. With the unit unknown but for flat and "
+    "dark readings it is the second bound, and the floor adds the systematic error of the "
+    "calibration's own reference to that: precision and accuracy are two numbers. Repeatability is "
+    "the standard deviation of answers to a pose held still. Pipelines that answer less than 95 % "
+    f"rank behind all others. The first {LEADING} of a data set's nominal condition are scored on "
+    f"{UNITS} units built alike: where their errors overlap those of the first of them they share "
+    "its rank, marked =."
 )
 
 

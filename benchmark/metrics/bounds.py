@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,8 +12,9 @@ from numpy.typing import NDArray
 from algorithms.contract import Floats
 from benchmark.simulator.light.environment import Irradiance
 from benchmark.simulator.light.sun_disc import tangent_axes
+from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
-from benchmark.simulator.sensor import FixedPattern, Sensor
+from benchmark.simulator.sensor import FixedPattern, Sensor, UnitSpread
 
 #: Half step of the central differences over direction, radians: small against the Sun's disc
 #: (4.65e-3), which smooths every edge of a shadow, and large against the distances between the
@@ -37,18 +39,44 @@ class Bound:
         NaN where the Sun is not in front of the sensor (s_z <= 0).
     observable
         (N,) bool.
+    unit_angle_deg
+        (N,) as `angle_deg`, for who does not know the unit but what references tell of it; inf
+        where the direction is not observable, or not then. None where it was not asked for, or
+        the sensor's elements do not differ each by itself.
     """
 
     angle_deg: Floats
     alpha_deg: Floats
     beta_deg: Floats
     observable: NDArray[np.bool_]
+    unit_angle_deg: Floats | None = None
 
     @property
     def rms_deg(self) -> float:
         """Root mean square of `angle_deg` over the observable samples; NaN when there is none."""
-        seen = self.angle_deg[self.observable]
+        return self._rms(self.angle_deg)
+
+    @property
+    def unit_rms_deg(self) -> float:
+        """The same of `unit_angle_deg`; NaN where there is none."""
+        return math.nan if self.unit_angle_deg is None else self._rms(self.unit_angle_deg)
+
+    def _rms(self, angle_deg: Floats) -> float:
+        seen = angle_deg[self.observable]
         return float(np.sqrt(np.mean(seen**2))) if seen.size else math.nan
+
+    @classmethod
+    def joined(cls, parts: Sequence[Bound]) -> Bound:
+        """Put bounds of consecutive samples together."""
+        units = [part.unit_angle_deg for part in parts]
+        known = [unit for unit in units if unit is not None]
+        return cls(
+            angle_deg=np.concatenate([part.angle_deg for part in parts]),
+            alpha_deg=np.concatenate([part.alpha_deg for part in parts]),
+            beta_deg=np.concatenate([part.beta_deg for part in parts]),
+            observable=np.concatenate([part.observable for part in parts]),
+            unit_angle_deg=np.concatenate(known) if len(known) == len(units) else None,
+        )
 
 
 def cramer_rao(  # noqa: PLR0917 - memory and time come last
@@ -58,14 +86,23 @@ def cramer_rao(  # noqa: PLR0917 - memory and time come last
     irradiance: Irradiance,
     step_rad: float = STEP_RAD,
     batch: int | None = None,
+    references: References | None = None,
 ) -> Bound:
-    """Bound of the direction with sunlight and stray light unknown, the unit itself known.
+    """Bounds of the direction with sunlight and stray light unknown.
+
+    Two of them: the unit known, and the unit known as far as `references` tell.
 
     The Fisher matrix of (two tangent axes, irradiance, stray light) is ``J^T V^-1 J`` with J
     from differences of `Sensor.expected` and V from `Sensor.variance`. The two nuisances enter
     with the spread they are drawn with (``1/spread^2`` on the diagonal: the hybrid bound,
     exact for Gaussian nuisances). Fixed pattern, assembly and light from the Earth count as
     known, so the bound holds for every estimator, however well it is calibrated.
+
+    Who does not know the unit has its elements' gains and dark signals for nuisances, too, with
+    the spread that is left after flat and dark readings. They are independent from element to
+    element, so that marginalising them adds to V what `UnitSpread.unit_variance` says; assembly
+    stays known, and which directions are observable is settled with the unit known. Both bounds
+    come of the same signals.
 
     A direction is not observable where the matrix is singular, or where the bound is not a
     statement about the neighbourhood it was computed in: moving the Sun by one standard
@@ -82,6 +119,8 @@ def cramer_rao(  # noqa: PLR0917 - memory and time come last
         Half step of the central differences.
     batch
         Samples evaluated together, `BATCH` by default; the numbers do not depend on it.
+    references
+        Readings that tell of the unit; None for no bound of that kind.
 
     Raises
     ------
@@ -98,20 +137,10 @@ def cramer_rao(  # noqa: PLR0917 - memory and time come last
         )
     size = batch or BATCH
     parts = [
-        _batch(sensor, scene.part(start, start + size), pattern, irradiance, step_rad)
+        _batch(sensor, scene.part(start, start + size), pattern, irradiance, step_rad, references)
         for start in range(0, len(scene), size)
     ]
-    covariance = np.concatenate([part[0] for part in parts])
-    observable = np.concatenate([part[1] for part in parts])
-    variance = covariance[:, 0, 0] + covariance[:, 1, 1]
-    alpha, beta = _projected(scene.sun, covariance)
-    angle = np.degrees(np.sqrt(np.where(observable, variance, np.inf)))
-    return Bound(
-        angle_deg=angle,
-        alpha_deg=np.where(observable | np.isnan(alpha), alpha, np.inf),
-        beta_deg=np.where(observable | np.isnan(beta), beta, np.inf),
-        observable=observable,
-    )
+    return Bound.joined(parts)
 
 
 def _turned(sun: Floats, first: Floats, second: Floats, x: Floats, y: Floats) -> Floats:
@@ -122,14 +151,22 @@ def _turned(sun: Floats, first: Floats, second: Floats, x: Floats, y: Floats) ->
     return np.asarray(moved / np.sqrt(np.sum(moved**2, axis=1, keepdims=True)))
 
 
-def _batch(
-    sensor: Sensor, scene: Scene, pattern: FixedPattern, irradiance: Irradiance, step_rad: float
-) -> tuple[Floats, NDArray[np.bool_]]:
+def _batch(  # noqa: PLR0917 - as `cramer_rao`
+    sensor: Sensor,
+    scene: Scene,
+    pattern: FixedPattern,
+    irradiance: Irradiance,
+    step_rad: float,
+    references: References | None,
+) -> Bound:
     count = len(scene)
     first, second = tangent_axes(scene.sun)
     zero, step = np.zeros(count), np.full(count, step_rad)
     mean = sensor.expected(scene, pattern)
     deviation = np.sqrt(sensor.variance(mean)).reshape(count, -1)
+    unit = None
+    if references is not None and isinstance(sensor, UnitSpread):
+        unit = sensor.unit_variance(mean, scene, references)
     mean = mean.reshape(count, -1)
 
     def change(x: Floats, y: Floats) -> Floats:
@@ -151,19 +188,9 @@ def _batch(
         _change(sensor.expected(brighter, pattern)),
         _change(sensor.expected(hazier, pattern)),
     ]
-    fisher = np.empty((count, 4, 4))
-    for i, one in enumerate(jacobian):
-        for j, other in enumerate(jacobian[: i + 1]):
-            fisher[:, i, j] = fisher[:, j, i] = _products(one, other)
-    fisher[:, 2, 2] += 1.0
-    fisher[:, 3, 3] += 1.0
-    direction, cross, nuisance = fisher[:, :2, :2], fisher[:, :2, 2:], fisher[:, 2:, 2:]
-    gain = np.linalg.solve(nuisance, np.swapaxes(cross, 1, 2))
-    information = direction - cross @ gain
-    values, axes = np.linalg.eigh((information + np.swapaxes(information, 1, 2)) / 2.0)
-    weakest = values[:, 0]
-    # a standard deviation of half a turn is no knowledge of the direction
-    regular = weakest > np.maximum(1.0 / math.pi**2, 1e-12 * values[:, 1])
+    information, nuisance = _marginal(jacobian)
+    values, axes = _principal(information)
+    regular = _regular(values)
     inverse = 1.0 / np.where(regular[:, None], values, 1.0)
     covariance = np.einsum("nik,nk,njk->nij", axes, inverse, axes)
     sigma = np.sqrt(inverse[:, 0])
@@ -188,7 +215,63 @@ def _batch(
             x = np.where(far, sign * sigma * axes[:, 0, 0], 0.0)
             y = np.where(far, sign * sigma * axes[:, 1, 0], 0.0)
             local &= ~far | as_promised(change(x, y), np.ones(count))
-    return covariance, local
+    alpha, beta = _projected(scene.sun, covariance)
+    return Bound(
+        angle_deg=_angle_deg(inverse, local),
+        alpha_deg=np.where(local | np.isnan(alpha), alpha, np.inf),
+        beta_deg=np.where(local | np.isnan(beta), beta, np.inf),
+        observable=local,
+        unit_angle_deg=(
+            None
+            if unit is None
+            else _unit_angle_deg(jacobian, deviation, unit.reshape(count, -1), local)
+        ),
+    )
+
+
+def _unit_angle_deg(
+    jacobian: list[Floats], deviation: Floats, unit: Floats, observable: NDArray[np.bool_]
+) -> Floats:
+    """(N,) bound with `unit` (N, M) added to the variances; the Jacobian is overwritten."""
+    # a reading that tells nothing has an infinite deviation and no derivative
+    share = np.sqrt(1.0 + unit / deviation**2)
+    for column in jacobian:
+        np.divide(column, share, out=column)
+    information, _ = _marginal(jacobian)
+    values, _ = _principal(information)
+    regular = _regular(values)
+    return _angle_deg(1.0 / np.where(regular[:, None], values, 1.0), observable & regular)
+
+
+def _marginal(jacobian: list[Floats]) -> tuple[Floats, Floats]:
+    """Information on the direction (N, 2, 2) without the nuisances' share, and that on those."""
+    count = len(jacobian[0])
+    fisher = np.empty((count, 4, 4))
+    for i, one in enumerate(jacobian):
+        for j, other in enumerate(jacobian[: i + 1]):
+            fisher[:, i, j] = fisher[:, j, i] = _products(one, other)
+    fisher[:, 2, 2] += 1.0
+    fisher[:, 3, 3] += 1.0
+    direction, cross, nuisance = fisher[:, :2, :2], fisher[:, :2, 2:], fisher[:, 2:, 2:]
+    gain = np.linalg.solve(nuisance, np.swapaxes(cross, 1, 2))
+    return np.asarray(direction - cross @ gain), np.asarray(nuisance)
+
+
+def _principal(information: Floats) -> tuple[Floats, Floats]:
+    """Eigenvalues (N, 2), rising, and axes (N, 2, 2) in columns."""
+    values, axes = np.linalg.eigh((information + np.swapaxes(information, 1, 2)) / 2.0)
+    return np.asarray(values), np.asarray(axes)
+
+
+def _regular(values: Floats) -> NDArray[np.bool_]:
+    """Say where (N,) information of eigenvalues (N, 2) is knowledge of the direction."""
+    # a standard deviation of half a turn is none
+    return np.asarray(values[:, 0] > np.maximum(1.0 / math.pi**2, 1e-12 * values[:, 1]))
+
+
+def _angle_deg(variances: Floats, observable: NDArray[np.bool_]) -> Floats:
+    """(N,) degrees of variances (N, 2) along the principal axes; inf where not observable."""
+    return np.degrees(np.sqrt(np.where(observable, variances.sum(axis=1), np.inf)))
 
 
 def _products(one: Floats, other: Floats) -> Floats:

@@ -18,7 +18,7 @@ from algorithms.contract import Floats
 from benchmark.metrics.rings import RINGS, ring_errors
 
 #: Raised when a metric's definition changes: scores of two versions never stand side by side.
-METRIC_VERSION = 2
+METRIC_VERSION = 3
 
 #: Share of observable samples that a pipeline has to answer to be ranked among its like.
 AVAILABLE = 0.95
@@ -59,6 +59,12 @@ class Score:
     over_bound: float
     #: one standard error of `over_bound`, from the spread of the squared errors
     over_bound_se: float
+    #: root mean square of the bound for who knows the unit by flats and darks alone
+    bound_unit_deg: float
+    #: `rms_deg` over `bound_unit_deg`
+    over_bound_unit: float
+    #: least accuracy: root of the squares of `bound_unit_deg` and of the calibration's own error
+    floor_deg: float
     #: rms error by off-axis angle, one a ring of `benchmark.metrics.rings.RINGS`
     rings_deg: tuple[float, ...]
 
@@ -104,8 +110,15 @@ def score(
     bound_deg: ArrayLike | None,
     observable: ArrayLike,
     repeated: ArrayLike | None = None,
+    *,
+    bound_unit_deg: ArrayLike | None = None,
+    reference_error_deg: float = 0.0,
 ) -> Score:
-    """Score predictions against the truth and the Cramer-Rao bound.
+    """Score predictions against the truth and the Cramer-Rao bounds.
+
+    Precision and accuracy are two numbers. Noise alone limits how precise an answer is, and
+    `bound_deg` says how far; how accurate it is, a calibration limits, too, which knows the unit as
+    far as its flats and darks tell and directions as well as its own reference does: `floor_deg`.
 
     Parameters
     ----------
@@ -121,27 +134,35 @@ def score(
     repeated
         Answers (R, P, 3) to P observable poses in R passes that differ in noise alone; None
         where there are none.
+    bound_unit_deg
+        As `bound_deg`, with the unit unknown but for flats and darks; None where there is none.
+    reference_error_deg
+        Systematic error of the directions that the calibration was given, root mean square.
 
     Raises
     ------
     ValueError
-        On another shape, no samples, a row partly NaN, or a prediction that is not a unit vector.
+        On another shape, no samples, a row partly NaN, a prediction that is not a unit vector, or
+        an error of the reference that is negative or not finite.
     """
     truth = _vectors(sun, "sun")
     guess = _vectors(predicted, "predicted")
     if guess.shape != truth.shape:
         raise ValueError(f"predicted must have shape {truth.shape}; got {guess.shape}")
     seen = np.asarray(observable, dtype=np.bool_)
-    bound = np.full(len(truth), np.nan) if bound_deg is None else np.asarray(bound_deg, np.float64)
-    if bound.shape != (len(truth),) or seen.shape != (len(truth),):
+    bound, unit_bound = _bound(bound_deg, len(truth)), _bound(bound_unit_deg, len(truth))
+    if any(given.shape != (len(truth),) for given in (bound, unit_bound, seen)):
         raise ValueError(
-            f"bound_deg and observable must have shape ({len(truth)},); "
-            f"got {bound.shape} and {seen.shape}"
+            f"bound_deg and observable must have shape ({len(truth)},), and bound_unit_deg, too; "
+            f"got {bound.shape}, {seen.shape} and {unit_bound.shape}"
         )
+    if not 0 <= reference_error_deg < math.inf:
+        raise ValueError(f"reference_error_deg must not be negative; got {reference_error_deg}")
     answered = _answered(guess)
     judged = answered & seen
     error = separation_deg(guess[judged], truth[judged])
     over_bound, over_bound_se, rms_bound = _against_bound(error, bound[judged])
+    over_bound_unit, _, rms_bound_unit = _against_bound(error, unit_bound[judged])
     alpha, beta = _axis_errors(guess[judged], truth[judged])
     return Score(
         availability=_share(answered[seen]),
@@ -159,6 +180,9 @@ def score(
         bound_deg=rms_bound,
         over_bound=over_bound,
         over_bound_se=over_bound_se,
+        bound_unit_deg=rms_bound_unit,
+        over_bound_unit=over_bound_unit,
+        floor_deg=math.hypot(rms_bound_unit, reference_error_deg),
         rings_deg=ring_errors(truth[seen], answered[seen], separation_deg(guess, truth)[seen]),
     )
 
@@ -198,6 +222,10 @@ def repeatability_deg(repeated: ArrayLike) -> float:
     spread = math.sqrt(float(squares[several].sum()) / freedom) if freedom else math.nan
     # answers that differ by the rounding of a unit vector are the same answer
     return 0.0 if spread < _ROUNDING_DEG else spread
+
+
+def _bound(value: ArrayLike | None, count: int) -> Floats:
+    return np.full(count, np.nan) if value is None else np.asarray(value, np.float64)
 
 
 def _vectors(value: ArrayLike, name: str) -> Floats:

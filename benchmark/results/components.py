@@ -20,6 +20,8 @@ from benchmark.results.digests import dataset_digest, harness_digest, method_dig
 
 #: Layout of the stored files; raised when a field changes its meaning.
 SCHEMA_VERSION = 2
+#: Numbers of older metrics than this cannot be told apart from today's columns.
+OLDEST_METRIC = 2
 
 Facts = Mapping[str, Any]
 _KINDS = ("datasets", "extractors", "models", "series")
@@ -43,6 +45,8 @@ class Components:
         With version and value of the taxonomy.
     series
         Of reference features.
+    metric
+        Version of the metric that the numbers are by; those of an older one are out of date.
     """
 
     harness: str = ""
@@ -50,12 +54,19 @@ class Components:
     extractors: Mapping[str, Facts] = field(default_factory=dict)
     models: Mapping[str, Facts] = field(default_factory=dict)
     series: Mapping[str, Facts] = field(default_factory=dict)
+    metric: int = METRIC_VERSION
+
+    @property
+    def _harness(self) -> str:
+        """Digest of the harness, with the metric's version where it is an older one."""
+        older = self.metric != METRIC_VERSION
+        return f"{self.harness}, metric {self.metric}" if older else self.harness
 
     def cell_key(self, cell: Cell) -> str:
         """Everything a cell's numbers depend on, in one word; ComponentsError naming what lacks."""
         return "-".join(
             (
-                self.harness,
+                self._harness,
                 self.digest("datasets", cell.dataset),
                 self.digest("extractors", cell.extractor),
                 self.digest("models", cell.model),
@@ -66,7 +77,7 @@ class Components:
         """Return the same of a point of a sweep; what no series fits has the series `""`."""
         return "-".join(
             (
-                self.harness,
+                self._harness,
                 self.digest("series", series) if series else "",
                 self.digest("extractors", extractor),
             )
@@ -82,7 +93,7 @@ class Components:
     def updated(self, other: Components) -> Components:
         """Return these with what `other` has in their place."""
         kinds = {kind: {**getattr(self, kind), **getattr(other, kind)} for kind in _KINDS}
-        return Components(other.harness, **kinds)
+        return Components(other.harness, **kinds, metric=other.metric)
 
     def only(self, cells: Iterable[Cell]) -> Components:
         """Return what these cells are of."""
@@ -92,15 +103,17 @@ class Components:
             datasets=_named(self.datasets, (cell.dataset for cell in wanted)),
             extractors=_named(self.extractors, (cell.extractor for cell in wanted)),
             models=_named(self.models, (cell.model for cell in wanted)),
+            metric=self.metric,
         )
 
     def differences(self, other: Components) -> list[tuple[str, str, str]]:
         """Return (component, digest here, digest there) of what is not alike; empty for none."""
-        found = [] if self.harness == other.harness else [("harness", self.harness, other.harness)]
+        here, there = self._harness, other._harness
+        found = [] if here == there else [("harness", here, there)]
         for kind in _KINDS:
-            here, there = getattr(self, kind), getattr(other, kind)
-            for name in sorted(here.keys() | there.keys()):
-                one, two = (known.get(name, {}).get("digest", "") for known in (here, there))
+            ours, theirs = getattr(self, kind), getattr(other, kind)
+            for name in sorted(ours.keys() | theirs.keys()):
+                one, two = (known.get(name, {}).get("digest", "") for known in (ours, theirs))
                 if one != two:
                     found.append((f"{kind}/{name}", one, two))
         return found
@@ -109,7 +122,7 @@ class Components:
         """Spell these as the file has it: a line a component, sorted."""
         lines = [
             f'"schema": {SCHEMA_VERSION}',
-            f'"metric": {METRIC_VERSION}',
+            f'"metric": {self.metric}',
             f'"harness": {json.dumps(self.harness)}',
         ]
         for kind in _KINDS:
@@ -122,10 +135,12 @@ class Components:
     def read(cls, path: Path) -> Components:
         """Return what a file holds; none where there is no file.
 
+        The file of an older metric is read, too: its numbers are out of date.
+
         Raises
         ------
         ComponentsError
-            For another layout, or another version's.
+            For another layout, or a metric older than `OLDEST_METRIC` or newer than this one.
         """
         if not path.is_file():
             return cls()
@@ -133,8 +148,13 @@ class Components:
             held = json.loads(path.read_bytes())
         except ValueError as error:
             raise ComponentsError(f"{path}: not JSON ({error})") from error
-        versions = (SCHEMA_VERSION, METRIC_VERSION)
-        if not isinstance(held, dict) or (held.get("schema"), held.get("metric")) != versions:
+        metric = held.get("metric") if isinstance(held, dict) else None
+        if (
+            not isinstance(held, dict)
+            or held.get("schema") != SCHEMA_VERSION
+            or not isinstance(metric, int)
+            or not OLDEST_METRIC <= metric <= METRIC_VERSION
+        ):
             raise ComponentsError(
                 f"{path}: expected schema {SCHEMA_VERSION} and metric {METRIC_VERSION}; delete "
                 "the directory and run `sunatlas leaderboard update`"
@@ -146,7 +166,7 @@ class Components:
                 for one in facts.values()
             ):
                 raise ComponentsError(f"{path}: expected an object of components in {kind!r}")
-        return cls(harness=str(held.get("harness", "")), **kinds)
+        return cls(harness=str(held.get("harness", "")), **kinds, metric=metric)
 
 
 def current(parts: Parts, series: Mapping[str, str] | None = None) -> Components:

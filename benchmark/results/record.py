@@ -161,6 +161,7 @@ class Record:
             ),
             models=_used(known.models, [cell.model for cell in scores]),
             series=_used(known.series, [row["series"] for row in swept]),
+            metric=known.metric,
         )
         if self._changed or used != self._components:
             self.store.write(scores, pins, order(swept) if order else swept, used)

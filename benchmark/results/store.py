@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 
 from benchmark.contract import Cell
 from benchmark.datasets.pins import Pin, Place
-from benchmark.metrics.score import METRIC_VERSION, METRICS
+from benchmark.metrics.score import METRICS
 from benchmark.results.components import Components, ComponentsError, Facts
 from benchmark.results.pins import pins_text, read_pins
 from benchmark.results.tables import Reader, Row, StoreError, number, read, text_of, whole, word
@@ -55,6 +55,8 @@ _SCORE_COLUMNS: Mapping[str, Reader] = {
     **dict.fromkeys(METRICS, number),
     "reason": str,
 }
+#: Columns of scores that came with metric 3.
+_LATER = ("bound_unit_deg", "over_bound_unit", "floor_deg")
 #: Numbers of a row of a sweep.
 SWEPT = ("found_fraction", "kept_fraction", "rms", "bias", "bound", "over_bound")
 _SWEEP_COLUMNS: Mapping[str, Reader] = {
@@ -126,7 +128,7 @@ class Store:
         """
         found: dict[Cell, Row] = {}
         for path in sorted(self.scores_directory.glob("*.csv")):
-            for line, row in read(path, _SCORE_COLUMNS):
+            for line, row in read(path, _SCORE_COLUMNS, _LATER):
                 if row["unit"] is None:
                     raise StoreError(f"{path}, line {line}: expected a number in unit")
                 names = (row.pop(name) for name in ("condition", "extractor", "model", "unit"))
@@ -298,7 +300,7 @@ class _Context:
             "reason": numbers["reason"],
             **samples,
             **{name: numbers[name] for name in METRICS},
-            "metric_version": METRIC_VERSION,
+            "metric_version": self._components.metric,
         }
 
     def _facts(self, kind: str, name: str, cell: Cell) -> Facts:

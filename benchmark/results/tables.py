@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -50,7 +50,9 @@ def text_of(columns: Sequence[str], rows: Iterable[Mapping[str, Any]]) -> str:
     return csv_text(columns, ([spelt(row.get(name)) for name in columns] for row in rows))
 
 
-def read(path: Path, columns: Mapping[str, Reader]) -> list[tuple[int, Row]]:
+def read(
+    path: Path, columns: Mapping[str, Reader], later: Collection[str] = ()
+) -> list[tuple[int, Row]]:
     """Read (line number, row) of a table; nothing where there is no file.
 
     Parameters
@@ -59,6 +61,8 @@ def read(path: Path, columns: Mapping[str, Reader]) -> list[tuple[int, Row]]:
         Of the file.
     columns
         What each column holds, in the order of the header.
+    later
+        Columns that an older file may be without: None in each of its rows.
 
     Raises
     ------
@@ -72,11 +76,12 @@ def read(path: Path, columns: Mapping[str, Reader]) -> list[tuple[int, Row]]:
     except UnicodeDecodeError as error:
         raise StoreError(f"{path}: not text ({error})") from error
     lines = csv.reader(io.StringIO(text, newline=""), strict=True)
-    readers = list(columns.items())
     found: list[tuple[int, Row]] = []
     try:
         header = next(lines, [])
-        if header != list(columns):
+        missing = {name: None for name in columns if name in later and name not in header}
+        readers = [(name, reader) for name, reader in columns.items() if name not in missing]
+        if header != [name for name, _ in readers]:
             raise StoreError(
                 f"{path}, line 1: expected the columns {', '.join(columns)}; "
                 f"got {', '.join(header) or 'none'}"
@@ -85,7 +90,7 @@ def read(path: Path, columns: Mapping[str, Reader]) -> list[tuple[int, Row]]:
             where = f"{path}, line {lines.line_num}"
             if len(cells) != len(readers):
                 raise StoreError(f"{where}: expected {len(readers)} cells, got {len(cells)}")
-            found.append((lines.line_num, _row(cells, readers, where)))
+            found.append((lines.line_num, {**_row(cells, readers, where), **missing}))
     except csv.Error as error:
         raise StoreError(f"{path}, line {lines.line_num}: not CSV ({error})") from error
     return found

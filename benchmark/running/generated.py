@@ -33,8 +33,9 @@ class Generated:
         Of unit 0.
     splits
         Samples by split; another unit than the standard one has no split ``repeat``.
-    bound_deg
-        Cramer-Rao bound (N,) of the test split; None for another unit.
+    bound_deg, bound_unit_deg
+        Cramer-Rao bounds (N,) of the test split, with the unit known and unknown; None for another
+        unit, and the second where there is none.
     observable
         Test samples (N,) whose direction is observable.
     pins
@@ -44,6 +45,7 @@ class Generated:
     preset: Preset
     splits: dict[str, Samples]
     bound_deg: Floats | None
+    bound_unit_deg: Floats | None
     observable: NDArray[np.bool_]
     pins: tuple[Pin, ...]
 
@@ -109,7 +111,9 @@ def _of_unit_zero(
     bound = preset.bound(condition, "test")
     angle, observable = np.asarray(bound.angle_deg), np.asarray(bound.observable, dtype=np.bool_)
     pins = tuple(_pin(preset, condition, split, splits[split], bound) for split in SPLITS)
-    return Generated(preset, splits, angle, observable, pins)
+    unit = bound.unit_angle_deg
+    unit_angle = None if unit is None else np.asarray(unit)
+    return Generated(preset, splits, angle, unit_angle, observable, pins)
 
 
 def _of_another_unit(
@@ -121,7 +125,7 @@ def _of_another_unit(
         if all_observable
         else np.asarray(preset.bound(condition, "test").observable, dtype=np.bool_)
     )
-    return Generated(preset, splits, None, seen, ())
+    return Generated(preset, splits, None, None, seen, ())
 
 
 def _pin(preset: Preset, condition: str, split: str, samples: Samples, bound: Bound) -> Pin:

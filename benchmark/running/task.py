@@ -109,7 +109,15 @@ def _outcome(
         if "repeat" in features:
             repeated = _repeated(pipeline.predict_features(features["repeat"]), data)
         truth = data.splits["test"].sun
-        result = score(predicted, truth, data.bound_deg, data.observable, repeated)
+        result = score(
+            predicted,
+            truth,
+            data.bound_deg,
+            data.observable,
+            repeated,
+            bound_unit_deg=data.bound_unit_deg,
+            reference_error_deg=task.preset.reference_error_deg(task.condition),
+        )
     except Exception as error:  # noqa: BLE001 - any error of a model is a row with its reason
         return Outcome(name, reason_of(error))
     return Outcome(name, "", result)

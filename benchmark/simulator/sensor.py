@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.contract import Floats
 from benchmark.simulator.readout.noise import NoiseStreams
+from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
 
 #: What one built unit deviates by, array by array; the same for all its samples.
@@ -32,9 +33,30 @@ class Sensor(Protocol):
         ...
 
     def variance(self, expected: Floats) -> Floats:
-        """Variance of every element about its mean: shot, read and rounding noise."""
+        """Variance of every element about its mean: what its reading tells, inverted."""
         ...
 
     def observe(self, scene: Scene, pattern: FixedPattern, streams: NoiseStreams) -> NDArray[Any]:
         """(N, ...) what the sensor puts out."""
+        ...
+
+
+@runtime_checkable
+class UnitSpread(Protocol):
+    """A sensor whose elements differ from unit to unit each by itself: in gain and dark signal."""
+
+    def unit_variance(
+        self, expected: Floats, scene: Scene, references: References
+    ) -> Floats | None:
+        """Variance, in the shape of `expected`, that the unit adds where it is not known.
+
+        Of that mean, with what is left of the elements' spread after `references`; None where
+        the elements are not independent of each other in it.
+        """
+        ...
+
+    def reference_readings(
+        self, pattern: FixedPattern, references: References, streams: NoiseStreams
+    ) -> dict[str, Floats]:
+        """Mean dark and flat readings of a unit, of all its elements; names end in the unit."""
         ...

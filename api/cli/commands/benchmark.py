@@ -15,7 +15,15 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
 COLUMNS = (
     *("dataset", "condition", "extractor", "model", "rms_deg", "bound_deg", "over_bound"),
-    *("availability", "false_sun", "latency_us", "status"),
+    *(
+        "bound_unit_deg",
+        "over_bound_unit",
+        "floor_deg",
+        "availability",
+        "false_sun",
+        "latency_us",
+        "status",
+    ),
 )
 CSV_COLUMNS = (
     *("dataset", "condition", "detector", "mask", "extractor", "model", "status", "reason"),

@@ -31,7 +31,7 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
 COLUMNS = (
     *("rank", "tied", "dataset", "condition", "extractor", "model", "rms_deg", "low_deg"),
-    *("high_deg", "over_bound", "availability", "false_sun"),
+    *("high_deg", "over_bound", "over_bound_unit", "floor_deg", "availability", "false_sun"),
 )
 FIELD_COLUMNS = (
     *("rank", "dataset", "condition", "extractor", "model", "field_deg", "field_rms_deg"),

@@ -20,7 +20,15 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
 COLUMNS = (
     *("dataset", "condition", "extractor", "model", "rms_deg", "bound_deg", "over_bound"),
-    *("availability", "false_sun", "status", "assumed"),
+    *(
+        "bound_unit_deg",
+        "over_bound_unit",
+        "floor_deg",
+        "availability",
+        "false_sun",
+        "status",
+        "assumed",
+    ),
 )
 CSV_COLUMNS = (
     *("study", "dataset", "condition", "detector", "mask", "extractor", "model", "status"),
@@ -42,9 +50,11 @@ def run(
     """Run a study's pipelines on the data of its architecture.
 
     Every pipeline that the study's mapping resolves to is scored on every data set with its
-    detector and mask; bound is the Cramer-Rao bound, over bound the error divided by it. What
-    lacks an implementation or data is a gap: listed on stderr, and in JSON under "gaps". Where
-    nothing runs, the exit code is 1.
+    detector and mask; bound is the Cramer-Rao bound with the unit known, over bound the error
+    divided by it; bound unit and over bound unit are those with the unit unknown but for flat and
+    dark readings, and floor adds the systematic error of the calibration's reference: precision
+    and accuracy are two numbers. What lacks an implementation or data is a gap: listed on stderr,
+    and in JSON under "gaps". Where nothing runs, the exit code is 1.
 
     Cells that the published results hold are read there. Others are measured into the working
     store (see --store) and not measured again.

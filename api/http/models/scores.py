@@ -104,9 +104,19 @@ class Score(OpenShape):
     repeatability_deg: float | None = Field(
         description="Standard deviation of answers to a pose held still, over both axes."
     )
-    bound_deg: float | None = Field(description="Cramer-Rao bound, rms.")
+    bound_deg: float | None = Field(description="Cramer-Rao bound, rms, with the unit known.")
     over_bound: float | None = Field(description="RMS error over the bound.")
     over_bound_se: float | None = Field(description="Standard error of that ratio.")
+    bound_unit_deg: float | None = Field(
+        description="Cramer-Rao bound, rms, with the unit unknown but for flat and dark readings; "
+        "null where elements do not differ each by itself."
+    )
+    over_bound_unit: float | None = Field(description="RMS error over that bound.")
+    floor_deg: float | None = Field(
+        description="Least accuracy: root of the squares of `bound_unit_deg` and of the systematic "
+        "error of the calibration's reference. Precision, which `bound_deg` limits, is another "
+        "number."
+    )
 
 
 class Scores(Listing):

@@ -17,7 +17,7 @@ router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class
 
 COLUMNS = (
     *("rank", "tied", "dataset", "condition", "extractor", "model", "rms_deg", "bound_deg"),
-    *("low_deg", "high_deg", "availability", "false_sun"),
+    *("bound_unit_deg", "floor_deg", "low_deg", "high_deg", "availability", "false_sun"),
 )
 
 

@@ -13,7 +13,10 @@ from api.http.pagination import narrowed, page
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
-COLUMNS = ("dataset", "condition", "extractor", "model", "status", "rms_deg", "bound_deg")
+COLUMNS = (
+    *("dataset", "condition", "extractor", "model", "status", "rms_deg", "bound_deg"),
+    *("bound_unit_deg", "floor_deg"),
+)
 
 
 @router.get("/results", summary="The scores", response_model=Scores)

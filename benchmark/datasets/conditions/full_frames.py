@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from benchmark.datasets.preset import Preset, first
 from benchmark.metrics.bounds import Bound, cramer_rao
 from benchmark.simulator.masks.apertures import Mask
@@ -55,10 +53,14 @@ class FullFramePreset(Preset):
         for start in range(0, len(scene), BOUND_BATCH):
             part = scene.part(start, start + BOUND_BATCH)
             lit = LitPixels(for_bound(sensor), part, pattern)
-            parts.append(cramer_rao(lit, part, pattern, setup.irradiance, self.bound_step_rad))
-        return Bound(
-            angle_deg=np.concatenate([part.angle_deg for part in parts]),
-            alpha_deg=np.concatenate([part.alpha_deg for part in parts]),
-            beta_deg=np.concatenate([part.beta_deg for part in parts]),
-            observable=np.concatenate([part.observable for part in parts]),
-        )
+            parts.append(
+                cramer_rao(
+                    lit,
+                    part,
+                    pattern,
+                    setup.irradiance,
+                    self.bound_step_rad,
+                    references=self.offered,
+                )
+            )
+        return Bound.joined(parts)

@@ -12,6 +12,7 @@ import numpy as np
 from algorithms.contract import Floats
 from benchmark.seeds import generator
 from benchmark.simulator.flight.drift import (
+    REFERENCE_K,
     AssemblyDrift,
     PhotodiodeDrift,
     ThermalCycle,
@@ -19,6 +20,8 @@ from benchmark.simulator.flight.drift import (
 )
 from benchmark.simulator.optics.assembly import Assembly
 from benchmark.simulator.optics.projection import ProjectedLight
+from benchmark.simulator.readout import currents as readout
+from benchmark.simulator.readout.references import References, pixel_unit_variance
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern, Sensor
 from benchmark.simulator.sensors.faces import FaceSensor
@@ -88,6 +91,18 @@ class DriftingFaceSensor(FaceSensor):
         dark = dark_levels(self.readout.dark, at.temperature_k)
         return np.asarray(self.readout.sunlit_ua * light + dark[:, None])
 
+    def unit_variance(self, expected: Floats, scene: Scene, references: References) -> Floats:
+        """Squared microamperes that unknown gains and the spread of their drifts add.
+
+        References are taken at 25 deg C before the flight: they tell nothing of the drifts.
+        """
+        at = timed(scene, self)
+        light = expected - dark_levels(self.readout.dark, at.temperature_k)[:, None]
+        still = readout.spread(self.readout, self.readout.gain_mismatch, references)
+        warmed = self.drift.gain_per_k_spread * (at.temperature_k - REFERENCE_K)
+        aged = self.drift.loss_per_year_spread * at.age_years
+        return still.variance(light) + light**2 * (warmed**2 + aged**2)[:, None]
+
 
 @dataclass(frozen=True)
 class DriftingFrameSensor(FrameSensor):
@@ -149,6 +164,13 @@ class DriftingFrameSensor(FrameSensor):
         for n, (x, y) in enumerate(np.asarray(scene.origin_px)):
             electrons[n] += warmer[n] * pattern["dark_e"][y : y + rows, x : x + columns]
         return electrons
+
+    def unit_variance(self, expected: Floats, scene: Scene, references: References) -> Floats:
+        """As `FrameSensor`; references are taken at 25 deg C, dark signals grow with warmth."""
+        at = timed(scene, self)
+        warmth = dark_levels(replace(self.detector.dark, at_25_c=1.0), at.temperature_k)
+        cold = replace(self.detector, dark=replace(self.detector.dark, temperature_c=25.0))
+        return pixel_unit_variance(cold, expected, references, warmth[:, None, None])
 
 
 def _turned_about(axis: int, vectors: Floats, angle_deg: Floats) -> Floats:

@@ -102,6 +102,12 @@ class PixelArray:
         """Largest digital number."""
         return int(2**self.bits - 1)
 
+    @property
+    def last_code_dn(self) -> int:
+        """Largest digital number that can come: the converter's, or that of a full well."""
+        full = round(self.offset_dn + self.full_well_e / self.gain_e_per_dn)
+        return min(self.full_scale_dn, full)
+
 
 @dataclass(frozen=True)
 class CurrentReadout:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from algorithms.contract import Floats
 from benchmark.simulator.readout.noise import NoiseStreams, counted
+from benchmark.simulator.readout.quantisation import charge_variance
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
 from benchmark.simulator.sensors.lens_camera import LensCamera
@@ -100,12 +101,12 @@ class BlackSunSensor:
         return light
 
     def variance(self, expected: Floats) -> Floats:
-        """Squared electrons: shot noise of the sample that varies, read noise, rounding."""
+        """Squared electrons: shot noise of the sample that varies, read noise, cost of rounding."""
         detector, white = self.camera.detector, self.white_e
         hidden = self.reset_threshold_e + detector.full_well_e - white
         shot = np.where(expected <= white, expected, expected - white + hidden)
-        rounding = detector.gain_e_per_dn**2 / 12.0
-        return np.asarray(shot + detector.read_noise_e**2 + rounding)
+        # folded back: beyond white the reading falls again
+        return charge_variance(detector, white - np.abs(expected - white), shot)
 
     def observe(
         self, scene: Scene, pattern: FixedPattern, streams: NoiseStreams

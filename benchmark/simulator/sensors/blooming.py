@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from algorithms.contract import Floats
 from benchmark.simulator.readout.noise import NoiseStreams, counted
+from benchmark.simulator.readout.quantisation import ROUNDING, charge_variance
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
 from benchmark.simulator.sensors.lens_camera import LensCamera
@@ -117,16 +118,16 @@ class BloomingSensor:
         return np.concatenate([charge, over], axis=1)
 
     def variance(self, expected: Floats) -> Floats:
-        """Squared electrons: shot noise of the charges, read noise, rounding.
+        """Squared electrons: shot noise of the charges, read noise, what rounding costs.
 
         The overflow has the shot noise of all charge in the saturated pixels, and the read noise
         of the two pixels in which its trail ends.
         """
         detector = self.camera.detector
-        single = detector.read_noise_e**2 + detector.gain_e_per_dn**2 / 12.0
-        variance = expected + single
+        variance = charge_variance(detector, expected, expected)
+        single = detector.read_noise_e**2 + detector.gain_e_per_dn**2 * ROUNDING
         full = np.sum(expected[:, :-1] >= detector.full_well_e, axis=1)
-        variance[:, -1] += full * detector.full_well_e + single
+        variance[:, -1] = expected[:, -1] + full * detector.full_well_e + 2.0 * single
         return np.asarray(variance)
 
     def observe(

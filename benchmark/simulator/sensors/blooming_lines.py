@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 
 from algorithms.contract import Floats
 from benchmark.simulator.readout.noise import NoiseStreams, counted
+from benchmark.simulator.readout.quantisation import ROUNDING, charge_variance
+from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
 from benchmark.simulator.sensors.blooming import spill
@@ -58,18 +60,23 @@ class BloomingLineSensor(LineSensor):
         return np.concatenate([np.minimum(charge, full), over], axis=1)
 
     def variance(self, expected: Floats) -> Floats:
-        """Squared electrons: shot noise of the charges, read noise, rounding.
+        """Squared electrons: shot noise of the charges, read noise, what rounding costs.
 
         An overflow has the shot noise of all charge in the saturated pixels, and the read noise of
         the two pixels in which its trail ends.
         """
         detector, arrays = self.detector, len(self.axes)
-        single = detector.read_noise_e**2 + detector.gain_e_per_dn**2 / 12.0
-        variance = np.maximum(expected, 0.0) + single
+        charges = np.maximum(expected, 0.0)
+        variance = charge_variance(detector, charges, charges)
+        single = detector.read_noise_e**2 + detector.gain_e_per_dn**2 * ROUNDING
         lines = expected[:, :-arrays].reshape(len(expected), arrays, detector.columns)
         full = np.sum(lines >= detector.full_well_e, axis=2)
-        variance[:, -arrays:] += full * detector.full_well_e + single
+        over = charges[:, -arrays:] + full * detector.full_well_e
+        variance[:, -arrays:] = over + 2.0 * single
         return np.asarray(variance)
+
+    def unit_variance(self, expected: Floats, scene: Scene, references: References) -> None:
+        """None: an overflow is of many pixels together (the arguments are the protocol's)."""
 
     def observe(
         self, scene: Scene, pattern: FixedPattern, streams: NoiseStreams

@@ -13,6 +13,7 @@ from benchmark.simulator.light.sun_disc import SolarDisc
 from benchmark.simulator.optics.assembly import Assembly
 from benchmark.simulator.readout.detectors import DarkCurrent, Response
 from benchmark.simulator.readout.noise import NoiseStreams
+from benchmark.simulator.readout.references import References, posterior
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
 from benchmark.simulator.sensors.faces import Faces
@@ -159,10 +160,43 @@ class FrequencySensor(Faces):
         counts = expected * gate
         return counts_variance(counts, self.readout.spread_counts(counts)) / gate**2
 
+    def unit_variance(self, expected: Floats, scene: Scene, references: References) -> Floats:  # noqa: ARG002 - the protocol's
+        """Squared hertz that unknown gains of the converters add."""
+        dark = self.readout.dark.level()
+        # a count of a flat varies by 1/6 on average: where the gate opens, and what it leaves over
+        single = self.readout.spread_counts(np.ones(1))[0] ** 2 + 1.0 / 6.0
+        light = references.level * self.readout.sunlit_hz
+        information = references.flats * self.readout.gate_s**2 / float(single)
+        spread = posterior((self.readout.gain_mismatch, 0.0), light, (information, 0.0))
+        return spread.variance(expected - dark)
+
+    def reference_readings(
+        self, pattern: FixedPattern, references: References, streams: NoiseStreams
+    ) -> dict[str, Floats]:
+        """``dark_hz`` and ``flat_hz`` (K,): mean readings of the converters.
+
+        Flats are a share of sunlight, not of full scale, at which proportion is lost.
+        """
+        gain = pattern["gain"]
+        lit = {
+            "dark_hz": (references.darks, np.zeros(len(gain))),
+            "flat_hz": (references.flats, np.full(len(gain), references.level)),
+        }
+        return {
+            name: np.mean(
+                self._read(np.tile(self.readout.rate(light, gain), (count, 1)), streams), axis=0
+            )
+            for name, (count, light) in lit.items()
+            if count
+        }
+
     def observe(self, scene: Scene, pattern: FixedPattern, streams: NoiseStreams) -> Floats:
         """(N, K) hertz: whole counts over the gate time."""
+        return self._read(self.expected(scene, pattern), streams)
+
+    def _read(self, mean_hz: Floats, streams: NoiseStreams) -> Floats:
         gate = self.readout.gate_s
-        mean = self.expected(scene, pattern) * gate
+        mean = mean_hz * gate
         counts = mean + self.readout.spread_counts(mean) * streams.gaussian.standard_normal(
             mean.shape
         )

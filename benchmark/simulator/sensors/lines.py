@@ -18,6 +18,12 @@ from benchmark.simulator.optics.plates import fresnel_number
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout.detectors import PixelArray
 from benchmark.simulator.readout.noise import NoiseStreams, counted
+from benchmark.simulator.readout.quantisation import pixel_variance
+from benchmark.simulator.readout.references import (
+    References,
+    pixel_references,
+    pixel_unit_variance,
+)
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
 
@@ -171,11 +177,23 @@ class LineSensor:
         return np.asarray(detector.offset_dn + electrons / detector.gain_e_per_dn)
 
     def variance(self, expected: Floats) -> Floats:
-        """Squared digital numbers: shot and read noise, and 1/12 for rounding."""
-        detector = self.detector
-        electrons = (expected - detector.offset_dn) * detector.gain_e_per_dn
-        noise = np.maximum(electrons, 0.0) + detector.read_noise_e**2
-        return np.asarray(noise / detector.gain_e_per_dn**2 + 1.0 / 12.0)
+        """Squared digital numbers: shot and read noise, and what rounding and clipping cost."""
+        return pixel_variance(self.detector, expected)
+
+    def unit_variance(
+        self,
+        expected: Floats,
+        scene: Scene,  # noqa: ARG002 - the protocol's
+        references: References,
+    ) -> Floats | None:
+        """Squared digital numbers that unknown gains and dark signals of the pixels add."""
+        return pixel_unit_variance(self.detector, expected, references)
+
+    def reference_readings(
+        self, pattern: FixedPattern, references: References, streams: NoiseStreams
+    ) -> dict[str, Floats]:
+        """``dark_dn`` and ``flat_dn``, (W,): mean readings of the whole detector."""
+        return pixel_references(self.detector, pattern, references, streams)
 
     def observe(
         self, scene: Scene, pattern: FixedPattern, streams: NoiseStreams

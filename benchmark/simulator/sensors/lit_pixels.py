@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from algorithms.contract import Floats
 from benchmark.simulator.light.memory import digest_of, memory
 from benchmark.simulator.readout.noise import NoiseStreams
+from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
 from benchmark.simulator.sensors.multi_spot_frames import MultiSpotSensor
@@ -106,11 +107,24 @@ class LitPixels:
 
     def variance(self, expected: Floats) -> Floats:
         """Squared digital numbers; 1 where a row has no such pixel."""
-        variance = self.sensor.variance(expected)
+        return self._of_mean(self.sensor.variance(expected))
+
+    def unit_variance(self, expected: Floats, scene: Scene, references: References) -> Floats:
+        """Squared digital numbers that the unknown unit adds; 1 where a row has no such pixel."""
+        return self._of_mean(self.sensor.unit_variance(expected, scene, references))
+
+    def _of_mean(self, variance: Floats) -> Floats:
+        """Make pixels' variances those of the elements: the last one is a mean."""
         variance[:, :-1][self._nowhere] = 1.0
         count = self._rest[:, 0]
         variance[:, -1] = np.where(count > 0, variance[:, -1] / np.maximum(count, 1.0), 1.0)
         return np.asarray(variance)
+
+    def reference_readings(
+        self, pattern: FixedPattern, references: References, streams: NoiseStreams
+    ) -> dict[str, Floats]:
+        """As the sensor's: of all pixels."""
+        return self.sensor.reference_readings(pattern, references, streams)
 
     def fixed_pattern(self, *names: str | int) -> FixedPattern:
         """As the sensor's."""

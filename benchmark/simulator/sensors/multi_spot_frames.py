@@ -14,6 +14,12 @@ from benchmark.simulator.masks.errors import MaskErrors
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout.detectors import PixelArray
 from benchmark.simulator.readout.noise import NoiseStreams
+from benchmark.simulator.readout.quantisation import pixel_variance
+from benchmark.simulator.readout.references import (
+    References,
+    pixel_references,
+    pixel_unit_variance,
+)
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
 from benchmark.simulator.sensors.frames import FrameSensor
@@ -139,8 +145,18 @@ class MultiSpotSensor:
         return np.asarray(detector.offset_dn + electrons / detector.gain_e_per_dn)
 
     def variance(self, expected: Floats) -> Floats:
-        """Squared digital numbers: shot and read noise, and 1/12 for rounding."""
-        return self._whole().variance(expected)
+        """Squared digital numbers: shot and read noise, and what rounding and clipping cost."""
+        return pixel_variance(self.detector, expected)
+
+    def unit_variance(self, expected: Floats, scene: Scene, references: References) -> Floats:  # noqa: ARG002 - the protocol's
+        """Squared digital numbers that unknown gains and dark signals of the pixels add."""
+        return pixel_unit_variance(self.detector, expected, references)
+
+    def reference_readings(
+        self, pattern: FixedPattern, references: References, streams: NoiseStreams
+    ) -> dict[str, Floats]:
+        """``dark_dn`` and ``flat_dn``, (rows, columns): mean readings of the whole detector."""
+        return pixel_references(self.detector, pattern, references, streams)
 
     def observe(
         self, scene: Scene, pattern: FixedPattern, streams: NoiseStreams

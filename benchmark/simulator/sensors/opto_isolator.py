@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from benchmark.simulator.optics.assembly import Assembly
 from benchmark.simulator.readout import currents as readout
 from benchmark.simulator.readout.detectors import CurrentReadout, Response
 from benchmark.simulator.readout.noise import NoiseStreams
+from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
 from benchmark.simulator.sensors.faces import Faces
@@ -66,9 +67,26 @@ class OptoIsolatorSensor(Faces):
         """Squared microamperes."""
         return readout.variance(self.readout, expected)
 
+    def unit_variance(self, expected: Floats, scene: Scene, references: References) -> Floats:  # noqa: ARG002 - the protocol's
+        """Squared microamperes that unknown gains add; small spreads of their logarithm."""
+        return readout.unit_variance(self.readout, expected, _dimmed(references))
+
+    def reference_readings(
+        self, pattern: FixedPattern, references: References, streams: NoiseStreams
+    ) -> dict[str, Floats]:
+        """``dark_ua`` and ``flat_ua`` (K,): mean readings of the isolators, flats half as bright.
+
+        Gains differ so much that one element in a hundred would end at full scale otherwise.
+        """
+        return readout.mean_readings(self.readout, pattern["gain"], _dimmed(references), streams)
+
     def observe(self, scene: Scene, pattern: FixedPattern, streams: NoiseStreams) -> Floats:
         """(N, K) microamperes."""
         return readout.converted(self.readout, self.expected(scene, pattern), streams)
+
+
+def _dimmed(references: References) -> References:
+    return replace(references, level=references.level / 2.0)
 
 
 def collected(light: Floats, knee: float) -> Floats:

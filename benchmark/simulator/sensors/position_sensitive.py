@@ -13,6 +13,7 @@ from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout import currents as readout
 from benchmark.simulator.readout.detectors import CurrentReadout
 from benchmark.simulator.readout.noise import NoiseStreams
+from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
 
@@ -110,6 +111,16 @@ class PositionSensor:
     def variance(self, expected: Floats) -> Floats:
         """Squared microamperes."""
         return readout.variance(self.readout, expected)
+
+    def unit_variance(self, expected: Floats, scene: Scene, references: References) -> Floats:  # noqa: ARG002 - the protocol's
+        """Squared microamperes that unknown gains of the electrodes add."""
+        return readout.unit_variance(self.readout, expected, references)
+
+    def reference_readings(
+        self, pattern: FixedPattern, references: References, streams: NoiseStreams
+    ) -> dict[str, Floats]:
+        """``dark_ua`` and ``flat_ua`` (4,): mean readings of the electrodes."""
+        return readout.mean_readings(self.readout, pattern["gain"], references, streams)
 
     def observe(self, scene: Scene, pattern: FixedPattern, streams: NoiseStreams) -> Floats:
         """(N, 4) microamperes."""

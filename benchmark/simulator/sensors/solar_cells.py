@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -13,6 +14,7 @@ from benchmark.simulator.optics.assembly import Assembly
 from benchmark.simulator.readout import currents as readout
 from benchmark.simulator.readout.detectors import CurrentReadout, Response
 from benchmark.simulator.readout.noise import NoiseStreams
+from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
 from benchmark.simulator.sensors.faces import Faces
@@ -109,6 +111,23 @@ class SolarCellSensor(Faces):
     def variance(self, expected: Floats) -> Floats:
         """Squared microamperes."""
         return readout.variance(self.readout, expected)
+
+    def unit_variance(self, expected: Floats, scene: Scene, references: References) -> Floats:  # noqa: ARG002 - the protocol's
+        """Squared microamperes that unknown currents of the strings add.
+
+        A string's spread is taken as a single cell's; that of its weakest cell is less.
+        """
+        parts = self.readout.gain_mismatch, self.cells.mismatch, self.cells.loss_spread
+        spread = math.sqrt(math.fsum(part**2 for part in parts))
+        known = readout.spread(self.readout, spread, references)
+        return known.variance(expected - self.readout.dark.level())
+
+    def reference_readings(
+        self, pattern: FixedPattern, references: References, streams: NoiseStreams
+    ) -> dict[str, Floats]:
+        """``dark_ua`` and ``flat_ua`` (K,): mean readings of the strings."""
+        strings = pattern["gain"] * np.min(pattern["cells"], axis=1)
+        return readout.mean_readings(self.readout, strings, references, streams)
 
     def observe(self, scene: Scene, pattern: FixedPattern, streams: NoiseStreams) -> Floats:
         """(N, K) microamperes."""

@@ -68,6 +68,19 @@ def test_the_card_lists_every_file_with_its_bytes(made):
     assert verify(made.directory) == []
 
 
+def test_flats_and_darks_are_those_of_the_data_set(made):
+    preset = datasets.get(made.card["name"])
+    written = {f["condition"]: f for f in made.card["files"] if f["kind"] == "references"}
+    for condition in made.card["exported"]["conditions"]:
+        expected = preset.references(condition)
+        assert (condition in written) == bool(expected)
+        if expected:
+            arrays = read_archive(made.directory / written[condition]["path"])
+            assert set(arrays) == set(expected) <= set(made.card["arrays"])
+            for name, array in expected.items():
+                np.testing.assert_array_equal(arrays[name], array)
+
+
 def test_other_people_s_tools_check_the_sums(made):
     run = subprocess.run(
         ["sha256sum", "--check", "--strict", CHECKSUMS],
@@ -99,6 +112,8 @@ def test_the_arrays_are_the_first_samples_of_the_data_set_with_its_bound(made):
             np.testing.assert_array_equal(arrays["bound_alpha_deg"], bound.alpha_deg)
             np.testing.assert_array_equal(arrays["bound_beta_deg"], bound.beta_deg)
             np.testing.assert_array_equal(arrays["observable"], bound.observable)
+            if bound.unit_angle_deg is not None:
+                np.testing.assert_array_equal(arrays["bound_unit_deg"], bound.unit_angle_deg)
             for name, about in file["arrays"].items():
                 assert about == {
                     "dtype": arrays[name].dtype.str,

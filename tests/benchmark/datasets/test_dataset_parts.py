@@ -19,6 +19,7 @@ from benchmark.simulator import SIMULATOR_VERSION
 from benchmark.simulator.light.environment import Earth, Irradiance
 from benchmark.simulator.light.sun_disc import from_angles
 from benchmark.simulator.optics.assembly import Assembly
+from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
 
 LIGHT = Irradiance(spread=0.1, stray=0.3, stray_spread=0.02)
@@ -208,13 +209,23 @@ def test_the_bound_is_of_the_first_samples_as_the_condition_shows_them(
     monkeypatch.setattr(preset, "cramer_rao", lambda *given: calls.append(given) or "bound")
     one = fake(batch=batch, bound_step_rad=1e-3)
     assert one.bound("brighter", "calibration", 6) == "bound"
-    ((sensor, scene, pattern, light, step, size),) = calls
+    ((sensor, scene, pattern, light, step, size, references),) = calls
     assert (sensor, light, step) == (Teller(level=2.0), LIGHT, 1e-3)
+    assert references == one.offered == References()
     assert size == (batch or preset.BATCH)
     np.testing.assert_array_equal(scene.sun, one.scene("brighter", "calibration").sun[:6])
     assert pattern["names"] == repr(("fake-teller", 3, "unit"))
     one.bound("nominal")
     np.testing.assert_array_equal(calls[1][1].sun, one.scene("nominal", "test").sun)
+
+
+def test_a_sensor_without_elements_of_its_own_has_no_references_and_directions_are_true() -> None:
+    one = fake()
+    assert one.references("nominal") == {}
+    assert one.reference_error_deg("nominal") == 0.0
+    for asked in (one.references, one.reference_error_deg):
+        with pytest.raises(ValueError, match="has no condition 'dusk'"):
+            asked("dusk")
 
 
 # Cards
@@ -247,6 +258,7 @@ def test_parameters_are_all_that_the_numbers_depend_on() -> None:
             "face_normals": None, "half_fov_deg": None,
         },
         "bound_step_rad": 5e-4,
+        "offered": {"type": "References", "flats": 16, "darks": 16, "level": 0.5},
         "repeats": {"type": "Repeats", "poses": 3, "passes": 4},
         "unit": 0,
     }  # fmt: skip

@@ -32,7 +32,8 @@ class Unbounded(Diodes):
 
     def bound(self, condition: str, split: str = "test", n: int | None = None) -> FakeBound:
         count = len(self.truth(condition, split)[:n])
-        return FakeBound(np.full(count, self.undefined), np.full(count, self.seen))
+        none = np.full(count, self.undefined)
+        return FakeBound(none, np.full(count, self.seen), none)
 
 
 def measured(directory: Path, preset: Unbounded) -> Store:
@@ -56,7 +57,9 @@ def test_errors_are_scored_and_ranked_and_everything_named_bound_is_null(
     for row in store.rows():
         assert 0 < row["rms_deg"] < 5
         assert 0 < row["repeatability_deg"] < 5
-        assert [row[f] for f in ("bound_deg", "over_bound", "over_bound_se")] == [None] * 3
+        names = ("bound_deg", "over_bound", "over_bound_se")
+        names += ("bound_unit_deg", "over_bound_unit", "floor_deg")
+        assert [row[name] for name in names] == [None] * 6
         assert row["availability"] == 1
     assert {pin.bound_deg for pin in store.pins().values()} == {None}
     board = board_of(store)

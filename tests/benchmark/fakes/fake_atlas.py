@@ -52,6 +52,7 @@ class FakeSamples:
 class FakeBound:
     angle_deg: Any
     observable: Any
+    unit_angle_deg: Any = None
 
 
 @dataclass(frozen=True)
@@ -69,7 +70,9 @@ class Diodes:
     """The data set; what a test changes of it is a field.
 
     `late` is a current added to one diode from the tenth sample on, `looseness` a factor of the
-    bound, `dark` a share of the test samples that no direction can be told of.
+    bound, `unit_share` how many times it is where the unit is not known, `reference_error` that of
+    the calibration's directions, `dark` a share of the test samples that no direction can be told
+    of.
     """
 
     name: str = "fake-diodes"
@@ -82,6 +85,8 @@ class Diodes:
     seed: int = 7
     late: float = 0.0
     looseness: float = 1.0
+    unit_share: float = 1.25
+    reference_error: float = 0.0
     dark: float = 0.0
     unit: int = 0
     repeats: FakeRepeats = FakeRepeats()
@@ -135,6 +140,12 @@ class Diodes:
         currents[10:, 0] += self.late
         return FakeSamples(currents[:n], sun[:n])
 
+    def references(self, condition: str) -> dict[str, Any]:
+        return {}
+
+    def reference_error_deg(self, condition: str) -> float:
+        return self.reference_error
+
     def bound(self, condition: str, split: str = "test", n: int | None = None) -> FakeBound:
         """Known amplitude, white noise: covariance of the tangent plane is sigma^2 (J^T J)^-1."""
         log(f"bound {self.name} {condition} {split}")
@@ -148,7 +159,8 @@ class Diodes:
         variance = np.trace(np.linalg.inv(information), axis1=1, axis2=2)
         observable = np.arange(len(sun)) >= self.dark * self.n
         angle = self.looseness * np.rad2deg(np.sqrt(variance))
-        return FakeBound(np.where(observable, angle, np.inf), observable)
+        bound = np.where(observable, angle, np.inf)
+        return FakeBound(bound, observable, self.unit_share * bound)
 
 
 CURRENTS = AboutExtractor(

@@ -109,7 +109,12 @@ def test_amplifier_limited_bound_falls_in_proportion_to_the_light(name: str) -> 
     found = []
     for brighter in (1.0, 3.0):
         readout = setup.sensor.readout
-        readout = replace(readout, sunlit_ua=brighter * readout.sunlit_ua)
+        readout = replace(
+            readout,
+            sunlit_ua=brighter * readout.sunlit_ua,
+            full_scale_ua=4.0 * readout.full_scale_ua,  # which holds three times the light
+            bits=readout.bits + 2,
+        )
         sensor = replace(setup.sensor, readout=replace(readout, integration_s=1e3))
         pattern = sensor.fixed_pattern("test")
         found.append(cramer_rao(sensor, still(setup, sun), pattern, LIGHT).angle_deg)

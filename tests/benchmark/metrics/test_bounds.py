@@ -180,7 +180,7 @@ def test_a_signal_that_ends_within_the_step_is_not_observed() -> None:
     setup, _ = setup_of("pd-maskless-cube")
     assert isinstance(setup.sensor, FaceSensor)
     # noise so low that a standard deviation is far below the differences' step
-    readout = replace(setup.sensor.readout, noise_ua=1e-7, bits=24, integration_s=1e6)
+    readout = replace(setup.sensor.readout, noise_ua=1e-7, bits=40, integration_s=1e6)
     sensor = replace(setup.sensor, readout=readout)
     light = Irradiance(spread=0.02, stray=0.002, stray_spread=1e-3)
     scene = scene_at(replace(setup, sensor=sensor), [30.0, 0.0], [35.0, 0.0])

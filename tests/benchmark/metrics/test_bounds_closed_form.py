@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from benchmark.metrics.bounds import Bound, cramer_rao
 from benchmark.simulator.light.environment import Irradiance
 from benchmark.simulator.light.sun_disc import tangent_axes
+from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -105,6 +106,42 @@ def test_the_bound_is_the_inverse_of_the_whole_fisher_matrix(sun: Floats, noise:
         slope = np.subtract(ahead, behind) / (2 * step)
         expected = math.degrees(math.sqrt(slope @ covariance @ slope))
         assert getattr(found, name)[0] == pytest.approx(expected, rel=1e-6), name
+
+
+def test_a_channel_that_cannot_change_is_as_good_as_none() -> None:
+    """Its variance is infinite; nothing else is."""
+    deaf = sensor()
+    deaf.noise = np.append(NOISE[:4], np.inf)
+    less = sensor(slopes=SLOPES[:4])
+    less.level, less.haze, less.noise = LEVEL[:4], HAZE[:4], NOISE[:4]
+    assert bound_of(deaf).angle_deg[0] == pytest.approx(bound_of(less).angle_deg[0], rel=1e-9)
+
+
+@dataclass
+class UnknownSensor(Sensor):
+    """A `Sensor` whose channels' means are uncertain by `unknown` beside the noise."""
+
+    unknown: Floats = field(default_factory=lambda: np.zeros(5))
+
+    def unit_variance(self, mean: Floats, scene: Scene, references: References) -> Floats:
+        return np.broadcast_to(self.unknown**2 / references.flats, mean.shape).copy()
+
+    def reference_readings(self, *_: object) -> dict[str, Floats]:
+        return {}
+
+
+@pytest.mark.parametrize("flats", [1, 4])
+def test_what_is_unknown_of_a_unit_is_more_noise_in_the_second_bound_alone(flats: int) -> None:
+    plain, unknown = sensor(), 3.0 * NOISE[::-1]
+    one = UnknownSensor(plain.sun, plain.shape, LEVEL, HAZE, NOISE, unknown=unknown)
+    scene = Scene(one.sun[None], np.array([1.3]), np.array([LIGHT.stray]))
+    found = cramer_rao(one, scene, {}, LIGHT, references=References(flats=flats))  # type: ignore[arg-type]
+    noisier = sensor()
+    noisier.noise = np.sqrt(NOISE**2 + unknown**2 / flats)
+    assert found.angle_deg[0] == bound_of(plain).angle_deg[0]
+    assert found.unit_angle_deg is not None
+    assert found.unit_angle_deg[0] == pytest.approx(bound_of(noisier).angle_deg[0], rel=1e-9)
+    assert len(one.asked) == len(plain.asked), "both of the same signals"
 
 
 def test_a_nuisance_known_well_costs_nothing_and_one_unknown_all_it_can() -> None:

@@ -96,12 +96,13 @@ def test_an_unobservable_sample_moves_no_error_however_wrong_its_answer():
     sun = cone(rng, 200)
     predicted = tangent_noise(rng, sun, 0.3)
     seen = np.arange(200) % 4 != 0
-    plain = score(predicted, sun, np.full(200, 0.4), seen)
+    bounds = {"bound_deg": np.full(200, 0.4), "bound_unit_deg": np.full(200, 0.5)}
+    plain = score(predicted, sun, observable=seen, **bounds)
     predicted[~seen] = -sun[~seen]
-    wrong = score(predicted, sun, np.full(200, 0.4), seen)
+    wrong = score(predicted, sun, observable=seen, **bounds)
     assert wrong == plain
     predicted[~seen] = np.nan
-    silent = score(predicted, sun, np.full(200, 0.4), seen)
+    silent = score(predicted, sun, observable=seen, **bounds)
     assert (plain.false_sun, silent.false_sun) == (1.0, 0.0)
     assert silent == replace(plain, false_sun=0.0)
 
@@ -124,6 +125,36 @@ def test_the_bound_is_taken_over_samples_both_found_and_observable():
     assert result.bound_deg == pytest.approx(np.sqrt((1 + 4) / 2))
     assert result.over_bound == pytest.approx(3 / np.sqrt(2.5))
     assert (result.availability, result.false_sun) == (pytest.approx(2 / 3), 1.0)
+
+
+def test_the_second_bound_and_the_floor_are_over_the_same_samples():
+    sun = np.array([[0.0, 0.0, 1.0]] * 4)
+    predicted = rotated(sun, [1, 0, 0], 3.0)
+    predicted[0] = np.nan
+    seen = np.array([True, True, True, False])
+    bounds = {"bound_deg": np.ones(4), "bound_unit_deg": np.array([100.0, 1.0, 2.0, np.inf])}
+    result = score(predicted, sun, observable=seen, **bounds, reference_error_deg=1.5)
+    unit = np.sqrt((1 + 4) / 2)
+    assert (result.bound_deg, result.over_bound) == (1.0, pytest.approx(3.0))
+    assert result.bound_unit_deg == pytest.approx(unit)
+    assert result.over_bound_unit == pytest.approx(3 / unit)
+    assert result.floor_deg == pytest.approx(np.sqrt(unit**2 + 1.5**2))
+    perfect = score(predicted, sun, observable=seen, **bounds)
+    assert perfect.floor_deg == perfect.bound_unit_deg
+
+
+def test_without_the_second_bound_there_is_no_floor_and_the_first_stands():
+    sun = np.array([[0.0, 0.0, 1.0]] * 2)
+    row = score(sun, sun, np.ones(2), np.ones(2, bool), reference_error_deg=0.1).row()
+    names = ("bound_deg", "bound_unit_deg", "over_bound_unit", "floor_deg")
+    assert [row[name] for name in names] == [1.0, None, None, None]
+
+
+@pytest.mark.parametrize("wrong", [-0.1, np.inf, np.nan])
+def test_a_reference_s_error_is_a_size(wrong):
+    sun = np.array([[0.0, 0.0, 1.0]])
+    with pytest.raises(ValueError, match="reference_error_deg must not be negative"):
+        score(sun, sun, None, [True], reference_error_deg=wrong)
 
 
 def test_without_a_bound_the_errors_stand_and_nothing_is_compared():

@@ -57,6 +57,19 @@ def test_what_is_written_is_read_back_sorted_whatever_the_order(store, tmp_path)
     }  # fmt: skip
 
 
+def test_a_table_older_than_its_last_columns_has_none_in_them(store):
+    later = ("bound_unit_deg", "over_bound_unit", "floor_deg")
+    write(store, {cell("a"): numbers(0.25, floor_deg=0.5), cell("b"): numbers(1.0)})
+    path = store.scores_directory / "d.csv"
+    lines = [line.split(",") for line in path.read_text().splitlines()]
+    kept = [place for place, name in enumerate(lines[0]) if name not in later]
+    path.write_text("".join(",".join(line[k] for k in kept) + "\n" for line in lines))
+    assert store.scores() == {cell("a"): numbers(0.25), cell("b"): numbers(1.0)}
+    path.write_text(path.read_text().replace("p95_deg", "p94_deg"))
+    with pytest.raises(StoreError, match="expected the columns"):
+        store.scores()
+
+
 @settings(deadline=None, derandomize=True)
 @given(
     rows=st.lists(
