@@ -20,7 +20,7 @@ _CAMERA = LensCamera(
 
 PRESET = lens_camera(
     name="ccd-lens",
-    version=1,
+    version=2,
     detector="CCD",
     camera=_CAMERA,
     half_fov_deg=20.0,

@@ -20,7 +20,7 @@ _CAMERA = LensCamera(
 
 PRESET = lens_camera(
     name="cmos-lens",
-    version=1,
+    version=2,
     detector="CMOS",
     camera=_CAMERA,
     half_fov_deg=40.0,
