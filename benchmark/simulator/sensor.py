@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.contract import Floats
+from benchmark.simulator.light.environment import Earth
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.scene import Scene
 
@@ -37,4 +38,18 @@ class Sensor(Protocol):
 
     def observe(self, scene: Scene, pattern: FixedPattern, streams: NoiseStreams) -> NDArray[Any]:
         """(N, ...) what the sensor puts out."""
+        ...
+
+
+@runtime_checkable
+class SeesEarth(Protocol):
+    """A sensor behind openings through which the sunlit Earth shines."""
+
+    def earth_through(
+        self, earth: Earth, nadir: Floats, scene: Scene, pattern: FixedPattern
+    ) -> Floats:
+        """(N, ...) light of the Earth, in the units of direct light; for nadir (N, 3).
+
+        In whatever form the sensor adds it to a `Scene` of the same samples as ``albedo``.
+        """
         ...

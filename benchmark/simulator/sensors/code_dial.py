@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 from algorithms.contract import Floats
 from benchmark.seeds import generator
+from benchmark.simulator.light.environment import Earth
+from benchmark.simulator.optics.earthlight import on_elements
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout import currents as readout
 from benchmark.simulator.readout.detectors import CurrentReadout
@@ -169,10 +171,26 @@ class CodeDialSensor:
             out[:, columns] = part / self.camera.mask.apertures[0].width_mm
         return out
 
+    def received(self, scene: Scene, pattern: FixedPattern) -> Floats:
+        """(N, K) all light: direct, stray and from the Earth; units as of `lit`."""
+        response = self.lit(scene, pattern) + scene.stray[:, None]
+        if scene.albedo is not None:
+            response += scene.albedo
+        return np.asarray(response)
+
+    def earth_through(
+        self, earth: Earth, nadir: Floats, scene: Scene, pattern: FixedPattern
+    ) -> Floats:
+        """(N, K) light of the Earth, as `lit` has that of the Sun; for nadir (N, 3)."""
+
+        def lit(camera: Camera, sky: Scene) -> Floats:
+            return replace(self, camera=camera).lit(sky, pattern)
+
+        return on_elements(self.camera, lit, earth, nadir, scene.sun)
+
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, K) mean microamperes."""
-        response = self.lit(scene, pattern) + scene.stray[:, None]
-        return readout.currents(self.readout, response, pattern)
+        return readout.currents(self.readout, self.received(scene, pattern), pattern)
 
     def variance(self, expected: Floats) -> Floats:
         """Squared microamperes."""

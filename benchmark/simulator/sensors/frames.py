@@ -10,7 +10,9 @@ from numpy.typing import NDArray
 
 from algorithms.contract import Floats
 from benchmark.seeds import generator
+from benchmark.simulator.light.environment import Earth
 from benchmark.simulator.light.memory import memory
+from benchmark.simulator.optics.earthlight import add_between, on_window
 from benchmark.simulator.optics.projection import Camera, ProjectedLight
 from benchmark.simulator.readout.detectors import PixelArray
 from benchmark.simulator.readout.noise import NoiseStreams, counted
@@ -113,8 +115,29 @@ class FrameSensor:
         )
         return flux
 
+    def earth_through(
+        self,
+        earth: Earth,
+        nadir: Floats,
+        scene: Scene,
+        pattern: FixedPattern,  # noqa: ARG002 - the protocol's
+    ) -> Floats:
+        """(N, R, C) irradiance from the Earth at points over each window, for nadir (N, 3).
+
+        The first is the first pixel, the last the last one; frames get what lies between.
+        """
+        detector = self.detector
+        origin = np.zeros((len(scene), 2)) if scene.origin_px is None else scene.origin_px
+        first = (origin - np.asarray(detector.centre_px)) * detector.pitch_mm
+        columns, rows = self.window_px
+        return on_window(
+            self.camera, first, (columns, rows), detector.pitch_mm, earth, nadir, scene.sun
+        )
+
     def _electrons(self, scene: Scene, pattern: FixedPattern) -> Floats:
         electrons = self.lit(scene)
+        if scene.albedo is not None:
+            add_between(electrons, scene.albedo)
         electrons += scene.stray[:, None, None]
         electrons *= self.detector.sunlit_e
         columns, rows = self.window_px

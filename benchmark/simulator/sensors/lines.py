@@ -11,9 +11,11 @@ from numpy.typing import NDArray
 
 from algorithms.contract import Floats
 from benchmark.seeds import generator
+from benchmark.simulator.light.environment import Earth
 from benchmark.simulator.light.memory import memory
 from benchmark.simulator.masks.slits import SlitErrors
 from benchmark.simulator.optics.diffraction import GEOMETRIC_FROM
+from benchmark.simulator.optics.earthlight import add_between, on_window
 from benchmark.simulator.optics.plates import fresnel_number
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout.detectors import PixelArray
@@ -157,8 +159,31 @@ class LineSensor:
         through = thickness * (math.cos(tilt) * paths[2] - np.array([0.0, math.sin(tilt)]))
         paths[0], paths[1] = middle - through / 2.0, middle + through / 2.0
 
+    def earth_through(
+        self,
+        earth: Earth,
+        nadir: Floats,
+        scene: Scene,
+        pattern: FixedPattern,  # noqa: ARG002 - the protocol's
+    ) -> Floats:
+        """(N, A, P) irradiance from the Earth at points along each array, for nadir (N, 3).
+
+        The first is the first pixel, the last the last one; profiles get what lies between. The
+        plate's own errors are left out.
+        """
+        columns, pitch = self.detector.columns, self.detector.pitch_mm
+        first = np.tile([-(columns - 1) / 2.0 * pitch, 0.0], (len(scene), 1))
+        arrays = [
+            on_window(self.camera, first, (columns, 1), pitch, earth, nadir, scene.sun, axis == "y")
+            for axis in self.axes
+        ]
+        return np.concatenate(arrays, axis=1)
+
     def _electrons(self, scene: Scene, pattern: FixedPattern) -> Floats:
         electrons = self.lit(scene)
+        if scene.albedo is not None:
+            arrays = electrons.reshape(len(scene) * len(self.axes), 1, -1)
+            add_between(arrays, scene.albedo.reshape(len(arrays), 1, -1))
         electrons += scene.stray[:, None]
         electrons *= self.detector.sunlit_e * pattern["gain"]
         electrons += pattern["dark_e"]

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from algorithms.contract import Floats
+from benchmark.simulator.light.environment import Earth
+from benchmark.simulator.optics.earthlight import on_elements
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout import currents as readout
 from benchmark.simulator.readout.detectors import CurrentReadout, Quadrants
@@ -48,10 +50,30 @@ class QuadrantSensor:
         )
         return np.asarray(area / sum(a.area_mm2 for a in self.camera.mask.apertures))
 
+    def received(self, scene: Scene) -> Floats:
+        """(N, 4) all light: direct, stray and from the Earth; units as of `lit`."""
+        response = self.lit(scene) + scene.stray[:, None]
+        if scene.albedo is not None:
+            response += scene.albedo
+        return np.asarray(response)
+
+    def earth_through(
+        self,
+        earth: Earth,
+        nadir: Floats,
+        scene: Scene,
+        pattern: FixedPattern,  # noqa: ARG002 - the protocol's
+    ) -> Floats:
+        """(N, 4) light of the Earth, as `lit` has that of the Sun; for nadir (N, 3)."""
+
+        def lit(camera: Camera, sky: Scene) -> Floats:
+            return replace(self, camera=camera).lit(sky)
+
+        return on_elements(self.camera, lit, earth, nadir, scene.sun)
+
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, 4) mean microamperes."""
-        response = self.lit(scene) + scene.stray[:, None]
-        return readout.currents(self.readout, response, pattern)
+        return readout.currents(self.readout, self.received(scene), pattern)
 
     def variance(self, expected: Floats) -> Floats:
         """Squared microamperes."""
