@@ -8,6 +8,7 @@ from algorithms.contract import Observation, SensorGeometry
 from benchmark.datasets.conditions.alignment import MISALIGNED
 from benchmark.datasets.conditions.line_arrays import ASSEMBLED, MISASSEMBLED
 from benchmark.datasets.conditions.masked_photodiodes import hot, noises
+from benchmark.datasets.conditions.other_light import with_albedo
 from benchmark.datasets.conditions.propagation import LIGHT, geometric
 from benchmark.datasets.fields import AngleField
 from benchmark.datasets.preset import Condition, Preset
@@ -94,4 +95,5 @@ def conditions(sensor: CodeDialSensor) -> dict[str, Condition]:
             replace(sensor, dial=replace(dial, fine_rows="square")),
             LIGHT,
         ),
+        "albedo": with_albedo(sensor),
     }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from benchmark.datasets.conditions import masked_photodiodes as diodes
+from benchmark.datasets.conditions import other_light
 from benchmark.datasets.conditions.alignment import careful, misaligned
 from benchmark.datasets.conditions.propagation import GLASS
 
@@ -16,7 +17,7 @@ _OFF = "12 um of glue, window 20 and -15 um off centre"
 
 PRESET = diodes.masked_photodiodes(
     name="pd-single-aperture",
-    version=1,
+    version=2,
     detector="PD",
     mask="Single-Ap.",
     readings=f"photodiodes {diodes.QUADRANTS}",
@@ -24,6 +25,7 @@ PRESET = diodes.masked_photodiodes(
     setups={
         **diodes.usual(_SENSOR, _NOMINAL, _OFF, misaligned(0.012, 0.02, -0.015)),
         **diodes.temperatures(_SENSOR),
+        "albedo": other_light.with_albedo(_SENSOR),
     },
     follows=("Ortega2009", "Ortega2010"),
     description=(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from benchmark.datasets.conditions import masked_photodiodes as diodes
+from benchmark.datasets.conditions import other_light
 from benchmark.datasets.conditions.alignment import careful, misaligned
 from benchmark.simulator.sensors.slit_pairs import DiodePair, SlitPairSensor
 
@@ -19,7 +20,7 @@ _OFF = "focal length 2.5 % long, slits 50 and -40 um off centre"
 
 PRESET = diodes.masked_photodiodes(
     name="pd-slit",
-    version=1,
+    version=2,
     detector="PD",
     mask="Slit",
     readings=f"photodiodes {diodes.QUADRANTS}; Q2 and Q4 share a slit, Q1 and Q3 the other",
@@ -28,6 +29,7 @@ PRESET = diodes.masked_photodiodes(
         **diodes.usual(_SENSOR, _NOMINAL, _OFF, misaligned(0.0125)),
         "thick-slit": diodes.thick_slit(_SENSOR),
         **diodes.temperatures(_SENSOR),
+        "albedo": other_light.with_albedo(_SENSOR),
     },
     follows=("Chang2006", "Abhilash2014", "Hales2002"),
     description=(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from benchmark.datasets.conditions import masked_photodiodes as diodes
+from benchmark.datasets.conditions import other_light
 from benchmark.datasets.conditions.alignment import careful, misaligned
 from benchmark.datasets.conditions.pixel_arrays import hole
 from benchmark.datasets.conditions.propagation import geometric
@@ -19,7 +20,7 @@ _OFF = "focal length 2.5 % long, aperture 50 and -40 um off centre"
 
 PRESET = diodes.masked_photodiodes(
     name="psd-single-aperture",
-    version=1,
+    version=2,
     detector="PSD",
     mask="Single-Ap.",
     readings=f"corner electrodes {diodes.QUADRANTS}",
@@ -28,6 +29,7 @@ PRESET = diodes.masked_photodiodes(
         **diodes.usual(_SENSOR, _NOMINAL, _OFF, misaligned(0.055)),
         "linear": diodes.linear(_SENSOR),
         **diodes.temperatures(_SENSOR),
+        "albedo": other_light.with_albedo(_SENSOR),
     },
     follows=("Lin2016",),
     description=(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from benchmark.datasets.conditions import masked_photodiodes as diodes
+from benchmark.datasets.conditions import other_light
 from benchmark.datasets.conditions.alignment import careful, misaligned
 
 _MASK = diodes.opening(2.0, 2.0, thickness_mm=0.02, rotation_deg=0.1)
@@ -14,7 +15,7 @@ _OFF = "focal length 2.5 % long, aperture 50 and -40 um off centre"
 
 PRESET = diodes.masked_photodiodes(
     name="qpd-single-aperture",
-    version=1,
+    version=2,
     detector="QPD",
     mask="Single-Ap.",
     readings=diodes.QUADRANTS,
@@ -23,6 +24,8 @@ PRESET = diodes.masked_photodiodes(
         **diodes.usual(_SENSOR, _NOMINAL, _OFF, misaligned(0.025)),
         "wide-gap": diodes.wide_gap(_SENSOR),
         "round-aperture": diodes.round_aperture(_SENSOR, _GEOMETRY),
+        "albedo": other_light.with_albedo(_SENSOR),
+        "albedo-clouds": other_light.with_clouds(_SENSOR),
     },
     follows=("Boslooper2017", "Faizullin2017"),
     description=(

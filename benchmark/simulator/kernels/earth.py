@@ -15,6 +15,9 @@ import numpy as np
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
 
+#: Three numbers instead of an array: nothing to allocate in the innermost loops.
+Vector = tuple[float, float, float]
+
 
 @compiled
 def _cover(x: float, y: float, z: float, earth: Floats, waves: Floats) -> float:
@@ -34,7 +37,7 @@ def cover_of(out: Floats, ground: Floats, earth: Floats, waves: Floats) -> None:
 
 
 @compiled
-def _radiance(sight: Floats, nadir: Floats, sun: Floats, earth: Floats, waves: Floats) -> float:
+def _radiance(sight: Vector, nadir: Vector, sun: Vector, earth: Floats, waves: Floats) -> float:
     """Radiance along a line of sight, in units of mean normal sunlight a steradian."""
     along = sight[0] * nadir[0] + sight[1] * nadir[1] + sight[2] * nadir[2]
     square = along * along - 1.0 + earth[0] * earth[0]
@@ -55,7 +58,10 @@ def _radiance(sight: Floats, nadir: Floats, sun: Floats, earth: Floats, waves: F
 
 @compiled
 def gather(
-    out: Floats, sky: tuple[Floats, Floats], scene: tuple[Floats, Floats], world: tuple
+    out: Floats,
+    sky: tuple[Floats, Floats],
+    scene: tuple[Floats, Floats],
+    world: tuple[Floats, Floats],
 ) -> None:
     """Write what elements receive from the Earth, (N, K).
 
@@ -75,8 +81,11 @@ def gather(
     earth, waves = world
     out[:] = 0.0
     for n in range(out.shape[0]):
+        below = nadir[n, 0], nadir[n, 1], nadir[n, 2]
+        above = sun[n, 0], sun[n, 1], sun[n, 2]
         for j in range(directions.shape[0]):
-            light = _radiance(directions[j], nadir[n], sun[n], earth, waves)
+            sight = directions[j, 0], directions[j, 1], directions[j, 2]
+            light = _radiance(sight, below, above, earth, waves)
             if light > 0.0:
                 for k in range(out.shape[1]):
                     out[n, k] += light * weights[j, k]
@@ -94,12 +103,38 @@ def _open_share(hole: Floats, x: float, y: float) -> float:
 
 
 @compiled
+def _towards(x: float, y: float, table: Floats, step: float) -> Vector:
+    """Line of sight from a point (x, y) beside an opening's foot; no farther than tabulated."""
+    radius = math.sqrt(x * x + y * y)
+    place = min(radius / step, table.shape[0] - 1.000001)
+    node = int(place)
+    sine = table[node, 0] + (place - node) * (table[node + 1, 0] - table[node, 0])
+    turn = sine / radius if radius > 0.0 else 0.0
+    return turn * x, turn * y, math.sqrt(1.0 - sine * sine)
+
+
+@compiled
+def _in_view(box: Floats, table: Floats, step: float, nadir: Floats, reach: float) -> bool:
+    """Whether a cone about all lines of sight of a window meets that of the Earth.
+
+    `box` (4,) holds the least and largest x and y of points from openings.
+    """
+    x, y, z = _towards((box[0] + box[1]) / 2.0, (box[2] + box[3]) / 2.0, table, step)
+    widest = 1.0
+    for corner in range(4):
+        u, v, w = _towards(box[corner % 2], box[2 + corner // 2], table, step)
+        widest = min(widest, x * u + y * v + z * w)
+    off = math.acos(min(max(x * nadir[0] + y * nadir[1] + z * nadir[2], -1.0), 1.0))
+    return off < math.acos(widest) + math.asin(reach)
+
+
+@compiled
 def behind_mask(
     out: Floats,
     grid: tuple[Floats, Floats],
     mask: tuple[Floats, Floats, float, float],
     scene: tuple[Floats, Floats],
-    world: tuple,
+    world: tuple[Floats, Floats],
 ) -> None:
     """Write the Earth's irradiance at points of the detector, (N, R, C).
 
@@ -122,27 +157,32 @@ def behind_mask(
     nadir, sun = scene
     earth, waves = world
     last = table.shape[0] - 1
-    sight = np.empty(3)
+    box = np.empty(4)
+    spans = steps[0] * (out.shape[2] - 1), steps[1] * (out.shape[1] - 1)
     for n in range(out.shape[0]):
+        for axis in range(2):
+            box[2 * axis] = first[n, axis] - holes[:, axis].max()
+            box[2 * axis + 1] = first[n, axis] + spans[axis] - holes[:, axis].min()
+        if not _in_view(box, table, step, nadir[n], earth[0]):
+            out[n] = 0.0
+            continue
+        below = nadir[n, 0], nadir[n, 1], nadir[n, 2]
+        above = sun[n, 0], sun[n, 1], sun[n, 2]
         for row in range(out.shape[1]):
             for column in range(out.shape[2]):
                 total = 0.0
                 for q in range(holes.shape[0]):
                     x = first[n, 0] + column * steps[0] - holes[q, 0]
                     y = first[n, 1] + row * steps[1] - holes[q, 1]
-                    radius = math.sqrt(x * x + y * y)
-                    place = radius / step
+                    place = math.sqrt(x * x + y * y) / step
                     node = int(place)
                     if node >= last:
                         continue
-                    part = place - node
-                    sine = table[node, 0] + part * (table[node + 1, 0] - table[node, 0])
-                    share = table[node, 1] + part * (table[node + 1, 1] - table[node, 1])
-                    turn = sine / radius if radius > 0.0 else 0.0
-                    sight[0], sight[1] = turn * x, turn * y
-                    sight[2] = math.sqrt(1.0 - sine * sine)
-                    light = _radiance(sight, nadir[n], sun[n], earth, waves)
+                    sight = _towards(x, y, table, step)
+                    light = _radiance(sight, below, above, earth, waves)
                     if light > 0.0:
+                        share = table[node, 1]
+                        share += (place - node) * (table[node + 1, 1] - table[node, 1])
                         if thickness > 0.0:
                             slope = thickness / sight[2]
                             share *= _open_share(holes[q], slope * sight[0], slope * sight[1])

@@ -100,8 +100,8 @@ class CloudyEarth(Earth):
         super().__post_init__()
         if not self.clouds.clear <= self.reflectance or not self.cloudy <= 1.0:
             raise ValueError(
-                f"a mean of {self.reflectance} with {self.clouds.clear} between clouds needs clouds "
-                f"that reflect {self.cloudy:.3g}; it must be in [clear, 1]"
+                f"a mean of {self.reflectance} with {self.clouds.clear} between clouds needs "
+                f"clouds that reflect {self.cloudy:.3g}; it must be in [clear, 1]"
             )
 
     @property

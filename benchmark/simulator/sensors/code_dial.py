@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from algorithms.contract import Floats
 from benchmark.seeds import generator
 from benchmark.simulator.light.environment import Earth
-from benchmark.simulator.optics.earthlight import on_elements
+from benchmark.simulator.optics.earthlight import EarthInView, on_elements
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout import currents as readout
 from benchmark.simulator.readout.detectors import CurrentReadout
@@ -186,7 +186,7 @@ class CodeDialSensor:
         def lit(camera: Camera, sky: Scene) -> Floats:
             return replace(self, camera=camera).lit(sky, pattern)
 
-        return on_elements(self.camera, lit, earth, nadir, scene.sun)
+        return on_elements(self.camera, lit, EarthInView(earth, nadir, scene.sun))
 
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, K) mean microamperes."""

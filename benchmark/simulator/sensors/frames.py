@@ -12,7 +12,7 @@ from algorithms.contract import Floats
 from benchmark.seeds import generator
 from benchmark.simulator.light.environment import Earth
 from benchmark.simulator.light.memory import memory
-from benchmark.simulator.optics.earthlight import add_between, on_window
+from benchmark.simulator.optics.earthlight import EarthInView, add_between, on_window
 from benchmark.simulator.optics.projection import Camera, ProjectedLight
 from benchmark.simulator.readout.detectors import PixelArray
 from benchmark.simulator.readout.noise import NoiseStreams, counted
@@ -129,10 +129,8 @@ class FrameSensor:
         detector = self.detector
         origin = np.zeros((len(scene), 2)) if scene.origin_px is None else scene.origin_px
         first = (origin - np.asarray(detector.centre_px)) * detector.pitch_mm
-        columns, rows = self.window_px
-        return on_window(
-            self.camera, first, (columns, rows), detector.pitch_mm, earth, nadir, scene.sun
-        )
+        columns, rows = ((size - 1) * detector.pitch_mm for size in self.window_px)
+        return on_window(self.camera, first, (columns, rows), EarthInView(earth, nadir, scene.sun))
 
     def _electrons(self, scene: Scene, pattern: FixedPattern) -> Floats:
         electrons = self.lit(scene)

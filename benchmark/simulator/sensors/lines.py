@@ -15,7 +15,7 @@ from benchmark.simulator.light.environment import Earth
 from benchmark.simulator.light.memory import memory
 from benchmark.simulator.masks.slits import SlitErrors
 from benchmark.simulator.optics.diffraction import GEOMETRIC_FROM
-from benchmark.simulator.optics.earthlight import add_between, on_window
+from benchmark.simulator.optics.earthlight import EarthInView, add_between, on_window
 from benchmark.simulator.optics.plates import fresnel_number
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout.detectors import PixelArray
@@ -171,10 +171,11 @@ class LineSensor:
         The first is the first pixel, the last the last one; profiles get what lies between. The
         plate's own errors are left out.
         """
-        columns, pitch = self.detector.columns, self.detector.pitch_mm
-        first = np.tile([-(columns - 1) / 2.0 * pitch, 0.0], (len(scene), 1))
+        reach = (self.detector.columns - 1) * self.detector.pitch_mm
+        first = np.tile([-reach / 2.0, 0.0], (len(scene), 1))
+        view = EarthInView(earth, nadir, scene.sun)
         arrays = [
-            on_window(self.camera, first, (columns, 1), pitch, earth, nadir, scene.sun, axis == "y")
+            on_window(self.camera, first, (reach, 0.0), view, swapped=axis == "y")
             for axis in self.axes
         ]
         return np.concatenate(arrays, axis=1)

@@ -9,7 +9,7 @@ import numpy as np
 
 from algorithms.contract import Floats
 from benchmark.simulator.light.environment import Earth
-from benchmark.simulator.optics.earthlight import on_elements
+from benchmark.simulator.optics.earthlight import EarthInView, on_elements
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout import currents as readout
 from benchmark.simulator.readout.detectors import CurrentReadout
@@ -118,7 +118,7 @@ class SlitPairSensor:
         def lit(camera: Camera, sky: Scene) -> Floats:
             return replace(self, camera=camera).lit(sky)
 
-        return on_elements(self.camera, lit, earth, nadir, scene.sun)
+        return on_elements(self.camera, lit, EarthInView(earth, nadir, scene.sun))
 
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, 4) mean microamperes."""

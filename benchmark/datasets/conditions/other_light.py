@@ -1,0 +1,59 @@
+"""Light that is not the Sun's own image: the sunlit Earth through an opening."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from algorithms.contract import SensorGeometry
+from benchmark.datasets.conditions.propagation import LIGHT
+from benchmark.datasets.preset import Condition
+from benchmark.simulator.light.clouds import CloudyEarth
+from benchmark.simulator.light.environment import Earth, Irradiance
+from benchmark.simulator.sensor import Sensor
+
+_ORBIT: Final = (
+    "in a 600 km orbit with the sunlit Earth in view on the test split, position and attitude "
+    "random where the Sun is visible; calibrated on the ground without Earth"
+)
+
+
+def with_albedo(
+    sensor: Sensor, irradiance: Irradiance = LIGHT, geometry: SensorGeometry | None = None
+) -> Condition:
+    """Return the condition of an orbit over an Earth that sends 0.3 of all light back.
+
+    Parameters
+    ----------
+    sensor
+        Under its nominal condition, behind openings.
+    irradiance, geometry
+        Of the nominal condition.
+
+    Raises
+    ------
+    ValueError
+        When the sensor does not see the Earth.
+    """
+    return Condition(
+        f"The nominal sensor {_ORBIT}. Earth is the same everywhere: Lambert's, albedo 0.3.",
+        sensor,
+        irradiance,
+        earth=Earth(),
+        geometry=geometry,
+    )
+
+
+def with_clouds(
+    sensor: Sensor, irradiance: Irradiance = LIGHT, geometry: SensorGeometry | None = None
+) -> Condition:
+    """Return the condition of an orbit over patches of clouds; parameters as of `with_albedo`."""
+    earth = CloudyEarth()
+    return Condition(
+        f"The nominal sensor {_ORBIT}. Clouds of {earth.cloudy:.2f} cover "
+        f"{earth.clouds.cover:.0%} of ground of {earth.clouds.clear:.2f} in patches: 0.3 again in "
+        "the mean.",
+        sensor,
+        irradiance,
+        earth=earth,
+        geometry=geometry,
+    )
