@@ -7,6 +7,7 @@ import math
 from benchmark.datasets.conditions import masked_photodiodes as diodes
 from benchmark.datasets.conditions import other_light
 from benchmark.datasets.conditions.alignment import careful, misaligned
+from benchmark.datasets.conditions.propagation import measured_geometric
 from benchmark.simulator.sensors.slit_pairs import DiodePair, SlitPairSensor
 
 _CAMERA = diodes.through(diodes.opening(2.8, 5.0, thickness_mm=0.02), 0.5, careful(0.001))
@@ -42,5 +43,5 @@ PRESET = diodes.masked_photodiodes(
         "length keep the slit's ends off them. Of the 250 uA that all light through the slits "
         "would make, the photodiodes catch 100 uA at normal incidence."
     ),
-    regime=diodes.regime(2.8, 0.5),
+    regime=measured_geometric(0.02, (1.0, 1.0, 1.0)),
 )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from benchmark.datasets.conditions import masked_photodiodes as diodes
 from benchmark.datasets.conditions import other_light
 from benchmark.datasets.conditions.alignment import careful, misaligned
+from benchmark.datasets.conditions.propagation import measured_geometric
 
 _MASK = diodes.opening(2.0, 2.0, thickness_mm=0.02, rotation_deg=0.1)
 _CAMERA = diodes.through(_MASK, 1.0, careful(0.002))
@@ -35,5 +36,5 @@ PRESET = diodes.masked_photodiodes(
         "saturates at 45 deg and the field stops at 40 deg; a detector of 3.6 mm cuts the spot off "
         "in the last degree of it (from 38.7 deg), as small detectors do."
     ),
-    regime=diodes.regime(2.0, 1.0),
+    regime=measured_geometric(0.25, (1.0, 1.0, 1.0)),
 )
