@@ -57,6 +57,13 @@ def sampled(
     return inside.astype(np.float64), place
 
 
+def sampled_slit(half_mm: float, reach_mm: float, step_mm: float) -> tuple[np.ndarray, np.ndarray]:
+    """A long slit as one row, and the grid's coordinates."""
+    count = 2 * round(reach_mm / step_mm)
+    place = (np.arange(count) - count // 2 + 0.5) * step_mm
+    return (np.abs(place) <= half_mm).astype(np.float64)[None, :], place
+
+
 def currents(
     opening: np.ndarray,
     place: np.ndarray,

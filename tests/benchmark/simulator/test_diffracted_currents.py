@@ -14,6 +14,7 @@ from diffracted_currents import (
     landing,
     pattern,
     sampled,
+    sampled_slit,
     spread,
 )
 
@@ -124,8 +125,7 @@ def test_slit_pairs_are_geometric_as_far_as_the_card_says() -> None:
     step, worst = 0.002, 0.0
     (slit,) = sensor.camera.mask.apertures
     layers = [(sensor.camera.focal_length_mm, 1.0)]
-    opening, place = sampled((slit.width_mm / 2.0, step), 6.0, step, "rectangle")
-    row = np.array([opening[len(opening) // 2]])
+    row, place = sampled_slit(slit.width_mm / 2.0, 6.0, step)
     for alpha, beta in [(0, 0), (0, 30), (0, 60), (30, 60), (60, 60), (-60, 60)]:
         sun = toward(alpha, beta)[0]
         for across in (np.array([1.0, 1.0]), np.array([-1.0, 1.0])):
