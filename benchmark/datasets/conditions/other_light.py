@@ -1,15 +1,22 @@
-"""Light that is not the Sun's own image: the sunlit Earth through an opening."""
+"""Light that is not the Sun's first image: the sunlit Earth through an opening, and ghosts."""
 
 from __future__ import annotations
 
-from typing import Final
+from dataclasses import replace
+from typing import Final, TypeVar
 
 from algorithms.contract import SensorGeometry
 from benchmark.datasets.conditions.propagation import LIGHT
 from benchmark.datasets.preset import Condition
 from benchmark.simulator.light.clouds import CloudyEarth
 from benchmark.simulator.light.environment import Earth, Irradiance
+from benchmark.simulator.optics.ghosts import Ghost
 from benchmark.simulator.sensor import Sensor
+from benchmark.simulator.sensors.frames import FrameSensor
+from benchmark.simulator.sensors.quadrants import QuadrantSensor
+from benchmark.simulator.sensors.slit_pairs import SlitPairSensor
+
+Haunted = TypeVar("Haunted", QuadrantSensor, SlitPairSensor, FrameSensor)
 
 _ORBIT: Final = (
     "in a 600 km orbit with the sunlit Earth in view on the test split, position and attitude "
@@ -55,5 +62,34 @@ def with_clouds(
         sensor,
         irradiance,
         earth=earth,
+        geometry=geometry,
+    )
+
+
+def with_ghosts(
+    sensor: Haunted,
+    ghost: Ghost | None = None,
+    irradiance: Irradiance = LIGHT,
+    geometry: SensorGeometry | None = None,
+) -> Condition:
+    """Return the condition of light reflected once more between detector and mask.
+
+    Parameters
+    ----------
+    sensor
+        Under its nominal condition.
+    ghost
+        None takes bare silicon below chromium blackened with its oxide.
+    irradiance, geometry
+        Of the nominal condition.
+    """
+    seen = Ghost() if ghost is None else ghost
+    where = "the mask's underside" if seen.surface == "mask" else "the cover glass"
+    return Condition(
+        f"The nominal sensor whose detector reflects {seen.detector_reflectance:g} and {where} "
+        f"{seen.surface_reflectance:g} of that: a second image of {seen.share:.1%} of the light, "
+        "further out.",
+        replace(sensor, ghost=seen),
+        irradiance,
         geometry=geometry,
     )

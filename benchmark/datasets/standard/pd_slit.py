@@ -30,6 +30,7 @@ PRESET = diodes.masked_photodiodes(
         **diodes.usual(_SENSOR, _NOMINAL, _OFF, misaligned(0.0125)),
         "thick-slit": diodes.thick_slit(_SENSOR),
         **diodes.temperatures(_SENSOR),
+        "ghosts": other_light.with_ghosts(_SENSOR),
         "albedo": other_light.with_albedo(_SENSOR),
     },
     follows=("Chang2006", "Abhilash2014", "Hales2002"),

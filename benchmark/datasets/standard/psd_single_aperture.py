@@ -43,5 +43,5 @@ PRESET = diodes.masked_photodiodes(
         "Currents and noise are round numbers: 100 uA are what such a hole lets through to "
         "silicon, to a fifth or so."
     ),
-    regime=measured_geometric(0.05, (1.0, 1.0, 1.0)),
+    regime=measured_geometric(0.06, (1.0, 1.0, 1.0)),
 )

@@ -9,7 +9,8 @@ import numpy as np
 from algorithms.contract import Floats
 from benchmark.simulator.light.environment import Earth
 from benchmark.simulator.optics.earthlight import EarthInView, on_elements
-from benchmark.simulator.optics.projection import Camera
+from benchmark.simulator.optics.ghosts import Ghost
+from benchmark.simulator.optics.projection import Camera, ProjectedLight
 from benchmark.simulator.readout import currents as readout
 from benchmark.simulator.readout.detectors import CurrentReadout, Quadrants
 from benchmark.simulator.readout.noise import NoiseStreams
@@ -19,11 +20,12 @@ from benchmark.simulator.sensor import FixedPattern
 
 @dataclass(frozen=True)
 class QuadrantSensor:
-    """Four photodiodes (order Q1..Q4 of `Quadrants`) under one aperture."""
+    """Four photodiodes (order Q1..Q4 of `Quadrants`) under one aperture, with a ghost or none."""
 
     camera: Camera
     detector: Quadrants
     readout: CurrentReadout
+    ghost: Ghost | None = None
 
     def fixed_pattern(self, *names: str | int) -> FixedPattern:
         """``gain`` (4,): relative gains of the quadrants."""
@@ -37,9 +39,15 @@ class QuadrantSensor:
 
         Exact areas; light on the gap and beyond the detector's edge is lost.
         """
+        area = self._areas(self.camera.project(scene.sun), scene)
+        if self.ghost is not None:
+            area += self._areas(self.ghost.project(self.camera, scene.sun), scene)
+        return np.asarray(area / sum(a.area_mm2 for a in self.camera.mask.apertures))
+
+    def _areas(self, light: ProjectedLight, scene: Scene) -> Floats:
+        """(N, 4) lit areas of the quadrants, mm^2, times the light."""
         from benchmark.simulator.kernels.areas import lit_boxes  # noqa: PLC0415 - Numba on demand
 
-        light = self.camera.project(scene.sun)
         area = np.empty((len(scene), 4))
         lit_boxes(
             area,
@@ -48,7 +56,7 @@ class QuadrantSensor:
             light.rims_mm,
             light.light * scene.irradiance[:, None],
         )
-        return np.asarray(area / sum(a.area_mm2 for a in self.camera.mask.apertures))
+        return area
 
     def received(self, scene: Scene) -> Floats:
         """(N, 4) all light: direct, stray and from the Earth; units as of `lit`."""
