@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,7 +43,7 @@ class FrameSensor:
     detector: PixelArray
     window_px: tuple[int, int] = (64, 64)
     window_jitter_px: int = 8
-    ghost: Ghost | None = None
+    ghost: Ghost | None = field(default=None, kw_only=True)
 
     def fixed_pattern(self, *names: str | int) -> FixedPattern:
         """``gain`` and ``dark_e``, (rows, columns): the pixels' relative gain and dark signal."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,8 +19,10 @@ from benchmark.simulator.optics.assembly import Assembly
 from benchmark.simulator.optics.earthlight import EarthInView, Points, on_points
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout.detectors import CurrentReadout, Quadrants
+from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensors.frames import FrameSensor
+from benchmark.simulator.sensors.lit_pixels import LitPixels
 from benchmark.simulator.sensors.quadrants import QuadrantSensor
 from benchmark.sweeps.albedo_influence import aperture_earthlight, lit_patches
 
@@ -228,3 +231,32 @@ def test_a_sensor_that_sees_no_earth_is_refused() -> None:
     camera = datasets.get("cmos-lens").setups["nominal"].sensor
     with pytest.raises(ValueError, match="behind openings; got"):
         with_albedo(camera)
+
+
+def test_full_frames_behind_many_holes_have_the_earth_in_every_way_they_are_made() -> None:
+    """`expected`, what is read out, and the pixels that bounds are of, agree."""
+    preset = datasets.get("cmos-multi-aperture")
+    sensor: Any = preset.setups["nominal"].sensor
+    pattern = preset.fixed_pattern("nominal")
+    plain = preset.scene("nominal", "test").part(0, 2)
+    nadir = np.array([[0.1, 0.2, 0.97], [-0.3, 0.1, 0.95]])
+    nadir /= np.linalg.norm(nadir, axis=1, keepdims=True)
+    # the Sun behind: all ground in view is lit
+    view = replace(plain, sun=-nadir)
+    light = sensor.earth_through(Earth(), nadir, view, pattern)
+    assert light.max() > 1e-4
+    scene = replace(plain, albedo=light)
+    dark, bright = sensor.expected(plain, pattern), sensor.expected(scene, pattern)
+    assert (bright - dark).min() >= 0
+    streams = (NoiseStreams.named("test", "frames") for _ in range(2))
+    read = [sensor.observe(one, pattern, next(streams)).astype(float) for one in (plain, scene)]
+    change = (read[1] - read[0]).mean(axis=(1, 2))
+    # the same noise in both, rounding apart; a full pixel stays as it was
+    assert change == pytest.approx((bright - dark).mean(axis=(1, 2)), rel=0.02)
+    near = LitPixels(sensor, scene, pattern)
+    kept = near.expected(scene, pattern)
+    for n in range(2):
+        mine = near._pixels[n][near._pixels[n] >= 0]  # noqa: SLF001
+        assert kept[n, : len(mine)] == pytest.approx(bright[n].ravel()[mine], rel=1e-12)
+        rest = np.setdiff1d(np.arange(bright[n].size), near._pixels[n])
+        assert kept[n, -1] == pytest.approx(bright[n].ravel()[rest].mean(), rel=1e-9)
