@@ -15,6 +15,7 @@ from benchmark.simulator.sensor import Sensor
 from benchmark.simulator.sensors.frames import FrameSensor
 from benchmark.simulator.sensors.quadrants import QuadrantSensor
 from benchmark.simulator.sensors.slit_pairs import SlitPairSensor
+from benchmark.simulator.sensors.stray_slope import UnevenIrradiance
 
 Haunted = TypeVar("Haunted", QuadrantSensor, SlitPairSensor, FrameSensor)
 
@@ -91,5 +92,23 @@ def with_ghosts(
         "further out.",
         replace(sensor, ghost=seen),
         irradiance,
+        geometry=geometry,
+    )
+
+
+def with_stray_gradient(
+    sensor: Sensor, irradiance: Irradiance = LIGHT, geometry: SensorGeometry | None = None
+) -> Condition:
+    """Return the condition of ten times the stray light, brighter on one side than on the other.
+
+    For an `UnevenPreset`; parameters as of `with_albedo`.
+    """
+    stray = 10.0 * irradiance.stray
+    return Condition(
+        f"The nominal sensor with stray light of {stray:g} of sunlight that slopes from sample to "
+        "sample: the detector's edge gets a quarter more or less than its middle, one standard "
+        "deviation an axis.",
+        sensor,
+        UnevenIrradiance(irradiance.spread, stray, stray / 5.0, stray / 4.0),
         geometry=geometry,
     )

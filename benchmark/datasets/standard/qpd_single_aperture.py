@@ -25,6 +25,7 @@ PRESET = diodes.masked_photodiodes(
         **diodes.usual(_SENSOR, _NOMINAL, _OFF, misaligned(0.025)),
         "wide-gap": diodes.wide_gap(_SENSOR),
         "round-aperture": diodes.round_aperture(_SENSOR, _GEOMETRY),
+        "stray-gradient": other_light.with_stray_gradient(_SENSOR),
         "ghosts": other_light.with_ghosts(_SENSOR),
         "albedo": other_light.with_albedo(_SENSOR),
         "albedo-clouds": other_light.with_clouds(_SENSOR),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,7 @@ from benchmark.simulator.readout.detectors import PixelArray
 from benchmark.simulator.readout.noise import NoiseStreams, counted
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
+from benchmark.simulator.sensors.stray_slope import sloping
 
 LineAxis = Literal["x", "y"]
 
@@ -63,6 +64,7 @@ class LineSensor:
     fill_factor: float = 1.0
     errors: SlitErrors = field(default_factory=SlitErrors)
     least_fresnel: float = GEOMETRIC_FROM
+    sees_slopes: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         if self.detector.rows != 1:
@@ -180,12 +182,21 @@ class LineSensor:
         ]
         return np.concatenate(arrays, axis=1)
 
+    def _places(self) -> Floats:
+        """(W, 2) of the pixels, in units of half an array's length from its middle."""
+        columns = self.detector.columns
+        along = (np.arange(columns) - (columns - 1) / 2.0) / (columns / 2.0)
+        zero = np.zeros(columns)
+        return np.concatenate(
+            [np.stack([along, zero] if axis == "x" else [zero, along], -1) for axis in self.axes]
+        )
+
     def _electrons(self, scene: Scene, pattern: FixedPattern) -> Floats:
         electrons = self.lit(scene)
         if scene.albedo is not None:
             arrays = electrons.reshape(len(scene) * len(self.axes), 1, -1)
             add_between(arrays, scene.albedo.reshape(len(arrays), 1, -1))
-        electrons += scene.stray[:, None]
+        electrons += sloping(scene, self._places())
         electrons *= self.detector.sunlit_e * pattern["gain"]
         electrons += pattern["dark_e"]
         return electrons

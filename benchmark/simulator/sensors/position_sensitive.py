@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from benchmark.simulator.readout.detectors import CurrentReadout
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
+from benchmark.simulator.sensors.stray_slope import sloping
 
 
 @dataclass(frozen=True)
@@ -70,6 +72,7 @@ class PositionSensor:
     camera: Camera
     detector: LateralEffect
     readout: CurrentReadout
+    sees_slopes: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         if self.camera.mask.thickness_mm != 0:
@@ -106,7 +109,9 @@ class PositionSensor:
 
     def received(self, scene: Scene) -> Floats:
         """(N, 4) all light: direct, stray and from the Earth; units as of `lit`."""
-        response = self.lit(scene) + scene.stray[:, None] / 4.0
+        # each electrode's share (1 +- u)(1 +- v) / 4 has its mean at a third of the way to it
+        thirds = np.array([(-1.0, 1.0), (1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)]) / 3.0
+        response = self.lit(scene) + sloping(scene, thirds) / 4.0
         if scene.albedo is not None:
             response += scene.albedo
         return np.asarray(response)

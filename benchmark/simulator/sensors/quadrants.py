@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from benchmark.simulator.readout.detectors import CurrentReadout, Quadrants
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
+from benchmark.simulator.sensors.stray_slope import sloping
 
 
 @dataclass(frozen=True)
@@ -26,6 +28,7 @@ class QuadrantSensor:
     detector: Quadrants
     readout: CurrentReadout
     ghost: Ghost | None = None
+    sees_slopes: ClassVar[bool] = True
 
     def fixed_pattern(self, *names: str | int) -> FixedPattern:
         """``gain`` (4,): relative gains of the quadrants."""
@@ -60,7 +63,9 @@ class QuadrantSensor:
 
     def received(self, scene: Scene) -> Floats:
         """(N, 4) all light: direct, stray and from the Earth; units as of `lit`."""
-        response = self.lit(scene) + scene.stray[:, None]
+        boxes = self.detector.boxes() / self.detector.half_width_mm
+        middles = np.stack([boxes[:, :2].mean(axis=1), boxes[:, 2:].mean(axis=1)], axis=1)
+        response = self.lit(scene) + sloping(scene, middles)
         if scene.albedo is not None:
             response += scene.albedo
         return np.asarray(response)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from benchmark.simulator.readout.detectors import CurrentReadout
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
+from benchmark.simulator.sensors.stray_slope import sloping
 
 _DIAGONAL = math.sqrt(0.5)  # sine and cosine of 45 deg
 
@@ -71,6 +73,7 @@ class SlitPairSensor:
     pair: DiodePair
     readout: CurrentReadout
     ghost: Ghost | None = None
+    sees_slopes: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         apertures = self.camera.mask.apertures
@@ -110,7 +113,10 @@ class SlitPairSensor:
 
     def received(self, scene: Scene) -> Floats:
         """(N, 4) all light: direct, stray and from the Earth; units as of `lit`."""
-        response = self.lit(scene) + scene.stray[:, None]
+        near, far = self.pair.gap_mm / 2.0, self.pair.reach_mm
+        off = _DIAGONAL * (near + far) / 2.0 / far
+        middles = off * np.array([(-1.0, 1.0), (1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)])
+        response = self.lit(scene) + sloping(scene, middles)
         if scene.albedo is not None:
             response += scene.albedo
         return np.asarray(response)

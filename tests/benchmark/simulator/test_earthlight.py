@@ -256,7 +256,7 @@ def test_full_frames_behind_many_holes_have_the_earth_in_every_way_they_are_made
     near = LitPixels(sensor, scene, pattern)
     kept = near.expected(scene, pattern)
     for n in range(2):
-        mine = near._pixels[n][near._pixels[n] >= 0]  # noqa: SLF001
+        mine = near._pixels[n][near._pixels[n] >= 0]
         assert kept[n, : len(mine)] == pytest.approx(bright[n].ravel()[mine], rel=1e-12)
         rest = np.setdiff1d(np.arange(bright[n].size), near._pixels[n])
         assert kept[n, -1] == pytest.approx(bright[n].ravel()[rest].mean(), rel=1e-9)
