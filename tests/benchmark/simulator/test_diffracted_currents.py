@@ -18,6 +18,7 @@ from diffracted_currents import (
     spread,
 )
 
+from algorithms.contract import Observation
 from benchmark import datasets
 from benchmark.simulator.light.sun_disc import from_angles
 
@@ -77,6 +78,22 @@ SETUPS = {
 
 def toward(alpha: float, beta: float) -> np.ndarray:
     return from_angles(np.array([alpha]), np.array([beta]))
+
+
+def test_currents_behind_openings_are_geometric_by_measurement_or_diffracted() -> None:
+    regimes = {
+        name: preset.card()["regime"]
+        for name in datasets.names()
+        for preset in [datasets.get(name)]
+        if preset.observation is Observation.CURRENTS and preset.mask != "Maskless"
+    }
+    assert set(regimes) == {*SETUPS, "pd-slit", "pd-code-dial"}
+    for name, regime in regimes.items():
+        assert "fresnel_number" not in regime
+        if name == "pd-code-dial":
+            assert regime["propagation"] == "diffraction"
+        else:
+            assert regime["largest_difference_percent"] < 1.0
 
 
 @pytest.mark.slow
