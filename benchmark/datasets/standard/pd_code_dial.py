@@ -38,8 +38,8 @@ PRESET = code_dial(
         "tell the cell, four fine rows in quadrature the phase in it (Fan2013, eq:fourier). The "
         "study gives the principle and the field of +-60 deg; its semi-cylindrical lens, which "
         "keeps rays of the measured plane straight, is left out. No dimensions are given. Round "
-        "numbers instead: a 0.32 mm slit 2.5 mm up; a fine "
-        "period of twice the slit's width keeps its contrast at 2/pi; Gray cells of half a period "
-        "leave a quarter of it for coarse errors; 32 of them span the field."
+        "numbers instead: a 0.32 mm slit 2.5 mm up; a fine period of twice the slit's width keeps "
+        "its contrast at 2/pi; Gray cells of half a period leave a quarter of it for coarse "
+        "errors; 32 of them span the field."
     ),
 )

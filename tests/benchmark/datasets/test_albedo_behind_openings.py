@@ -67,6 +67,7 @@ def test_the_effect_follows_from_how_much_light_falls_where() -> None:
     assert mixed[seen] == pytest.approx(expected, abs=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "low", "high"),
     [
