@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, Self, get_args
+from typing import Any, Self, cast, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,7 +25,7 @@ from benchmark.simulator.light.environment import Earth, Irradiance
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
-from benchmark.simulator.sensor import FixedPattern, Sensor, UnitSpread
+from benchmark.simulator.sensor import FixedPattern, SeesEarth, Sensor, UnitSpread
 from benchmark.simulator.sensors.faces import Faces
 
 #: Splits that a field of directions is drawn for.
@@ -59,8 +59,11 @@ class Condition:
     geometry: SensorGeometry | None = None
 
     def __post_init__(self) -> None:
-        if self.earth is not None and not isinstance(self.sensor, Faces):
-            raise ValueError("light from the Earth is simulated for face sensors only")
+        if self.earth is not None and not isinstance(self.sensor, Faces | SeesEarth):
+            raise ValueError(
+                "light from the Earth is simulated for faces and for sensors behind openings; got "
+                f"{type(self.sensor).__name__}"
+            )
 
 
 @dataclass(frozen=True)
@@ -183,10 +186,17 @@ class Preset:
         light, stray = setup.irradiance.draw(len(sun), generator(*names, "irradiance"))
         origin = setup.sensor.origins(sun, generator(*names, "window"))
         albedo = None
-        if setup.earth is not None and known == "test" and isinstance(setup.sensor, Faces):
+        if setup.earth is not None and known == "test":
             nadir = setup.earth.draw_nadir(sun, generator(*names, "nadir"))
             pattern = self.fixed_pattern(condition)
-            albedo = light[:, None] * setup.sensor.earthlight(setup.earth, sun, nadir, pattern)
+            if isinstance(setup.sensor, Faces):
+                seen = setup.sensor.earthlight(setup.earth, sun, nadir, pattern)
+            else:
+                bare = Scene(sun, light, stray, origin)
+                seen = cast("SeesEarth", setup.sensor).earth_through(
+                    setup.earth, nadir, bare, pattern
+                )
+            albedo = light.reshape(-1, *(1,) * (seen.ndim - 1)) * seen
         return Scene(sun, light, stray, origin, albedo)
 
     def generate(self, condition: str, split: str, n: int | None = None) -> Samples:

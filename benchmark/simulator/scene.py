@@ -28,7 +28,8 @@ class Scene:
         (N, 2) detector coordinate (x, y) of each window's first pixel, or None.
     albedo
         (N, K) extra response of each of K detector elements to light from the Earth, in units
-        of the response to the yearly mean sunlight at normal incidence, or None.
+        of the response to the yearly mean sunlight at normal incidence, or None. On pixels its
+        irradiance at a few points of them, (N, R, C), as their sensor made it.
     """
 
     sun: Floats

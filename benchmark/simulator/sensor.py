@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.contract import Floats
+from benchmark.simulator.light.environment import Earth
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
@@ -59,4 +60,18 @@ class UnitSpread(Protocol):
         self, pattern: FixedPattern, references: References, streams: NoiseStreams
     ) -> dict[str, Floats]:
         """Mean dark and flat readings of a unit, of all its elements; names end in the unit."""
+        ...
+
+
+@runtime_checkable
+class SeesEarth(Protocol):
+    """A sensor behind openings through which the sunlit Earth shines."""
+
+    def earth_through(
+        self, earth: Earth, nadir: Floats, scene: Scene, pattern: FixedPattern
+    ) -> Floats:
+        """(N, ...) light of the Earth, in the units of direct light; for nadir (N, 3).
+
+        In whatever form the sensor adds it to a `Scene` of the same samples as ``albedo``.
+        """
         ...

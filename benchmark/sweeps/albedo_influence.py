@@ -1,4 +1,6 @@
-"""How far light from the sunlit Earth moves an estimate: on bare photodiodes, behind a pinhole.
+"""How far light from the sunlit Earth moves an estimate: on photodiodes, bare or behind an opening.
+
+And on pixels behind a pinhole.
 
 The same Earth, the same random positions in orbit; noise is left out, so that what moves is moved
 by the Earth alone.
@@ -12,8 +14,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from algorithms.contract import Extractor, Floats
+from algorithms.contract import Extractor, Floats, Observation
+from algorithms.extractors.currents.photodiode import VoltageBalance
 from algorithms.extractors.frames.centroid import ThresholdedCentroid
+from algorithms.models.geometric.standard_projection import StandardProjection
+from algorithms.pipeline import Pipeline
 from benchmark import datasets
 from benchmark.metrics.bounds import cramer_rao
 from benchmark.metrics.score import separation_deg
@@ -23,6 +28,9 @@ from benchmark.simulator.light.environment import Earth
 from benchmark.simulator.light.sun_disc import tangent_axes
 from benchmark.simulator.sensors.faces import FaceSensor
 from benchmark.simulator.sensors.frames import FrameSensor
+
+#: Currents of a balance along two axes.
+_BALANCED = 4
 
 
 class NoInfluenceError(TypeError):
@@ -63,7 +71,7 @@ class Influence:
 def influence(name: str, samples: int | None = None) -> Influence:
     """Say how far the Earth's light moves the estimates of a dataset's sensor.
 
-    `on_cube` or `on_aperture`, whichever its sensor is for.
+    `on_cube`, `on_balance` or `on_aperture`, whichever its sensor is for.
 
     Parameters
     ----------
@@ -80,6 +88,8 @@ def influence(name: str, samples: int | None = None) -> Influence:
     preset = datasets.get(name)
     if isinstance(preset.condition(preset.conditions[0]).sensor, FaceSensor):
         return on_cube(name, samples)
+    if preset.observation is Observation.CURRENTS and preset.geometry.aperture_width_mm is not None:
+        return on_balance(name, samples)
     return on_aperture(name, samples)
 
 
@@ -118,6 +128,43 @@ def on_cube(name: str = "pd-maskless-cube", samples: int | None = None) -> Influ
     scene = scene.part(0, len(scene) if samples is None else samples)
     with_earth = maximum_currents(sensor.expected(scene, pattern))
     without = maximum_currents(sensor.expected(replace(scene, albedo=None), pattern))
+    bound = preset.bound("albedo", "test", samples).angle_deg
+    return Influence(separation_deg(with_earth, without), bound)
+
+
+def on_balance(name: str = "qpd-single-aperture", samples: int | None = None) -> Influence:
+    """Move the voltage balance of photodiodes behind an opening by Earth's light.
+
+    Its directions are those of the standard projection, fitted on the ground.
+
+    Parameters
+    ----------
+    name
+        Of the dataset.
+    samples
+        Only so many of the test split; None takes all.
+
+    Raises
+    ------
+    NoInfluenceError
+        When the dataset has no four currents to balance, or never sees the Earth.
+    """
+    preset = datasets.get(name)
+    if "albedo" not in preset.conditions:
+        raise NoInfluenceError(f"dataset {name} has no condition 'albedo'")
+    sensor, pattern = preset.condition("albedo").sensor, preset.fixed_pattern("albedo")
+    ground = preset.scene("albedo", "calibration")
+    currents = sensor.expected(ground, pattern)
+    if currents.shape[1] != _BALANCED:
+        raise NoInfluenceError(f"dataset {name} has {currents.shape[1]} currents, no balance")
+    pipeline = Pipeline.for_sensor(VoltageBalance, StandardProjection, preset.geometry)
+    pipeline.fit(currents, ground.sun)
+    scene = preset.scene("albedo", "test")
+    scene = scene.part(0, len(scene) if samples is None else samples)
+    with_earth, without = (
+        pipeline.predict(sensor.expected(seen, pattern))
+        for seen in (scene, replace(scene, albedo=None))
+    )
     bound = preset.bound("albedo", "test", samples).angle_deg
     return Influence(separation_deg(with_earth, without), bound)
 

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 from algorithms.contract import Observation, SensorGeometry
 from benchmark.datasets.conditions.alignment import MISALIGNED
 from benchmark.datasets.conditions.line_arrays import ASSEMBLED, MISASSEMBLED
 from benchmark.datasets.conditions.masked_photodiodes import hot, noises
-from benchmark.datasets.conditions.propagation import LIGHT, geometric
+from benchmark.datasets.conditions.other_light import with_albedo
+from benchmark.datasets.conditions.propagation import LIGHT
 from benchmark.datasets.fields import AngleField
 from benchmark.datasets.preset import Condition, Preset
 from benchmark.simulator.light.sun_disc import SolarDisc
 from benchmark.simulator.masks.slits import slit_row
+from benchmark.simulator.optics.diffraction import Spectrum
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.sensors.code_dial import CodeDialSensor
 
@@ -51,8 +54,23 @@ def code_dial(
         directions=AngleField(half_fov_deg),
         follows=follows,
         description=description,
-        regime=geometric(width_mm, camera.focal_length_mm, "a^2 / (lambda h) of the slit"),
+        regime=_regime(sensor.spectrum),
     )
+
+
+def _regime(spectrum: Spectrum | None) -> dict[str, Any]:
+    """Return how light is propagated to the dial."""
+    if spectrum is None:
+        return {"propagation": "geometric", "reason": "no spectrum is given"}
+    return {
+        "propagation": "diffraction",
+        "wavelengths_nm": list(spectrum.wavelengths_nm),
+        "weights": list(spectrum.weights),
+        "reason": "light crosses the borders of coarse cells and square windows as behind "
+        "Fresnel's straight edges, over the Sun's disc; geometric currents would miss by 2 % of "
+        "full light. Sinusoidal rows stay geometric, and the interference of the slit's two edges "
+        "is left out: 0.2 % of full light",
+    }
 
 
 def through_a_slit(width_mm: float, length_mm: float, focal_length_mm: float) -> Camera:
@@ -94,4 +112,5 @@ def conditions(sensor: CodeDialSensor) -> dict[str, Condition]:
             replace(sensor, dial=replace(dial, fine_rows="square")),
             LIGHT,
         ),
+        "albedo": with_albedo(sensor),
     }

@@ -178,6 +178,11 @@ class FlightPreset(Preset):
         for name, setup in self.setups.items():
             if not hasattr(setup.sensor, "thermal"):
                 raise TypeError(f"the sensor of condition {name} must have a thermal cycle")
+            if setup.earth is not None and not isinstance(setup.sensor, Faces):
+                raise TypeError(
+                    f"condition {name}: in flight the Earth shines on bare faces only; got "
+                    f"{type(setup.sensor).__name__}"
+                )
             if setup.earth is not None and (
                 setup.earth.altitude_km != self.directions.orbit.altitude_km
                 or setup.earth.radius_km != self.directions.orbit.radius_km

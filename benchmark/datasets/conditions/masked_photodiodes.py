@@ -9,7 +9,8 @@ from typing import Any, Literal, TypeVar
 from algorithms.contract import Observation, SensorGeometry
 from benchmark.datasets.conditions.alignment import MISALIGNED
 from benchmark.datasets.conditions.pixel_arrays import hole
-from benchmark.datasets.conditions.propagation import LIGHT, geometric
+from benchmark.datasets.conditions.propagation import LIGHT
+from benchmark.datasets.conditions.uneven_light import UnevenPreset
 from benchmark.datasets.fields import AngleField
 from benchmark.datasets.preset import Condition, Preset
 from benchmark.simulator.light.sun_disc import SolarDisc
@@ -51,7 +52,7 @@ def masked_photodiodes(
     """
     if geometry.half_fov_deg is None:
         raise ValueError(f"{name} needs half_fov_deg in its geometry")
-    return Preset(
+    return UnevenPreset(
         name=name,
         version=version,
         detector=detector,
@@ -227,8 +228,3 @@ def linear(sensor: PositionSensor) -> Condition:
         replace(sensor, detector=LateralEffect(sensor.detector.length_mm)),
         LIGHT,
     )
-
-
-def regime(width_mm: float, distance_mm: float) -> dict[str, Any]:
-    """Return how light is propagated through an opening of millimetres."""
-    return geometric(width_mm, distance_mm, far="far ")

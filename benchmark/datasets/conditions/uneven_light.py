@@ -8,11 +8,7 @@ from benchmark.datasets.fields import Split
 from benchmark.datasets.preset import Preset
 from benchmark.seeds import generator
 from benchmark.simulator.scene import Scene
-from benchmark.simulator.sensors.uneven_frames import (
-    UnevenFrameSensor,
-    UnevenIrradiance,
-    UnevenScene,
-)
+from benchmark.simulator.sensors.stray_slope import UnevenIrradiance, UnevenScene
 
 
 @dataclass(frozen=True)
@@ -25,12 +21,12 @@ class UnevenPreset(Preset):
 
     def __post_init__(self) -> None:
         for name, setup in self.setups.items():
-            if isinstance(setup.irradiance, UnevenIrradiance) and not isinstance(
-                setup.sensor, UnevenFrameSensor
+            if isinstance(setup.irradiance, UnevenIrradiance) and not getattr(
+                setup.sensor, "sees_slopes", False
             ):
                 raise TypeError(
                     f"condition {name!r}: stray light slopes, which {type(setup.sensor).__name__} "
-                    "does not see; it must be an UnevenFrameSensor"
+                    "does not see"
                 )
 
     def _scene(self, condition: str, known: Split) -> Scene:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from benchmark.datasets.conditions.code_dials import code_dial, through_a_slit
 from benchmark.datasets.conditions.masked_photodiodes import amplifiers
+from benchmark.simulator.optics.diffraction import SUNLIT_SILICON
 from benchmark.simulator.sensors.code_dial import CodeDial, CodeDialSensor
 
 _DIAL = CodeDial(
@@ -18,12 +19,18 @@ _READOUT = amplifiers(sunlit_ua=10.0, noise_ua=0.005, full_scale_ua=12.0)
 
 PRESET = code_dial(
     name="pd-code-dial",
-    version=1,
+    version=2,
     units=(
         "microamperes, float64 (N, 18): of the dial along x five coarse tracks (Gray code, most "
         "significant bit first) and the fine rows F1 to F4, then the same of the dial along y"
     ),
-    sensor=CodeDialSensor(through_a_slit(0.32, 13.0, 2.5), _DIAL, _READOUT, deflection_deg=0.03),
+    sensor=CodeDialSensor(
+        through_a_slit(0.32, 13.0, 2.5),
+        _DIAL,
+        _READOUT,
+        deflection_deg=0.03,
+        spectrum=SUNLIT_SILICON,
+    ),
     half_fov_deg=60.0,
     follows=("Fan2013",),
     description=(
@@ -31,8 +38,8 @@ PRESET = code_dial(
         "tell the cell, four fine rows in quadrature the phase in it (Fan2013, eq:fourier). The "
         "study gives the principle and the field of +-60 deg; its semi-cylindrical lens, which "
         "keeps rays of the measured plane straight, is left out. No dimensions are given. Round "
-        "numbers instead: a 0.32 mm slit 2.5 mm up keeps the Fresnel number above 10; a fine "
-        "period of twice the slit's width keeps its contrast at 2/pi; Gray cells of half a period "
-        "leave a quarter of it for coarse errors; 32 of them span the field."
+        "numbers instead: a 0.32 mm slit 2.5 mm up; a fine period of twice the slit's width keeps "
+        "its contrast at 2/pi; Gray cells of half a period leave a quarter of it for coarse "
+        "errors; 32 of them span the field."
     ),
 )

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from benchmark.datasets.conditions import masked_photodiodes as diodes
+from benchmark.datasets.conditions import other_light
 from benchmark.datasets.conditions.alignment import careful, misaligned
-from benchmark.datasets.conditions.propagation import GLASS
+from benchmark.datasets.conditions.propagation import GLASS, measured_geometric
 
 _CAMERA = diodes.through(diodes.opening(0.8, 0.8), 0.5, careful(0.002, 0.002, -0.0015), GLASS)
 _SENSOR = diodes.quadrants(_CAMERA, half_width_mm=0.8, gap_mm=0.02)
@@ -16,7 +17,7 @@ _OFF = "12 um of glue, window 20 and -15 um off centre"
 
 PRESET = diodes.masked_photodiodes(
     name="pd-single-aperture",
-    version=1,
+    version=2,
     detector="PD",
     mask="Single-Ap.",
     readings=f"photodiodes {diodes.QUADRANTS}",
@@ -24,6 +25,7 @@ PRESET = diodes.masked_photodiodes(
     setups={
         **diodes.usual(_SENSOR, _NOMINAL, _OFF, misaligned(0.012, 0.02, -0.015)),
         **diodes.temperatures(_SENSOR),
+        "albedo": other_light.with_albedo(_SENSOR),
     },
     follows=("Ortega2009", "Ortega2010"),
     description=(
@@ -33,5 +35,5 @@ PRESET = diodes.masked_photodiodes(
         "mm keeps light on all four photodiodes to 60 deg inside it. The geometry's focal length "
         "is the drawing's; refraction makes it appear shorter by the index near the axis."
     ),
-    regime=diodes.regime(0.8, 0.5),
+    regime=measured_geometric(0.01, (1.0, 1.0, 1.01)),
 )

@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 
 from benchmark.datasets.conditions import masked_photodiodes as diodes
+from benchmark.datasets.conditions import other_light
 from benchmark.datasets.conditions.alignment import careful, misaligned
+from benchmark.datasets.conditions.propagation import measured_geometric
 from benchmark.simulator.sensors.slit_pairs import DiodePair, SlitPairSensor
 
 _CAMERA = diodes.through(diodes.opening(2.8, 5.0, thickness_mm=0.02), 0.5, careful(0.001))
@@ -19,7 +21,7 @@ _OFF = "focal length 2.5 % long, slits 50 and -40 um off centre"
 
 PRESET = diodes.masked_photodiodes(
     name="pd-slit",
-    version=1,
+    version=2,
     detector="PD",
     mask="Slit",
     readings=f"photodiodes {diodes.QUADRANTS}; Q2 and Q4 share a slit, Q1 and Q3 the other",
@@ -28,6 +30,8 @@ PRESET = diodes.masked_photodiodes(
         **diodes.usual(_SENSOR, _NOMINAL, _OFF, misaligned(0.0125)),
         "thick-slit": diodes.thick_slit(_SENSOR),
         **diodes.temperatures(_SENSOR),
+        "ghosts": other_light.with_ghosts(_SENSOR),
+        "albedo": other_light.with_albedo(_SENSOR),
     },
     follows=("Chang2006", "Abhilash2014", "Hales2002"),
     description=(
@@ -40,5 +44,5 @@ PRESET = diodes.masked_photodiodes(
         "length keep the slit's ends off them. Of the 250 uA that all light through the slits "
         "would make, the photodiodes catch 100 uA at normal incidence."
     ),
-    regime=diodes.regime(2.8, 0.5),
+    regime=measured_geometric(0.02, (1.0, 1.0, 1.0)),
 )

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from benchmark.datasets.conditions import masked_photodiodes as diodes
+from benchmark.datasets.conditions import other_light
 from benchmark.datasets.conditions.alignment import careful, misaligned
+from benchmark.datasets.conditions.propagation import measured_geometric
 
 _MASK = diodes.opening(2.0, 2.0, thickness_mm=0.02, rotation_deg=0.1)
 _CAMERA = diodes.through(_MASK, 1.0, careful(0.002))
@@ -14,7 +16,7 @@ _OFF = "focal length 2.5 % long, aperture 50 and -40 um off centre"
 
 PRESET = diodes.masked_photodiodes(
     name="qpd-single-aperture",
-    version=1,
+    version=2,
     detector="QPD",
     mask="Single-Ap.",
     readings=diodes.QUADRANTS,
@@ -23,14 +25,20 @@ PRESET = diodes.masked_photodiodes(
         **diodes.usual(_SENSOR, _NOMINAL, _OFF, misaligned(0.025)),
         "wide-gap": diodes.wide_gap(_SENSOR),
         "round-aperture": diodes.round_aperture(_SENSOR, _GEOMETRY),
+        "stray-gradient": other_light.with_stray_gradient(_SENSOR),
+        "ghosts": other_light.with_ghosts(_SENSOR),
+        "albedo": other_light.with_albedo(_SENSOR),
+        "albedo-clouds": other_light.with_clouds(_SENSOR),
     },
     follows=("Boslooper2017", "Faizullin2017"),
     description=(
         "Four photodiodes under one aperture: square as in Boslooper2017, round as in "
-        "Faizullin2017. Neither gives its geometry in what was mapped; round numbers instead. A 2 "
-        "mm aperture 1 mm up makes tan(alpha_max) = d / (2 h) = 1 (alg:VB), so the balance "
-        "saturates at 45 deg and the field stops at 40 deg; a detector of 3.6 mm cuts the spot off "
-        "in the last degree of it (from 38.7 deg), as small detectors do."
+        "Faizullin2017. Neither gives its geometry in what was mapped, nor does any maker of "
+        "quadrant sensors that was looked up; round numbers instead. A 2 mm aperture 1 mm up makes "
+        "tan(alpha_max) = d / (2 h) = 1 (alg:VB), so the balance saturates at 45 deg and the field "
+        "stops at 40 deg; a detector of 3.6 mm cuts the spot off in the last degree of it (from "
+        "38.7 deg), as small detectors do. Reflectances of the ghosts are round numbers for bare "
+        "silicon and for blackened chromium."
     ),
-    regime=diodes.regime(2.0, 1.0),
+    regime=measured_geometric(0.25, (1.0, 1.0, 1.0)),
 )

@@ -60,7 +60,59 @@ def _chord(v: float, lower: Floats, upper: Floats, numbers: Floats) -> Interval:
 
 
 @compiled
-def read_dial(out: Floats, tracks: Floats, rims: Floats, light: Floats, numbers: Floats) -> None:
+def _past(line: float, edge: Floats, scale: float) -> float:
+    """Light that diffraction carries past a line this far inside the light, as a length."""
+    reach = (edge.shape[0] - 2) // 2
+    place = line / scale * edge[-1]
+    if abs(place) >= reach:
+        return 0.0
+    place += reach
+    node = int(place)
+    return float(scale * (edge[node] + (place - node) * (edge[node + 1] - edge[node])))
+
+
+@compiled
+def _carried(ends: Interval, track: Floats, numbers: Floats, edge: Floats, scale: float) -> float:
+    """Open length that diffraction at both ends of the slit's light adds to a track's.
+
+    At each border of the pattern where it opens, light from further along is won or lost.
+    """
+    left, right = ends
+    kind, period, cell, square = track[0], numbers[0], numbers[1], numbers[2]
+    total = 0.0
+    if kind == 0.0:
+        cells = track.shape[0] - 5
+        first, width, before = track[3] - cell * cells / 2.0, cell, 0.0
+        for border in range(cells + 1):
+            after = 0.0
+            if border < cells:
+                after = (track[5 + border] - track[4 + border]) / cell
+            if after != before:
+                line = first + border * width
+                total += (after - before) * (
+                    _past(right - line, edge, scale) - _past(line - left, edge, scale)
+                )
+            before = after
+    elif square > 0.0:
+        half = period / 2.0
+        origin = track[3] + kind / 4.0 * period
+        far = scale * ((edge.shape[0] - 2) // 2) / edge[-1]
+        last = math.ceil((right + far - origin) / half)
+        for border in range(math.floor((left - far - origin) / half), last + 1):
+            line = origin + border * half
+            step = 1.0 if border % 2 == 0 else -1.0
+            total += step * (_past(right - line, edge, scale) - _past(line - left, edge, scale))
+    return total
+
+
+@compiled
+def read_dial(
+    out: Floats,
+    tracks: Floats,
+    sunlight: tuple[Floats, Floats],
+    numbers: Floats,
+    diffraction: tuple[Floats, Floats],
+) -> None:
     """Write the light behind every track of one dial, in units of the slit's width.
 
     Parameters
@@ -71,15 +123,19 @@ def read_dial(out: Floats, tracks: Floats, rims: Floats, light: Floats, numbers:
         (T, 4 + cells + 1): kind (0 coarse, 1 to 4 for the fine rows F1 to F4), middle across the
         dial, half height, displacement of the pattern along it, mm; then, of coarse tracks, the
         open length from the left end to each cell's edge, mm.
-    rims
-        (2, N, K, 2) displacement of the slit's lower and upper rims, mm, (u, v).
-    light
-        (N, K) light of each of the K points of the Sun.
+    sunlight
+        (2, N, K, 2) displacement of the slit's lower and upper rims, mm, (u, v), and (N, K) light
+        of each of the K points of the Sun.
     numbers
         (9,) fine period and cell, mm; 1 for square fine rows, 0 for sinusoidal ones; the slit's
         row of `Mask.table` without its kind.
+    diffraction
+        `edge_light.crossing` with its steps a unit behind it, empty for geometric light; (N,) the
+        length of its unit, mm. Sinusoidal rows, of which it changes little, stay geometric.
     """
     tilted = numbers[8] != 0.0
+    rims, light = sunlight
+    edge, scale = diffraction
     for n in range(out.shape[0]):
         for t in range(tracks.shape[0]):
             track = tracks[t]
@@ -93,5 +149,7 @@ def read_dial(out: Floats, tracks: Floats, rims: Floats, light: Floats, numbers:
                     if right > left:
                         passed = _open_length(right, track, numbers)
                         passed -= _open_length(left, track, numbers)
+                        if edge.shape[0] > 0:
+                            passed += _carried((left, right), track, numbers, edge, scale[n])
                         total += light[n, k] * share * passed
             out[n, t] = total

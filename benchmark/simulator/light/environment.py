@@ -92,6 +92,15 @@ class Earth:
             nadir[n] = -cosine * sun[n] + sine * (x * first[n] + y * second[n]) / norm
         return nadir
 
+    def sent_back(self, ground: Floats) -> Floats | float:  # noqa: ARG002 - of an Earth with clouds
+        """Share of sunlight that ground (P, 3) sends back; unit vectors from Earth's centre."""
+        return self.reflectance
+
+    def tables(self) -> tuple[Floats, Floats]:
+        """Numbers (5,) and cloud waves (M, 4) as `benchmark.simulator.kernels.earth` has them."""
+        reach = self.radius_km / (self.radius_km + self.altitude_km)
+        return np.array([reach, self.reflectance, self.reflectance, 0.0, 1.0]), np.empty((0, 4))
+
     def response(self, sun: Floats, nadir: Floats, normals: Floats, response: Response) -> Floats:
         """Response (N, K) of detector elements facing `normals` (K, 3) to the light from Earth.
 
@@ -123,7 +132,7 @@ class Earth:
             sight = local[:, :1] * first[n] + local[:, 1:2] * second[n] + local[:, 2:] * nadir[n]
             ground = (distance[:, None] * sight - centre * nadir[n]) / self.radius_km
             lit = np.maximum(_dot(ground, sun[n]), 0.0)
-            radiance = self.reflectance / math.pi * lit * solid_angle
+            radiance = self.sent_back(ground) / math.pi * lit * solid_angle
             for k in range(len(normals)):
                 seen = RESPONSES[response](_dot(sight, normals[k]))
                 out[n, k] = float(np.sum(radiance * seen))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -11,6 +11,11 @@ from numpy.typing import NDArray
 
 from algorithms.contract import Floats
 from benchmark.seeds import generator
+from benchmark.simulator.light.environment import Earth
+from benchmark.simulator.optics.diffraction import Spectrum
+from benchmark.simulator.optics.diffraction_tables import landing, layers
+from benchmark.simulator.optics.earthlight import EarthInView, on_elements
+from benchmark.simulator.optics.edge_light import REFERENCE_NM, crossing
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout import currents as readout
 from benchmark.simulator.readout.detectors import CurrentReadout
@@ -20,6 +25,8 @@ from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
 from benchmark.simulator.sensors.lines import LineAxis
 
+#: Sine of the widest incidence that diffraction is worked out for.
+_WIDEST_SINE = 0.9998
 FineRows = Literal["sine", "square"]
 
 
@@ -110,6 +117,8 @@ class CodeDialSensor:
     deflection_deg
         Rotation of the slits against the dials, from x towards y: light of the slit falls
         further along on tracks further across.
+    spectrum
+        Of light that diffracts at the slit's edges, or None for geometric light.
     """
 
     camera: Camera
@@ -117,6 +126,7 @@ class CodeDialSensor:
     readout: CurrentReadout
     axes: tuple[LineAxis, ...] = ("x", "y")
     deflection_deg: float = 0.0
+    spectrum: Spectrum | None = None
 
     def __post_init__(self) -> None:
         apertures = self.camera.mask.apertures
@@ -145,6 +155,7 @@ class CodeDialSensor:
         light = projected.light * scene.irradiance[:, None]
         slit = self.camera.mask.table()[0]
         count = self.dial.tracks
+        edge, scales = self._diffraction(scene)
         out = np.empty((len(scene), count * len(self.axes)))
         for number, axis in enumerate(self.axes):
             # swapped axes see the slit turn the other way
@@ -166,14 +177,48 @@ class CodeDialSensor:
                 rims = np.ascontiguousarray(rims[..., ::-1])
             part = np.empty((len(scene), count))
             columns = slice(number * count, (number + 1) * count)
-            read_dial(part, self.dial.table(pattern["shift_mm"][columns]), rims, light, numbers)
+            table = self.dial.table(pattern["shift_mm"][columns])
+            unit = np.ascontiguousarray(scales[:, 0 if axis == "x" else 1])
+            read_dial(part, table, (rims, light), numbers, (edge, unit))
             out[:, columns] = part / self.camera.mask.apertures[0].width_mm
         return out
 
+    def _diffraction(self, scene: Scene) -> tuple[Floats, Floats]:
+        """Table of light past an edge for the kernel, and (N, 2) its unit along x and y, mm.
+
+        ``sqrt(lambda J / 2)`` with J the part of `landing`'s along the axis, for the Sun's centre.
+        """
+        if self.spectrum is None:
+            return np.empty(0), np.empty((len(scene), 2))
+        camera = self.camera
+        head = camera.assembly.to_head(scene.sun)
+        square = np.minimum(head[:, 0] ** 2 + head[:, 1] ** 2, _WIDEST_SINE**2)
+        landed = landing(np.sqrt(square), layers(camera.height_mm, camera.glass))
+        bend = (landed[:, 1] - landed[:, 2]) / np.maximum(square, 1e-12)
+        spread = landed[:, 2:] + bend[:, None] * head[:, :2] ** 2
+        table, steps = crossing(self.spectrum)
+        return np.append(table, steps), np.sqrt(REFERENCE_NM * 1e-6 * spread / 2.0)
+
+    def received(self, scene: Scene, pattern: FixedPattern) -> Floats:
+        """(N, K) all light: direct, stray and from the Earth; units as of `lit`."""
+        response = self.lit(scene, pattern) + scene.stray[:, None]
+        if scene.albedo is not None:
+            response += scene.albedo
+        return np.asarray(response)
+
+    def earth_through(
+        self, earth: Earth, nadir: Floats, scene: Scene, pattern: FixedPattern
+    ) -> Floats:
+        """(N, K) light of the Earth, as `lit` has that of the Sun; for nadir (N, 3)."""
+
+        def lit(camera: Camera, sky: Scene) -> Floats:
+            return replace(self, camera=camera, spectrum=None).lit(sky, pattern)
+
+        return on_elements(self.camera, lit, EarthInView(earth, nadir, scene.sun))
+
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, K) mean microamperes."""
-        response = self.lit(scene, pattern) + scene.stray[:, None]
-        return readout.currents(self.readout, response, pattern)
+        return readout.currents(self.readout, self.received(scene, pattern), pattern)
 
     def variance(self, expected: Floats) -> Floats:
         """Squared microamperes."""

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Hashable
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.contract import Floats
 from benchmark.seeds import generator
+from benchmark.simulator.light.environment import Earth
 from benchmark.simulator.light.memory import memory
+from benchmark.simulator.optics.earthlight import EarthInView, add_between, on_window
+from benchmark.simulator.optics.ghosts import Ghost, add_ghost
 from benchmark.simulator.optics.projection import Camera, ProjectedLight
 from benchmark.simulator.readout.detectors import PixelArray
 from benchmark.simulator.readout.noise import NoiseStreams, counted
@@ -38,12 +41,15 @@ class FrameSensor:
         The window's middle misses the true spot by up to this many whole pixels an axis, as if
         placed from a previous frame; uniform, so the origin alone tells the spot no better than
         ``(2 j + 1) / sqrt(12)`` px.
+    ghost
+        Light reflected between detector and mask, or None.
     """
 
     camera: Camera
     detector: PixelArray
     window_px: tuple[int, int] = (64, 64)
     window_jitter_px: int = 8
+    ghost: Ghost | None = field(default=None, kw_only=True)
 
     def fixed_pattern(self, *names: str | int) -> FixedPattern:
         """``gain`` and ``dark_e``, (rows, columns): the pixels' relative gain and dark signal."""
@@ -119,8 +125,31 @@ class FrameSensor:
         )
         return flux
 
+    def earth_through(
+        self,
+        earth: Earth,
+        nadir: Floats,
+        scene: Scene,
+        pattern: FixedPattern,  # noqa: ARG002 - the protocol's
+    ) -> Floats:
+        """(N, R, C) irradiance from the Earth at points over each window, for nadir (N, 3).
+
+        The first is the first pixel, the last the last one; frames get what lies between.
+        """
+        detector = self.detector
+        origin = np.zeros((len(scene), 2)) if scene.origin_px is None else scene.origin_px
+        first = (origin - np.asarray(detector.centre_px)) * detector.pitch_mm
+        columns, rows = ((size - 1) * detector.pitch_mm for size in self.window_px)
+        return on_window(self.camera, first, (columns, rows), EarthInView(earth, nadir, scene.sun))
+
     def _electrons(self, scene: Scene, pattern: FixedPattern) -> Floats:
         electrons = self.lit(scene)
+        if self.ghost is not None:
+            middle = np.asarray(self.detector.centre_px)
+            moved = replace(scene, origin_px=np.asarray(scene.origin_px) - 0.5 - middle)
+            add_ghost(electrons, self.camera, self.ghost, moved, self.detector.pitch_mm)
+        if scene.albedo is not None:
+            add_between(electrons, scene.albedo)
         electrons += scene.stray[:, None, None]
         electrons *= self.detector.sunlit_e
         columns, rows = self.window_px

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.contract import Floats
 from benchmark.seeds import generator
+from benchmark.simulator.light.environment import Earth
 from benchmark.simulator.light.memory import memory
 from benchmark.simulator.masks.slits import SlitErrors
 from benchmark.simulator.optics.diffraction import GEOMETRIC_FROM
+from benchmark.simulator.optics.earthlight import EarthInView, add_between, on_window
 from benchmark.simulator.optics.plates import fresnel_number
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout.detectors import PixelArray
@@ -26,6 +28,7 @@ from benchmark.simulator.readout.references import (
 )
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
+from benchmark.simulator.sensors.stray_slope import sloping
 
 LineAxis = Literal["x", "y"]
 
@@ -67,6 +70,7 @@ class LineSensor:
     fill_factor: float = 1.0
     errors: SlitErrors = field(default_factory=SlitErrors)
     least_fresnel: float = GEOMETRIC_FROM
+    sees_slopes: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         if self.detector.rows != 1:
@@ -163,9 +167,42 @@ class LineSensor:
         through = thickness * (math.cos(tilt) * paths[2] - np.array([0.0, math.sin(tilt)]))
         paths[0], paths[1] = middle - through / 2.0, middle + through / 2.0
 
+    def earth_through(
+        self,
+        earth: Earth,
+        nadir: Floats,
+        scene: Scene,
+        pattern: FixedPattern,  # noqa: ARG002 - the protocol's
+    ) -> Floats:
+        """(N, A, P) irradiance from the Earth at points along each array, for nadir (N, 3).
+
+        The first is the first pixel, the last the last one; profiles get what lies between. The
+        plate's own errors are left out.
+        """
+        reach = (self.detector.columns - 1) * self.detector.pitch_mm
+        first = np.tile([-reach / 2.0, 0.0], (len(scene), 1))
+        view = EarthInView(earth, nadir, scene.sun)
+        arrays = [
+            on_window(self.camera, first, (reach, 0.0), view, swapped=axis == "y")
+            for axis in self.axes
+        ]
+        return np.concatenate(arrays, axis=1)
+
+    def _places(self) -> Floats:
+        """(W, 2) of the pixels, in units of half an array's length from its middle."""
+        columns = self.detector.columns
+        along = (np.arange(columns) - (columns - 1) / 2.0) / (columns / 2.0)
+        zero = np.zeros(columns)
+        return np.concatenate(
+            [np.stack([along, zero] if axis == "x" else [zero, along], -1) for axis in self.axes]
+        )
+
     def _electrons(self, scene: Scene, pattern: FixedPattern) -> Floats:
         electrons = self.lit(scene)
-        electrons += scene.stray[:, None]
+        if scene.albedo is not None:
+            arrays = electrons.reshape(len(scene) * len(self.axes), 1, -1)
+            add_between(arrays, scene.albedo.reshape(len(arrays), 1, -1))
+        electrons += sloping(scene, self._places())
         electrons *= self.detector.sunlit_e * pattern["gain"]
         electrons += pattern["dark_e"]
         return electrons

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from algorithms.contract import Floats
 from benchmark.simulator.light.memory import digest_of, memory
+from benchmark.simulator.optics.earthlight import add_between
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
@@ -39,6 +40,7 @@ class LitPixels:
     _gain: Floats = field(init=False)
     _dark: Floats = field(init=False)
     _rest: Floats = field(init=False)
+    _earth: Floats = field(init=False)
     _light: Floats = field(init=False)
 
     def __post_init__(self) -> None:
@@ -63,7 +65,25 @@ class LitPixels:
         object.__setattr__(self, "_gain", detector.sunlit_e * gain[pixels])
         object.__setattr__(self, "_dark", dark[pixels])
         object.__setattr__(self, "_rest", rest)
+        object.__setattr__(self, "_earth", self._earthlight(pixels))
         object.__setattr__(self, "_light", self._rendered(self.scene.sun))
+
+    def _earthlight(self, pixels: NDArray[np.int64]) -> Floats:
+        """(N, P + 1) light of the Earth on the pixels; last the others' mean, with their gains."""
+        out = np.zeros((len(pixels), pixels.shape[1] + 1))
+        if self.scene.albedo is None:
+            return out
+        detector, gain = self.sensor.detector, self.pattern["gain"]
+        for n, mine in enumerate(pixels):
+            frame = np.zeros((1, detector.rows, detector.columns))
+            add_between(frame, self.scene.albedo[n : n + 1])
+            listed = mine >= 0
+            out[n, :-1][listed] = frame.ravel()[mine[listed]]
+            frame[0] *= gain
+            others = np.ones(frame.size, dtype=np.bool_)
+            others[mine[listed]] = False
+            out[n, -1] = frame.ravel()[others].sum() / max(int(others.sum()), 1)
+        return out
 
     def _rendered(self, sun: Floats) -> Floats:
         """(N, P) light of mean sunlight on the pixels."""
@@ -95,9 +115,11 @@ class LitPixels:
         near = numbers[:, :-1]
         np.multiply(light, scene.irradiance[:, None], out=near)
         near += scene.stray[:, None]
+        near += self._earth[:, :-1]
         near *= self._gain
         near += self._dark
         numbers[:, -1] = scene.stray * detector.sunlit_e * self._rest[:, 1] + self._rest[:, 2]
+        numbers[:, -1] += detector.sunlit_e * self._earth[:, -1]
         np.minimum(numbers, detector.full_well_e, out=numbers)
         numbers /= detector.gain_e_per_dn
         numbers += detector.offset_dn

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.contract import Floats
+from benchmark.simulator.light.environment import Earth
 from benchmark.simulator.light.memory import Places, digest_of, memory
 from benchmark.simulator.masks.errors import MaskErrors
+from benchmark.simulator.optics.earthlight import add_between
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout.detectors import PixelArray
 from benchmark.simulator.readout.noise import NoiseStreams
@@ -134,10 +136,26 @@ class MultiSpotSensor:
         lit = (boxes[:, 1] > boxes[:, 0]) & (boxes[:, 3] > boxes[:, 2])
         return np.asarray(boxes[lit])
 
+    def earth_through(
+        self,
+        earth: Earth,
+        nadir: Floats,
+        scene: Scene,
+        pattern: FixedPattern,  # noqa: ARG002 - the protocol's
+    ) -> Floats:
+        """(N, R, C) irradiance from the Earth at points over the detector, for nadir (N, 3).
+
+        As of `FrameSensor`, through the mask as drawn.
+        """
+        whole = replace(scene, origin_px=np.zeros((len(scene), 2), dtype=np.int64))
+        return self._whole().earth_through(earth, nadir, whole, {})
+
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, rows, columns) mean digital numbers before rounding."""
         detector = self.detector
         electrons = self.lit(scene, pattern)
+        if scene.albedo is not None:
+            add_between(electrons, scene.albedo)
         electrons += scene.stray[:, None, None]
         electrons *= detector.sunlit_e * pattern["gain"]
         electrons += pattern["dark_e"]
@@ -190,6 +208,8 @@ class MultiSpotSensor:
                 (*key, one.sun.tobytes()), partial(self._places, light, one, pattern)
             )
             flat[places] = values * scene.irradiance[n]
+            if scene.albedo is not None:
+                add_between(light[None], scene.albedo[n : n + 1])
             digitise(
                 out[n],
                 light,
@@ -197,7 +217,7 @@ class MultiSpotSensor:
                 tables,
                 (float(scene.stray[n]), *numbers),
             )
-            flat[places] = 0.0
+            flat[places if scene.albedo is None else slice(None)] = 0.0
         return out
 
     def _places(self, frame: Floats, one: Scene, pattern: FixedPattern) -> Places:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 
 from algorithms.contract import Floats
+from benchmark.simulator.light.environment import Earth
 from benchmark.simulator.masks.apertures import Aperture
+from benchmark.simulator.optics.earthlight import EarthInView, on_elements
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout import currents as readout
 from benchmark.simulator.readout.detectors import CurrentReadout
@@ -16,6 +19,7 @@ from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
+from benchmark.simulator.sensors.stray_slope import sloping
 
 
 @dataclass(frozen=True)
@@ -69,6 +73,7 @@ class PositionSensor:
     camera: Camera
     detector: LateralEffect
     readout: CurrentReadout
+    sees_slopes: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         if self.camera.mask.thickness_mm != 0:
@@ -103,10 +108,32 @@ class PositionSensor:
                 collected += share * np.sum(light.light[..., None] * parts, axis=1)
         return np.asarray(collected * scene.irradiance[:, None])
 
+    def received(self, scene: Scene) -> Floats:
+        """(N, 4) all light: direct, stray and from the Earth; units as of `lit`."""
+        # each electrode's share (1 +- u)(1 +- v) / 4 has its mean at a third of the way to it
+        thirds = np.array([(-1.0, 1.0), (1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)]) / 3.0
+        response = self.lit(scene) + sloping(scene, thirds) / 4.0
+        if scene.albedo is not None:
+            response += scene.albedo
+        return np.asarray(response)
+
+    def earth_through(
+        self,
+        earth: Earth,
+        nadir: Floats,
+        scene: Scene,
+        pattern: FixedPattern,  # noqa: ARG002 - the protocol's
+    ) -> Floats:
+        """(N, 4) light of the Earth, as `lit` has that of the Sun; for nadir (N, 3)."""
+
+        def lit(camera: Camera, sky: Scene) -> Floats:
+            return replace(self, camera=camera).lit(sky)
+
+        return on_elements(self.camera, lit, EarthInView(earth, nadir, scene.sun))
+
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, 4) mean microamperes; a quarter of the stray light to each electrode."""
-        response = self.lit(scene) + scene.stray[:, None] / 4.0
-        return readout.currents(self.readout, response, pattern)
+        return readout.currents(self.readout, self.received(scene), pattern)
 
     def variance(self, expected: Floats) -> Floats:
         """Squared microamperes."""

@@ -2,27 +2,34 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 
 from algorithms.contract import Floats
-from benchmark.simulator.optics.projection import Camera
+from benchmark.simulator.light.environment import Earth
+from benchmark.simulator.optics.earthlight import EarthInView, on_elements
+from benchmark.simulator.optics.ghosts import Ghost
+from benchmark.simulator.optics.projection import Camera, ProjectedLight
 from benchmark.simulator.readout import currents as readout
 from benchmark.simulator.readout.detectors import CurrentReadout, Quadrants
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
+from benchmark.simulator.sensors.stray_slope import sloping
 
 
 @dataclass(frozen=True)
 class QuadrantSensor:
-    """Four photodiodes (order Q1..Q4 of `Quadrants`) under one aperture."""
+    """Four photodiodes (order Q1..Q4 of `Quadrants`) under one aperture, with a ghost or none."""
 
     camera: Camera
     detector: Quadrants
     readout: CurrentReadout
+    ghost: Ghost | None = None
+    sees_slopes: ClassVar[bool] = True
 
     def fixed_pattern(self, *names: str | int) -> FixedPattern:
         """``gain`` (4,): relative gains of the quadrants."""
@@ -36,9 +43,15 @@ class QuadrantSensor:
 
         Exact areas; light on the gap and beyond the detector's edge is lost.
         """
+        area = self._areas(self.camera.project(scene.sun), scene)
+        if self.ghost is not None:
+            area += self._areas(self.ghost.project(self.camera, scene.sun), scene)
+        return np.asarray(area / sum(a.area_mm2 for a in self.camera.mask.apertures))
+
+    def _areas(self, light: ProjectedLight, scene: Scene) -> Floats:
+        """(N, 4) lit areas of the quadrants, mm^2, times the light."""
         from benchmark.simulator.kernels.areas import lit_boxes  # noqa: PLC0415 - Numba on demand
 
-        light = self.camera.project(scene.sun)
         area = np.empty((len(scene), 4))
         lit_boxes(
             area,
@@ -47,12 +60,34 @@ class QuadrantSensor:
             light.rims_mm,
             light.light * scene.irradiance[:, None],
         )
-        return np.asarray(area / sum(a.area_mm2 for a in self.camera.mask.apertures))
+        return area
+
+    def received(self, scene: Scene) -> Floats:
+        """(N, 4) all light: direct, stray and from the Earth; units as of `lit`."""
+        boxes = self.detector.boxes() / self.detector.half_width_mm
+        middles = np.stack([boxes[:, :2].mean(axis=1), boxes[:, 2:].mean(axis=1)], axis=1)
+        response = self.lit(scene) + sloping(scene, middles)
+        if scene.albedo is not None:
+            response += scene.albedo
+        return np.asarray(response)
+
+    def earth_through(
+        self,
+        earth: Earth,
+        nadir: Floats,
+        scene: Scene,
+        pattern: FixedPattern,  # noqa: ARG002 - the protocol's
+    ) -> Floats:
+        """(N, 4) light of the Earth, as `lit` has that of the Sun; for nadir (N, 3)."""
+
+        def lit(camera: Camera, sky: Scene) -> Floats:
+            return replace(self, camera=camera).lit(sky)
+
+        return on_elements(self.camera, lit, EarthInView(earth, nadir, scene.sun))
 
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, 4) mean microamperes."""
-        response = self.lit(scene) + scene.stray[:, None]
-        return readout.currents(self.readout, response, pattern)
+        return readout.currents(self.readout, self.received(scene), pattern)
 
     def variance(self, expected: Floats) -> Floats:
         """Squared microamperes."""

@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 
 from algorithms.contract import Floats
-from benchmark.simulator.optics.projection import Camera
+from benchmark.simulator.light.environment import Earth
+from benchmark.simulator.optics.earthlight import EarthInView, on_elements
+from benchmark.simulator.optics.ghosts import Ghost
+from benchmark.simulator.optics.projection import Camera, ProjectedLight
 from benchmark.simulator.readout import currents as readout
 from benchmark.simulator.readout.detectors import CurrentReadout
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
+from benchmark.simulator.sensors.stray_slope import sloping
 
 _DIAGONAL = math.sqrt(0.5)  # sine and cosine of 45 deg
 
@@ -61,12 +66,15 @@ class SlitPairSensor:
     ``s_a = sqrt(2) h tan(beta) / w`` and ``s_b = sqrt(2) h tan(alpha) / w``, those of a quadrant
     photodiode behind a square aperture of width ``sqrt(2) w``.
 
-    `camera.mask` is one slit, its width across and its height along the pair.
+    `camera.mask` is one slit, its width across and its height along the pair. Where there is a
+    `ghost`, each pair has its own.
     """
 
     camera: Camera
     pair: DiodePair
     readout: CurrentReadout
+    ghost: Ghost | None = None
+    sees_slopes: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         apertures = self.camera.mask.apertures
@@ -84,9 +92,15 @@ class SlitPairSensor:
 
     def lit(self, scene: Scene) -> Floats:
         """(N, 4) light on the diodes, in units of both whole slits at normal incidence."""
+        out = self._areas(self.camera.project(scene.sun), scene)
+        if self.ghost is not None:
+            out += self._areas(self.ghost.project(self.camera, scene.sun), scene)
+        return np.asarray(out / (2.0 * self.camera.mask.apertures[0].area_mm2))
+
+    def _areas(self, projected: ProjectedLight, scene: Scene) -> Floats:
+        """(N, 4) lit areas of the diodes, mm^2, times the light."""
         from benchmark.simulator.kernels.areas import lit_boxes  # noqa: PLC0415 - Numba on demand
 
-        projected = self.camera.project(scene.sun)
         x, y = projected.rims_mm[..., 0], projected.rims_mm[..., 1]
         u, v = _DIAGONAL * (x + y), _DIAGONAL * (y - x)
         light = projected.light * scene.irradiance[:, None]
@@ -96,12 +110,35 @@ class SlitPairSensor:
         for rims, columns in ((np.stack([u, v], -1), (1, 3)), (np.stack([v, -u], -1), (0, 2))):
             lit_boxes(area, self.pair.boxes(), table, np.ascontiguousarray(rims), light)
             out[:, columns] = area
-        return out / (2.0 * self.camera.mask.apertures[0].area_mm2)
+        return out
+
+    def received(self, scene: Scene) -> Floats:
+        """(N, 4) all light: direct, stray and from the Earth; units as of `lit`."""
+        near, far = self.pair.gap_mm / 2.0, self.pair.reach_mm
+        off = _DIAGONAL * (near + far) / 2.0 / far
+        middles = off * np.array([(-1.0, 1.0), (1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)])
+        response = self.lit(scene) + sloping(scene, middles)
+        if scene.albedo is not None:
+            response += scene.albedo
+        return np.asarray(response)
+
+    def earth_through(
+        self,
+        earth: Earth,
+        nadir: Floats,
+        scene: Scene,
+        pattern: FixedPattern,  # noqa: ARG002 - the protocol's
+    ) -> Floats:
+        """(N, 4) light of the Earth, as `lit` has that of the Sun; for nadir (N, 3)."""
+
+        def lit(camera: Camera, sky: Scene) -> Floats:
+            return replace(self, camera=camera).lit(sky)
+
+        return on_elements(self.camera, lit, EarthInView(earth, nadir, scene.sun))
 
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, 4) mean microamperes."""
-        response = self.lit(scene) + scene.stray[:, None]
-        return readout.currents(self.readout, response, pattern)
+        return readout.currents(self.readout, self.received(scene), pattern)
 
     def variance(self, expected: Floats) -> Floats:
         """Squared microamperes."""

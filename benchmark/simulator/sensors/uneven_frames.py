@@ -1,63 +1,19 @@
-"""Stray light that is brighter on one side of the detector than on the other.
-
-Uniform stray light is `Irradiance`'s. Its slope belongs to scenes and sensors of its own, so that
-those without one keep their numbers and their random streams.
-"""
+"""Frames under stray light that is brighter on one side of the detector than on the other."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
 from algorithms.contract import Floats
-from benchmark.simulator.light.environment import Irradiance
 from benchmark.simulator.readout.detectors import PixelArray
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensors.frames import FrameSensor
+from benchmark.simulator.sensors.stray_slope import UnevenIrradiance, UnevenScene
 
-
-@dataclass(frozen=True)
-class UnevenIrradiance(Irradiance):
-    """An `Irradiance` whose stray light also slopes across the detector, anew for every sample.
-
-    Attributes
-    ----------
-    slope_spread
-        Standard deviation, along x and y each, of how much more stray light the edge of the
-        detector gets than its middle; in units of mean sunlight at normal incidence. At most a
-        quarter of `stray`, so that stray light does not turn negative.
-    """
-
-    slope_spread: float = 0.0
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if not 0 <= self.slope_spread <= self.stray / 4.0:
-            raise ValueError(
-                f"slope_spread must be in [0, stray / 4 = {self.stray / 4.0}]; got "
-                f"{self.slope_spread}"
-            )
-
-    def draw_slopes(self, count: int, generator: np.random.Generator) -> Floats:
-        """(N, 2) slopes along x and y."""
-        return self.slope_spread * generator.standard_normal((count, 2))
-
-
-@dataclass(frozen=True)
-class UnevenScene(Scene):
-    """A `Scene` under sloping stray light: `slope` (N, 2), as `UnevenIrradiance` draws it."""
-
-    slope: Floats | None = None
-
-    @classmethod
-    def of(cls, scene: Scene, slope: Floats) -> UnevenScene:
-        """Return `scene` with slopes (N, 2)."""
-        if slope.shape != (len(scene), 2):
-            raise ValueError(f"slopes must be ({len(scene)}, 2); got {slope.shape}")
-        return cls(
-            scene.sun, scene.irradiance, scene.stray, scene.origin_px, scene.albedo, slope=slope
-        )
+__all__ = ["UnevenFrameSensor", "UnevenIrradiance", "UnevenScene", "add_slope"]
 
 
 def add_slope(flux: Floats, scene: Scene, detector: PixelArray) -> None:
@@ -79,6 +35,8 @@ def add_slope(flux: Floats, scene: Scene, detector: PixelArray) -> None:
 @dataclass(frozen=True)
 class UnevenFrameSensor(FrameSensor):
     """A `FrameSensor` that sees the slope of an `UnevenScene`'s stray light."""
+
+    sees_slopes: ClassVar[bool] = True
 
     def lit(self, scene: Scene) -> Floats:
         """(N, H, W) as `FrameSensor.lit`, with the uneven part of stray light."""

@@ -294,8 +294,8 @@ def test_objects_that_name_another_type_stand_whole() -> None:
     assert base["d"] == {"e": 1, "f": 2}, "what is merged into stays as it is"
 
 
-def test_only_faces_see_the_earth() -> None:
-    with pytest.raises(ValueError, match="face sensors only"):
+def test_a_sensor_that_sees_no_earth_is_refused_one() -> None:
+    with pytest.raises(ValueError, match="for faces and for sensors behind openings; got Teller"):
         replace(fake().setups["nominal"], earth=Earth())
 
 

@@ -216,7 +216,9 @@ def ideal_dial(**changes: Any) -> CodeDialSensor:
     )
     dial = replace(sensor.dial, track_error_mm=0.0, **changes)
     readout = replace(sensor.readout, gain_mismatch=0.0, dark=DarkCurrent(0.0))
-    return replace(sensor, camera=camera, dial=dial, readout=readout, deflection_deg=0.0)
+    return replace(
+        sensor, camera=camera, dial=dial, readout=readout, deflection_deg=0.0, spectrum=None
+    )
 
 
 def dial_parts(sensor: CodeDialSensor, scene: Scene) -> tuple[np.ndarray, np.ndarray]:

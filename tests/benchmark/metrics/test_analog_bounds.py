@@ -133,7 +133,7 @@ def test_a_position_sensor_is_bounded_by_its_balance() -> None:
     sensor = replace(setup.sensor, readout=readout, camera=camera)
     scene = Scene(np.array([[0.0, 0.0, 1.0]]), np.ones(1), np.zeros(1))
     bound = cramer_rao(sensor, scene, sensor.fixed_pattern("test"), LIGHT)
-    expected = math.degrees(9.0 / (2 * 2.2) * 2 * 0.005 / 50.0)
+    expected = math.degrees(4.0 / (2 * 1.5) * 2 * 0.01 / 100.0)
     assert bound.alpha_deg[0] == pytest.approx(expected, rel=2e-3)
     assert bound.beta_deg[0] == pytest.approx(expected, rel=2e-3)
 

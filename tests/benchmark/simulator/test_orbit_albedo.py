@@ -15,8 +15,10 @@ from benchmark.simulator.sensors.frames import FrameSensor
 from benchmark.sweeps.albedo_influence import (
     Patches,
     aperture_earthlight,
+    influence,
     lit_patches,
     on_aperture,
+    on_balance,
     on_cube,
 )
 
@@ -122,6 +124,17 @@ def test_albedo_moves_a_plain_centroid_by_about_the_bound_where_earth_is_in_the_
     assert 0.0 < influence.worst_deg < 0.01
     assert influence.rms_over_bound < 2.0
     assert influence.share_above_a_tenth < 0.2
+
+
+def test_albedo_moves_the_balance_of_a_quadrant_sensor_by_many_times_its_bound() -> None:
+    result = influence("qpd-single-aperture", 200)
+    assert 0.4 < result.rms_deg < 1.0
+    assert result.worst_deg > 1.5
+    assert result.rms_over_bound > 10
+    with pytest.raises(TypeError, match="pd-code-dial has 18 currents, no balance"):
+        on_balance("pd-code-dial")
+    with pytest.raises(TypeError, match="pd-orbit has no condition 'albedo'"):
+        on_balance("pd-orbit")
 
 
 def test_other_sensors_are_refused() -> None:

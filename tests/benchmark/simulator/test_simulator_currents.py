@@ -12,7 +12,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import integrate
 
-from benchmark import datasets
 from benchmark.seeds import generator
 from benchmark.simulator.kernels.areas import convex_area
 from benchmark.simulator.light.environment import Earth, uniform_direction
@@ -279,9 +278,3 @@ def test_albedo_samples_all_see_the_sun() -> None:
     apart = np.degrees(np.arccos(np.clip(np.sum(sun * nadir, axis=1), -1, 1)))
     assert apart.min() > earth.half_angle_deg
     assert apart.max() > 150
-
-
-def test_earth_in_view_needs_faces() -> None:
-    nominal = datasets.get("qpd-single-aperture").setups["nominal"]
-    with pytest.raises(ValueError, match="face sensors only"):
-        replace(nominal, earth=Earth())

@@ -1,0 +1,114 @@
+"""Light that is not the Sun's first image: the sunlit Earth through an opening, and ghosts."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Final, TypeVar
+
+from algorithms.contract import SensorGeometry
+from benchmark.datasets.conditions.propagation import LIGHT
+from benchmark.datasets.preset import Condition
+from benchmark.simulator.light.clouds import CloudyEarth
+from benchmark.simulator.light.environment import Earth, Irradiance
+from benchmark.simulator.optics.ghosts import Ghost
+from benchmark.simulator.sensor import Sensor
+from benchmark.simulator.sensors.frames import FrameSensor
+from benchmark.simulator.sensors.quadrants import QuadrantSensor
+from benchmark.simulator.sensors.slit_pairs import SlitPairSensor
+from benchmark.simulator.sensors.stray_slope import UnevenIrradiance
+
+Haunted = TypeVar("Haunted", QuadrantSensor, SlitPairSensor, FrameSensor)
+
+_ORBIT: Final = (
+    "in a 600 km orbit with the sunlit Earth in view on the test split, position and attitude "
+    "random where the Sun is visible; calibrated on the ground without Earth"
+)
+
+
+def with_albedo(
+    sensor: Sensor, irradiance: Irradiance = LIGHT, geometry: SensorGeometry | None = None
+) -> Condition:
+    """Return the condition of an orbit over an Earth that sends 0.3 of all light back.
+
+    Parameters
+    ----------
+    sensor
+        Under its nominal condition, behind openings.
+    irradiance, geometry
+        Of the nominal condition.
+
+    Raises
+    ------
+    ValueError
+        When the sensor does not see the Earth.
+    """
+    return Condition(
+        f"The nominal sensor {_ORBIT}. Earth is the same everywhere: Lambert's, albedo 0.3.",
+        sensor,
+        irradiance,
+        earth=Earth(),
+        geometry=geometry,
+    )
+
+
+def with_clouds(
+    sensor: Sensor, irradiance: Irradiance = LIGHT, geometry: SensorGeometry | None = None
+) -> Condition:
+    """Return the condition of an orbit over patches of clouds; parameters as of `with_albedo`."""
+    earth = CloudyEarth()
+    return Condition(
+        f"The nominal sensor {_ORBIT}. Clouds of {earth.cloudy:.2f} cover "
+        f"{earth.clouds.cover:.0%} of ground of {earth.clouds.clear:.2f} in patches: 0.3 again in "
+        "the mean.",
+        sensor,
+        irradiance,
+        earth=earth,
+        geometry=geometry,
+    )
+
+
+def with_ghosts(
+    sensor: Haunted,
+    ghost: Ghost | None = None,
+    irradiance: Irradiance = LIGHT,
+    geometry: SensorGeometry | None = None,
+) -> Condition:
+    """Return the condition of light reflected once more between detector and mask.
+
+    Parameters
+    ----------
+    sensor
+        Under its nominal condition.
+    ghost
+        None takes bare silicon below chromium blackened with its oxide.
+    irradiance, geometry
+        Of the nominal condition.
+    """
+    seen = Ghost() if ghost is None else ghost
+    where = "the mask's underside" if seen.surface == "mask" else "the cover glass"
+    return Condition(
+        f"The nominal sensor whose detector reflects {seen.detector_reflectance:g} and {where} "
+        f"{seen.surface_reflectance:g} of that: a second image of {seen.share:.1%} of the light, "
+        "further out.",
+        replace(sensor, ghost=seen),
+        irradiance,
+        geometry=geometry,
+    )
+
+
+def with_stray_gradient(
+    sensor: Sensor, irradiance: Irradiance = LIGHT, geometry: SensorGeometry | None = None
+) -> Condition:
+    """Return the condition of ten times the stray light, brighter on one side than on the other.
+
+    For an `UnevenPreset`; parameters as of `with_albedo`.
+    """
+    stray = 10.0 * irradiance.stray
+    return Condition(
+        f"The nominal sensor with stray light of {stray:g} of sunlight that slopes from sample to "
+        "sample: the detector's edge gets a quarter more or less than its middle, one standard "
+        "deviation an axis.",
+        sensor,
+        UnevenIrradiance(irradiance.spread, stray, stray / 5.0, stray / 4.0),
+        geometry=geometry,
+    )

@@ -1,0 +1,157 @@
+"""What diffraction does to currents behind openings, measured again, against what cards say."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from diffracted_currents import (
+    covered,
+    currents,
+    landing,
+    pattern,
+    sampled,
+    sampled_slit,
+    spread,
+)
+
+from algorithms.contract import Observation
+from benchmark import datasets
+from benchmark.simulator.light.sun_disc import from_angles
+
+_HALF = 5e-4  # rad, as bounds take it
+
+
+class Setup:
+    """A dataset's nominal sensor as drawn, without errors of assembly."""
+
+    def __init__(self, name: str, step_mm: float, reach_mm: float) -> None:
+        self.preset: Any = datasets.get(name)
+        self.sensor: Any = self.preset.setups["nominal"].sensor
+        self.half_fov_deg = float(self.preset.geometry.half_fov_deg)
+        camera = self.sensor.camera
+        gap = camera.focal_length_mm - camera.glass.thickness_mm
+        plates = [(plate.thickness_mm, plate.index) for plate in camera.glass.plates]
+        self.layers = [(gap, 1.0), *plates]
+        (hole,) = camera.mask.apertures
+        self.step = step_mm
+        half = hole.width_mm / 2.0, hole.height_mm / 2.0
+        self.opening, self.place = sampled(half, reach_mm, step_mm, hole.shape)
+
+    def elements(self) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
+        detector = self.sensor.detector
+        if hasattr(detector, "boxes"):
+            return covered(detector.boxes(), self.step)
+
+        def shares(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+            return np.moveaxis(detector.shares(*np.broadcast_arrays(x, y)), -1, 0)
+
+        return shares
+
+    def both(self, directions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(M, K) currents in diffracted and in geometric light of directions close to each other.
+
+        In units of the whole opening at normal incidence; the pattern is that of the first.
+        """
+        light = pattern(self.opening, self.step, spread(directions[0], self.layers))
+        whole = self.opening.sum()
+        out = [
+            [
+                currents(which, self.place, landing(one, self.layers), self.elements())
+                * (one[2] / whole)
+                for one in directions
+            ]
+            for which in (light, self.opening)
+        ]
+        return np.array(out[0]), np.array(out[1])
+
+
+SETUPS = {
+    "qpd-single-aperture": (0.004, 2.6),
+    "pd-single-aperture": (0.004, 1.2),
+    "psd-single-aperture": (0.003, 2.7),
+}
+
+
+def toward(alpha: float, beta: float) -> np.ndarray:
+    return from_angles(np.array([alpha]), np.array([beta]))
+
+
+def test_currents_behind_openings_are_geometric_by_measurement_or_diffracted() -> None:
+    regimes = {
+        name: preset.card()["regime"]
+        for name in datasets.names()
+        for preset in [datasets.get(name)]
+        if preset.observation is Observation.CURRENTS and preset.mask != "Maskless"
+    }
+    assert set(regimes) == {*SETUPS, "pd-slit", "pd-code-dial"}
+    for name, regime in regimes.items():
+        assert "fresnel_number" not in regime
+        if name == "pd-code-dial":
+            assert regime["propagation"] == "diffraction"
+        else:
+            assert regime["largest_difference_percent"] < 1.0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", SETUPS)
+def test_currents_are_geometric_as_far_as_the_card_says(name: str) -> None:
+    setup = Setup(name, *SETUPS[name])
+    said = setup.preset.card()["regime"]["largest_difference_percent"]
+    edge = setup.half_fov_deg
+    worst = 0.0
+    for alpha, beta in [(0, 0.5), (0, 0.97), (0, 1), (0.97, 0.97), (1, 1)]:
+        diffracted, geometric = setup.both(toward(edge * alpha, edge * beta))
+        worst = max(worst, 100.0 * float(np.abs(diffracted - geometric).max()))
+    assert said < 1.0
+    # the card rounds up, and the detector's rim may be crossed between two of these directions
+    assert 0.2 * said < worst <= said
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", SETUPS)
+def test_bounds_change_as_little_as_the_card_says(name: str) -> None:
+    """Noise of the same size in every current, sunlight unknown: Fisher's matrix by differences."""
+    setup = Setup(name, *SETUPS[name])
+    said = list(setup.preset.card()["regime"]["bound_ratio"].values())
+    found = [_ratio(setup, share * setup.half_fov_deg) for share in (0.0, 0.5, 1.0)]
+    assert found == pytest.approx(said, abs=0.005)
+
+
+def _ratio(setup: Setup, beta: float) -> float:
+    sun = toward(0.0, beta)[0]
+    first = np.array([sun[2], 0.0, -sun[0]])
+    second = np.array([0.0, 1.0, 0.0])
+    moved = [sun + sign * _HALF * axis for axis in (first, second) for sign in (1, -1)]
+    bounds = []
+    for seen in setup.both(np.array([sun, *moved])):
+        jacobian = np.stack([seen[1] - seen[2], seen[3] - seen[4], seen[0]])
+        bounds.append(math.sqrt(np.trace(np.linalg.inv(jacobian @ jacobian.T)[:2, :2])))
+    return bounds[0] / bounds[1]
+
+
+@pytest.mark.slow
+def test_slit_pairs_are_geometric_as_far_as_the_card_says() -> None:
+    """Long slits: one dimension, across each of them, suffices."""
+    preset = datasets.get("pd-slit")
+    sensor = preset.setups["nominal"].sensor
+    said = preset.card()["regime"]["largest_difference_percent"]
+    step, worst = 0.002, 0.0
+    (slit,) = sensor.camera.mask.apertures
+    layers = [(sensor.camera.focal_length_mm, 1.0)]
+    row, place = sampled_slit(slit.width_mm / 2.0, 6.0, step)
+    for alpha, beta in [(0, 0), (0, 30), (0, 60), (30, 60), (60, 60), (-60, 60)]:
+        sun = toward(alpha, beta)[0]
+        for across in (np.array([1.0, 1.0]), np.array([-1.0, 1.0])):
+            normal = across / math.sqrt(2.0)
+            bend = np.diag([float(normal @ spread(sun, layers) @ normal), 0.0])
+            u = place + float(normal @ landing(sun, layers))
+            change = pattern(row, step, bend)[0] - row[0]
+            for left, right in sensor.pair.boxes()[:, :2]:
+                inside = np.minimum(right, u + step / 2) - np.maximum(left, u - step / 2)
+                crossed = np.sum(change * np.maximum(inside, 0.0) / step) / row.sum()
+                worst = max(worst, 100.0 * abs(float(crossed)) * sun[2])
+    assert 0.2 * said < worst <= said < 1.0
