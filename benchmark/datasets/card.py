@@ -78,7 +78,8 @@ def stream_names(name: str, version: int) -> dict[str, Any]:
         "unit": [name, version, "unit"],
         "samples": [name, version, "<split>"],
         "noise": [name, version, "<condition>", "<split>"],
-        "other_units": 'unit: [..., "unit", <number>]; noise: [..., "unit", <number>]',
+        "calibration": [name, version, "bench"],
+        "other_units": 'unit, noise and calibration: [..., "unit", <number>]',
     }
 
 
