@@ -178,6 +178,7 @@ function draw() {
   const url = address(`/v1/leaderboard/${encodeURIComponent(dataset)}`, { condition, field_deg: field || null, limit: 500 });
   byId("board-card").replaceChildren(h("div", { class: "dataset-card" },
     card && h("p", {}, card.description),
+    card?.stands_for?.idealisation && h("p", {}, h("strong", {}, "An idealisation"), `: ${card.stands_for.idealisation}`),
     card?.setups?.[condition]?.description && h("p", {}, h("strong", {}, condition), `: ${card.setups[condition].description}`),
     h("p", { class: "bound-line" }, "Cramér–Rao bound: ", h("strong", {}, degrees(bound)), " RMS",
       card && [` · version ${card.version}`, card.follows?.length > 0 && [" · follows ", card.follows.map((k, i) => [i > 0 && ", ", h("a", { href: `/v1/studies/${encodeURIComponent(k)}` }, k)])]]),

@@ -15,6 +15,7 @@ from benchmark.datasets.calibration import IDEAL, STANDARD_BENCH, Bench, Referen
 from benchmark.datasets.card import stream_names, told_once
 from benchmark.datasets.fields import Field, Split
 from benchmark.datasets.parameters import described
+from benchmark.datasets.realism import standing
 from benchmark.datasets.repeats import REPEAT, Repeats
 from benchmark.datasets.samples import Samples
 from benchmark.datasets.units import assembled, tolerances
@@ -328,6 +329,7 @@ class Preset:
             "units": self.units,
             "description": self.description,
             "follows": list(self.follows),
+            "stands_for": standing(self.name).card(),
             "geometry": geometry,
             "splits": {**splits, REPEAT: self.repeats.card(splits["test"]["samples"])},
             "parameters": shared,
