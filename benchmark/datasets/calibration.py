@@ -52,7 +52,9 @@ class Bench:
 
     Outer axis x, inner axis y: the Sun stands at ``(sin b, cos b sin a, cos b cos a)`` for the
     outer angle a and the inner angle b, which covers the sphere. The sizes of the defaults are
-    round numbers: a turntable good to 0.02 deg absolutely, a class A solar simulator.
+    round numbers: a turntable good to 0.02 deg absolutely, a class A solar simulator whose
+    collimator shows it as wide as the Sun. What is not simulated: that rays which diverge reach
+    holes some millimetres apart at other angles, and a lamp's spectrum but for its level.
 
     Attributes
     ----------
