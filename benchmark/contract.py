@@ -44,7 +44,7 @@ class Samples(Protocol):
 
     @property
     def sun(self) -> Floats:
-        """True unit vectors (N, 3)."""
+        """Unit vectors (N, 3): true ones, in the calibration split its reference's."""
         ...
 
     @property

@@ -37,6 +37,7 @@ class SurveyTables:
     claims: pd.DataFrame
     references: pd.DataFrame
     counts: pd.DataFrame
+    hardware: pd.DataFrame
 
 
 def load(directory: str | Path | None = None) -> SurveyTables:

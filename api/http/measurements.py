@@ -96,6 +96,14 @@ class Measurements:
         return assessment.document(assessment.assess(self.directory, times=self.times))
 
     @cached_property
+    def realism(self) -> Sequence[Row]:
+        """Data sets beside the built sensors that they stand for."""
+        from benchmark.leaderboard.realism import realism  # noqa: PLC0415 - as presets
+
+        nominal = {name: preset.conditions[0] for name, preset in self.presets.items()}
+        return realism(self.scores, nominal)
+
+    @cached_property
     def presets(self) -> Mapping[str, Preset]:
         """The standard data sets by name. The first use loads the simulator."""
         from benchmark import datasets  # noqa: PLC0415 - slow, and not needed to make the service
@@ -111,10 +119,10 @@ class Measurements:
     def cards(self) -> Sequence[Row]:
         """Cards of the standard data sets, short: what a condition is in words, no parameters."""
         short = ("name", "version", "detector", "mask", "observation", "units")
-        words = ("conditions", "bounds", "description", "follows", "splits", "preview")
+        words = ("conditions", "bounds", "description", "follows", "stands_for", "splits")
         return [
             {
-                **{name: card[name] for name in (*short, *words)},
+                **{name: card[name] for name in (*short, *words, "preview")},
                 "setups": {
                     condition: {"description": setup["description"]}
                     for condition, setup in card["setups"].items()

@@ -184,6 +184,7 @@ function draw() {
   const url = address(`/v1/leaderboard/${encodeURIComponent(dataset)}`, { condition, field_deg: field || null, limit: 500 });
   byId("board-card").replaceChildren(h("div", { class: "dataset-card" },
     card && h("p", {}, card.description),
+    card?.stands_for?.idealisation && h("p", {}, h("strong", {}, "An idealisation"), `: ${card.stands_for.idealisation}`),
     card?.setups?.[condition]?.description && h("p", {}, h("strong", {}, condition), `: ${card.setups[condition].description}`),
     h("p", { class: "bound-line" }, "Cramér–Rao bound: ", h("strong", {}, degrees(bound)), " RMS",
       floored && [" · with the unit unknown but for flat and dark readings ", h("strong", {}, degrees(floored.bound_unit_deg)), " · ", h("span", { title: FLOOR }, "accuracy floor "), h("strong", {}, degrees(floored.floor_deg))],

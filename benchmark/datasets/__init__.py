@@ -11,6 +11,7 @@ import pkgutil
 from functools import cache
 
 from benchmark.datasets import standard
+from benchmark.datasets.calibration import SHOWN_IDEAL
 from benchmark.datasets.card import parameters_of
 from benchmark.datasets.preset import Condition, Preset
 from benchmark.datasets.samples import Samples, samples_hash
@@ -72,5 +73,6 @@ def _presets() -> dict[str, Preset]:
                 f"dataset {preset.name!r} belongs in a module called "
                 f"{preset.name.replace('-', '_')}; it is in {module.name}"
             )
-        found[preset.name] = preset
+        shown = preset.name in SHOWN_IDEAL
+        found[preset.name] = preset.with_ideal_calibration() if shown else preset
     return found

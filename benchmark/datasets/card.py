@@ -79,7 +79,8 @@ def stream_names(name: str, version: int) -> dict[str, Any]:
         "samples": [name, version, "<split>"],
         "noise": [name, version, "<condition>", "<split>"],
         "references": [name, version, "<condition>", "references"],
-        "other_units": 'unit: [..., "unit", <number>]; noise: [..., "unit", <number>]',
+        "calibration": [name, version, "bench"],
+        "other_units": 'unit, noise and calibration: [..., "unit", <number>]',
     }
 
 

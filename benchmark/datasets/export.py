@@ -48,8 +48,10 @@ SCHEMA_VERSION = 1
 
 #: What the arrays beside the observations are.
 _MEANINGS = {
-    "sun": "(N, 3) true unit vectors from the sensor to the Sun, sensor frame, +z the boresight; "
-    "tan(alpha) = y/z, tan(beta) = x/z",
+    "sun": "(N, 3) unit vectors from the sensor to the Sun, sensor frame, +z the boresight; "
+    "tan(alpha) = y/z, tan(beta) = x/z; true ones but in the calibration split, where they are "
+    "what the bench (in orbit: another instrument) says",
+    "true_sun": "(N, 3) where the Sun truly stood, where `sun` has errors; not for methods",
     "origin_px": "(N, 2) detector coordinates (x, y) of each window's first pixel; a pixel's "
     "centre is at whole numbers",
     "bound_deg": "(N,) Cramer-Rao bound of the separation angle, one standard deviation, degrees; "
@@ -209,7 +211,13 @@ def _samples(arrays: Mapping[str, NDArray[Any]]) -> Samples:
         for name, array in arrays.items()
         if name.startswith("context.")
     }
-    return Samples(arrays["observations"], arrays["sun"], arrays.get("origin_px"), context or None)
+    return Samples(
+        arrays["observations"],
+        arrays["sun"],
+        arrays.get("origin_px"),
+        context or None,
+        arrays.get("true_sun"),
+    )
 
 
 def _write_split(
@@ -285,7 +293,8 @@ def _card(
         "exported": exported,
         "arrays": {name: text for name, text in meanings.items() if name in names},
         "data_hash": "first 32 digits of a SHA-256 over names, types, shapes and bytes of "
-        "observations, sun, origin_px and context, as in scores and pins of Sun Sensor Atlas",
+        "observations, sun, origin_px, true_sun and context, as in scores and pins of Sun Sensor "
+        "Atlas",
         "files": [
             {
                 **file,

@@ -12,9 +12,11 @@ from numpy.typing import NDArray
 
 from algorithms.contract import Observation, SensorGeometry
 from benchmark.contract import SPLITS
+from benchmark.datasets.calibration import IDEAL, STANDARD_BENCH, Bench, Reference
 from benchmark.datasets.card import stream_names, told_once
 from benchmark.datasets.fields import Field, Split
 from benchmark.datasets.parameters import described
+from benchmark.datasets.realism import standing
 from benchmark.datasets.repeats import REPEAT, Repeats
 from benchmark.datasets.samples import Samples
 from benchmark.datasets.units import assembled, tolerances
@@ -50,6 +52,8 @@ class Condition:
         Sunlit Earth in view on the test split (calibration happens on the ground), or None.
     geometry
         Nominal design where it differs from the dataset's, else None.
+    bench
+        What the calibration split is taken on; None for a perfect one, which knows the Sun.
     """
 
     description: str
@@ -57,6 +61,7 @@ class Condition:
     irradiance: Irradiance
     earth: Earth | None = None
     geometry: SensorGeometry | None = None
+    bench: Reference | None = STANDARD_BENCH
 
     def __post_init__(self) -> None:
         if self.earth is not None and not isinstance(self.sensor, Faces | SeesEarth):
@@ -161,9 +166,44 @@ class Preset:
         }
         return dataclasses.replace(self, setups=setups, unit=number)
 
+    def reference_error_deg(self, condition: str) -> float:
+        """Root mean square of what the calibration's directions are wrong by, always alike.
+
+        Over the field, as the test split covers it, and over the benches that may have been used:
+        of the sizes that the condition states, not of what one bench drew. No number of poses
+        takes it away; 0 where the calibration is perfect.
+        """
+        bench = self.condition(condition).bench
+        if bench is None:
+            return 0.0
+        names = (self.name, self.version, "test", "sun")
+        return bench.systematic_deg(self.directions.sun("test", generator(*names)))
+
+    def with_ideal_calibration(self) -> Self:
+        """Return the dataset with one condition more: the first one, perfectly calibrated."""
+        shown = dataclasses.replace(
+            next(iter(self.setups.values())),
+            description="As nominal, calibrated perfectly: neither what tells the Sun's direction "
+            "nor its light has an error.",
+            bench=None,
+        )
+        return dataclasses.replace(self, setups={**self.setups, IDEAL: shown})
+
     def _of_unit(self, *names: str | int) -> tuple[str | int, ...]:
         """Names of a random stream that every unit has of its own."""
         return (*names, "unit", self.unit) if self.unit else names
+
+    @property
+    def _bench_names(self) -> tuple[str | int, ...]:
+        """Names of the random streams of the calibration's errors."""
+        return self._of_unit(self.name, self.version, "bench")
+
+    def sensor_for(self, condition: str, split: str) -> Sensor:
+        """Return the sensor as a split is taken with it: before a lamp the Sun has its size."""
+        setup = self.condition(condition)
+        if split == "calibration" and isinstance(setup.bench, Bench):
+            return setup.bench.seen_by(setup.sensor)
+        return setup.sensor
 
     def fixed_pattern(self, condition: str) -> FixedPattern:
         """Return the unit as this condition shows it."""
@@ -184,6 +224,8 @@ class Preset:
         names = (self.name, self.version, known)
         sun = self.directions.sun(known, generator(*names, "sun"))
         light, stray = setup.irradiance.draw(len(sun), generator(*names, "irradiance"))
+        if known == "calibration" and isinstance(setup.bench, Bench):
+            light = setup.bench.light(sun, *self._bench_names)  # no seasons before a lamp
         origin = setup.sensor.origins(sun, generator(*names, "window"))
         albedo = None
         if setup.earth is not None and known == "test":
@@ -216,7 +258,7 @@ class Preset:
         ValueError
             On an unknown condition or split, naming the known ones; on n below 1.
         """
-        sensor = self.condition(condition).sensor
+        sensor = self.sensor_for(condition, split)
         whole = self.scene(condition, split)
         scene = first(whole, n)
         pattern = self.fixed_pattern(condition)
@@ -232,7 +274,11 @@ class Preset:
             del batch  # or two would be held while the next is made
             batch = sensor.observe(scene.part(start, start + size), pattern, streams)
             observations[start : start + size] = batch
-        return Samples(observations, scene.sun, scene.origin_px)
+        bench = self.condition(condition).bench
+        if split != "calibration" or bench is None:
+            return Samples(observations, scene.sun, scene.origin_px)
+        said = bench.reported(scene.sun, *self._bench_names)
+        return Samples(observations, said, scene.origin_px, true_sun=scene.sun)
 
     def bound(self, condition: str, split: str = "test", n: int | None = None) -> Bound:
         """Cramer-Rao bounds of every sample of a split (see `benchmark.metrics.bounds.cramer_rao`).
@@ -241,7 +287,7 @@ class Preset:
         """
         setup = self.condition(condition)
         return cramer_rao(
-            setup.sensor,
+            self.sensor_for(condition, split),
             first(self.scene(condition, split), n),
             self.fixed_pattern(condition),
             setup.irradiance,
@@ -270,14 +316,6 @@ class Preset:
         streams = NoiseStreams.named(*names)
         return sensor.reference_readings(self.fixed_pattern(condition), self.offered, streams)
 
-    def reference_error_deg(self, condition: str) -> float:
-        """Systematic error of the directions a calibration is given, root mean square, degrees.
-
-        Directions are the true ones here.
-        """
-        self.condition(condition)
-        return 0.0
-
     def parameters(self, condition: str) -> dict[str, Any]:
         """Everything the numbers of a condition depend on, as plain JSON values."""
         setup = self.condition(condition)
@@ -290,6 +328,7 @@ class Preset:
                 "sensor": setup.sensor,
                 "irradiance": setup.irradiance,
                 "earth": setup.earth,
+                "bench": setup.bench,
                 "directions": self.directions,
                 "geometry": self.geometry_for(condition),
                 "bound_step_rad": self.bound_step_rad,
@@ -313,6 +352,7 @@ class Preset:
             name: {
                 "description": setup.description,
                 "tolerances": described(tolerances(setup.sensor)),
+                "reference_error_deg": self.reference_error_deg(name),
                 **own[name],
             }
             for name, setup in self.setups.items()
@@ -326,6 +366,7 @@ class Preset:
             "units": self.units,
             "description": self.description,
             "follows": list(self.follows),
+            "stands_for": standing(self.name).card(),
             "geometry": geometry,
             "splits": {**splits, REPEAT: self.repeats.card(splits["test"]["samples"])},
             "parameters": shared,

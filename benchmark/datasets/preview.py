@@ -216,7 +216,7 @@ def _flight(preset: Preset, condition: str) -> Sheet:
 
 
 def _sweep(preset: Preset, condition: str, samples: Samples) -> Sheet:
-    sun = samples.sun
+    sun = samples.truth
     alpha = np.degrees(np.arctan2(sun[:, 1], sun[:, 2]))
     beta = np.degrees(np.arctan2(sun[:, 0], sun[:, 2]))
     # off the middle, where elements that mirror each other would give one and the same curve

@@ -29,18 +29,28 @@ class Samples:
     observations
         (N, ...) what the sensor puts out; shape and unit as the dataset's card says.
     sun
-        (N, 3) true unit vectors from the sensor to the Sun, float64.
+        (N, 3) unit vectors from the sensor to the Sun, float64: true ones but in the calibration
+        split, where they are what the calibration's reference says, errors and all.
     origin_px
         (N, 2) int64 detector coordinate (x, y) of each window's first pixel, or None.
     context
         What else is known of each sample by column name, e.g. ``time_s``: arrays of N rows. None
         where there is nothing.
+    true_sun
+        (N, 3) true unit vectors where `sun` has errors, else None. For tests and export: no
+        method is given them.
     """
 
     observations: NDArray[Any]
     sun: Floats
     origin_px: NDArray[np.int64] | None
     context: Mapping[str, NDArray[Any]] | None = None
+    true_sun: Floats | None = None
+
+    @property
+    def truth(self) -> Floats:
+        """(N, 3) where the Sun truly stood."""
+        return self.sun if self.true_sun is None else self.true_sun
 
     def arrays(self) -> dict[str, NDArray[Any] | None]:
         """Everything that hashes cover by name: columns of the context come last, sorted."""
@@ -48,10 +58,16 @@ class Samples:
 
 
 def arrays_of(samples: contract.Samples) -> dict[str, NDArray[Any] | None]:
-    """Return the arrays of one split by name; columns of a context come last, sorted."""
+    """Return the arrays of one split by name; columns of a context come last, sorted.
+
+    True directions are among them only where there are others beside.
+    """
     arrays: dict[str, NDArray[Any] | None] = {
         name: getattr(samples, name) for name in ("observations", "sun", "origin_px")
     }
+    true_sun: Floats | None = getattr(samples, "true_sun", None)
+    if true_sun is not None:
+        arrays["true_sun"] = true_sun
     context: Mapping[str, NDArray[Any]] = getattr(samples, "context", None) or {}
     arrays.update((f"context.{name}", context[name]) for name in sorted(context))
     return arrays

@@ -10,6 +10,7 @@ from itertools import groupby
 from typing import Any
 
 from benchmark.contract import Cell
+from benchmark.datasets.realism import standing
 from benchmark.leaderboard.ranking import UNITS, order, ranks, spreads
 from benchmark.metrics.rings import EDGES_DEG, field_error, widest_field
 from benchmark.metrics.score import METRIC_VERSION, is_available
@@ -44,7 +45,8 @@ def build(
     dict
         ``schema``, ``metric_version``, ``units`` (how many leading pipelines are scored on),
         ``sweeps`` (as given) and ``datasets``: each with ``name``, ``version``, ``detector``,
-        ``mask``, ``conditions`` (the nominal one first) and ``rows``. A row is the score row of
+        ``mask``, ``idealisation`` (why it stands for no built sensor, null where it does),
+        ``conditions`` (the nominal one first) and ``rows``. A row is the score row of
         the standard unit with ``rank`` (null where there is no error), ``tied`` (whether others
         share it), the errors of all units ``unit_rms_deg`` and their range ``low_deg`` to
         ``high_deg`` (null where one unit is scored), and times.
@@ -80,6 +82,7 @@ def build(
                 "version": listed[0]["dataset_version"],
                 "detector": listed[0]["detector"],
                 "mask": listed[0]["mask"],
+                "idealisation": standing(name).idealisation or None,
                 "conditions": conditions,
                 "rows": listed,
             }

@@ -143,6 +143,8 @@ def to_markdown(board: Board) -> str:
     for dataset, conditions in _tables(board):
         architecture = f"{dataset['detector']}, {dataset['mask']}; version {dataset['version']}"
         lines += [f"## {dataset['name']}", "", architecture, ""]
+        if dataset["idealisation"]:
+            lines += [f"An idealisation: {dataset['idealisation']}", ""]
         for condition in conditions:
             lines += [f"### {condition['name']}", "", f"| {' | '.join(SHOWN.values())} |"]
             lines.append("|" + "|".join(_rule(column) for column in SHOWN) + "|")

@@ -161,6 +161,7 @@ UNKNOWN = {
     "claims": [("section", "model:sundial"), ("study", "Nobody1999"), ("id", "claim")],
     "references": [("role", "friend"), ("mapped_key", "Nobody1999"), ("doi", "doi:10.1/x")],
     "counts": [("table", "sundials"), ("held", "many")],
+    "hardware": [("detector", "Sundial"), ("study", "Nobody1999"), ("accuracy_kind", "best")],
 }  # fmt: skip
 
 

@@ -7,9 +7,11 @@ from typing import Annotated
 
 import typer
 
-from api.cli.asking import knowledge
+from api.cli.asking import ask, knowledge
 from api.cli.measuring import AVAILABLE_WORKERS, ManyWorkersOption
 from api.cli.tables import Format, FormatOption, emit
+from api.http.routers.realism import COLUMNS as BUILT_COLUMNS
+from api.http.routers.realism import realism as besides_built
 from benchmark import datasets
 from benchmark.contract import UnknownNameError
 from benchmark.datasets import coverage as covered
@@ -30,6 +32,7 @@ COLUMNS = ("name", "version", "detector", "mask", "observation", "conditions", "
 CONDITIONS = ("condition", "bound_deg", "description")
 PAIRS = ("detector", "mask", "studies", "datasets", "reason")
 FILES = ("file", "bytes")
+BUILT = ("dataset", "rms_deg", "id", "name", "accuracy_rms_deg", "accuracy_ratio", "explanation")
 
 NameArgument = Annotated[str, typer.Argument(help="Name of the data set.", show_default=False)]
 
@@ -141,6 +144,26 @@ def coverage(form: FormatOption = Format.TABLE) -> None:
     emit(rows, PAIRS, form, document=found.to_dict(), title="Detector-mask pairs")
     if form is Format.TABLE:
         typer.echo(found.sentence(), err=True)
+
+
+@app.command()
+def realism(
+    *,
+    dataset: Annotated[
+        list[str] | None,
+        typer.Option(help="Only this data set; may be repeated.", show_default=False),
+    ] = None,
+    form: FormatOption = Format.TABLE,
+) -> None:
+    """Show each data set beside the nearest built sensors and their published figures.
+
+    Our error is that of the best pipeline on the nominal condition, our precision its
+    repeatability; published accuracies are made root mean squares. A sentence explains what
+    differs by more than a factor of two; an idealisation says why it stands for no sensor.
+    """
+    answer = ask(besides_built, {"dataset": dataset})
+    shown = BUILT if form is Format.TABLE else BUILT_COLUMNS
+    emit(answer.rows(), shown, form, document=answer.document, title="Data sets and built sensors")
 
 
 @app.command()

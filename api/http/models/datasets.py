@@ -7,7 +7,8 @@ from typing import Any
 from pydantic import ConfigDict, Field
 
 from api.http.models.base import Listing, OpenShape, Question, Shape
-from api.http.models.parameters import DEFAULT_PAGE, Cursor, Limit
+from api.http.models.parameters import DEFAULT_PAGE, Cursor, Limit, Several, several
+from api.http.models.words import DatasetName
 
 
 class DatasetsQuery(Question):
@@ -33,8 +34,67 @@ class Dataset(OpenShape):
     units: str
     bounds: dict[str, float] = Field(description="Cramer-Rao bound by condition, rms, degrees.")
     splits: dict[str, dict[str, Any]]
+    stands_for: dict[str, Any] = Field(
+        description="The nearest built `sensors` with their published figures, or why it is an "
+        "`idealisation`."
+    )
     setups: dict[str, dict[str, Any]] = Field(description="What each condition is.")
     preview: str = Field(description="Where its picture is served.")
+
+
+class RealismQuery(Question):
+    """Which data sets."""
+
+    model_config = ConfigDict(
+        json_schema_extra={"examples": [{"dataset": ["qpd-single-aperture"]}]}
+    )
+
+    dataset: Several[DatasetName] = several("Only this data set.")
+
+
+class BuiltSensor(Shape):
+    """Published figures of a built sensor, and ours over them. Null where not known."""
+
+    id: str
+    name: str
+    fov_full_deg: float | None = Field(description="Full field of view.")
+    accuracy_deg: float | None = Field(description="As claimed.")
+    accuracy_kind: str | None
+    precision_deg: float | None
+    basis: str = Field(description="page: seen on a public page; recalled: not checked.")
+    source: str
+    accuracy_rms_deg: float | None = Field(
+        description="Accuracy as a root mean square: three sigma and largest errors over three."
+    )
+    our_rms_deg: float | None = Field(description="Our error, over its field where narrower.")
+    accuracy_ratio: float | None = Field(description="Our error over its accuracy.")
+    precision_ratio: float | None = Field(description="Our repeatability over its precision.")
+
+
+class RealismRow(Shape):
+    """A data set beside the built sensors that it stands for."""
+
+    dataset: str
+    idealisation: str | None = Field(description="Why it stands for none; null where it does.")
+    extractor: str | None = Field(description="Of the best pipeline on the nominal condition.")
+    model: str | None
+    rms_deg: float | None
+    bound_deg: float | None = Field(description="Cramer-Rao bound, over the data set's field.")
+    repeatability_deg: float | None
+    half_fov_deg: float | None
+    accuracy_ratio: float | None = Field(
+        description="1 within the range of the sensors' figures, else that of the nearest."
+    )
+    precision_ratio: float | None
+    sentence: str | None = Field(description="What explains a difference.")
+    unexplained: bool = Field(description="Beyond a factor of two without a sentence.")
+    sensors: list[BuiltSensor]
+
+
+class Realism(Shape):
+    """Data sets beside built sensors."""
+
+    datasets: list[RealismRow]
 
 
 class Data(Shape):

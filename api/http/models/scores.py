@@ -153,6 +153,9 @@ class LeaderboardDataset(OpenShape):
     version: int
     detector: str
     mask: str
+    idealisation: str | None = Field(
+        None, description="Why it stands for no built sensor; null where it stands for one."
+    )
     conditions: list[str]
     rows: list[LeaderboardRow]
 

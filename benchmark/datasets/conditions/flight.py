@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.contract import Floats
+from benchmark.datasets.conditions.instruments import Instruments
 from benchmark.datasets.fields import Split
 from benchmark.datasets.preset import DRAWN, Preset, drawn_split
 from benchmark.datasets.repeats import REPEAT
@@ -59,7 +60,8 @@ class Leg:
     """One split of a flight, sample by sample; inertial and body vectors (N, 3).
 
     `time_s` counts from the start of the flight, `since_s` from the start of the leg. `orbit`
-    and `sun` (3,) stand still during a leg: they move by less than half a degree.
+    and `sun` (3,) stand still during a leg: they move by less than half a degree. `turn`
+    (N, 3, 3) takes inertial vectors to the body frame. `field_nt` is the model's.
     """
 
     orbit: CircularOrbit
@@ -71,7 +73,7 @@ class Leg:
     nadir: Floats
     nadir_body: Floats
     field_nt: Floats
-    field_body_nt: Floats
+    turn: Floats
     eclipse: NDArray[np.bool_]
 
 
@@ -123,7 +125,6 @@ class Flight:
             since, eclipse = since[~eclipse], eclipse[~eclipse]
         place = orbit.position(since)
         turn = self.attitude.matrices(orbit, sun, since, start_s)
-        magnetic = self.dipole.inertial(place, orbit.distance_km, start_s + since)
         return Leg(
             orbit=orbit,
             sun=sun,
@@ -133,8 +134,8 @@ class Flight:
             sun_body=turned(turn, sun),
             nadir=-place,
             nadir_body=turned(turn, -place),
-            field_nt=magnetic,
-            field_body_nt=rotated(turn, magnetic),
+            field_nt=self.dipole.inertial(place, orbit.distance_km, start_s + since),
+            turn=turn,
             eclipse=eclipse,
         )
 
@@ -182,6 +183,11 @@ class FlightPreset(Preset):
                 raise TypeError(
                     f"condition {name}: in flight the Earth shines on bare faces only; got "
                     f"{type(setup.sensor).__name__}"
+                )
+            if not isinstance(setup.bench, Instruments | None):
+                raise TypeError(
+                    f"condition {name} must be calibrated in orbit (Instruments), or perfectly "
+                    f"(None); got {type(setup.bench).__name__}"
                 )
             if setup.earth is not None and (
                 setup.earth.altitude_km != self.directions.orbit.altitude_km
@@ -248,12 +254,23 @@ class FlightPreset(Preset):
         ).standard_normal((len(leg.time_s), 2))
         seen = leg.nadir_body + tilt[:, :1] * first + tilt[:, 1:] * second
         thermal = cast("DriftingSensor", setup.sensor).thermal
+        temperature = thermal.temperature(leg.orbit, leg.sun, leg.since_s)
+        field_nt, offset = leg.field_nt, np.zeros(3)
+        aboard = cast("Instruments | None", setup.bench)
+        if aboard is not None:
+            fixed, distance = self._bench_names, leg.orbit.distance_km
+            noisy = self._of_unit(*names, "instruments")
+            temperature = aboard.thermometer_k(temperature, fixed, noisy)
+            missing = aboard.missing_field(distance, self.name, self.version)
+            field_nt = field_nt + missing.inertial(-leg.nadir, distance, leg.time_s)
+            offset = aboard.magnetometer_offset_nt(*fixed)
+        read_nt = rotated(leg.turn, field_nt) + offset + self.flight.magnetometer_nt * noise
         return {
             "time_s": leg.time_s,
-            "temperature_K": thermal.temperature(leg.orbit, leg.sun, leg.since_s),
+            "temperature_K": temperature,
             "eclipse": leg.eclipse,
             "albedo": np.full(len(leg.time_s), setup.earth is not None) & ~leg.eclipse,
-            "magnetic_field_nT": leg.field_body_nt + self.flight.magnetometer_nt * noise,
+            "magnetic_field_nT": read_nt,
             "nadir": seen / np.sqrt(np.sum(seen**2, axis=1, keepdims=True)),
             "sun_inertial": np.repeat(leg.sun[None, :], len(leg.time_s), axis=0),
             "nadir_inertial": leg.nadir,
@@ -273,16 +290,19 @@ class FlightPreset(Preset):
             **super().card(),
             "context": {
                 "time_s": "(N,) seconds since the start of the flight",
-                "temperature_K": "(N,) of the sensor, error-free",
+                "temperature_K": "(N,) of the sensor, as a thermometer with the errors of the "
+                "condition's bench reads it",
                 "eclipse": "(N,) bool: in Earth's cylindrical shadow, no sunlight at all",
                 "albedo": "(N,) bool: whether light from the sunlit Earth is simulated",
                 "magnetic_field_nT": "(N, 3) body frame, as a magnetometer reads it: noise of "
-                f"{flight.magnetometer_nt:g} nT a component",
+                f"{flight.magnetometer_nt:g} nT a component and the bias of the condition's bench",
                 "nadir": "(N, 3) unit vectors to Earth's centre, body frame, as a horizon sensor "
                 f"reads them: noise of {flight.horizon_deg:g} deg a tangent axis",
                 "sun_inertial": "(N, 3) unit vectors to the Sun, inertial frame, from the almanac",
                 "nadir_inertial": "(N, 3) unit vectors, inertial frame, from the known orbit",
-                "magnetic_field_inertial_nT": "(N, 3) inertial frame, error-free model (dipole)",
+                "magnetic_field_inertial_nT": "(N, 3) inertial frame, as a model gives it (dipole; "
+                "the true field has a quadrupole beside it, as strong as the condition's bench "
+                "says)",
             },
             "bound": {"kind": "single sample", "note": BOUND_NOTE},
         }

@@ -7,6 +7,7 @@ from dataclasses import fields, replace
 from functools import partial
 
 from benchmark.datasets.conditions.flight import Flight, FlightPreset, Span
+from benchmark.datasets.conditions.instruments import ABOARD
 from benchmark.datasets.conditions.propagation import GLASS
 from benchmark.datasets.preset import Condition, Preset
 from benchmark.simulator.flight.attitude import Attitude
@@ -60,7 +61,7 @@ def in_orbit(
         observation=ground.observation,
         units=ground.units,
         geometry=ground.geometry,
-        setups=setups,
+        setups={condition: replace(setup, bench=ABOARD) for condition, setup in setups.items()},
         directions=Flight(
             orbit=CircularOrbit(altitude_km=600.0, inclination_deg=97.79, node_deg=337.5),
             attitude=attitude,

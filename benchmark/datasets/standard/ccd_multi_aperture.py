@@ -20,7 +20,7 @@ PRESET = many_spots(
     sensor=behind(_MASK, 0.9, ccd(512, 0.015), directions_of_sun=48),
     diameter_mm=0.15,
     half_fov_deg=50.0,
-    directions=AngleField(50.0, steps=6, test_samples=40),
+    directions=AngleField(50.0, steps=11, test_samples=40),
     without=("hot",),
     follows=("Liebe2001", "Mobasser2001"),
     description=(

@@ -20,7 +20,7 @@ PRESET = many_spots(
     sensor=behind(_MASK, 1.0, cmos(1024, 0.01), directions_of_sun=112),
     diameter_mm=0.16,
     half_fov_deg=60.0,
-    directions=AngleField(60.0, steps=9, test_samples=60),
+    directions=AngleField(60.0, steps=11, test_samples=60),
     without=("hot",),
     follows=("Rufino2009b", "Rufino2012", "Mobasser2003"),
     description=(

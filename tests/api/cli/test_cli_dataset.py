@@ -242,3 +242,18 @@ def test_pin_takes_every_data_set_by_default(published, monkeypatch):
         "warning: one that fails",
         f"2 conditions pinned in 1.5 s, 3 pinned before; in {published.directory}",
     ]
+
+
+def test_realism_sets_datasets_beside_built_sensors_in_every_format():
+    asked = ("realism", "--dataset", "ccd-n-slit", "--dataset", "cmos-l-slit")
+    document = json.loads(sunatlas(*asked, "--format", "json").stdout)
+    slits, ideal = document["datasets"]
+    assert [sensor["id"] for sensor in slits["sensors"]] == ["P05"]
+    assert (ideal["sensors"], ideal["rms_deg"] > 0) == ([], True)
+    rows = list(csv.DictReader(io.StringIO(sunatlas(*asked, "--format", "csv").stdout)))
+    assert [(row["dataset"], row["id"]) for row in rows] == [
+        ("ccd-n-slit", "P05"),
+        ("cmos-l-slit", ""),
+    ]
+    assert rows[1]["explanation"] == ideal["idealisation"]
+    assert "Tsinghua N-slit sensor" in sunatlas(*asked).stdout

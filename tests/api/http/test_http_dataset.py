@@ -129,3 +129,18 @@ def test_the_picture_takes_no_parameters(atlas):
     assert answer.status_code == 400
     assert answer.json()["errors"][0]["parameter"] == "condition"
     assert atlas.post(f"/v1/datasets/{NAME}/preview.png").status_code == 405
+
+
+def test_realism_has_a_row_for_every_dataset_and_board_and_card_name_idealisations(atlas):
+    rows = atlas.get("/v1/realism").json()["datasets"]
+    assert [row["dataset"] for row in rows] == list(datasets.names())
+    boards = {board["name"]: board for board in atlas.get("/v1/leaderboard").json()["datasets"]}
+    for row in rows:
+        assert bool(row["sensors"]) is (row["idealisation"] is None)
+        assert boards[row["dataset"]]["idealisation"] == row["idealisation"]
+        card = datasets.get(row["dataset"]).card()["stands_for"]
+        assert card["idealisation"] == row["idealisation"]
+    (one,) = atlas.get("/v1/realism?dataset=ccd-n-slit").json()["datasets"]
+    assert one["sensors"][0]["accuracy_rms_deg"] == pytest.approx(0.08 / 3)
+    problem = atlas.get("/v1/realism?dataset=ccd-n-slits").json()
+    assert problem["errors"][0]["nearest"] == "ccd-n-slit"

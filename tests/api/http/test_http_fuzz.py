@@ -19,6 +19,7 @@ OPERATIONS = [
     ("GET", "/v1/datasets"),
     ("GET", "/v1/datasets/{name}"),
     ("GET", "/v1/datasets/{name}/preview.png"),
+    ("GET", "/v1/realism"),
     ("GET", "/v1/leaderboard"),
     ("GET", "/v1/leaderboard/{dataset}"),
     ("GET", "/v1/results"),

@@ -38,6 +38,7 @@ def test_every_endpoint_of_the_contract_is_documented(document):
         ("/v1/datasets", "get"),
         ("/v1/datasets/{name}", "get"),
         ("/v1/datasets/{name}/preview.png", "get"),
+        ("/v1/realism", "get"),
         ("/v1/leaderboard", "get"),
         ("/v1/leaderboard/{dataset}", "get"),
         ("/v1/sweeps", "get"),
@@ -97,7 +98,7 @@ def test_examples_of_refusals_are_what_is_refused(atlas, document):
                 wrong = example["errors"][0]["parameter"]
                 live = atlas.get(f"{example['instance']}?{wrong}=1").json()
                 assert live == example, path
-    assert checked == 30
+    assert checked == 32
 
 
 @pytest.mark.slow
@@ -115,6 +116,7 @@ def test_examples_of_refusals_are_what_is_refused(atlas, document):
         "/v1/algorithms",
         "/v1/datasets",
         "/v1/datasets/pd-orbit",
+        "/v1/realism",
         "/v1/leaderboard",
         "/v1/leaderboard/qpd-single-aperture",
         "/v1/results",

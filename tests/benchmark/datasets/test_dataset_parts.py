@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -11,6 +11,7 @@ import pytest
 
 from algorithms.contract import Observation, SensorGeometry
 from benchmark.datasets import Condition, Preset, preset, units
+from benchmark.datasets.calibration import STANDARD_BENCH
 from benchmark.datasets.card import differences, merged, parameters_of
 from benchmark.datasets.fields import AngleField, SphereField
 from benchmark.datasets.repeats import Repeats
@@ -88,8 +89,12 @@ def test_every_stream_is_named_after_what_it_is_for(condition: str, split: str) 
     names = ("fake-teller", 3, split)
     count = {"calibration": 25, "test": 11}[split]
     sun = one.directions.sun(split, generator(*names, "sun"))
-    np.testing.assert_array_equal(found.sun, sun)
+    np.testing.assert_array_equal(found.truth, sun)
     light, stray = LIGHT.draw(count, generator(*names, "irradiance"))
+    if split == "calibration":
+        light = STANDARD_BENCH.light(sun, "fake-teller", 3, "bench")
+        told = STANDARD_BENCH.reported(sun, "fake-teller", 3, "bench")
+        np.testing.assert_array_equal(found.sun, told)
     origin = generator(*names, "window").integers(0, 1000, (count, 2))
     level = {"nominal": 1.0, "brighter": 2.0}[condition]
     unit = level * len(repr(("fake-teller", 3, "unit")))
@@ -248,6 +253,7 @@ def test_parameters_are_all_that_the_numbers_depend_on() -> None:
         },
         "irradiance": {"type": "Irradiance", "spread": 0.1, "stray": 0.3, "stray_spread": 0.02},
         "earth": None,
+        "bench": {"type": "Bench", **asdict(STANDARD_BENCH)},
         "directions": {
             "type": "AngleField", "half_fov_deg": 20.0, "steps": 5, "test_samples": 11,
         },

@@ -67,7 +67,9 @@ def test_samples_are_in_order_and_continuous(made, name: str) -> None:
     attitude = flight_of(name).flight.attitude
     fastest = (attitude.precession_deg_s + attitude.spin_deg_s) * span.step_s
     assert 0 < turn.max() <= fastest
-    assert np.abs(np.diff(test.context["temperature_K"])).max() < 0.03 * span.step_s
+    # beside the cycle's own change six standard deviations of the thermometer's noise, one digit
+    step = np.abs(np.diff(test.context["temperature_K"])).max()
+    assert step < 0.03 * span.step_s + 6 * 2**0.5 * 0.2 + 0.25
     for column in ("nadir_inertial", "magnetic_field_inertial_nT"):
         step = np.linalg.norm(np.diff(test.context[column], axis=0), axis=1)
         assert step.max() < 3 * np.median(step)
@@ -129,7 +131,8 @@ def test_eclipse_is_scored_as_not_observable() -> None:
 @pytest.mark.parametrize("name", NAMES)
 def test_other_instruments_agree_with_the_truth(made, name: str) -> None:
     """Nadir and field in both frames, with the true Sun, are one rotation apart."""
-    context, sun = made[name, "test"].context, made[name, "test"].sun
+    perfect = PRESETS[name].generate("ideal-calibration", "test")
+    context, sun = perfect.context, perfect.sun
     inner = np.sum(context["nadir_inertial"] * context["sun_inertial"], axis=1)
     apart = np.sum(context["nadir"] * sun, axis=1) - inner
     assert apart.std() == pytest.approx(np.radians(0.5) * np.mean(1 - inner**2) ** 0.5, rel=0.1)

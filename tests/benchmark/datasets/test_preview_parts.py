@@ -36,7 +36,7 @@ def texts(sheet: MagicMock) -> list[str]:
 
 def preset_of(observations: Any, sun: Any = SUN, **more: Any) -> Any:
     context = more.pop("context", None)
-    samples = SimpleNamespace(observations=observations, sun=sun, context=context)
+    samples = SimpleNamespace(observations=observations, sun=sun, truth=sun, context=context)
     asked: list[Any] = []
     given: dict[str, Any] = {
         "name": "fake",

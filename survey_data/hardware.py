@@ -1,0 +1,80 @@
+"""Built sensors and their published figures, without pandas: `hardware`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from types import MappingProxyType
+
+from survey_data.csv_reading import read_records
+from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name
+from survey_data.problems import SurveyDataError
+
+_TABLE = "hardware"
+#: By how much a claim is divided for a root mean square; a largest error counts as three sigma.
+_SIGMAS = MappingProxyType({"3sigma": 3.0, "max": 3.0, "1sigma": 1.0, "rms": 1.0})
+
+
+@dataclass(frozen=True)
+class Hardware:
+    """One built sensor; None and empty text where nothing was seen (see ``datapackage.json``)."""
+
+    id: str
+    name: str
+    detector: str
+    mask: str
+    fov_full_deg: float | None
+    accuracy_deg: float | None
+    accuracy_kind: str
+    precision_deg: float | None
+    basis: str
+    source: str
+
+    @property
+    def rms_deg(self) -> float | None:
+        """Accuracy as a root mean square, by what it is claimed to be; unspecified ones as is."""
+        if self.accuracy_deg is None:
+            return None
+        return self.accuracy_deg / _SIGMAS.get(self.accuracy_kind, 1.0)
+
+
+@cache
+def hardware(directory: Path | None = None) -> Mapping[str, Hardware]:
+    """Return the built sensors by id.
+
+    Parameters
+    ----------
+    directory : Path, optional
+        Where the tables are; by default the package's own data.
+
+    Raises
+    ------
+    SurveyDataError
+        The table is missing or broken.
+    """
+    columns = list(column_types(_TABLE))
+    records = read_records((directory or DATA_DIRECTORY) / file_name(_TABLE), columns)
+    if records.problems:
+        raise SurveyDataError(tuple(records.problems))
+    found = {}
+    for _, cells in records.rows:
+        row = dict(zip(columns, cells, strict=True))
+        found[row["id"]] = Hardware(
+            id=row["id"],
+            name=row["name"],
+            detector=row["detector"],
+            mask=row["mask"],
+            fov_full_deg=_number(row["fov_full_deg"]),
+            accuracy_deg=_number(row["accuracy_deg"]),
+            accuracy_kind=row["accuracy_kind"],
+            precision_deg=_number(row["precision_deg"]),
+            basis=row["basis"],
+            source=row["source"],
+        )
+    return MappingProxyType(found)
+
+
+def _number(text: str) -> float | None:
+    return float(text) if text else None
