@@ -13,9 +13,10 @@ from algorithms.contract import Floats
 from benchmark.seeds import generator
 from benchmark.simulator.light.memory import memory
 from benchmark.simulator.masks.slits import SlitErrors
-from benchmark.simulator.optics.diffraction import GEOMETRIC_FROM
-from benchmark.simulator.optics.plates import fresnel_number
+from benchmark.simulator.optics.diffraction import SUNLIT_SILICON, Spectrum
+from benchmark.simulator.optics.diffraction_tables import fresnel_table, layers
 from benchmark.simulator.optics.projection import Camera
+from benchmark.simulator.optics.slit_diffraction import chords
 from benchmark.simulator.readout.detectors import PixelArray
 from benchmark.simulator.readout.noise import NoiseStreams, counted
 from benchmark.simulator.scene import Scene
@@ -44,14 +45,13 @@ class LineSensor:
         Sensitive share of the pitch.
     errors
         How the plate with the slits stands over the arrays.
-    least_fresnel
-        Shadows are geometric, diffraction is left out: slits of a smaller Fresnel number at
-        normal incidence and 550 nm are refused. 0 takes any, for light that does not diffract.
+    spectrum
+        Of the light, as the pixels detect it; None for light that does not diffract.
 
     Raises
     ------
     ValueError
-        On slits so narrow that their shadow is not geometric, among others.
+        On more than one row of pixels, on openings that are no slits, and sizes out of range.
     """
 
     camera: Camera
@@ -60,7 +60,7 @@ class LineSensor:
     axes: tuple[LineAxis, ...] = ("x", "y")
     fill_factor: float = 1.0
     errors: SlitErrors = field(default_factory=SlitErrors)
-    least_fresnel: float = GEOMETRIC_FROM
+    spectrum: Spectrum | None = SUNLIT_SILICON
 
     def __post_init__(self) -> None:
         if self.detector.rows != 1:
@@ -73,15 +73,6 @@ class LineSensor:
             raise ValueError(f"fill_factor must be in (0, 1]; got {self.fill_factor}")
         if any(aperture.shape != "rectangle" for aperture in self.camera.mask.apertures):
             raise ValueError("linear arrays are simulated behind rectangular slits only")
-        mask = self.camera.mask
-        half = min(aperture.smallest_half_width_mm for aperture in mask.apertures)
-        number = fresnel_number(half, self.camera.focal_length_mm)
-        if number < self.least_fresnel:
-            raise ValueError(
-                "linear arrays are simulated in geometric shadow, Fresnel number of at least "
-                f"{self.least_fresnel:g}; slits of {2.0 * half:g} mm "
-                f"{self.camera.focal_length_mm:g} mm up have {number:.3g}"
-            )
 
     @property
     def width_px(self) -> int:
@@ -118,13 +109,55 @@ class LineSensor:
         """
         detector = self.detector
         pixels = detector.columns, detector.pitch_mm, self.pixel_height_mm, self.fill_factor
-        key = (type(self).__name__, self.camera, pixels, self.axes, self.errors)
+        key = (type(self).__name__, self.camera, pixels, self.axes, self.errors, self.spectrum)
         flux = memory.rendered((*key, scene.sun.tobytes()), lambda: self._rendered(scene.sun))
         flux *= scene.irradiance[:, None]
         return flux
 
     def _rendered(self, sun: Floats) -> Floats:
         """(N, W) light of the mean sunlight from (N, 3)."""
+        flux = np.empty((len(sun), self.width_px))
+        if self.spectrum is None:
+            self._cast_shadows(flux, sun)
+        else:
+            self._diffract(flux, sun, self.spectrum)
+        return flux
+
+    def _diffract(self, flux: Floats, sun: Floats, spectrum: Spectrum) -> None:
+        """Fill `flux` with diffracted light."""
+        from benchmark.simulator.kernels.slit_profiles import (  # noqa: PLC0415 - Numba on demand
+            expose_diffracted,
+        )
+
+        camera, pitch, columns = self.camera, self.detector.pitch_mm, self.detector.columns
+        head = camera.assembly.to_head(sun)
+        stack = layers(camera.height_mm, camera.glass) / np.array([pitch, 1.0])
+        light = np.array(sorted(zip(spectrum.wavelengths_nm, spectrum.weights, strict=True)))
+        light[:, 0] *= 1e-6 / pitch
+        widest = max(aperture.width_mm for aperture in camera.mask.apertures)
+        disc = chords(camera.sun, widest, min(spectrum.wavelengths_nm) * 1e-6)
+        tilt = math.radians(self.errors.inclination_deg)
+        offset = camera.assembly.offset_x_mm / pitch, camera.assembly.offset_y_mm / pitch
+        thickness = camera.mask.thickness_mm / pitch
+        half_height = self.pixel_height_mm / pitch / 2.0
+        for number, axis in enumerate(self.axes):
+            turned = np.ascontiguousarray(head if axis == "x" else head[:, [1, 0, 2]])
+            along, across = offset if axis == "x" else offset[::-1]
+            slits = self._slits(axis)
+            alike = np.lexsort((slits[:, 1], slits[:, 6], slits[:, 3]))
+            part = np.empty((len(sun), columns))
+            plate = math.cos(tilt), math.sin(tilt), thickness, along, across, half_height
+            expose_diffracted(
+                part,
+                np.ascontiguousarray(slits[alike]),
+                (turned, disc),
+                (stack, light, fresnel_table()),
+                (-columns / 2.0, self.fill_factor, plate),
+            )
+            flux[:, number * columns : (number + 1) * columns] = part
+
+    def _cast_shadows(self, flux: Floats, sun: Floats) -> None:
+        """Fill `flux` with light that does not diffract."""
         from benchmark.simulator.kernels.lines import expose  # noqa: PLC0415 - Numba on demand
 
         pitch, columns = self.detector.pitch_mm, self.detector.columns
@@ -138,7 +171,6 @@ class LineSensor:
             tangents = points[..., :2] / np.maximum(points[..., 2:], 1e-6)
         half_height = self.pixel_height_mm / pitch / 2.0
         numbers = -columns / 2.0, half_height, self.fill_factor, math.cos(tilt), math.sin(tilt)
-        flux = np.empty((len(sun), self.width_px))
         for number, axis in enumerate(self.axes):
             along = np.stack([lower / pitch, upper / pitch, tangents])
             if axis == "y":
@@ -148,7 +180,6 @@ class LineSensor:
             part = np.empty((len(sun), columns))
             expose(part, self._slits(axis), along, light, numbers)
             flux[:, number * columns : (number + 1) * columns] = part
-        return flux
 
     def _tilt(self, paths: Floats, tilt: float) -> None:
         """Let the plate's thickness stand along its own, tilted normal."""
