@@ -17,6 +17,7 @@ from algorithms.compiled import compiled
 from algorithms.contract import Floats
 
 Pair = tuple[float, float]
+Four = tuple[float, float, float, float]
 #: Middle of a shadow on the array's axis, its half width there, slope of its edges (u over v),
 #: share of the pixels' height between its ends, and how much higher than the plate's middle the
 #: light comes from.
@@ -37,13 +38,14 @@ _LEAST_COSINE = 0.02
 
 
 @compiled
-def _fresnel(u: float, table: Table) -> Pair:
-    """Fresnel's C and S of u >= 0 by their smooth auxiliary functions f and g.
+def _fresnel(u: float, table: Table) -> Four:
+    """Fresnel's C and S of u by their smooth auxiliary functions f and g, and ``exp(i pi u^2 / 2)``.
 
     As in `diffraction_slits`: kernels call only their own file (see `compiled`).
     """
     auxiliary, per_unit = table
-    place = u * per_unit + 1.0
+    size = abs(u)
+    place = size * per_unit + 1.0
     if place < auxiliary.shape[1] - 3.0:
         first = int(place)
         t = place - first
@@ -54,12 +56,13 @@ def _fresnel(u: float, table: Table) -> Pair:
         line = auxiliary[1]
         g = a * line[first - 1] + b * line[first] + c * line[first + 1] + d * line[first + 2]
     else:
-        q = 1.0 / (math.pi * u * u) ** 2
-        f = (1.0 - 3.0 * q) / (math.pi * u)
-        g = (1.0 - 15.0 * q) / (math.pi * math.pi * u * u * u)
-    phase = math.pi / 2.0 * u * u
+        q = 1.0 / (math.pi * size * size) ** 2
+        f = (1.0 - 3.0 * q) / (math.pi * size)
+        g = (1.0 - 15.0 * q) / (math.pi * math.pi * size * size * size)
+    phase = math.pi / 2.0 * size * size
     sine, cosine = math.sin(phase), math.cos(phase)
-    return 0.5 + f * sine - g * cosine, 0.5 - f * cosine - g * sine
+    re, im = 0.5 + f * sine - g * cosine, 0.5 - f * cosine - g * sine
+    return (re, im, cosine, sine) if u >= 0.0 else (-re, -im, cosine, sine)
 
 
 @compiled
@@ -89,31 +92,37 @@ def _light(direction: Floats, layers: Floats) -> Pair:
 
 
 @compiled
-def _spread(axis: Floats, sun: Floats, layers: Floats, slope: float, raised: float) -> float:
-    """Return ``J`` along the array for a shadow of this slope, from a mask raised this far.
+def _spread(
+    axis: Floats, sun: Floats, layers: Floats, thickness: float, slope: float, raised: float
+) -> Four:
+    """Return how a shadow of this slope spreads along the array, from a mask raised this far.
 
-    Fill `axis` with the direction on the sky, square to `sun`, in which the shadow moves fastest.
+    ``J``; by what share of a distance x from an edge the cubic term of the phase moves a fringe,
+    over x; ``J`` of the foil; how far apart the foil's rims appear. Fill `axis` with the direction
+    on the sky, square to `sun`, in which the shadow moves fastest.
     """
     sine2 = sun[0] ** 2 + sun[1] ** 2
-    radial, tangential = 0.0, 0.0
+    along = sun[0] - slope * sun[1]
+    normal2 = 1.0 + slope * slope
+    plain, turned, curved = 0.0, 0.0, 0.0
     for m in range(layers.shape[0]):
-        thickness = layers[m, 0] + (raised if m == 0 else 0.0)
+        depth = layers[m, 0] + (raised if m == 0 else 0.0)
         square = layers[m, 1] ** 2 - sine2
-        share = thickness / math.sqrt(square)
-        tangential += share
-        radial += share * layers[m, 1] ** 2 / square
-    excess = 0.0  # of J_r over J_t, times the share of the shadow's normal along r
-    if sine2 > 0.0:
-        excess = (radial - tangential) * (sun[0] - slope * sun[1]) / sine2
-    axis[0] = tangential + excess * sun[0]
-    axis[1] = -slope * tangential + excess * sun[1]
-    found = axis[0] - slope * axis[1]
+        share = depth / math.sqrt(square)
+        plain += share
+        turned += share / square
+        curved += share / (square * square) * (square + along * along / normal2)
+    axis[0] = plain + turned * along * sun[0]
+    axis[1] = -slope * plain + turned * along * sun[1]
+    spread = axis[0] - slope * axis[1]
+    cubic = -0.5 * along * normal2 * curved / (spread * spread)
     beside = axis[0] * sun[0] + axis[1] * sun[1]
     axis[0] -= beside * sun[0]
     axis[1] -= beside * sun[1]
     axis[2] = -beside * sun[2]
     axis /= math.sqrt(axis[0] ** 2 + axis[1] ** 2 + axis[2] ** 2)
-    return float(found)
+    foil = thickness / sun[2] * (normal2 + along * along / sun[2] ** 2)
+    return spread, cubic, foil, thickness * abs(along) / sun[2]
 
 
 @compiled
@@ -175,74 +184,108 @@ def _shadow(slit: Floats, ray: Floats, plate: Plate) -> Shadow:
 
 
 @compiled
-def _intensity(light: Floats, spread: float, steps: int, spectrum: Floats, table: Table) -> float:
-    """Fill the pattern from its middle on, `steps` a half width; return the factor of its tail.
+def _rim(foil: float, apart: float, wavelength: float, table: Table) -> Pair:
+    """Amplitude that a foil's outer rim cuts off the light bent around its inner one, summed up.
 
-    `spread` is ``J`` over the squared half width.
+    A length, complex: the shadow's edge stands as much farther inside. Rims `apart` in the light's
+    view, ``J = foil`` one above the other, spread light over a width of their own.
     """
-    count = light.shape[0]
-    real, imaginary = np.empty(count + steps), np.empty(count + steps)
+    if foil == 0.0:
+        return 0.0, 0.0
+    size = math.sqrt(wavelength * foil)
+    u = apart * math.sqrt(2.0) / size
+    c, s, cosine, sine = _fresnel(u, table)
+    # (i / pi) exp(i pi u^2 / 2) - u ((1 + i) / 2 - F(u)), turned by -45 deg
+    re, im = -sine / math.pi - u * (0.5 - c), cosine / math.pi - u * (0.5 - s)
+    half = size / 2.0 / math.sqrt(2.0)
+    return half * (re + im), half * (im - re)
+
+
+@compiled
+def _intensity(
+    light: Floats, spread: Four, steps: int, spectrum: Floats, table: Table
+) -> float:
+    """Fill an odd number of values about the middle, `steps` a half width; return the tail's factor.
+
+    `spread` is `_spread` with lengths in half widths.
+    """
+    wide, cubic, foil, apart = spread
+    reach = light.shape[0] // 2 + steps
+    parts = np.empty((4, 2 * reach + 1))
     light[:] = 0.0
     tail = 0.0
     for m in range(spectrum.shape[0]):
-        number = 1.0 / (spectrum[m, 0] * spread)
-        weight = spectrum[m, 1]
-        tail += weight / (4.0 * math.pi * math.pi * number)
-        unit = math.sqrt(2.0 * number) / steps
-        for i in range(count + steps):
-            real[i], imaginary[i] = _fresnel(i * unit, table)
-        for i in range(count):
-            before = abs(i - steps)
-            sign = 1.0 if i >= steps else -1.0
-            re = real[i + steps] - sign * real[before]
-            im = imaginary[i + steps] - sign * imaginary[before]
+        wavelength, weight = spectrum[m]
+        tail += weight * wavelength * wide / (4.0 * math.pi * math.pi)
+        unit = math.sqrt(2.0 / (wavelength * wide))
+        for i in range(parts.shape[1]):
+            place = (i - reach) / steps
+            here = _fresnel(unit * place * (1.0 + cubic * place), table)
+            for k in range(4):
+                parts[k, i] = here[k]
+        # of each edge's wave: what the cubic term adds to it, and what the foil takes from it
+        more = -cubic / (math.pi * unit)
+        cut_re, cut_im = _rim(foil, apart, wavelength, table)
+        cut_re, cut_im = unit * cut_re, unit * cut_im
+        for i in range(light.shape[0]):
+            j = i + 2 * steps
+            cosine, sine = parts[2, j], parts[3, j]
+            re = parts[0, j] - cut_re * cosine - (more - cut_im) * sine
+            im = parts[1, j] - cut_re * sine + (more - cut_im) * cosine
+            cosine, sine = parts[2, i], parts[3, i]
+            re -= parts[0, i] + cut_re * cosine - (more + cut_im) * sine
+            im -= parts[1, i] + cut_re * sine + (more + cut_im) * cosine
             light[i] += weight * (re * re + im * im) / 2.0
     return tail
 
 
 @compiled
 def _pattern(
-    spread: float, shear: float, spectrum: Floats, table: Table
+    spread: Four, shear: float, spectrum: Floats, table: Table
 ) -> tuple[Floats, Floats, Extent]:
-    """Return a slit's pattern from its middle on, and its running integral, sheared.
+    """Return a slit's pattern and its running integral, sheared.
 
     `shear` is by how much the shadow moves over half the pixels' height. The running integral is
     exact for cubics; where the shear is less than half a step, its second derivative stands for it.
     """
-    shortest, longest = spectrum[0, 0], spectrum[-1, 0]
-    steps = max(math.ceil(2.0 * _FINE / (shortest * spread)), 4)
-    middle = math.sqrt(shortest * longest)
-    ends = math.ceil((1.0 + _OUTSIDE * math.sqrt(middle * spread)) * steps)
+    shortest, middle = spectrum[0, 0], math.sqrt(spectrum[0, 0] * spectrum[-1, 0])
+    steps = max(math.ceil(2.0 * _FINE / (shortest * spread[0])), 4)
+    ends = math.ceil((1.0 + _OUTSIDE * math.sqrt(middle * spread[0])) * steps)
     step = 1.0 / steps
-    count = ends + math.ceil(shear * steps) + 4
-    light, single = np.empty(count), np.empty(count - 1)
-    tail = _intensity(light, spread, steps, spectrum, table)
-    single[0] = 0.0
-    for i in range(count - 2):
-        inner = 13.0 * (light[i] + light[i + 1]) - light[abs(i - 1)] - light[i + 2]
+    more = math.ceil(shear * steps) + 2
+    count = 2 * (ends + more) + 1
+    # the fringes' order must not turn back
+    cubic = 0.2 * steps / (ends + more + steps)
+    cubic = max(min(spread[1], cubic), -cubic)
+    light, single = np.empty(count), np.empty(count)
+    tail = _intensity(light, (spread[0], cubic, spread[2], spread[3]), steps, spectrum, table)
+    single[0], single[1] = 0.0, 0.0
+    for i in range(1, count - 2):
+        inner = 13.0 * (light[i] + light[i + 1]) - light[i - 1] - light[i + 2]
         single[i + 1] = single[i] + step * inner / 24.0
+    single[count - 1] = single[count - 2]
     extent = (step, ends * step, tail)
     if shear == 0.0:
-        return light, single, extent
-    out, sums = np.empty(ends + 2), np.empty(ends + 2)
+        return light[more : count - more], single[more : count - more], extent
+    out, sums = np.empty(2 * ends + 1), np.empty(2 * ends + 1)
     if shear < step / 2.0:
         square = shear * shear / 6.0
-        for i in range(ends + 2):
-            before, after = light[abs(i - 1)], light[i + 1]
-            out[i] = light[i] + square * (before - 2.0 * light[i] + after) / (step * step)
-            sums[i] = single[i] + square * (after - before) / (2.0 * step)
-        sums[0] = 0.0
+        for i in range(2 * ends + 1):
+            j = i + more
+            bend = light[j - 1] - 2.0 * light[j] + light[j + 1]
+            out[i] = light[j] + square * bend / (step * step)
+            sums[i] = single[j] + square * (light[j + 1] - light[j - 1]) / (2.0 * step)
         return out, sums, extent
-    double = np.empty(count - 1)
+    double = np.empty(count)
     double[0] = 0.0
-    for i in range(count - 2):
+    for i in range(count - 1):
         rise = (single[i] + single[i + 1]) / 2.0 + step * (light[i] - light[i + 1]) / 12.0
         double[i + 1] = double[i] + step * rise
-    for i in range(ends + 2):
-        after = _integrals(light, single, double, i * step + shear, step)
-        before = _integrals(light, single, double, abs(i * step - shear), step)
-        sign = 1.0 if i * step >= shear else -1.0
-        out[i] = (after[0] - sign * before[0]) / (2.0 * shear)
+    for i in range(2 * ends + 1):
+        place = (i + more) * step
+        after = _integrals(light, single, double, place + shear, step)
+        before = _integrals(light, single, double, place - shear, step)
+        out[i] = (after[0] - before[0]) / (2.0 * shear)
         sums[i] = (after[1] - before[1]) / (2.0 * shear)
     return out, sums, extent
 
@@ -250,7 +293,7 @@ def _pattern(
 @compiled
 def _integrals(light: Floats, single: Floats, double: Floats, place: float, step: float) -> Pair:
     """First and second running integral of a pattern at a place (Hermite's cubic for the first)."""
-    cell = min(int(place / step), single.shape[0] - 2)
+    cell = int(place / step)
     t = place / step - cell
     rise = single[cell + 1] - single[cell]
     first, last = step * light[cell] - rise, rise - step * light[cell + 1]
@@ -264,20 +307,18 @@ def _integrals(light: Floats, single: Floats, double: Floats, place: float, step
 
 @compiled
 def _before(place: float, pattern: Floats, sums: Floats, extent: Extent) -> float:
-    """Light between a slit's middle and a place, negative to the left."""
+    """Light up to a place, from the grid's beginning."""
     step, end, tail = extent
-    size = abs(place)
-    if size < end:
-        cell = int(size / step)
-        t = size / step - cell
+    if abs(place) < end:
+        along = (place + end) / step
+        cell = int(along)
+        t = along - cell
         rise = sums[cell + 1] - sums[cell]
         first, last = step * pattern[cell] - rise, rise - step * pattern[cell + 1]
-        value = sums[cell] + t * rise + t * (1.0 - t) * ((1.0 - t) * first + t * last)
-    else:
-        inside = 1.0 / (end - 1.0) + 1.0 / (end + 1.0)
-        inside -= 1.0 / (size - 1.0) + 1.0 / (size + 1.0)
-        value = sums[round(end / step)] + tail * inside
-    return float(value) if place >= 0.0 else -float(value)
+        return float(sums[cell] + t * rise + t * (1.0 - t) * ((1.0 - t) * first + t * last))
+    size = abs(place)
+    beyond = 1.0 / (end - 1.0) + 1.0 / (end + 1.0) - 1.0 / (size - 1.0) - 1.0 / (size + 1.0)
+    return float(sums[-1] + tail * beyond if place > 0.0 else sums[0] - tail * beyond)
 
 
 @compiled
@@ -362,7 +403,7 @@ def expose_diffracted(
         chief[2], chief[3] = sun[n, 0] / sun[n, 2], sun[n, 1] / sun[n, 2]
         known = False
         pattern, sums, extent = np.empty(0), np.empty(0), (0.0, 0.0, 0.0)
-        spread, size = 0.0, 0.0
+        spread, size = (0.0, 0.0, 0.0, 0.0), 0.0
         for m in range(slits.shape[0]):
             slit = slits[m]
             place, wide, slope, _, raised = _shadow(slit, chief, plate)
@@ -371,7 +412,7 @@ def expose_diffracted(
             other = m == 0 or slit[3] != slits[m - 1, 3] or slit[6] != slits[m - 1, 6]
             if other or size == 0.0:
                 size, known = wide, False
-                spread = _spread(axis, sun[n], layers, slope, raised)
+                spread = _spread(axis, sun[n], layers, plate[2], slope, raised)
                 _points(rays, chords, (sun[n], axis, layers))
             total, left, right = 0.0, place, place
             for q in range(chords.shape[0]):
@@ -387,19 +428,23 @@ def expose_diffracted(
                 left, right = min(left, nodes[q, 0] + edge), max(right, nodes[q, 0] + edge)
             if total == 0.0:
                 continue
-            reach = size + _OUTSIDE * math.sqrt(middle * spread)
+            reach = size + _OUTSIDE * math.sqrt(middle * spread[0])
             start = min(max(math.floor(left - edge - reach), 0), width)
             stop = min(max(math.ceil(right - edge + reach), start), width)
             if stop > start:
                 if not known:
                     shear = abs(slope) * half / size
-                    pattern, sums, extent = _pattern(
-                        spread / size**2, shear, spectrum, table
+                    scaled = (
+                        spread[0] / size**2,
+                        spread[1] * size,
+                        spread[2] / size**2,
+                        spread[3] / size,
                     )
+                    pattern, sums, extent = _pattern(scaled, shear, spectrum, table)
                     known = True
                 _add_near(line, (start, stop), nodes, dead, (pattern, sums, extent))
             tail = 0.0
             for k in range(spectrum.shape[0]):
                 tail += spectrum[k, 1] * spectrum[k, 0]
-            tail *= spread / size**2 / (4.0 * math.pi * math.pi)
+            tail *= spread[0] / size**2 / (4.0 * math.pi * math.pi)
             _add_far(line, (start, stop), (place - edge, size, total * tail))
