@@ -126,10 +126,30 @@ def _spread(
 
 
 @compiled
-def _points(rays: Floats, chords: Floats, frame: tuple[Floats, Floats, Floats]) -> None:
-    """Fill (2 Q, 5) rays: displacement and tangents along and across the array, light.
+def _along(sun: Floats, layers: Floats, slope: float, raised: float) -> float:
+    """``J`` along the array of `_spread`, alone."""
+    sine2 = sun[0] ** 2 + sun[1] ** 2
+    along2 = (sun[0] - slope * sun[1]) ** 2
+    found = 0.0
+    for m in range(layers.shape[0]):
+        depth = layers[m, 0] + (raised if m == 0 else 0.0)
+        square = layers[m, 1] ** 2 - sine2
+        found += depth / math.sqrt(square) * (1.0 + slope * slope + along2 / square)
+    return found
 
-    `frame` has the Sun's middle, the axis that chords stand across, and the layers.
+
+@compiled
+def _points(
+    rays: Floats,
+    chords: Floats,
+    frame: tuple[Floats, Floats, Floats],
+    slope: float,
+    raised: float,
+) -> None:
+    """Fill (2 Q, 6) rays: displacement and tangents along and across the array, light, ``J``.
+
+    `frame` has the Sun's middle, the axis that chords stand across, and the layers; `slope` and
+    `raised` are those of `_spread`.
     """
     sun, axis, layers = frame
     other = np.array(
@@ -155,6 +175,7 @@ def _points(rays: Floats, chords: Floats, frame: tuple[Floats, Floats, Floats]) 
             ray[0], ray[1] = scale * direction[0], scale * direction[1]
             ray[2], ray[3] = direction[0] / direction[2], direction[1] / direction[2]
             ray[4] = share * light / 2.0
+            ray[5] = _along(direction, layers, slope, raised)
 
 
 @compiled
@@ -205,13 +226,14 @@ def _rim(foil: float, apart: float, wavelength: float, table: Table) -> Pair:
 def _intensity(
     light: Floats, spread: Four, steps: int, spectrum: Floats, table: Table
 ) -> float:
-    """Fill an odd number of values about the middle, `steps` a half width; return the tail's factor.
+    """Fill (2, M) light about the middle, M odd, `steps` a half width; return the tail's factor.
 
-    `spread` is `_spread` with lengths in half widths.
+    The second row is how light changes with the logarithm of ``J``. `spread` is `_spread` with
+    lengths in half widths.
     """
     wide, cubic, foil, apart = spread
-    reach = light.shape[0] // 2 + steps
-    parts = np.empty((4, 2 * reach + 1))
+    reach = light.shape[1] // 2 + steps
+    parts = np.empty((5, 2 * reach + 1))
     light[:] = 0.0
     tail = 0.0
     for m in range(spectrum.shape[0]):
@@ -220,22 +242,28 @@ def _intensity(
         unit = math.sqrt(2.0 / (wavelength * wide))
         for i in range(parts.shape[1]):
             place = (i - reach) / steps
-            here = _fresnel(unit * place * (1.0 + cubic * place), table)
+            u = unit * place * (1.0 + cubic * place)
+            here = _fresnel(u, table)
             for k in range(4):
                 parts[k, i] = here[k]
+            parts[4, i] = u
         # of each edge's wave: what the cubic term adds to it, and what the foil takes from it
         more = -cubic / (math.pi * unit)
         cut_re, cut_im = _rim(foil, apart, wavelength, table)
         cut_re, cut_im = unit * cut_re, unit * cut_im
-        for i in range(light.shape[0]):
+        for i in range(light.shape[1]):
             j = i + 2 * steps
-            cosine, sine = parts[2, j], parts[3, j]
+            cosine, sine, u = parts[2, j], parts[3, j], parts[4, j]
+            turn_re, turn_im = u * cosine, u * sine
             re = parts[0, j] - cut_re * cosine - (more - cut_im) * sine
             im = parts[1, j] - cut_re * sine + (more - cut_im) * cosine
-            cosine, sine = parts[2, i], parts[3, i]
+            cosine, sine, u = parts[2, i], parts[3, i], parts[4, i]
+            turn_re -= u * cosine
+            turn_im -= u * sine
             re -= parts[0, i] + cut_re * cosine - (more + cut_im) * sine
             im -= parts[1, i] + cut_re * sine + (more + cut_im) * cosine
-            light[i] += weight * (re * re + im * im) / 2.0
+            light[0, i] += weight * (re * re + im * im) / 2.0
+            light[1, i] -= weight * (re * turn_re + im * turn_im) / 2.0
     return tail
 
 
@@ -243,10 +271,10 @@ def _intensity(
 def _pattern(
     spread: Four, shear: float, spectrum: Floats, table: Table
 ) -> tuple[Floats, Floats, Extent]:
-    """Return a slit's pattern and its running integral, sheared.
+    """Return a slit's pattern and its running integral.
 
-    `shear` is by how much the shadow moves over half the pixels' height. The running integral is
-    exact for cubics; where the shear is less than half a step, its second derivative stands for it.
+    Each (2, M): itself, and how it changes with the logarithm of ``J``. `shear` is by how much the
+    shadow moves over half the pixels' height.
     """
     shortest, middle = spectrum[0, 0], math.sqrt(spectrum[0, 0] * spectrum[-1, 0])
     steps = max(math.ceil(2.0 * _FINE / (shortest * spread[0])), 4)
@@ -257,37 +285,46 @@ def _pattern(
     # the fringes' order must not turn back
     cubic = 0.2 * steps / (ends + more + steps)
     cubic = max(min(spread[1], cubic), -cubic)
-    light, single = np.empty(count), np.empty(count)
+    light = np.empty((2, count))
     tail = _intensity(light, (spread[0], cubic, spread[2], spread[3]), steps, spectrum, table)
-    single[0], single[1] = 0.0, 0.0
+    out, sums = np.empty((2, 2 * ends + 1)), np.empty((2, 2 * ends + 1))
+    for k in range(2):
+        _sheared(out[k], sums[k], light[k], shear, step)
+    return out, sums, (step, ends * step, tail)
+
+
+@compiled
+def _sheared(out: Floats, sums: Floats, light: Floats, shear: float, step: float) -> None:
+    """Fill a pattern sheared by so much on either side, and its running integral.
+
+    The integral is exact for cubics; where the shear is less than half a step, the second
+    derivative stands for it.
+    """
+    count = light.shape[0]
+    more = (count - out.shape[0]) // 2
+    single = np.zeros(count)
     for i in range(1, count - 2):
         inner = 13.0 * (light[i] + light[i + 1]) - light[i - 1] - light[i + 2]
         single[i + 1] = single[i] + step * inner / 24.0
     single[count - 1] = single[count - 2]
-    extent = (step, ends * step, tail)
-    if shear == 0.0:
-        return light[more : count - more], single[more : count - more], extent
-    out, sums = np.empty(2 * ends + 1), np.empty(2 * ends + 1)
     if shear < step / 2.0:
         square = shear * shear / 6.0
-        for i in range(2 * ends + 1):
+        for i in range(out.shape[0]):
             j = i + more
             bend = light[j - 1] - 2.0 * light[j] + light[j + 1]
             out[i] = light[j] + square * bend / (step * step)
             sums[i] = single[j] + square * (light[j + 1] - light[j - 1]) / (2.0 * step)
-        return out, sums, extent
-    double = np.empty(count)
-    double[0] = 0.0
+        return
+    double = np.zeros(count)
     for i in range(count - 1):
         rise = (single[i] + single[i + 1]) / 2.0 + step * (light[i] - light[i + 1]) / 12.0
         double[i + 1] = double[i] + step * rise
-    for i in range(2 * ends + 1):
+    for i in range(out.shape[0]):
         place = (i + more) * step
         after = _integrals(light, single, double, place + shear, step)
         before = _integrals(light, single, double, place - shear, step)
         out[i] = (after[0] - before[0]) / (2.0 * shear)
         sums[i] = (after[1] - before[1]) / (2.0 * shear)
-    return out, sums, extent
 
 
 @compiled
@@ -329,19 +366,26 @@ def _add_near(
     dead: float,
     shape: tuple[Floats, Floats, Extent],
 ) -> None:
-    """Add the light of all chords (Q, 3) - middle, half width, light - to a span of pixels."""
+    """Add the light of all chords to a span of pixels.
+
+    `nodes` (Q, 4): middle, half width, light, by what share its ``J`` exceeds the pattern's.
+    """
     pattern, sums, extent = shape
+    here, total = np.empty(pattern.shape[1]), np.empty(pattern.shape[1])
     for q in range(nodes.shape[0]):
-        middle, width, light = nodes[q]
+        middle, width, light, excess = nodes[q]
         if light == 0.0:
             continue
+        for i in range(here.shape[0]):
+            here[i] = pattern[0, i] + excess * pattern[1, i]
+            total[i] = sums[0, i] + excess * sums[1, i]
         light *= width / (1.0 - 2.0 * dead)
-        end = _before((span[0] - middle) / width, pattern, sums, extent)
+        end = _before((span[0] - middle) / width, here, total, extent)
         for pixel in range(span[0], span[1]):
             start = end
             if dead > 0.0:
-                start = _before((pixel + dead - middle) / width, pattern, sums, extent)
-            end = _before((pixel + 1.0 - dead - middle) / width, pattern, sums, extent)
+                start = _before((pixel + dead - middle) / width, here, total, extent)
+            end = _before((pixel + 1.0 - dead - middle) / width, here, total, extent)
             line[pixel] += light * (end - start)
 
 
@@ -390,8 +434,8 @@ def expose_diffracted(
     edge, fill, plate = numbers
     dead, half = (1.0 - fill) / 2.0, plate[5]
     width = flux.shape[1]
-    rays, nodes = np.empty((2 * chords.shape[0], 5)), np.empty((chords.shape[0], 3))
-    axis, chief = np.empty(3), np.empty(5)
+    rays, nodes = np.empty((2 * chords.shape[0], 6)), np.empty((chords.shape[0], 4))
+    axis, chief = np.empty(3), np.empty(6)
     middle = math.sqrt(spectrum[0, 0] * spectrum[-1, 0])
     for n in range(flux.shape[0]):
         line = flux[n]
@@ -402,7 +446,7 @@ def expose_diffracted(
         chief[0], chief[1] = scale * sun[n, 0], scale * sun[n, 1]
         chief[2], chief[3] = sun[n, 0] / sun[n, 2], sun[n, 1] / sun[n, 2]
         known = False
-        pattern, sums, extent = np.empty(0), np.empty(0), (0.0, 0.0, 0.0)
+        pattern, sums, extent = np.empty((2, 0)), np.empty((2, 0)), (0.0, 0.0, 0.0)
         spread, size = (0.0, 0.0, 0.0, 0.0), 0.0
         for m in range(slits.shape[0]):
             slit = slits[m]
@@ -413,7 +457,7 @@ def expose_diffracted(
             if other or size == 0.0:
                 size, known = wide, False
                 spread = _spread(axis, sun[n], layers, plate[2], slope, raised)
-                _points(rays, chords, (sun[n], axis, layers))
+                _points(rays, chords, (sun[n], axis, layers), slope, raised)
             total, left, right = 0.0, place, place
             for q in range(chords.shape[0]):
                 one, two = _shadow(slit, rays[2 * q], plate), _shadow(slit, rays[2 * q + 1], plate)
@@ -425,6 +469,8 @@ def expose_diffracted(
                 total += light
                 nodes[q, 0] = (first * one[0] + second * two[0]) / light - edge
                 nodes[q, 1] = (first * one[1] + second * two[1]) / light
+                wider = (first * rays[2 * q, 5] + second * rays[2 * q + 1, 5]) / light
+                nodes[q, 3] = wider / spread[0] * (size / nodes[q, 1]) ** 2 - 1.0
                 left, right = min(left, nodes[q, 0] + edge), max(right, nodes[q, 0] + edge)
             if total == 0.0:
                 continue
