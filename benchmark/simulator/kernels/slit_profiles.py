@@ -30,9 +30,9 @@ Table = tuple[Floats, float]
 #: Step, end of the pattern's grid that may be looked up, and factor of its tail.
 Extent = tuple[float, float, float]
 
-#: Values a period of the finest fringe; widths of an edge outside a shadow that are computed,
+#: Values a period of the finest fringe, but so many a half width at least; widths of an edge outside a shadow that are computed,
 #: beyond which light falls with the square of the distance.
-_FINE, _OUTSIDE = 7.0, 5.0
+_FINE, _COARSEST, _OUTSIDE = 3.0, 8, 4.5
 #: Light that comes in more obliquely than 88.9 deg is none.
 _LEAST_COSINE = 0.02
 
@@ -251,17 +251,22 @@ def _intensity(
         more = -cubic / (math.pi * unit)
         cut_re, cut_im = _rim(foil, apart, wavelength, table)
         cut_re, cut_im = unit * cut_re, unit * cut_im
+        sharp = math.sqrt(2.0 * foil / wide)
         for i in range(light.shape[1]):
             j = i + 2 * steps
             cosine, sine, u = parts[2, j], parts[3, j], parts[4, j]
             turn_re, turn_im = u * cosine, u * sine
-            re = parts[0, j] - cut_re * cosine - (more - cut_im) * sine
-            im = parts[1, j] - cut_re * sine + (more - cut_im) * cosine
+            share = 1.0 / (1.0 + sharp * abs(u))
+            one, two = share * cut_re, more - share * cut_im
+            re = parts[0, j] - one * cosine - two * sine
+            im = parts[1, j] - one * sine + two * cosine
             cosine, sine, u = parts[2, i], parts[3, i], parts[4, i]
             turn_re -= u * cosine
             turn_im -= u * sine
-            re -= parts[0, i] + cut_re * cosine - (more + cut_im) * sine
-            im -= parts[1, i] + cut_re * sine + (more + cut_im) * cosine
+            share = 1.0 / (1.0 + sharp * abs(u))
+            one, two = share * cut_re, more + share * cut_im
+            re -= parts[0, i] + one * cosine - two * sine
+            im -= parts[1, i] + one * sine + two * cosine
             light[0, i] += weight * (re * re + im * im) / 2.0
             light[1, i] -= weight * (re * turn_re + im * turn_im) / 2.0
     return tail
@@ -277,7 +282,7 @@ def _pattern(
     shadow moves over half the pixels' height.
     """
     shortest, middle = spectrum[0, 0], math.sqrt(spectrum[0, 0] * spectrum[-1, 0])
-    steps = max(math.ceil(2.0 * _FINE / (shortest * spread[0])), 4)
+    steps = max(math.ceil(2.0 * _FINE / (shortest * spread[0])), _COARSEST)
     ends = math.ceil((1.0 + _OUTSIDE * math.sqrt(middle * spread[0])) * steps)
     step = 1.0 / steps
     more = math.ceil(shear * steps) + 2
