@@ -5,7 +5,7 @@ from __future__ import annotations
 from benchmark.datasets.conditions.line_arrays import SUN, behind, ccd, line_arrays, saturated
 from benchmark.simulator.masks.slits import slit_row
 
-_MASK = slit_row((0.0,), width_mm=0.1, length_mm=14.4, thickness_mm=0.01)
+_MASK = slit_row((0.0,), width_mm=0.1, length_mm=15.2, thickness_mm=0.01)
 _SENSOR = behind(_MASK, 3.5, ccd(1024, 0.014), sun=SUN)
 
 PRESET = line_arrays(

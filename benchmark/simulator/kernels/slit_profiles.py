@@ -1,10 +1,7 @@
 """Compiled diffraction of slits on the pixels of linear arrays (loaded on first use: Numba).
 
-The pattern of an endless slit (`slit_diffraction`) is summed over the spectrum on a fine grid once
-a sample and shape of slit; slits of one shape share it. Its running integral, smoothed by the
-slant of the shadow over the height of the pixels, is looked up at the edges of every pixel for
-every chord of the Sun. Lengths are in pixels, but within a pattern: there the slit's edges are at
--1 and 1, and the open light is 1.
+Patterns of `slit_patterns`, which slits of one shape share, are looked up at the edges of every
+pixel for every chord of the Sun. Lengths are in pixels, but within a pattern.
 """
 
 from __future__ import annotations
@@ -12,6 +9,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
@@ -25,44 +23,11 @@ Shadow = tuple[float, float, float, float, float]
 #: Cosine and sine of the plate's inclination, its thickness, offset along u and v, and half the
 #: height of the array.
 Plate = tuple[float, float, float, float, float, float]
-#: (2, M) auxiliary functions of the Fresnel integrals from -1 step on, and steps a unit.
-Table = tuple[Floats, float]
 #: Step, end of the pattern's grid that may be looked up, and factor of its tail.
 Extent = tuple[float, float, float]
 
-#: Values a period of the finest fringe, but so many a half width at least; widths of an edge outside a shadow that are computed,
-#: beyond which light falls with the square of the distance.
-_FINE, _COARSEST, _OUTSIDE = 3.0, 8, 4.5
 #: Light that comes in more obliquely than 88.9 deg is none.
 _LEAST_COSINE = 0.02
-
-
-@compiled
-def _fresnel(u: float, table: Table) -> Four:
-    """Fresnel's C and S of u by their smooth auxiliary functions f and g, and ``exp(i pi u^2 / 2)``.
-
-    As in `diffraction_slits`: kernels call only their own file (see `compiled`).
-    """
-    auxiliary, per_unit = table
-    size = abs(u)
-    place = size * per_unit + 1.0
-    if place < auxiliary.shape[1] - 3.0:
-        first = int(place)
-        t = place - first
-        a, b = -t * (t - 1.0) * (t - 2.0) / 6.0, (t + 1.0) * (t - 1.0) * (t - 2.0) / 2.0
-        c, d = -(t + 1.0) * t * (t - 2.0) / 2.0, (t + 1.0) * t * (t - 1.0) / 6.0
-        line = auxiliary[0]
-        f = a * line[first - 1] + b * line[first] + c * line[first + 1] + d * line[first + 2]
-        line = auxiliary[1]
-        g = a * line[first - 1] + b * line[first] + c * line[first + 1] + d * line[first + 2]
-    else:
-        q = 1.0 / (math.pi * size * size) ** 2
-        f = (1.0 - 3.0 * q) / (math.pi * size)
-        g = (1.0 - 15.0 * q) / (math.pi * math.pi * size * size * size)
-    phase = math.pi / 2.0 * size * size
-    sine, cosine = math.sin(phase), math.cos(phase)
-    re, im = 0.5 + f * sine - g * cosine, 0.5 - f * cosine - g * sine
-    return (re, im, cosine, sine) if u >= 0.0 else (-re, -im, cosine, sine)
 
 
 @compiled
@@ -92,15 +57,14 @@ def _light(direction: Floats, layers: Floats) -> Pair:
 
 
 @compiled
-def _spread(
-    axis: Floats, sun: Floats, layers: Floats, thickness: float, slope: float, raised: float
-) -> Four:
-    """Return how a shadow of this slope spreads along the array, from a mask raised this far.
+def _spread(axis: Floats, sun: Floats, layers: Floats, thickness: float, shadow: Pair) -> Four:
+    """Return how a shadow spreads along the array, of a slope and from a mask raised so far.
 
     ``J``; by what share of a distance x from an edge the cubic term of the phase moves a fringe,
     over x; ``J`` of the foil; how far apart the foil's rims appear. Fill `axis` with the direction
     on the sky, square to `sun`, in which the shadow moves fastest.
     """
+    slope, raised = shadow
     sine2 = sun[0] ** 2 + sun[1] ** 2
     along = sun[0] - slope * sun[1]
     normal2 = 1.0 + slope * slope
@@ -205,149 +169,6 @@ def _shadow(slit: Floats, ray: Floats, plate: Plate) -> Shadow:
 
 
 @compiled
-def _rim(foil: float, apart: float, wavelength: float, table: Table) -> Pair:
-    """Amplitude that a foil's outer rim cuts off the light bent around its inner one, summed up.
-
-    A length, complex: the shadow's edge stands as much farther inside. Rims `apart` in the light's
-    view, ``J = foil`` one above the other, spread light over a width of their own.
-    """
-    if foil == 0.0:
-        return 0.0, 0.0
-    size = math.sqrt(wavelength * foil)
-    u = apart * math.sqrt(2.0) / size
-    c, s, cosine, sine = _fresnel(u, table)
-    # (i / pi) exp(i pi u^2 / 2) - u ((1 + i) / 2 - F(u)), turned by -45 deg
-    re, im = -sine / math.pi - u * (0.5 - c), cosine / math.pi - u * (0.5 - s)
-    half = size / 2.0 / math.sqrt(2.0)
-    return half * (re + im), half * (im - re)
-
-
-@compiled
-def _intensity(
-    light: Floats, spread: Four, steps: int, spectrum: Floats, table: Table
-) -> float:
-    """Fill (2, M) light about the middle, M odd, `steps` a half width; return the tail's factor.
-
-    The second row is how light changes with the logarithm of ``J``. `spread` is `_spread` with
-    lengths in half widths.
-    """
-    wide, cubic, foil, apart = spread
-    reach = light.shape[1] // 2 + steps
-    parts = np.empty((5, 2 * reach + 1))
-    light[:] = 0.0
-    tail = 0.0
-    for m in range(spectrum.shape[0]):
-        wavelength, weight = spectrum[m]
-        tail += weight * wavelength * wide / (4.0 * math.pi * math.pi)
-        unit = math.sqrt(2.0 / (wavelength * wide))
-        for i in range(parts.shape[1]):
-            place = (i - reach) / steps
-            u = unit * place * (1.0 + cubic * place)
-            here = _fresnel(u, table)
-            for k in range(4):
-                parts[k, i] = here[k]
-            parts[4, i] = u
-        # of each edge's wave: what the cubic term adds to it, and what the foil takes from it
-        more = -cubic / (math.pi * unit)
-        cut_re, cut_im = _rim(foil, apart, wavelength, table)
-        cut_re, cut_im = unit * cut_re, unit * cut_im
-        sharp = math.sqrt(2.0 * foil / wide)
-        for i in range(light.shape[1]):
-            j = i + 2 * steps
-            cosine, sine, u = parts[2, j], parts[3, j], parts[4, j]
-            turn_re, turn_im = u * cosine, u * sine
-            share = 1.0 / (1.0 + sharp * abs(u))
-            one, two = share * cut_re, more - share * cut_im
-            re = parts[0, j] - one * cosine - two * sine
-            im = parts[1, j] - one * sine + two * cosine
-            cosine, sine, u = parts[2, i], parts[3, i], parts[4, i]
-            turn_re -= u * cosine
-            turn_im -= u * sine
-            share = 1.0 / (1.0 + sharp * abs(u))
-            one, two = share * cut_re, more + share * cut_im
-            re -= parts[0, i] + one * cosine - two * sine
-            im -= parts[1, i] + one * sine + two * cosine
-            light[0, i] += weight * (re * re + im * im) / 2.0
-            light[1, i] -= weight * (re * turn_re + im * turn_im) / 2.0
-    return tail
-
-
-@compiled
-def _pattern(
-    spread: Four, shear: float, spectrum: Floats, table: Table
-) -> tuple[Floats, Floats, Extent]:
-    """Return a slit's pattern and its running integral.
-
-    Each (2, M): itself, and how it changes with the logarithm of ``J``. `shear` is by how much the
-    shadow moves over half the pixels' height.
-    """
-    shortest, middle = spectrum[0, 0], math.sqrt(spectrum[0, 0] * spectrum[-1, 0])
-    steps = max(math.ceil(2.0 * _FINE / (shortest * spread[0])), _COARSEST)
-    ends = math.ceil((1.0 + _OUTSIDE * math.sqrt(middle * spread[0])) * steps)
-    step = 1.0 / steps
-    more = math.ceil(shear * steps) + 2
-    count = 2 * (ends + more) + 1
-    # the fringes' order must not turn back
-    cubic = 0.2 * steps / (ends + more + steps)
-    cubic = max(min(spread[1], cubic), -cubic)
-    light = np.empty((2, count))
-    tail = _intensity(light, (spread[0], cubic, spread[2], spread[3]), steps, spectrum, table)
-    out, sums = np.empty((2, 2 * ends + 1)), np.empty((2, 2 * ends + 1))
-    for k in range(2):
-        _sheared(out[k], sums[k], light[k], shear, step)
-    return out, sums, (step, ends * step, tail)
-
-
-@compiled
-def _sheared(out: Floats, sums: Floats, light: Floats, shear: float, step: float) -> None:
-    """Fill a pattern sheared by so much on either side, and its running integral.
-
-    The integral is exact for cubics; where the shear is less than half a step, the second
-    derivative stands for it.
-    """
-    count = light.shape[0]
-    more = (count - out.shape[0]) // 2
-    single = np.zeros(count)
-    for i in range(1, count - 2):
-        inner = 13.0 * (light[i] + light[i + 1]) - light[i - 1] - light[i + 2]
-        single[i + 1] = single[i] + step * inner / 24.0
-    single[count - 1] = single[count - 2]
-    if shear < step / 2.0:
-        square = shear * shear / 6.0
-        for i in range(out.shape[0]):
-            j = i + more
-            bend = light[j - 1] - 2.0 * light[j] + light[j + 1]
-            out[i] = light[j] + square * bend / (step * step)
-            sums[i] = single[j] + square * (light[j + 1] - light[j - 1]) / (2.0 * step)
-        return
-    double = np.zeros(count)
-    for i in range(count - 1):
-        rise = (single[i] + single[i + 1]) / 2.0 + step * (light[i] - light[i + 1]) / 12.0
-        double[i + 1] = double[i] + step * rise
-    for i in range(out.shape[0]):
-        place = (i + more) * step
-        after = _integrals(light, single, double, place + shear, step)
-        before = _integrals(light, single, double, place - shear, step)
-        out[i] = (after[0] - before[0]) / (2.0 * shear)
-        sums[i] = (after[1] - before[1]) / (2.0 * shear)
-
-
-@compiled
-def _integrals(light: Floats, single: Floats, double: Floats, place: float, step: float) -> Pair:
-    """First and second running integral of a pattern at a place (Hermite's cubic for the first)."""
-    cell = int(place / step)
-    t = place / step - cell
-    rise = single[cell + 1] - single[cell]
-    first, last = step * light[cell] - rise, rise - step * light[cell + 1]
-    value = single[cell] + t * rise + t * (1.0 - t) * ((1.0 - t) * first + t * last)
-    # the cubic's integral from the cell's beginning
-    t2 = t * t
-    inner = single[cell] * t + rise * t2 / 2.0
-    inner += first * t2 * (0.5 - 2.0 * t / 3.0 + t2 / 4.0) + last * t2 * t * (1.0 / 3.0 - t / 4.0)
-    return value, double[cell] + step * inner
-
-
-@compiled
 def _before(place: float, pattern: Floats, sums: Floats, extent: Extent) -> float:
     """Light up to a place, from the grid's beginning."""
     step, end, tail = extent
@@ -369,21 +190,21 @@ def _add_near(
     span: tuple[int, int],
     nodes: Floats,
     dead: float,
-    shape: tuple[Floats, Floats, Extent],
+    shape: tuple[Floats, Extent],
 ) -> None:
     """Add the light of all chords to a span of pixels.
 
     `nodes` (Q, 4): middle, half width, light, by what share its ``J`` exceeds the pattern's.
     """
-    pattern, sums, extent = shape
+    pattern, extent = shape
     here, total = np.empty(pattern.shape[1]), np.empty(pattern.shape[1])
     for q in range(nodes.shape[0]):
         middle, width, light, excess = nodes[q]
         if light == 0.0:
             continue
         for i in range(here.shape[0]):
-            here[i] = pattern[0, i] + excess * pattern[1, i]
-            total[i] = sums[0, i] + excess * sums[1, i]
+            here[i] = pattern[0, i] + excess * pattern[2, i]
+            total[i] = pattern[1, i] + excess * pattern[3, i]
         light *= width / (1.0 - 2.0 * dead)
         end = _before((span[0] - middle) / width, here, total, extent)
         for pixel in range(span[0], span[1]):
@@ -407,12 +228,71 @@ def _add_far(line: Floats, span: tuple[int, int], node: tuple[float, float, floa
 
 
 @compiled
+def _chief(ray: Floats, sun: Floats, layers: Floats) -> None:
+    """Fill the ray from the Sun's middle as `_points` does the others', without light and ``J``."""
+    scale, _ = _light(sun, layers)
+    ray[0], ray[1] = scale * sun[0], scale * sun[1]
+    ray[2], ray[3] = sun[0] / sun[2], sun[1] / sun[2]
+
+
+@compiled
+def shapes(out: Floats, slits: Floats, sun: Floats, layers: Floats, plate: Plate) -> None:
+    """Fill (N, G, 6): half width of each shape of slit along the array, and a row of `patterns`.
+
+    Zeros where no light gets through; parameters as in `expose_diffracted`, `slits` one a shape.
+    """
+    axis, chief = np.empty(3), np.empty(6)
+    out[:] = 0.0
+    for n in range(out.shape[0]):
+        if sun[n, 2] < _LEAST_COSINE:
+            continue
+        _chief(chief, sun[n], layers)
+        for g in range(slits.shape[0]):
+            _, size, slope, _, raised = _shadow(slits[g], chief, plate)
+            if size <= 0.0:
+                continue
+            spread = _spread(axis, sun[n], layers, plate[2], (slope, raised))
+            out[n, g, 0] = size
+            out[n, g, 1] = spread[0] / size**2
+            out[n, g, 2] = spread[1] * size
+            out[n, g, 3] = spread[2] / size**2
+            out[n, g, 4] = spread[3] / size
+            out[n, g, 5] = abs(slope) * plate[5] / size
+
+
+@compiled
+def _nodes(nodes: Floats, slit: Floats, rays: Floats, plate: Plate, scale: float) -> Four:
+    """Fill (Q, 4) chords of one slit for `_add_near`; return their ends, middle and light.
+
+    `scale` is ``J`` over the squared half width of the pattern.
+    """
+    total, moment, left, right = 0.0, 0.0, math.inf, -math.inf
+    for q in range(nodes.shape[0]):
+        one, two = _shadow(slit, rays[2 * q], plate), _shadow(slit, rays[2 * q + 1], plate)
+        first, second = one[3] * rays[2 * q, 4], two[3] * rays[2 * q + 1, 4]
+        light = first + second
+        nodes[q, 2] = light
+        if light == 0.0 or min(one[1], two[1]) <= 0.0:
+            nodes[q, 2] = 0.0
+            continue
+        middle = (first * one[0] + second * two[0]) / light
+        width = (first * one[1] + second * two[1]) / light
+        wide = (first * rays[2 * q, 5] + second * rays[2 * q + 1, 5]) / light
+        nodes[q, 0], nodes[q, 1] = middle, width
+        nodes[q, 3] = wide / scale / width**2 - 1.0
+        total += light
+        moment += light * middle
+        left, right = min(left, middle), max(right, middle)
+    return left, right, moment / total if total > 0.0 else 0.0, total
+
+
+@compiled
 def expose_diffracted(
     flux: Floats,
-    slits: Floats,
-    suns: tuple[Floats, Floats],
-    optics: tuple[Floats, Floats, Table],
-    numbers: tuple[float, float, Plate],
+    slits: tuple[Floats, NDArray[np.int64]],
+    suns: tuple[Floats, Floats, Floats],
+    patterns: tuple[Floats, NDArray[np.int64], NDArray[np.int64], Floats],
+    numbers: tuple[float, float, float, Plate],
 ) -> None:
     """Write the light on every pixel of one array, sample by sample.
 
@@ -421,81 +301,49 @@ def expose_diffracted(
     flux
         (N, W), overwritten: light averaged over each pixel's sensitive area.
     slits
-        (A, 7) `Mask.table` in pixels, u along the array, v across it; slits of one shape and slant
-        one after the other share their pattern.
+        (A, 7) `Mask.table` in pixels, u along the array, v across it, those of one shape and slant
+        one after the other; (G + 1,) where each shape begins.
     suns
-        (N, 3) unit vectors to the Sun's middle, along u, v and the boresight; (Q, 3) `chords`.
-    optics
+        (N, 3) unit vectors to the Sun's middle, along u, v and the boresight; (Q, 3) `chords`;
         (L, 2) thickness in pixels and index of what lies between the foil's middle and the
-        detector, the empty gap first; (S, 2) wavelengths in pixels, rising, and weights; the table
-        of the Fresnel integrals.
+        detector, the empty gap first.
+    patterns
+        (4, total) `patterns`, their `grids` (N G, 3) and beginnings (N G,), and (N, G, 6) `shapes`.
     numbers
-        Position of the array's first edge, px; share of a pixel's length that is sensitive;
-        the plate: cosine and sine of its inclination, its thickness, its offset along u and v, and
+        Position of the array's first edge, px; share of a pixel's length that is sensitive; mean
+        wavelength, px; the plate: cosine and sine of its inclination, its thickness, its offset along u and v, and
         half the height of the array, px.
     """
-    sun, chords = suns
-    layers, spectrum, table = optics
-    edge, fill, plate = numbers
-    dead, half = (1.0 - fill) / 2.0, plate[5]
-    width = flux.shape[1]
+    table, firsts = slits
+    sun, chords, layers = suns
+    known, grids, starts, shape = patterns
+    edge, fill, wavelength, plate = numbers
+    dead, width = (1.0 - fill) / 2.0, flux.shape[1]
     rays, nodes = np.empty((2 * chords.shape[0], 6)), np.empty((chords.shape[0], 4))
     axis, chief = np.empty(3), np.empty(6)
-    middle = math.sqrt(spectrum[0, 0] * spectrum[-1, 0])
+    flux[:] = 0.0
     for n in range(flux.shape[0]):
-        line = flux[n]
-        line[:] = 0.0
-        if sun[n, 2] < _LEAST_COSINE:
-            continue
-        scale, _ = _light(sun[n], layers)
-        chief[0], chief[1] = scale * sun[n, 0], scale * sun[n, 1]
-        chief[2], chief[3] = sun[n, 0] / sun[n, 2], sun[n, 1] / sun[n, 2]
-        known = False
-        pattern, sums, extent = np.empty((2, 0)), np.empty((2, 0)), (0.0, 0.0, 0.0)
-        spread, size = (0.0, 0.0, 0.0, 0.0), 0.0
-        for m in range(slits.shape[0]):
-            slit = slits[m]
-            place, wide, slope, _, raised = _shadow(slit, chief, plate)
-            if wide <= 0.0:
+        for g in range(firsts.shape[0] - 1):
+            steps, ends, _ = grids[n * shape.shape[1] + g]
+            if steps == 0:
                 continue
-            other = m == 0 or slit[3] != slits[m - 1, 3] or slit[6] != slits[m - 1, 6]
-            if other or size == 0.0:
-                size, known = wide, False
-                spread = _spread(axis, sun[n], layers, plate[2], slope, raised)
-                _points(rays, chords, (sun[n], axis, layers), slope, raised)
-            total, left, right = 0.0, place, place
-            for q in range(chords.shape[0]):
-                one, two = _shadow(slit, rays[2 * q], plate), _shadow(slit, rays[2 * q + 1], plate)
-                first, second = one[3] * rays[2 * q, 4], two[3] * rays[2 * q + 1, 4]
-                light = first + second
-                nodes[q, 2] = light
+            start = starts[n * shape.shape[1] + g]
+            pattern = known[:, start : start + 2 * ends + 1]
+            size, scale = shape[n, g, 0], shape[n, g, 1]
+            tail = wavelength * scale / (4.0 * math.pi * math.pi)
+            extent = (1.0 / steps, ends / steps, tail)
+            _chief(chief, sun[n], layers)
+            _, _, slope, _, raised = _shadow(table[firsts[g]], chief, plate)
+            _spread(axis, sun[n], layers, plate[2], (slope, raised))
+            _points(rays, chords, (sun[n], axis, layers), slope, raised)
+            for m in range(firsts[g], firsts[g + 1]):
+                left, right, middle, light = _nodes(nodes, table[m], rays, plate, scale)
                 if light == 0.0:
                     continue
-                total += light
-                nodes[q, 0] = (first * one[0] + second * two[0]) / light - edge
-                nodes[q, 1] = (first * one[1] + second * two[1]) / light
-                wider = (first * rays[2 * q, 5] + second * rays[2 * q + 1, 5]) / light
-                nodes[q, 3] = wider / spread[0] * (size / nodes[q, 1]) ** 2 - 1.0
-                left, right = min(left, nodes[q, 0] + edge), max(right, nodes[q, 0] + edge)
-            if total == 0.0:
-                continue
-            reach = size + _OUTSIDE * math.sqrt(middle * spread[0])
-            start = min(max(math.floor(left - edge - reach), 0), width)
-            stop = min(max(math.ceil(right - edge + reach), start), width)
-            if stop > start:
-                if not known:
-                    shear = abs(slope) * half / size
-                    scaled = (
-                        spread[0] / size**2,
-                        spread[1] * size,
-                        spread[2] / size**2,
-                        spread[3] / size,
-                    )
-                    pattern, sums, extent = _pattern(scaled, shear, spectrum, table)
-                    known = True
-                _add_near(line, (start, stop), nodes, dead, (pattern, sums, extent))
-            tail = 0.0
-            for k in range(spectrum.shape[0]):
-                tail += spectrum[k, 1] * spectrum[k, 0]
-            tail *= spread[0] / size**2 / (4.0 * math.pi * math.pi)
-            _add_far(line, (start, stop), (place - edge, size, total * tail))
+                nodes[:, 0] -= edge
+                reach = size * extent[1]
+                low = min(max(math.floor(left - edge - reach), 0), width)
+                high = min(max(math.ceil(right - edge + reach), low), width)
+                if high > low:
+                    _add_near(flux[n], (low, high), nodes, dead, (pattern, extent))
+                _add_far(flux[n], (low, high), (middle - edge, size, light * tail))

@@ -14,9 +14,9 @@ from benchmark.seeds import generator
 from benchmark.simulator.light.memory import memory
 from benchmark.simulator.masks.slits import SlitErrors
 from benchmark.simulator.optics.diffraction import SUNLIT_SILICON, Spectrum
-from benchmark.simulator.optics.diffraction_tables import fresnel_table, layers
+from benchmark.simulator.optics.diffraction_tables import layers
 from benchmark.simulator.optics.projection import Camera
-from benchmark.simulator.optics.slit_diffraction import chords
+from benchmark.simulator.optics.slit_diffraction import SlitProfiles
 from benchmark.simulator.readout.detectors import PixelArray
 from benchmark.simulator.readout.noise import NoiseStreams, counted
 from benchmark.simulator.scene import Scene
@@ -125,35 +125,28 @@ class LineSensor:
 
     def _diffract(self, flux: Floats, sun: Floats, spectrum: Spectrum) -> None:
         """Fill `flux` with diffracted light."""
-        from benchmark.simulator.kernels.slit_profiles import (  # noqa: PLC0415 - Numba on demand
-            expose_diffracted,
-        )
-
         camera, pitch, columns = self.camera, self.detector.pitch_mm, self.detector.columns
         head = camera.assembly.to_head(sun)
-        stack = layers(camera.height_mm, camera.glass) / np.array([pitch, 1.0])
-        light = np.array(sorted(zip(spectrum.wavelengths_nm, spectrum.weights, strict=True)))
-        light[:, 0] *= 1e-6 / pitch
-        widest = max(aperture.width_mm for aperture in camera.mask.apertures)
-        disc = chords(camera.sun, widest, min(spectrum.wavelengths_nm) * 1e-6)
-        tilt = math.radians(self.errors.inclination_deg)
         offset = camera.assembly.offset_x_mm / pitch, camera.assembly.offset_y_mm / pitch
-        thickness = camera.mask.thickness_mm / pitch
-        half_height = self.pixel_height_mm / pitch / 2.0
+        tilt = math.radians(self.errors.inclination_deg)
         for number, axis in enumerate(self.axes):
             turned = np.ascontiguousarray(head if axis == "x" else head[:, [1, 0, 2]])
-            along, across = offset if axis == "x" else offset[::-1]
-            slits = self._slits(axis)
-            alike = np.lexsort((slits[:, 1], slits[:, 6], slits[:, 3]))
-            part = np.empty((len(sun), columns))
-            plate = math.cos(tilt), math.sin(tilt), thickness, along, across, half_height
-            expose_diffracted(
-                part,
-                np.ascontiguousarray(slits[alike]),
-                (turned, disc),
-                (stack, light, fresnel_table()),
-                (-columns / 2.0, self.fill_factor, plate),
+            plate = (
+                math.cos(tilt),
+                math.sin(tilt),
+                camera.mask.thickness_mm / pitch,
+                *(offset if axis == "x" else offset[::-1]),
+                self.pixel_height_mm / pitch / 2.0,
             )
+            profiles = SlitProfiles(
+                slits=self._slits(axis),
+                layers=layers(camera.height_mm, camera.glass) / np.array([pitch, 1.0]),
+                sun=camera.sun,
+                spectrum=spectrum,
+                pitch_mm=pitch,
+                plate=plate,
+            )
+            part = profiles.light(turned, columns, self.fill_factor)
             flux[:, number * columns : (number + 1) * columns] = part
 
     def _cast_shadows(self, flux: Floats, sun: Floats) -> None:

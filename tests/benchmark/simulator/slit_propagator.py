@@ -117,7 +117,7 @@ def profile(
     weights: np.ndarray,
     points: tuple[np.ndarray, np.ndarray] | None = None,
 ) -> np.ndarray:
-    """(columns,) light on each pixel's sensitive area, in units of normal sunlight without glass."""
+    """(columns,) light on each pixel's sensitive area; normal sunlight without glass is 1."""
     directions, shares = points or disc(np.asarray(sun, dtype=float))
     sine2 = np.sum(directions[:, :2] ** 2, axis=1)
     light = shares * directions[:, 2]
