@@ -311,8 +311,8 @@ def expose_diffracted(
         (4, total) `patterns`, their `grids` (N G, 3) and beginnings (N G,), and (N, G, 6) `shapes`.
     numbers
         Position of the array's first edge, px; share of a pixel's length that is sensitive; mean
-        wavelength, px; the plate: cosine and sine of its inclination, its thickness, its offset along u and v, and
-        half the height of the array, px.
+        wavelength, px; the plate: cosine and sine of its inclination, its thickness, its offset
+        along u and v, and half the height of the array, px.
     """
     table, firsts = slits
     sun, chords, layers = suns

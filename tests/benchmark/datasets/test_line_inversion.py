@@ -28,7 +28,7 @@ POINT = SolarDisc(diameter_deg=0.0)
 
 
 def ideal(name: str, **changes: Any) -> LineSensor:
-    """The dataset's sensor without errors, thickness or glass, under a point Sun."""
+    """The dataset's sensor without errors, thickness, glass or diffraction, under a point Sun."""
     sensor = datasets.get(name).setups["nominal"].sensor
     assert isinstance(sensor, LineSensor)
     camera = replace(
@@ -42,7 +42,8 @@ def ideal(name: str, **changes: Any) -> LineSensor:
     mask = camera.mask
     longer = tuple(replace(a, height_mm=1.2 * a.height_mm) for a in mask.apertures)
     camera = replace(camera, mask=replace(mask, apertures=longer))
-    return replace(sensor, camera=camera, **{"errors": SlitErrors(), "fill_factor": 1.0, **changes})
+    plain = {"errors": SlitErrors(), "fill_factor": 1.0, "spectrum": None}
+    return replace(sensor, camera=camera, **{**plain, **changes})
 
 
 def scene_over(half: float = 60.0) -> tuple[Scene, np.ndarray, np.ndarray]:
@@ -103,7 +104,7 @@ def test_slit_under_glass_is_inverted_by_snells_law() -> None:
     for _ in range(60):
         theta = (low + high) / 2
         inside = np.arcsin(np.sin(theta) / index)
-        far = (2.5 - thickness) * np.tan(theta) + thickness * np.tan(inside) > np.hypot(x, y)
+        far = (3.5 - thickness) * np.tan(theta) + thickness * np.tan(inside) > np.hypot(x, y)
         low, high = np.where(far, low, theta), np.where(far, theta, high)
     turn = np.arctan2(y, x)
     assert np.abs(degrees(np.tan(low) * np.cos(turn)) - beta).max() < 1e-6
@@ -120,10 +121,10 @@ def test_deflection_and_inclination_act_as_the_slit_model_says() -> None:
     # inclined slit: arctan(a t / (1 - b t)) is the direction of its shadow
     shadow = np.arctan(a * t / (1 - b * t))
     model = a + b * np.tan(shadow)
-    found = centres_mm(replace(sensor, errors=SlitErrors(0.0, delta)), scene)[:, 0, 0] / 2.5
+    found = centres_mm(replace(sensor, errors=SlitErrors(0.0, delta)), scene)[:, 0, 0] / 3.5
     assert np.abs(degrees(found) - degrees(model)).max() < 1e-6
     # deflected slit: the shadow is turned by the deflection
-    found = centres_mm(replace(sensor, errors=SlitErrors(theta, 0.0)), scene)[:, :, 0] / 2.5
+    found = centres_mm(replace(sensor, errors=SlitErrors(theta, 0.0)), scene)[:, :, 0] / 3.5
     turn = math.tan(math.radians(theta))
     assert np.abs(found[:, 0] - (a + b * turn)).max() < 1e-9
     assert np.abs(found[:, 1] - (b - a * turn)).max() < 1e-9
