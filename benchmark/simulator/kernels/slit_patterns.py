@@ -21,7 +21,7 @@ Table = tuple[Floats, float]
 
 #: Values a period of the finest fringe, but so many a half width at least; widths of an edge
 #: outside a shadow that are computed, beyond which light falls with the square of the distance.
-_FINE, _COARSEST, OUTSIDE = 3.0, 8, 4.5
+_FINE, _COARSEST, _OUTSIDE = 4.0, 8, 4.5
 
 
 @compiled
@@ -177,7 +177,7 @@ def grids(out: NDArray[np.int64], shapes: Floats, spectrum: Floats) -> None:
         if wide > 0.0:
             steps = max(math.ceil(2.0 * _FINE / (shortest * wide)), _COARSEST)
             out[m, 0] = steps
-            out[m, 1] = math.ceil((1.0 + OUTSIDE * math.sqrt(middle * wide)) * steps)
+            out[m, 1] = math.ceil((1.0 + shear + _OUTSIDE * math.sqrt(middle * wide)) * steps)
             out[m, 2] = math.ceil(shear * steps) + 2
 
 

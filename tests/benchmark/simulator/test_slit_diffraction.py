@@ -149,7 +149,7 @@ def test_one_wavelength_of_a_point_is_fresnels_pattern() -> None:
     true = ((c1 - c2) ** 2 + (s1 - s2) ** 2) / 2 @ shares / 2
     found = lit(sensor, (0.0, 0.0))[0]
     near = np.abs(np.arange(1024) - 511.5) < 15
-    assert np.abs(found - true)[near].max() < 5e-4
+    assert np.abs(found - true)[near].max() < 4e-3  # four values a period, and no disc
     # beyond the grid fringes are left out: no more than their own height
     far = np.abs(place).min(axis=1) > half
     skirt = 2 * wave * height / (math.pi**2 * (np.abs(place).min(axis=1) - half) ** 2)
@@ -168,20 +168,22 @@ def test_one_wavelength_of_a_point_is_fresnels_pattern() -> None:
     ],
 )
 def test_short_waves_cast_geometric_shadows(case: dict[str, Any], axis: str) -> None:
-    """At 2 nm an edge is 2 um wide: rims, glass, slant and plate are where the rays put them."""
+    """At 5 nm an edge is 3 um wide: rims, glass, slant and plate are where the rays put them."""
     case = dict(case)
     mask = Mask((slit(0.25, 16.0, 0.4, case.pop("slant", 0.0)),), case.pop("thickness", 0.0))
     optics = {k: case.pop(k) for k in ("glass", "assembly") if k in case}
     nominal = datasets.get("ccd-slit").setups["nominal"].sensor
     sensor = replace(
         nominal,
-        **{"camera": Camera(2.0, mask, nominal.camera.sun, **optics), "axes": (axis,)},
-        **{"errors": SlitErrors(), "spectrum": Spectrum((2.0,), (1.0,)), **case},
+        camera=Camera(2.0, mask, nominal.camera.sun, **optics),
+        axes=(axis,),
+        spectrum=Spectrum((5.0,), (1.0,)),
+        **{"errors": SlitErrors(), **case},
     )
     angles = ((0.0, 0.0), (20.0, -35.0), (-25.0, 10.0))
     found, true = lit(sensor, *angles), lit(replace(sensor, spectrum=None), *angles)
     # an edge's pattern moves light by about its width; a pixel is 14 um
-    assert np.abs(found - true).max() < 0.05 * true.max()
+    assert np.abs(found - true).max() < 0.02 * true.max()
     pixels = np.arange(found.shape[1])
     middles = [(p * pixels).sum(axis=1) / p.sum(axis=1) for p in (found, true)]
     assert np.abs(middles[0] - middles[1]).max() < 0.02
