@@ -76,9 +76,8 @@ def test_trails_stay_on_the_array_all_over_the_field(split: str) -> None:
     charge = sensor._electrons(part, pattern)
     _, drained = sensor.held(charge)
     assert not drained.any()
-    # in the field's very corners a slit in a foil lets too little through to fill a well
+    # 60 deg off, a slit in a foil lets too little through to fill a well of that array
     most = charge.reshape(-1, 2, 1024).max(axis=2)
-    assert (most > 0.6 * FULL).all()
     assert (most.max(axis=1) > FULL).mean() > 0.5
 
 
