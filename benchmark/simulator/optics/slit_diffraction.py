@@ -21,8 +21,8 @@ inclined plate ``J_w`` is that of the height above the array at which its light 
   outer rim of either side, a distance d from the light's edge, cuts off what the inner one bends
   beyond it, which adds ``-+ sqrt(2 / (lambda J_w)) m exp(i pi u^2 / 2)`` to F, ``m`` the integral
   of the inner rim's shadow from d on (at d = 0 ``0.11 (1 + i) sqrt(lambda t)``; less for what is
-  bent far: ``m / (1 + sqrt(2 t / h) |u|)``). Left out, that came to 2 % of peak for 0.05 mm of
-  foil 3.5 mm up; what remains is 0.4 %.
+  bent far: ``m / (1 + sqrt(2 t / h) |u|)``). Left out, that came to 2.5 % of peak of a point for
+  0.05 mm of foil 2.5 mm up; what remains is 0.4 %.
 - Glass: ``J`` is that of all layers (`diffraction_tables.landing`), the landing point is Snell's.
 - Sun: its points add up, each with its own landing point, light, width and, to first order, ``J``.
   Where the light falls along an array depends on one direction on the disc: chords across that
