@@ -128,6 +128,7 @@ def test_six_wavelengths_do_for_sunlight(name: str) -> None:
     nm, weights = propagator.sunlight(48)
     fine = Spectrum(tuple(nm.tolist()), tuple(weights.tolist()))
     edge = datasets.get(name).geometry.half_fov_deg
+    assert edge is not None
     angles = ((0.0, 0.0), (0.3 * edge, 0.6 * edge), (0.0, edge), (edge, edge))
     found, true = (lit(aligned(name, spectrum=s), *angles) for s in (SUNLIT_SILICON, fine))
     assert (np.abs(found - true).max(axis=1) < 0.002 * true.max(axis=1)).all()
@@ -173,6 +174,7 @@ def test_short_waves_cast_geometric_shadows(case: dict[str, Any], axis: str) -> 
     mask = Mask((slit(0.25, 16.0, 0.4, case.pop("slant", 0.0)),), case.pop("thickness", 0.0))
     optics = {k: case.pop(k) for k in ("glass", "assembly") if k in case}
     nominal = datasets.get("ccd-slit").setups["nominal"].sensor
+    assert isinstance(nominal, LineSensor)
     sensor = replace(
         nominal,
         camera=Camera(2.0, mask, nominal.camera.sun, **optics),
