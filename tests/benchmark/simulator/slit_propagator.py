@@ -71,13 +71,14 @@ def passed(cosine: np.ndarray, index: float) -> np.ndarray:
     t = np.arcsin(np.sin(i) / index)
     across = (np.sin(i - t) / np.sin(i + t)) ** 2
     along = (np.tan(i - t) / np.tan(i + t)) ** 2
-    return ((1 - across) ** 2 + (1 - along) ** 2) / 2
+    return np.asarray(((1 - across) ** 2 + (1 - along) ** 2) / 2)
 
 
 def _opening(place: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
     """Share of each sample's cell that lies between two edges."""
     right = np.minimum(place + STEP_UM / 2, high[:, None])
-    return np.clip((right - np.maximum(place - STEP_UM / 2, low[:, None])) / STEP_UM, 0, 1)
+    left = np.maximum(place - STEP_UM / 2, low[:, None])
+    return np.asarray(np.clip((right - left) / STEP_UM, 0, 1))
 
 
 def pattern(

@@ -19,7 +19,7 @@ from benchmark.simulator.optics.diffraction import SUNLIT_SILICON, Spectrum
 from benchmark.simulator.optics.plates import CoverGlass, Plate
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.scene import Scene
-from benchmark.simulator.sensors.lines import LineSensor
+from benchmark.simulator.sensors.lines import LineAxis, LineSensor
 from tests.benchmark.simulator import slit_propagator as propagator
 
 POINT = SolarDisc(diameter_deg=0.0)
@@ -84,7 +84,7 @@ def test_light_of_a_point_is_the_angular_spectrums(
     """No disc smooths what is wrong: fringes, glass, slant, two rims; the same six wavelengths."""
     if name == "pda-multi-slit":
         angles = (min(angles[0], 51.5), min(angles[1], 51.5))
-    mask = datasets.get(name).setups["nominal"].sensor.camera.mask
+    mask = aligned(name).camera.mask
     sensor = aligned(name, camera={"sun": POINT, "mask": Mask(mask.apertures[:1], foil_mm)})
     sun = from_angles(*np.array([angles]).T)
     nm, weights = np.array(SUNLIT_SILICON.wavelengths_nm), np.array(SUNLIT_SILICON.weights)
@@ -168,7 +168,7 @@ def test_one_wavelength_of_a_point_is_fresnels_pattern() -> None:
         {"assembly": Assembly(1.0, -0.7, 0.5, 0.03, 0.05, -0.04), "slant": 10.0},
     ],
 )
-def test_short_waves_cast_geometric_shadows(case: dict[str, Any], axis: str) -> None:
+def test_short_waves_cast_geometric_shadows(case: dict[str, Any], axis: LineAxis) -> None:
     """At 5 nm an edge is 3 um wide: rims, glass, slant and plate are where the rays put them."""
     case = dict(case)
     mask = Mask((slit(0.25, 16.0, 0.4, case.pop("slant", 0.0)),), case.pop("thickness", 0.0))
