@@ -6,11 +6,11 @@ from benchmark.datasets.conditions.line_arrays import SUN, behind, ccd, line_arr
 from benchmark.datasets.conditions.propagation import GLASS
 from benchmark.simulator.masks.slits import n_slit
 
-_MASK = n_slit(4.0, 45.0, width_mm=0.2, length_mm=6.6, thickness_mm=0.01)
+_MASK = n_slit(4.0, 45.0, width_mm=0.1, length_mm=7.2, thickness_mm=0.0)
 
 PRESET = line_arrays(
     name="ccd-n-slit",
-    version=1,
+    version=2,
     detector="CCD",
     mask="N-Slit",
     sensor=behind(_MASK, 1.8, ccd(2048, 0.014), axes=("y",), sun=SUN, glass=GLASS),
@@ -19,10 +19,10 @@ PRESET = line_arrays(
     description=(
         "Both angles from one linear CCD, which lies along y: the middle slit is square to it and "
         "gives alpha, both outer ones are slanted and add beta (model:nslit as the survey states "
-        "it after Maji2015). The field of +-60 deg and the cover glass of the CCD are those of "
-        "Wei2011; the rest is not given. Round numbers instead: slits of 0.2 mm 1.8 mm up keep the "
-        "Fresnel number above 10; a slant of 45 deg makes both angles weigh alike; 4 mm between "
-        "slits keep the three spots in order over the field; 2048 pixels of 14 um hold them. "
-        "Glass: 0.5 mm of index 1.52."
+        "it after Maji2015). The field of +-60 deg, the cover glass of the CCD and a mask without "
+        "thickness, micromachined, are those of Wei2011; nobody publishes the rest. Round numbers "
+        "instead: slits of 0.1 mm, two or three times what light spreads 1.8 mm below; a slant of "
+        "45 deg makes both angles weigh alike; 4 mm between slits keep the three spots in order "
+        "over the field; 2048 pixels of 14 um hold them. Glass: 0.5 mm of index 1.52."
     ),
 )

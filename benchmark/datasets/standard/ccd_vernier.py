@@ -5,11 +5,11 @@ from __future__ import annotations
 from benchmark.datasets.conditions.line_arrays import behind, ccd, line_arrays
 from benchmark.simulator.masks.slits import periodic, without
 
-_RULER = periodic(16, 0.32, width_mm=0.15, length_mm=5.4, thickness_mm=0.01)
+_RULER = periodic(16, 0.32, width_mm=0.15, length_mm=5.8, thickness_mm=0.01)
 
 PRESET = line_arrays(
     name="ccd-vernier",
-    version=1,
+    version=2,
     detector="CCD",
     mask="Encoded",
     sensor=behind(without(_RULER, (2, 11)), 1.0, ccd(104, 0.1), fill_factor=0.9),
@@ -20,8 +20,7 @@ PRESET = line_arrays(
         "three pixels that make a mark of the fixed ruler, so that the slits cross the marks one "
         "after the other as the light moves by a fifteenth of a mark; two of 16 slits are left out "
         "as position code. Few, large pixels, as the abstract claims. The field of +-64 deg is the "
-        "study's; it gives no dimensions. Round numbers instead: slits of 0.15 mm 1 mm up keep the "
-        "Fresnel number above 10; 104 pixels of 0.1 mm, 90 percent of it sensitive, hold the "
-        "pattern."
+        "study's; it gives no dimensions. Round numbers instead: slits of 0.15 mm, half a mark, 1 "
+        "mm up; 104 pixels of 0.1 mm, 90 percent of it sensitive, hold the pattern."
     ),
 )

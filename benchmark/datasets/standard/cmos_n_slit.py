@@ -6,11 +6,11 @@ from benchmark.datasets.conditions.line_arrays import SUN, active_pixels, behind
 from benchmark.datasets.conditions.propagation import GLASS
 from benchmark.simulator.masks.slits import n_slit
 
-_MASK = n_slit(3.0, 45.0, width_mm=0.17, length_mm=6.0, thickness_mm=0.01)
+_MASK = n_slit(3.0, 45.0, width_mm=0.1, length_mm=6.4, thickness_mm=0.0)
 
 PRESET = line_arrays(
     name="cmos-n-slit",
-    version=1,
+    version=2,
     detector="CMOS",
     mask="N-Slit",
     sensor=behind(_MASK, 1.2, active_pixels(2048, 0.008), axes=("y",), sun=SUN, glass=GLASS),
@@ -20,10 +20,11 @@ PRESET = line_arrays(
         "Both angles from one linear active pixel sensor behind an N of slits; it lies along y: "
         "the middle slit is square to it and gives alpha, both outer ones are slanted and add beta "
         "(model:nslit). Detector, N and the field of +-64 deg on both axes are those of He2013, "
-        "and so is refraction among the errors: 0.5 mm of glass of index 1.52 here. The rest is "
-        "not given in what was mapped. Round numbers instead: slits of 0.17 mm 1.2 mm up keep the "
-        "Fresnel number above 10; a slant of 45 deg makes both angles weigh alike; 3 mm between "
-        "slits keep the three spots in order over the field; 2048 pixels of 8 um hold them. Pixels "
+        "and so is refraction among the errors: 0.5 mm of glass of index 1.52 here. Nobody "
+        "publishes the rest. Round numbers instead: slits of 0.1 mm in a metal film, three times "
+        "what light spreads 1.2 mm below; a slant of 45 deg makes both angles weigh alike; 3 mm "
+        "between slits keep the three spots in order over the field; 2048 pixels of 8 um hold "
+        "them. Pixels "
         "of 60,000 electrons, 2 % gain spread, 60 electrons of read noise, 10 bits: noisier than "
         "ccd-n-slit's, as active pixels of 2013 are."
     ),

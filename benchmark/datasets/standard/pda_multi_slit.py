@@ -6,11 +6,11 @@ from benchmark.datasets.conditions.line_arrays import behind, line_arrays, photo
 from benchmark.simulator.masks.slits import slit_row
 
 _PLACES_MM = (-1.1, -0.6, 0.0, 0.7, 1.5)
-_MASK = slit_row(_PLACES_MM, width_mm=0.2, length_mm=4.0, thickness_mm=0.05)
+_MASK = slit_row(_PLACES_MM, width_mm=0.2, length_mm=4.6, thickness_mm=0.05)
 
 PRESET = line_arrays(
     name="pda-multi-slit",
-    version=1,
+    version=2,
     detector="PDA",
     mask="Multi-Slit",
     sensor=behind(_MASK, 1.2, photodiode_array(144, 0.05, bits=8), fill_factor=0.9),
@@ -21,8 +21,8 @@ PRESET = line_arrays(
         "field of +-51.5 deg and the growing distance from slit to slit are those reported for it; "
         "one edge of each spot comes from the foil's lower rim at h, the other from its upper rim "
         "at h + t, as the model has it (the focal length here counts to the middle, h + t/2). "
-        "Dimensions are not given. Round numbers instead: slits of 0.2 mm 1.2 mm up keep the "
-        "Fresnel number above 10; distances of 0.5, 0.6, 0.7 and 0.8 mm; 144 pixels of 50 um; 8 "
-        "bits as in the same laboratory's later work (Diriker2021)."
+        "Dimensions are not given. Round numbers instead: 144 pixels of 50 um; slits of 0.2 mm, "
+        "four pixels, 1.2 mm up; distances of 0.5, 0.6, 0.7 and 0.8 mm; 8 bits as in the same "
+        "laboratory's later work (Diriker2021)."
     ),
 )

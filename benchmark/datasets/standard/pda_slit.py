@@ -5,11 +5,11 @@ from __future__ import annotations
 from benchmark.datasets.conditions.line_arrays import behind, line_arrays, photodiode_array
 from benchmark.simulator.masks.slits import slit_row
 
-_MASK = slit_row((0.0,), width_mm=0.3, length_mm=10.8, thickness_mm=0.02)
+_MASK = slit_row((0.0,), width_mm=0.2, length_mm=11.6, thickness_mm=0.02)
 
 PRESET = line_arrays(
     name="pda-slit",
-    version=1,
+    version=2,
     detector="PDA",
     mask="Slit",
     sensor=behind(_MASK, 2.5, photodiode_array(256, 0.05), pixel_height_mm=0.5, fill_factor=0.9),
@@ -17,8 +17,9 @@ PRESET = line_arrays(
     follows=("Alvi2014", "Diriker2021", "Strietzel2002"),
     description=(
         "Two linear photodiode arrays at right angles (Alvi2014), a slit over each (Strietzel2002, "
-        "Diriker2021). The studies give the arrangement, no dimensions. Round numbers instead: a "
-        "0.3 mm slit 2.5 mm up keeps the Fresnel number above 10; 256 pixels of 50 um, 90 percent "
-        "of it sensitive, hold the light at 60 deg; 10 bits."
+        "Diriker2021). The studies give the arrangement, no dimensions. Round numbers instead: 256 "
+        "pixels of 50 um, 90 percent of it sensitive, hold the light 2.5 mm below at 60 deg; a "
+        "slit of 0.2 mm, four of them, so that interpolation within a pixel (Diriker2021) has "
+        "full pixels between two edges; 10 bits."
     ),
 )

@@ -14,10 +14,11 @@ from benchmark.seeds import generator
 from benchmark.simulator.light.environment import Earth
 from benchmark.simulator.light.memory import memory
 from benchmark.simulator.masks.slits import SlitErrors
-from benchmark.simulator.optics.diffraction import GEOMETRIC_FROM
+from benchmark.simulator.optics.diffraction import SUNLIT_SILICON, Spectrum
+from benchmark.simulator.optics.diffraction_tables import layers
 from benchmark.simulator.optics.earthlight import EarthInView, add_between, on_window
-from benchmark.simulator.optics.plates import fresnel_number
 from benchmark.simulator.optics.projection import Camera
+from benchmark.simulator.optics.slit_diffraction import SlitProfiles
 from benchmark.simulator.readout.detectors import PixelArray
 from benchmark.simulator.readout.noise import NoiseStreams, counted
 from benchmark.simulator.readout.quantisation import pixel_variance
@@ -53,14 +54,13 @@ class LineSensor:
         Sensitive share of the pitch.
     errors
         How the plate with the slits stands over the arrays.
-    least_fresnel
-        Shadows are geometric, diffraction is left out: slits of a smaller Fresnel number at
-        normal incidence and 550 nm are refused. 0 takes any, for light that does not diffract.
+    spectrum
+        Of the light, as the pixels detect it; None for light that does not diffract.
 
     Raises
     ------
     ValueError
-        On slits so narrow that their shadow is not geometric, among others.
+        On more than one row of pixels, on openings that are no slits, and sizes out of range.
     """
 
     camera: Camera
@@ -69,7 +69,7 @@ class LineSensor:
     axes: tuple[LineAxis, ...] = ("x", "y")
     fill_factor: float = 1.0
     errors: SlitErrors = field(default_factory=SlitErrors)
-    least_fresnel: float = GEOMETRIC_FROM
+    spectrum: Spectrum | None = SUNLIT_SILICON
     sees_slopes: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
@@ -83,15 +83,6 @@ class LineSensor:
             raise ValueError(f"fill_factor must be in (0, 1]; got {self.fill_factor}")
         if any(aperture.shape != "rectangle" for aperture in self.camera.mask.apertures):
             raise ValueError("linear arrays are simulated behind rectangular slits only")
-        mask = self.camera.mask
-        half = min(aperture.smallest_half_width_mm for aperture in mask.apertures)
-        number = fresnel_number(half, self.camera.focal_length_mm)
-        if number < self.least_fresnel:
-            raise ValueError(
-                "linear arrays are simulated in geometric shadow, Fresnel number of at least "
-                f"{self.least_fresnel:g}; slits of {2.0 * half:g} mm "
-                f"{self.camera.focal_length_mm:g} mm up have {number:.3g}"
-            )
 
     @property
     def width_px(self) -> int:
@@ -128,13 +119,48 @@ class LineSensor:
         """
         detector = self.detector
         pixels = detector.columns, detector.pitch_mm, self.pixel_height_mm, self.fill_factor
-        key = (type(self).__name__, self.camera, pixels, self.axes, self.errors)
+        key = (type(self).__name__, self.camera, pixels, self.axes, self.errors, self.spectrum)
         flux = memory.rendered((*key, scene.sun.tobytes()), lambda: self._rendered(scene.sun))
         flux *= scene.irradiance[:, None]
         return flux
 
     def _rendered(self, sun: Floats) -> Floats:
         """(N, W) light of the mean sunlight from (N, 3)."""
+        flux = np.empty((len(sun), self.width_px))
+        if self.spectrum is None:
+            self._cast_shadows(flux, sun)
+        else:
+            self._diffract(flux, sun, self.spectrum)
+        return flux
+
+    def _diffract(self, flux: Floats, sun: Floats, spectrum: Spectrum) -> None:
+        """Fill `flux` with diffracted light."""
+        camera, pitch, columns = self.camera, self.detector.pitch_mm, self.detector.columns
+        head = camera.assembly.to_head(sun)
+        offset = camera.assembly.offset_x_mm / pitch, camera.assembly.offset_y_mm / pitch
+        tilt = math.radians(self.errors.inclination_deg)
+        for number, axis in enumerate(self.axes):
+            turned = np.ascontiguousarray(head if axis == "x" else head[:, [1, 0, 2]])
+            plate = (
+                math.cos(tilt),
+                math.sin(tilt),
+                camera.mask.thickness_mm / pitch,
+                *(offset if axis == "x" else offset[::-1]),
+                self.pixel_height_mm / pitch / 2.0,
+            )
+            profiles = SlitProfiles(
+                slits=self._slits(axis),
+                layers=layers(camera.height_mm, camera.glass) / np.array([pitch, 1.0]),
+                sun=camera.sun,
+                spectrum=spectrum,
+                pitch_mm=pitch,
+                plate=plate,
+            )
+            part = profiles.light(turned, columns, self.fill_factor)
+            flux[:, number * columns : (number + 1) * columns] = part
+
+    def _cast_shadows(self, flux: Floats, sun: Floats) -> None:
+        """Fill `flux` with light that does not diffract."""
         from benchmark.simulator.kernels.lines import expose  # noqa: PLC0415 - Numba on demand
 
         pitch, columns = self.detector.pitch_mm, self.detector.columns
@@ -148,7 +174,6 @@ class LineSensor:
             tangents = points[..., :2] / np.maximum(points[..., 2:], 1e-6)
         half_height = self.pixel_height_mm / pitch / 2.0
         numbers = -columns / 2.0, half_height, self.fill_factor, math.cos(tilt), math.sin(tilt)
-        flux = np.empty((len(sun), self.width_px))
         for number, axis in enumerate(self.axes):
             along = np.stack([lower / pitch, upper / pitch, tangents])
             if axis == "y":
@@ -158,7 +183,6 @@ class LineSensor:
             part = np.empty((len(sun), columns))
             expose(part, self._slits(axis), along, light, numbers)
             flux[:, number * columns : (number + 1) * columns] = part
-        return flux
 
     def _tilt(self, paths: Floats, tilt: float) -> None:
         """Let the plate's thickness stand along its own, tilted normal."""
