@@ -15,12 +15,12 @@ from benchmark.datasets.conditions.pixel_arrays import (
     pixel_conditions,
     units,
 )
-from benchmark.datasets.conditions.propagation import geometric
 from benchmark.datasets.fields import Field
 from benchmark.datasets.repeats import FEW
-from benchmark.simulator.light.sun_disc import SolarDisc
 from benchmark.simulator.masks.apertures import Mask
 from benchmark.simulator.masks.errors import MaskErrors
+from benchmark.simulator.optics.diffraction import SUNLIT_SILICON, Spectrum
+from benchmark.simulator.optics.plates import fresnel_number
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout.detectors import PixelArray
 from benchmark.simulator.sensors.multi_spot_frames import MultiSpotSensor
@@ -79,27 +79,52 @@ def many_spots(
         repeats=FEW,
         follows=follows,
         description=description,
-        regime={**geometric(diameter_mm, sensor.camera.focal_length_mm), **regime},
+        regime={
+            **diffracted(diameter_mm, sensor.camera.focal_length_mm, sensor.spectrum),
+            **regime,
+        },
     )
 
 
+def diffracted(diameter_mm: float, height_mm: float, spectrum: Spectrum | None) -> dict[str, Any]:
+    """Return the regime of round holes, of which the narrowest has this diameter.
+
+    Raises
+    ------
+    ValueError
+        When there is no spectrum: such a sensor casts geometric shadows.
+    """
+    if spectrum is None:
+        raise ValueError("the regime of diffracted spots needs a spectrum; got None")
+    return {
+        "propagation": "diffraction",
+        "fresnel_number": float(f"{fresnel_number(diameter_mm / 2.0, height_mm):.3g}"),
+        "wavelength_nm": 550,
+        "wavelengths_nm": list(spectrum.wavelengths_nm),
+        "weights": list(spectrum.weights),
+        "reason": "scalar Fresnel diffraction about the chief ray, over the Sun's disc; a spot ends "
+        "where its skirt has 1e-4 of the peak at normal incidence",
+    }
+
+
 def behind(
-    mask: Mask, focal_length_mm: float, detector: PixelArray, directions_of_sun: int
+    mask: Mask, focal_length_mm: float, detector: PixelArray, widest_deg: float
 ) -> MultiSpotSensor:
     """Return a carefully assembled sensor whose holes are off by about 1 um.
 
     Parameters
     ----------
-    directions_of_sun
-        That sample the Sun's disc: so many that pixels are within 0.5 % of peak of more.
+    widest_deg
+        Largest incidence of its field, tilts of assembly included.
     """
     return MultiSpotSensor(
         camera=Camera(
             focal_length_mm=focal_length_mm,
             mask=mask,
-            sun=SolarDisc(spiral=directions_of_sun),
             assembly=assembled(focal_length_mm),
         ),
         detector=detector,
         errors=MaskErrors(position_mm=0.001, size_mm=0.001, edge_mm=0.0005),
+        spectrum=SUNLIT_SILICON,
+        widest_deg=widest_deg,
     )

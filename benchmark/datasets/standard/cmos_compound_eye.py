@@ -10,31 +10,33 @@ from benchmark.simulator.masks.coded import compound_eye
 _MASK = compound_eye(
     apertures=1026,
     rings=3,
-    pitch_mm=1.31,
-    diameter_mm=0.52,
-    code_mm=0.05,
-    focal_length_mm=12.0,
+    pitch_mm=0.655,
+    diameter_mm=0.12,
+    code_mm=0.025,
+    focal_length_mm=6.0,
     thickness_mm=0.01,
 )
 
 
 PRESET = many_spots(
     name="cmos-compound-eye",
-    version=1,
+    version=2,
     detector="CMOS",
     mask="Encoded",
-    sensor=behind(_MASK, 12.0, cmos(192, 0.02), directions_of_sun=256),
-    diameter_mm=0.52,
+    # light gathers behind such holes to 1.9 times the open light: a shorter exposure
+    sensor=behind(_MASK, 6.0, cmos(192, 0.01, sunlit_e=13_000.0), widest_deg=62.0),
+    diameter_mm=0.12,
     half_fov_deg=60.0,
     directions=ConeField(60.0, calibration_samples=150, test_samples=150),
     follows=("Zhang2021", "Zhang2022a"),
     description=(
         "A round pattern of 1026 holes of varying size in 37 sub-eyes over a cone of 120 deg, the "
-        "counts and field of Zhang2021 and Zhang2022a; their sizes are not in what was mapped. As "
-        "in cmos-encoded, geometric shadows ask for h = 12 mm and holes of 0.52 mm, growing "
-        "outwards with the slant ray. A triangular lattice of 1.31 mm lets 1026 holes cover what a "
-        "detector of 3.84 mm sees over the whole cone; each is moved by 50 um in a direction drawn "
-        "for its sub-eye, so that the pattern seen tells the sub-eye. The Sun is sampled at 256 "
-        "points: pixels are within 0.5 % of peak of a finer sampling."
+        "counts and field of Zhang2021 and Zhang2022a; sub-eyes of long focal length in a mask "
+        "etched in one piece are Zhang2022a's, their sizes are not in what was mapped. As in "
+        "cmos-encoded, h = 6 mm and holes of 0.12 mm near the Fresnel number of 1, growing "
+        "outwards with the slant ray to 0.16 mm. A triangular lattice of 0.655 mm lets 1026 holes "
+        "cover what a detector of 192 x 192 px of 10 um sees over the whole cone; each is moved by "
+        "25 um in a direction drawn for its sub-eye, so that the pattern seen tells the sub-eye. "
+        "The foil is 10 um thick."
     ),
 )

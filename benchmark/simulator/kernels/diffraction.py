@@ -1,4 +1,4 @@
-"""Compiled diffraction of round apertures: tables, and frames looked up in them.
+"""Compiled diffraction of round apertures: frames looked up in tables.
 
 Loaded on first use (Numba).
 """
@@ -9,35 +9,17 @@ import math
 
 import numpy as np
 
+from numpy.typing import NDArray
+
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
 
 Four = tuple[float, float, float, float]
 Rays = tuple[float, float, float]
+Integers = NDArray[np.int64]
 
-
-@compiled
-def squared_sums(
-    out: Floats, radial: Floats, sines: Floats, number: float, side_on: Floats
-) -> None:
-    """Write ``|sum_j exp(i pi N (x - q_j)^2) B_j(y)|^2`` for all x, y: (R, T).
-
-    `side_on` (2, J, T) holds real and imaginary parts of B.
-    """
-    width = side_on.shape[2]
-    real, imaginary = np.empty(width), np.empty(width)
-    for row in range(out.shape[0]):
-        real[:] = 0.0
-        imaginary[:] = 0.0
-        for j in range(sines.shape[0]):
-            phase = math.pi * number * (radial[row] - sines[j]) ** 2
-            c, s = math.cos(phase), math.sin(phase)
-            first, second = side_on[0, j], side_on[1, j]
-            for column in range(width):
-                real[column] += c * first[column] - s * second[column]
-                imaginary[column] += c * second[column] + s * first[column]
-        for column in range(width):
-            out[row, column] = real[column] ** 2 + imaginary[column] ** 2
+#: Nodes of the rays through glass, over the distance at which they land.
+_RAYS = 512
 
 
 @compiled
@@ -50,42 +32,6 @@ def _shares(fraction: float) -> Four:
         -(t + 1.0) * t * (t - 2.0) / 2.0,
         (t + 1.0) * t * (t - 1.0) / 6.0,
     )
-
-
-@compiled
-def spread_over_sun(
-    out: Floats, quadrant: Floats, shifts: Floats, weights: Floats, margin: int
-) -> None:
-    """Fill ``sum_k w_k G(v - v_k)`` on half the plane from one quadrant of a symmetric G.
-
-    Parameters
-    ----------
-    out
-        (2 n + 1, n + 1): along from -n to n, across from 0 to n.
-    quadrant
-        (n + margin + 1, n + margin + 1).
-    shifts
-        (K, 2) in steps of the grid, less than `margin` - 2.
-    """
-    size = 2 * margin + 1
-    stencil = np.zeros((size, size))
-    for k in range(weights.shape[0]):
-        first, second = math.floor(-shifts[k, 0]), math.floor(-shifts[k, 1])
-        along = _shares(-shifts[k, 0] - first)
-        across = _shares(-shifts[k, 1] - second)
-        for i in range(4):
-            for j in range(4):
-                place = margin + first + i - 1, margin + second + j - 1
-                stencil[place] += weights[k] * along[i] * across[j]
-    reach = out.shape[1] - 1
-    for row in range(out.shape[0]):
-        for column in range(out.shape[1]):
-            total = 0.0
-            for i in range(size):
-                from_row = abs(row - reach + i - margin)
-                for j in range(size):
-                    total += stencil[i, j] * quadrant[from_row, abs(column + j - margin)]
-            out[row, column] = total
 
 
 @compiled
@@ -109,13 +55,13 @@ def _blended(out: Floats, tables: Floats, place: float) -> None:
 def _looked_up(table: Floats, along: float, across: float) -> float:
     """Value of a half-plane table at steps (along, across) from its middle.
 
-    Beyond the table's edge it falls with the cube of the distance, as Airy's envelope does.
+    Beyond its edge light falls with the cube of the distance, as Airy's envelope does.
     """
     reach = table.shape[1] - 1
     across = abs(across)
-    outside = max(abs(along), across) / (reach - 2.0)
-    fade = 1.0
-    if outside > 1.0:
+    fade, far = 1.0, max(abs(along), across)
+    if far > reach - 2.0:
+        outside = far / (reach - 2.0)
         fade = 1.0 / (outside * outside * outside)
         along, across = along / outside, across / outside
     row, column = math.floor(along), math.floor(across)
@@ -123,13 +69,16 @@ def _looked_up(table: Floats, along: float, across: float) -> float:
     u0, u1, u2, u3 = _shares(across - column)
     row += reach
     before = abs(column - 1)
-    total = 0.0
-    for i, share in ((-1, t0), (0, t1), (1, t2), (2, t3)):
-        line = table[row + i]
-        total += share * (
-            u0 * line[before] + u1 * line[column] + u2 * line[column + 1] + u3 * line[column + 2]
-        )
-    return fade * total
+    # written out: this is where the time goes
+    first = u0 * table[row - 1, before] + u1 * table[row - 1, column]
+    first += u2 * table[row - 1, column + 1] + u3 * table[row - 1, column + 2]
+    second = u0 * table[row, before] + u1 * table[row, column]
+    second += u2 * table[row, column + 1] + u3 * table[row, column + 2]
+    third = u0 * table[row + 1, before] + u1 * table[row + 1, column]
+    third += u2 * table[row + 1, column + 1] + u3 * table[row + 1, column + 2]
+    fourth = u0 * table[row + 2, before] + u1 * table[row + 2, column]
+    fourth += u2 * table[row + 2, column + 1] + u3 * table[row + 2, column + 2]
+    return fade * (t0 * first + t1 * second + t2 * third + t3 * fourth)
 
 
 @compiled
@@ -161,20 +110,89 @@ def _sine(distance: float, height: float, layers: Floats) -> float:
 
 
 @compiled
-def _arriving(x: float, y: float, height: float, layers: Floats) -> Rays:
+def _rays(layers: Floats, farthest: float) -> Floats:
+    """Rays through the layers, (M, 2) by the distance at which they land.
+
+    Distance over sine, and cosine behind the aperture over ``J_r J_t``; the first node is the
+    mirror image of the third, so that a cubic goes through zero distance. The last two lie beyond
+    `farthest`. Cubic interpolation is good to ``3/128 (d / h)^4``, d from node to node, h the
+    height: below 1e-9 up to a distance of 6 h.
+    """
+    height = 0.0
+    for m in range(layers.shape[0]):
+        height += layers[m, 0]
+    rays = np.empty((_RAYS + 4, 2))
+    step = farthest / _RAYS
+    for i in range(1, _RAYS + 4):
+        sine = _sine((i - 1) * step, height, layers)
+        _, slope, scale = _reach(sine, layers)
+        rays[i, 0] = scale
+        rays[i, 1] = math.sqrt(1.0 - sine * sine) / (slope * scale)
+    rays[0] = rays[2]
+    return rays
+
+
+@compiled
+def _arriving(x: float, y: float, rays: Floats, per_mm: float, height: float) -> Rays:
     """Direction cosines of the light from the aperture to (x, y), and what they spread by.
 
     The last is the cosine behind the aperture over ``J_r J_t``: how much of the light leaving it
-    goes to a unit of the detector's area.
+    goes to a unit of the detector's area. Without glass `rays` is empty.
     """
-    if layers.shape[0] == 1:
+    if rays.shape[0] == 0:
         scale = 1.0 / math.sqrt(x * x + y * y + height * height)
         cosine = height * scale
         square = cosine * cosine
         return x * scale, y * scale, square * cosine * scale * scale
-    sine = _sine(math.sqrt(x * x + y * y), height, layers)
-    _, slope, scale = _reach(sine, layers)
-    return x / scale, y / scale, math.sqrt(1.0 - sine * sine) / (slope * scale)
+    place = math.sqrt(x * x + y * y) * per_mm
+    node = min(int(place), _RAYS)
+    a, b, c, d = _shares(place - node)
+    scale, spread = 0.0, 0.0
+    for i, share in ((0, a), (1, b), (2, c), (3, d)):
+        scale += share * rays[node + i, 0]
+        spread += share * rays[node + i, 1]
+    return x / scale, y / scale, spread
+
+
+@compiled
+def _seen(x: float, y: float, way: Floats, rays: Floats) -> Rays:
+    """Place in the tables, in steps, of a point seen from an aperture, and a factor of its light.
+
+    `way` is of `_way`.
+    """
+    along = (way[0] * x + way[1] * y - way[4]) / way[5]
+    across = (way[0] * y - way[1] * x) / way[6]
+    factor = 1.0
+    if way[8] > 0.0:
+        px, py, spreading = _arriving(x, y, rays, way[11], way[12])
+        px, py = px - way[2], py - way[3]
+        along += way[8] * (way[0] * px + way[1] * py - along)
+        across += way[8] * (way[0] * py - way[1] * px - across)
+        factor += way[8] * (way[7] * spreading - 1.0)
+    return along * way[9], across * way[10], factor
+
+
+@compiled
+def _way(
+    sun: Floats, numbers: Floats, share: float, layers: Floats, per_mm: float
+) -> Floats:
+    """What `_seen` needs of one sample.
+
+    Azimuth (2), cosines of the chief ray (2), where it lands, J_r, J_t, the inverse of how its
+    light spreads, share of the direction cosines, steps a unit (2), nodes of rays a mm, height.
+    """
+    way = np.empty(13)
+    sx, sy, cosine = sun
+    sine = math.sqrt(sx * sx + sy * sy)
+    way[0], way[1] = (sx / sine, sy / sine) if sine > 0.0 else (1.0, 0.0)
+    way[2], way[3] = sx, sy
+    way[4], way[5], way[6] = _reach(sine, layers)
+    way[7] = way[5] * way[6] / cosine
+    way[8], way[9], way[10] = share, numbers[2], numbers[3]
+    way[11], way[12] = per_mm, 0.0
+    for m in range(layers.shape[0]):
+        way[12] += layers[m, 0]
+    return way
 
 
 @compiled
@@ -194,30 +212,33 @@ def add_round(
         (T, 2 n + 1, n + 1) of `RoundPattern`.
     samples
         (N, 3) unit vectors to the Sun; (N, 4) light of a fully lit pixel times the tables' unit,
-        coordinate among the tables, steps a unit of direction cosine along and across; (N, A, 2)
-        centres of the apertures, mm, seen from the window's first corner.
+        coordinate among the tables, steps a unit of direction cosine along and across, or (N, 5)
+        with `RoundPattern.share` at the end; (N, A, 2) centres of the apertures, mm, seen from the
+        window's first corner.
     optics
-        (L, 2) thickness and index from the aperture down, the empty gap first; (Q, 2) Gauss nodes
-        in a pixel, mm from its first edge, and their weights (sum 1); whether positions are
-        measured in direction cosines about the aperture, or in millimetres about the chief ray.
+        (L, 2) thickness and index from the aperture down, the empty gap first; (Q, 2) nodes in a
+        pixel, mm from its first edge, and their weights (sum 1); where the samples do not say it,
+        whether positions are measured in direction cosines about the aperture, or in millimetres
+        about the chief ray.
     """
-    sun, numbers, places = samples
+    suns, numbers, places = samples
     layers, nodes, by_cosines = optics
     count, rows, columns = flux.shape
     pitch = nodes[0, 0] + nodes[-1, 0]
-    height = 0.0
-    for m in range(layers.shape[0]):
-        height += layers[m, 0]
     table = np.empty(tables.shape[1:])
+    farthest = 0.0
+    for n in range(count):
+        for m in range(places.shape[1]):
+            for edge, place in ((columns, places[n, m, 0]), (rows, places[n, m, 1])):
+                farthest = max(farthest, abs(place), abs(edge * pitch - place))
+    farthest *= math.sqrt(2.0)
+    rays = _rays(layers, farthest) if layers.shape[0] > 1 else np.empty((0, 2))
     for n in range(count):
         if numbers[n, 0] == 0.0:
             continue
         _blended(table, tables, numbers[n, 1])
-        sx, sy, cosine = sun[n]
-        sine = math.sqrt(sx * sx + sy * sy)
-        ex, ey = (sx / sine, sy / sine) if sine > 0.0 else (1.0, 0.0)
-        chief, radial, tangential = _reach(sine, layers)
-        here = radial * tangential / cosine
+        share = numbers[n, 4] if numbers.shape[1] > 4 else float(by_cosines)
+        way = _way(suns[n], numbers[n], share, layers, _RAYS / farthest)
         for m in range(places.shape[1]):
             for row in range(rows):
                 for column in range(columns):
@@ -226,16 +247,82 @@ def add_round(
                         y = row * pitch + nodes[i, 0] - places[n, m, 1]
                         for j in range(nodes.shape[0]):
                             x = column * pitch + nodes[j, 0] - places[n, m, 0]
-                            weight = nodes[i, 1] * nodes[j, 1]
-                            if by_cosines:
-                                px, py, spreading = _arriving(x, y, height, layers)
-                                weight *= here * spreading
-                                px, py = px - sx, py - sy
-                                along, across = ex * px + ey * py, ex * py - ey * px
-                            else:
-                                along = (ex * x + ey * y - chief) / radial
-                                across = (ex * y - ey * x) / tangential
-                            total += weight * _looked_up(
-                                table, along * numbers[n, 2], across * numbers[n, 3]
-                            )
+                            along, across, factor = _seen(x, y, way, rays)
+                            factor *= nodes[i, 1] * nodes[j, 1]
+                            total += factor * _looked_up(table, along, across)
                     flux[n, row, column] += numbers[n, 0] * max(total, 0.0)
+
+
+@compiled
+def add_spots(
+    frame: Floats,
+    tables: tuple[Floats, Floats],
+    sample: tuple[Floats, Floats, Floats],
+    apertures: tuple[Floats, Integers],
+    optics: tuple[Floats, Floats],
+) -> None:
+    """Add the light of many round apertures to one frame, each within an ellipse about its spot.
+
+    Parameters
+    ----------
+    frame
+        (H, W), added to: light averaged over each pixel.
+    tables
+        Two of (T, 2 n + 1, n + 1), of `RoundPattern`: of a smaller and of a larger hole.
+    sample
+        (3,) to the Sun; (5,) as of `add_round`; (2,) half axes of the ellipse along and across the
+        plane of incidence, mm.
+    apertures
+        (A, 4) centre, mm, seen from the frame's first corner, where the hole lies between the
+        smaller and the larger one, and the light it passes; (A, 4) boxes of pixels around the
+        ellipses: first and past-last column and row.
+    optics
+        (L, 2) thickness and index from the aperture down, the empty gap first; (Q, 2) nodes in a
+        pixel as of `add_round`.
+    """
+    sun, numbers, reach = sample
+    holes, boxes = apertures
+    layers, nodes = optics
+    pitch = nodes[0, 0] + nodes[-1, 0]
+    shape = tables[0].shape[1:]
+    table, small, large = np.empty(shape), np.empty(shape), np.empty(shape)
+    _blended(small, tables[0], numbers[1])
+    _blended(large, tables[1], numbers[1])
+    farthest = 0.0
+    for m in range(boxes.shape[0]):
+        for axis in range(2):
+            for edge in boxes[m, 2 * axis : 2 * axis + 2]:
+                farthest = max(farthest, abs(edge * pitch - holes[m, axis]))
+    farthest *= math.sqrt(2.0)
+    rays = _rays(layers, farthest) if layers.shape[0] > 1 else np.empty((0, 2))
+    way = _way(sun, numbers, numbers[4], layers, _RAYS / max(farthest, pitch))
+    ex, ey, chief = way[0], way[1], way[4]
+    turn = (ex / reach[0]) ** 2 + (ey / reach[1]) ** 2
+    for m in range(boxes.shape[0]):
+        left, right, top, bottom = boxes[m]
+        for i in range(shape[0]):
+            for j in range(shape[1]):
+                table[i, j] = small[i, j] + holes[m, 2] * (large[i, j] - small[i, j])
+        for row in range(top, bottom):
+            # columns within the ellipse: where a quadratic form in x stays below 1
+            y = (row + 0.5) * pitch - holes[m, 1]
+            past = ey * y - chief
+            middle = (ex * ey * y / reach[1] ** 2 - ex * past / reach[0] ** 2) / turn
+            rest = 1.0 - (past / reach[0]) ** 2 - (ex * y / reach[1]) ** 2
+            square = middle * middle + rest / turn
+            if square <= 0.0:
+                continue
+            half = math.sqrt(square)
+            middle += holes[m, 0]
+            first = max(left, math.floor((middle - half) / pitch))
+            last = min(right, math.ceil((middle + half) / pitch))
+            for column in range(first, last):
+                total = 0.0
+                for i in range(nodes.shape[0]):
+                    y = row * pitch + nodes[i, 0] - holes[m, 1]
+                    for j in range(nodes.shape[0]):
+                        x = column * pitch + nodes[j, 0] - holes[m, 0]
+                        along, across, factor = _seen(x, y, way, rays)
+                        factor *= nodes[i, 1] * nodes[j, 1]
+                        total += factor * _looked_up(table, along, across)
+                frame[row, column] += numbers[0] * holes[m, 3] * max(total, 0.0)

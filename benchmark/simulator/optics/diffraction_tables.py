@@ -41,6 +41,14 @@ class RoundPattern:
         incidence; beyond what they cover, light falls with the cube of the distance.
     widest_deg
         Largest incidence tabulated.
+    thickness_mm
+        Of the foil: oblique light sees the lens that its two rims have in common, at `height_mm`.
+    growth
+        Relative excess of the opening's radius over `radius_mm`, which lays out the tables: those
+        of holes a little smaller and larger are on one grid.
+    cell_mm
+        Side of a square of the detector over which light is averaged beforehand, whichever way it
+        is turned (`_turned_cell`); 0: not.
     """
 
     radius_mm: float
@@ -50,6 +58,18 @@ class RoundPattern:
     spectrum: Spectrum
     reach_mm: float
     widest_deg: float
+    thickness_mm: float = 0.0
+    growth: float = 0.0
+    cell_mm: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not min(self.thickness_mm, self.cell_mm) >= 0.0:
+            raise ValueError(
+                "thickness_mm and cell_mm must not be negative; got "
+                f"{self.thickness_mm} and {self.cell_mm}"
+            )
+        if not self.growth > -1.0:
+            raise ValueError(f"growth must be above -1; got {self.growth}")
 
     @property
     def _wavelength_mm(self) -> float:
@@ -86,6 +106,21 @@ class RoundPattern:
         normal = float(self.numbers(np.zeros(1), self._wavelength_mm)[0, 0])
         return 8 + math.ceil(1.5 * normal)
 
+    def share(self, sine: Floats) -> Floats:
+        """(N,) how far positions count in direction cosines, rather than in mm about the chief ray.
+
+        Light from the point q of the aperture that lands at delta has turned by ``delta - q``, in
+        which the landing point is not linear. A far pattern is all turning and keeps its shape in
+        direction cosines; a shadow is none and keeps its shape in millimetres. Between them the
+        mean of ``delta - q``, given delta, is ``s^2 / (s^2 + a^2 / 4)`` of delta for normal
+        distributions: ``a / 2`` is the aperture's, ``s = 0.42 lambda J_r / (2 a)`` that of a
+        pattern of the width of Airy's. At the middle of the spectrum, with ``J_r`` the larger one.
+        """
+        waves = np.array(self.spectrum.wavelengths_nm) * 1e-6
+        middle = float(np.sum(waves * np.array(self.spectrum.weights)))
+        square = self.numbers(sine, middle)[:, 0] ** 2
+        return np.asarray(1.0 / (1.0 + square / 0.42**2))
+
     def place(self, sine: Floats) -> Floats:
         """Coordinate among the tables; that of `widest_deg` beyond it."""
         angles = np.array([math.asin(min(float(s), 1.0)) for s in sine])
@@ -101,30 +136,52 @@ class RoundPattern:
         return _tables(self)
 
     def _table(self, sine: float, reach: int) -> Floats:
-        from benchmark.simulator.kernels.diffraction import spread_over_sun  # noqa: PLC0415
+        from benchmark.simulator.kernels.diffraction_patterns import (  # noqa: PLC0415 - Numba
+            spread_over_sun,
+        )
 
         steps, unit = self.scales(np.array([sine]))
+        shifts, weights = self._spread(sine, steps[0])
+        margin = math.ceil(float(np.abs(shifts).max())) + 3
+        grid = np.arange(reach + margin + 1) * steps.T
+        quadrant = np.zeros((grid.shape[1], grid.shape[1]))
+        radius = self.radius_mm * (1.0 + self.growth)
+        through = self.thickness_mm / math.sqrt(1.0 - sine * sine)
+        apart = through * sine / radius
+        for wavelength, weight in zip(
+            self.spectrum.wavelengths_nm, self.spectrum.weights, strict=True
+        ):
+            # positions in units of the radius: cosines times J over a
+            wave = wavelength * 1e-6
+            along, across = self.numbers(np.array([sine]), wave)[0] * (1.0 + self.growth) ** 2
+            turn = radius / wave
+            quadrant += weight * round_intensity(
+                grid[0] * turn / along,
+                grid[1] * turn / across,
+                (along, across),
+                apart=apart,
+                blur=math.sqrt(wave * through / 2.0) / radius,
+            )
+        out = np.empty((2 * reach + 1, reach + 1))
+        spread_over_sun(out, quadrant / unit[0], np.ascontiguousarray(shifts), weights, margin)
+        return out
+
+    def _spread(self, sine: float, steps: Floats) -> tuple[Floats, Floats]:
+        """(K, 2) shifts in steps of the table and (K,) weights: the Sun's disc, and the cell."""
         centre = np.array([[sine, 0.0, math.sqrt(1.0 - sine * sine)]])
         points = self.sun.directions(centre)
         shifts = (points[0, :, :2] - centre[:, :2]) / steps
         _, shares = self.sun.quadrature()
         passed = self.glass.transmission(points)[0] / self.glass.transmission(centre)[0]
         weights = shares * points[0, :, 2] / centre[0, 2] * passed
-        margin = math.ceil(float(np.abs(shifts).max())) + 3
-        grid = np.arange(reach + margin + 1) * steps.T
-        quadrant = np.zeros((grid.shape[1], grid.shape[1]))
-        for wavelength, weight in zip(
-            self.spectrum.wavelengths_nm, self.spectrum.weights, strict=True
-        ):
-            # positions in units of the radius: cosines times J over a
-            along, across = self.numbers(np.array([sine]), wavelength * 1e-6)[0]
-            turn = self.radius_mm / (wavelength * 1e-6)
-            quadrant += weight * round_intensity(
-                grid[0] * turn / along, grid[1] * turn / across, (along, across)
-            )
-        out = np.empty((2 * reach + 1, reach + 1))
-        spread_over_sun(out, quadrant / unit[0], np.ascontiguousarray(shifts), weights, margin)
-        return out
+        if self.cell_mm == 0.0:
+            return shifts, weights
+        _, along, across = landing(np.array([sine]), self.layers())[0]
+        per_mm = 1.0 / (np.array([along, across]) * steps)
+        corner, share = _turned_cell(max(2, math.ceil(self.cell_mm * float(per_mm.max())) + 1))
+        corner = corner * self.cell_mm * per_mm
+        both = shifts[:, None, :] + corner[None, :, :]
+        return both.reshape(-1, 2), np.outer(weights, share).ravel()
 
 
 @lru_cache(maxsize=16)
@@ -142,6 +199,24 @@ def _tables(pattern: RoundPattern) -> Floats:
     tables = np.array(found)
     tables.flags.writeable = False
     return tables
+
+
+def _turned_cell(side: int) -> tuple[Floats, Floats]:
+    """(K, 2) places in a square of side 1 about its middle, turned all ways, and (K,) weights.
+
+    The mean over all ways to turn a square leaves out what changes four times a turn: for a wave
+    of k radians a side ``k^4 / 11520`` of it at most. Gauss's rule of `side` nodes; eight turns of
+    an eighth of a right angle leave out what changes 32 times a turn.
+    """
+    nodes, weights = np.polynomial.legendre.leggauss(side)
+    x, y = np.repeat(nodes / 2.0, side), np.tile(nodes / 2.0, side)
+    places = []
+    for turn in range(8):
+        angle = math.pi / 2.0 * (turn + 0.5) / 8.0
+        c, s = math.cos(angle), math.sin(angle)
+        places.append(np.column_stack([c * x - s * y, s * x + c * y]))
+    shares = np.outer(weights, weights).ravel() / 4.0
+    return np.concatenate(places), np.tile(shares / 8.0, 8)
 
 
 def layers(height_mm: float, glass: CoverGlass) -> Floats:

@@ -69,7 +69,7 @@ class LitPixels:
         detector = self.sensor.detector
         mask = digest_of(self.pattern["apertures"], self.pattern["transmission"], self._pixels)
         place = detector.rows, detector.columns, detector.pitch_mm
-        key = (type(self.sensor).__name__, self.sensor.camera, mask, place, sun.tobytes())
+        key = (*self.sensor.optics(), mask, place, sun.tobytes())
         return memory.rendered(key, lambda: self._from(sun))
 
     def _from(self, sun: Floats) -> Floats:

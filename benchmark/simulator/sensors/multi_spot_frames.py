@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from dataclasses import dataclass, field
-from functools import partial
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +12,9 @@ from numpy.typing import NDArray
 from algorithms.contract import Floats
 from benchmark.simulator.light.memory import Places, digest_of, memory
 from benchmark.simulator.masks.errors import MaskErrors
+from benchmark.simulator.optics.diffraction import SUNLIT_SILICON, Spectrum
 from benchmark.simulator.optics.projection import Camera
+from benchmark.simulator.optics.round_spots import RoundSpots
 from benchmark.simulator.readout.detectors import PixelArray
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.scene import Scene
@@ -28,6 +31,8 @@ LEAST_READ_NOISE_E = 10.0
 class MultiSpotSensor:
     """A pixel array read out whole; light is rendered where it falls, aperture by aperture.
 
+    Light is diffracted at every hole (`RoundSpots`); without a spectrum it casts shadows.
+
     Shot noise is drawn as a Gaussian of variance equal to the mean in every pixel. With read
     noise of r electrons the sum's skewness is ``m / (m + r^2)^(3/2)``, at most ``0.385 / r`` at
     any mean m: less than 0.04 from `LEAST_READ_NOISE_E` on, and less is refused.
@@ -38,13 +43,34 @@ class MultiSpotSensor:
         Light and pixels. The camera's mask may be larger than the detector.
     errors
         Of the mask's manufacture.
+    spectrum
+        Wavelengths and weights; None: geometric shadows, of any aperture.
+    widest_deg
+        Largest incidence for which diffraction is tabulated; beyond, a spot keeps this one's
+        Fresnel numbers.
+    skirt
+        Of diffracted spots: where light has fallen to this share of the peak at normal incidence,
+        it is left out.
     """
 
     camera: Camera
     detector: PixelArray
     errors: MaskErrors = field(default_factory=MaskErrors)
+    spectrum: Spectrum | None = SUNLIT_SILICON
+    widest_deg: float = 70.0
+    skirt: float = 1e-4
 
     def __post_init__(self) -> None:
+        shapes = {aperture.shape for aperture in self.camera.mask.apertures}
+        if self.spectrum is not None and shapes != {"round"}:
+            raise ValueError(
+                "diffracted full frames are of round holes; got a mask with rectangles "
+                "(spectrum=None casts shadows)"
+            )
+        if not 0 < self.widest_deg < 90:
+            raise ValueError(f"widest_deg must be in (0, 90); got {self.widest_deg}")
+        if not 0 < self.skirt < 1:
+            raise ValueError(f"skirt must be in (0, 1); got {self.skirt}")
         if self.detector.read_noise_e < LEAST_READ_NOISE_E:
             raise ValueError(
                 f"full frames need a read noise of at least {LEAST_READ_NOISE_E} electrons; got "
@@ -74,8 +100,37 @@ class MultiSpotSensor:
 
         Empty (past-last not above first) where its light misses the detector or it is closed.
         """
+        if self.spectrum is not None:
+            size = (self.detector.columns, self.detector.rows)
+            boxes = self._spots.boxes(scene.sun, self._holes(pattern), size, margin_px)
+            boxes[:, pattern["transmission"] == 0.0] = 0
+            return boxes
         light = self.camera.project(scene.sun)
         return self._boxes(light.rims_mm / self.detector.pitch_mm, pattern, margin_px)
+
+    @cached_property
+    def _spots(self) -> RoundSpots:
+        if self.spectrum is None:
+            raise TypeError("a sensor without a spectrum has no diffracted spots")
+        # a radius grows by the mean of four sides' moves
+        size = self.errors.edge_mm / 2.0
+        return RoundSpots(
+            camera=self.camera,
+            spectrum=self.spectrum,
+            pitch_mm=self.detector.pitch_mm,
+            widest_deg=self.widest_deg,
+            size_mm=size,
+            skirt=self.skirt,
+        )
+
+    def _holes(self, pattern: FixedPattern) -> Floats:
+        """(A, 3) built holes: x and y from the detector's first corner, and radius, mm."""
+        holes = pattern["apertures"][:, 1:4] * self.detector.pitch_mm
+        half = np.array([self.detector.columns, self.detector.rows]) / 2.0
+        assembly = self.camera.assembly
+        holes[:, :2] += half * self.detector.pitch_mm
+        holes[:, :2] += np.array([assembly.offset_x_mm, assembly.offset_y_mm])
+        return np.asarray(holes)
 
     def _boxes(self, rims: Floats, pattern: FixedPattern, margin_px: int) -> Integers:
         table = pattern["apertures"]
@@ -116,6 +171,12 @@ class MultiSpotSensor:
         -------
         (B, 4) the boxes (as `boxes`) outside of which nothing was added.
         """
+        if self.spectrum is not None:
+            boxes = self.boxes(one, pattern)[0]
+            passed = pattern["transmission"] * one.irradiance[0]
+            self._spots.add(frame, one.sun, self._holes(pattern), passed, boxes)
+            lit = (boxes[:, 1] > boxes[:, 0]) & (boxes[:, 3] > boxes[:, 2])
+            return np.asarray(boxes[lit])
         from benchmark.simulator.kernels.rasteriser import add_apertures  # noqa: PLC0415 - Numba on demand
 
         projected = self.camera.project(one.sun)
@@ -127,6 +188,12 @@ class MultiSpotSensor:
         add_apertures(frame, (pattern["apertures"], pattern["transmission"]), rims, light, boxes)
         lit = (boxes[:, 1] > boxes[:, 0]) & (boxes[:, 3] > boxes[:, 2])
         return np.asarray(boxes[lit])
+
+    def optics(self) -> tuple[Hashable, ...]:
+        """Return what light on the detector depends on, besides pixels and the built mask."""
+        # the holes that are tabulated lie as far apart as built ones are expected to
+        numbers = self.widest_deg, self.skirt, self.errors.edge_mm
+        return type(self).__name__, self.camera, self.spectrum, numbers
 
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, rows, columns) mean digital numbers before rounding."""
@@ -167,7 +234,7 @@ class MultiSpotSensor:
         words = (shape[0] * shape[1] + 1) // 2
         flat = light.reshape(-1)
         mask = digest_of(pattern["apertures"], pattern["transmission"])
-        key = (type(self).__name__, self.camera, mask, shape, detector.pitch_mm)
+        key = (*self.optics(), mask, shape, detector.pitch_mm)
         for n in range(len(scene)):
             one = Scene(scene.sun[n : n + 1], np.ones(1), np.zeros(1))
             places, values = memory.places(
@@ -190,6 +257,7 @@ class MultiSpotSensor:
 
         boxes = self.add_light(frame, one, pattern)
         room = int(((boxes[:, 1] - boxes[:, 0]) * (boxes[:, 3] - boxes[:, 2])).sum())
+        room = min(room, frame.size)
         places, values = np.empty(room, dtype=np.int32), np.empty(room)
         count = take_light(frame, boxes, places, values)
         return places[:count].copy(), values[:count].copy()
