@@ -102,8 +102,8 @@ def diffracted(diameter_mm: float, height_mm: float, spectrum: Spectrum | None) 
         "wavelength_nm": 550,
         "wavelengths_nm": list(spectrum.wavelengths_nm),
         "weights": list(spectrum.weights),
-        "reason": "scalar Fresnel diffraction about the chief ray, over the Sun's disc; a spot ends "
-        "where its skirt has 1e-4 of the peak at normal incidence",
+        "reason": "scalar Fresnel diffraction about the chief ray, over the Sun's disc; without "
+        "a spot's skirt below 1e-4 of the peak at normal incidence",
     }
 
 

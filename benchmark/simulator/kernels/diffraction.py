@@ -8,7 +8,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-
 from numpy.typing import NDArray
 
 from algorithms.compiled import compiled
@@ -173,10 +172,8 @@ def _seen(x: float, y: float, way: Floats, rays: Floats) -> Rays:
 
 
 @compiled
-def _way(
-    sun: Floats, numbers: Floats, share: float, layers: Floats, per_mm: float
-) -> Floats:
-    """What `_seen` needs of one sample.
+def _way(sun: Floats, numbers: Floats, share: float, layers: Floats, per_mm: float) -> Floats:
+    """Return what `_seen` needs of one sample.
 
     Azimuth (2), cosines of the chief ray (2), where it lands, J_r, J_t, the inverse of how its
     light spreads, share of the direction cosines, steps a unit (2), nodes of rays a mm, height.
@@ -226,12 +223,7 @@ def add_round(
     count, rows, columns = flux.shape
     pitch = nodes[0, 0] + nodes[-1, 0]
     table = np.empty(tables.shape[1:])
-    farthest = 0.0
-    for n in range(count):
-        for m in range(places.shape[1]):
-            for edge, place in ((columns, places[n, m, 0]), (rows, places[n, m, 1])):
-                farthest = max(farthest, abs(place), abs(edge * pitch - place))
-    farthest *= math.sqrt(2.0)
+    farthest = math.sqrt(2.0) * (np.abs(places).max() + pitch * max(rows, columns))
     rays = _rays(layers, farthest) if layers.shape[0] > 1 else np.empty((0, 2))
     for n in range(count):
         if numbers[n, 0] == 0.0:
@@ -288,14 +280,9 @@ def add_spots(
     table, small, large = np.empty(shape), np.empty(shape), np.empty(shape)
     _blended(small, tables[0], numbers[1])
     _blended(large, tables[1], numbers[1])
-    farthest = 0.0
-    for m in range(boxes.shape[0]):
-        for axis in range(2):
-            for edge in boxes[m, 2 * axis : 2 * axis + 2]:
-                farthest = max(farthest, abs(edge * pitch - holes[m, axis]))
-    farthest *= math.sqrt(2.0)
+    farthest = math.sqrt(2.0) * (np.abs(holes[:, :2]).max() + pitch * max(frame.shape))
     rays = _rays(layers, farthest) if layers.shape[0] > 1 else np.empty((0, 2))
-    way = _way(sun, numbers, numbers[4], layers, _RAYS / max(farthest, pitch))
+    way = _way(sun, numbers, numbers[4], layers, _RAYS / farthest)
     ex, ey, chief = way[0], way[1], way[4]
     turn = (ex / reach[0]) ** 2 + (ey / reach[1]) ** 2
     for m in range(boxes.shape[0]):

@@ -96,6 +96,7 @@ def round_intensity(
     radial: Floats,
     tangential: Floats,
     numbers: tuple[float, float],
+    *,
     points: int | None = None,
     apart: float = 0.0,
     blur: float = 0.0,

@@ -224,7 +224,7 @@ class RoundSpots:
             )
 
     def _head(self, sun: Floats) -> tuple[Floats, NDArray[np.bool_]]:
-        """(N, 3) the Sun as the head sees it, straight above where it is behind; and if it is not."""
+        """(N, 3) the Sun as the head sees it, (N,) if in front; straight above where it is not."""
         head = self.camera.assembly.to_head(sun)
         front = head[:, 2] > 1e-6
         return np.where(front[:, None], head, [0.0, 0.0, 1.0]), front

@@ -124,7 +124,7 @@ class MultiSpotSensor:
         )
 
     def _holes(self, pattern: FixedPattern) -> Floats:
-        """(A, 3) built holes: x and y from the detector's first corner, and radius, mm."""
+        """Return (A, 3) built holes: x and y from the detector's first corner, and radius, mm."""
         holes = pattern["apertures"][:, 1:4] * self.detector.pitch_mm
         half = np.array([self.detector.columns, self.detector.rows]) / 2.0
         assembly = self.camera.assembly

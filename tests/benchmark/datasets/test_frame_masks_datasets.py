@@ -16,6 +16,7 @@ from benchmark.simulator.light.environment import Irradiance
 from benchmark.simulator.light.sun_disc import from_angles
 from benchmark.simulator.masks.apertures import Aperture
 from benchmark.simulator.masks.layouts import grid
+from benchmark.simulator.optics.diffraction import SUNLIT_SILICON, Spectrum
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.scene import Scene
@@ -37,9 +38,10 @@ WINDOWS = ["cmos-slit", "ccd-single-aperture"]
 
 
 def whole_spots(name: str, condition: str, sun: np.ndarray) -> np.ndarray:
-    """How many spots lie whole on the detector, by direction."""
+    """How many shadows of holes lie whole on the detector, by direction."""
     data = preset(name)
     sensor, pattern = data.setups[condition].sensor, data.fixed_pattern(condition)
+    sensor = replace(sensor, spectrum=None)
     boxes = sensor.boxes(Scene(sun, np.ones(len(sun)), np.zeros(len(sun))), pattern)
     size = sensor.detector.columns
     inside = (boxes[..., 0] > 0) & (boxes[..., 1] < size) & (boxes[..., 2] > 0)
@@ -128,15 +130,16 @@ def small(count: int, spacing: float = 0.25, sunlit: float = 20_000.0) -> MultiS
         sunlit_e=sunlit,
     )
     mask = grid(count, count, spacing, Aperture("round", 0.1, 0.1))
-    return MultiSpotSensor(Camera(0.4, mask), detector)
+    return MultiSpotSensor(Camera(0.4, mask), detector, spectrum=None)
 
 
 def still(sun: np.ndarray) -> Scene:
     return Scene(sun, np.ones(len(sun)), np.full(len(sun), 0.002), np.zeros((len(sun), 2), int))
 
 
-def test_the_bound_of_lit_pixels_is_the_bound_of_the_frame() -> None:
-    sensor = small(3)
+@pytest.mark.parametrize("spectrum", [None, SUNLIT_SILICON], ids=["shadows", "diffracted"])
+def test_the_bound_of_lit_pixels_is_the_bound_of_the_frame(spectrum: Spectrum | None) -> None:
+    sensor = replace(small(3), spectrum=spectrum)
     pattern = sensor.fixed_pattern("unit")
     scene = still(from_angles(np.array([0.0, 12.0, 52.0]), np.array([3.0, -20.0, 50.0])))
     whole = cramer_rao(sensor, scene, pattern, LIGHT)

@@ -26,14 +26,17 @@ def one_scene(sun: np.ndarray, origin: np.ndarray | None = None) -> Scene:
 
 
 def perfect(name: str):
-    """The preset's nominal sensor with a point Sun and nothing built wrong; glass stays."""
+    """The preset's nominal sensor with a point Sun and nothing built wrong; glass stays.
+
+    Many holes cast shadows, which give a direction exactly.
+    """
     sensor = datasets.get(name).setups["nominal"].sensor
     camera = replace(sensor.camera, sun=SolarDisc(0.0), assembly=Assembly())
     if name.endswith("n-slit"):
         # no gaps between pixels: where an edge lies within one would be anyone's guess
         return replace(sensor, camera=camera, errors=SlitErrors(), fill_factor=1.0)
     if name == "ccd-multi-aperture":
-        return replace(sensor, camera=camera, errors=MaskErrors())
+        return replace(sensor, camera=camera, errors=MaskErrors(), spectrum=None)
     return replace(sensor, camera=camera)
 
 
@@ -213,7 +216,9 @@ def test_all_light_falls_on_the_pixels_read_out_and_saturates_none(name: str) ->
         rim = [light[:, 0], light[:, -1]]
         if light.ndim == 3:
             rim += [light[..., 0], light[..., -1]]
-        assert max(side.max() for side in rim) < 1e-12, condition
+        # skirts of diffracted spots reach the rim; a hundredth of an electron does not count
+        limit = 2e-3 if name == "ccd-multi-aperture" else 1e-12
+        assert max(side.max() for side in rim) < limit, condition
         frames = data.generate(condition, "calibration").observations
         assert frames.max() < 2**setup.sensor.detector.bits - 1, condition
         assert np.mean(frames == 0) < 1e-3, condition

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -81,13 +82,13 @@ def test_spacings_name_the_sub_field_everywhere_in_the_field() -> None:
     angles = np.concatenate([rng.uniform(-52.5, 52.5, (400, 2)), [[52.5, 52.5], [-52.5, 0]]])
     sun = from_angles(angles[:, 0], angles[:, 1])
     for s, spots in zip(sun, spots_on_detector(ENCODED, sun), strict=True):
-        found = decoded_direction(spots, 0.022, 0.92)
+        found = decoded_direction(spots, 0.011, 0.46)
         assert found is not None
         assert math.degrees(np.linalg.norm(np.cross(found, s))) < 1e-6
 
 
-def test_spots_of_the_encoded_mask_never_touch() -> None:
-    sensor = ENCODED.setups["nominal"].sensor
+def test_shadows_of_the_encoded_mask_never_touch() -> None:
+    sensor = replace(ENCODED.setups["nominal"].sensor, spectrum=None)
     pattern = ENCODED.fixed_pattern("nominal")
     edge = np.array([-52.5, -30.0, 0.0, 30.0, 52.5])
     sun = from_angles(np.repeat(edge, 5), np.tile(edge, 5))
@@ -159,13 +160,13 @@ def test_the_compound_eye_is_recognised_wherever_it_is_seen() -> None:
     counts = Counter()
     for s, spots in zip(sun, spots_on_detector(EYE, sun), strict=True):
         counts[len(spots)] += 1
-        noisy = spots + rng.normal(scale=0.001, size=spots.shape)  # a twentieth of a pixel
+        noisy = spots + rng.normal(scale=0.0005, size=spots.shape)  # a twentieth of a pixel
         anchor = noisy[np.linalg.norm(noisy, axis=1).argmin()]
         moved = mask[:, None] + (noisy - anchor)[None]  # where spots would be in the mask
         away, _ = tree.query(moved)
         misfit = np.sqrt((away**2).mean(axis=1))
         best, second = np.argsort(misfit)[:2]
-        true = np.linalg.norm(mask + 12.0 * s[:2] / s[2] - anchor, axis=1).argmin()
+        true = np.linalg.norm(mask + 6.0 * s[:2] / s[2] - anchor, axis=1).argmin()
         assert best == true
         assert misfit[second] > 5 * misfit[best]
     assert min(counts) >= 3

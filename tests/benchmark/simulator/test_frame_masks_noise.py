@@ -36,6 +36,7 @@ SENSOR = MultiSpotSensor(
         offset_dn=30.0,
         bits=12,
     ),
+    spectrum=None,
 )
 
 

@@ -1,4 +1,4 @@
-"""Light behind masks of many apertures: a ray count, energy, exact inversion."""
+"""Shadows of masks of many apertures: a ray count, energy, exact inversion."""
 
 from __future__ import annotations
 
@@ -58,7 +58,8 @@ def sensor_over(sun: np.ndarray, mask: Mask, **sun_disc) -> MultiSpotSensor:
     camera = Camera(H_MM, mask, SolarDisc(**sun_disc))
     x, y = camera.spot_mm(sun)[0]
     moved = tuple(replace(a, x_mm=a.x_mm - x, y_mm=a.y_mm - y) for a in mask.apertures)
-    return MultiSpotSensor(replace(camera, mask=replace(mask, apertures=moved)), DETECTOR)
+    moved_mask = replace(mask, apertures=moved)
+    return MultiSpotSensor(replace(camera, mask=moved_mask), DETECTOR, spectrum=None)
 
 
 def one_scene(sun: np.ndarray) -> Scene:
@@ -179,7 +180,7 @@ def test_apertures_pass_their_share_and_light_beyond_the_edge_is_lost() -> None:
     mask = Mask(
         (Aperture("rectangle", 0.15, 0.15, edge, 0.1), Aperture("round", 0.2, 0.2, 0.2, 2 * edge))
     )
-    sensor = MultiSpotSensor(Camera(H_MM, mask, SolarDisc(0.0)), DETECTOR)
+    sensor = MultiSpotSensor(Camera(H_MM, mask, SolarDisc(0.0)), DETECTOR, spectrum=None)
     frame = light(sensor, up)[0]
     assert frame.sum() == pytest.approx(whole / 2, rel=1e-12)
     boxes = sensor.boxes(one_scene(up), sensor.fixed_pattern("test"))[0]
@@ -200,7 +201,7 @@ def test_each_spot_is_what_a_window_around_it_shows(name: str) -> None:
 
 
 def test_a_sun_behind_gives_dark_frames() -> None:
-    sensor = MultiSpotSensor(Camera(H_MM, MASKS["squares"]), DETECTOR)
+    sensor = MultiSpotSensor(Camera(H_MM, MASKS["squares"]), DETECTOR, spectrum=None)
     assert light(sensor, np.array([[0.3, 0.1, -0.9], [1.0, 0.0, 0.0]])).max() == 0.0
 
 

@@ -1,4 +1,4 @@
-"""Round holes exactly: areas and energy, inversion to below 1e-6 deg, and enough of the Sun."""
+"""Shadows of round holes exactly: areas, energy, inversion to below 1e-6 deg, enough of the Sun."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ def test_every_pixel_is_the_integral_of_its_chords(radius: float, x: float, y: f
 
 
 def perfect(name: str) -> FrameSensor | MultiSpotSensor:
-    """The dataset's sensor under a point Sun: thin mask, no glass, nothing built wrong."""
+    """The dataset's sensor under a point Sun: shadows, thin mask, no glass, nothing built wrong."""
     sensor = datasets.get(name).setups["nominal"].sensor
     camera = replace(
         sensor.camera,
@@ -111,7 +111,7 @@ def perfect(name: str) -> FrameSensor | MultiSpotSensor:
         assembly=Assembly(),
     )
     if isinstance(sensor, MultiSpotSensor):
-        return replace(sensor, camera=camera, errors=MaskErrors())
+        return replace(sensor, camera=camera, errors=MaskErrors(), spectrum=None)
     return replace(sensor, camera=camera)
 
 
@@ -250,13 +250,15 @@ def test_pixels_are_within_half_a_percent_of_a_ray_count_all_over_the_field() ->
 
 
 def off_by(name: str, turn: int) -> float:
-    """Largest difference from the ray count over a frame's peak, of one whole spot.
+    """Largest difference of a shadow from the ray count over its peak, of one whole spot.
 
     At the field's corner, its edges and between, as built: thick mask, tilted, errors of holes.
     """
     data = datasets.get(name)
     sensor, pattern = data.setups["nominal"].sensor, data.fixed_pattern("nominal")
     assert isinstance(sensor, MultiSpotSensor)
+    camera = replace(sensor.camera, sun=SolarDisc(spiral=1152))
+    sensor = replace(sensor, camera=camera, spectrum=None)
     edge = data.geometry.half_fov_deg or 0.0
     alpha, beta = [(edge, edge), (-edge, 0.37 * edge), (0.6, edge), (0.7 * edge, -0.7 * edge)][turn]
     if name == "cmos-compound-eye":  # a cone
