@@ -104,7 +104,7 @@ class RoundPattern:
     def nodes(self) -> int:
         """How many incidences are tabulated, equally spaced."""
         normal = float(self.numbers(np.zeros(1), self._wavelength_mm)[0, 0])
-        return 8 + math.ceil(1.5 * normal)
+        return 12 + math.ceil(2.5 * normal)
 
     def share(self, sine: Floats) -> Floats:
         """(N,) how far positions count in direction cosines, rather than in mm about the chief ray.
@@ -114,11 +114,13 @@ class RoundPattern:
         direction cosines; a shadow is none and keeps its shape in millimetres. Between them the
         mean of ``delta - q``, given delta, is ``s^2 / (s^2 + a^2 / 4)`` of delta for normal
         distributions: ``a / 2`` is the aperture's, ``s = 0.42 lambda J_r / (2 a)`` that of a
-        pattern of the width of Airy's. At the middle of the spectrum, with ``J_r`` the larger one.
+        pattern of the width of Airy's. At the middle of the spectrum, with ``J_r`` the larger one,
+        and a half the width of the lens that a thick foil leaves.
         """
         waves = np.array(self.spectrum.wavelengths_nm) * 1e-6
         middle = float(np.sum(waves * np.array(self.spectrum.weights)))
-        square = self.numbers(sine, middle)[:, 0] ** 2
+        shade = self.thickness_mm * sine / np.sqrt(1.0 - sine * sine) / (2.0 * self.radius_mm)
+        square = (self.numbers(sine, middle)[:, 0] * np.maximum(1.0 - shade, 0.0) ** 2) ** 2
         return np.asarray(1.0 / (1.0 + square / 0.42**2))
 
     def place(self, sine: Floats) -> Floats:

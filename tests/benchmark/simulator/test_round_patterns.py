@@ -1,0 +1,272 @@
+"""Tables of round holes: the foil's two rims, the pixel, built sizes, rays through glass."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy import integrate
+from scipy.special import fresnel
+
+from benchmark import datasets
+from benchmark.simulator.kernels import diffraction
+from benchmark.simulator.light.sun_disc import SolarDisc, from_angles
+from benchmark.simulator.masks.apertures import Aperture, Mask
+from benchmark.simulator.optics.assembly import Assembly
+from benchmark.simulator.optics.diffraction import Spectrum, lost_at_rims, round_intensity
+from benchmark.simulator.optics.diffraction_tables import (
+    RoundPattern,
+    _turned_cell,
+    landing,
+    layers,
+)
+from benchmark.simulator.optics.plates import CoverGlass, Plate
+from benchmark.simulator.optics.projection import Camera
+from benchmark.simulator.scene import Scene
+from benchmark.simulator.sensors.multi_spot_frames import MultiSpotSensor
+
+GREEN = Spectrum((550.0,), (1.0,))
+UP = np.array([[0.0, 0.0, 1.0]])
+
+
+def one_scene(sun: np.ndarray) -> Scene:
+    return Scene(sun, np.ones(len(sun)), np.zeros(len(sun)))
+
+
+def sensor_of(width_mm: float, height_mm: float = 1.0, **fields) -> MultiSpotSensor:
+    """One hole above the middle of 64 x 64 px of 10 um."""
+    base = datasets.get("cmos-multi-aperture").setups["nominal"].sensor
+    assert isinstance(base, MultiSpotSensor)
+    mask = Mask((Aperture("round", width_mm, width_mm),))
+    detector = replace(base.detector, columns=64, rows=64)
+    return MultiSpotSensor(Camera(height_mm, mask), detector, **fields)
+
+
+@pytest.mark.parametrize("apart", [0.02, 0.4, 1.3])
+@pytest.mark.parametrize("numbers", [(0.4, 0.9), (2.5, 6.0)])
+def test_two_displaced_rims_leave_the_integral_over_their_lens(apart, numbers) -> None:
+    """Quadrature over strips of the lens along x, which has other strips than the sum."""
+    x, y = np.array([0.0, 0.55, 1.3]), np.array([0.0, 0.8])
+    nodes, shares = np.polynomial.legendre.leggauss(160)
+    top = math.sqrt(1.0 - apart**2 / 4.0)
+    # strips at height p: half width sqrt(1 - p^2) - apart / 2; p = top sin(psi) smooths the tips
+    psi = math.pi / 2.0 * nodes
+    p = top * np.sin(psi)
+    half = np.sqrt(1.0 - p**2) - apart / 2.0
+    q = half[:, None] * nodes
+    weights = (math.pi / 2.0 * shares * top * np.cos(psi) * half)[:, None] * shares
+    found = round_intensity(x, y, numbers, apart=apart)
+    for i in range(3):
+        for j in range(2):
+            phase = numbers[0] * (x[i] - q) ** 2 + numbers[1] * (y[j] - p[:, None]) ** 2
+            field = np.sum(weights * np.exp(1j * math.pi * phase))
+            assert found[i, j] == pytest.approx(numbers[0] * numbers[1] * abs(field) ** 2, abs=1e-7)
+
+
+def test_rims_that_do_not_overlap_leave_nothing() -> None:
+    assert round_intensity(np.zeros(2), np.zeros(3), (1.0, 1.0), apart=2.0).max() == 0.0
+
+
+@pytest.mark.parametrize("displaced", [0.0, 0.3, 1.0, 2.5])
+def test_rims_take_the_light_of_fresnels_shadow(displaced: float) -> None:
+    """The integral of its amplitude, damped far out, where it swings about nothing."""
+
+    def amplitude(u: float) -> complex:
+        sine, cosine = fresnel(u)
+        return complex(0.5 - cosine + 1j * (0.5 - sine)) / (1.0 + 1j)
+
+    # the tail swings as exp(i pi u^2 / 2) i / (pi u): its integral from U on is of order U^-2
+    end = 40.0
+    parts = [
+        integrate.quad(lambda u, f=f: f(amplitude(u)), displaced, end, limit=2000)[0]
+        for f in (np.real, np.imag)
+    ]
+    [found] = lost_at_rims(np.array([displaced]))
+    assert found == pytest.approx(complex(*parts), abs=1.0 / (math.pi**2 * end**2) + 1e-6)
+
+
+def test_rims_take_what_a_second_propagation_takes() -> None:
+    """On the axis of a hole twice in line: rings of the first field, cut off and sent on."""
+    radius, foil, height, wave = 0.05, 0.01, 1.0, 550e-6
+    number = radius**2 / (wave * height)
+    blur = math.sqrt(wave * foil / 2.0) / radius
+    [[found]] = round_intensity(np.zeros(1), np.zeros(1), (number, number), blur=blur)
+    [[thin]] = round_intensity(np.zeros(1), np.zeros(1), (number, number))
+    # Fresnel's field at the lower rim, by its boundary wave; 2 pi r dr on to the axis
+    rings, shares = np.polynomial.legendre.leggauss(1500)
+    r = radius * (rings + 1.0) / 2.0
+    turn = 2.0 * math.pi * (np.arange(4000) + 0.5) / 4000
+    field = np.empty(len(r), dtype=complex)
+    k = 2.0 * math.pi / wave
+    for n, place in enumerate(r):
+        # the disc seen from a point inside it: rays to the rim, each closed in r in closed form
+        rim = -place * np.cos(turn) + np.sqrt(radius**2 - (place * np.sin(turn)) ** 2)
+        field[n] = 1.0 - np.mean(np.exp(1j * k * rim**2 / (2.0 * foil)))
+    weights = radius / 2.0 * shares * 2.0 * math.pi * r / (wave * height)
+    expected = abs(np.sum(weights * field * np.exp(1j * k * r**2 / (2.0 * height)))) ** 2
+    assert abs(found - expected) < 0.15 * abs(thin - expected)
+
+
+def test_a_turned_cell_has_the_moments_of_a_square_whichever_way() -> None:
+    places, weights = _turned_cell(5)
+    x, y = places.T
+    assert weights.sum() == pytest.approx(1.0, abs=1e-14)
+    assert weights @ x == pytest.approx(0.0, abs=1e-15)
+    assert weights @ x**2 == pytest.approx(1.0 / 12.0, rel=1e-12)
+    assert weights @ (x * y) == pytest.approx(0.0, abs=1e-15)
+    # the mean over turns of 1/80 (c^4 + s^4) + 6/144 c^2 s^2
+    assert weights @ x**4 == pytest.approx(3.0 / 320.0 + 6.0 / 144.0 / 8.0, rel=1e-12)
+
+
+def pattern_of(**fields) -> RoundPattern:
+    given = {
+        "radius_mm": 0.04,
+        "height_mm": 1.0,
+        "glass": CoverGlass(),
+        "sun": SolarDisc(),
+        "spectrum": GREEN,
+        "reach_mm": 0.12,
+        "widest_deg": 60.0,
+    }
+    return RoundPattern(**{**given, **fields})
+
+
+@pytest.mark.parametrize("thickness", [0.0, 0.01])
+def test_incidences_between_those_tabulated_are_interpolated(thickness: float) -> None:
+    pattern = pattern_of(thickness_mm=thickness)
+    tables = pattern.tables()
+    last, reach = pattern.nodes - 1, tables.shape[2] - 1
+    _, units = pattern.scales(np.sin(np.radians(60.0 * (np.arange(3) + 0.5) * 3.0 / last)))
+    for k in range(3):
+        place = 0.5 + 3.0 * k
+        exact = pattern._table(math.sin(math.radians(60.0 * place / last)), reach)
+        found = np.empty(tables.shape[1:])
+        diffraction._blended(found, tables, place)
+        assert np.abs(found - exact).max() < 5e-3 * exact.max(), (place, units)
+
+
+def test_a_hole_between_two_tabulated_ones_is_that_hole() -> None:
+    """Built 1 um wider than drawn, against a mask that is drawn that wide."""
+    sun = from_angles(np.array([20.0]), np.array([-30.0]))
+    drawn = sensor_of(0.1)
+    wide = sensor_of(0.101)
+    pattern = dict(wide.fixed_pattern("test"))
+    found = drawn.lit(one_scene(sun), pattern)
+    expected = wide.lit(one_scene(sun), pattern)
+    assert np.abs(found - expected).max() < 1e-3 * expected.max()
+
+
+def test_holes_of_several_built_sizes_are_those_holes() -> None:
+    base = sensor_of(0.1)
+    mask = Mask(
+        (Aperture("round", 0.1, 0.1, x_mm=-0.2), Aperture("round", 0.1, 0.1, x_mm=0.2)),
+    )
+    pair = replace(base, camera=replace(base.camera, mask=mask))
+    pattern = dict(pair.fixed_pattern("test"))
+    table = pattern["apertures"].copy()
+    table[:, 3:5] += np.array([[0.05], [-0.05]])  # half a micrometre either way
+    pattern["apertures"] = table
+    found = pair.lit(one_scene(UP), pattern)
+    expected = np.zeros(found.shape)
+    for n, width in enumerate((0.101, 0.099)):
+        one = Mask((Aperture("round", width, width, x_mm=-0.2 + 0.4 * n),))
+        single = replace(base, camera=replace(base.camera, mask=one))
+        expected += single.lit(one_scene(UP), single.fixed_pattern("test"))
+    # 2 pi N da / a = 0.28 of a ring: its square over 8 for a linear step between the two
+    assert np.abs(found - expected).max() < 0.28**2 / 8.0 * expected.max() + 1e-4
+
+
+def test_one_averaged_cell_is_a_pixel_of_many() -> None:
+    data = datasets.get("ccd-multi-aperture")
+    sensor = data.setups["nominal"].sensor
+    assert isinstance(sensor, MultiSpotSensor)
+    one = replace(sensor_of(0.05, 0.75), detector=replace(sensor.detector, columns=48, rows=48))
+    sun = from_angles(np.array([20.0]), np.array([20.0]))
+    moved = Mask((replace(one.camera.mask.apertures[0], x_mm=-0.27, y_mm=-0.27),))
+    one = replace(one, camera=replace(one.camera, mask=moved))
+    fine = replace(
+        one, detector=replace(one.detector, columns=192, rows=192, pitch_mm=0.003), skirt=1e-5
+    )
+    found = one.lit(one_scene(sun), one.fixed_pattern("test"))[0]
+    expected = fine.lit(one_scene(sun), fine.fixed_pattern("test"))[0]
+    expected = expected.reshape(48, 4, 48, 4).mean(axis=(1, 3))
+    assert np.abs(found - expected).max() < 5e-3 * expected.max()
+
+
+def test_light_left_out_is_below_the_stated_share() -> None:
+    sun = from_angles(np.array([0.0, 25.0]), np.array([0.0, 10.0]))
+    near, far = (replace(sensor_of(0.05), skirt=skirt) for skirt in (1e-3, 1e-6))
+    scene, pattern = one_scene(sun), near.fixed_pattern("test")
+    here, there = near.lit(scene, pattern), far.lit(scene, pattern)
+    out = (here == 0.0) & (there > 0.0)
+    assert out.any()
+    # the stated share is a mean over rings, the brightest of which have twice of it
+    assert there[out].max() < 2.5e-3 * there[0].max()
+
+
+@pytest.mark.parametrize("plates", [(Plate(0.5, 1.52),), (Plate(0.3, 1.5), Plate(0.4, 1.9))])
+def test_rays_through_glass_land_where_snell_says(plates: tuple[Plate, ...]) -> None:
+    stack = layers(1.2, CoverGlass(plates))
+    farthest = 5.0
+    rays = diffraction._rays(stack, farthest)
+    sine = np.linspace(0.0, 0.965, 150)
+    place, along, across = landing(sine, stack).T
+    assert place.max() < farthest
+    for n, s in enumerate(sine):
+        x, y = 0.6 * place[n], -0.8 * place[n]
+        px, py, spread = diffraction._arriving(x, y, rays, diffraction._RAYS / farthest, 1.2)
+        assert (px, py) == pytest.approx((0.6 * s, -0.8 * s), abs=1e-8)
+        expected = math.sqrt(1.0 - s * s) / (along[n] * across[n])
+        assert spread == pytest.approx(expected, rel=1e-6)
+
+
+def test_spots_move_with_the_mask_and_the_assembly() -> None:
+    sun = from_angles(np.array([5.0]), np.array([-8.0]))
+    base = sensor_of(0.05)
+    alone = base.lit(one_scene(sun), base.fixed_pattern("test"))[0]
+    assembly = Assembly(offset_x_mm=0.03, offset_y_mm=-0.02)
+    shifted = replace(base, camera=replace(base.camera, assembly=assembly))
+    moved = shifted.lit(one_scene(sun), shifted.fixed_pattern("test"))[0]
+    assert moved[:62, 3:] == pytest.approx(alone[2:, :61], abs=1e-12)
+
+
+def test_a_sun_behind_lights_nothing() -> None:
+    sensor = sensor_of(0.05)
+    sun = np.array([[0.3, 0.1, -0.9]]) / math.sqrt(0.91)
+    assert sensor.lit(one_scene(sun), sensor.fixed_pattern("test")).max() == 0.0
+
+
+@pytest.mark.parametrize(
+    ("fields", "said"),
+    [
+        ({"widest_deg": 90.0}, "widest_deg must be in"),
+        ({"skirt": 0.0}, r"skirt must be in \(0, 1\); got 0.0"),
+    ],
+)
+def test_impossible_diffraction_is_refused(fields, said: str) -> None:
+    with pytest.raises(ValueError, match=said):
+        sensor_of(0.05, **fields)
+
+
+def test_rectangles_are_refused_unless_they_cast_shadows() -> None:
+    base = sensor_of(0.05)
+    square = Mask((Aperture("rectangle", 0.05, 0.05),))
+    camera = replace(base.camera, mask=square)
+    with pytest.raises(ValueError, match="of round holes"):
+        replace(base, camera=camera)
+    assert replace(base, camera=camera, spectrum=None).spectrum is None
+
+
+@pytest.mark.parametrize(
+    ("fields", "said"),
+    [
+        ({"thickness_mm": -1.0}, "must not be negative; got -1.0 and 0.0"),
+        ({"cell_mm": -0.1}, "must not be negative; got 0.0 and -0.1"),
+        ({"growth": -1.0}, "growth must be above -1; got -1.0"),
+    ],
+)
+def test_impossible_patterns_are_refused(fields, said: str) -> None:
+    with pytest.raises(ValueError, match=said):
+        pattern_of(**fields)
