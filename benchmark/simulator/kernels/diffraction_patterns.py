@@ -40,6 +40,16 @@ def squared_sums(
 
 
 @compiled
+def turned(cosines: Floats, sines: Floats, argument: Floats) -> None:
+    """Write ``exp(i pi u^2 / 2)`` of every argument u; (R, T) each."""
+    for row in range(argument.shape[0]):
+        for column in range(argument.shape[1]):
+            phase = math.pi / 2.0 * argument[row, column] ** 2
+            cosines[row, column] = math.cos(phase)
+            sines[row, column] = math.sin(phase)
+
+
+@compiled
 def _shares(fraction: float) -> Four:
     """Weights of the four nodes -1, 0, 1, 2 in Lagrange's cubic through them."""
     t = fraction
@@ -77,11 +87,19 @@ def spread_over_sun(
                 place = margin + first + i - 1, margin + second + j - 1
                 stencil[place] += weights[k] * along[i] * across[j]
     reach = out.shape[1] - 1
+    # with its mirror image to the left, so that the innermost loop runs straight on
+    side = np.empty((quadrant.shape[0], quadrant.shape[1] + margin))
+    for row in range(quadrant.shape[0]):
+        for column in range(quadrant.shape[1] + margin):
+            side[row, column] = quadrant[row, abs(column - margin)]
+    out[:] = 0.0
     for row in range(out.shape[0]):
-        for column in range(out.shape[1]):
-            total = 0.0
-            for i in range(size):
-                from_row = abs(row - reach + i - margin)
-                for j in range(size):
-                    total += stencil[i, j] * quadrant[from_row, abs(column + j - margin)]
-            out[row, column] = total
+        to = out[row]
+        for i in range(size):
+            line = side[abs(row - reach + i - margin)]
+            for j in range(size):
+                weight = stencil[i, j]
+                if weight != 0.0:
+                    part = line[j : j + reach + 1]
+                    for column in range(reach + 1):
+                        to[column] += weight * part[column]

@@ -165,15 +165,17 @@ def lost_at_rims(displaced: Floats) -> NDArray[np.complex128]:
     lie on top of each other, less than 0.1 from 1 on. The foil's walls are black.
     """
     rest = 0.5 + 0.5j - fresnel(displaced)
-    return np.asarray((1j / math.pi * _turned(displaced) - displaced * rest) / (1.0 + 1j))
+    edge = _turned(displaced[None])[0]
+    return np.asarray((1j / math.pi * edge - displaced * rest) / (1.0 + 1j))
 
 
 def _turned(argument: Floats) -> NDArray[np.complex128]:
-    """``exp(i pi u^2 / 2)``, from the C library: the same on every processor."""
-    phases = (math.pi / 2.0 * argument**2).ravel()
-    cosines = np.array([math.cos(phase) for phase in phases])
-    sines = np.array([math.sin(phase) for phase in phases])
-    return np.asarray((cosines + 1j * sines).reshape(argument.shape))
+    """``exp(i pi u^2 / 2)`` of (R, T) arguments u, the same on every processor."""
+    from benchmark.simulator.kernels.diffraction_patterns import turned  # noqa: PLC0415 - Numba
+
+    cosines, sines = np.empty(argument.shape), np.empty(argument.shape)
+    turned(cosines, sines, np.ascontiguousarray(argument))
+    return np.asarray(cosines + 1j * sines)
 
 
 def _openings(points: int, half: float) -> tuple[Floats, Floats, Floats]:
