@@ -62,6 +62,22 @@ def _shares(fraction: float) -> Four:
 
 
 @compiled
+def _stencil(shifts: Floats, weights: Floats, margin: int) -> Floats:
+    """Weights (2 margin + 1, 2 margin + 1) of the grid's values around a node, by cubics."""
+    size = 2 * margin + 1
+    stencil = np.zeros((size, size))
+    for k in range(weights.shape[0]):
+        first, second = math.floor(-shifts[k, 0]), math.floor(-shifts[k, 1])
+        along = _shares(-shifts[k, 0] - first)
+        across = _shares(-shifts[k, 1] - second)
+        for i in range(4):
+            for j in range(4):
+                place = margin + first + i - 1, margin + second + j - 1
+                stencil[place] += weights[k] * along[i] * across[j]
+    return stencil
+
+
+@compiled
 def spread_over_sun(
     out: Floats, quadrant: Floats, shifts: Floats, weights: Floats, margin: int
 ) -> None:
@@ -76,16 +92,8 @@ def spread_over_sun(
     shifts
         (K, 2) in steps of the grid, less than `margin` - 2.
     """
-    size = 2 * margin + 1
-    stencil = np.zeros((size, size))
-    for k in range(weights.shape[0]):
-        first, second = math.floor(-shifts[k, 0]), math.floor(-shifts[k, 1])
-        along = _shares(-shifts[k, 0] - first)
-        across = _shares(-shifts[k, 1] - second)
-        for i in range(4):
-            for j in range(4):
-                place = margin + first + i - 1, margin + second + j - 1
-                stencil[place] += weights[k] * along[i] * across[j]
+    stencil = _stencil(shifts, weights, margin)
+    size = stencil.shape[0]
     reach = out.shape[1] - 1
     # with its mirror image to the left, so that the innermost loop runs straight on
     side = np.empty((quadrant.shape[0], quadrant.shape[1] + margin))
