@@ -117,9 +117,7 @@ def _blended_row(out: Floats, slits: Slits, number: float) -> None:
 
 
 @compiled
-def _means(
-    out: Floats, row: Floats, scale: tuple[float, float, float], cells: Complex, weight: float
-) -> None:
+def _means(out: Floats, row: Floats, scale: Four, cells: Complex, weight: float) -> None:
     """Add a pattern's means over cells, times a weight.
 
     Parameters
@@ -129,16 +127,22 @@ def _means(
     row
         Running integral in half widths.
     scale
-        Half width, how far the middle of the slit is filled evenly, and steps a half width.
+        Half width, how far the middle of the slit is filled evenly, steps a half width, and how
+        the pattern is bent: half the second derivative of the landing point over J squared.
     cells
         Edge of the first, seen from the slit's middle, and their size.
     """
-    half, gap, per = scale
+    half, gap, per, bend = scale
     start, size = cells
     last = row.shape[0] - 2
     before = 0.0
     for i in range(-1, out.shape[0]):
         place = start + (i + 1) * size
+        if 2.0 * bend * place > 1.0:
+            # no light from so far out: it would have to come in below the horizon
+            place = 0.5 / bend
+        # far away patterns keep their shape in direction cosines; edges stay where they are
+        place -= bend * place * place
         far = abs(place)
         value = far
         if far > gap:
@@ -167,9 +171,9 @@ def _products(
     out
         (rows, columns) of cells.
     sample
-        (11,) light; where the spot's middle is from the first cell's corner, along both sides;
+        (13,) light; where the spot's middle is from the first cell's corner, along both sides;
         half sizes; change of the landing point a unit of direction cosine; the image of the unit
-        disc: its semi-axis, shear and height; cell size.
+        disc: its semi-axis, shear and height; how the patterns are bent; cell size.
     spectrum
         (L, 2) wavelengths in mm and weights.
     disc
@@ -179,7 +183,7 @@ def _products(
     """
     rows, columns = out.shape
     strips = disc.shape[0]
-    light, x0, y0, a, b, spread_x, spread_y, wide, shear, high, cell = sample[:11]
+    light, x0, y0, a, b, spread_x, spread_y, wide, shear, high, bend_x, bend_y, cell = sample
     count = spectrum.shape[0] * strips
     across, along = np.zeros((count, columns)), np.zeros((count, rows))
     row_x, row_y = np.empty(widths[0][0].shape[1]), np.empty(widths[1][0].shape[1])
@@ -193,8 +197,8 @@ def _products(
         half_y = b * math.sqrt(min(1.0, most_y / number_y))
         _blended_row(row_x, widths[0], number_x)
         _blended_row(row_y, widths[1], number_y)
-        scale_x = half_x, a - half_x, widths[0][3]
-        scale_y = half_y, b - half_y, widths[1][3]
+        scale_x = half_x, a - half_x, widths[0][3], bend_x / (1.0 + (math.pi * number_x) ** 2)
+        scale_y = half_y, b - half_y, widths[1][3], bend_y / (1.0 + (math.pi * number_y) ** 2)
         for j in range(strips):
             k = m * strips + j
             up = disc[j, 0, 1]
@@ -261,10 +265,10 @@ def add_rectangle(
     flux
         (N, H, W) light averaged over each pixel.
     samples
-        (N, 2) middle of the spot seen from the window's first corner, mm; (N, 9) light, half
-        sizes, change of the landing point a unit of direction cosine, and the image of the unit
-        disc (semi-axis, shear, height), across and along; what couples both: -1 to 1; (N, 2)
-        coordinates among the corners' incidences.
+        (N, 2) middle of the spot seen from the window's first corner, mm; (N, 11) light, half
+        sizes, change of the landing point a unit of direction cosine, the image of the unit disc
+        (semi-axis, shear, height), how patterns are bent (a mm), across and along; what couples
+        both, -1 to 1; (N, 2) coordinates among the corners' incidences.
     optics
         (4,) cosine and sine of the rectangle's turn, pixel pitch in mm, cells a pixel;
         (L, 2) wavelengths in mm and weights; (S, P, 3) nodes of the disc.
@@ -285,15 +289,15 @@ def add_rectangle(
     fine = np.empty((tall, wide)) if turned else np.empty((1, 1))
     size = tables.shape[3]
     patches = np.empty((2, size, size))
-    sample = np.empty(11)
+    sample = np.empty(13)
     for n in range(count):
         light, a, b = shapes[n, 0], shapes[n, 1], shapes[n, 2]
         if light == 0.0 or a <= 0.0 or b <= 0.0:
             continue
         sample[0] = light
-        sample[3:10] = shapes[n, 1:8]
+        sample[3:12] = shapes[n, 1:10]
         x, y = middles[n]
-        coupling = shapes[n, 8]
+        coupling = shapes[n, 10]
         coupled = tables.shape[0] > 0 and coupling != 0.0
         if coupled:
             _corners(patches, tables, (places[n, 0], places[n, 1]))
@@ -303,11 +307,11 @@ def add_rectangle(
             dx, dy = columns * pitch / 2.0 - x, rows * pitch / 2.0 - y
             mid_x, mid_y = c * dx + s * dy, c * dy - s * dx
             sample[1], sample[2] = wide * cell / 2.0 - mid_x, tall * cell / 2.0 - mid_y
-            sample[10] = cell
+            sample[12] = cell
             fine[:] = 0.0
             _products(fine, sample, spectrum, disc, widths)
         else:
-            sample[1], sample[2], sample[10] = x, y, pitch
+            sample[1], sample[2], sample[12] = x, y, pitch
             _products(flux[n], sample, spectrum, disc, widths)
         if not (turned or coupled):
             continue

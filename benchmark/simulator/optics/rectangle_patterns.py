@@ -71,6 +71,38 @@ def matrix(directions: Floats, height_mm: Floats, glass: CoverGlass) -> tuple[Fl
     return across + more * x * x, across + more * y * y, more * x * y
 
 
+def bend(
+    directions: Floats, height_mm: Floats, glass: CoverGlass, spread: tuple[Floats, ...]
+) -> Floats:
+    """(N, 2) half the second derivative of the landing point over J squared, a mm, along x and y.
+
+    Where diffraction throws light far, equal steps of the direction cosine are unequal ones on
+    the detector: ``J ds = delta - bend delta^2``. The other cosine stays as it is behind a slit.
+    """
+    square = directions[:, :2] ** 2
+    found = np.zeros((len(directions), 2))
+    gaps = [(height_mm - glass.thickness_mm, 1.0)]
+    for thickness, index in [*gaps, *((plate.thickness_mm, plate.index) for plate in glass.plates)]:
+        inside = (index**2 - square[:, 0] - square[:, 1])[:, None]
+        third = np.reshape(thickness, (-1, 1)) / (inside * np.sqrt(inside))
+        found += 1.5 * directions[:, :2] * third * (1.0 + square / inside)
+    return found / np.stack(spread[:2], axis=1) ** 2
+
+
+def shaded(directions: Floats, apart_mm: Floats, thickness_mm: float) -> Floats:
+    """(N, 2) how much narrower a foil makes each half of a rectangle, across and along.
+
+    Half of what its two rims are `apart_mm` (N, 2); and what light, bent at the upper rim, loses
+    on the walls: behind an edge ``sqrt(lambda J / 2) / (2 pi)``, fading as the other rim recedes.
+    """
+    if thickness_mm == 0:
+        return apart_mm / 2.0
+    spread = matrix(directions, np.full(len(directions), thickness_mm), CoverGlass())
+    fringe = _ROOT * np.sqrt(np.stack(spread[:2], axis=1) / 2.0)
+    lost = fringe / (2.0 * math.pi) / (1.0 + math.pi * apart_mm / fringe)
+    return np.asarray(apart_mm / 2.0 + lost)
+
+
 def disc_image(directions: Floats, spread: tuple[Floats, ...], radius: float) -> Floats:
     """(N, 3) what the unit disc becomes: x = l_0 p + l_1 q, y = l_2 q for its points (p, q).
 

@@ -16,9 +16,11 @@ from benchmark.simulator.optics.plates import fresnel_number
 from benchmark.simulator.optics.projection import Camera, ProjectedLight
 from benchmark.simulator.optics.rectangle_patterns import (
     RectanglePattern,
+    bend,
     disc_image,
     disc_strips,
     matrix,
+    shaded,
 )
 
 #: Points of the Sun that give the middle of its image and its light.
@@ -209,7 +211,7 @@ class DiffractedLight:
         spread = matrix(known, stance.height_mm, self.camera.glass)
         across, along, both = spread
         radius = math.sin(math.radians(self.camera.sun.diameter_deg / 2.0))
-        shade = np.abs(_turned(apart, c, s)) / 2.0
+        shade = shaded(known, np.abs(_turned(apart, c, s)), self.camera.mask.thickness_mm)
         shapes = np.column_stack(
             [
                 light,
@@ -218,6 +220,7 @@ class DiffractedLight:
                 across,
                 along,
                 disc_image(known, spread, radius),
+                bend(known, stance.height_mm, self.camera.glass, spread),
                 both / np.sqrt(across * along),
             ]
         )
