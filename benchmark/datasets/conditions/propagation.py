@@ -41,3 +41,31 @@ def geometric(
         "wavelength_nm": 550,
         "reason": f"{number} at normal incidence is {far}above 10; diffraction is left out",
     }
+
+
+def measured(error_percent: float, field_deg: float) -> dict[str, Any]:
+    """Return the regime of openings whose shadows were measured to do.
+
+    Parameters
+    ----------
+    error_percent
+        Largest `geometric_error` over the field, which a test measures again.
+    field_deg
+        Half the field it was measured over.
+
+    Raises
+    ------
+    ValueError
+        When it is 1 % or more: then light has to be diffracted.
+    """
+    if not 0 <= error_percent < 1.0:
+        raise ValueError(
+            f"shadows will do where they are within 1 % of the peak; got {error_percent} %"
+        )
+    return {
+        "propagation": "geometric",
+        "error_percent": error_percent,
+        "field_deg": field_deg,
+        "reason": "the geometric rendering differs from the diffracted one by less than 1 % of "
+        "the peak over the whole field; diffraction is left out",
+    }

@@ -5,7 +5,7 @@ from __future__ import annotations
 from benchmark.datasets.conditions import pixel_arrays as pixels
 from benchmark.datasets.fields import AngleField
 
-_MASK = pixels.hole(0.1)
+_MASK = pixels.hole(0.1, 0.01)
 _SENSOR = pixels.windowed(_MASK, 0.75, pixels.cmos(512, 0.0065, sunlit_e=14_000.0))
 _ALSO, _OFF = ", read noise of one digital number", "aperture eight and six pixels off centre"
 

@@ -6,7 +6,7 @@ from benchmark.datasets.conditions.event_arrays import behind, design, event_arr
 from benchmark.datasets.conditions.pixel_arrays import hole
 from benchmark.datasets.fields import AngleField
 
-_SENSOR = behind(hole(0.2), 1.0, events=20)
+_SENSOR = behind(hole(0.2, 0.01), 1.0, events=20)
 
 PRESET = event_array(
     name="event-single-aperture",

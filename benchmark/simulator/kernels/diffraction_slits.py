@@ -161,6 +161,12 @@ def _means(out: Floats, row: Floats, scale: Four, cells: Complex, weight: float)
 
 
 @compiled
+def _turning(number: float) -> float:
+    """How far a pattern of this Fresnel number is turning, not shadow (`RoundPattern.share`)."""
+    return 1.0 / (1.0 + (number / 0.42) ** 2)
+
+
+@compiled
 def _products(
     out: Floats, sample: Floats, spectrum: Floats, disc: Floats, widths: tuple[Slits, Slits]
 ) -> None:
@@ -197,8 +203,8 @@ def _products(
         half_y = b * math.sqrt(min(1.0, most_y / number_y))
         _blended_row(row_x, widths[0], number_x)
         _blended_row(row_y, widths[1], number_y)
-        scale_x = half_x, a - half_x, widths[0][3], bend_x / (1.0 + (math.pi * number_x) ** 2)
-        scale_y = half_y, b - half_y, widths[1][3], bend_y / (1.0 + (math.pi * number_y) ** 2)
+        scale_x = half_x, a - half_x, widths[0][3], bend_x * _turning(number_x)
+        scale_y = half_y, b - half_y, widths[1][3], bend_y * _turning(number_y)
         for j in range(strips):
             k = m * strips + j
             up = disc[j, 0, 1]
@@ -248,6 +254,21 @@ def _cubic(table: Floats, x: float, y: float) -> float:
             a * line[column - 1] + b * line[column] + c * line[column + 1] + d * line[column + 2]
         )
     return total
+
+
+@compiled
+def _of_cells(fine: Floats, at: Complex, turn: Complex, cells: tuple[float, int]) -> float:
+    """Mean of cells over a pixel about a place, mm, turned against them by cosine and sine."""
+    cell, steps = cells
+    c, s = turn
+    total = 0.0
+    for i in range(steps):
+        up = (i + 0.5 - steps / 2.0) * cell
+        for j in range(steps):
+            right = (j + 0.5 - steps / 2.0) * cell
+            x, y = at[0] + c * right + s * up, at[1] + c * up - s * right
+            total += _cubic(fine, x / cell - 0.5, y / cell - 0.5)
+    return total / (steps * steps)
 
 
 @compiled
@@ -313,24 +334,14 @@ def add_rectangle(
         else:
             sample[1], sample[2], sample[12] = x, y, pitch
             _products(flux[n], sample, spectrum, disc, widths)
-        if not (turned or coupled):
-            continue
         steps = int(cells)
-        for row in range(rows):
+        for row in range(rows if turned or coupled else 0):
             for column in range(columns):
                 total = 0.0
                 dx, dy = (column + 0.5) * pitch - x, (row + 0.5) * pitch - y
                 if turned:
-                    for i in range(steps):
-                        up = dy + ((i + 0.5) / steps - 0.5) * pitch
-                        for j in range(steps):
-                            right = dx + ((j + 0.5) / steps - 0.5) * pitch
-                            total += _cubic(
-                                fine,
-                                (c * right + s * up + sample[1]) / cell - 0.5,
-                                (c * up - s * right + sample[2]) / cell - 0.5,
-                            )
-                    total /= steps * steps
+                    at = c * dx + s * dy + sample[1], c * dy - s * dx + sample[2]
+                    total += _of_cells(fine, at, (c, s), (cell, steps))
                 if coupled:
                     w, v = c * dx + s * dy, c * dy - s * dx
                     kind = 0 if (w * v >= 0.0) == (coupling > 0.0) else 1

@@ -6,13 +6,11 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from algorithms.contract import Floats
 from benchmark.simulator.masks.apertures import Aperture
-from benchmark.simulator.optics.diffraction import COSINES_BELOW, Spectrum
+from benchmark.simulator.optics.diffraction import Spectrum
 from benchmark.simulator.optics.diffraction_tables import RoundPattern
-from benchmark.simulator.optics.plates import fresnel_number
 from benchmark.simulator.optics.projection import Camera, ProjectedLight
 from benchmark.simulator.optics.rectangle_patterns import (
     RectanglePattern,
@@ -27,6 +25,9 @@ from benchmark.simulator.optics.rectangle_patterns import (
 _RINGS = (8, 12)
 #: Cells a pixel, an axis, that light behind rectangles turned against the pixels is summed on.
 _CELLS = 2.0
+#: Round holes: largest phase across a cell, and how far outside the shadow tables end, in ``k a``
+#: times the direction cosine; as of `RoundSpots`.
+_CELL_RAD, _TABULATED = 5.0, 25.0
 
 
 @dataclass(frozen=True)
@@ -58,9 +59,9 @@ class DiffractedLight:
     """Scalar Fresnel diffraction about the chief ray (see `diffraction`) on windows of pixels.
 
     For each wavelength, over the Sun's disc. Round apertures take tables in two coordinates,
-    which hold any oblique incidence: below a Fresnel number of 1 positions count in direction
-    cosines, in which the far pattern keeps its shape however oblique the light; from 1 on in
-    millimetres about the chief ray, in which the shadow does. Rectangles, however turned, take
+    which hold any oblique incidence; far patterns count positions in direction cosines, in which
+    they keep their shape however oblique the light, shadows in millimetres about the chief ray
+    (`RoundPattern.share`). Rectangles, however turned, take
     the product of two slits' patterns along their own sides and what the coupling of both axes
     adds at the corners (see `rectangle_patterns`). Of a foil with a thickness light passes what
     both displaced rims leave open, in its middle.
@@ -75,8 +76,6 @@ class DiffractedLight:
         Distance from the spot's middle that a window shows.
     widest_deg
         Largest incidence tabulated; beyond, the pattern keeps this one's Fresnel numbers.
-    nodes
-        Gauss nodes a side in a pixel, of round apertures.
     """
 
     camera: Camera
@@ -85,19 +84,10 @@ class DiffractedLight:
     size_px: tuple[int, int]
     reach_mm: float
     widest_deg: float
-    nodes: int = 2
 
     def __post_init__(self) -> None:
-        mask = self.camera.mask
-        if mask.thickness_mm > 0 and any(a.shape == "round" for a in mask.apertures):
-            raise ValueError(
-                "diffraction at round holes is simulated for thin masks; got thickness "
-                f"{mask.thickness_mm} mm"
-            )
         if not 0 < self.widest_deg < 90:
             raise ValueError(f"widest_deg must be in (0, 90); got {self.widest_deg}")
-        if self.nodes < 1:
-            raise ValueError(f"nodes must be at least 1; got {self.nodes}")
 
     def render(self, stance: Stance, corner_mm: Floats) -> Floats:
         """(N, H, W) light of the mean sunlight in windows with first corners at (N, 2)."""
@@ -112,54 +102,63 @@ class DiffractedLight:
                 round_ones.setdefault(aperture.width_mm, []).append(aperture)
             else:
                 rectangles.append(aperture)
-        for diameter, group in round_ones.items():
-            self._add_round(flux, stance.head, front[:, 0], corner_mm, group, diameter)
+        for group in round_ones.values():
+            self._add_round(flux, stance, corner_mm, group)
         if rectangles:
             self._add_rectangles(flux, stance, corner_mm, rectangles)
         return flux
 
+    def _cells(self, diameter: float) -> int:
+        """Cells a side of a pixel over which a round hole's tables are averaged beforehand.
+
+        So small that waves of the highest frequency, or half the softness of an edge, are hardly
+        turned within one.
+        """
+        nm = np.array(self.spectrum.wavelengths_nm) * np.array(self.spectrum.weights)
+        spread = float(nm.sum()) * 1e-6 * self.camera.height_mm
+        finest = math.pi * diameter / spread * self.pitch_mm / _CELL_RAD
+        return max(1, math.ceil(min(finest, 2.0 * self.pitch_mm / math.sqrt(spread))))
+
     def _pattern(self, diameter: float) -> RoundPattern:
+        camera = self.camera
+        far = _TABULATED * min(self.spectrum.wavelengths_nm) * 1e-6 / (math.pi * diameter)
         return RoundPattern(
             radius_mm=diameter / 2.0,
-            height_mm=self.camera.height_mm,
-            glass=self.camera.glass,
-            sun=self.camera.sun,
+            height_mm=camera.height_mm,
+            glass=camera.glass,
+            sun=camera.sun,
             spectrum=self.spectrum,
-            reach_mm=self.reach_mm,
+            reach_mm=min(self.reach_mm, diameter / 2.0 + far * camera.height_mm),
             widest_deg=self.widest_deg,
+            thickness_mm=camera.mask.thickness_mm,
+            cell_mm=self.pitch_mm / self._cells(diameter),
         )
 
     def _add_round(
-        self,
-        flux: Floats,
-        head: Floats,
-        front: NDArray[np.bool_],
-        corner_mm: Floats,
-        group: list[Aperture],
-        diameter: float,
+        self, flux: Floats, stance: Stance, corner_mm: Floats, group: list[Aperture]
     ) -> None:
         from benchmark.simulator.kernels.diffraction import add_round  # noqa: PLC0415 - Numba
 
-        pattern = self._pattern(diameter)
-        assembly = self.camera.assembly
+        pattern = self._pattern(group[0].width_mm)
+        cells = self._cells(group[0].width_mm)
+        assembly, head = self.camera.assembly, stance.head
         corner = corner_mm - np.array([assembly.offset_x_mm, assembly.offset_y_mm])
         sine = np.sqrt(np.sum(head[:, :2] ** 2, axis=1))
         known = np.minimum(sine, math.sin(math.radians(self.widest_deg)))
         steps, unit = pattern.scales(known)
         light = head[:, 2] * self.camera.glass.transmission(head) * unit
-        numbers = np.column_stack([np.where(front, light, 0.0), pattern.place(known), 1.0 / steps])
+        light = np.where(stance.seen.light.max(axis=1) > 0.0, light, 0.0)
         centres = np.array([(a.x_mm, a.y_mm) for a in group])
-        gauss, shares = np.polynomial.legendre.leggauss(self.nodes)
-        inside = self.pitch_mm * (gauss + 1.0) / 2.0
+        inside = (np.arange(cells) + 0.5) * (self.pitch_mm / cells)
         add_round(
             flux,
             pattern.tables(),
-            (head, numbers, centres[None] - corner[:, None]),
             (
-                pattern.layers(),
-                np.column_stack([inside, shares / 2.0]),
-                fresnel_number(diameter / 2.0, self.camera.height_mm) < COSINES_BELOW,
+                head,
+                np.column_stack([light, pattern.place(known), 1.0 / steps, pattern.share(known)]),
+                centres[None] - corner[:, None],
             ),
+            (pattern.layers(), np.column_stack([inside, np.full(cells, 1.0 / cells)]), 0.0),
         )
 
     def _rectangle(self, aperture: Aperture) -> RectanglePattern:

@@ -28,20 +28,17 @@ class DiffractiveFrameSensor(UnevenFrameSensor):
         Wavelengths and weights.
     widest_deg
         Largest incidence tabulated; beyond, the pattern keeps this one's Fresnel numbers.
-    nodes
-        Gauss nodes a side in a pixel (round apertures; rectangles are integrated exactly).
     """
 
     spectrum: Spectrum = SUNLIT_SILICON
     widest_deg: float = 70.0
-    nodes: int = 2
 
     def __post_init__(self) -> None:
         # wrong parameters are refused when the sensor is made, not when it sees something
         self._light()
 
     def _optics(self) -> tuple[Hashable, ...]:
-        far = self.window_jitter_px, self.widest_deg, self.nodes
+        far = self.window_jitter_px, self.widest_deg
         return (*super()._optics(), self.spectrum, far)
 
     def _light(self) -> DiffractedLight:
@@ -54,7 +51,6 @@ class DiffractiveFrameSensor(UnevenFrameSensor):
             size_px=self.window_px,
             reach_mm=math.sqrt(2.0) * far * pitch,
             widest_deg=self.widest_deg,
-            nodes=self.nodes,
         )
 
     def _stance(self, scene: Scene) -> Stance:

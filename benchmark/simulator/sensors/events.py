@@ -104,15 +104,12 @@ class EventSensor:
         Wavelengths and weights.
     widest_deg
         Largest incidence tabulated; beyond, the pattern keeps this one's Fresnel numbers.
-    nodes
-        Gauss nodes a side in a pixel, of round apertures.
     """
 
     camera: Camera
     detector: SpikingArray
     spectrum: Spectrum = SUNLIT_SILICON
     widest_deg: float = 70.0
-    nodes: int = 2
 
     def __post_init__(self) -> None:
         # wrong parameters are refused when the sensor is made, not when it sees something
@@ -165,7 +162,6 @@ class EventSensor:
             # a spot in one corner lights the opposite one
             reach_mm=math.sqrt(2.0) * max(detector.columns, detector.rows) * detector.pitch_mm,
             widest_deg=self.widest_deg,
-            nodes=self.nodes,
         )
 
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
