@@ -27,8 +27,6 @@ from benchmark.simulator.optics.plates import fresnel_number
 
 #: Line arrays take shadows as geometric from this Fresnel number on.
 GEOMETRIC_FROM = 10.0
-#: Below this one the pattern behind a round aperture is placed by direction cosines.
-COSINES_BELOW = 1.0
 
 
 @dataclass(frozen=True)
@@ -62,20 +60,17 @@ def propagation(mask: Mask, height_mm: float, spectrum: Spectrum) -> dict[str, A
     """How light gets from a mask to a detector `height_mm` below, for a dataset's ``regime``.
 
     The Fresnel number ``a^2 / (lambda h)`` of the narrowest opening, at normal incidence and
-    550 nm, says what pattern to expect; nothing is decided by it but which coordinates tables
-    have.
+    550 nm, says what pattern to expect: a shadow with soft edges far above 1, a far pattern far
+    below. Nothing is decided by it.
     """
     half = min(aperture.smallest_half_width_mm for aperture in mask.apertures)
     number = fresnel_number(half, height_mm)
-    rectangles = any(aperture.shape == "rectangle" for aperture in mask.apertures)
-    cosines = number < COSINES_BELOW and not rectangles
     return {
         "propagation": "diffraction",
         "fresnel_number": float(f"{number:.3g}"),
         "wavelength_nm": 550,
         "wavelengths_nm": list(spectrum.wavelengths_nm),
         "weights": list(spectrum.weights),
-        "mapping": "direction cosines" if cosines else "chief ray",
         "reason": "scalar Fresnel diffraction about the chief ray, every wavelength over the Sun's "
         "disc, through what both rims of the foil leave open",
         "left_out": "vector effects, the cubic term of the phase, light that openings share",
