@@ -16,8 +16,8 @@ Complex = tuple[float, float]
 Four = tuple[float, float, float, float]
 #: (2, M) auxiliary functions of the Fresnel integrals from -1 step on, and steps a unit.
 Table = tuple[Floats, float]
-#: (R, M) running integrals of slit patterns, Fresnel numbers from the first row on, and steps a
-#: row and a half width.
+#: (2, R, M) running integrals of slit patterns, of a thin foil and how a thick one differs; the
+#: first row's Fresnel number, rows a unit of it, and steps a half width.
 Slits = tuple[Floats, float, float, float]
 
 
@@ -64,19 +64,29 @@ def _fresnel(u: float, table: Table) -> Complex:
 
 
 @compiled
-def _slit(position: float, number: float, table: Table) -> float:
+def _slit(position: float, number: float, softness: float, table: Table) -> float:
     """Intensity behind an endless slit, in units of the open light.
 
     At a position in units of the slit's half width, for a Fresnel number of the half width.
+    `softness` moves both edges inwards by an imaginary length, in the Fresnel integrals' unit.
     """
     root = math.sqrt(2.0 * number)
     re, im = _fresnel(root * (position + 1.0), table)
     other_re, other_im = _fresnel(root * (position - 1.0), table)
-    return float(((re - other_re) ** 2 + (im - other_im) ** 2) / 2.0)
+    re, im = re - other_re, im - other_im
+    if softness > 0.0:
+        # each edge adds -i softness exp(i pi w^2 / 2)
+        for side in (-1.0, 1.0):
+            phase = math.pi * number * (position + side) ** 2
+            re += softness * math.sin(phase)
+            im -= softness * math.cos(phase)
+    return float((re * re + im * im) / 2.0)
 
 
 @compiled
-def running_integrals(sums: Floats, numbers: Floats, step: float, table: Table) -> None:
+def running_integrals(
+    sums: Floats, numbers: Floats, step: float, softness: float, table: Table
+) -> None:
     """Fill (R, M) the light behind slits from their middle to equal steps of a half width.
 
     Parameters
@@ -87,13 +97,15 @@ def running_integrals(sums: Floats, numbers: Floats, step: float, table: Table) 
         (R,) Fresnel numbers of the half width.
     step
         In half widths.
+    softness
+        Of the edges, as of `_slit`.
     table
         For `_fresnel`.
     """
     profile = np.empty(sums.shape[1] + 2)
     for row in range(sums.shape[0]):
         for i in range(profile.shape[0]):
-            profile[i] = _slit((i - 1) * step, numbers[row], table)
+            profile[i] = _slit((i - 1) * step, numbers[row], softness, table)
         sums[row, 0] = 0.0
         for i in range(1, sums.shape[1]):
             inner = 13.0 * (profile[i] + profile[i + 1]) - profile[i - 1] - profile[i + 2]
@@ -101,9 +113,13 @@ def running_integrals(sums: Floats, numbers: Floats, step: float, table: Table) 
 
 
 @compiled
-def _blended_row(out: Floats, slits: Slits, number: float) -> None:
-    """Interpolate the running integral for this Fresnel number, within the table's."""
-    sums, first_number, per_row, _ = slits
+def _blended_row(out: Floats, slits: Slits, number: float, soft: float) -> None:
+    """Interpolate the running integral for this Fresnel number, within the table's.
+
+    `soft` is the share of a thick foil's effect.
+    """
+    both, first_number, per_row, _ = slits
+    sums, change = both[0], both[1]
     place = min(max((number - first_number) * per_row, 0.0), sums.shape[0] - 1.0)
     first = min(max(int(place), 1), sums.shape[0] - 3)
     a, b, c, d = _shares(place - first)
@@ -113,6 +129,15 @@ def _blended_row(out: Floats, slits: Slits, number: float) -> None:
             + b * sums[first, i]
             + c * sums[first + 1, i]
             + d * sums[first + 2, i]
+        )
+    if soft == 0.0:
+        return
+    for i in range(out.shape[0]):
+        out[i] += soft * (
+            a * change[first - 1, i]
+            + b * change[first, i]
+            + c * change[first + 1, i]
+            + d * change[first + 2, i]
         )
 
 
@@ -177,9 +202,10 @@ def _products(
     out
         (rows, columns) of cells.
     sample
-        (13,) light; where the spot's middle is from the first cell's corner, along both sides;
+        (15,) light; where the spot's middle is from the first cell's corner, along both sides;
         half sizes; change of the landing point a unit of direction cosine; the image of the unit
-        disc: its semi-axis, shear and height; how the patterns are bent; cell size.
+        disc: its semi-axis, shear and height; how the patterns are bent; a
+        thick foil's share; cell size.
     spectrum
         (L, 2) wavelengths in mm and weights.
     disc
@@ -189,20 +215,21 @@ def _products(
     """
     rows, columns = out.shape
     strips = disc.shape[0]
-    light, x0, y0, a, b, spread_x, spread_y, wide, shear, high, bend_x, bend_y, cell = sample
+    light, x0, y0, a, b, spread_x, spread_y, wide, shear, high, bend_x, bend_y = sample[:12]
+    soft_x, soft_y, cell = sample[12:15]
     count = spectrum.shape[0] * strips
     across, along = np.zeros((count, columns)), np.zeros((count, rows))
-    row_x, row_y = np.empty(widths[0][0].shape[1]), np.empty(widths[1][0].shape[1])
-    most_x = widths[0][1] + (widths[0][0].shape[0] - 1) / widths[0][2]
-    most_y = widths[1][1] + (widths[1][0].shape[0] - 1) / widths[1][2]
+    row_x, row_y = np.empty(widths[0][0].shape[2]), np.empty(widths[1][0].shape[2])
+    most_x = widths[0][1] + (widths[0][0].shape[1] - 1) / widths[0][2]
+    most_y = widths[1][1] + (widths[1][0].shape[1] - 1) / widths[1][2]
     for m in range(spectrum.shape[0]):
         wave, share = spectrum[m]
         number_x, number_y = a * a / (wave * spread_x), b * b / (wave * spread_y)
         # a wide slit is two edges of a narrower one, further apart
         half_x = a * math.sqrt(min(1.0, most_x / number_x))
         half_y = b * math.sqrt(min(1.0, most_y / number_y))
-        _blended_row(row_x, widths[0], number_x)
-        _blended_row(row_y, widths[1], number_y)
+        _blended_row(row_x, widths[0], number_x, soft_x)
+        _blended_row(row_y, widths[1], number_y, soft_y)
         scale_x = half_x, a - half_x, widths[0][3], bend_x * _turning(number_x)
         scale_y = half_y, b - half_y, widths[1][3], bend_y * _turning(number_y)
         for j in range(strips):
@@ -286,9 +313,10 @@ def add_rectangle(
     flux
         (N, H, W) light averaged over each pixel.
     samples
-        (N, 2) middle of the spot seen from the window's first corner, mm; (N, 11) light, half
+        (N, 2) middle of the spot seen from the window's first corner, mm; (N, 13) light, half
         sizes, change of the landing point a unit of direction cosine, the image of the unit disc
-        (semi-axis, shear, height), how patterns are bent (a mm), across and along; what couples
+        (semi-axis, shear, height), how patterns are bent (a mm), a thick foil's share,
+        across and along; what couples
         both, -1 to 1; (N, 2) coordinates among the corners' incidences.
     optics
         (4,) cosine and sine of the rectangle's turn, pixel pitch in mm, cells a pixel;
@@ -310,15 +338,15 @@ def add_rectangle(
     fine = np.empty((tall, wide)) if turned else np.empty((1, 1))
     size = tables.shape[3]
     patches = np.empty((2, size, size))
-    sample = np.empty(13)
+    sample = np.empty(15)
     for n in range(count):
         light, a, b = shapes[n, 0], shapes[n, 1], shapes[n, 2]
         if light == 0.0 or a <= 0.0 or b <= 0.0:
             continue
         sample[0] = light
-        sample[3:12] = shapes[n, 1:10]
+        sample[3:14] = shapes[n, 1:12]
         x, y = middles[n]
-        coupling = shapes[n, 10]
+        coupling = shapes[n, 12]
         coupled = tables.shape[0] > 0 and coupling != 0.0
         if coupled:
             _corners(patches, tables, (places[n, 0], places[n, 1]))
@@ -328,11 +356,11 @@ def add_rectangle(
             dx, dy = columns * pitch / 2.0 - x, rows * pitch / 2.0 - y
             mid_x, mid_y = c * dx + s * dy, c * dy - s * dx
             sample[1], sample[2] = wide * cell / 2.0 - mid_x, tall * cell / 2.0 - mid_y
-            sample[12] = cell
+            sample[14] = cell
             fine[:] = 0.0
             _products(fine, sample, spectrum, disc, widths)
         else:
-            sample[1], sample[2], sample[12] = x, y, pitch
+            sample[1], sample[2], sample[14] = x, y, pitch
             _products(flux[n], sample, spectrum, disc, widths)
         steps = int(cells)
         for row in range(rows if turned or coupled else 0):

@@ -41,7 +41,7 @@ _STRIPS, _POINTS = 8, 8
 #: Cycles a radius up to which the disc's transform counts, and steps a cycle.
 _CYCLES, _STEPS = 6, 16
 
-#: (R, M) running integrals, the first row's Fresnel number, rows a unit of it, steps a half width.
+#: (2, R, M) running integrals, of a thin foil and what a thick one adds; the first row's Fresnel number, rows a unit of it, steps a half width.
 Slits = tuple[Floats, float, float, float]
 
 
@@ -89,18 +89,21 @@ def bend(
     return found / np.stack(spread[:2], axis=1) ** 2
 
 
-def shaded(directions: Floats, apart_mm: Floats, thickness_mm: float) -> Floats:
-    """(N, 2) how much narrower a foil makes each half of a rectangle, across and along.
+def shaded(directions: Floats, apart_mm: Floats, thickness_mm: float) -> tuple[Floats, Floats]:
+    """How a foil narrows each half of a rectangle (N, 2), and its share of softness (N, 2).
 
-    Half of what its two rims are `apart_mm` (N, 2); and what light, bent at the upper rim, loses
-    on the walls: behind an edge ``sqrt(lambda J / 2) / (2 pi)``, fading as the other rim recedes.
+    Across and along. Light bent at the upper rim is cut by the lower one: an edge whose amplitude
+    behind the upper rim is ``E(w)`` lacks ``int_0^inf (1 - E) dw = (1 + i) / (2 pi)``, w in units
+    of ``sqrt(lambda J / 2)`` of the foil's thickness. The real part moves the edge inwards, the
+    imaginary one softens it (`RectanglePattern.softness`). Both fade as the rims part: by
+    `apart_mm` (N, 2), of which half is the shadow.
     """
     if thickness_mm == 0:
-        return apart_mm / 2.0
+        return apart_mm / 2.0, np.zeros(apart_mm.shape)
     spread = matrix(directions, np.full(len(directions), thickness_mm), CoverGlass())
     fringe = _ROOT * np.sqrt(np.stack(spread[:2], axis=1) / 2.0)
-    lost = fringe / (2.0 * math.pi) / (1.0 + math.pi * apart_mm / fringe)
-    return np.asarray(apart_mm / 2.0 + lost)
+    share = 1.0 / (1.0 + math.pi * apart_mm / fringe)
+    return apart_mm / 2.0 + fringe / (2.0 * math.pi) * share, share
 
 
 def disc_image(directions: Floats, spread: tuple[Floats, ...], radius: float) -> Floats:
@@ -177,6 +180,11 @@ class RectanglePattern:
         """Return (T, T, 2, M, M) what coupling adds about corners, and steps a root of mm."""
         return _corners(self)
 
+    @property
+    def softness(self) -> float:
+        """Imaginary part by which a foil moves an edge, in the unit of Fresnel's integrals."""
+        return round(math.sqrt(self.thickness_mm / self.height_mm) / (2.0 * math.pi), 4)
+
     def waves(self) -> Floats:
         """(L, 2) wavelengths in mm and weights."""
         nm = np.array(self.spectrum.wavelengths_nm)
@@ -203,7 +211,7 @@ class RectanglePattern:
         lowest = 0.98 * narrowest**2 / (max(waves) * 1e-6 * float(along[1]))
         highest, lowest = min(highest, _WIDEST_NUMBER), min(lowest, _WIDEST_NUMBER)
         far = min(1.0 + self.reach_mm / narrowest, _FAR)
-        return _running(round(lowest, 3), round(highest, 3), round(far, 1))
+        return _running(round(lowest, 3), round(highest, 3), round(far, 1), self.softness)
 
     def _patches(self, directions: Floats) -> Floats:
         """(2, M, M) about the corners for one direction (1, 3) in the own axes."""
@@ -240,7 +248,7 @@ def _per_root() -> float:
 
 
 @lru_cache(maxsize=16)
-def _running(lowest: float, highest: float, far: float) -> Slits:
+def _running(lowest: float, highest: float, far: float, softness: float) -> Slits:
     from benchmark.simulator.kernels.diffraction_slits import (  # noqa: PLC0415 - Numba on demand
         running_integrals,
     )
@@ -248,8 +256,11 @@ def _running(lowest: float, highest: float, far: float) -> Slits:
     rows = max(math.ceil((highest - lowest) * _ROWS) + 1, 4)
     numbers = lowest + np.arange(rows) / _ROWS
     per_half = max(_FRINGE * highest, 32.0)
-    sums = np.empty((rows, math.ceil(far * per_half) + 2))
-    running_integrals(sums, numbers, 1.0 / per_half, fresnel_table())
+    sums = np.zeros((2, rows, math.ceil(far * per_half) + 2))
+    running_integrals(sums[0], numbers, 1.0 / per_half, 0.0, fresnel_table())
+    if softness > 0:
+        running_integrals(sums[1], numbers, 1.0 / per_half, softness, fresnel_table())
+        sums[1] -= sums[0]
     sums.flags.writeable = False
     return sums, lowest, _ROWS, per_half
 

@@ -24,7 +24,7 @@ from benchmark.simulator.optics.rectangle_patterns import (
 #: Points of the Sun that give the middle of its image and its light.
 _RINGS = (8, 12)
 #: Cells a pixel, an axis, that light behind rectangles turned against the pixels is summed on.
-_CELLS = 2.0
+_CELLS = 3.0
 #: Round holes: largest phase across a cell, and how far outside the shadow tables end, in ``k a``
 #: times the direction cosine; as of `RoundSpots`.
 _CELL_RAD, _TABULATED = 5.0, 25.0
@@ -210,7 +210,7 @@ class DiffractedLight:
         spread = matrix(known, stance.height_mm, self.camera.glass)
         across, along, both = spread
         radius = math.sin(math.radians(self.camera.sun.diameter_deg / 2.0))
-        shade = shaded(known, np.abs(_turned(apart, c, s)), self.camera.mask.thickness_mm)
+        shade, soft = shaded(known, np.abs(_turned(apart, c, s)), self.camera.mask.thickness_mm)
         shapes = np.column_stack(
             [
                 light,
@@ -220,6 +220,7 @@ class DiffractedLight:
                 along,
                 disc_image(known, spread, radius),
                 bend(known, stance.height_mm, self.camera.glass, spread),
+                soft,
                 both / np.sqrt(across * along),
             ]
         )
