@@ -392,6 +392,22 @@ def _overlap(frequency: float, length: float) -> float:
 
 
 @compiled
+def _coupled(fx: float, fy: float, design: Floats, spectrum: Floats) -> float:
+    """Return what coupling adds to the transform of a rectangle's light at a frequency."""
+    a, b, jw, jv, jc = design[:5]
+    total = 0.0
+    for m in range(spectrum.shape[0]):
+        wave, share = spectrum[m]
+        near = abs(jw * fx) * wave, abs(jv * fy) * wave
+        moved = abs(jw * fx + jc * fy) * wave, abs(jv * fy + jc * fx) * wave
+        total += share * (
+            _overlap(fx, 2.0 * a - moved[0]) * _overlap(fy, 2.0 * b - moved[1])
+            - _overlap(fx, 2.0 * a - near[0]) * _overlap(fy, 2.0 * b - near[1])
+        )
+    return total
+
+
+@compiled
 def corner_patches(
     out: Floats, design: Floats, spectrum: Floats, radial: Floats, grid: Floats
 ) -> None:
@@ -414,7 +430,7 @@ def corner_patches(
     grid
         (3,) steps of frequency across and along, and the largest frequency, a mm.
     """
-    a, b, jw, jv, jc, wide, shear, high, pitch, per_root = design
+    a, b, jw, jv, _, wide, shear, high, pitch, per_root = design
     step_x, step_y, most = grid
     size = out.shape[1]
     reach, tall = int(most / step_x), int(most / step_y)
@@ -440,21 +456,22 @@ def corner_patches(
             if cell >= radial.shape[0] - 1:
                 continue
             disc = radial[cell] + (cycles - cell) * (radial[cell + 1] - radial[cell])
-            total = 0.0
-            for m in range(spectrum.shape[0]):
-                wave, share = spectrum[m]
-                near = abs(jw * fx) * wave, abs(jv * fy) * wave
-                moved = abs(jw * fx + jc * fy) * wave, abs(jv * fy + jc * fx) * wave
-                total += share * (
-                    _overlap(fx, 2.0 * a - moved[0]) * _overlap(fy, 2.0 * b - moved[1])
-                    - _overlap(fx, 2.0 * a - near[0]) * _overlap(fy, 2.0 * b - near[1])
-                )
+            total = _coupled(fx, fy, design, spectrum)
             total *= disc * box_x * _overlap(fy * pitch, 1.0)
             for i in range(size):
                 even[k, i] += total * cosines[j, i]
                 odd[k, i] += total * sines[j, i]
+    _from_frequencies(out, (even, odd), x, (step_x, step_y))
+
+
+@compiled
+def _from_frequencies(out: Floats, parts: tuple[Floats, Floats], x: Floats, steps: Complex) -> None:
+    """Write both kinds of corner from sums along one axis, over frequencies across."""
+    even, odd = parts
+    step_x, step_y = steps
     out[:] = 0.0
-    for k in range(reach + 1):
+    size = x.shape[0]
+    for k in range(even.shape[0]):
         twice = step_x * step_y if k == 0 else 2.0 * step_x * step_y
         for column in range(size):
             phase = 2.0 * math.pi * k * step_x * x[column]

@@ -41,7 +41,8 @@ _STRIPS, _POINTS = 8, 8
 #: Cycles a radius up to which the disc's transform counts, and steps a cycle.
 _CYCLES, _STEPS = 6, 16
 
-#: (2, R, M) running integrals, of a thin foil and what a thick one adds; the first row's Fresnel number, rows a unit of it, steps a half width.
+#: (2, R, M) running integrals, of a thin foil and what a thick one adds; the first row's Fresnel
+#: number, rows a unit of it, steps a half width.
 Slits = tuple[Floats, float, float, float]
 
 

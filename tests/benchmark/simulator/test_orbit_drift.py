@@ -123,9 +123,7 @@ def test_the_flying_unit_is_the_one_on_the_ground_at_the_reference() -> None:
         ground.expected(scene, pattern), rel=1e-14
     )
     ccd = ccd_sensor()
-    still = DiffractiveFrameSensor(
-        ccd.camera, ccd.detector, ccd.window_px, ccd.window_jitter_px
-    )
+    still = DiffractiveFrameSensor(ccd.camera, ccd.detector, ccd.window_px, ccd.window_jitter_px)
     origin = ccd.origins(sun, np.random.default_rng(2))
     seen = replace(scene, origin_px=origin)
     built = ccd.fixed_pattern("test")
