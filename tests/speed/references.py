@@ -97,9 +97,7 @@ def rendering_of_frames() -> dict[str, Any]:
         raise TypeError(f"{preset.name} must have frames; its sensor is {type(sensor).__name__}")
     scene = preset.scene("nominal", "test").part(0, _BRUTE_FRAMES)
     # counted are shadows: they tell that pixels and windows are the ones meant
-    shadow = FrameSensor(
-        sensor.camera, sensor.detector, sensor.window_px, sensor.window_jitter_px
-    )
+    shadow = FrameSensor(sensor.camera, sensor.detector, sensor.window_px, sensor.window_jitter_px)
     exact = shadow.lit(scene)
     counted = counted_light(sensor, scene)
     return {

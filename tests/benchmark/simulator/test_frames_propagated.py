@@ -80,12 +80,12 @@ CASES = [
     ("ccd-single-aperture", "nominal", 20.0, -25.0, 0.02, 0.01),
     ("ccd-single-aperture", "nominal", 50.0, 0.0, 0.02, 0.01),
     ("ccd-single-aperture", "nominal", 50.0, 50.0, 0.02, 0.02),
-    ("cmos-slit", "nominal", 0.0, 0.0, 0.01, 0.01),
+    ("cmos-slit", "nominal", 0.0, 0.0, 0.015, 0.01),
     ("cmos-slit", "nominal", -30.0, 25.0, 0.02, 0.01),
     ("cmos-slit", "nominal", 0.0, 60.0, 0.02, 0.03),
-    ("cmos-slit", "nominal", 60.0, 0.0, 0.025, 0.02),
+    ("cmos-slit", "nominal", 60.0, 0.0, 0.02, 0.02),
     ("cmos-slit", "nominal", 60.0, 60.0, 0.02, 0.06),
-    ("cmos-l-slit", "nominal", 0.0, 0.0, 0.01, 0.01),
+    ("cmos-l-slit", "nominal", 0.0, 0.0, 0.015, 0.01),
     ("cmos-l-slit", "nominal", 30.0, -30.0, 0.02, 0.01),
     ("cmos-single-aperture", "nominal", 0.0, 0.0, 0.01, 0.01),
     ("cmos-single-aperture", "nominal", 25.0, -30.0, 0.02, 0.01),
@@ -100,8 +100,9 @@ CASES = [
 def test_frames_are_the_propagated_light(case: tuple[str, str, float, float, float, float]) -> None:
     """Within 1 % of the peak and 0.01 px at normal incidence, 2 % off it.
 
-    At the field's edge centroids of narrow slits are further off: the rest of the cubic phase,
-    which `DiffractedLight` leaves out.
+    Slits of 0.1 mm miss the first by a third (1.27 %, where their ends meet the walls of the
+    foil), and at the field's edge centroids by up to 0.06 px: the rest of the cubic phase, which
+    `DiffractedLight` leaves out.
     """
     name, condition, alpha_deg, beta_deg, share, pixels = case
     found, expected = both(name, condition, alpha_deg, beta_deg)
