@@ -216,7 +216,7 @@ class RectanglePattern:
 
     def _patches(self, directions: Floats) -> Floats:
         """(2, M, M) about the corners for one direction (1, 3) in the own axes."""
-        from benchmark.simulator.kernels.diffraction_slits import (  # noqa: PLC0415 - Numba
+        from benchmark.simulator.kernels.diffraction_corners import (  # noqa: PLC0415 - Numba
             corner_patches,
         )
 

@@ -158,7 +158,7 @@ class DiffractedLight:
                 np.column_stack([light, pattern.place(known), 1.0 / steps, pattern.share(known)]),
                 centres[None] - corner[:, None],
             ),
-            (pattern.layers(), np.column_stack([inside, np.full(cells, 1.0 / cells)]), 0.0),
+            (pattern.layers(), np.column_stack([inside, np.full(cells, 1.0 / cells)]), False),
         )
 
     def _rectangle(self, aperture: Aperture) -> RectanglePattern:
