@@ -29,12 +29,13 @@ _PATCH = 32
 
 
 def light_of_frames() -> dict[str, Any]:
-    """Render the light of `cmos-single-aperture`, no noise, against counting sub-pixels."""
-    sensor, scene = _parts("cmos-single-aperture")
+    """Render the shadow of `cmos-single-aperture`, no noise, against counting sub-pixels."""
+    bent, scene = _parts("cmos-single-aperture")
+    sensor = FrameSensor(bent.camera, bent.detector, bent.window_px, bent.window_jitter_px)
     one = scene.part(0, 1)
     exact, counted = sensor.lit(one), counted_light(sensor, one)
     return {
-        "name": "rendering cmos-single-aperture, a (64, 64) frame, light only",
+        "name": "rendering cmos-single-aperture, a (64, 64) frame, shadows only",
         "reference_name": "counting 4 x 4 sub-pixels with NumPy",
         "call": lambda: _in_batches(sensor, scene),
         "reference": lambda: counted_light(sensor, one),

@@ -8,10 +8,11 @@ from typing import Any
 
 from algorithms.contract import Observation, SensorGeometry
 from benchmark.datasets.conditions.alignment import MISALIGNED, careful, misaligned
-from benchmark.datasets.conditions.propagation import LIGHT, geometric
+from benchmark.datasets.conditions.propagation import LIGHT
 from benchmark.datasets.fields import AngleField
 from benchmark.datasets.preset import Condition, Preset
 from benchmark.simulator.masks.apertures import Mask
+from benchmark.simulator.optics.diffraction import propagation
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout.detectors import DarkCurrent
 from benchmark.simulator.sensors.events import EventSensor, SpikingArray
@@ -25,7 +26,6 @@ def event_array(
     sensor: EventSensor,
     geometry: SensorGeometry,
     directions: AngleField,
-    width_mm: float,
     follows: tuple[str, ...],
     description: str,
 ) -> Preset:
@@ -43,7 +43,7 @@ def event_array(
         directions=directions,
         follows=follows,
         description=description,
-        regime=geometric(width_mm, sensor.camera.focal_length_mm),
+        regime=propagation(sensor.camera.mask, sensor.camera.focal_length_mm, sensor.spectrum),
     )
 
 

@@ -15,8 +15,8 @@ from benchmark.simulator.flight.drift import AssemblyDrift, PhotodiodeDrift, The
 from benchmark.simulator.flight.orbit import CircularOrbit
 from benchmark.simulator.flight.time_series import DriftingFaceSensor, DriftingFrameSensor
 from benchmark.simulator.light.environment import Earth
+from benchmark.simulator.sensors.diffractive_frames import DiffractiveFrameSensor
 from benchmark.simulator.sensors.faces import FaceSensor
-from benchmark.simulator.sensors.frames import FrameSensor
 
 #: An aluminium spacer of 2 mm lengthens, unequal expansion shifts the mask, the bracket bends; and
 #: all of it creeps.
@@ -80,7 +80,7 @@ def frames_aloft(ground: Preset, drift: AssemblyDrift) -> dict[str, Condition]:
 
     def flying(condition: str) -> DriftingFrameSensor:
         still = ground.condition(condition).sensor
-        same = {f.name: getattr(still, f.name) for f in fields(FrameSensor)}
+        same = {f.name: getattr(still, f.name) for f in fields(DiffractiveFrameSensor)}
         same["camera"] = replace(same["camera"], glass=GLASS)
         return DriftingFrameSensor(**same, drift=drift, thermal=ThermalCycle())
 

@@ -15,8 +15,10 @@ from benchmark.simulator.light.environment import Irradiance
 from benchmark.simulator.light.sun_disc import SolarDisc
 from benchmark.simulator.masks.apertures import Aperture, Mask
 from benchmark.simulator.optics.assembly import Assembly
+from benchmark.simulator.optics.diffraction import propagation
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout.detectors import DarkCurrent, PixelArray
+from benchmark.simulator.sensors.diffractive_frames import DiffractiveFrameSensor
 from benchmark.simulator.sensors.frames import FrameSensor
 from benchmark.simulator.sensors.multi_spot_frames import MultiSpotSensor
 from benchmark.simulator.sensors.uneven_frames import UnevenFrameSensor, UnevenIrradiance
@@ -30,13 +32,12 @@ def windows(
     version: int,
     detector: str,
     mask: str,
-    sensor: FrameSensor,
+    sensor: DiffractiveFrameSensor,
     setups: Mapping[str, Condition],
     geometry: SensorGeometry,
     directions: AngleField,
     follows: tuple[str, ...],
     description: str,
-    regime: Mapping[str, Any],
     kind: type[Preset] = Preset,
 ) -> Preset:
     """Return a dataset of windows around the light of one opening; `kind` is its class."""
@@ -53,7 +54,7 @@ def windows(
         directions=directions,
         follows=follows,
         description=description,
-        regime=regime,
+        regime=propagation(sensor.camera.mask, sensor.camera.focal_length_mm, sensor.spectrum),
     )
 
 
@@ -65,9 +66,9 @@ def windowed(
     window_px: tuple[int, int] = (64, 64),
     sun: SolarDisc | None = None,
     assembly: Assembly | None = None,
-) -> FrameSensor:
+) -> DiffractiveFrameSensor:
     """Return a sensor read out in windows; carefully assembled where nothing else is said."""
-    return FrameSensor(
+    return DiffractiveFrameSensor(
         camera=Camera(
             focal_length_mm=focal_length_mm,
             mask=mask,
@@ -163,7 +164,7 @@ def pixel_conditions(
     return {
         "nominal": Condition(
             "Carefully assembled sensor: tilts of hundredths of a degree, focal length 0.2 % "
-            f"long, 1 % pixel gain spread{careful_also}.",
+            f"long, {100.0 * detector.prnu:g} % pixel gain spread{careful_also}.",
             sensor,
             light,
         ),

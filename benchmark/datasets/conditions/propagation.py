@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from benchmark.simulator.light.environment import Irradiance
-from benchmark.simulator.optics.plates import CoverGlass, Plate, fresnel_number
+from benchmark.simulator.optics.plates import CoverGlass, Plate
 
 #: Unfiltered, with a little that is scattered.
 LIGHT = Irradiance(stray=0.002, stray_spread=0.0004)
@@ -23,26 +23,6 @@ NOTHING_SHADES: Mapping[str, Any] = {
 }
 
 
-def geometric(
-    width_mm: float, distance_mm: float, number: str = "a^2 / (lambda h)", far: str = ""
-) -> dict[str, Any]:
-    """Return the regime of an opening so wide that diffraction may be left out.
-
-    Parameters
-    ----------
-    width_mm, distance_mm
-        Of the narrowest opening, and from it to the detector.
-    number, far
-        The Fresnel number in words, and how it lies to 10 where "above" says too little.
-    """
-    return {
-        "propagation": "geometric",
-        "fresnel_number": round(fresnel_number(width_mm / 2.0, distance_mm), 2),
-        "wavelength_nm": 550,
-        "reason": f"{number} at normal incidence is {far}above 10; diffraction is left out",
-    }
-
-
 def measured_geometric(percent: float, bound_ratios: tuple[float, float, float]) -> dict[str, Any]:
     """Return the regime of currents that diffraction hardly changes, with what was measured.
 
@@ -53,7 +33,14 @@ def measured_geometric(percent: float, bound_ratios: tuple[float, float, float])
     bound_ratios
         The bound in diffracted light over the geometric one on the boresight, half way to the
         field's edge along x, and there.
+
+    Raises
+    ------
+    ValueError
+        When it is 1 % or more: then light has to be diffracted.
     """
+    if not 0 <= percent < 1.0:
+        raise ValueError(f"currents of shadows will do within 1 % of full light; got {percent} %")
     centre, half, edge = bound_ratios
     return {
         "propagation": "geometric",

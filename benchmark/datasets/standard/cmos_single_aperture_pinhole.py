@@ -6,17 +6,14 @@ from benchmark.datasets.conditions import pixel_arrays as pixels
 from benchmark.datasets.conditions.uneven_light import UnevenPreset
 from benchmark.datasets.fields import AngleField
 from benchmark.simulator.light.environment import Irradiance
-from benchmark.simulator.optics.diffraction import SUNLIT_SILICON, propagation
-from benchmark.simulator.sensors.diffractive_frames import DiffractiveFrameSensor
 
-_SEEN = pixels.windowed(pixels.hole(0.02), 7.0, pixels.cmos(448, 0.024, sunlit_e=3_000_000.0))
-_SENSOR = DiffractiveFrameSensor(_SEEN.camera, _SEEN.detector, widest_deg=45.0)
+_SENSOR = pixels.windowed(pixels.hole(0.02), 7.0, pixels.cmos(448, 0.024, sunlit_e=3_000_000.0))
 # stray light counts in full sunlight on the detector, of which the spot's peak gets 1/180
 _LIGHT = Irradiance(stray=2e-5, stray_spread=4e-6)
 
 PRESET = pixels.windows(
     name="cmos-single-aperture-pinhole",
-    version=1,
+    version=2,
     detector="CMOS",
     mask="Single-Ap.",
     sensor=_SENSOR,
@@ -39,6 +36,5 @@ PRESET = pixels.windows(
         "1/180 of full sunlight, exposed to 17,000 electrons. The foil counts as thin. Windows are "
         "placed from the true spot, rounded, plus a uniform whole offset of up to 8 px an axis."
     ),
-    regime=propagation(_SENSOR.camera.mask, 7.0, SUNLIT_SILICON),
     kind=UnevenPreset,
 )

@@ -24,6 +24,8 @@ from benchmark.simulator.readout import currents as readout
 from benchmark.simulator.readout.references import References, pixel_unit_variance
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern, Sensor
+from benchmark.simulator.sensors.diffracted_light import Stance, few_points
+from benchmark.simulator.sensors.diffractive_frames import DiffractiveFrameSensor
 from benchmark.simulator.sensors.faces import FaceSensor
 from benchmark.simulator.sensors.frames import FrameSensor
 
@@ -105,15 +107,20 @@ class DriftingFaceSensor(FaceSensor):
 
 
 @dataclass(frozen=True)
-class DriftingFrameSensor(FrameSensor):
+class DriftingFrameSensor(DiffractiveFrameSensor):
     """A pixel array behind a mask that moves against it with temperature and age.
 
-    Windows are placed where the spot would be without drift. The detector's own dark-current
-    temperature is not used.
+    Light is diffracted, at rectangles. Windows are placed where the spot would be without drift.
+    The detector's own dark-current temperature is not used.
     """
 
     drift: AssemblyDrift = field(default_factory=AssemblyDrift)
     thermal: ThermalCycle = field(default_factory=ThermalCycle)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if any(aperture.shape == "round" for aperture in self.camera.mask.apertures):
+            raise ValueError("a mask that drifts must have rectangles only; got a round aperture")
 
     def fixed_pattern(self, *names: str | int) -> FixedPattern:
         """As `FrameSensor`, dark signal at 25 deg C."""
@@ -142,9 +149,7 @@ class DriftingFrameSensor(FrameSensor):
         """As `Camera.project`, every sample with its own assembly."""
         camera = self.camera
         moved = self.moved(scene)
-        sun = _turned_about(0, scene.sun, moved[:, 0])
-        sun = _turned_about(1, sun, moved[:, 1])
-        sun = Assembly(rotation_deg=camera.assembly.rotation_deg).to_head(sun)
+        sun = self._head(scene, moved)
         # projected by a camera at its nominal place; the rest is straight lines in the gap
         level = replace(camera, assembly=Assembly()).project(sun)
         points = camera.sun.directions(sun)
@@ -152,6 +157,18 @@ class DriftingFrameSensor(FrameSensor):
         slope = np.where(front, points[..., :2] / np.where(front, points[..., 2:], 1.0), 0.0)
         rims = level.rims_mm + moved[:, None, 2:3] * slope + moved[:, None, 3:]
         return ProjectedLight(rims, level.light)
+
+    def _head(self, scene: Scene, moved: Floats) -> Floats:
+        """(N, 3) directions to the Sun as the head sees them."""
+        sun = _turned_about(0, scene.sun, moved[:, 0])
+        sun = _turned_about(1, sun, moved[:, 1])
+        return Assembly(rotation_deg=self.camera.assembly.rotation_deg).to_head(sun)
+
+    def _stance(self, scene: Scene) -> Stance:
+        moved = self.moved(scene)
+        height = self.camera.focal_length_mm + moved[:, 2]
+        coarse = replace(self, camera=few_points(self.camera))
+        return Stance(self._head(scene, moved), height, coarse.projected(scene))
 
     def _moment(self, scene: Scene) -> tuple[Hashable, ...]:
         return (self.moved(scene).tobytes(),)

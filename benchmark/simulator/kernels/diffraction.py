@@ -229,7 +229,7 @@ def add_round(
         if numbers[n, 0] == 0.0:
             continue
         _blended(table, tables, numbers[n, 1])
-        share = numbers[n, 4] if numbers.shape[1] > 4 else float(by_cosines)
+        share = numbers[n, 4] if numbers.shape[1] > 4 else (1.0 if by_cosines else 0.0)
         way = _way(suns[n], numbers[n], share, layers, _RAYS / farthest)
         for m in range(places.shape[1]):
             for row in range(rows):

@@ -1,4 +1,4 @@
-"""Compiled diffraction of rectangles and slits: Fresnel integrals, pixel by pixel.
+"""Compiled diffraction of rectangles and slits: running integrals, cell by cell.
 
 Loaded on first use (Numba).
 """
@@ -13,12 +13,16 @@ from algorithms.compiled import compiled
 from algorithms.contract import Floats
 
 Complex = tuple[float, float]
+Four = tuple[float, float, float, float]
 #: (2, M) auxiliary functions of the Fresnel integrals from -1 step on, and steps a unit.
 Table = tuple[Floats, float]
+#: (2, R, M) running integrals of slit patterns, of a thin foil and how a thick one differs; the
+#: first row's Fresnel number, rows a unit of it, and steps a half width.
+Slits = tuple[Floats, float, float, float]
 
 
 @compiled
-def _shares(fraction: float) -> tuple[float, float, float, float]:
+def _shares(fraction: float) -> Four:
     """Weights of the four nodes -1, 0, 1, 2 in Lagrange's cubic, as `diffraction.shares`.
 
     A copy: kernels call only their own file (see `compiled`).
@@ -60,112 +64,318 @@ def _fresnel(u: float, table: Table) -> Complex:
 
 
 @compiled
-def _slit(position: float, number: float, table: Table) -> float:
+def _slit(position: float, number: float, softness: float, table: Table) -> float:
     """Intensity behind an endless slit, in units of the open light.
 
     At a position in units of the slit's half width, for a Fresnel number of the half width.
+    `softness` moves both edges inwards by an imaginary length, in the Fresnel integrals' unit.
     """
     root = math.sqrt(2.0 * number)
     re, im = _fresnel(root * (position + 1.0), table)
     other_re, other_im = _fresnel(root * (position - 1.0), table)
-    return float(((re - other_re) ** 2 + (im - other_im) ** 2) / 2.0)
+    re, im = re - other_re, im - other_im
+    if softness > 0.0:
+        # each edge adds -i softness exp(i pi w^2 / 2)
+        for side in (-1.0, 1.0):
+            phase = math.pi * number * (position + side) ** 2
+            re += softness * math.sin(phase)
+            im -= softness * math.cos(phase)
+    return float((re * re + im * im) / 2.0)
 
 
 @compiled
-def _sums(profiles: Floats, span: Complex, half: float, number: float, table: Table) -> float:
-    """Fill (2, M) a slit's profile at equal steps over a span, and its running integral.
+def running_integrals(
+    sums: Floats, numbers: Floats, step: float, softness: float, table: Table
+) -> None:
+    """Fill (R, M) the light behind slits from their middle to equal steps of a half width.
 
-    Span and half width in one unit; the integral starts at the second value and is exact for
-    cubics. Returns the step.
+    Parameters
+    ----------
+    sums
+        Overwritten; exact where a pattern is cubic over three steps.
+    numbers
+        (R,) Fresnel numbers of the half width.
+    step
+        In half widths.
+    softness
+        Of the edges, as of `_slit`.
+    table
+        For `_fresnel`.
     """
-    profile, sums = profiles
-    count = profile.shape[0]
-    step = (span[1] - span[0]) / (count - 3)
-    for i in range(count):
-        profile[i] = _slit((span[0] + (i - 1) * step) / half, number, table)
-    sums[1] = 0.0
-    for i in range(1, count - 2):
-        inner = 13.0 * (profile[i] + profile[i + 1]) - profile[i - 1] - profile[i + 2]
-        sums[i + 1] = sums[i] + step * inner / 24.0
-    return float(step)
+    profile = np.empty(sums.shape[1] + 2)
+    for row in range(sums.shape[0]):
+        for i in range(profile.shape[0]):
+            profile[i] = _slit((i - 1) * step, numbers[row], softness, table)
+        sums[row, 0] = 0.0
+        for i in range(1, sums.shape[1]):
+            inner = 13.0 * (profile[i] + profile[i + 1]) - profile[i - 1] - profile[i + 2]
+            sums[row, i] = sums[row, i - 1] + step * inner / 24.0
 
 
 @compiled
-def _per_pixel(out: Floats, profiles: Floats, step: float, start: float, pitch: float) -> None:
-    """Means of a profile over pixels, from its running integral (Hermite's cubic between).
+def _blended_row(out: Floats, slits: Slits, number: float, soft: float) -> None:
+    """Interpolate the running integral for this Fresnel number, within the table's.
 
-    `start` is the first pixel's edge, seen from where the integral starts.
+    `soft` is the share of a thick foil's effect.
     """
-    profile, sums = profiles
+    both, first_number, per_row, _ = slits
+    sums, change = both[0], both[1]
+    place = min(max((number - first_number) * per_row, 0.0), sums.shape[0] - 1.0)
+    first = min(max(int(place), 1), sums.shape[0] - 3)
+    a, b, c, d = _shares(place - first)
+    for i in range(out.shape[0]):
+        out[i] = (
+            a * sums[first - 1, i]
+            + b * sums[first, i]
+            + c * sums[first + 1, i]
+            + d * sums[first + 2, i]
+        )
+    if soft == 0.0:
+        return
+    for i in range(out.shape[0]):
+        out[i] += soft * (
+            a * change[first - 1, i]
+            + b * change[first, i]
+            + c * change[first + 1, i]
+            + d * change[first + 2, i]
+        )
+
+
+@compiled
+def _means(out: Floats, row: Floats, scale: Four, cells: Complex, weight: float) -> None:
+    """Add a pattern's means over cells, times a weight.
+
+    Parameters
+    ----------
+    out
+        (M,) cells.
+    row
+        Running integral in half widths.
+    scale
+        Half width, how far the middle of the slit is filled evenly, steps a half width, and how
+        the pattern is bent: half the second derivative of the landing point over J squared.
+    cells
+        Edge of the first, seen from the slit's middle, and their size.
+    """
+    half, gap, per, bend = scale
+    start, size = cells
+    last = row.shape[0] - 2
     before = 0.0
-    for column in range(-1, out.shape[0]):
-        place = (start + (column + 1) * pitch) / step
-        cell = min(max(int(place), 0), sums.shape[0] - 4)
-        t = place - cell
-        cell += 1
-        rise = sums[cell + 1] - sums[cell]
-        first, last = step * profile[cell] - rise, rise - step * profile[cell + 1]
-        value = sums[cell] + t * rise + t * (1.0 - t) * ((1.0 - t) * first + t * last)
-        if column >= 0:
-            out[column] = (value - before) / pitch
+    for i in range(-1, out.shape[0]):
+        place = start + (i + 1) * size
+        if 2.0 * bend * place > 1.0:
+            # no light from so far out: it would have to come in below the horizon
+            place = 0.5 / bend
+        # far away patterns keep their shape in direction cosines; edges stay where they are
+        place -= bend * place * place
+        far = abs(place)
+        value = far
+        if far > gap:
+            steps = (far - gap) / half * per
+            cell = int(steps)
+            if cell > last:
+                value = gap + half * row[last + 1]
+            else:
+                below = row[cell]
+                value = gap + half * (below + (steps - cell) * (row[cell + 1] - below))
+        if place < 0.0:
+            value = -value
+        if i >= 0:
+            out[i] += weight * (value - before) / size
         before = value
+
+
+@compiled
+def _turning(number: float) -> float:
+    """How far a pattern of this Fresnel number is turning, not shadow (`RoundPattern.share`)."""
+    return 1.0 / (1.0 + (number / 0.42) ** 2)
+
+
+@compiled
+def _products(
+    out: Floats, sample: Floats, spectrum: Floats, disc: Floats, widths: tuple[Slits, Slits]
+) -> None:
+    """Add the light of one rectangle to cells along its sides.
+
+    Parameters
+    ----------
+    out
+        (rows, columns) of cells.
+    sample
+        (15,) light; where the spot's middle is from the first cell's corner, along both sides;
+        half sizes; change of the landing point a unit of direction cosine; the image of the unit
+        disc: its semi-axis, shear and height; how the patterns are bent; a
+        thick foil's share; cell size.
+    spectrum
+        (L, 2) wavelengths in mm and weights.
+    disc
+        (S, P, 3) nodes in the unit disc, all of a strip at one height: across, height, weight.
+    widths
+        Patterns across and along.
+    """
+    rows, columns = out.shape
+    strips = disc.shape[0]
+    light, x0, y0, a, b, spread_x, spread_y, wide, shear, high, bend_x, bend_y = sample[:12]
+    soft_x, soft_y, cell = sample[12:15]
+    count = spectrum.shape[0] * strips
+    across, along = np.zeros((count, columns)), np.zeros((count, rows))
+    row_x, row_y = np.empty(widths[0][0].shape[2]), np.empty(widths[1][0].shape[2])
+    most_x = widths[0][1] + (widths[0][0].shape[1] - 1) / widths[0][2]
+    most_y = widths[1][1] + (widths[1][0].shape[1] - 1) / widths[1][2]
+    for m in range(spectrum.shape[0]):
+        wave, share = spectrum[m]
+        number_x, number_y = a * a / (wave * spread_x), b * b / (wave * spread_y)
+        # a wide slit is two edges of a narrower one, further apart
+        half_x = a * math.sqrt(min(1.0, most_x / number_x))
+        half_y = b * math.sqrt(min(1.0, most_y / number_y))
+        _blended_row(row_x, widths[0], number_x, soft_x)
+        _blended_row(row_y, widths[1], number_y, soft_y)
+        scale_x = half_x, a - half_x, widths[0][3], bend_x * _turning(number_x)
+        scale_y = half_y, b - half_y, widths[1][3], bend_y * _turning(number_y)
+        for j in range(strips):
+            k = m * strips + j
+            up = disc[j, 0, 1]
+            _means(along[k], row_y, scale_y, (-y0 - high * up, cell), share * light)
+            for i in range(disc.shape[1]):
+                right = wide * disc[j, i, 0] + shear * up
+                _means(across[k], row_x, scale_x, (-x0 - right, cell), disc[j, i, 2])
+    for row in range(rows):
+        line = out[row]
+        for k in range(count):
+            here, there = along[k, row], across[k]
+            for column in range(columns):
+                line[column] += here * there[column]
+
+
+@compiled
+def _corners(patches: Floats, tables: Floats, places: Complex) -> None:
+    """Interpolate (2, M, M) corners at a place among (T, T, 2, M, M) incidences (cubic)."""
+    nodes = tables.shape[0]
+    patches[:] = 0.0
+    first = min(max(int(places[0]), 1), nodes - 3)
+    other = min(max(int(places[1]), 1), nodes - 3)
+    outer, inner = _shares(places[0] - first), _shares(places[1] - other)
+    size = tables.shape[3]
+    for i in range(4):
+        for j in range(4):
+            share = outer[i] * inner[j]
+            table = tables[first - 1 + i, other - 1 + j]
+            for kind in range(2):
+                for row in range(size):
+                    for column in range(size):
+                        patches[kind, row, column] += share * table[kind, row, column]
+
+
+@compiled
+def _cubic(table: Floats, x: float, y: float) -> float:
+    """Value of a (rows, columns) table at column x, row y (Lagrange's cubic); 0 outside."""
+    column, row = math.floor(x), math.floor(y)
+    if column < 1 or row < 1 or column > table.shape[1] - 3 or row > table.shape[0] - 3:
+        return 0.0
+    a, b, c, d = _shares(x - column)
+    shares = _shares(y - row)
+    total = 0.0
+    for i in range(4):
+        line = table[row - 1 + i]
+        total += shares[i] * (
+            a * line[column - 1] + b * line[column] + c * line[column + 1] + d * line[column + 2]
+        )
+    return total
+
+
+@compiled
+def _of_cells(fine: Floats, at: Complex, turn: Complex, cells: tuple[float, int]) -> float:
+    """Mean of cells over a pixel about a place, mm, turned against them by cosine and sine."""
+    cell, steps = cells
+    c, s = turn
+    total = 0.0
+    for i in range(steps):
+        up = (i + 0.5 - steps / 2.0) * cell
+        for j in range(steps):
+            right = (j + 0.5 - steps / 2.0) * cell
+            x, y = at[0] + c * right + s * up, at[1] + c * up - s * right
+            total += _cubic(fine, x / cell - 0.5, y / cell - 0.5)
+    return total / (steps * steps)
 
 
 @compiled
 def add_rectangle(
     flux: Floats,
-    samples: tuple[Floats, Floats, Floats, Floats],
-    sizes: Floats,
-    spectrum: Floats,
-    table: Table,
+    samples: tuple[Floats, Floats, Floats],
+    optics: tuple[Floats, Floats, Floats],
+    widths: tuple[Slits, Slits],
+    corners: tuple[Floats, float],
 ) -> None:
-    """Add the light behind one rectangle, its sides along the pixel rows, to frames.
+    """Add the light behind one rectangle to frames.
 
     Parameters
     ----------
     flux
         (N, H, W) light averaged over each pixel.
     samples
-        (N, K, 2) landing points through the aperture's centre, mm, and (N, K) light, of each of
-        the K points of the Sun; (N, 2) the window's first corner, mm; (N, 2) change of the
-        landing point a unit of direction cosine along x and y, mm.
-    sizes
-        (3,) half width, half height, pixel pitch, mm.
-    spectrum
-        (L, 2) wavelengths in mm and weights.
-    table
-        For `_fresnel`.
+        (N, 2) middle of the spot seen from the window's first corner, mm; (N, 13) light, half
+        sizes, change of the landing point a unit of direction cosine, the image of the unit disc
+        (semi-axis, shear, height), how patterns are bent (a mm), a thick foil's share,
+        across and along; what couples
+        both, -1 to 1; (N, 2) coordinates among the corners' incidences.
+    optics
+        (4,) cosine and sine of the rectangle's turn, pixel pitch in mm, cells a pixel;
+        (L, 2) wavelengths in mm and weights; (S, P, 3) nodes of the disc.
+    widths
+        Patterns across and along.
+    corners
+        (T, T, 2, M, M) what corners add, and their steps a root of millimetres; T = 0 for none.
     """
-    spots, light, corner, spread = samples
+    middles, shapes, places = samples
+    turn, spectrum, disc = optics
+    tables, per_root = corners
+    c, s, pitch, cells = turn
+    turned = s != 0.0
     count, rows, columns = flux.shape
-    pitch = sizes[2]
-    across, along = np.empty(columns), np.empty(rows)
+    cell = pitch / cells
+    wide = math.ceil((abs(c) * columns + abs(s) * rows) * cells) + 8
+    tall = math.ceil((abs(s) * columns + abs(c) * rows) * cells) + 8
+    fine = np.empty((tall, wide)) if turned else np.empty((1, 1))
+    size = tables.shape[3]
+    patches = np.empty((2, size, size))
+    sample = np.empty(15)
     for n in range(count):
-        if light[n].max() == 0.0:
+        light, a, b = shapes[n, 0], shapes[n, 1], shapes[n, 2]
+        if light == 0.0 or a <= 0.0 or b <= 0.0:
             continue
-        first_x, first_y = corner[n, 0] - spots[n, :, 0].max(), corner[n, 1] - spots[n, :, 1].max()
-        last_x = corner[n, 0] + columns * pitch - spots[n, :, 0].min()
-        last_y = corner[n, 1] + rows * pitch - spots[n, :, 1].min()
-        for m in range(spectrum.shape[0]):
-            wavelength, weight = spectrum[m]
-            # eight values a period of the finest fringe, eight a pixel
-            fine_x = min(pitch, wavelength * spread[n, 0] / (2.0 * sizes[0])) / 8.0
-            fine_y = min(pitch, wavelength * spread[n, 1] / (2.0 * sizes[1])) / 8.0
-            by_x = np.zeros((2, math.ceil((last_x - first_x) / fine_x) + 4))
-            by_y = np.zeros((2, math.ceil((last_y - first_y) / fine_y) + 4))
-            number = sizes[0] ** 2 / (wavelength * spread[n, 0])
-            step_x = _sums(by_x, (first_x, last_x), sizes[0], number, table)
-            number = sizes[1] ** 2 / (wavelength * spread[n, 1])
-            step_y = _sums(by_y, (first_y, last_y), sizes[1], number, table)
-            for k in range(light.shape[1]):
-                if light[n, k] == 0.0:
-                    continue
-                start_x = corner[n, 0] - spots[n, k, 0] - first_x
-                start_y = corner[n, 1] - spots[n, k, 1] - first_y
-                _per_pixel(across, by_x, step_x, start_x, pitch)
-                _per_pixel(along, by_y, step_y, start_y, pitch)
-                share = weight * light[n, k]
-                for row in range(rows):
-                    here = share * along[row]
-                    for column in range(columns):
-                        flux[n, row, column] += here * across[column]
+        sample[0] = light
+        sample[3:14] = shapes[n, 1:12]
+        x, y = middles[n]
+        coupling = shapes[n, 12]
+        coupled = tables.shape[0] > 0 and coupling != 0.0
+        if coupled:
+            _corners(patches, tables, (places[n, 0], places[n, 1]))
+            root_x, root_y = math.sqrt(shapes[n, 3]), math.sqrt(shapes[n, 4])
+        if turned:
+            # the window's middle stands in the middle of the cells
+            dx, dy = columns * pitch / 2.0 - x, rows * pitch / 2.0 - y
+            mid_x, mid_y = c * dx + s * dy, c * dy - s * dx
+            sample[1], sample[2] = wide * cell / 2.0 - mid_x, tall * cell / 2.0 - mid_y
+            sample[14] = cell
+            fine[:] = 0.0
+            _products(fine, sample, spectrum, disc, widths)
+        else:
+            sample[1], sample[2], sample[14] = x, y, pitch
+            _products(flux[n], sample, spectrum, disc, widths)
+        steps = int(cells)
+        for row in range(rows if turned or coupled else 0):
+            for column in range(columns):
+                total = 0.0
+                dx, dy = (column + 0.5) * pitch - x, (row + 0.5) * pitch - y
+                if turned:
+                    at = c * dx + s * dy + sample[1], c * dy - s * dx + sample[2]
+                    total += _of_cells(fine, at, (c, s), (cell, steps))
+                if coupled:
+                    w, v = c * dx + s * dy, c * dy - s * dx
+                    kind = 0 if (w * v >= 0.0) == (coupling > 0.0) else 1
+                    total += light * _cubic(
+                        patches[kind],
+                        (abs(w) - a) / root_x * per_root + (size - 1) / 2.0,
+                        (abs(v) - b) / root_y * per_root + (size - 1) / 2.0,
+                    )
+                flux[n, row, column] += total

@@ -1,4 +1,4 @@
-"""Diffraction at an aperture: when it counts, for which light, and its closed forms.
+"""Diffraction at an aperture: for which light, and its closed forms.
 
 Scalar Fresnel diffraction about the chief ray, the ray through the aperture's centre. Where the
 ray-optical landing point ``S`` moves by ``J ds`` when the direction cosines of the light change by
@@ -24,11 +24,6 @@ from numpy.typing import NDArray
 from algorithms.contract import Floats
 from benchmark.simulator.masks.apertures import Mask
 from benchmark.simulator.optics.plates import fresnel_number
-
-#: From this Fresnel number on the shadow is taken as geometric.
-GEOMETRIC_FROM = 10.0
-#: Below this one the pattern behind a round aperture is placed by direction cosines.
-COSINES_BELOW = 1.0
 
 
 @dataclass(frozen=True)
@@ -61,26 +56,21 @@ SUNLIT_SILICON = Spectrum(
 def propagation(mask: Mask, height_mm: float, spectrum: Spectrum) -> dict[str, Any]:
     """How light gets from a mask to a detector `height_mm` below, for a dataset's ``regime``.
 
-    The smallest aperture decides, at normal incidence and 550 nm: ``diffraction`` where its
-    Fresnel number ``a^2 / (lambda h)`` is below `GEOMETRIC_FROM`, else ``geometric``.
+    The Fresnel number ``a^2 / (lambda h)`` of the narrowest opening, at normal incidence and
+    550 nm, says what pattern to expect: a shadow with soft edges far above 1, a far pattern far
+    below. Nothing is decided by it.
     """
     half = min(aperture.smallest_half_width_mm for aperture in mask.apertures)
     number = fresnel_number(half, height_mm)
-    found = {"fresnel_number": float(f"{number:.3g}"), "wavelength_nm": 550}
-    if number >= GEOMETRIC_FROM:
-        return {
-            "propagation": "geometric",
-            **found,
-            "reason": "a^2 / (lambda h) at normal incidence is above 10; diffraction is left out",
-        }
     return {
         "propagation": "diffraction",
-        **found,
+        "fresnel_number": float(f"{number:.3g}"),
+        "wavelength_nm": 550,
         "wavelengths_nm": list(spectrum.wavelengths_nm),
         "weights": list(spectrum.weights),
-        "mapping": "direction cosines" if number < COSINES_BELOW else "chief ray",
-        "reason": "a^2 / (lambda h) at normal incidence is below 10: scalar Fresnel diffraction "
-        "about the chief ray, tabulated for the aperture, over the Sun's disc",
+        "reason": "scalar Fresnel diffraction about the chief ray, every wavelength over the Sun's "
+        "disc, through what both rims of the foil leave open",
+        "left_out": "vector effects, the cubic term of the phase, light that openings share",
     }
 
 

@@ -1,4 +1,4 @@
-"""Between mask and detector: plane glass plates, and whether shadows are geometric."""
+"""Between mask and detector: plane glass plates, and the Fresnel number."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ class CoverGlass:
 
 
 def fresnel_number(half_width_mm: float, distance_mm: float, wavelength_nm: float = 550.0) -> float:
-    """``a^2 / (lambda h)``: above about 10 the shadow of an aperture is geometric.
+    """``a^2 / (lambda h)``: far below 1 the far pattern, far above it a shadow with soft edges.
 
     550 nm is the middle of the visible band, near the peak of sunlight times silicon response.
     """

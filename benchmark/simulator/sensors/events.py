@@ -10,11 +10,13 @@ import numpy as np
 from algorithms.contract import Floats
 from benchmark.seeds import generator
 from benchmark.simulator.light.memory import memory
+from benchmark.simulator.optics.diffraction import SUNLIT_SILICON, Spectrum
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout.detectors import DarkCurrent
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
+from benchmark.simulator.sensors.diffracted_light import DiffractedLight, Stance, few_points
 
 #: Electrons a microsecond below which no pixel is taken to be: without light and dark current it
 #: never fires, but its time stays a number.
@@ -92,10 +94,26 @@ class SpikingArray:
 
 @dataclass(frozen=True)
 class EventSensor:
-    """A spiking array behind a mask."""
+    """A spiking array behind a mask that bends light (`DiffractedLight`).
+
+    Attributes
+    ----------
+    camera, detector
+        Light and pixels.
+    spectrum
+        Wavelengths and weights.
+    widest_deg
+        Largest incidence tabulated; beyond, the pattern keeps this one's Fresnel numbers.
+    """
 
     camera: Camera
     detector: SpikingArray
+    spectrum: Spectrum = SUNLIT_SILICON
+    widest_deg: float = 70.0
+
+    def __post_init__(self) -> None:
+        # wrong parameters are refused when the sensor is made, not when it sees something
+        self._light()
 
     def fixed_pattern(self, *names: str | int) -> FixedPattern:
         """``gain`` and ``threshold``, (rows, columns): relative response and threshold."""
@@ -117,26 +135,34 @@ class EventSensor:
         """
         detector = self.detector
         size = detector.rows, detector.columns, detector.pitch_mm
-        key = type(self).__name__, self.camera, size, scene.sun.tobytes()
+        optics = self.camera, size, self.spectrum, self.widest_deg
+        key = type(self).__name__, *optics, scene.sun.tobytes()
         flux = memory.rendered(key, lambda: self._rendered(scene.sun))
         flux *= scene.irradiance[:, None, None]
         return flux
 
     def _rendered(self, sun: Floats) -> Floats:
         """(N, H, W) light of the mean sunlight from (N, 3)."""
-        from benchmark.simulator.kernels.rasteriser import render  # noqa: PLC0415 - Numba on demand
-
         detector = self.detector
-        light = self.camera.project(sun)
-        flux = np.empty((len(sun), detector.rows, detector.columns))
-        render(
-            flux,
-            self.camera.mask.table(detector.pitch_mm),
-            light.rims_mm / detector.pitch_mm,
-            light.light,
-            np.full((len(sun), 2), -0.5) - np.asarray(detector.centre_px),
+        head = self.camera.assembly.to_head(sun)
+        height = np.full(len(sun), self.camera.height_mm)
+        corner = (-0.5 - np.asarray(detector.centre_px)) * detector.pitch_mm
+        return self._light().render(
+            Stance(head, height, few_points(self.camera).project(sun)),
+            np.broadcast_to(corner, (len(sun), 2)),
         )
-        return flux
+
+    def _light(self) -> DiffractedLight:
+        detector = self.detector
+        return DiffractedLight(
+            camera=self.camera,
+            spectrum=self.spectrum,
+            pitch_mm=detector.pitch_mm,
+            size_px=(detector.columns, detector.rows),
+            # a spot in one corner lights the opposite one
+            reach_mm=math.sqrt(2.0) * max(detector.columns, detector.rows) * detector.pitch_mm,
+            widest_deg=self.widest_deg,
+        )
 
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, H W) mean time to fire of every pixel, microseconds, also of those not read out.

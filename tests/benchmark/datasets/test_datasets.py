@@ -19,6 +19,8 @@ from benchmark import datasets
 from benchmark.datasets import Samples, UnknownDatasetError, samples_hash
 from benchmark.datasets.card import differences, merged
 from benchmark.datasets.conditions.full_frames import FullFramePreset
+from benchmark.simulator.sensors.diffractive_frames import DiffractiveFrameSensor
+from benchmark.simulator.sensors.events import EventSensor
 from benchmark.simulator.sensors.frames import FrameSensor
 
 ROOT = Path(__file__).parents[3]
@@ -307,12 +309,14 @@ def test_round_aperture_condition_has_its_own_geometry() -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_propagation_is_geometric_only_above_a_fresnel_number_of_ten(name: str) -> None:
+def test_frames_and_events_behind_apertures_are_diffracted(name: str) -> None:
     preset = datasets.get(name)
     regime = card_of(name)["regime"]
     assert regime["reason"]
-    if regime["propagation"] == "geometric" and preset.mask != "Maskless":
-        assert "largest_difference_percent" in regime or regime["fresnel_number"] > 10
+    sensors = [setup.sensor for setup in preset.setups.values()]
+    if all(isinstance(s, DiffractiveFrameSensor | EventSensor) for s in sensors):
+        assert regime["propagation"] == "diffraction"
+        assert len(regime["wavelengths_nm"]) == len(regime["weights"]) >= 6
     elif regime["propagation"] == "lens":
         assert preset.mask == "Lens"
 

@@ -134,15 +134,13 @@ def test_landing_point_moves_by_its_derivatives() -> None:
     assert empty[:, 2] == pytest.approx(3.0 / cosine)
 
 
-def test_the_fresnel_number_decides_on_diffraction() -> None:
+def test_no_fresnel_number_leaves_diffraction_out() -> None:
     mask = Mask((Aperture("round", 0.2, 0.2), Aperture("rectangle", 0.1, 3.0, x_mm=1.0)))
-    close = propagation(mask, 0.4, SUNLIT_SILICON)
-    assert close["propagation"] == "geometric"
-    assert close["fresnel_number"] == pytest.approx(0.05**2 / (550e-6 * 0.4), rel=5e-3)
-    far = propagation(mask, 0.6, SUNLIT_SILICON)
-    assert far["propagation"] == "diffraction"
-    assert far["mapping"] == "chief ray"
-    assert propagation(mask, 20.0, SUNLIT_SILICON)["mapping"] == "direction cosines"
+    for height in (0.01, 0.6, 20.0):
+        regime = propagation(mask, height, SUNLIT_SILICON)
+        assert regime["propagation"] == "diffraction"
+        assert regime["fresnel_number"] == pytest.approx(0.05**2 / (550e-6 * height), rel=5e-3)
+        assert regime["weights"] == list(SUNLIT_SILICON.weights)
 
 
 @pytest.mark.parametrize(

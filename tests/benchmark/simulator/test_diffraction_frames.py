@@ -318,24 +318,10 @@ print(hashlib.sha256(found.observations.tobytes()).hexdigest())
     assert hashlib.sha256(frames.tobytes()).hexdigest() == run.stdout.strip()
 
 
-@pytest.mark.parametrize(
-    ("change", "said"),
-    [
-        ({"mask": Mask((Aperture("round", 0.02, 0.02),), 0.01)}, "thin masks; got thickness 0.01"),
-        (
-            {"mask": Mask((Aperture("rectangle", 0.02, 0.02, rotation_deg=3.0),))},
-            "along the pixel rows; got one turned by 3.0 deg",
-        ),
-    ],
-)
-def test_what_cannot_be_diffracted_is_refused(change, said: str) -> None:
+def test_what_cannot_be_diffracted_is_refused() -> None:
     sensor = pinhole()
-    with pytest.raises(ValueError, match=said):
-        replace(sensor, camera=replace(sensor.camera, **change))
     with pytest.raises(ValueError, match="widest_deg must be in"):
         replace(sensor, widest_deg=90.0)
-    with pytest.raises(ValueError, match="nodes must be at least 1; got 0"):
-        replace(sensor, nodes=0)
     scene = Scene(np.array([[0.0, 0.0, 1.0]]), np.ones(1), np.zeros(1))
     with pytest.raises(ValueError, match="origin_px is None"):
         sensor.lit(scene)

@@ -15,6 +15,7 @@ from benchmark.seeds import generator
 from benchmark.simulator.light.sun_disc import SolarDisc, from_angles, tangent_axes
 from benchmark.simulator.masks.apertures import Aperture, Mask
 from benchmark.simulator.optics.assembly import Assembly
+from benchmark.simulator.optics.diffraction import Spectrum
 from benchmark.simulator.readout.detectors import DarkCurrent
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.scene import Scene
@@ -36,15 +37,18 @@ def scene_of(angles: list[tuple[float, float]], light: float = 1.0, stray: float
 
 
 def perfect(name: str) -> EventSensor:
-    """No dark current, no mismatch, a point Sun, everything where the drawing has it."""
+    """No dark current, no mismatch, a point Sun, everything where the drawing has it.
+
+    Waves so short that they cast shadows, which have the centroids of their outlines.
+    """
     sensor = sensor_of(name)
     detector = replace(sensor.detector, threshold_mismatch=0, prnu=0, dark=DarkCurrent(0.0))
     camera = replace(sensor.camera, assembly=Assembly(), sun=SolarDisc(0.0))
-    return EventSensor(camera, detector)
+    return EventSensor(camera, detector, Spectrum((1e-5,), (1.0,)))
 
 
 def test_times_are_inversely_proportional_to_the_photocurrent() -> None:
-    sensor = perfect("event-single-aperture")
+    sensor = perfect("event-l-slit")
     pattern = sensor.fixed_pattern("unit")
     angles = [(11.0, -23.0)]
     once, twice = (
@@ -84,7 +88,7 @@ def test_the_lines_of_the_l_are_inverted_exactly(alpha: float, beta: float) -> N
 
 def test_a_spot_of_whole_pixels_is_inverted_exactly() -> None:
     """A square hole, for the centroid of a box of whole pixels is that of its pixels."""
-    sensor = perfect("event-single-aperture")
+    sensor = perfect("event-l-slit")
     pattern = sensor.fixed_pattern("unit")
     sun = from_angles(np.array([41.3, -8.0]), np.array([-17.2, 49.0]))
     mask = Mask((Aperture("rectangle", 0.2, 0.2),))

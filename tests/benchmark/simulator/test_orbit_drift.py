@@ -26,7 +26,7 @@ from benchmark.simulator.light.sun_disc import SolarDisc, from_angles
 from benchmark.simulator.optics.assembly import Assembly
 from benchmark.simulator.optics.plates import CoverGlass
 from benchmark.simulator.scene import Scene
-from benchmark.simulator.sensors.frames import FrameSensor
+from benchmark.simulator.sensors.diffractive_frames import DiffractiveFrameSensor
 
 ORBIT, SUN = CircularOrbit(node_deg=337.5, phase_deg=77.0), sun_direction(0.0)
 
@@ -123,7 +123,7 @@ def test_the_flying_unit_is_the_one_on_the_ground_at_the_reference() -> None:
         ground.expected(scene, pattern), rel=1e-14
     )
     ccd = ccd_sensor()
-    still = FrameSensor(ccd.camera, ccd.detector, ccd.window_px, ccd.window_jitter_px)
+    still = DiffractiveFrameSensor(ccd.camera, ccd.detector, ccd.window_px, ccd.window_jitter_px)
     origin = ccd.origins(sun, np.random.default_rng(2))
     seen = replace(scene, origin_px=origin)
     built = ccd.fixed_pattern("test")

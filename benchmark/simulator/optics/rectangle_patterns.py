@@ -1,0 +1,297 @@
+"""What diffraction at rectangles is looked up in, computed once a process for each aperture.
+
+In a rectangle's own axes, w across and v along it, light from ``s`` lands at ``S(s) + J ds``. The
+integral over one side is done by stationary phase everywhere but at the ends of the other one, and
+what is left is a slit's pattern with ``J_ww = n^T J n``: so a rectangle gives the product of two
+slits' patterns, exactly so where the Sun stands over one of the axes. Off both axes the phase
+``q_w q_v`` couples the sides near the corners. Its part is known in closed form as a Fourier
+transform: the field of a rectangle and the same, moved by ``lambda J f``, have a rectangle in
+common, so that the intensity's transform at the frequency f is a product of two sines over their
+arguments. What that differs by from the product of slits is tabulated about a corner.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from algorithms.contract import Floats
+from benchmark.simulator.light.sun_disc import SolarDisc
+from benchmark.simulator.optics.diffraction import Spectrum
+from benchmark.simulator.optics.diffraction_tables import fresnel_table
+from benchmark.simulator.optics.plates import CoverGlass
+
+#: Of wider slits the edges do not know each other: the pattern of this Fresnel number is taken
+#: apart in the middle.
+_WIDEST_NUMBER = 30.0
+#: Rows of a slit's table a unit of its Fresnel number, and steps a fringe.
+_ROWS, _FRINGE = 20.0, 16.0
+#: A slit's table ends so many half widths from its middle at the latest.
+_FAR = 40.0
+#: Corners are tabulated as far as this, and in such steps, in roots of 550 nm times J.
+_CORNER_REACH, _CORNER_STEP = 8.0, 0.25
+_ROOT = math.sqrt(550e-6)
+#: Incidences that corners are tabulated for, an axis.
+_INCIDENCES = 8
+#: How finely the Sun's disc is sampled: strips, and points of each.
+_STRIPS, _POINTS = 8, 8
+#: Cycles a radius up to which the disc's transform counts, and steps a cycle.
+_CYCLES, _STEPS = 6, 16
+
+#: (2, R, M) running integrals, of a thin foil and what a thick one adds; the first row's Fresnel
+#: number, rows a unit of it, steps a half width.
+Slits = tuple[Floats, float, float, float]
+
+
+def spreading(directions: Floats, height_mm: Floats, glass: CoverGlass) -> tuple[Floats, Floats]:
+    """Return J along and across the plane of incidence, (N,) each, mm a unit of direction cosine.
+
+    Of directions (N, 3) that light comes from through a plane so far (N,) above the detector.
+    """
+    sine2 = np.sum(directions[:, :2] ** 2, axis=1)
+    cosine2 = 1.0 - sine2
+    across = (height_mm - glass.thickness_mm) / np.sqrt(cosine2)
+    along = across / cosine2
+    for plate in glass.plates:
+        square = plate.index**2 - sine2
+        share = plate.thickness_mm / np.sqrt(square)
+        across = across + share
+        along = along + share * plate.index**2 / square
+    return along, across
+
+
+def matrix(directions: Floats, height_mm: Floats, glass: CoverGlass) -> tuple[Floats, ...]:
+    """Return ``J_xx, J_yy, J_xy`` (N,) of `spreading` in the axes of the directions."""
+    along, across = spreading(directions, height_mm, glass)
+    sine2 = np.sum(directions[:, :2] ** 2, axis=1)
+    more = (along - across) / np.where(sine2 > 0, sine2, 1.0)
+    x, y = directions[:, 0], directions[:, 1]
+    return across + more * x * x, across + more * y * y, more * x * y
+
+
+def bend(
+    directions: Floats, height_mm: Floats, glass: CoverGlass, spread: tuple[Floats, ...]
+) -> Floats:
+    """(N, 2) half the second derivative of the landing point over J squared, a mm, along x and y.
+
+    Where diffraction throws light far, equal steps of the direction cosine are unequal ones on
+    the detector: ``J ds = delta - bend delta^2``. The other cosine stays as it is behind a slit.
+    """
+    square = directions[:, :2] ** 2
+    found = np.zeros((len(directions), 2))
+    gaps = [(height_mm - glass.thickness_mm, 1.0)]
+    for thickness, index in [*gaps, *((plate.thickness_mm, plate.index) for plate in glass.plates)]:
+        inside = (index**2 - square[:, 0] - square[:, 1])[:, None]
+        third = np.reshape(thickness, (-1, 1)) / (inside * np.sqrt(inside))
+        found += 1.5 * directions[:, :2] * third * (1.0 + square / inside)
+    return found / np.stack(spread[:2], axis=1) ** 2
+
+
+def shaded(directions: Floats, apart_mm: Floats, thickness_mm: float) -> tuple[Floats, Floats]:
+    """How a foil narrows each half of a rectangle (N, 2), and its share of softness (N, 2).
+
+    Across and along. Light bent at the upper rim is cut by the lower one: an edge whose amplitude
+    behind the upper rim is ``E(w)`` lacks ``int_0^inf (1 - E) dw = (1 + i) / (2 pi)``, w in units
+    of ``sqrt(lambda J / 2)`` of the foil's thickness. The real part moves the edge inwards, the
+    imaginary one softens it (`RectanglePattern.softness`). Both fade as the rims part: by
+    `apart_mm` (N, 2), of which half is the shadow.
+    """
+    if thickness_mm == 0:
+        return apart_mm / 2.0, np.zeros(apart_mm.shape)
+    spread = matrix(directions, np.full(len(directions), thickness_mm), CoverGlass())
+    fringe = _ROOT * np.sqrt(np.stack(spread[:2], axis=1) / 2.0)
+    share = 1.0 / (1.0 + math.pi * apart_mm / fringe)
+    return apart_mm / 2.0 + fringe / (2.0 * math.pi) * share, share
+
+
+def disc_image(directions: Floats, spread: tuple[Floats, ...], radius: float) -> Floats:
+    """(N, 3) what the unit disc becomes: x = l_0 p + l_1 q, y = l_2 q for its points (p, q).
+
+    A turn of the disc is left out, which nobody sees.
+    """
+    xx, yy, xy = spread
+    x, y = directions[:, 0], directions[:, 1]
+    # J (1 - s s^T) J^T, the middle one for the tilt of the disc's own plane
+    p, q = 1.0 - x * x, 1.0 - y * y
+    r = -x * y
+    a, b = xx * p + xy * r, xx * r + xy * q
+    c, d = xy * p + yy * r, xy * r + yy * q
+    across, both, high = a * xx + b * xy, a * xy + b * yy, c * xy + d * yy
+    high = np.sqrt(high)
+    shear = both / high
+    semi = np.sqrt(np.maximum(across - shear * shear, 0.0))
+    return radius * np.stack([semi, shear, high], axis=1)
+
+
+def disc_strips(darkening: float, strips: int = _STRIPS, points: int = _POINTS) -> Floats:
+    """(S, P, 3) nodes of the limb-darkened unit disc in strips: across, height, weight; sum 1."""
+    nodes, shares = np.polynomial.legendre.leggauss(points)
+    out = np.empty((strips, points, 3))
+    for j in range(strips):
+        angle = math.pi * (j + 1.0) / (strips + 1.0)
+        height, chord = math.cos(angle), math.sin(angle)
+        for i in range(points):
+            t = float(nodes[i])
+            radiance = 1.0 - darkening + darkening * chord * math.sqrt(1.0 - t * t)
+            out[j, i] = chord * t, height, chord * chord * float(shares[i]) * radiance
+    out[..., 2] /= math.fsum(out[..., 2].ravel())
+    return out
+
+
+@dataclass(frozen=True)
+class RectanglePattern:
+    """The light behind a rectangle, for incidences up to `widest_deg` an axis.
+
+    Attributes
+    ----------
+    half_mm
+        Half sizes along its own axes.
+    thickness_mm
+        Of the foil: what both of its displaced rims leave open lies in its middle.
+    height_mm, glass
+        From the foil's middle down to the detector, glass included.
+    sun, spectrum
+        What shines.
+    pitch_mm
+        Of the pixels.
+    reach_mm
+        Distance from the spot's middle that is looked at.
+    widest_deg
+        Largest incidence; beyond, patterns keep this one's Fresnel numbers.
+    """
+
+    half_mm: tuple[float, float]
+    thickness_mm: float
+    height_mm: float
+    glass: CoverGlass
+    sun: SolarDisc
+    spectrum: Spectrum
+    pitch_mm: float
+    reach_mm: float
+    widest_deg: float
+
+    def widths(self) -> tuple[Slits, Slits]:
+        """Return running integrals of the slits' patterns along both axes."""
+        return self._slits(self.half_mm[0]), self._slits(self.half_mm[1])
+
+    def corners(self) -> tuple[Floats, float]:
+        """Return (T, T, 2, M, M) what coupling adds about corners, and steps a root of mm."""
+        return _corners(self)
+
+    @property
+    def softness(self) -> float:
+        """Imaginary part by which a foil moves an edge, in the unit of Fresnel's integrals."""
+        return round(math.sqrt(self.thickness_mm / self.height_mm) / (2.0 * math.pi), 4)
+
+    def waves(self) -> Floats:
+        """(L, 2) wavelengths in mm and weights."""
+        nm = np.array(self.spectrum.wavelengths_nm)
+        return np.column_stack([nm * 1e-6, np.array(self.spectrum.weights)])
+
+    def place(self, directions: Floats) -> Floats:
+        """(N, 2) coordinates among the corners' incidences of directions in the own axes."""
+        last = _INCIDENCES - 1
+        widest = math.radians(self.widest_deg)
+        rows = [
+            (math.atan2(abs(x), z) / widest * last, math.atan2(abs(y), z) / widest * last)
+            for x, y, z in directions.tolist()
+        ]
+        return np.minimum(np.array(rows).reshape(-1, 2), float(last))
+
+    def _slits(self, half: float) -> Slits:
+        limit = math.radians(self.widest_deg)
+        edge = np.array([[0.0, 0.0, 1.0], [math.sin(limit), 0.0, math.cos(limit)]])
+        along, across = spreading(edge, np.full(2, self.height_mm), self.glass)
+        waves = self.spectrum.wavelengths_nm
+        narrowest = max(half - self.thickness_mm / 2.0 * math.tan(limit), 0.1 * half)
+        # a little more than needed: assembly drifts
+        highest = 1.02 * half**2 / (min(waves) * 1e-6 * float(across[0]))
+        lowest = 0.98 * narrowest**2 / (max(waves) * 1e-6 * float(along[1]))
+        highest, lowest = min(highest, _WIDEST_NUMBER), min(lowest, _WIDEST_NUMBER)
+        far = min(1.0 + self.reach_mm / narrowest, _FAR)
+        return _running(round(lowest, 3), round(highest, 3), round(far, 1), self.softness)
+
+    def _patches(self, directions: Floats) -> Floats:
+        """(2, M, M) about the corners for one direction (1, 3) in the own axes."""
+        from benchmark.simulator.kernels.diffraction_corners import (  # noqa: PLC0415 - Numba
+            corner_patches,
+        )
+
+        steps = round(_CORNER_REACH / _CORNER_STEP)
+        out = np.empty((2, 2 * steps + 1, 2 * steps + 1))
+        spread = matrix(directions, np.array([self.height_mm]), self.glass)
+        across, along, both = (float(j[0]) for j in spread)
+        radius = math.sin(math.radians(self.sun.diameter_deg / 2.0))
+        image = disc_image(directions, spread, radius)[0]
+        x, y, z = directions[0].tolist()
+        shade = self.thickness_mm / 2.0
+        a = max(self.half_mm[0] - shade * abs(x) / z, 0.0)
+        b = max(self.half_mm[1] - shade * abs(y) / z, 0.0)
+        far = 1.3 * _CORNER_REACH * _ROOT
+        periods = [2.0 * (h + far * math.sqrt(j)) for h, j in ((a, across), (b, along))]
+        # the Sun's image and the pixel let nothing finer through
+        most = min(2.0 / self.pitch_mm, _CYCLES / max(float(image.max()), 1e-9))
+        corner_patches(
+            out,
+            np.array([a, b, across, along, both, *image, self.pitch_mm, _per_root()]),
+            self.waves(),
+            _transform(self.sun.limb_darkening),
+            np.array([1.0 / periods[0], 1.0 / periods[1], most]),
+        )
+        return out
+
+
+def _per_root() -> float:
+    return 1.0 / (_CORNER_STEP * _ROOT)
+
+
+@lru_cache(maxsize=16)
+def _running(lowest: float, highest: float, far: float, softness: float) -> Slits:
+    from benchmark.simulator.kernels.diffraction_slits import (  # noqa: PLC0415 - Numba on demand
+        running_integrals,
+    )
+
+    rows = max(math.ceil((highest - lowest) * _ROWS) + 1, 4)
+    numbers = lowest + np.arange(rows) / _ROWS
+    per_half = max(_FRINGE * highest, 32.0)
+    sums = np.zeros((2, rows, math.ceil(far * per_half) + 2))
+    running_integrals(sums[0], numbers, 1.0 / per_half, 0.0, fresnel_table())
+    if softness > 0:
+        running_integrals(sums[1], numbers, 1.0 / per_half, softness, fresnel_table())
+        sums[1] -= sums[0]
+    sums.flags.writeable = False
+    return sums, lowest, _ROWS, per_half
+
+
+@lru_cache(maxsize=8)
+def _corners(pattern: RectanglePattern) -> tuple[Floats, float]:
+    angles = [math.radians(pattern.widest_deg) * n / (_INCIDENCES - 1) for n in range(_INCIDENCES)]
+    slopes = [math.tan(angle) for angle in angles]
+    found = [[pattern._patches(_towards(x, y)) for y in slopes] for x in slopes]  # noqa: SLF001 - cached here: a dataclass method cannot be
+    tables = np.array(found)
+    tables.flags.writeable = False
+    return tables, _per_root()
+
+
+def _towards(x: float, y: float) -> Floats:
+    length = math.sqrt(x * x + y * y + 1.0)
+    return np.array([[x / length, y / length, 1.0 / length]])
+
+
+@lru_cache(maxsize=8)
+def _transform(darkening: float) -> Floats:
+    """(Z,) transform of the unit disc, at steps of 1/16 cycle a radius."""
+    disc = disc_strips(darkening, 40, 24)
+    heights, shares = disc[:, 0, 1].tolist(), disc[..., 2].sum(axis=1).tolist()
+    return np.array(
+        [
+            math.fsum(
+                share * math.cos(2.0 * math.pi * step / _STEPS * height)
+                for height, share in zip(heights, shares, strict=True)
+            )
+            for step in range(_CYCLES * _STEPS + 1)
+        ]
+    )
