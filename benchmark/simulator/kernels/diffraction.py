@@ -77,7 +77,7 @@ def _looked_up(table: Floats, along: float, across: float) -> float:
     third += u2 * table[row + 1, column + 1] + u3 * table[row + 1, column + 2]
     fourth = u0 * table[row + 2, before] + u1 * table[row + 2, column]
     fourth += u2 * table[row + 2, column + 1] + u3 * table[row + 2, column + 2]
-    return fade * (t0 * first + t1 * second + t2 * third + t3 * fourth)
+    return float(fade * (t0 * first + t1 * second + t2 * third + t3 * fourth))
 
 
 @compiled

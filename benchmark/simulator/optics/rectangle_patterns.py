@@ -85,7 +85,7 @@ def bend(
     gaps = [(height_mm - glass.thickness_mm, 1.0)]
     for thickness, index in [*gaps, *((plate.thickness_mm, plate.index) for plate in glass.plates)]:
         inside = (index**2 - square[:, 0] - square[:, 1])[:, None]
-        third = np.reshape(thickness, (-1, 1)) / (inside * np.sqrt(inside))
+        third = np.asarray(thickness, dtype=np.float64).reshape(-1, 1) / (inside * np.sqrt(inside))
         found += 1.5 * directions[:, :2] * third * (1.0 + square / inside)
     return found / np.stack(spread[:2], axis=1) ** 2
 
@@ -199,7 +199,7 @@ class RectanglePattern:
             (math.atan2(abs(x), z) / widest * last, math.atan2(abs(y), z) / widest * last)
             for x, y, z in directions.tolist()
         ]
-        return np.minimum(np.array(rows).reshape(-1, 2), float(last))
+        return np.asarray(np.minimum(np.array(rows).reshape(-1, 2), float(last)))
 
     def _slits(self, half: float) -> Slits:
         limit = math.radians(self.widest_deg)

@@ -81,7 +81,7 @@ class RoundSpots:
 
     def cells(self, diameter_mm: float) -> int:
         """Cells a side of a pixel."""
-        across = landing(np.zeros(1), self._pattern(diameter_mm, 0.0, 1).layers())[0, 2]
+        across = float(landing(np.zeros(1), self._pattern(diameter_mm, 0.0, 1).layers())[0, 2])
         phase = math.pi * diameter_mm / (self._wave_mm * across) * self.pitch_mm
         return max(1, math.ceil(phase / _CELL_RAD))
 
