@@ -47,7 +47,7 @@ def event_array(
     )
 
 
-def behind(mask: Mask, focal_length_mm: float, events: int) -> EventSensor:
+def behind(mask: Mask, focal_length_mm: float, events: int, pitch_mm: float = 0.05) -> EventSensor:
     """Return a carefully assembled sensor of 64 x 64 pixels, reset after so many events."""
     return EventSensor(
         camera=Camera(
@@ -58,7 +58,7 @@ def behind(mask: Mask, focal_length_mm: float, events: int) -> EventSensor:
         detector=SpikingArray(
             columns=64,
             rows=64,
-            pitch_mm=0.05,
+            pitch_mm=pitch_mm,
             sunlit_us=100.0,
             threshold_e=50_000.0,
             threshold_mismatch=0.02,

@@ -6,22 +6,23 @@ from benchmark.datasets.conditions.event_arrays import behind, design, event_arr
 from benchmark.datasets.conditions.pixel_arrays import hole
 from benchmark.datasets.fields import AngleField
 
-_SENSOR = behind(hole(0.2, 0.01), 1.0, events=20)
+_SENSOR = behind(hole(0.1, 0.01), 0.6, events=20, pitch_mm=0.025)
 
 PRESET = event_array(
     name="event-single-aperture",
     version=2,
     mask="Single-Ap.",
     sensor=_SENSOR,
-    geometry=design(_SENSOR, 50.0, aperture_width_mm=0.2, aperture_shape="round"),
+    geometry=design(_SENSOR, 50.0, aperture_width_mm=0.1, aperture_shape="round"),
     directions=AngleField(50.0, steps=21, test_samples=1000),
     follows=("Bardallo2017a", "Bardallo2017b", "Merchan2023"),
     description=(
         "64 x 64 integrate-and-fire pixels in time-to-first-spike mode behind one round hole. The "
         "studies followed give the architecture, no geometry in what was mapped, and no built "
-        "sensor publishes one. Round numbers: pixels of 50 um (such pixels are large); a 0.2 mm "
-        "hole 1 mm up lights about twenty of them, its edge as soft as 23 um and, at the field's "
-        "edge, 50 um; 64 of them hold the spot at 50 deg. The array is reset after 20 events or "
+        "sensor publishes one. Round numbers: pixels of 25 um (such pixels are large); a 0.1 mm "
+        "hole, as Foresail-1p's, 0.6 mm up lights about twenty of them, its edge as soft as 18 um "
+        "and, at the field's edge, 35 um; 64 of them hold the spot at 50 deg. The array is reset "
+        "after 20 events or "
         "after 5 ms, before pixels in stray light fire. The bound is that of the times of the "
         "pixels that fire before the reset, with what the silence of the others tells."
     ),
