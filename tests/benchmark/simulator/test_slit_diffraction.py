@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import slit_propagator as propagator
 from scipy.special import fresnel
 
 from benchmark import datasets
@@ -20,7 +21,6 @@ from benchmark.simulator.optics.plates import CoverGlass, Plate
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensors.lines import LineAxis, LineSensor
-from tests.benchmark.simulator import slit_propagator as propagator
 
 POINT = SolarDisc(diameter_deg=0.0)
 NAMES = (
