@@ -146,7 +146,7 @@ def test_close_hole_is_the_kirchhoff_integral(alpha: float, beta: float) -> None
 
 @pytest.mark.parametrize("beta", [0.0, 25.0])
 def test_square_hole_is_the_kirchhoff_integral(beta: float) -> None:
-    """Sun above one of the axes, where the product of Fresnel integrals leaves nothing out."""
+    """Sun above an axis, in a single colour, whose fringes tables blur by half a per cent."""
     base = behind(2.0)
     camera = Camera(10.0, Mask((Aperture("rectangle", 0.2, 0.2),)), SolarDisc(0.0))
     detector = replace(base.detector, pitch_mm=0.0065)
@@ -160,7 +160,7 @@ def test_square_hole_is_the_kirchhoff_integral(beta: float) -> None:
     light = kirchhoff(scene.sun[0], places.reshape(-1, 2), 0.1, 10.0, GREEN_MM, square=True)
     expected = light.reshape(len(pixels), -1) @ weights
     worst = np.abs(rendered[row, column] - expected).max() / rendered.max()
-    assert worst < (1e-3 if beta == 0.0 else 0.03)
+    assert worst < (0.01 if beta == 0.0 else 0.03)
 
 
 def test_diffraction_fades_into_the_shadow_as_the_hole_grows() -> None:

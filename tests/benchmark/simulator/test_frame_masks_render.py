@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numba import njit
+from shadows import shadows
 
 from benchmark import datasets
 from benchmark.simulator.light.sun_disc import SolarDisc, from_angles
@@ -251,7 +252,7 @@ def test_the_slit_of_cmos_slit_is_inverted_exactly(alpha: float, beta: float) ->
     [drawn] = sensor.camera.mask.apertures
     straight = Mask((replace(drawn, rotation_deg=0.0),))
     camera = replace(sensor.camera, mask=straight, sun=SolarDisc(0.0), assembly=Assembly())
-    sensor = replace(sensor, camera=camera)
+    sensor = shadows(sensor, camera=camera)
     sun = from_angles(np.array([alpha]), np.array([beta]))
     corner = np.rint(sensor.spot_px(sun)).astype(np.int64) - np.array(sensor.window_px) // 2
     [frame] = sensor.lit(replace(one_scene(sun), origin_px=corner))

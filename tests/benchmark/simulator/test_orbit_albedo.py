@@ -7,10 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from shadows import shadows
 
 from algorithms.extractors.frames.centroid import BasicCentroid
 from benchmark import datasets
 from benchmark.simulator.light.environment import Earth
+from benchmark.simulator.masks.apertures import Aperture, Mask
 from benchmark.simulator.sensors.frames import FrameSensor
 from benchmark.sweeps.albedo_influence import (
     Patches,
@@ -25,8 +27,9 @@ from benchmark.sweeps.albedo_influence import (
 
 def cmos() -> FrameSensor:
     sensor = datasets.get("cmos-single-aperture").condition("nominal").sensor
-    assert isinstance(sensor, FrameSensor)
-    return sensor
+    mask = Mask((Aperture("round", 0.2, 0.2),), 0.01)
+    camera = replace(sensor.camera, mask=mask, focal_length_mm=1.2)
+    return shadows(sensor, camera=camera, pitch_mm=0.012)
 
 
 def test_patches_light_a_face_as_the_face_sensors_earth_does() -> None:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import fields, replace
+from dataclasses import fields
 
 import numpy as np
 import pytest
+from shadows import shadows
 
 from benchmark import datasets
 from benchmark.simulator.light.sun_disc import SolarDisc, from_angles
@@ -22,9 +23,9 @@ H_MM, ROW_S = 2.0, 1e-4
 
 def plain() -> FrameSensor:
     sensor = datasets.get("cmos-single-aperture").setups["nominal"].sensor
-    assert isinstance(sensor, FrameSensor)
     mask = Mask((Aperture("rectangle", 0.3, 0.4),))
-    return replace(sensor, camera=Camera(H_MM, mask, SolarDisc(0.0), assembly=Assembly()))
+    camera = Camera(H_MM, mask, SolarDisc(0.0), assembly=Assembly())
+    return shadows(sensor, camera=camera, pitch_mm=0.012)
 
 
 def rolling(**changes) -> RollingFrameSensor:

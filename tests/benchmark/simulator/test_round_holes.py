@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numba import njit
 from scipy.optimize import brentq
+from shadows import shadows
 
 from benchmark import datasets
 from benchmark.simulator.kernels.rasteriser import render
@@ -25,7 +26,7 @@ from benchmark.simulator.sensors.frames import FrameSensor
 from benchmark.simulator.sensors.multi_spot_frames import MultiSpotSensor
 
 GRIDS = ["cmos-multi-aperture", "ccd-multi-aperture", "cmos-encoded", "cmos-compound-eye"]
-WINDOWS = ["cmos-single-aperture", "ccd-single-aperture"]
+WINDOWS = ["cmos-single-aperture"]
 ANGLES = [(0.0, 0.0), (0.31, -0.17), (-21.0, 33.0), (38.0, -45.0), (-47.0, -32.0), (49.9, 0.4)]
 
 
@@ -112,7 +113,7 @@ def perfect(name: str) -> FrameSensor | MultiSpotSensor:
     )
     if isinstance(sensor, MultiSpotSensor):
         return replace(sensor, camera=camera, errors=MaskErrors(), spectrum=None)
-    return replace(sensor, camera=camera)
+    return shadows(sensor, camera=camera)
 
 
 def disc_middle(profile: np.ndarray, radius: float) -> float:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from numba import njit
+from shadows import shadows
 
 from benchmark import datasets
 from benchmark.simulator.light.sun_disc import SolarDisc, from_angles
@@ -30,10 +31,9 @@ def sensor_with(
     aperture: Aperture, thickness: float = 0.0, glass: CoverGlass | None = None, **sun: Any
 ) -> FrameSensor:
     nominal = datasets.get("cmos-single-aperture").setups["nominal"].sensor
-    assert isinstance(nominal, FrameSensor)
     mask = Mask((aperture,), thickness)
     camera = Camera(H_MM, mask, SolarDisc(**sun), glass or CoverGlass())
-    return replace(nominal, camera=camera, window_px=(SIZE, SIZE))
+    return shadows(nominal, camera=camera, window_px=(SIZE, SIZE), pitch_mm=PITCH_MM)
 
 
 def scene_of(sensor: FrameSensor, sun: np.ndarray) -> Scene:
