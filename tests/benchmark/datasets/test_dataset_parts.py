@@ -224,10 +224,9 @@ def test_the_bound_is_of_the_first_samples_as_the_condition_shows_them(
     np.testing.assert_array_equal(calls[1][1].sun, one.scene("nominal", "test").sun)
 
 
-def test_a_sensor_without_elements_of_its_own_has_no_references_and_directions_are_true() -> None:
+def test_a_sensor_without_elements_of_its_own_has_no_references() -> None:
     one = fake()
     assert one.references("nominal") == {}
-    assert one.reference_error_deg("nominal") == 0.0
     for asked in (one.references, one.reference_error_deg):
         with pytest.raises(ValueError, match="has no condition 'dusk'"):
             asked("dusk")

@@ -20,6 +20,7 @@ from benchmark.simulator.masks.apertures import Mask
 from benchmark.simulator.optics.assembly import Assembly
 from benchmark.simulator.readout.detectors import DarkCurrent
 from benchmark.simulator.scene import Scene
+from benchmark.simulator.sensors.light_to_frequency import FrequencyCounter
 
 POINT = SolarDisc(diameter_deg=0.0)
 FACED = [
@@ -57,6 +58,8 @@ def perfect_faces(name: str, **changes: Any) -> Any:
     if hasattr(sensor, "cells"):  # their current grows with their own light, which bends it
         changes["cells"] = replace(sensor.cells, heating_k=0.0, mismatch=0.0)
     readout = replace(sensor.readout, gain_mismatch=0.0, dark=DarkCurrent(0.0))
+    if isinstance(readout, FrequencyCounter):
+        readout = replace(readout, nonlinearity=0.0)
     return replace(sensor, **{"readout": readout, **changes})
 
 

@@ -118,7 +118,8 @@ def test_errors_of_assembly_are_uniform_within_the_tolerance_of_unit_0() -> None
     ((place, limit),) = tolerances(sensor).items()
     assert place == "camera.assembly"
     drawn = np.array([astuple(assembled(sensor, "test", n).camera.assembly) for n in range(2000)])
-    expected = np.array([0.05, 0.05, 0.05, 0.002, 0.004, 0.004])
+    height = 0.002 * sensor.camera.focal_length_mm
+    expected = np.array([0.05, 0.05, 0.05, height, 0.004, 0.004])
     assert (np.abs(drawn) <= np.array(astuple(limit))).all()
     np.testing.assert_allclose(drawn.std(axis=0), expected, rtol=0.05)
     np.testing.assert_allclose(np.abs(drawn).max(axis=0), np.sqrt(3) * expected, rtol=0.01)

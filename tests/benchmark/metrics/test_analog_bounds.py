@@ -91,15 +91,16 @@ def test_bound_is_what_a_maximum_likelihood_fit_reaches(
     assert (np.abs(errors.mean(axis=0)) < 4 * spread / math.sqrt(trials)).all()
 
 
-def test_counting_bound_falls_with_the_square_root_of_the_pulses() -> None:
+def test_counting_bound_falls_with_the_pulses() -> None:
+    """Counts are whole and little else: on average over what is left of them, a step's share."""
     setup = datasets.get("ltf-maskless-cube").setups["nominal"]
-    sun = from_angles(np.array([30.0, -20.0]), np.array([35.0, 40.0]))
+    sun = from_angles(np.linspace(-50.0, 50.0, 400), np.linspace(35.0, 55.0, 400))
     found = []
     for gate in (0.1, 0.4):
         sensor = replace(setup.sensor, readout=replace(setup.sensor.readout, gate_s=gate))
         pattern = sensor.fixed_pattern("test")
-        found.append(cramer_rao(sensor, still(setup, sun), pattern, LIGHT).angle_deg)
-    assert found[0] / found[1] == pytest.approx(2.0, rel=0.01)
+        found.append(cramer_rao(sensor, still(setup, sun), pattern, LIGHT).rms_deg)
+    assert found[0] / found[1] == pytest.approx(4.0, rel=0.15)
 
 
 @pytest.mark.parametrize("name", ["psd-single-aperture", "pd-maskless-pyramid", "pd-slit"])

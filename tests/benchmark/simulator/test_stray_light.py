@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from shadows import shadows
 
 from benchmark import datasets
 from benchmark.datasets.conditions.uneven_light import UnevenPreset
@@ -28,9 +29,8 @@ NAME = "cmos-single-aperture-pinhole"
 
 def sensors() -> tuple[FrameSensor, UnevenFrameSensor]:
     base = datasets.get("cmos-single-aperture").setups["nominal"].sensor
-    assert isinstance(base, FrameSensor)
     detector = replace(base.detector, prnu=0.0, dsnu=0.0)
-    even = replace(base, detector=detector)
+    even = shadows(base, detector=detector)
     return even, UnevenFrameSensor(even.camera, detector, even.window_px, even.window_jitter_px)
 
 
@@ -49,8 +49,9 @@ def test_slope_adds_a_plane_that_is_zero_in_the_detectors_middle() -> None:
         plane = 0.002 * (x + left - 255.5) / 256 - 0.001 * (y + top - 255.5) / 256
         assert frame == pytest.approx(plane, abs=1e-12)
     pattern = sensor.fixed_pattern("test")
-    electrons = (sensor.expected(uneven, pattern) - even_sensor.expected(even, pattern)) * 30.0
-    assert electrons == pytest.approx(added * 20_000.0, abs=1e-8)
+    electrons = sensor.expected(uneven, pattern) - even_sensor.expected(even, pattern)
+    electrons *= sensor.detector.gain_e_per_dn
+    assert electrons == pytest.approx(added * sensor.detector.sunlit_e, abs=1e-8)
 
 
 def test_even_scenes_and_even_sensors_know_no_slope() -> None:
