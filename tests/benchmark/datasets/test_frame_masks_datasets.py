@@ -97,7 +97,8 @@ def test_frames_are_neither_dark_nor_saturated(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", WINDOWS)
-def test_spots_lie_whole_inside_their_windows(name: str) -> None:
+def test_spots_lie_inside_their_windows_but_for_their_skirts(name: str) -> None:
+    """Light that is bent has no end: at a window's border it is below 2 % of the peak."""
     data = preset(name)
     for condition in data.conditions:
         sensor = data.setups[condition].sensor
@@ -112,7 +113,8 @@ def test_spots_lie_whole_inside_their_windows(name: str) -> None:
                 scene.origin_px[worst],
             )
             frames = sensor.lit(part)
-            assert max(frames[:, [0, -1]].max(), frames[:, :, [0, -1]].max()) < 1e-12, condition
+            border = max(frames[:, [0, -1]].max(), frames[:, :, [0, -1]].max())
+            assert border < 0.02 * frames.max(), condition
 
 
 def test_the_slit_measures_one_angle_better_than_the_other() -> None:

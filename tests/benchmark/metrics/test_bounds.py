@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from shadows import shadows
 
 from benchmark import datasets
 from benchmark.datasets import Condition
@@ -15,6 +16,7 @@ from benchmark.metrics.bounds import cramer_rao
 from benchmark.seeds import generator
 from benchmark.simulator.light.environment import Irradiance
 from benchmark.simulator.light.sun_disc import from_angles
+from benchmark.simulator.masks.apertures import Aperture, Mask
 from benchmark.simulator.readout.detectors import DarkCurrent
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.scene import Scene
@@ -125,16 +127,20 @@ def test_shot_limited_bound_falls_with_the_square_root_of_the_photons() -> None:
 
 
 def bounds_by_pitch(sunlit_e: float, read_noise_e: float) -> list[np.ndarray]:
-    """Bounds with pixels of 6, 3 and 1.5 micrometres, their light in proportion to their area."""
+    """Bounds with pixels of 6, 3 and 1.5 micrometres, their light in proportion to their area.
+
+    In the shadow of a hole, whose rim the Sun alone dims.
+    """
     setup, _ = setup_of("cmos-single-aperture")
-    assert isinstance(setup.sensor, FrameSensor)
+    mask = Mask((Aperture("round", 0.2, 0.2),), 0.01)
+    camera = replace(setup.sensor.camera, mask=mask, focal_length_mm=1.2)
     found = []
     for ratio in (0.5, 0.25, 0.125):
         detector = replace(
             setup.sensor.detector,
             columns=2048,
             rows=2048,
-            pitch_mm=setup.sensor.detector.pitch_mm * ratio,
+            pitch_mm=0.012 * ratio,
             sunlit_e=sunlit_e * ratio**2,
             full_well_e=1e8,
             gain_e_per_dn=1.0,
@@ -143,7 +149,7 @@ def bounds_by_pitch(sunlit_e: float, read_noise_e: float) -> list[np.ndarray]:
             prnu=0.0,
             dark=DarkCurrent(0.0),
         )
-        sensor = replace(setup.sensor, detector=detector, window_px=(256, 256))
+        sensor = shadows(setup.sensor, camera=camera, detector=detector, window_px=(256, 256))
         scene = scene_at(replace(setup, sensor=sensor), [10.0, 40.0], [-20.0, 5.0])
         pattern = sensor.fixed_pattern("test")
         found.append(cramer_rao(sensor, scene, pattern, setup.irradiance).angle_deg)
