@@ -101,7 +101,6 @@ def test_a_grid_is_not_taken_for_itself_moved_by_a_hole(which):
             assert np.isnan(found).all() or np.abs(found - place).max() < 0.1
 
 
-@pytest.mark.slow
 @every_method
 def test_a_code_names_the_part_of_the_mask_seen(which):
     places = np.random.default_rng(3).uniform((-50, -45), (178, 170), (40, 2))
@@ -112,7 +111,6 @@ def test_a_code_names_the_part_of_the_mask_seen(which):
     assert np.abs(found[seen] - places[seen]).max() < 0.15
 
 
-@pytest.mark.slow
 @every_method
 def test_half_a_code_is_refused_or_right(which):
     """A third of the apertures closed leaves pairs that several sub-fields share."""
@@ -210,7 +208,6 @@ def test_fmms_weights_a_dirty_spot_less_and_a_missing_one_not_at_all():
 # Tracking
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("which", [1, 2], ids=["fmms", "feic"])
 def test_tracking_follows_the_sun_across_the_code(which):
     steps = np.linspace(0, 1, 60)[:, None]

@@ -58,7 +58,6 @@ def content(directory):
     }
 
 
-@pytest.mark.slow
 def test_the_card_lists_every_file_with_its_bytes(made):
     card = json.loads((made.directory / CARD).read_text("utf-8"))
     assert card == made.card
