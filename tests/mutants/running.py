@@ -179,7 +179,9 @@ def _tested(tests: Sequence[str], output: Path) -> int:
     # of the project's own options only how tests are imported: others are of plugins left out
     own = ["-o", "addopts=--import-mode=importlib", "-W", "ignore::pytest.PytestConfigWarning"]
     options = ["-x", "-q", "--tb=short", "--hypothesis-seed=0", "-k", _QUICK]
-    status = int(pytest.main([*own, *plugins, *options, *tests], plugins=[run]))
+    # pytest tidies the directory that all its runs share: two at a time would meet there
+    apart = [f"--basetemp={output.with_suffix('.tmp')}"]
+    status = int(pytest.main([*own, *plugins, *options, *apart, *tests], plugins=[run]))
     output.with_suffix(".seconds.json").write_text(json.dumps(run.seconds))
     return status
 

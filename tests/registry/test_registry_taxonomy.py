@@ -37,6 +37,7 @@ def test_none_is_a_value_and_not_a_missing_cell(survey: Facts) -> None:
         ("extractor", "linear phase", "Linear-phase"),
         ("model_category", "geometrical", "Geometric"),
         ("task", "zzzzzz", None),
+        ("detector", "zzzzzzc", None),  # a letter in common is not enough
     ],
 )
 def test_nearest_finds_values_by_spelling_and_by_name(

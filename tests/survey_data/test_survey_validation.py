@@ -165,6 +165,7 @@ UNKNOWN = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("table", ALL)
 def test_unknown_values_are_located_in_every_table(table: str, copy: Any) -> None:
     for row, (column, text) in enumerate(UNKNOWN[table], 3):

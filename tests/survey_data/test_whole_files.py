@@ -22,7 +22,7 @@ def names(directory: Path) -> list[str]:
 def killed(code: str, *arguments: object) -> None:
     """Run code that ends its process with `os._exit(9)`: no handler of ours runs."""
     command = [sys.executable, "-c", code, *map(str, arguments)]
-    assert subprocess.run(command, check=False, cwd=ROOT, timeout=60).returncode == 9
+    assert subprocess.run(command, check=False, cwd=ROOT, timeout=600).returncode == 9
 
 
 def test_text_and_bytes_are_written_as_they_are(tmp_path: Path) -> None:

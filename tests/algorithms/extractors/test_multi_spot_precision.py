@@ -89,6 +89,7 @@ def test_precision_grows_with_the_root_of_the_number_of_spots(method, grids):
     assert np.abs(one / np.sqrt(np.mean(one**2)) - 1.0).max() < 0.15
 
 
+@pytest.mark.slow
 def test_fmms_alone_is_more_precise_than_its_share(grids):
     assert scatter(MeanShift, grids[1]) < 0.8 * 4 * scatter(MeanShift, grids[4])
 

@@ -39,6 +39,7 @@ def made(tmp_path_factory):
     return out, shown
 
 
+@pytest.mark.slow
 def test_export_writes_what_was_asked_for_and_lists_it(made):
     out, shown = made
     listed = json.loads(shown.stdout)

@@ -133,6 +133,7 @@ def test_a_name_that_is_not_there_is_one_line_and_1(arguments, says):
     assert says in shown.stderr
 
 
+@pytest.mark.slow
 def test_tracebacks_are_kept_for_those_who_ask():
     arguments = ("dataset", "describe", "no-such-dataset")
     assert "Traceback" not in sunatlas(*arguments, **{DEBUG: ""}).stderr

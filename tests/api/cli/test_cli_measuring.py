@@ -126,6 +126,7 @@ def test_a_study_of_which_nothing_runs_says_why_and_fails(unpublished):
     assert "nothing of" in shown.stderr
 
 
+@pytest.mark.slow
 def test_names_that_go_with_nothing_fail(unpublished):
     shown = sunatlas("benchmark", "--dataset", "pd-maskless-cube", "--extractor", "bctm")
     assert shown.exit_code == 1

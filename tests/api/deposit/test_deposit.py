@@ -60,6 +60,7 @@ def test_frictionless_on_the_command_line_agrees(built):
     assert json.loads(shown.stdout)["valid"]
 
 
+@pytest.mark.slow
 def test_the_checksums_hold_by_another_s_count(built):
     listed = {}
     for line in (built.directory / CHECKSUMS).read_text("utf-8").splitlines():

@@ -160,4 +160,4 @@ def test_matplotlib_is_loaded_by_pictures_alone():
         "import benchmark.running.task, benchmark.sweeps.pictures, benchmark.sweeps.run\n"
         "assert 'matplotlib' not in sys.modules\n"
     )
-    subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT, timeout=120)
+    subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT, timeout=600)

@@ -123,9 +123,11 @@ def test_a_row_a_condition_of_the_first_frames_each_with_its_words(
     def known_only(name: str) -> Any:
         if name == "warm":
             raise ValueError("no condition 'warm'")
-        return SimpleNamespace(sensor=None)
+        return SimpleNamespace(sensor=SimpleNamespace())
 
     preset.condition = known_only
+    # a camera first: what is said of cameras would be known without a look at the second
+    monkeypatch.setattr(overlay, "_CAMERAS", (SimpleNamespace,))
     with pytest.raises(ValueError, match="no condition 'warm'"):
         overlay.overlay_png(preset, finder, ["quiet", "warm"])  # type: ignore[arg-type]
     assert len(asked) == 3, "nothing is drawn before all conditions are known"

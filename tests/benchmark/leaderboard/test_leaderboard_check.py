@@ -67,6 +67,7 @@ def test_without_measuring_nothing_is_generated_or_extracted(published, log):
     assert log() == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("column", "value"),
     [

@@ -146,6 +146,7 @@ def centroid(frame: np.ndarray) -> np.ndarray:
     return np.array([(frame * x).sum(), (frame * y).sum()]) / frame.sum()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("theta", [0.0, 30.0, 60.0])
 @pytest.mark.parametrize("name", MASKS)
 def test_frames_agree_with_a_ray_count(name: str, theta: float) -> None:
