@@ -78,8 +78,10 @@ def generated(
         seen_by = preset.as_unit(unit) if unit else preset
         wanted = SPLITS if not unit else ("calibration", "test")
         splits = {split: seen_by.generate(condition, split) for split in wanted}
-        bounded = _of_unit_zero if not unit else _of_another_unit
-        _kept[place] = bounded(preset, condition, splits, all_observable)
+        if unit:
+            _kept[place] = _of_another_unit(preset, condition, splits, all_observable)
+        else:  # its bound, which scores need, tells what is observable
+            _kept[place] = _of_unit_zero(preset, condition, splits)
     _kept.move_to_end(place)
     return _kept[place]
 
@@ -102,12 +104,7 @@ def _place_of(preset: Preset, condition: str, unit: int) -> _Place:
     return preset.name, condition, unit, digest(preset.parameters(condition))
 
 
-def _of_unit_zero(
-    preset: Preset,
-    condition: str,
-    splits: dict[str, Samples],
-    all_observable: bool,  # noqa: ARG001 - the bound, which scores need, tells it
-) -> Generated:
+def _of_unit_zero(preset: Preset, condition: str, splits: dict[str, Samples]) -> Generated:
     bound = preset.bound(condition, "test")
     angle, observable = np.asarray(bound.angle_deg), np.asarray(bound.observable, dtype=np.bool_)
     pins = tuple(_pin(preset, condition, split, splits[split], bound) for split in SPLITS)

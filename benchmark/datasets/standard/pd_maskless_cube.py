@@ -13,7 +13,7 @@ from benchmark.simulator.sensors.faces import CUBE
 
 PRESET = faces(
     name="pd-maskless-cube",
-    version=1,
+    version=2,
     detector="PD",
     normals=CUBE,
     order=OF_THE_CUBE,

@@ -9,7 +9,7 @@ from benchmark.simulator.sensors.faces import CUBE
 
 PRESET = faces(
     name="pva-maskless-panels",
-    version=1,
+    version=2,
     detector="PVA",
     normals=CUBE,
     order="panels +x, -x, +y, -y, +z, -z",

@@ -11,7 +11,7 @@ _NORMALS = sphere(16)
 
 PRESET = faces(
     name="pva-maskless-sphere",
-    version=1,
+    version=2,
     detector="PVA",
     normals=_NORMALS,
     order="cells on a Fibonacci lattice from +z to -z (geometry.face_normals)",
