@@ -22,7 +22,9 @@ Frames = NDArray[Any]
 UNIT_TOLERANCE = 1e-6
 """Largest departure from length one of a vector given as a unit vector."""
 
-_FRAME_DTYPES = tuple(np.dtype(name) for name in ("uint8", "uint16", "float32", "float64"))
+#: Numba compiles every kernel anew for each type, some seconds a piece at a first call. Two hold
+#: what detectors give without loss; a third would pay for a copy it saves only after many frames.
+_FRAME_DTYPES = np.dtype(np.uint16), np.dtype(np.float64)
 
 
 def as_frames(observations: ArrayLike) -> Frames:
@@ -31,8 +33,8 @@ def as_frames(observations: ArrayLike) -> Frames:
     Parameters
     ----------
     observations : array_like, shape (N, H, W)
-        Real numbers. uint8, uint16, float32 and float64 keep their type; booleans become uint8,
-        half floats float32, every other type float64 (exact for integers below 2**53).
+        Real numbers. uint16 and float64 keep their type; uint8 and booleans become uint16, every
+        other type float64 (exact for integers below 2**53).
 
     Returns
     -------
@@ -48,15 +50,13 @@ def as_frames(observations: ArrayLike) -> Frames:
     --------
     >>> as_frames([[[True, False], [False, False]]])
     array([[[1, 0],
-            [0, 0]]], dtype=uint8)
+            [0, 0]]], dtype=uint16)
     """
     array = _numbers(observations, "observations", 3, "(N, H, W)")
-    if array.dtype.kind == "b":
-        array = array.astype(np.uint8)
-    elif array.dtype == np.float16:
-        array = array.astype(np.float32)
     dtype = array.dtype.newbyteorder("=")
-    if dtype not in _FRAME_DTYPES:
+    if array.dtype.kind == "b" or dtype == np.uint8:
+        dtype = np.dtype(np.uint16)
+    elif dtype not in _FRAME_DTYPES:
         dtype = np.dtype(np.float64)
     # The read-only flag is part of an array's type in Numba: one flag, one compilation.
     frames = np.require(array, dtype=dtype, requirements=["C_CONTIGUOUS", "ALIGNED"]).view()
