@@ -168,12 +168,13 @@ def _batch(  # noqa: PLR0917 - as `cramer_rao`
     zero, step = np.zeros(count), np.full(count, step_rad)
     mean = sensor.expected(scene, pattern)
     own = np.sqrt(sensor.variance(mean)).reshape(count, -1)
-    shares = isinstance(sensor, SharesNoise)
-    noise = Whitening(own, sensor.common_noise(mean.shape, None) if shares else None)
-    unit = with_unit = None
+    common = unit_common = unit = None
+    if isinstance(sensor, SharesNoise):
+        common = sensor.common_noise(mean.shape, None)
+        unit_common = sensor.common_noise(mean.shape, references)
+    noise = Whitening(own, common)
     if references is not None and isinstance(sensor, UnitSpread):
         unit = sensor.unit_variance(mean, scene, references)
-        with_unit = sensor.common_noise(mean.shape, references) if shares else None
     mean = mean.reshape(count, -1)
 
     def change(x: Floats, y: Floats) -> Floats:
@@ -230,7 +231,7 @@ def _batch(  # noqa: PLR0917 - as `cramer_rao`
         unit_angle_deg=(
             None
             if unit is None
-            else _unit_angle_deg(jacobian, noise, unit.reshape(count, -1), with_unit, local)
+            else _unit_angle_deg(jacobian, noise, unit.reshape(count, -1), unit_common, local)
         ),
     )
 

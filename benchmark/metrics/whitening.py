@@ -89,7 +89,7 @@ class Whitening:
 
     def _sums(self, values: Floats) -> Floats:
         size = len(self.deviation) * self._groups
-        return np.bincount(self._places, weights=values, minlength=size)
+        return np.bincount(self._places, weights=values, minlength=size).astype(np.float64)
 
     def _stretch(self, vectors: Floats, factor: Floats) -> None:
         """Add to vectors (N, M) their products with each u, times a factor of its, times u."""

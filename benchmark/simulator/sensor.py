@@ -71,7 +71,7 @@ class SharesNoise(Protocol):
     def common_noise(
         self, shape: tuple[int, ...], references: References | None
     ) -> CommonNoise | None:
-        """What elements of signals of this shape share, in the signal's unit; None for nothing.
+        """Return what elements of signals of this shape share, in their unit; None for nothing.
 
         Of a unit that is known, or known by `references` alone.
         """

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from algorithms.contract import Floats
 from benchmark.simulator.readout.detectors import PixelArray
 from benchmark.simulator.readout.references import References
 

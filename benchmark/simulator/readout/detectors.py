@@ -118,7 +118,7 @@ class PixelArray:
     gain_e_per_dn: float
     offset_dn: float
     bits: int
-    errors: PixelErrors = PixelErrors()
+    errors: PixelErrors = field(default_factory=PixelErrors)
     tunnel: float = 0.0
 
     def __post_init__(self) -> None:

@@ -31,8 +31,9 @@ class LensCamera:
     lens
         Projection and light gathering.
     detector
-        Pixels, whose amplifiers have no errors; `PixelArray.sunlit_e` is what a pixel would collect in the bare Sun without the
-        lens (with the camera's filter, if any), which concentrates it by pupil over pixel area.
+        Pixels, whose amplifiers have no errors; `PixelArray.sunlit_e` is what a pixel would
+        collect in the bare Sun without the lens (with the camera's filter, if any), which
+        concentrates it by pupil over pixel area.
     blur_mm
         Standard deviation of the Gaussian that every point is blurred by.
     flare

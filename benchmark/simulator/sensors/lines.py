@@ -225,12 +225,12 @@ class LineSensor:
     def _electrons(self, scene: Scene, pattern: FixedPattern) -> Floats:
         electrons = self.lit(scene)
         if scene.albedo is not None:
-            arrays = electrons.reshape(len(scene) * len(self.axes), 1, -1)
-            add_between(arrays, scene.albedo.reshape(len(arrays), 1, -1))
+            lines = electrons.reshape(len(scene) * len(self.axes), 1, -1)
+            add_between(lines, scene.albedo.reshape(len(lines), 1, -1))
         electrons += sloping(scene, self._places())
         if self.detector.errors.crosstalk:  # within an array
             arrays = electrons.reshape(-1, self.detector.columns)
-            electrons = self.detector.errors.gathered(arrays).reshape(electrons.shape)
+            electrons = np.asarray(self.detector.errors.gathered(arrays).reshape(electrons.shape))
         electrons *= self.detector.sunlit_e * pattern["gain"]
         electrons += pattern["dark_e"]
         return electrons

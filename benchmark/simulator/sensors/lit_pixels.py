@@ -190,8 +190,7 @@ class LitPixels:
         total = np.bincount(
             (columns + first).ravel(), light.ravel(), minlength=len(light) * self._means
         ).reshape(len(light), -1)
-        total += self._beyond + scene.stray[:, None] * self._rest[0]
-        total *= errors.smear
+        total = errors.smear * (total + self._beyond + scene.stray[:, None] * self._rest[0])
         near += np.take_along_axis(total, columns, axis=1)
         return np.asarray(total)
 
