@@ -72,7 +72,7 @@ def digitise(
         (ceil(H W / 2),) random words of 64 bits, two pixels each, low half first.
     tables
         `quantiles`, and (H, W) relative gain and dark electrons; (W,) electrons that the columns'
-        amplifiers add, or (0,) for none.
+        amplifiers add, or (0,) where these have no errors at all.
     numbers
         Stray light (added to `light`), electrons of full light, squared read noise, full well,
         electrons a digital number, offset and largest digital number; by how much of itself an
@@ -80,7 +80,7 @@ def digitise(
     """
     stray, sunlit, read2, full_well, per_dn, offset, top, bend = numbers
     table, gain, dark, columns = tables
-    amplified = bend != 0.0 or columns.shape[0] > 0
+    amplified = columns.shape[0] > 0
     height, width = out.shape
     noise = np.empty(width)
     for row in range(height):
@@ -94,9 +94,7 @@ def digitise(
                 mean = (light[row, column] + stray) * sunlit * gain[row, column] + dark[row, column]
                 value = mean + math.sqrt(max(mean, 0.0) + read2) * noise[column]
                 value = min(value, full_well)
-                value *= 1.0 - bend * value
-                if columns.shape[0] > 0:
-                    value += columns[column]
+                value = value * (1.0 - bend * value) + columns[column]
                 value = np.rint(offset + value / per_dn)
                 out[row, column] = np.uint16(min(max(value, 0.0), top))
             continue
@@ -125,20 +123,19 @@ def gather(out: Floats, light: Floats, shares: tuple[float, float, float]) -> No
     total = np.zeros(width)
     for row in range(height):
         above, below = max(row - 1, 0), min(row + 1, height - 1)
-        for column in range(width):
-            out[row, column] = own * light[row, column] + each * (
-                light[above, column] + light[below, column]
-            )
-        for column in range(1, width):
-            out[row, column] += each * light[row, column - 1]
-        for column in range(width - 1):
-            out[row, column] += each * light[row, column + 1]
-        out[row, 0] += each * light[row, 0]
-        out[row, width - 1] += each * light[row, width - 1]
-        for column in range(width):
-            out[row, column] += stray
-            total[column] += out[row, column]
+        for column in range(1, width - 1):
+            beside = light[row, column - 1] + light[row, column + 1]
+            around = light[above, column] + light[below, column] + beside
+            out[row, column] = own * light[row, column] + each * around + stray
+        for column in (0, width - 1):
+            left, right = max(column - 1, 0), min(column + 1, width - 1)
+            beside = light[row, left] + light[row, right]
+            around = light[above, column] + light[below, column] + beside
+            out[row, column] = own * light[row, column] + each * around + stray
     if smear > 0.0:
+        for row in range(height):
+            for column in range(width):
+                total[column] += out[row, column]
         for row in range(height):
             for column in range(width):
                 out[row, column] += smear * total[column]

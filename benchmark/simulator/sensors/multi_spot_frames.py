@@ -288,7 +288,7 @@ class MultiSpotSensor:
             errors.nonlinearity / detector.full_well_e,
         )
         tables = (quantiles(), pattern["gain"], pattern["dark_e"])
-        columns = pattern.get("column_e", np.zeros(0))
+        columns = pattern.get("column_e", np.zeros(shape[1] if errors.of_amplifiers else 0))
         gathered = np.empty(shape) if errors.moves_charge else None
         words = (shape[0] * shape[1] + 1) // 2
         flat = light.reshape(-1)
@@ -308,8 +308,7 @@ class MultiSpotSensor:
                 seen, stray = gathered, 0.0
             added = columns
             if errors.column_noise_e:
-                noise = streams.column_noise(errors.column_noise_e, shape[1:])
-                added = columns + noise if columns.size else noise
+                added = columns + streams.column_noise(errors.column_noise_e, shape[1:])
             digitise(
                 out[n],
                 seen,

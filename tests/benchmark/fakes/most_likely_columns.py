@@ -20,9 +20,7 @@ from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.scene import Scene
 
 
-def errors_deg(
-    setup: Condition, one: Scene, names: tuple[str | int, ...], trials: int
-) -> Floats:
+def errors_deg(setup: Condition, one: Scene, names: tuple[str | int, ...], trials: int) -> Floats:
     """(trials, 2) errors along two tangent axes; every trial draws light, stray light and noise."""
     sensor: Any = setup.sensor
     detector, errors, light = sensor.detector, sensor.detector.errors, setup.irradiance
@@ -50,7 +48,9 @@ def errors_deg(
         offset = np.tile(own, codes.shape[1] // width)
     assert of_window(unit["gain"], one, seen.shape[1:]).shape == offset.shape
     bend = errors.nonlinearity / well
-    last = min(2.0**detector.bits - 1, np.rint(detector.offset_dn + well * (1 - bend * well) / per_dn))
+    last = min(
+        2.0**detector.bits - 1, np.rint(detector.offset_dn + well * (1 - bend * well) / per_dn)
+    )
     first_axis, second_axis = tangent_axes(one.sun)
 
     def held(p: Floats) -> Floats:
@@ -77,18 +77,39 @@ def errors_deg(
         spread = bent**2 * (charge + detector.read_noise_e**2) + apart**2
         score, weight = _score(codes, mean, np.sqrt(spread) / per_dn, (0.0, last))
         own = slopes[None] * bent[:, None, :] / per_dn
-        left = np.einsum("nim,nm,njm->nij", own, weight, own) + np.diag(prior)
-        right = np.einsum("nim,nm->ni", own, score) - prior * (guess - typical)
-        if shared:
-            # the columns' share is solved for first (Schur's complement)
-            rows = (trials, -1, width)
-            theirs = weight.reshape(rows).sum(axis=1) / per_dn**2 + errors.column_noise_e**-2
-            push = score.reshape(rows).sum(axis=1) / per_dn - common * errors.column_noise_e**-2
-            mixed = (own * weight[:, None, :]).reshape(trials, 4, -1, width).sum(axis=2) / per_dn
-            left -= np.einsum("nik,njk->nij", mixed / theirs[:, None, :], mixed)
-            right -= np.einsum("nik,nk->ni", mixed, push / theirs)
-        move = np.linalg.solve(left, right[:, :, None])[:, :, 0]
+        column = (per_dn, errors.column_noise_e, common) if shared else None
+        move, pushed = _moves(own, (score, weight), (prior, guess - typical), column)
         guess = guess + move
-        if shared:
-            common = common + (push - np.einsum("nik,ni->nk", mixed, move)) / theirs
+        common = common + pushed
     return np.degrees(guess[:, :2])
+
+
+def _moves(
+    own: Floats,
+    told: tuple[Floats, Floats],
+    known: tuple[Floats, Floats],
+    column: tuple[float, float, Floats] | None,
+) -> tuple[Floats, Floats | float]:
+    """One step of Newton's: of the parameters (N, 4), and of the columns' noise (N, W).
+
+    `own` (N, 4, M) are slopes of the mean, `told` score and weight of the readings, `known` the
+    prior's weight and how far the guess is from it, `column` the gain, and spread and guess of
+    the columns' noise.
+    """
+    score, weight = told
+    prior, away = known
+    left = np.einsum("nim,nm,njm->nij", own, weight, own) + np.diag(prior)
+    right = np.einsum("nim,nm->ni", own, score) - prior * away
+    if column is None:
+        return np.linalg.solve(left, right[:, :, None])[:, :, 0], 0.0
+    per_dn, spread, common = column
+    count, width = common.shape
+    # the columns' share is solved for first (Schur's complement)
+    rows = (count, -1, width)
+    theirs = weight.reshape(rows).sum(axis=1) / per_dn**2 + spread**-2
+    push = score.reshape(rows).sum(axis=1) / per_dn - common * spread**-2
+    mixed = (own * weight[:, None, :]).reshape(count, 4, -1, width).sum(axis=2) / per_dn
+    left -= np.einsum("nik,njk->nij", mixed / theirs[:, None, :], mixed)
+    right -= np.einsum("nik,nk->ni", mixed, push / theirs)
+    move = np.linalg.solve(left, right[:, :, None])[:, :, 0]
+    return move, (push - np.einsum("nik,ni->nk", mixed, move)) / theirs

@@ -36,9 +36,7 @@ CASES = [
     ),
     (
         "pda-slit",
-        PixelErrors(
-            crosstalk=0.05, nonlinearity=0.05, column_offset_e=900.0, column_noise_e=300.0
-        ),
+        PixelErrors(crosstalk=0.05, nonlinearity=0.05, column_offset_e=900.0, column_noise_e=300.0),
         21.3,
         -9.7,
     ),
