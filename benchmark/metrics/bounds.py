@@ -10,11 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.contract import Floats
+from benchmark.metrics.whitening import Whitening
 from benchmark.simulator.light.environment import Irradiance
 from benchmark.simulator.light.sun_disc import tangent_axes
+from benchmark.simulator.readout.column_noise import CommonNoise
 from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
-from benchmark.simulator.sensor import FixedPattern, Sensor, UnitSpread
+from benchmark.simulator.sensor import FixedPattern, Sensor, SharesNoise, UnitSpread
 
 #: Half step of the central differences over direction, radians: small against the Sun's disc
 #: (4.65e-3), which smooths every edge of a shadow, and large against the distances between the
@@ -93,14 +95,16 @@ def cramer_rao(  # noqa: PLR0917 - memory and time come last
     Two of them: the unit known, and the unit known as far as `references` tell.
 
     The Fisher matrix of (two tangent axes, irradiance, stray light) is ``J^T V^-1 J`` with J
-    from differences of `Sensor.expected` and V from `Sensor.variance`. The two nuisances enter
+    from differences of `Sensor.expected` and V from `Sensor.variance`, with what elements share
+    (`SharesNoise`) off its diagonal. The two nuisances enter
     with the spread they are drawn with (``1/spread^2`` on the diagonal: the hybrid bound,
     exact for Gaussian nuisances). Fixed pattern, assembly and light from the Earth count as
     known, so the bound holds for every estimator, however well it is calibrated.
 
     Who does not know the unit has its elements' gains and dark signals for nuisances, too, with
     the spread that is left after flat and dark readings. They are independent from element to
-    element, so that marginalising them adds to V what `UnitSpread.unit_variance` says; assembly
+    element, so that marginalising them adds to V what `UnitSpread.unit_variance` says, and columns'
+    offsets add to what a column's elements share; assembly
     stays known, and which directions are observable is settled with the unit known. Both bounds
     come of the same signals.
 
@@ -163,8 +167,12 @@ def _batch(  # noqa: PLR0917 - as `cramer_rao`
     first, second = tangent_axes(scene.sun)
     zero, step = np.zeros(count), np.full(count, step_rad)
     mean = sensor.expected(scene, pattern)
-    deviation = np.sqrt(sensor.variance(mean)).reshape(count, -1)
-    unit = None
+    own = np.sqrt(sensor.variance(mean)).reshape(count, -1)
+    common = unit_common = unit = None
+    if isinstance(sensor, SharesNoise):
+        common = sensor.common_noise(mean.shape, None)
+        unit_common = sensor.common_noise(mean.shape, references)
+    noise = Whitening(own, common)
     if references is not None and isinstance(sensor, UnitSpread):
         unit = sensor.unit_variance(mean, scene, references)
     mean = mean.reshape(count, -1)
@@ -176,8 +184,7 @@ def _batch(  # noqa: PLR0917 - as `cramer_rao`
 
     def _change(expected: Floats) -> Floats:
         difference = expected.reshape(count, -1) - mean
-        difference /= deviation
-        return difference
+        return noise.whiten(difference)
 
     sides = [(change(step, zero), change(-step, zero)), (change(zero, step), change(zero, -step))]
     # nuisances in units of their spread: their prior information is 1
@@ -224,19 +231,31 @@ def _batch(  # noqa: PLR0917 - as `cramer_rao`
         unit_angle_deg=(
             None
             if unit is None
-            else _unit_angle_deg(jacobian, deviation, unit.reshape(count, -1), local)
+            else _unit_angle_deg(jacobian, noise, unit.reshape(count, -1), unit_common, local)
         ),
     )
 
 
 def _unit_angle_deg(
-    jacobian: list[Floats], deviation: Floats, unit: Floats, observable: NDArray[np.bool_]
+    jacobian: list[Floats],
+    noise: Whitening,
+    unit: Floats,
+    common: CommonNoise | None,
+    observable: NDArray[np.bool_],
 ) -> Floats:
-    """(N,) bound with `unit` (N, M) added to the variances; the Jacobian is overwritten."""
+    """(N,) bound with `unit` (N, M) added to the variances, and `common` noise instead.
+
+    The Jacobian is overwritten.
+    """
     # a reading that tells nothing has an infinite deviation and no derivative
-    share = np.sqrt(1.0 + unit / deviation**2)
-    for column in jacobian:
-        np.divide(column, share, out=column)
+    if common is None:
+        share = np.sqrt(1.0 + unit / noise.deviation**2)
+        for column in jacobian:
+            np.divide(column, share, out=column)
+    else:
+        wider = Whitening(np.sqrt(noise.deviation**2 + unit), common)
+        for column in jacobian:
+            wider.whiten(noise.undone(column))
     information, _ = _marginal(jacobian)
     values, _ = _principal(information)
     regular = _regular(values)

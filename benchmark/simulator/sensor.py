@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from algorithms.contract import Floats
 from benchmark.simulator.light.environment import Earth
+from benchmark.simulator.readout.column_noise import CommonNoise
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
@@ -60,6 +61,20 @@ class UnitSpread(Protocol):
         self, pattern: FixedPattern, references: References, streams: NoiseStreams
     ) -> dict[str, Floats]:
         """Mean dark and flat readings of a unit, of all its elements; names end in the unit."""
+        ...
+
+
+@runtime_checkable
+class SharesNoise(Protocol):
+    """A sensor whose readings may have noise in common: pixels of a column its amplifier's."""
+
+    def common_noise(
+        self, shape: tuple[int, ...], references: References | None
+    ) -> CommonNoise | None:
+        """Return what elements of signals of this shape share, in their unit; None for nothing.
+
+        Of a unit that is known, or known by `references` alone.
+        """
         ...
 
 

@@ -19,12 +19,16 @@ from benchmark.metrics.bounds import LENS_STEP_RAD
 from benchmark.simulator.light.environment import Irradiance
 from benchmark.simulator.optics.flare import Aureole, Clouds, Flare, Ghost, Streak
 from benchmark.simulator.readout.detectors import DarkCurrent, PixelArray
+from benchmark.simulator.readout.pixel_errors import PixelErrors
 from benchmark.simulator.sensors.black_sun import BlackSunSensor
 from benchmark.simulator.sensors.blooming import BloomingSensor
 from benchmark.simulator.sensors.lens_camera import LensCamera
 
 #: Azimuths of the scratches on a dirty window.
 _SCRATCHES_DEG = (12.0, 57.0, 101.0, 148.0)
+
+#: Charge that wanders, as of arrays behind masks; webcams' CCDs shift their lines in the dark.
+_ERRORS = PixelErrors(crosstalk=0.02)
 
 _LOW_NOISE = "The same camera with a sixth of the read noise and a 12-bit converter."
 _CLOUDED = (
@@ -94,6 +98,7 @@ def ccd(columns: int, pitch_mm: float) -> PixelArray:
         gain_e_per_dn=167.0,
         offset_dn=8.0,
         bits=8,
+        errors=_ERRORS,
     )
 
 
@@ -113,6 +118,7 @@ def cmos(columns: int, pitch_mm: float) -> PixelArray:
         gain_e_per_dn=11.5,
         offset_dn=16.0,
         bits=10,
+        errors=_ERRORS,
     )
 
 
@@ -135,7 +141,7 @@ def blooming(camera: LensCamera) -> dict[str, Condition]:
     return {
         "nominal": seen(
             "Plain lens: 30 % of the light in an aureole, 5 % veil, two ghosts; read noise of a "
-            "third of a digital number, 13 dead pixels or so.",
+            "third of a digital number, 2 % crosstalk, 13 dead pixels or so.",
             camera,
         ),
         "low-noise": seen(_LOW_NOISE, replace(camera, detector=quiet)),
@@ -185,7 +191,7 @@ def black_sun(camera: LensCamera) -> dict[str, Condition]:
     return {
         "nominal": seen(
             "Clean lens: 8 % of the light in an aureole, 2 % veil, two faint ghosts; read noise "
-            "of 2.6 digital numbers, 12 dead pixels or so.",
+            "of 2.6 digital numbers, 2 % crosstalk, 12 dead pixels or so.",
             camera,
         ),
         "low-noise": seen(_LOW_NOISE, replace(camera, detector=quiet)),

@@ -9,6 +9,7 @@ from typing import Any
 
 from algorithms.contract import Observation, SensorGeometry
 from benchmark.datasets.conditions.alignment import careful, misaligned
+from benchmark.datasets.conditions.pixel_arrays import as_bought
 from benchmark.datasets.conditions.propagation import GLASS, LIGHT
 from benchmark.datasets.fields import AngleField
 from benchmark.datasets.preset import Condition, Preset
@@ -18,12 +19,21 @@ from benchmark.simulator.masks.slits import SlitErrors, slit_rows
 from benchmark.simulator.optics.plates import CoverGlass, fresnel_number
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout.detectors import DarkCurrent, PixelArray
+from benchmark.simulator.readout.pixel_errors import PixelErrors
 from benchmark.simulator.sensors.blooming_lines import BloomingLineSensor
 from benchmark.simulator.sensors.lines import LineAxis, LineSensor
 
 #: For pixels of some 10 um, over a dozen of which the Sun blurs an edge at 60 deg: the steps that
 #: single points make must not show (0.2 % of the peak).
 SUN = SolarDisc(rings=(28, 28, 28, 28, 28, 28))
+
+#: Linear arrays have no image to shift. Crosstalk and bent gain of CCDs and active pixels are those
+#: of area arrays (`pixel_arrays`); photodiode arrays fall short of proportion by 0.4 % (TSL1401),
+#: and their pixels are larger than charge wanders: half of the crosstalk. Where each pixel has an
+#: amplifier of its own, offsets are a round digital number.
+_CCD_ERRORS = PixelErrors(crosstalk=0.02, nonlinearity=0.005)
+_CMOS_ERRORS = PixelErrors(crosstalk=0.02, nonlinearity=0.01, column_offset_e=60.0)
+_DIODE_ERRORS = PixelErrors(crosstalk=0.01, nonlinearity=0.004, column_offset_e=300.0)
 
 ASSEMBLED = careful(0.003)
 SLITS_ASSEMBLED = SlitErrors(deflection_deg=0.03, inclination_deg=0.05)
@@ -104,6 +114,7 @@ def ccd(columns: int, pitch_mm: float) -> PixelArray:
         gain_e_per_dn=25.0,
         offset_dn=16.0,
         bits=12,
+        errors=_CCD_ERRORS,
     )
 
 
@@ -123,6 +134,7 @@ def active_pixels(columns: int, pitch_mm: float) -> PixelArray:
         gain_e_per_dn=60.0,
         offset_dn=8.0,
         bits=10,
+        errors=_CMOS_ERRORS,
     )
 
 
@@ -142,6 +154,7 @@ def photodiode_array(columns: int, pitch_mm: float, bits: int = 10) -> PixelArra
         gain_e_per_dn=300_000.0 / 2.0**bits,
         offset_dn=8.0,
         bits=bits,
+        errors=_DIODE_ERRORS,
     )
 
 
@@ -172,7 +185,7 @@ def conditions(sensor: LineSensor, half_fov_deg: float) -> dict[str, Condition]:
         "nominal": (
             (
                 "Carefully assembled sensor: tilts, slit deflection and inclination of hundredths "
-                f"of a degree, {detector.prnu:.0%} pixel gain spread."
+                f"of a degree, {detector.prnu:.0%} pixel gain spread; {as_bought(detector)}."
             ),
             sensor,
         ),

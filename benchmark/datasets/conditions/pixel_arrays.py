@@ -18,10 +18,29 @@ from benchmark.simulator.optics.assembly import Assembly
 from benchmark.simulator.optics.diffraction import propagation
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout.detectors import DarkCurrent, PixelArray
+from benchmark.simulator.readout.pixel_errors import PixelErrors
 from benchmark.simulator.sensors.diffractive_frames import DiffractiveFrameSensor
 from benchmark.simulator.sensors.frames import FrameSensor
 from benchmark.simulator.sensors.multi_spot_frames import MultiSpotSensor
 from benchmark.simulator.sensors.uneven_frames import UnevenFrameSensor, UnevenIrradiance
+
+#: Wires and oxide over a photodiode, mm: the tunnel that oblique light has to pass.
+_STACK_MM = 0.003
+#: A CMOS array's. Half a percent of the charge to each neighbour and a gain that falls by 1 to 2
+#: percent up to the full well, quadratically, are those of a sensor for ultraviolet astronomy (SRI
+#: 4K x 2K); 1 % is what GSENSE4040 guarantees. Columns differ twice as much as pixels do
+#: (Pereira, J. Aerosp. Technol. Manag. 5, 2013); half a digital number, and a tenth of the read
+#: noise from frame to frame, are round numbers.
+_CMOS_ERRORS = PixelErrors(
+    crosstalk=0.02, nonlinearity=0.01, column_offset_e=15.0, column_noise_e=3.0
+)
+#: A frame-transfer CCD's: one amplifier, so no columns; images shift under their mask within half
+#: a millisecond to some, here 1 us a row of an exposure of 10 ms.
+_CCD_ERRORS = PixelErrors(crosstalk=0.02, smear=1e-4, nonlinearity=0.005)
+#: End of life: after 5.3e10 protons/cm2 of 50 MeV two CMOS sensors had hundreds of times the dark
+#: current, gain and read noise as before (Liu et al., arXiv:2312.01851). A tenth of that here,
+#: tens of times; how many pixels are hot, and how much, are round numbers.
+_AGED_DARK, _AGED_HOT = 20.0, {"hot": 0.01, "hot_factor": 20.0}
 
 PixelSensor = TypeVar("PixelSensor", FrameSensor, MultiSpotSensor)
 
@@ -92,7 +111,10 @@ def hole(diameter_mm: float, thickness_mm: float = 0.0) -> Mask:
 
 
 def cmos(columns: int, pitch_mm: float, sunlit_e: float = 20_000.0) -> PixelArray:
-    """Return a square array of active pixels: 10 bits, read noise of one digital number."""
+    """Return a square array of active pixels: 10 bits, read noise of one digital number.
+
+    As bought: crosstalk, bent gain, columns that differ, oblique light dimmed.
+    """
     return PixelArray(
         columns=columns,
         rows=columns,
@@ -107,11 +129,13 @@ def cmos(columns: int, pitch_mm: float, sunlit_e: float = 20_000.0) -> PixelArra
         gain_e_per_dn=30.0,
         offset_dn=8.0,
         bits=10,
+        errors=_CMOS_ERRORS,
+        tunnel=round(_STACK_MM / pitch_mm, 3),
     )
 
 
 def ccd(columns: int, pitch_mm: float, prnu: float = 0.01) -> PixelArray:
-    """Return a square area CCD: deep wells, little noise, 12 bits."""
+    """Return a square area CCD: deep wells, little noise, 12 bits; frames shift in the light."""
     return PixelArray(
         columns=columns,
         rows=columns,
@@ -126,6 +150,7 @@ def ccd(columns: int, pitch_mm: float, prnu: float = 0.01) -> PixelArray:
         gain_e_per_dn=30.0,
         offset_dn=16.0,
         bits=12,
+        errors=_CCD_ERRORS,
     )
 
 
@@ -152,19 +177,21 @@ def pixel_conditions(
     careful_also: str = "",
     off_centre: str = "mask 50 and -40 um off centre",
 ) -> dict[str, Condition]:
-    """Return nominal, low-noise, high-noise, misaligned and hot for a nominal sensor.
+    """Return nominal, low-noise, high-noise, misaligned, hot and aged for a nominal sensor.
 
     Low noise is ten times the electrons at 12 bits; high noise a fifth of them with five times
     the read noise and the offset raised, so that noise is not clipped; misaligned is far above
-    the noise; hot is 80 deg C. Two of them say in a dataset's own words what else is so of the
-    careful assembly, and how far its mask is off centre where it is misaligned.
+    the noise; hot is 80 deg C; aged is the end of life. Two of them say in a dataset's own words
+    what else is so of the careful assembly, and how far its mask is off centre where it is
+    misaligned.
     """
     detector, camera = sensor.detector, sensor.camera
     errors = misaligned(round(0.025 * camera.focal_length_mm, 6))
     return {
         "nominal": Condition(
             "Carefully assembled sensor: tilts of hundredths of a degree, focal length 0.2 % "
-            f"long, {100.0 * detector.prnu:g} % pixel gain spread{careful_also}.",
+            f"long, {100.0 * detector.prnu:g} % pixel gain spread{careful_also}; "
+            f"{as_bought(detector)}.",
             sensor,
             light,
         ),
@@ -210,7 +237,35 @@ def pixel_conditions(
             ),
             light,
         ),
+        "aged": Condition(
+            "The nominal sensor at the end of its life, calibrated then: some 5e9 protons/cm2 have "
+            f"made dark current {_AGED_DARK:g} times as strong and one pixel in a hundred hot, "
+            f"with {_AGED_HOT['hot_factor']:g} times that again on average.",
+            replace(sensor, detector=aged(detector)),
+            light,
+        ),
     }
+
+
+def aged(detector: PixelArray) -> PixelArray:
+    """Return the detector after years in orbit."""
+    dark = replace(detector.dark, at_25_c=_AGED_DARK * detector.dark.at_25_c)
+    return replace(detector, dark=dark, errors=replace(detector.errors, **_AGED_HOT))
+
+
+def as_bought(detector: PixelArray) -> str:
+    """Say what a detector's pixels and amplifiers do beside noise."""
+    errors, said = detector.errors, []
+    if errors.crosstalk:
+        said.append(f"{100.0 * errors.crosstalk:g} % crosstalk")
+    if errors.smear:
+        said.append(f"{100.0 * errors.smear:g} % smear a row")
+    if errors.nonlinearity:
+        said.append(f"a full well {100.0 * errors.nonlinearity:g} % short of proportion")
+    if errors.column_offset_e:
+        what = "columns" if detector.rows > 1 else "pixels"
+        said.append(f"{what}' amplifiers {errors.column_offset_e:g} electrons apart")
+    return ", ".join(said)
 
 
 def missing_apertures(sensor: MultiSpotSensor, light: Irradiance = LIGHT) -> Condition:

@@ -59,8 +59,8 @@ def digitise(
     out: NDArray[np.uint16],
     light: Floats,
     bits: NDArray[np.int64],
-    tables: tuple[Floats, Floats, Floats],
-    numbers: tuple[float, float, float, float, float, float, float],
+    tables: tuple[Floats, Floats, Floats, Floats],
+    numbers: tuple[float, float, float, float, float, float, float, float],
 ) -> None:
     """Write the digital numbers of one frame.
 
@@ -71,13 +71,16 @@ def digitise(
     bits
         (ceil(H W / 2),) random words of 64 bits, two pixels each, low half first.
     tables
-        `quantiles`, and (H, W) relative gain and dark electrons.
+        `quantiles`, and (H, W) relative gain and dark electrons; (W,) electrons that the columns'
+        amplifiers add, or (0,) where these have no errors at all.
     numbers
         Stray light (added to `light`), electrons of full light, squared read noise, full well,
-        electrons a digital number, offset and largest digital number.
+        electrons a digital number, offset and largest digital number; by how much of itself an
+        electron's share falls with every electron more.
     """
-    stray, sunlit, read2, full_well, per_dn, offset, top = numbers
-    table, gain, dark = tables
+    stray, sunlit, read2, full_well, per_dn, offset, top, bend = numbers
+    table, gain, dark, columns = tables
+    amplified = columns.shape[0] > 0
     height, width = out.shape
     noise = np.empty(width)
     for row in range(height):
@@ -86,11 +89,56 @@ def digitise(
             pixel = row * width + column
             word = int((bits[pixel >> 1] >> (32 * (pixel & 1))) & 0xFFFFFFFF)
             noise[column] = _normal(word, table)
+        if amplified:
+            for column in range(width):
+                mean = (light[row, column] + stray) * sunlit * gain[row, column] + dark[row, column]
+                value = mean + math.sqrt(max(mean, 0.0) + read2) * noise[column]
+                value = min(value, full_well)
+                value = value * (1.0 - bend * value) + columns[column]
+                value = np.rint(offset + value / per_dn)
+                out[row, column] = np.uint16(min(max(value, 0.0), top))
+            continue
         for column in range(width):
             mean = (light[row, column] + stray) * sunlit * gain[row, column] + dark[row, column]
             value = mean + math.sqrt(max(mean, 0.0) + read2) * noise[column]
             value = np.rint(offset + min(value, full_well) / per_dn)
             out[row, column] = np.uint16(min(max(value, 0.0), top))
+
+
+@compiled
+def gather(out: Floats, light: Floats, shares: tuple[float, float, float]) -> None:
+    """Write the charge of a frame as `PixelErrors.gathered` has it, in light's unit.
+
+    Parameters
+    ----------
+    out, light
+        (H, W): overwritten, and irradiance.
+    shares
+        Stray light (added to `light`), what a pixel gives to its neighbours, and the time of
+        shifting by a row over the exposure.
+    """
+    stray, crosstalk, smear = shares
+    height, width = out.shape
+    each, own = crosstalk / 4.0, 1.0 - crosstalk
+    total = np.zeros(width)
+    for row in range(height):
+        above, below = max(row - 1, 0), min(row + 1, height - 1)
+        for column in range(1, width - 1):
+            beside = light[row, column - 1] + light[row, column + 1]
+            around = light[above, column] + light[below, column] + beside
+            out[row, column] = own * light[row, column] + each * around + stray
+        for column in (0, width - 1):
+            left, right = max(column - 1, 0), min(column + 1, width - 1)
+            beside = light[row, left] + light[row, right]
+            around = light[above, column] + light[below, column] + beside
+            out[row, column] = own * light[row, column] + each * around + stray
+    if smear > 0.0:
+        for row in range(height):
+            for column in range(width):
+                total[column] += out[row, column]
+        for row in range(height):
+            for column in range(width):
+                out[row, column] += smear * total[column]
 
 
 @compiled

@@ -10,6 +10,8 @@ from typing import Literal
 import numpy as np
 
 from algorithms.contract import Floats
+from benchmark.seeds import generator
+from benchmark.simulator.readout.pixel_errors import PixelErrors
 
 Response = Literal["cosine", "kelly"]
 
@@ -29,6 +31,25 @@ def kelly_response(cosine: Floats) -> Floats:
     """
     c = np.maximum(cosine, 0.0)
     return np.maximum(((-0.369 * c + 0.637) * c + 0.750) * c - 0.015, 0.0)
+
+
+#: Index of the oxide between a pixel's surface and its photodiode.
+OXIDE_INDEX = 1.46
+
+
+def tunnel_response(cosine: Floats, depth: float) -> Floats:
+    """Share of the light that reaches the floor of a tunnel, by the cosine of incidence.
+
+    A photodiode lies at the bottom of a tunnel between wires, `depth` times as deep as wide,
+    filled with oxide: light that comes askew falls on the walls (pixel vignetting, Catrysse, Liu
+    and El Gamal, Proc. SPIE 3965, 2000). Of a square floor a parallel beam refracted to theta'
+    reaches ``1 - depth tan(theta')``, for a plane of incidence along a side. At grazing incidence
+    light is 43 deg from the normal within: depths above 1.06 leave none.
+    """
+    c = np.maximum(cosine, 0.0)
+    square = np.maximum(1.0 - c * c, 0.0) / OXIDE_INDEX**2  # of the sine, after refraction
+    tangent = np.sqrt(square / (1.0 - square))
+    return np.asarray(np.maximum(1.0 - depth * tangent, 0.0))
 
 
 RESPONSES: dict[str, Callable[[Floats], Floats]] = {
@@ -76,6 +97,12 @@ class PixelArray:
         Standard deviation a pixel.
     gain_e_per_dn, offset_dn, bits
         The converter: ``DN = round(offset + e / gain)`` clipped to [0, 2^bits - 1].
+    errors
+        What else pixels and amplifiers do. Read noise is that at the amplifiers' input: it is
+        bent with the signal. A linear array's pixels count as columns, each by itself.
+    tunnel
+        Depth of a pixel over the width of its photodiode, which dims oblique light
+        (`tunnel_response`); 0 for none.
     """
 
     columns: int
@@ -91,6 +118,38 @@ class PixelArray:
     gain_e_per_dn: float
     offset_dn: float
     bits: int
+    errors: PixelErrors = field(default_factory=PixelErrors)
+    tunnel: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not self.tunnel >= 0:
+            raise ValueError(f"tunnel must not be negative; got {self.tunnel}")
+
+    def built(self, shape: tuple[int, ...], *names: str | int) -> dict[str, Floats]:
+        """Draw the pixels of the unit of this name.
+
+        ``gain`` and ``dark_e`` of `shape`, relative and electrons; ``column_e`` (its last size)
+        where columns have offsets.
+        """
+        gain = 1.0 + self.prnu * generator(*names, "prnu").standard_normal(shape)
+        dark = self.dark.level() * self.exposure_s
+        dark_e = dark * (1.0 + self.dsnu * generator(*names, "dsnu").standard_normal(shape))
+        unit = {"gain": np.maximum(gain, 0.0), "dark_e": np.maximum(dark_e, 0.0)}
+        if self.errors.hot:
+            unit["dark_e"] *= self.errors.dark_factor(shape, *names)
+        if self.errors.column_offset_e:
+            unit["column_e"] = self.errors.column_offsets(shape[-1], *names)
+        return unit
+
+    @property
+    def shared_noise_e(self) -> float:
+        """Noise (electrons) that all pixels of a column share; none of linear arrays."""
+        return self.errors.column_noise_e if self.rows > 1 else 0.0
+
+    @property
+    def apart_noise_e(self) -> float:
+        """Noise (electrons) that each pixel of a linear array has behind its amplifier."""
+        return self.errors.column_noise_e if self.rows == 1 else 0.0
 
     @property
     def centre_px(self) -> tuple[float, float]:
@@ -105,7 +164,8 @@ class PixelArray:
     @property
     def last_code_dn(self) -> int:
         """Largest digital number that can come: the converter's, or that of a full well."""
-        full = round(self.offset_dn + self.full_well_e / self.gain_e_per_dn)
+        read = float(self.errors.read(np.asarray(self.full_well_e), self.full_well_e))
+        full = round(self.offset_dn + read / self.gain_e_per_dn)
         return min(self.full_scale_dn, full)
 
 

@@ -15,19 +15,33 @@ GAUSSIAN_FROM: float = 20.0
 
 @dataclass(frozen=True)
 class NoiseStreams:
-    """Two generators, each drawn in sample order: Gaussian values and small Poisson counts.
+    """Generators, each drawn in sample order: Gaussian values and small Poisson counts.
 
     Two, because the number of small counts depends on the signal: drawn from the Gaussian
-    stream they would shift everything after them and tie the values to the batch size.
+    stream they would shift everything after them and tie the values to the batch size. The noise
+    of columns has one of its own, so that pixels' noise stays as it is without it.
     """
 
     gaussian: np.random.Generator
     poisson: np.random.Generator
+    columns: np.random.Generator | None = None
 
     @classmethod
     def named(cls, *names: str | int) -> NoiseStreams:
         """Return the streams of this dataset, version, condition and split."""
-        return cls(generator(*names, "gaussian"), generator(*names, "poisson"))
+        return cls(*(generator(*names, of) for of in ("gaussian", "poisson", "columns")))
+
+    def column_noise(self, deviation: float, shape: tuple[int, ...]) -> Floats:
+        """Noise of the amplifiers of columns, a row of `shape` for every reading.
+
+        Raises
+        ------
+        ValueError
+            Where there is no stream of them.
+        """
+        if self.columns is None:
+            raise ValueError("noise of columns needs a stream of its own; columns is None")
+        return deviation * self.columns.standard_normal(shape)
 
 
 def counted(mean: Floats, read_noise: float, streams: NoiseStreams) -> Floats:

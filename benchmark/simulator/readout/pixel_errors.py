@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 
 import numpy as np
-from numpy.typing import NDArray
 
 from algorithms.contract import Floats
 from benchmark.seeds import generator
@@ -76,13 +75,24 @@ class PixelErrors:
     def gathered(self, light: Floats) -> Floats:
         """Charge of frames (N, H, W) or profiles (N, W) of the light that falls on their pixels.
 
-        Beyond the edges the light goes on as it is at them.
+        Beyond the edges the light goes on as it is at them. An image is shifted under the mask
+        with the rows that are read out alone: a window's gathers the light of the window.
         """
         if self.crosstalk:
             light = _spilled(light, self.crosstalk)
         if self.smear and light.ndim == 3:  # a line shifts no image
             light = light + self.smear * light.sum(axis=1, keepdims=True)
         return light
+
+    @property
+    def moves_charge(self) -> bool:
+        """Whether `gathered` is any other than the light."""
+        return self.crosstalk > 0.0 or self.smear > 0.0
+
+    @property
+    def of_amplifiers(self) -> bool:
+        """Whether amplifiers bend the signal, or differ from column to column."""
+        return max(self.nonlinearity, self.column_offset_e, self.column_noise_e) > 0.0
 
     def read(self, electrons: Floats, full_well_e: float) -> Floats:
         """Electrons (...) as the amplifier shows them: ``e (1 - n e / full well)``."""
@@ -106,16 +116,13 @@ class PixelErrors:
 
 def _spilled(light: Floats, share: float) -> Floats:
     """Give a share of every pixel of frames or profiles to its neighbours along each axis."""
-    axes = range(1, light.ndim)
-    each = share / (2.0 * len(axes))
     out = (1.0 - share) * light
-    for axis in axes:
-        out += each * (_moved(light, 1, axis) + _moved(light, -1, axis))
+    part = share / (2.0 * (light.ndim - 1)) * light
+    for axis in range(1, light.ndim):
+        # views: what is added to one is added to the frame; the outermost get their own once more
+        given, taken = np.moveaxis(part, axis, 0), np.moveaxis(out, axis, 0)
+        taken[1:] += given[:-1]
+        taken[:-1] += given[1:]
+        taken[0] += given[0]
+        taken[-1] += given[-1]
     return out
-
-
-def _moved(light: Floats, step: int, axis: int) -> NDArray[np.float64]:
-    """Return the neighbours of all pixels on one side; of the outermost, themselves."""
-    count = light.shape[axis]
-    places = np.clip(np.arange(count) + step, 0, count - 1)
-    return np.asarray(np.take(light, places, axis=axis))

@@ -70,8 +70,19 @@ def pixel_variance(detector: PixelArray, expected: Floats) -> Floats:
     """Squared digital numbers of pixels whose mean reading is `expected`: shot noise and reading.
 
     The scale ends at 0 and at the full well or the converter's last code, whichever is lower.
+    Amplifiers that bend the signal bend its noise; of their columns' offsets nothing is known
+    here, so that they count as charge: beside the read noise, next to nothing. Noise that a
+    column's pixels share is `benchmark.simulator.readout.column_noise`'s.
     """
     electrons = np.maximum((expected - detector.offset_dn) * detector.gain_e_per_dn, 0.0)
+    errors, per_dn = detector.errors, detector.gain_e_per_dn
+    if errors.nonlinearity or detector.apart_noise_e:
+        held = errors.held(electrons, detector.full_well_e)
+        bent = errors.slope(held, detector.full_well_e)
+        single = bent**2 * (held + detector.read_noise_e**2) + detector.apart_noise_e**2
+        return reading_variance(
+            expected, np.sqrt(single) / per_dn, 0.0, float(detector.last_code_dn)
+        )
     return _of_electrons(detector, expected, electrons, detector.last_code_dn)
 
 

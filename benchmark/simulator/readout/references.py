@@ -126,13 +126,17 @@ def readings_information(deviation: float, count: int) -> float:
 
 def pixel_spread(detector: PixelArray, dark_e: float, references: References) -> ElementSpread:
     """Return what is unknown of a pixel in digital numbers, whose mean dark signal is `dark_e`."""
-    per_dn = detector.gain_e_per_dn
+    per_dn, errors = detector.gain_e_per_dn, detector.errors
     light_e = _flat_light_e(detector, dark_e, references)
-    flat, dark = (
-        readings_information(math.sqrt(mean + detector.read_noise_e**2) / per_dn, count)
-        for mean, count in ((light_e + dark_e, references.flats), (dark_e, references.darks))
-    )
-    spread = detector.prnu, detector.dsnu * dark_e / per_dn
+    found = []
+    for mean, count in ((light_e + dark_e, references.flats), (dark_e, references.darks)):
+        bent = float(errors.slope(np.asarray(mean), detector.full_well_e))
+        single = bent**2 * (mean + detector.read_noise_e**2) + detector.apart_noise_e**2
+        found.append(bent**2 * readings_information(math.sqrt(single) / per_dn, count))
+    flat, dark = found
+    # of a linear array every pixel has an offset of its own; what columns share is known apart
+    own = errors.column_offset_e if detector.rows == 1 else 0.0
+    spread = detector.prnu, math.hypot(detector.dsnu * dark_e, own) / per_dn
     return posterior(spread, light_e / per_dn, (flat, dark))
 
 
@@ -145,8 +149,14 @@ def pixel_unit_variance(
     """Squared digital numbers that a unit's gains and dark signals add to those of `expected`."""
     dark_e = detector.dark.level() * detector.exposure_s
     dark = warmth * (dark_e / detector.gain_e_per_dn)
-    light = np.maximum(expected - detector.offset_dn - dark, 0.0)
-    return pixel_spread(detector, dark_e, references).variance(light, warmth)
+    left = pixel_spread(detector, dark_e, references)
+    if not detector.errors.nonlinearity:
+        light = np.maximum(expected - detector.offset_dn - dark, 0.0)
+        return left.variance(light, warmth)
+    errors, full_well_e = detector.errors, detector.full_well_e
+    held = errors.held((expected - detector.offset_dn) * detector.gain_e_per_dn, full_well_e)
+    light = np.maximum(held / detector.gain_e_per_dn - dark, 0.0)
+    return np.asarray(errors.slope(held, full_well_e) ** 2 * left.variance(light, warmth))
 
 
 def pixel_references(
@@ -157,7 +167,7 @@ def pixel_references(
 ) -> dict[str, Floats]:
     """Mean of a unit's dark and flat readings, ``dark_dn`` and ``flat_dn``, shape of its pixels.
 
-    What there are no readings of is left out.
+    Offsets of columns are in them. What there are no readings of is left out.
     """
     dark_e = detector.dark.level() * detector.exposure_s
     light = _flat_light_e(detector, dark_e, references)
@@ -166,7 +176,7 @@ def pixel_references(
         "flat_dn": (references.flats, pattern["gain"] * light + pattern["dark_e"]),
     }
     return {
-        name: _mean_reading(detector, signal, count, streams)
+        name: _mean_reading(detector, signal, count, streams, pattern.get("column_e"))
         for name, (count, signal) in signals.items()
         if count
     }
@@ -174,15 +184,26 @@ def pixel_references(
 
 def _flat_light_e(detector: PixelArray, dark_e: float, references: References) -> float:
     end = (detector.last_code_dn - detector.offset_dn) * detector.gain_e_per_dn
+    if detector.errors.nonlinearity:
+        end = float(detector.errors.held(np.asarray(end), detector.full_well_e))
     return references.level * (end - dark_e)
 
 
 def _mean_reading(
-    detector: PixelArray, electrons: Floats, count: int, streams: NoiseStreams
+    detector: PixelArray,
+    electrons: Floats,
+    count: int,
+    streams: NoiseStreams,
+    column_e: Floats | None,
 ) -> Floats:
-    total = np.zeros(electrons.shape)
+    total, errors = np.zeros(electrons.shape), detector.errors
     for _ in range(count):
         read = np.minimum(counted(electrons, detector.read_noise_e, streams), detector.full_well_e)
+        read = errors.read(read, detector.full_well_e)
+        if column_e is not None:
+            read += column_e
+        if errors.column_noise_e:
+            read += streams.column_noise(errors.column_noise_e, electrons.shape[-1:])
         codes = np.rint(detector.offset_dn + read / detector.gain_e_per_dn)
         total += np.clip(codes, 0, detector.full_scale_dn)
     return total / count

@@ -44,6 +44,7 @@ class BloomingLineSensor(LineSensor):
     def picture(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, W) digital numbers of the mean electrons: no noise, no rounding."""
         held, _ = self.held(self._electrons(scene, pattern))
+        held = self._amplified(held, pattern)
         return np.asarray(self.detector.offset_dn + held / self.detector.gain_e_per_dn)
 
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
@@ -67,13 +68,26 @@ class BloomingLineSensor(LineSensor):
         """
         detector, arrays = self.detector, len(self.axes)
         charges = np.maximum(expected, 0.0)
-        variance = charge_variance(detector, charges, charges)
+        variance = self._pixel_variance(charges)
         single = detector.read_noise_e**2 + detector.gain_e_per_dn**2 * ROUNDING
         lines = expected[:, :-arrays].reshape(len(expected), arrays, detector.columns)
         full = np.sum(lines >= detector.full_well_e, axis=2)
         over = charges[:, -arrays:] + full * detector.full_well_e
         variance[:, -arrays:] = over + 2.0 * single
         return np.asarray(variance)
+
+    def _pixel_variance(self, charge: Floats) -> Floats:
+        """Squared electrons of charge that is read by amplifiers that may bend it."""
+        detector, errors = self.detector, self.detector.errors
+        if not (errors.nonlinearity or errors.column_noise_e):
+            return charge_variance(detector, charge, charge)
+        charge = np.minimum(charge, detector.full_well_e)
+        bent = errors.slope(charge, detector.full_well_e)
+        read = errors.read(charge, detector.full_well_e)
+        # read noise is bent with the signal, what amplifiers add behind it is not
+        shot = bent**2 * charge + errors.column_noise_e**2
+        shot -= (1.0 - bent**2) * detector.read_noise_e**2
+        return np.asarray(charge_variance(detector, read, shot) / bent**2)
 
     def unit_variance(self, expected: Floats, scene: Scene, references: References) -> None:
         """None: an overflow is of many pixels together (the arguments are the protocol's)."""
@@ -90,5 +104,8 @@ class BloomingLineSensor(LineSensor):
             read[n] = streams.gaussian.standard_normal(mean.shape[1], dtype=np.float32)
         held, _ = self.held(charge)
         held += read * detector.read_noise_e
+        held = self._amplified(held, pattern)
+        if detector.errors.column_noise_e:
+            held += streams.column_noise(detector.errors.column_noise_e, held.shape)
         values = np.rint(detector.offset_dn + held / detector.gain_e_per_dn)
         return np.clip(values, 0, detector.full_scale_dn).astype(np.uint16)

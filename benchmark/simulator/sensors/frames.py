@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.contract import Floats
-from benchmark.seeds import generator
 from benchmark.simulator.light.environment import Earth
 from benchmark.simulator.light.memory import memory
 from benchmark.simulator.optics.earthlight import EarthInView, add_between, on_window
 from benchmark.simulator.optics.ghosts import Ghost, add_ghost
 from benchmark.simulator.optics.projection import Camera, ProjectedLight
-from benchmark.simulator.readout.detectors import PixelArray
+from benchmark.simulator.readout.column_noise import CommonNoise, window_noise
+from benchmark.simulator.readout.detectors import PixelArray, tunnel_response
 from benchmark.simulator.readout.noise import NoiseStreams, counted
 from benchmark.simulator.readout.quantisation import pixel_variance
 from benchmark.simulator.readout.references import (
@@ -52,13 +52,11 @@ class FrameSensor:
     ghost: Ghost | None = field(default=None, kw_only=True)
 
     def fixed_pattern(self, *names: str | int) -> FixedPattern:
-        """``gain`` and ``dark_e``, (rows, columns): the pixels' relative gain and dark signal."""
-        detector = self.detector
-        shape = (detector.rows, detector.columns)
-        gain = 1.0 + detector.prnu * generator(*names, "prnu").standard_normal(shape)
-        dark = detector.dark.level() * detector.exposure_s
-        dark_e = dark * (1.0 + detector.dsnu * generator(*names, "dsnu").standard_normal(shape))
-        return {"gain": np.maximum(gain, 0.0), "dark_e": np.maximum(dark_e, 0.0)}
+        """``gain`` and ``dark_e``, (rows, columns): the pixels' relative gain and dark signal.
+
+        With ``column_e`` (columns,) where the columns' amplifiers have offsets.
+        """
+        return self.detector.built((self.detector.rows, self.detector.columns), *names)
 
     def spot_px(self, sun: Floats) -> Floats:
         """(N, 2) true detector coordinate of the spot of a point Sun and a thin mask."""
@@ -95,8 +93,15 @@ class FrameSensor:
         seen = scene.sun.tobytes(), scene.origin_px.tobytes()
         key = (*self._optics(), *self._moment(scene), *seen)
         flux = memory.rendered(key, lambda: self._rendered(scene, np.asarray(scene.origin_px)))
-        flux *= scene.irradiance[:, None, None]
+        flux *= self._dimmed(scene)[:, None, None]
         return flux
+
+    def _dimmed(self, scene: Scene) -> Floats:
+        """(N,) sunlight that pixels respond to, askew as it comes."""
+        if not self.detector.tunnel:
+            return scene.irradiance
+        cosine = self.camera.assembly.to_head(scene.sun)[:, 2]
+        return scene.irradiance * tunnel_response(cosine, self.detector.tunnel)
 
     def _optics(self) -> tuple[Hashable, ...]:
         """Everything `_rendered` depends on but its arguments."""
@@ -146,11 +151,13 @@ class FrameSensor:
         electrons = self.lit(scene)
         if self.ghost is not None:
             middle = np.asarray(self.detector.centre_px)
-            moved = replace(scene, origin_px=np.asarray(scene.origin_px) - 0.5 - middle)
+            corner = np.asarray(scene.origin_px) - 0.5 - middle
+            moved = replace(scene, origin_px=corner, irradiance=self._dimmed(scene))
             add_ghost(electrons, self.camera, self.ghost, moved, self.detector.pitch_mm)
         if scene.albedo is not None:
             add_between(electrons, scene.albedo)
         electrons += scene.stray[:, None, None]
+        electrons = self.detector.errors.gathered(electrons)
         electrons *= self.detector.sunlit_e
         columns, rows = self.window_px
         for n, (x, y) in enumerate(np.asarray(scene.origin_px)):
@@ -166,11 +173,20 @@ class FrameSensor:
             electrons[n] += pattern["dark_e"][window]
         return electrons
 
+    def _amplified(self, electrons: Floats, scene: Scene, pattern: FixedPattern) -> Floats:
+        """Electrons (N, H, W) as the columns' amplifiers show them, without their noise."""
+        electrons = self.detector.errors.read(electrons, self.detector.full_well_e)
+        if "column_e" in pattern:
+            first = np.asarray(scene.origin_px)[:, :1]
+            electrons += pattern["column_e"][first + np.arange(self.window_px[0])][:, None, :]
+        return electrons
+
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, H, W) mean digital numbers before rounding."""
         detector = self.detector
         numbers = self._electrons(scene, pattern)
         np.minimum(numbers, detector.full_well_e, out=numbers)
+        numbers = self._amplified(numbers, scene, pattern)
         numbers /= detector.gain_e_per_dn
         numbers += detector.offset_dn
         return numbers
@@ -178,6 +194,12 @@ class FrameSensor:
     def variance(self, expected: Floats) -> Floats:
         """Squared digital numbers: shot and read noise, and what rounding and clipping cost."""
         return pixel_variance(self.detector, expected)
+
+    def common_noise(
+        self, shape: tuple[int, ...], references: References | None
+    ) -> CommonNoise | None:
+        """Digital numbers that the pixels of a column share."""
+        return window_noise(self.detector, shape, references)
 
     def unit_variance(self, expected: Floats, scene: Scene, references: References) -> Floats:  # noqa: ARG002 - the protocol's
         """Squared digital numbers that unknown gains and dark signals of the pixels add."""
@@ -196,6 +218,10 @@ class FrameSensor:
         detector = self.detector
         electrons = counted(self._electrons(scene, pattern), detector.read_noise_e, streams)
         np.minimum(electrons, detector.full_well_e, out=electrons)
+        electrons = self._amplified(electrons, scene, pattern)
+        if detector.errors.column_noise_e:
+            size = len(electrons), 1, self.window_px[0]
+            electrons += streams.column_noise(detector.errors.column_noise_e, size)
         electrons /= detector.gain_e_per_dn
         electrons += detector.offset_dn
         np.rint(electrons, out=electrons)

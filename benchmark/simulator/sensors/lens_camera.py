@@ -31,8 +31,9 @@ class LensCamera:
     lens
         Projection and light gathering.
     detector
-        Pixels; `PixelArray.sunlit_e` is what a pixel would collect in the bare Sun without the
-        lens (with the camera's filter, if any), which concentrates it by pupil over pixel area.
+        Pixels, whose amplifiers have no errors; `PixelArray.sunlit_e` is what a pixel would
+        collect in the bare Sun without the lens (with the camera's filter, if any), which
+        concentrates it by pupil over pixel area.
     blur_mm
         Standard deviation of the Gaussian that every point is blurred by.
     flare
@@ -62,6 +63,11 @@ class LensCamera:
             raise ValueError(f"blur_mm must be positive; got {self.blur_mm}")
         if not 0 <= self.dead_share < 1:
             raise ValueError(f"dead_share must be in [0, 1); got {self.dead_share}")
+        if self.detector.errors.of_amplifiers or self.detector.tunnel:
+            raise ValueError(
+                "of cameras with a lens amplifiers without errors are simulated, and pixels "
+                f"without tunnels; got {self.detector.errors} and tunnel = {self.detector.tunnel}"
+            )
 
     @property
     def built_focal_length_mm(self) -> float:
@@ -95,15 +101,8 @@ class LensCamera:
         """
         detector = self.detector
         shape = (detector.rows, detector.columns)
-        gain = 1.0 + detector.prnu * generator(*names, "prnu").standard_normal(shape)
-        dark = detector.dark.level() * detector.exposure_s
-        dark_e = dark * (1.0 + detector.dsnu * generator(*names, "dsnu").standard_normal(shape))
         alive = generator(*names, "dead").random(shape) >= self.dead_share
-        return {
-            "gain": np.maximum(gain, 0.0),
-            "dark_e": np.maximum(dark_e, 0.0),
-            "alive": alive.astype(np.float64),
-        }
+        return {**detector.built(shape, *names), "alive": alive.astype(np.float64)}
 
     def shares(self, sun: Floats) -> Floats:
         """(N, H, W) share of the light gathered by the lens that falls on each pixel.
@@ -152,6 +151,7 @@ class LensCamera:
         electrons = self.shares(scene.sun)
         electrons *= light[:, None, None]
         electrons += scene.stray[:, None, None]
+        electrons = detector.errors.gathered(electrons)
         electrons *= detector.sunlit_e
         electrons *= pattern["gain"]
         return electrons
@@ -166,6 +166,7 @@ class LensCamera:
         light = self.clouds.light(
             (detector.rows, detector.columns), self.image_px(sun)[0], detector.pitch_mm, generator
         )
+        light = detector.errors.gathered(light[None])[0]
         return np.asarray(light * detector.sunlit_e * pattern["gain"])
 
 

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.contract import Floats
-from benchmark.seeds import generator
 from benchmark.simulator.light.environment import Earth
 from benchmark.simulator.light.memory import memory
 from benchmark.simulator.masks.slits import SlitErrors
@@ -19,7 +18,7 @@ from benchmark.simulator.optics.diffraction_tables import layers
 from benchmark.simulator.optics.earthlight import EarthInView, add_between, on_window
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.optics.slit_diffraction import SlitProfiles
-from benchmark.simulator.readout.detectors import PixelArray
+from benchmark.simulator.readout.detectors import PixelArray, tunnel_response
 from benchmark.simulator.readout.noise import NoiseStreams, counted
 from benchmark.simulator.readout.quantisation import pixel_variance
 from benchmark.simulator.readout.references import (
@@ -90,12 +89,11 @@ class LineSensor:
         return self.detector.columns * len(self.axes)
 
     def fixed_pattern(self, *names: str | int) -> FixedPattern:
-        """``gain`` and ``dark_e``, (W,): the pixels' relative gain and dark signal."""
-        detector, width = self.detector, self.width_px
-        gain = 1.0 + detector.prnu * generator(*names, "prnu").standard_normal(width)
-        dark = detector.dark.level() * detector.exposure_s
-        dark_e = dark * (1.0 + detector.dsnu * generator(*names, "dsnu").standard_normal(width))
-        return {"gain": np.maximum(gain, 0.0), "dark_e": np.maximum(dark_e, 0.0)}
+        """``gain`` and ``dark_e``, (W,): the pixels' relative gain and dark signal.
+
+        With ``column_e`` (W,) where their amplifiers have offsets.
+        """
+        return self.detector.built((self.width_px,), *names)
 
     def origins(self, sun: Floats, generator: np.random.Generator) -> None:
         """Nothing is windowed (the arguments are the protocol's)."""
@@ -122,6 +120,9 @@ class LineSensor:
         key = (type(self).__name__, self.camera, pixels, self.axes, self.errors, self.spectrum)
         flux = memory.rendered((*key, scene.sun.tobytes()), lambda: self._rendered(scene.sun))
         flux *= scene.irradiance[:, None]
+        if detector.tunnel:
+            cosine = self.camera.assembly.to_head(scene.sun)[:, 2]
+            flux *= tunnel_response(cosine, detector.tunnel)[:, None]
         return flux
 
     def _rendered(self, sun: Floats) -> Floats:
@@ -224,17 +225,26 @@ class LineSensor:
     def _electrons(self, scene: Scene, pattern: FixedPattern) -> Floats:
         electrons = self.lit(scene)
         if scene.albedo is not None:
-            arrays = electrons.reshape(len(scene) * len(self.axes), 1, -1)
-            add_between(arrays, scene.albedo.reshape(len(arrays), 1, -1))
+            lines = electrons.reshape(len(scene) * len(self.axes), 1, -1)
+            add_between(lines, scene.albedo.reshape(len(lines), 1, -1))
         electrons += sloping(scene, self._places())
+        if self.detector.errors.crosstalk:  # within an array
+            arrays = electrons.reshape(-1, self.detector.columns)
+            electrons = np.asarray(self.detector.errors.gathered(arrays).reshape(electrons.shape))
         electrons *= self.detector.sunlit_e * pattern["gain"]
         electrons += pattern["dark_e"]
         return electrons
+
+    def _amplified(self, electrons: Floats, pattern: FixedPattern) -> Floats:
+        """Electrons (N, W) as the pixels' amplifiers show them, without their noise."""
+        electrons = self.detector.errors.read(electrons, self.detector.full_well_e)
+        return electrons + pattern["column_e"] if "column_e" in pattern else electrons
 
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, W) mean digital numbers before rounding."""
         detector = self.detector
         electrons = np.minimum(self._electrons(scene, pattern), detector.full_well_e)
+        electrons = self._amplified(electrons, pattern)
         return np.asarray(detector.offset_dn + electrons / detector.gain_e_per_dn)
 
     def variance(self, expected: Floats) -> Floats:
@@ -263,5 +273,8 @@ class LineSensor:
         detector = self.detector
         electrons = counted(self._electrons(scene, pattern), detector.read_noise_e, streams)
         np.minimum(electrons, detector.full_well_e, out=electrons)
+        electrons = self._amplified(electrons, pattern)
+        if detector.errors.column_noise_e:
+            electrons += streams.column_noise(detector.errors.column_noise_e, electrons.shape)
         values = np.rint(detector.offset_dn + electrons / detector.gain_e_per_dn)
         return np.clip(values, 0, detector.full_scale_dn).astype(np.uint16)

@@ -17,7 +17,8 @@ from benchmark.simulator.optics.diffraction import SUNLIT_SILICON, Spectrum
 from benchmark.simulator.optics.earthlight import add_between
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.optics.round_spots import RoundSpots
-from benchmark.simulator.readout.detectors import PixelArray
+from benchmark.simulator.readout.column_noise import CommonNoise, window_noise
+from benchmark.simulator.readout.detectors import PixelArray, tunnel_response
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.readout.quantisation import pixel_variance
 from benchmark.simulator.readout.references import (
@@ -172,6 +173,13 @@ class MultiSpotSensor:
             self.add_light(frame, scene.part(n, n + 1), pattern)
         return frames
 
+    def dimmed(self, scene: Scene) -> Floats:
+        """(N,) sunlight that pixels respond to, askew as it comes."""
+        if not self.detector.tunnel:
+            return scene.irradiance
+        cosine = self.camera.assembly.to_head(scene.sun)[:, 2]
+        return scene.irradiance * tunnel_response(cosine, self.detector.tunnel)
+
     def add_light(self, frame: Floats, one: Scene, pattern: FixedPattern) -> Integers:
         """Add the light of one sample to `frame` (rows, columns).
 
@@ -181,7 +189,7 @@ class MultiSpotSensor:
         """
         if self.spectrum is not None:
             boxes = self.boxes(one, pattern)[0]
-            passed = pattern["transmission"] * one.irradiance[0]
+            passed = pattern["transmission"] * self.dimmed(one)[0]
             self._spots.add(frame, one.sun, self._holes(pattern), passed, boxes)
             lit = (boxes[:, 1] > boxes[:, 0]) & (boxes[:, 3] > boxes[:, 2])
             return np.asarray(boxes[lit])
@@ -189,7 +197,7 @@ class MultiSpotSensor:
 
         projected = self.camera.project(one.sun)
         rims = np.ascontiguousarray(projected.rims_mm / self.detector.pitch_mm)
-        light = projected.light * one.irradiance[:, None]
+        light = projected.light * self.dimmed(one)[:, None]
         if not light.any():
             return np.zeros((0, 4), dtype=np.int64)
         boxes = self._boxes(rims, pattern, 0)[0]
@@ -214,7 +222,7 @@ class MultiSpotSensor:
     def optics(self) -> tuple[Hashable, ...]:
         """Return what light on the detector depends on, besides pixels and the built mask."""
         # the holes that are tabulated lie as far apart as built ones are expected to
-        numbers = self.widest_deg, self.skirt, self.errors.edge_mm
+        numbers = self.widest_deg, self.skirt, self.errors.edge_mm, self.detector.tunnel
         return type(self).__name__, self.camera, self.spectrum, numbers
 
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
@@ -224,14 +232,24 @@ class MultiSpotSensor:
         if scene.albedo is not None:
             add_between(electrons, scene.albedo)
         electrons += scene.stray[:, None, None]
+        electrons = detector.errors.gathered(electrons)
         electrons *= detector.sunlit_e * pattern["gain"]
         electrons += pattern["dark_e"]
         np.minimum(electrons, detector.full_well_e, out=electrons)
+        electrons = detector.errors.read(electrons, detector.full_well_e)
+        if "column_e" in pattern:
+            electrons += pattern["column_e"]
         return np.asarray(detector.offset_dn + electrons / detector.gain_e_per_dn)
 
     def variance(self, expected: Floats) -> Floats:
         """Squared digital numbers: shot and read noise, and what rounding and clipping cost."""
         return pixel_variance(self.detector, expected)
+
+    def common_noise(
+        self, shape: tuple[int, ...], references: References | None
+    ) -> CommonNoise | None:
+        """Digital numbers that the pixels of a column share."""
+        return window_noise(self.detector, shape, references)
 
     def unit_variance(self, expected: Floats, scene: Scene, references: References) -> Floats:  # noqa: ARG002 - the protocol's
         """Squared digital numbers that unknown gains and dark signals of the pixels add."""
@@ -250,9 +268,13 @@ class MultiSpotSensor:
 
         Each frame takes the same number of words of the Gaussian stream, whatever it shows.
         """
-        from benchmark.simulator.kernels.digitising import digitise, quantiles  # noqa: PLC0415 - Numba
+        from benchmark.simulator.kernels.digitising import (  # noqa: PLC0415 - Numba
+            digitise,
+            gather,
+            quantiles,
+        )
 
-        detector = self.detector
+        detector, errors = self.detector, self.detector.errors
         shape = (detector.rows, detector.columns)
         out = np.empty((len(scene), *shape), dtype=np.uint16)
         light = np.zeros(shape)
@@ -263,8 +285,11 @@ class MultiSpotSensor:
             detector.gain_e_per_dn,
             detector.offset_dn,
             float(detector.full_scale_dn),
+            errors.nonlinearity / detector.full_well_e,
         )
         tables = (quantiles(), pattern["gain"], pattern["dark_e"])
+        columns = pattern.get("column_e", np.zeros(shape[1] if errors.of_amplifiers else 0))
+        gathered = np.empty(shape) if errors.moves_charge else None
         words = (shape[0] * shape[1] + 1) // 2
         flat = light.reshape(-1)
         mask = digest_of(pattern["apertures"], pattern["transmission"])
@@ -277,12 +302,19 @@ class MultiSpotSensor:
             flat[places] = values * scene.irradiance[n]
             if scene.albedo is not None:
                 add_between(light[None], scene.albedo[n : n + 1])
+            seen, stray = light, float(scene.stray[n])
+            if gathered is not None:
+                gather(gathered, light, (stray, errors.crosstalk, errors.smear))
+                seen, stray = gathered, 0.0
+            added = columns
+            if errors.column_noise_e:
+                added = columns + streams.column_noise(errors.column_noise_e, shape[1:])
             digitise(
                 out[n],
-                light,
+                seen,
                 streams.gaussian.bit_generator.random_raw(words).view(np.int64),
-                tables,
-                (float(scene.stray[n]), *numbers),
+                (*tables, added),
+                (stray, *numbers),
             )
             flat[places if scene.albedo is None else slice(None)] = 0.0
         return out

@@ -20,6 +20,8 @@ from benchmark.datasets import Condition
 from benchmark.metrics.bounds import Bound, cramer_rao
 from benchmark.seeds import generator
 from benchmark.simulator.light.sun_disc import from_angles
+from benchmark.simulator.readout.detectors import PixelArray
+from benchmark.simulator.readout.pixel_errors import PixelErrors
 from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
 
@@ -50,9 +52,14 @@ QUICK = [("pd-maskless-pyramid", 22.0, -31.0, 500), ("qpd-maskless-pyramid", 12.
 
 @cache
 def setup_of(name: str) -> Condition:
-    """The nominal condition; of pixel arrays no more than a window around the spot."""
+    """The nominal condition; of pixel arrays no more than a window around the spot.
+
+    Errors of pixels and amplifiers are left to `test_likelihood_columns`.
+    """
     setup = datasets.get(name).setups["nominal"]
     sensor: Any = setup.sensor
+    if isinstance(getattr(sensor, "detector", None), PixelArray):
+        sensor = replace(sensor, detector=replace(sensor.detector, errors=PixelErrors()))
     if hasattr(sensor, "window_px"):
         columns, rows = (size + 24 for size in sensor.window_px)
         small = replace(sensor.detector, columns=columns, rows=rows)

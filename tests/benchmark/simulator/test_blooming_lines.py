@@ -58,6 +58,8 @@ def test_half_of_the_overflow_widens_the_spot_on_either_side() -> None:
 
 def test_the_saturated_profile_has_the_charge_of_its_light() -> None:
     sensor, pattern = saturated(), PRESET.fixed_pattern("saturated")
+    straight = replace(sensor.detector.errors, nonlinearity=0.0)
+    sensor = replace(sensor, detector=replace(sensor.detector, errors=straight))
     scene = scene_over((0, 0), (31, -42), (-40, 45))
     light = LineSensor._electrons(sensor, scene, pattern)
     picture = (sensor.picture(scene, pattern) - OFFSET) * GAIN

@@ -1,0 +1,98 @@
+"""Differences of signals in standard deviations of their noise: `Whitening`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.contract import Floats
+from benchmark.simulator.readout.column_noise import CommonNoise
+
+
+@dataclass(frozen=True, eq=False)
+class Whitening:
+    """Readings with noise of their own, and noise that groups of them share.
+
+    The covariance of a sample is ``C = D^(1/2) (1 + sum_k u_k u_k^T) D^(1/2)``, D diagonal and
+    ``u_k`` the group's common deviation over its elements' own, 0 elsewhere. Groups have no element
+    in common, so that the root's inverse is known in closed form, term by term:
+    ``(1 + u u^T)^(-1/2) = 1 - (1 - 1 / sqrt(1 + u.u)) u u^T / u.u``. Scalar products of differences
+    that are so divided are then those over ``C^-1`` (Woodbury's identity with rank one a group).
+
+    Attributes
+    ----------
+    deviation
+        (N, M) of the elements' own noise; inf for elements that tell nothing.
+    common
+        Noise that elements share; None for none.
+    """
+
+    deviation: Floats
+    common: CommonNoise | None = None
+
+    def whiten(self, difference: Floats) -> Floats:
+        """Divide differences (N, M) by the root of the covariance, in place."""
+        difference /= self.deviation
+        if self.common is not None:
+            self._stretch(difference, self._shrink)
+        return difference
+
+    def undone(self, white: Floats) -> Floats:
+        """Make the differences (N, M) again of which `whiten` made these; in place.
+
+        Those of elements that tell nothing stay 0.
+        """
+        if self.common is not None:
+            self._stretch(white, self._grow)
+        white *= np.where(np.isfinite(self.deviation), self.deviation, 0.0)
+        return white
+
+    @cached_property
+    def _places(self) -> NDArray[np.int64]:
+        """(N M,) group of every element, all samples' counted on."""
+        group = np.broadcast_to(np.asarray(self._shared.group), self.deviation.shape)
+        first = np.arange(len(group))[:, None] * self._groups
+        return np.asarray(group + first).reshape(-1)
+
+    @property
+    def _shared(self) -> CommonNoise:
+        if self.common is None:
+            raise TypeError("there is no common noise")
+        return self.common
+
+    @cached_property
+    def _groups(self) -> int:
+        return int(np.max(self._shared.group)) + 1
+
+    @cached_property
+    def _loading(self) -> Floats:
+        """(N M,) common deviation over each element's own: all groups' u in one."""
+        return np.asarray(self._shared.deviation / self.deviation).reshape(-1)
+
+    @cached_property
+    def _square(self) -> Floats:
+        """u.u of all groups of all samples."""
+        return self._sums(self._loading**2)
+
+    @cached_property
+    def _shrink(self) -> Floats:
+        root = np.sqrt(1.0 + self._square)
+        # (1 - 1 / root) / u.u without a difference of equals
+        return np.asarray(-1.0 / (root * (1.0 + root)))
+
+    @cached_property
+    def _grow(self) -> Floats:
+        return np.asarray(1.0 / (1.0 + np.sqrt(1.0 + self._square)))
+
+    def _sums(self, values: Floats) -> Floats:
+        size = len(self.deviation) * self._groups
+        return np.bincount(self._places, weights=values, minlength=size).astype(np.float64)
+
+    def _stretch(self, vectors: Floats, factor: Floats) -> None:
+        """Add to vectors (N, M) their products with each u, times a factor of its, times u."""
+        flat = vectors.reshape(-1)
+        along = self._sums(self._loading * flat) * factor
+        flat += self._loading * along[self._places]

@@ -1,0 +1,129 @@
+"""Noise that a column shares, in bounds: against the covariance written out and inverted."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from benchmark import datasets
+from benchmark.metrics.bounds import cramer_rao
+from benchmark.metrics.whitening import Whitening
+from benchmark.simulator.light.sun_disc import from_angles, tangent_axes
+from benchmark.simulator.readout.column_noise import CommonNoise, column_deviation_e
+from benchmark.simulator.readout.pixel_errors import PixelErrors
+from benchmark.simulator.readout.references import References
+from benchmark.simulator.scene import Scene
+
+
+@given(st.integers(0, 2**31), st.floats(0.0, 30.0))
+def test_products_are_those_over_the_inverse_covariance(seed: int, common: float) -> None:
+    rng = np.random.default_rng(seed)
+    group = rng.integers(0, 4, size=(2, 12))
+    deviation = rng.uniform(0.5, 3.0, size=(2, 12))
+    deviation[0, 3] = math.inf
+    noise = Whitening(deviation, CommonNoise(group, common))
+    first, second = rng.standard_normal((2, 2, 12))
+    first[0, 3] = second[0, 3] = 0.0
+    one, other = noise.whiten(first.copy()), noise.whiten(second.copy())
+    for n in range(2):
+        seen = np.isfinite(deviation[n])
+        same = group[n, seen][:, None] == group[n, seen][None]
+        covariance = np.diag(deviation[n, seen] ** 2) + common**2 * same
+        product = first[n, seen] @ np.linalg.solve(covariance, second[n, seen])
+        assert one[n] @ other[n] == pytest.approx(product, rel=1e-9, abs=1e-9)
+    assert noise.undone(one) == pytest.approx(first, abs=1e-9)
+
+
+def window(errors: PixelErrors) -> tuple[Any, Any, Scene]:
+    """A small window of a slit's end: both axes are told, columns by many rows."""
+    setup = datasets.get("cmos-single-aperture").setups["nominal"]
+    sensor: Any = setup.sensor
+    detector = replace(sensor.detector, columns=96, rows=96, errors=errors)
+    sensor = replace(sensor, detector=detector, window_jitter_px=0)
+    sun = from_angles(np.array([3.3]), np.array([-2.2]))
+    scene = Scene(sun, np.ones(1), np.full(1, 0.01), sensor.origins(sun, np.random.default_rng(0)))
+    return setup, sensor, scene
+
+
+NOISY = PixelErrors(crosstalk=0.02, nonlinearity=0.02, column_offset_e=60.0, column_noise_e=40.0)
+OFFERED = References()
+
+
+@pytest.mark.parametrize("references", [None, OFFERED, References(flats=0, darks=0)])
+def test_the_bound_is_that_of_the_whole_covariance(references: References | None) -> None:
+    """Fisher information of the frame with a matrix of 4096 x 4096, inverted column by column."""
+    setup, sensor, scene = window(NOISY)
+    unit = sensor.fixed_pattern("unit")
+    bound = cramer_rao(sensor, scene, unit, setup.irradiance, references=references or OFFERED)
+    mean = sensor.expected(scene, unit)
+    variance = sensor.variance(mean)
+    shared = 40.0**2
+    if references is not None:
+        variance = variance + sensor.unit_variance(mean, scene, references)
+        readings = references.flats + references.darks
+        # the offset, of its spread and of the mean of readings that share a column's noise
+        shared += 1.0 / (60.0**-2 + readings * 40.0**-2)
+    shared /= sensor.detector.gain_e_per_dn**2
+    first, second = tangent_axes(scene.sun)
+    step, derivatives = 5e-4, []
+    for axis in (first, second):
+        ends = []
+        for sign in (1.0, -1.0):
+            sun = math.cos(step) * scene.sun + sign * math.sin(step) * axis
+            ends.append(sensor.expected(replace(scene, sun=sun), unit)[0])
+        derivatives.append((ends[0] - ends[1]) / (2.0 * step))
+    light = setup.irradiance
+    brighter = replace(scene, irradiance=scene.irradiance + light.spread)
+    hazier = replace(scene, stray=scene.stray + light.stray_spread)
+    derivatives += [sensor.expected(seen, unit)[0] - mean[0] for seen in (brighter, hazier)]
+    fisher = np.diag([0.0, 0.0, 1.0, 1.0])
+    for column in range(mean.shape[2]):
+        own = variance[0, :, column]
+        told = np.isfinite(own)
+        covariance = np.diag(own[told]) + shared
+        slopes = np.stack([d[told, column] for d in derivatives], axis=1)
+        fisher += slopes.T @ np.linalg.solve(covariance, slopes)
+    exact = math.degrees(math.sqrt(np.trace(np.linalg.inv(fisher)[:2, :2])))
+    found = bound.angle_deg if references is None else bound.unit_angle_deg
+    assert found is not None
+    assert found[0] == pytest.approx(exact, rel=1e-6)
+
+
+def test_common_noise_costs_more_than_nothing_and_less_than_noise_of_pixels() -> None:
+    """Along columns it cancels; as noise of single pixels it would cost both axes."""
+    setup, sensor, scene = window(PixelErrors())
+    unit = sensor.fixed_pattern("unit")
+    angles = []
+    for errors, read_e in (
+        (PixelErrors(), 30.0),
+        (PixelErrors(column_noise_e=60.0), 30.0),
+        (PixelErrors(), math.hypot(30.0, 60.0)),
+    ):
+        detector = replace(sensor.detector, errors=errors, read_noise_e=read_e)
+        noisy = replace(sensor, detector=detector)
+        found = cramer_rao(noisy, scene, unit, setup.irradiance)
+        angles.append((found.alpha_deg[0], found.beta_deg[0]))
+    (alpha, beta), (shared_alpha, shared_beta), (own_alpha, own_beta) = angles
+    assert alpha < shared_alpha < own_alpha
+    assert beta < shared_beta
+    # columns lie along y: alpha is told by differences within them
+    assert shared_alpha / alpha < 1.05 < own_alpha / alpha
+    assert own_beta > beta
+
+
+def test_readings_bring_an_offset_down_to_the_noise_they_share() -> None:
+    detector = window(NOISY)[1].detector
+    assert column_deviation_e(detector, None) == 40.0
+    unknown = column_deviation_e(detector, References(flats=0, darks=0))
+    assert unknown == pytest.approx(math.hypot(40.0, 60.0))
+    known = [column_deviation_e(detector, References(n, n)) for n in (1, 10, 10**6)]
+    assert known == sorted(known, reverse=True)
+    assert known[-1] == pytest.approx(40.0, rel=1e-5)
+    quiet = replace(detector, errors=PixelErrors(column_offset_e=60.0))
+    assert column_deviation_e(quiet, OFFERED) == 0.0
