@@ -18,8 +18,11 @@ def differences(base: Mapping[str, Any], other: Mapping[str, Any]) -> dict[str, 
         )
     found: dict[str, Any] = {}
     for name, value in other.items():
-        before = base.get(name)
-        if name in base and value == before:
+        if name not in base:
+            found[name] = value
+            continue
+        before = base[name]
+        if value == before:
             continue
         alike = isinstance(value, dict) and isinstance(before, dict)
         alike = alike and value.keys() == before.keys() and value.get("type") == before.get("type")

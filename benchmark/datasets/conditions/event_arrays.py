@@ -17,7 +17,6 @@ from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout.detectors import DarkCurrent
 from benchmark.simulator.sensors.events import EventSensor, SpikingArray
 
-
 #: Microseconds an event keeps the bus busy: 12 million a second, the most that a DAVIS346 puts out
 #: (346 x 260 pixels; a DVS128 some 2 million). The studies followed give no figure in what was
 #: mapped.

@@ -72,9 +72,7 @@ class SpikingArray:
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.service_us) and self.service_us >= 0):
-            raise ValueError(
-                f"service_us must be finite and not negative; got {self.service_us}"
-            )
+            raise ValueError(f"service_us must be finite and not negative; got {self.service_us}")
         if not 1 <= self.events <= self.columns * self.rows:
             raise ValueError(
                 f"events must be in [1, {self.columns * self.rows}], the pixels; got {self.events}"

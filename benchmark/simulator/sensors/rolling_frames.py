@@ -159,12 +159,12 @@ def seen_at(scene: Scene, time_s: Floats) -> Floats:
         return scene.sun
     seen = np.empty_like(scene.sun)
     turns = zip(scene.sun.tolist(), scene.rate_deg_s.tolist(), time_s.tolist(), strict=True)
-    for n, ((x, y, z), (u, v, w), time) in enumerate(turns):
-        rate = math.sqrt(u * u + v * v + w * w)
+    for n, ((x, y, z), rates, time) in enumerate(turns):
+        rate = math.sqrt(rates[0] * rates[0] + rates[1] * rates[1] + rates[2] * rates[2])
         if rate == 0.0:
             seen[n] = x, y, z
             continue
-        u, v, w = u / rate, v / rate, w / rate
+        u, v, w = (component / rate for component in rates)
         angle = -math.radians(rate * time)
         c, s = math.cos(angle), math.sin(angle)
         along = (1.0 - c) * (x * u + y * v + z * w)
