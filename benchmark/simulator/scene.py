@@ -58,3 +58,8 @@ class Scene:
     def seen_from(self, sun: Floats) -> Self:
         """Return the same scene with other Sun directions (N, 3)."""
         return replace(self, sun=sun)
+
+    def alone(self) -> Scene:
+        """Return the scene under mean sunlight and no other light, windows left out."""
+        count = len(self)
+        return Scene(self.sun, np.ones(count), np.zeros(count), rate_deg_s=self.rate_deg_s)

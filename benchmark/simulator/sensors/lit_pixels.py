@@ -90,7 +90,7 @@ class LitPixels:
         detector = self.sensor.detector
         mask = digest_of(self.pattern["apertures"], self.pattern["transmission"], self._pixels)
         place = detector.rows, detector.columns, detector.pitch_mm
-        key = (*self.sensor.optics(), mask, place, sun.tobytes())
+        key = (*self.sensor.optics(), mask, place, *self.sensor.moment(self.scene.seen_from(sun)))
         return memory.rendered(key, lambda: self._from(sun))
 
     def _from(self, sun: Floats) -> Floats:
@@ -98,7 +98,7 @@ class LitPixels:
         frame = np.zeros((detector.rows, detector.columns))
         out = np.zeros(self._pixels.shape)
         for n, pixels in enumerate(self._pixels):
-            one = Scene(sun[n : n + 1], np.ones(1), np.zeros(1))
+            one = self.scene.part(n, n + 1).alone().seen_from(sun[n : n + 1])
             boxes = self.sensor.add_light(frame, one, self.pattern)
             listed = pixels >= 0
             out[n, listed] = frame.ravel()[pixels[listed]]

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable
-from dataclasses import dataclass, field
+from collections.abc import Hashable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
 import numpy as np
@@ -12,12 +12,16 @@ from numpy.typing import NDArray
 
 from algorithms.contract import Floats
 from benchmark.simulator.scene import Scene
+from benchmark.simulator.sensor import FixedPattern
 from benchmark.simulator.sensors.diffractive_frames import DiffractiveFrameSensor
 from benchmark.simulator.sensors.frames import FrameSensor
+from benchmark.simulator.sensors.multi_spot_frames import MultiSpotSensor
 
 #: Nodes in time of a spot that hardly moves, and how many more each pixel of motion takes: light
 #: of the standard datasets is then within 1e-3 of peak of many nodes.
 _NODES, _NODES_A_PX = 2.5, 0.8
+#: Motion beyond which no more are taken.
+_FARTHEST_PX = 64.0
 
 
 @dataclass(frozen=True)
@@ -52,10 +56,7 @@ class RollingFrameSensor(FrameSensor):
     more_nodes: int = field(default=0, kw_only=True)
 
     def __post_init__(self) -> None:
-        if not math.isfinite(self.row_time_s):
-            raise ValueError(f"row_time_s must be finite; got {self.row_time_s}")
-        if self.more_nodes < 0:
-            raise ValueError(f"more_nodes must not be negative; got {self.more_nodes}")
+        _check(self.row_time_s, self.more_nodes)
 
     def _optics(self) -> tuple[Hashable, ...]:
         _, *rest = super()._optics()
@@ -68,11 +69,10 @@ class RollingFrameSensor(FrameSensor):
         shutter = self.row_time_s, self.detector.exposure_s, self.more_nodes
         return (*still, *shutter, scene.rate_deg_s.tobytes())
 
-    @property
-    def _half_s(self) -> float:
-        """Half of the time from the first moment that any row is exposed to the last one."""
-        rolls = (self.window_px[1] - 1) * abs(self.row_time_s)
-        return (rolls + self.detector.exposure_s) / 2.0
+    def _rows_s(self) -> Floats:
+        """(rows,) when each row of a window is half exposed, after the window's middle."""
+        rows = self.window_px[1]
+        return (np.arange(rows) - (rows - 1) / 2.0) * self.row_time_s
 
     def _middle_s(self, scene: Scene, origin_px: NDArray[np.int64]) -> Floats:
         """(N,) when the middle of each window is half exposed."""
@@ -80,40 +80,12 @@ class RollingFrameSensor(FrameSensor):
         spot = np.clip(self.spot_px(scene.sun)[:, 1], 0.0, self.detector.rows - 1.0)
         return np.asarray((origin_px[:, 1] + (rows - 1) / 2.0 - spot) * self.row_time_s)
 
-    def shares(self, nodes: int) -> tuple[Floats, Floats]:
-        """Return moments (K,) about a window's middle one, seconds, and their shares (rows, K).
-
-        A row's light is the sum of its shares of what the window shows at those moments.
-        """
-        place, weight = np.polynomial.legendre.leggauss(nodes)
-        half = self._half_s
-        if half == 0.0:
-            return np.zeros(1), np.ones((self.window_px[1], 1))
-        rows = self.window_px[1]
-        middle = (np.arange(rows) - (rows - 1) / 2.0) * (self.row_time_s / half)
-        within = self.detector.exposure_s / (2.0 * half)
-        moments = middle[:, None] + within * place
-        shares = np.empty((rows, nodes))
-        for k in range(nodes):
-            polynomial = np.ones_like(moments)
-            for other in range(nodes):
-                if other != k:
-                    polynomial *= (moments - place[other]) / (place[k] - place[other])
-            shares[:, k] = [math.fsum(row) for row in (polynomial * (weight / 2.0)).tolist()]
-        return half * place, shares
-
     def nodes(self, scene: Scene, origin_px: NDArray[np.int64]) -> NDArray[np.int64]:
         """(N,) moments that each sample is rendered at, 1 for what does not turn."""
         if scene.rate_deg_s is None:
             return np.ones(len(scene), dtype=np.int64)
-        middle, half = self._middle_s(scene, origin_px), self._half_s
-        seen = (seen_at(scene, middle + step) for step in (-half, 0.0, half))
-        before, now, after = (self.spot_px(sun) for sun in seen)
-        way = np.sqrt(np.sum((now - before) ** 2, axis=1))
-        way += np.sqrt(np.sum((after - now) ** 2, axis=1))
-        # one that leaves the field takes as many as cross a window
-        way = np.minimum(np.nan_to_num(way, nan=np.inf), float(max(self.window_px)))
-        count = np.ceil(_NODES + _NODES_A_PX * way).astype(np.int64) + self.more_nodes
+        _, half = _span(self._rows_s(), self.detector.exposure_s)
+        count = _nodes(self, scene, self._middle_s(scene, origin_px), half) + self.more_nodes
         return np.where((scene.rate_deg_s != 0.0).any(axis=1), count, 1)
 
     def _rendered(self, scene: Scene, origin_px: NDArray[np.int64]) -> Floats:
@@ -131,7 +103,7 @@ class RollingFrameSensor(FrameSensor):
                 continue
             middle = self._middle_s(part, origin)
             light = np.zeros((len(mine), rows, columns))
-            moments, shares = self.shares(int(count))
+            moments, shares = row_shares(self._rows_s(), self.detector.exposure_s, int(count))
             for moment, share in zip(moments, shares.T, strict=True):
                 seen = part.seen_from(seen_at(part, middle + moment))
                 light += share[:, None] * super()._rendered(seen, origin)
@@ -148,6 +120,102 @@ class RollingDiffractiveSensor(RollingFrameSensor, DiffractiveFrameSensor):
     def __post_init__(self) -> None:
         RollingFrameSensor.__post_init__(self)
         DiffractiveFrameSensor.__post_init__(self)
+
+
+@dataclass(frozen=True)
+class RollingMultiSpotSensor(MultiSpotSensor):
+    """A `MultiSpotSensor` that turns while it is exposed, as `RollingFrameSensor` does.
+
+    Time 0 is when the row through the spot under the middle of the mask is half exposed. Spots
+    far from it are exposed some time before or after, when the Sun stands elsewhere: those of
+    each row of holes are rendered at moments of their own.
+
+    Attributes
+    ----------
+    row_time_s, more_nodes
+        As of `RollingFrameSensor`.
+    """
+
+    sees_motion: ClassVar[bool] = True
+
+    row_time_s: float = field(default=0.0, kw_only=True)
+    more_nodes: int = field(default=0, kw_only=True)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        _check(self.row_time_s, self.more_nodes)
+
+    def optics(self) -> tuple[Hashable, ...]:
+        """As of the sensor at rest, whose light is the same."""
+        _, *rest = super().optics()
+        return (MultiSpotSensor.__name__, *rest)
+
+    def moment(self, scene: Scene) -> tuple[Hashable, ...]:
+        """As of the sensor at rest; of one that turns its rates, too, and how it is exposed."""
+        still = super().moment(scene)
+        if scene.rate_deg_s is None:
+            return still
+        shutter = self.row_time_s, self.detector.exposure_s, self.more_nodes
+        return (*still, *shutter, scene.rate_deg_s.tobytes())
+
+    def boxes(self, scene: Scene, pattern: FixedPattern, margin_px: int = 0) -> NDArray[np.int64]:
+        """As of the sensor at rest, wherever a spot is while it is exposed."""
+        if scene.rate_deg_s is None:
+            return super().boxes(scene, pattern, margin_px)
+        found = np.zeros((len(scene), len(pattern["transmission"]), 4), dtype=np.int64)
+        for n in range(len(scene)):
+            one = scene.part(n, n + 1)
+            for masked, middle, half in self._rows_of_holes(one, pattern):
+                for there in super().boxes(_at(one, (-half, 0.0, half), middle), masked, margin_px):
+                    _join(found[n], there)
+        return found
+
+    def _rows_of_holes(
+        self, one: Scene, pattern: FixedPattern
+    ) -> Iterator[tuple[FixedPattern, float, float]]:
+        """Holes by row: the unit with the others closed, and when their spots are exposed.
+
+        A moment, and how long before and after it; rows of holes without light are left out.
+        """
+        exposure, centre = self.detector.exposure_s, self._whole().spot_px(one.sun)[0, 1]
+        across = np.array([aperture.y_mm for aperture in self.camera.mask.apertures])
+        for place in np.unique(across):
+            passed = np.where(across == place, pattern["transmission"], 0.0)
+            masked = {**pattern, "transmission": passed}
+            middle, half = place / self.detector.pitch_mm * self.row_time_s, exposure / 2.0
+            for _ in range(2):  # spots of another time lie elsewhere, and are exposed then
+                lit = super().boxes(_at(one, (-half, 0.0, half), middle), masked)
+                lit = lit[lit[..., 3] > lit[..., 2]]
+                if not len(lit):
+                    break
+                rows = np.array([lit[:, 2].min(), lit[:, 3].max() - 1.0])
+                middle, half = _span((rows - centre) * self.row_time_s, exposure)
+            else:
+                yield masked, middle, half
+
+    def add_light(self, frame: Floats, one: Scene, pattern: FixedPattern) -> NDArray[np.int64]:
+        """As of the sensor at rest, every row over its own exposure; a box a row of holes."""
+        if one.rate_deg_s is None:
+            return super().add_light(frame, one, pattern)
+        whole, exposure, found = self._whole(), self.detector.exposure_s, []
+        rows_s = (np.arange(frame.shape[0]) - whole.spot_px(one.sun)[0, 1]) * self.row_time_s
+        light = np.zeros_like(frame)
+        for masked, middle, half in self._rows_of_holes(one, pattern):
+            count = int(_nodes(whole, one, np.array([middle]), half)[0]) + self.more_nodes
+            place, weight = np.polynomial.legendre.leggauss(count)
+            for k in range(count):
+                boxes = super().add_light(light, _at(one, (half * place[k],), middle), masked)
+                if not len(boxes):
+                    continue
+                left, top = boxes[:, ::2].min(axis=0)
+                right, bottom = boxes[:, 1::2].max(axis=0)
+                part = slice(top, bottom), slice(left, right)
+                within = (rows_s[top:bottom] - middle) / half
+                share = _share(k, within, exposure / (2.0 * half), place, weight)
+                frame[part] += share[:, None] * light[part]
+                light[part] = 0.0
+                found.append((left, right, top, bottom))
+        return np.array(found, dtype=np.int64).reshape(-1, 4)
 
 
 def seen_at(scene: Scene, time_s: Floats) -> Floats:
@@ -174,3 +242,79 @@ def seen_at(scene: Scene, time_s: Floats) -> Floats:
             c * z + s * (u * y - v * x) + along * w,
         )
     return seen
+
+
+def row_shares(rows_s: Floats, exposure_s: float, nodes: int) -> tuple[Floats, Floats]:
+    """Return moments (K,), in seconds, and what each has of every row's light, (rows, K).
+
+    The moments are the Gauss nodes of all the time that rows are exposed; a row's light is the
+    integral over its own exposure of the polynomial through the light at the moments.
+
+    Parameters
+    ----------
+    rows_s
+        (rows,) when each is half exposed.
+    exposure_s
+        Of every row.
+    nodes
+        K.
+    """
+    middle, half = _span(rows_s, exposure_s)
+    if half == 0.0:
+        return np.array([middle]), np.ones((len(rows_s), 1))
+    place, weight = np.polynomial.legendre.leggauss(nodes)
+    within, width = (rows_s - middle) / half, exposure_s / (2.0 * half)
+    shares = [_share(k, within, width, place, weight) for k in range(nodes)]
+    return middle + half * place, np.stack(shares, axis=1)
+
+
+def _share(k: int, within: Floats, width: float, place: Floats, weight: Floats) -> Floats:
+    """(rows,) mean of Lagrange's polynomial of node k over exposures about `within`.
+
+    In units of half the whole time; exact by Gauss's rule with the same nodes.
+    """
+    moments = within[:, None] + width * place
+    polynomial = np.ones_like(moments)
+    for other in range(len(place)):
+        if other != k:
+            polynomial *= (moments - place[other]) / (place[k] - place[other])
+    return np.array([math.fsum(row) for row in (polynomial * (weight / 2.0)).tolist()])
+
+
+def _span(rows_s: Floats, exposure_s: float) -> tuple[float, float]:
+    """Middle, and half the length, of the time that any of some rows is exposed."""
+    first, last = float(rows_s.min()), float(rows_s.max())
+    return (first + last) / 2.0, (last - first + exposure_s) / 2.0
+
+
+def _nodes(sensor: FrameSensor, scene: Scene, middle_s: Floats, half_s: float) -> NDArray[np.int64]:
+    """(N,) moments that the motion of each sample's spot asks for."""
+    seen = (seen_at(scene, middle_s + step) for step in (-half_s, 0.0, half_s))
+    before, now, after = (sensor.spot_px(sun) for sun in seen)
+    way = np.sqrt(np.sum((now - before) ** 2, axis=1))
+    way += np.sqrt(np.sum((after - now) ** 2, axis=1))
+    # one that leaves the field takes as many as cross a window
+    way = np.minimum(np.nan_to_num(way, nan=np.inf), _FARTHEST_PX)
+    return np.ceil(_NODES + _NODES_A_PX * way).astype(np.int64)
+
+
+def _at(one: Scene, times_s: Sequence[float], since_s: float) -> Scene:
+    """One sample as a sensor at rest sees it at some times (T,): that many samples."""
+    many = one.rows(np.zeros(len(times_s), dtype=np.int64))
+    return replace(many, sun=seen_at(many, np.array(times_s) + since_s), rate_deg_s=None)
+
+
+def _join(boxes: NDArray[np.int64], others: NDArray[np.int64]) -> None:
+    """Let boxes (A, 4), `MultiSpotSensor.boxes`, hold others, too, where those hold anything."""
+    lit = (others[:, 1] > others[:, 0]) & (others[:, 3] > others[:, 2])
+    new = lit & ((boxes[:, 1] <= boxes[:, 0]) | (boxes[:, 3] <= boxes[:, 2]))
+    boxes[new] = others[new]
+    boxes[lit, ::2] = np.minimum(boxes[lit, ::2], others[lit, ::2])
+    boxes[lit, 1::2] = np.maximum(boxes[lit, 1::2], others[lit, 1::2])
+
+
+def _check(row_time_s: float, more_nodes: int) -> None:
+    if not math.isfinite(row_time_s):
+        raise ValueError(f"row_time_s must be finite; got {row_time_s}")
+    if more_nodes < 0:
+        raise ValueError(f"more_nodes must not be negative; got {more_nodes}")
