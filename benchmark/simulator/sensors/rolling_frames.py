@@ -72,7 +72,7 @@ class RollingFrameSensor(FrameSensor):
     def _rows_s(self) -> Floats:
         """(rows,) when each row of a window is half exposed, after the window's middle."""
         rows = self.window_px[1]
-        return (np.arange(rows) - (rows - 1) / 2.0) * self.row_time_s
+        return np.asarray((np.arange(rows) - (rows - 1) / 2.0) * self.row_time_s)
 
     def _middle_s(self, scene: Scene, origin_px: NDArray[np.int64]) -> Floats:
         """(N,) when the middle of each window is half exposed."""
@@ -86,7 +86,8 @@ class RollingFrameSensor(FrameSensor):
             return np.ones(len(scene), dtype=np.int64)
         _, half = _span(self._rows_s(), self.detector.exposure_s)
         count = _nodes(self, scene, self._middle_s(scene, origin_px), half) + self.more_nodes
-        return np.where((scene.rate_deg_s != 0.0).any(axis=1), count, 1)
+        turns = (scene.rate_deg_s != 0.0).any(axis=1)
+        return np.where(turns, count, 1).astype(np.int64)
 
     def _rendered(self, scene: Scene, origin_px: NDArray[np.int64]) -> Floats:
         """(N, H, W) as of the sensor at rest, every row over its own exposure."""
@@ -295,7 +296,7 @@ def _nodes(sensor: FrameSensor, scene: Scene, middle_s: Floats, half_s: float) -
     way += np.sqrt(np.sum((after - now) ** 2, axis=1))
     # one that leaves the field takes as many as cross a window
     way = np.minimum(np.nan_to_num(way, nan=np.inf), _FARTHEST_PX)
-    return np.ceil(_NODES + _NODES_A_PX * way).astype(np.int64)
+    return np.asarray(np.ceil(_NODES + _NODES_A_PX * way), dtype=np.int64)
 
 
 def _at(one: Scene, times_s: Sequence[float], since_s: float) -> Scene:

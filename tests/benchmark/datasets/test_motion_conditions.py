@@ -12,20 +12,29 @@ from benchmark import datasets
 from benchmark.datasets.conditions.motion import TUMBLING
 from benchmark.seeds import generator
 from benchmark.simulator.flight.spin import Spin
-from benchmark.simulator.sensors.rolling_frames import RollingDiffractiveSensor
+from benchmark.simulator.sensors.rolling_frames import (
+    RollingDiffractiveSensor,
+    RollingMultiSpotSensor,
+)
 from benchmark.simulator.sensors.stray_slope import UnevenScene
 
-NAMES = ("cmos-single-aperture", "ccd-single-aperture")
+#: By the time between rows, seconds.
+SETS = {
+    "cmos-single-aperture": 512 * 80e-9,
+    "ccd-single-aperture": 0.0,
+    "cmos-multi-aperture": 1024 * 80e-9,
+}
+NAMES = tuple(SETS)
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_it_is_the_nominal_sensor_that_turns(name: str) -> None:
     preset = datasets.get(name)
     still, moving = (preset.setups[c].sensor for c in ("nominal", "spinning"))
-    assert isinstance(moving, RollingDiffractiveSensor)
+    assert isinstance(moving, RollingDiffractiveSensor | RollingMultiSpotSensor)
     for field in fields(still):
         assert getattr(moving, field.name) == getattr(still, field.name)
-    assert moving.row_time_s == pytest.approx(512 * 80e-9 if name.startswith("cmos") else 0.0)
+    assert moving.row_time_s == pytest.approx(SETS[name], abs=1e-9)
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -36,6 +45,7 @@ def test_only_the_test_split_turns_and_only_there(name: str) -> None:
         for split in ("calibration", "test", "repeat"):
             rate = preset.scene(condition, split).rate_deg_s
             assert (rate is not None) == (spinning and split != "calibration")
+    assert "spinning" in preset.conditions
     one, other = (preset.scene(condition, "test") for condition in ("nominal", "spinning"))
     assert one.sun.tobytes() == other.sun.tobytes()
     assert one.irradiance.tobytes() == other.irradiance.tobytes()
