@@ -10,14 +10,17 @@ def differences(base: Mapping[str, Any], other: Mapping[str, Any]) -> dict[str, 
     """Return the members of `other` that `base` does not have alike.
 
     Objects of the same members are compared member by member; anything else stands whole. Both
-    are plain JSON objects of the same members, else ValueError.
+    are plain JSON objects; `other` has at least the members of `base`, else ValueError.
     """
-    if base.keys() != other.keys():
+    if not base.keys() <= other.keys():
         raise ValueError(
-            f"objects of the same members are compared; got {sorted(base)} and {sorted(other)}"
+            f"no member of the first may be missing; got {sorted(base)} and {sorted(other)}"
         )
     found: dict[str, Any] = {}
     for name, value in other.items():
+        if name not in base:
+            found[name] = value
+            continue
         before = base[name]
         if value == before:
             continue

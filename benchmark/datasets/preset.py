@@ -23,6 +23,7 @@ from benchmark.datasets.units import assembled, tolerances
 from benchmark.metrics.bounds import STEP_RAD, Bound, cramer_rao
 from benchmark.seeds import generator
 from benchmark.simulator import SIMULATOR_VERSION
+from benchmark.simulator.flight.spin import Spin
 from benchmark.simulator.light.environment import Earth, Irradiance
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.readout.references import References
@@ -54,6 +55,9 @@ class Condition:
         Nominal design where it differs from the dataset's, else None.
     bench
         What the calibration split is taken on; None for a perfect one, which knows the Sun.
+    spin
+        How the sensor turns while test samples are exposed (calibration is at rest), or None.
+        The bound takes each sample's rate as known.
     """
 
     description: str
@@ -62,8 +66,14 @@ class Condition:
     earth: Earth | None = None
     geometry: SensorGeometry | None = None
     bench: Reference | None = STANDARD_BENCH
+    spin: Spin | None = None
 
     def __post_init__(self) -> None:
+        if self.spin is not None and not getattr(self.sensor, "sees_motion", False):
+            raise ValueError(
+                "motion is simulated for frames that are exposed over time (RollingFrameSensor); "
+                f"got {type(self.sensor).__name__}"
+            )
         if self.earth is not None and not isinstance(self.sensor, Faces | SeesEarth):
             raise ValueError(
                 "light from the Earth is simulated for faces and for sensors behind openings; got "
@@ -239,7 +249,10 @@ class Preset:
                     setup.earth, nadir, bare, pattern
                 )
             albedo = light.reshape(-1, *(1,) * (seen.ndim - 1)) * seen
-        return Scene(sun, light, stray, origin, albedo)
+        rate = None
+        if setup.spin is not None and known == "test":
+            rate = setup.spin.draw(len(sun), generator(*names, "spin"))
+        return Scene(sun, light, stray, origin, albedo, rate)
 
     def generate(self, condition: str, split: str, n: int | None = None) -> Samples:
         """Simulate the samples of a split: ``calibration``, ``test`` or ``repeat``.
@@ -337,6 +350,9 @@ class Preset:
                 "unit": self.unit,
             }
         )
+        if setup.spin is not None:
+            # told where there is one: the parameters of all others stay as they were
+            plain["spin"] = described(setup.spin)
         return plain
 
     def card(self) -> dict[str, Any]:

@@ -30,6 +30,8 @@ class Scene:
         (N, K) extra response of each of K detector elements to light from the Earth, in units
         of the response to the yearly mean sunlight at normal incidence, or None. On pixels its
         irradiance at a few points of them, (N, R, C), as their sensor made it.
+    rate_deg_s
+        (N, 3) angular velocity of the sensor about its own x, y and z axes, or None at rest.
     """
 
     sun: Floats
@@ -37,6 +39,7 @@ class Scene:
     stray: Floats
     origin_px: NDArray[np.int64] | None = None
     albedo: Floats | None = None
+    rate_deg_s: Floats | None = None
 
     def __len__(self) -> int:
         """Return the number of samples."""
@@ -55,3 +58,8 @@ class Scene:
     def seen_from(self, sun: Floats) -> Self:
         """Return the same scene with other Sun directions (N, 3)."""
         return replace(self, sun=sun)
+
+    def alone(self) -> Scene:
+        """Return the scene under mean sunlight and no other light, windows left out."""
+        count = len(self)
+        return Scene(self.sun, np.ones(count), np.zeros(count), rate_deg_s=self.rate_deg_s)

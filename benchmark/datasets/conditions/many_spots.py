@@ -16,6 +16,7 @@ from benchmark.datasets.conditions.pixel_arrays import (
     units,
 )
 from benchmark.datasets.fields import Field
+from benchmark.datasets.preset import Condition
 from benchmark.datasets.repeats import FEW
 from benchmark.simulator.masks.apertures import Mask
 from benchmark.simulator.masks.errors import MaskErrors
@@ -40,6 +41,7 @@ def many_spots(
     half_fov_deg: float,
     directions: Field,
     without: tuple[str, ...] = (),
+    others: Mapping[str, Condition] = MappingProxyType({}),
     follows: tuple[str, ...],
     description: str,
     known: Mapping[str, Any] = NOTHING,
@@ -51,6 +53,8 @@ def many_spots(
     ----------
     without
         Conditions of pixel arrays that it does without.
+    others
+        Conditions that it has beside.
     known, regime
         What else the builder knows of the sensor, and what else the regime says.
     """
@@ -74,6 +78,7 @@ def many_spots(
         setups={
             **{condition: setup for condition, setup in setups.items() if condition not in without},
             "missing-apertures": missing_apertures(sensor),
+            **others,
         },
         directions=directions,
         repeats=FEW,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from benchmark.datasets.conditions import pixel_arrays as pixels
+from benchmark.datasets.conditions.motion import spinning
 from benchmark.datasets.fields import AngleField
 from benchmark.simulator.masks.apertures import Aperture, Mask
 
@@ -16,7 +17,7 @@ PRESET = pixels.windows(
     detector="CCD",
     mask="Single-Ap.",
     sensor=_SENSOR,
-    setups=pixels.pixel_conditions(_SENSOR),
+    setups={**pixels.pixel_conditions(_SENSOR), "spinning": spinning(_SENSOR, rolls=False)},
     geometry=pixels.design(_SENSOR, 50.0, aperture_width_mm=0.2, aperture_shape="square"),
     directions=AngleField(50.0),
     follows=(),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from benchmark.datasets.conditions import pixel_arrays as pixels
+from benchmark.datasets.conditions.motion import spinning
 from benchmark.datasets.fields import AngleField
 
 _MASK = pixels.hole(0.1, 0.01)
@@ -18,6 +19,7 @@ PRESET = pixels.windows(
     setups={
         **pixels.pixel_conditions(_SENSOR, careful_also=_ALSO, off_centre=_OFF),
         "glass": pixels.glass(_SENSOR, "refraction pulls the spot inwards, reflection dims it"),
+        "spinning": spinning(_SENSOR, rolls=True),
     },
     geometry=pixels.design(_SENSOR, 60.0, aperture_width_mm=0.1, aperture_shape="round"),
     directions=AngleField(60.0),

@@ -28,8 +28,10 @@ class SpikingArray:
     """Integrate-and-fire pixels in time-to-first-spike mode (fe:escm, Farian2022).
 
     After a common reset every pixel integrates its photocurrent; it fires once, when its charge
-    reaches its threshold, so that the time is inversely proportional to the current. After the
-    first `events` spikes, or after `timeout_us`, the array is reset.
+    reaches its threshold, so that the time is inversely proportional to the current. One bus
+    serves all pixels, one event after another in the order in which they ask for it (`departures`);
+    an event is stamped when it has left. After the first `events` of them, or after `timeout_us`,
+    the array is reset, whatever still waits.
 
     Attributes
     ----------
@@ -46,9 +48,11 @@ class SpikingArray:
     jitter
         Relative standard deviation of a time by the comparator's noise, over its slope.
     clock_us, latency_us
-        Step of the time stamps, and standard deviation of the delay on the bus.
+        Step of the time stamps, and standard deviation of the delay of a pixel's request.
     events, timeout_us
         When the array is reset.
+    service_us
+        That one event keeps the bus busy.
     """
 
     columns: int
@@ -64,8 +68,11 @@ class SpikingArray:
     latency_us: float
     events: int
     timeout_us: float
+    service_us: float = 0.0
 
     def __post_init__(self) -> None:
+        if not (math.isfinite(self.service_us) and self.service_us >= 0):
+            raise ValueError(f"service_us must be finite and not negative; got {self.service_us}")
         if not 1 <= self.events <= self.columns * self.rows:
             raise ValueError(
                 f"events must be in [1, {self.columns * self.rows}], the pixels; got {self.events}"
@@ -87,7 +94,10 @@ class SpikingArray:
         return np.asarray(self.threshold_e * pattern["threshold"] / np.maximum(rate, _LEAST_RATE))
 
     def variance_us2(self, times_us: Floats) -> Floats:
-        """Squared microseconds: shot noise of the charge and comparator noise, bus and clock."""
+        """Squared microseconds: shot noise of the charge and comparator noise, request and clock.
+
+        Of an event that need not wait for the bus.
+        """
         relative2 = 1.0 / self.threshold_e + self.jitter**2
         return np.asarray(relative2 * times_us**2 + self.latency_us**2 + self.clock_us**2 / 12.0)
 
@@ -176,6 +186,10 @@ class EventSensor:
     def variance(self, expected: Floats) -> Floats:
         """Squared microseconds, what a pixel's time is worth when only the first are read.
 
+        On a bus without load: which pixels leave it, in which order and when, all follow from
+        when they ask for it, so that no estimator that sees the stamps does better than one that
+        is told those times. Where pixels queue, who sees the stamps alone has to do with less.
+
         That a pixel has not fired when the array is reset at the time c tells something, too: a
         Gaussian time with mean m and deviation s that is only known where it is below c has the
         share ``F(z) - z f(z) + f(z)^2 / (1 - F(z))``, ``z = (c - m) / s``, of its information on
@@ -201,8 +215,9 @@ class EventSensor:
         )
         # a time before the reset cannot be; only noise far above the stated ones gets there
         np.maximum(times, detector.clock_us, out=times)
+        # of those that ask at once the lower address comes first
         first = np.argsort(times, axis=1, kind="stable")[:, : detector.events]
-        stamps = np.take_along_axis(times, first, axis=1)
+        stamps = departures(np.take_along_axis(times, first, axis=1), detector.service_us)
         late = stamps > detector.timeout_us
         events = np.stack(
             [
@@ -214,6 +229,24 @@ class EventSensor:
         )
         events[late] = np.nan
         return events
+
+
+def departures(requests_us: Floats, service_us: float) -> Floats:
+    """When events leave a bus that serves them one by one, in the order of their requests.
+
+    ``d_k = max(r_k, d_(k-1)) + service``; solved for all at once, ``d_k`` is
+    ``(k + 1) service + max(r_j - j service)`` over all j up to k.
+
+    Parameters
+    ----------
+    requests_us
+        (..., K) times of the requests, rising.
+    service_us
+        That one event keeps the bus busy; 0 returns the requests.
+    """
+    earlier = service_us * np.arange(requests_us.shape[-1])
+    waited = np.maximum.accumulate(requests_us - earlier, axis=-1)
+    return np.asarray(waited + (earlier + service_us))
 
 
 def _censored_share(z: Floats) -> Floats:

@@ -120,7 +120,8 @@ class LitPixels:
         detector = self.sensor.detector
         mask = digest_of(self.pattern["apertures"], self.pattern["transmission"], self._pixels)
         place = detector.rows, detector.columns, detector.pitch_mm
-        key = (*self.sensor.optics(), mask, place, detector.errors.crosstalk, sun.tobytes())
+        moment = self.sensor.moment(self.scene.seen_from(sun))
+        key = (*self.sensor.optics(), mask, place, detector.errors.crosstalk, *moment)
         return memory.rendered(key, lambda: self._from(sun))
 
     def _from(self, sun: Floats) -> Floats:
@@ -128,7 +129,7 @@ class LitPixels:
         frame = np.zeros((detector.rows, detector.columns))
         out = np.zeros(self._pixels.shape)
         for n, pixels in enumerate(self._pixels):
-            one = Scene(sun[n : n + 1], np.ones(1), np.zeros(1))
+            one = self.scene.part(n, n + 1).alone().seen_from(sun[n : n + 1])
             boxes = self.sensor.add_light(frame, one, self.pattern)
             listed = pixels >= 0
             out[n, listed] = self._picked(frame, pixels[listed])

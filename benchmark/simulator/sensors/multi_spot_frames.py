@@ -225,6 +225,10 @@ class MultiSpotSensor:
         numbers = self.widest_deg, self.skirt, self.errors.edge_mm, self.detector.tunnel
         return type(self).__name__, self.camera, self.spectrum, numbers
 
+    def moment(self, scene: Scene) -> tuple[Hashable, ...]:
+        """Return what light depends on of a scene, under mean sunlight."""
+        return (scene.sun.tobytes(),)
+
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, rows, columns) mean digital numbers before rounding."""
         detector = self.detector
@@ -295,9 +299,9 @@ class MultiSpotSensor:
         mask = digest_of(pattern["apertures"], pattern["transmission"])
         key = (*self.optics(), mask, shape, detector.pitch_mm)
         for n in range(len(scene)):
-            one = Scene(scene.sun[n : n + 1], np.ones(1), np.zeros(1))
+            one = scene.part(n, n + 1).alone()
             places, values = memory.places(
-                (*key, one.sun.tobytes()), partial(self._places, light, one, pattern)
+                (*key, *self.moment(one)), partial(self._places, light, one, pattern)
             )
             flat[places] = values * scene.irradiance[n]
             if scene.albedo is not None:

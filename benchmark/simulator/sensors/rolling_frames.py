@@ -1,89 +1,321 @@
-"""Frames of a CMOS array read out row by row while the sensor turns: `RollingFrameSensor`."""
+"""Frames exposed while the sensor turns, at once or row by row: `RollingFrameSensor`."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable
-from dataclasses import dataclass
+from collections.abc import Hashable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.contract import Floats
 from benchmark.simulator.scene import Scene
+from benchmark.simulator.sensor import FixedPattern
+from benchmark.simulator.sensors.diffractive_frames import DiffractiveFrameSensor
 from benchmark.simulator.sensors.frames import FrameSensor
+from benchmark.simulator.sensors.multi_spot_frames import MultiSpotSensor
+
+#: Nodes in time of a spot that hardly moves, and how many more each pixel of motion takes: light
+#: of the standard datasets is then within 1e-3 of peak of many nodes.
+_NODES, _NODES_A_PX = 2.5, 0.8
+#: Motion beyond which no more are taken.
+_FARTHEST_PX = 64.0
 
 
 @dataclass(frozen=True)
 class RollingFrameSensor(FrameSensor):
-    """A `FrameSensor` with an electronic rolling shutter on a body that turns.
+    """A `FrameSensor` that turns while it is exposed, at the rates of its scene.
 
-    Row Y of the detector is exposed for `PixelArray.exposure_s`, centred at
-    ``(Y - (rows - 1) / 2) row_time_s``; the scene's Sun directions are those of time 0. Each row
-    sees the Sun where it stands during its own exposure. By default nothing rolls or turns, and
-    frames are those of `FrameSensor` to the last bit.
+    Every row is exposed for `PixelArray.exposure_s`, one `row_time_s` after the row before it;
+    without a row time all are exposed together (global shutter, frame transfer). The scene's Sun
+    is that of time 0, when the row through its spot is half exposed: who knows the row that his
+    answer lies in stamps it with that row's time, and is asked for the Sun of that moment. Row Y
+    is exposed about ``(Y - y) row_time_s``, y the row of the spot of a point Sun (the nearest
+    row there is), wherever the window lies.
+
+    Light is rendered as of a sensor at rest at a few moments, the Gauss nodes of all the time
+    that a window's rows are exposed; a row gets the integral over its own exposure of the
+    polynomial through them. Without rates frames are those of the sensor at rest to the last
+    bit. Ghosts and light from the Earth stay where they are at time 0.
 
     Attributes
     ----------
     row_time_s
         From one row's exposure to the next one's; negative where read-out runs to lower rows.
-    rate_deg_s
-        Angular velocity of the sensor about its own x, y and z axes, constant.
-    instants
-        Gauss nodes over the exposure; 1 leaves out the motion within it.
+    more_nodes
+        Moments beside those that the motion asks for; to see how much they matter.
     """
 
-    row_time_s: float = 0.0
-    rate_deg_s: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    instants: int = 1
+    sees_motion: ClassVar[bool] = True
+    #: Whose light it is at rest: kept under the same key.
+    still: ClassVar[type[FrameSensor]] = FrameSensor
+
+    row_time_s: float = field(default=0.0, kw_only=True)
+    more_nodes: int = field(default=0, kw_only=True)
 
     def __post_init__(self) -> None:
-        if not (math.isfinite(self.row_time_s) and all(map(math.isfinite, self.rate_deg_s))):
-            raise ValueError(
-                f"row time and rates must be finite; got {self.row_time_s} s and {self.rate_deg_s}"
-            )
-        if self.instants < 1:
-            raise ValueError(f"instants must be at least 1; got {self.instants}")
+        _check(self.row_time_s, self.more_nodes)
 
     def _optics(self) -> tuple[Hashable, ...]:
-        rolling = self.row_time_s, self.rate_deg_s, self.instants, self.detector.exposure_s
-        return (*super()._optics(), rolling)
+        _, *rest = super()._optics()
+        return (self.still.__name__, *rest)
 
-    def seen_at(self, sun: Floats, time_s: Floats) -> Floats:
-        """(N, T, 3) directions at times (N, T) to the Sun that is at `sun` (N, 3) at time 0.
+    def _moment(self, scene: Scene) -> tuple[Hashable, ...]:
+        still = super()._moment(scene)
+        if scene.rate_deg_s is None:
+            return still
+        shutter = self.row_time_s, self.detector.exposure_s, self.more_nodes
+        return (*still, *shutter, scene.rate_deg_s.tobytes())
 
-        The Sun stands still, the sensor turns: ``s(t)`` is s turned by ``-|w| t`` about w.
-        """
-        rate = math.sqrt(math.fsum(w * w for w in self.rate_deg_s))
-        if rate == 0.0:
-            return np.repeat(sun[:, None, :], time_s.shape[1], axis=1)
-        axis = np.array(self.rate_deg_s) / rate
-        angles = [-math.radians(rate * t) for t in time_s.ravel()]
-        c = np.array([math.cos(a) for a in angles]).reshape(*time_s.shape, 1)
-        s = np.array([math.sin(a) for a in angles]).reshape(*time_s.shape, 1)
-        along = (sun[:, 0] * axis[0] + sun[:, 1] * axis[1] + sun[:, 2] * axis[2])[:, None, None]
-        square = np.cross(axis, sun)[:, None, :]
-        return np.asarray(c * sun[:, None, :] + s * square + (1.0 - c) * along * axis)
+    def _rows_s(self) -> Floats:
+        """(rows,) when each row of a window is half exposed, after the window's middle."""
+        rows = self.window_px[1]
+        return np.asarray((np.arange(rows) - (rows - 1) / 2.0) * self.row_time_s)
+
+    def _middle_s(self, scene: Scene, origin_px: NDArray[np.int64]) -> Floats:
+        """(N,) when the middle of each window is half exposed."""
+        rows = self.window_px[1]
+        spot = np.clip(self.spot_px(scene.sun)[:, 1], 0.0, self.detector.rows - 1.0)
+        return np.asarray((origin_px[:, 1] + (rows - 1) / 2.0 - spot) * self.row_time_s)
+
+    def nodes(self, scene: Scene, origin_px: NDArray[np.int64]) -> NDArray[np.int64]:
+        """(N,) moments that each sample is rendered at, 1 for what does not turn."""
+        if scene.rate_deg_s is None:
+            return np.ones(len(scene), dtype=np.int64)
+        _, half = _span(self._rows_s(), self.detector.exposure_s)
+        count = _nodes(self, scene, self._middle_s(scene, origin_px), half) + self.more_nodes
+        turns = (scene.rate_deg_s != 0.0).any(axis=1)
+        return np.where(turns, count, 1).astype(np.int64)
 
     def _rendered(self, scene: Scene, origin_px: NDArray[np.int64]) -> Floats:
-        """(N, H, W) as `FrameSensor._rendered`, every row at its own time."""
-        if not any(self.rate_deg_s) or (self.row_time_s == 0.0 and self.instants == 1):
+        """(N, H, W) as of the sensor at rest, every row over its own exposure."""
+        if scene.rate_deg_s is None:
             return super()._rendered(scene, origin_px)
-        from benchmark.simulator.kernels.rasteriser import render  # noqa: PLC0415 - Numba on demand
-
-        detector, pitch = self.detector, self.detector.pitch_mm
         columns, rows = self.window_px
-        row = origin_px[:, 1:] + np.arange(rows)
-        middle = (row - detector.centre_px[1]) * self.row_time_s
-        corner = np.stack([np.broadcast_to(origin_px[:, :1], row.shape), row], axis=2)
-        corner = corner.reshape(-1, 2) - 0.5 - np.asarray(detector.centre_px)
         flux = np.zeros((len(scene), rows, columns))
-        one = np.empty((len(scene) * rows, 1, columns))
-        even = np.ones(len(one)), np.zeros(len(one))
-        nodes, shares = np.polynomial.legendre.leggauss(self.instants)
-        for node, share in zip(nodes, shares / 2.0, strict=True):
-            seen = self.seen_at(scene.sun, middle + node * detector.exposure_s / 2.0)
-            light = self.projected(Scene(seen.reshape(-1, 3), *even))
-            render(one, self.camera.mask.table(pitch), light.rims_mm / pitch, light.light, corner)
-            flux += share * one.reshape(flux.shape)
+        counts = self.nodes(scene, origin_px)
+        for count in np.unique(counts):
+            mine = np.flatnonzero(counts == count)
+            part, origin = scene.rows(mine), origin_px[mine]
+            if count == 1:
+                flux[mine] = super()._rendered(part, origin)
+                continue
+            middle = self._middle_s(part, origin)
+            light = np.zeros((len(mine), rows, columns))
+            moments, shares = row_shares(self._rows_s(), self.detector.exposure_s, int(count))
+            for moment, share in zip(moments, shares.T, strict=True):
+                seen = part.seen_from(seen_at(part, middle + moment))
+                light += share[:, None] * super()._rendered(seen, origin)
+            flux[mine] = light
         return flux
+
+
+@dataclass(frozen=True)
+class RollingDiffractiveSensor(RollingFrameSensor, DiffractiveFrameSensor):
+    """A `DiffractiveFrameSensor` that turns while it is exposed, as `RollingFrameSensor` does."""
+
+    still: ClassVar[type[FrameSensor]] = DiffractiveFrameSensor
+
+    def __post_init__(self) -> None:
+        RollingFrameSensor.__post_init__(self)
+        DiffractiveFrameSensor.__post_init__(self)
+
+
+@dataclass(frozen=True)
+class RollingMultiSpotSensor(MultiSpotSensor):
+    """A `MultiSpotSensor` that turns while it is exposed, as `RollingFrameSensor` does.
+
+    Time 0 is when the row through the spot under the middle of the mask is half exposed. Spots
+    far from it are exposed some time before or after, when the Sun stands elsewhere: those of
+    each row of holes are rendered at moments of their own.
+
+    Attributes
+    ----------
+    row_time_s, more_nodes
+        As of `RollingFrameSensor`.
+    """
+
+    sees_motion: ClassVar[bool] = True
+
+    row_time_s: float = field(default=0.0, kw_only=True)
+    more_nodes: int = field(default=0, kw_only=True)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        _check(self.row_time_s, self.more_nodes)
+
+    def optics(self) -> tuple[Hashable, ...]:
+        """As of the sensor at rest, whose light is the same."""
+        _, *rest = super().optics()
+        return (MultiSpotSensor.__name__, *rest)
+
+    def moment(self, scene: Scene) -> tuple[Hashable, ...]:
+        """As of the sensor at rest; of one that turns its rates, too, and how it is exposed."""
+        still = super().moment(scene)
+        if scene.rate_deg_s is None:
+            return still
+        shutter = self.row_time_s, self.detector.exposure_s, self.more_nodes
+        return (*still, *shutter, scene.rate_deg_s.tobytes())
+
+    def boxes(self, scene: Scene, pattern: FixedPattern, margin_px: int = 0) -> NDArray[np.int64]:
+        """As of the sensor at rest, wherever a spot is while it is exposed."""
+        if scene.rate_deg_s is None:
+            return super().boxes(scene, pattern, margin_px)
+        found = np.zeros((len(scene), len(pattern["transmission"]), 4), dtype=np.int64)
+        for n in range(len(scene)):
+            one = scene.part(n, n + 1)
+            for masked, middle, half in self._rows_of_holes(one, pattern):
+                for there in super().boxes(_at(one, (-half, 0.0, half), middle), masked, margin_px):
+                    _join(found[n], there)
+        return found
+
+    def _rows_of_holes(
+        self, one: Scene, pattern: FixedPattern
+    ) -> Iterator[tuple[FixedPattern, float, float]]:
+        """Holes by row: the unit with the others closed, and when their spots are exposed.
+
+        A moment, and how long before and after it; rows of holes without light are left out.
+        """
+        exposure, centre = self.detector.exposure_s, self._whole().spot_px(one.sun)[0, 1]
+        across = np.array([aperture.y_mm for aperture in self.camera.mask.apertures])
+        for place in np.unique(across):
+            passed = np.where(across == place, pattern["transmission"], 0.0)
+            masked = {**pattern, "transmission": passed}
+            middle, half = place / self.detector.pitch_mm * self.row_time_s, exposure / 2.0
+            for _ in range(2):  # spots of another time lie elsewhere, and are exposed then
+                lit = super().boxes(_at(one, (-half, 0.0, half), middle), masked)
+                lit = lit[lit[..., 3] > lit[..., 2]]
+                if not len(lit):
+                    break
+                rows = np.array([lit[:, 2].min(), lit[:, 3].max() - 1.0])
+                middle, half = _span((rows - centre) * self.row_time_s, exposure)
+            else:
+                yield masked, middle, half
+
+    def add_light(self, frame: Floats, one: Scene, pattern: FixedPattern) -> NDArray[np.int64]:
+        """As of the sensor at rest, every row over its own exposure; a box a row of holes."""
+        if one.rate_deg_s is None:
+            return super().add_light(frame, one, pattern)
+        whole, exposure, found = self._whole(), self.detector.exposure_s, []
+        rows_s = (np.arange(frame.shape[0]) - whole.spot_px(one.sun)[0, 1]) * self.row_time_s
+        light = np.zeros_like(frame)
+        for masked, middle, half in self._rows_of_holes(one, pattern):
+            count = int(_nodes(whole, one, np.array([middle]), half)[0]) + self.more_nodes
+            place, weight = np.polynomial.legendre.leggauss(count)
+            for k in range(count):
+                boxes = super().add_light(light, _at(one, (half * place[k],), middle), masked)
+                if not len(boxes):
+                    continue
+                left, top = boxes[:, ::2].min(axis=0)
+                right, bottom = boxes[:, 1::2].max(axis=0)
+                part = slice(top, bottom), slice(left, right)
+                within = (rows_s[top:bottom] - middle) / half
+                share = _share(k, within, exposure / (2.0 * half), place, weight)
+                frame[part] += share[:, None] * light[part]
+                light[part] = 0.0
+                found.append((left, right, top, bottom))
+        return np.array(found, dtype=np.int64).reshape(-1, 4)
+
+
+def seen_at(scene: Scene, time_s: Floats) -> Floats:
+    """(N, 3) unit vectors to the Suns of a scene at times (N,), the scene's own at time 0.
+
+    The Sun stands still, the sensor turns: ``s(t)`` is s turned by ``-|w| t`` about w.
+    """
+    if scene.rate_deg_s is None:
+        return scene.sun
+    seen = np.empty_like(scene.sun)
+    turns = zip(scene.sun.tolist(), scene.rate_deg_s.tolist(), time_s.tolist(), strict=True)
+    for n, ((x, y, z), rates, time) in enumerate(turns):
+        rate = math.sqrt(rates[0] * rates[0] + rates[1] * rates[1] + rates[2] * rates[2])
+        if rate == 0.0:
+            seen[n] = x, y, z
+            continue
+        u, v, w = (component / rate for component in rates)
+        angle = -math.radians(rate * time)
+        c, s = math.cos(angle), math.sin(angle)
+        along = (1.0 - c) * (x * u + y * v + z * w)
+        seen[n] = (
+            c * x + s * (v * z - w * y) + along * u,
+            c * y + s * (w * x - u * z) + along * v,
+            c * z + s * (u * y - v * x) + along * w,
+        )
+    return seen
+
+
+def row_shares(rows_s: Floats, exposure_s: float, nodes: int) -> tuple[Floats, Floats]:
+    """Return moments (K,), in seconds, and what each has of every row's light, (rows, K).
+
+    The moments are the Gauss nodes of all the time that rows are exposed; a row's light is the
+    integral over its own exposure of the polynomial through the light at the moments.
+
+    Parameters
+    ----------
+    rows_s
+        (rows,) when each is half exposed.
+    exposure_s
+        Of every row.
+    nodes
+        K.
+    """
+    middle, half = _span(rows_s, exposure_s)
+    if half == 0.0:
+        return np.array([middle]), np.ones((len(rows_s), 1))
+    place, weight = np.polynomial.legendre.leggauss(nodes)
+    within, width = (rows_s - middle) / half, exposure_s / (2.0 * half)
+    shares = [_share(k, within, width, place, weight) for k in range(nodes)]
+    return middle + half * place, np.stack(shares, axis=1)
+
+
+def _share(k: int, within: Floats, width: float, place: Floats, weight: Floats) -> Floats:
+    """(rows,) mean of Lagrange's polynomial of node k over exposures about `within`.
+
+    In units of half the whole time; exact by Gauss's rule with the same nodes.
+    """
+    moments = within[:, None] + width * place
+    polynomial = np.ones_like(moments)
+    for other in range(len(place)):
+        if other != k:
+            polynomial *= (moments - place[other]) / (place[k] - place[other])
+    return np.array([math.fsum(row) for row in (polynomial * (weight / 2.0)).tolist()])
+
+
+def _span(rows_s: Floats, exposure_s: float) -> tuple[float, float]:
+    """Middle, and half the length, of the time that any of some rows is exposed."""
+    first, last = float(rows_s.min()), float(rows_s.max())
+    return (first + last) / 2.0, (last - first + exposure_s) / 2.0
+
+
+def _nodes(sensor: FrameSensor, scene: Scene, middle_s: Floats, half_s: float) -> NDArray[np.int64]:
+    """(N,) moments that the motion of each sample's spot asks for."""
+    seen = (seen_at(scene, middle_s + step) for step in (-half_s, 0.0, half_s))
+    before, now, after = (sensor.spot_px(sun) for sun in seen)
+    way = np.sqrt(np.sum((now - before) ** 2, axis=1))
+    way += np.sqrt(np.sum((after - now) ** 2, axis=1))
+    # one that leaves the field takes as many as cross a window
+    way = np.minimum(np.nan_to_num(way, nan=np.inf), _FARTHEST_PX)
+    return np.asarray(np.ceil(_NODES + _NODES_A_PX * way), dtype=np.int64)
+
+
+def _at(one: Scene, times_s: Sequence[float], since_s: float) -> Scene:
+    """One sample as a sensor at rest sees it at some times (T,): that many samples."""
+    many = one.rows(np.zeros(len(times_s), dtype=np.int64))
+    return replace(many, sun=seen_at(many, np.array(times_s) + since_s), rate_deg_s=None)
+
+
+def _join(boxes: NDArray[np.int64], others: NDArray[np.int64]) -> None:
+    """Let boxes (A, 4), `MultiSpotSensor.boxes`, hold others, too, where those hold anything."""
+    lit = (others[:, 1] > others[:, 0]) & (others[:, 3] > others[:, 2])
+    new = lit & ((boxes[:, 1] <= boxes[:, 0]) | (boxes[:, 3] <= boxes[:, 2]))
+    boxes[new] = others[new]
+    boxes[lit, ::2] = np.minimum(boxes[lit, ::2], others[lit, ::2])
+    boxes[lit, 1::2] = np.maximum(boxes[lit, 1::2], others[lit, 1::2])
+
+
+def _check(row_time_s: float, more_nodes: int) -> None:
+    if not math.isfinite(row_time_s):
+        raise ValueError(f"row_time_s must be finite; got {row_time_s}")
+    if more_nodes < 0:
+        raise ValueError(f"more_nodes must not be negative; got {more_nodes}")

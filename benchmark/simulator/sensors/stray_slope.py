@@ -6,7 +6,7 @@ one keep their numbers and their random streams.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -53,9 +53,8 @@ class UnevenScene(Scene):
         """Return `scene` with slopes (N, 2)."""
         if slope.shape != (len(scene), 2):
             raise ValueError(f"slopes must be ({len(scene)}, 2); got {slope.shape}")
-        return cls(
-            scene.sun, scene.irradiance, scene.stray, scene.origin_px, scene.albedo, slope=slope
-        )
+        columns = {field.name: getattr(scene, field.name) for field in fields(Scene)}
+        return cls(**columns, slope=slope)
 
 
 def sloping(scene: Scene, places: Floats) -> Floats:

@@ -124,10 +124,12 @@ def test_differences_of_objects_are_taken_back_by_merging() -> None:
         {**base, "b": None, "e": {"type": "Z", "y": 1}},
         {**base, "b": {"type": "X", "c": 2, "d": [1]}},
         {**base, "b": {"type": "Y", "x": 0}, "f": {"g": None, "h": 2}},
+        {**base, "i": None},
+        {**base, "i": {"j": 1}, "k": {"type": "X", "c": 2}},
     ):
         assert merged(base, differences(base, other)) == other
     assert differences(base, {**base, "b": {"type": "X", "c": 3, "d": [1, 2]}}) == {"b": {"c": 3}}
-    with pytest.raises(ValueError, match="objects of the same members"):
+    with pytest.raises(ValueError, match="no member of the first may be missing"):
         differences(base, {"a": 1})
 
 

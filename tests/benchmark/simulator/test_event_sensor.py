@@ -132,9 +132,8 @@ def test_events_are_the_first_pixels_in_the_order_of_their_times(name: str) -> N
 
 def test_no_pixel_that_is_not_read_out_was_earlier() -> None:
     sensor = sensor_of("event-l-slit")
-    quiet = replace(
-        sensor, detector=replace(sensor.detector, jitter=0, latency_us=0, threshold_e=1e15)
-    )
+    exact = {"jitter": 0, "latency_us": 0, "threshold_e": 1e15, "service_us": 0.0}
+    quiet = replace(sensor, detector=replace(sensor.detector, **exact))
     pattern = quiet.fixed_pattern("unit")
     scene = scene_of([(5.0, 20.0), (-30.0, -30.0)])
     mean = quiet.expected(scene, pattern)
@@ -150,7 +149,7 @@ def test_no_pixel_that_is_not_read_out_was_earlier() -> None:
 
 def test_jitter_has_the_stated_spread_and_the_mean_its_time() -> None:
     sensor = sensor_of("event-single-aperture", "high-noise")
-    detector = replace(sensor.detector, events=4096, timeout_us=1e9)
+    detector = replace(sensor.detector, events=4096, timeout_us=1e9, service_us=0.0)
     sensor = replace(sensor, detector=detector)
     pattern = sensor.fixed_pattern("unit")
     scene = scene_of([(3.0, -14.0)] * 300)
@@ -198,10 +197,17 @@ def test_a_silent_pixel_is_worth_what_a_censored_gaussian_is() -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_the_bound_is_what_the_events_tell(name: str) -> None:
-    """One scoring step from the truth on real events, silent pixels counted as silent."""
+@pytest.mark.parametrize("loaded", [False, True])
+def test_the_bound_is_what_the_events_tell(name: str, loaded: bool) -> None:
+    """One scoring step from the truth on real events, silent pixels counted as silent.
+
+    Where nothing waits for the bus it reaches the bound; where pixels queue, it does not come
+    below it (400 trials of two angles tell a root mean square to 2.5 %: three of those).
+    """
     preset = datasets.get(name)
     sensor, light = sensor_of(name), preset.setups["nominal"].irradiance
+    if not loaded:
+        sensor = replace(sensor, detector=replace(sensor.detector, service_us=0.0))
     pattern = preset.fixed_pattern("nominal")
     trials = 400
     one = scene_of([(14.0, -21.0)])
@@ -243,6 +249,9 @@ def test_the_bound_is_what_the_events_tell(name: str) -> None:
         pixels = (read[:, 1] * 64 + read[:, 0]).astype(int)
         score[pixels] = (read[:, 2] - mean[pixels]) / deviation[pixels] ** 2
         errors[n] = np.linalg.solve(fisher, slopes.T @ score)[:2]
+    if loaded:
+        assert np.degrees(np.sqrt(np.mean(np.sum(errors**2, axis=1)))) > 0.925 * bound.angle_deg[0]
+        return
     reached = np.degrees(np.sqrt(np.sum(errors.var(axis=0, ddof=1))))
     assert reached == pytest.approx(bound.angle_deg[0], rel=0.15)
 

@@ -1,0 +1,59 @@
+"""Frames exposed while the satellite turns, at once or row by row."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from typing import Final
+
+from benchmark.datasets.conditions.propagation import LIGHT
+from benchmark.datasets.preset import Condition
+from benchmark.simulator.flight.spin import Spin
+from benchmark.simulator.light.environment import Irradiance
+from benchmark.simulator.sensors.diffractive_frames import DiffractiveFrameSensor
+from benchmark.simulator.sensors.multi_spot_frames import MultiSpotSensor
+from benchmark.simulator.sensors.rolling_frames import (
+    RollingDiffractiveSensor,
+    RollingMultiSpotSensor,
+)
+
+#: What student CubeSats must be able to end after their release, about any axis (requirements of
+#: Stanford's AA236B); the CubeSat Design Specification wants deployers to leave less than 3.
+TUMBLING: Final = Spin(30.0)
+#: Seconds a pixel of a row takes to be read, of a star sensor's APS (patent CN104567864A: 82 us
+#: for a row of 1024).
+PIXEL_S: Final = 80e-9
+
+
+def spinning(
+    sensor: DiffractiveFrameSensor | MultiSpotSensor,
+    *,
+    rolls: bool,
+    irradiance: Irradiance = LIGHT,
+) -> Condition:
+    """Return the condition of a satellite that tumbles, not yet caught after its release.
+
+    Parameters
+    ----------
+    sensor
+        Under its nominal condition; of windows or of full frames.
+    rolls
+        Rows are exposed one after another, as by an electronic rolling shutter that reads whole
+        rows of the detector; else all together, as in a CCD of frame transfer.
+    irradiance
+        Of the nominal condition.
+    """
+    row_s = round(PIXEL_S * sensor.detector.columns, 9) if rolls else 0.0
+    parts = {field.name: getattr(sensor, field.name) for field in fields(sensor)}
+    whole = isinstance(sensor, MultiSpotSensor)
+    turning = RollingMultiSpotSensor if whole else RollingDiffractiveSensor
+    spot = "the spot under the mask's middle" if whole else "its spot"
+    order = f"row by row, {1e6 * row_s:.0f} us apart" if rolls else "all pixels together"
+    return Condition(
+        f"The nominal sensor on a satellite that tumbles at {TUMBLING.rate_deg_s:g} deg/s, about "
+        "another axis in every sample of the test split; calibrated at rest. Exposed for "
+        f"{1e3 * sensor.detector.exposure_s:g} ms, {order}; the Sun is that of the moment when "
+        f"the row through {spot} is half exposed.",
+        turning(**parts, row_time_s=row_s),
+        irradiance,
+        spin=TUMBLING,
+    )

@@ -1,0 +1,107 @@
+"""Conditions of a satellite that tumbles: whom they move, when, and who is left alone."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+
+from benchmark import datasets
+from benchmark.datasets.conditions.motion import TUMBLING
+from benchmark.seeds import generator
+from benchmark.simulator.flight.spin import Spin
+from benchmark.simulator.sensors.rolling_frames import (
+    RollingDiffractiveSensor,
+    RollingMultiSpotSensor,
+)
+from benchmark.simulator.sensors.stray_slope import UnevenScene
+
+#: By the time between rows, seconds.
+SETS = {
+    "cmos-single-aperture": 512 * 80e-9,
+    "ccd-single-aperture": 0.0,
+    "cmos-multi-aperture": 1024 * 80e-9,
+}
+NAMES = tuple(SETS)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_it_is_the_nominal_sensor_that_turns(name: str) -> None:
+    preset = datasets.get(name)
+    still, moving = (preset.setups[c].sensor for c in ("nominal", "spinning"))
+    assert isinstance(moving, RollingDiffractiveSensor | RollingMultiSpotSensor)
+    for field in fields(still):
+        assert getattr(moving, field.name) == getattr(still, field.name)
+    assert moving.row_time_s == pytest.approx(SETS[name], abs=1e-9)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_only_the_test_split_turns_and_only_there(name: str) -> None:
+    preset = datasets.get(name)
+    for condition in preset.conditions:
+        spinning = condition == "spinning"
+        for split in ("calibration", "test", "repeat"):
+            rate = preset.scene(condition, split).rate_deg_s
+            assert (rate is not None) == (spinning and split != "calibration")
+    assert "spinning" in preset.conditions
+    one, other = (preset.scene(condition, "test") for condition in ("nominal", "spinning"))
+    assert one.sun.tobytes() == other.sun.tobytes()
+    assert one.irradiance.tobytes() == other.irradiance.tobytes()
+    assert one.origin_px is not None
+    assert np.array_equal(one.origin_px, other.origin_px)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_passes_of_a_pose_turn_alike(name: str) -> None:
+    preset = datasets.get(name)
+    rate = preset.scene("spinning", "repeat").rate_deg_s
+    assert rate is not None
+    passes = rate.reshape(preset.repeats.passes, -1, 3)
+    assert (passes == passes[0]).all()
+    assert len(np.unique(passes[0], axis=0)) == passes.shape[1]
+
+
+def test_at_rest_light_is_that_of_the_nominal_condition() -> None:
+    preset = datasets.get("cmos-single-aperture")
+    means = []
+    for condition in ("nominal", "spinning"):
+        sensor = preset.sensor_for(condition, "calibration")
+        scene = preset.scene(condition, "calibration").part(0, 8)
+        means.append(sensor.expected(scene, preset.fixed_pattern(condition)))
+    assert means[0].tobytes() == means[1].tobytes()
+
+
+def test_axes_of_a_tumbling_body_are_uniform_over_the_sphere() -> None:
+    count = 4000
+    rates = Spin(30.0).draw(count, generator("test", "spin"))
+    assert np.linalg.norm(rates, axis=1) == pytest.approx(30.0)
+    axes = rates / 30.0
+    # components are uniform in [-1, 1], of variance 1/3; their squares vary by 4/45
+    assert np.abs(axes.mean(axis=0)).max() < 4 * math.sqrt(1 / 3 / count)
+    assert np.square(axes).mean(axis=0) == pytest.approx(1 / 3, abs=4 * math.sqrt(4 / 45 / count))
+    with pytest.raises(ValueError, match="rate_deg_s must be finite and positive"):
+        Spin(0.0)
+
+
+def test_cards_tell_the_motion_where_there_is_one() -> None:
+    preset = datasets.get("cmos-single-aperture")
+    card = preset.card()
+    told = {name: datasets.parameters_of(card, name).get("spin") for name in preset.conditions}
+    assert told.pop("spinning") == {"type": "Spin", "rate_deg_s": TUMBLING.rate_deg_s}
+    assert set(told.values()) == {None}
+    assert datasets.parameters_of(card, "spinning") == preset.parameters("spinning")
+
+
+def test_scenes_of_other_kinds_keep_the_rates() -> None:
+    scene = datasets.get("cmos-single-aperture").scene("spinning", "test").part(0, 3)
+    uneven = UnevenScene.of(scene, np.zeros((3, 2)))
+    assert uneven.rate_deg_s is scene.rate_deg_s
+    assert np.array_equal(uneven.rows(np.array([2])).rate_deg_s, scene.rate_deg_s[2:])
+
+
+def test_a_sensor_that_is_not_exposed_over_time_is_refused_a_motion() -> None:
+    nominal = datasets.get("cmos-single-aperture").setups["nominal"]
+    with pytest.raises(ValueError, match="got DiffractiveFrameSensor"):
+        replace(nominal, spin=TUMBLING)
