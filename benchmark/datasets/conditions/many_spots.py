@@ -8,6 +8,7 @@ from typing import Any
 
 from algorithms.contract import Observation
 from benchmark.datasets.conditions.full_frames import FullFramePreset, drawn
+from benchmark.datasets.conditions.other_light import with_albedo
 from benchmark.datasets.conditions.pixel_arrays import (
     assembled,
     design,
@@ -16,6 +17,7 @@ from benchmark.datasets.conditions.pixel_arrays import (
     units,
 )
 from benchmark.datasets.fields import Field
+from benchmark.datasets.preset import Condition
 from benchmark.datasets.repeats import FEW
 from benchmark.simulator.masks.apertures import Mask
 from benchmark.simulator.masks.errors import MaskErrors
@@ -40,6 +42,7 @@ def many_spots(
     half_fov_deg: float,
     directions: Field,
     without: tuple[str, ...] = (),
+    more: Mapping[str, Condition] = NOTHING,
     follows: tuple[str, ...],
     description: str,
     known: Mapping[str, Any] = NOTHING,
@@ -51,6 +54,8 @@ def many_spots(
     ----------
     without
         Conditions of pixel arrays that it does without.
+    more
+        Conditions of its own, at the end.
     known, regime
         What else the builder knows of the sensor, and what else the regime says.
     """
@@ -74,6 +79,8 @@ def many_spots(
         setups={
             **{condition: setup for condition, setup in setups.items() if condition not in without},
             "missing-apertures": missing_apertures(sensor),
+            "albedo": with_albedo(setups["nominal"].sensor),
+            **more,
         },
         directions=directions,
         repeats=FEW,
