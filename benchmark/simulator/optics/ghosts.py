@@ -54,21 +54,27 @@ class Ghost:
         """Of direct light that is thrown back twice."""
         return self.detector_reflectance * self.surface_reflectance
 
+    def paths(self, camera: Camera, sun: Floats) -> tuple[Floats, Floats, Floats]:
+        """Displacements of the direct image and of the ghost, (N, K, 2) mm each, and light (N, K).
+
+        For Suns (N, 3) of K points; as of a thin mask.
+        """
+        points = camera.sun.directions(camera.assembly.to_head(sun))
+        front = points[..., 2] > 1e-6
+        safe = np.where(front[..., None], points, [0.0, 0.0, 1.0])
+        direct = camera.project(sun)
+        thin = np.asarray((direct.rims_mm[0] + direct.rims_mm[1]) / 2.0)
+        through = camera.height_mm if self.surface == "mask" else camera.glass.thickness_mm
+        far = thin + 2.0 * camera.glass.displacement(safe, through)
+        return thin, far, self.share * direct.light
+
     def project(self, camera: Camera, sun: Floats) -> ProjectedLight:
         """Rims and light of the ghost for Suns (N, 3), as `Camera.project` has them.
 
         Between the rims lies what both leave open: of a mask, the ghost's image comes first, then,
         with negative light, its overlap with the direct image.
         """
-        points = camera.sun.directions(camera.assembly.to_head(sun))
-        front = points[..., 2] > 1e-6
-        safe = np.where(front[..., None], points, [0.0, 0.0, 1.0])
-        direct = camera.project(sun)
-        thin = (direct.rims_mm[0] + direct.rims_mm[1]) / 2.0
-        glass = camera.glass
-        through = camera.height_mm if self.surface == "mask" else glass.thickness_mm
-        far = thin + 2.0 * glass.displacement(safe, through)
-        light = self.share * direct.light
+        thin, far, light = self.paths(camera, sun)
         if self.surface == "glass":
             return ProjectedLight(np.stack([far, far]), light)
         rims = np.stack([np.concatenate([far, thin], axis=1), np.concatenate([far, far], axis=1)])
