@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from algorithms.contract import Floats
 from benchmark.simulator.light.memory import digest_of, memory
-from benchmark.simulator.optics.earthlight import add_between
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
@@ -69,14 +68,16 @@ class LitPixels:
         object.__setattr__(self, "_light", self._rendered(self.scene.sun))
 
     def _earthlight(self, pixels: NDArray[np.int64]) -> Floats:
-        """(N, P + 1) light of the Earth on the pixels; last the others' mean, with their gains."""
+        """(N, P + 1) light of the Earth and uneven stray light on the pixels.
+
+        Last the others' mean, with their gains.
+        """
         out = np.zeros((len(pixels), pixels.shape[1] + 1))
-        if self.scene.albedo is None:
-            return out
         detector, gain = self.sensor.detector, self.pattern["gain"]
         for n, mine in enumerate(pixels):
             frame = np.zeros((1, detector.rows, detector.columns))
-            add_between(frame, self.scene.albedo[n : n + 1])
+            if not self.sensor.add_uneven(frame, self.scene.part(n, n + 1)):
+                continue
             listed = mine >= 0
             out[n, :-1][listed] = frame.ravel()[mine[listed]]
             frame[0] *= gain
