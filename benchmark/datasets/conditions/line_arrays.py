@@ -43,9 +43,13 @@ def line_arrays(
     follows: tuple[str, ...],
     description: str,
     more: Mapping[str, Condition] = MappingProxyType({}),
+    kind: type[Preset] = Preset,
 ) -> Preset:
-    """Return a dataset of linear arrays behind slits, with conditions of its own at the end."""
-    return Preset(
+    """Return a dataset of linear arrays behind slits, with conditions of its own at the end.
+
+    `kind` is its class.
+    """
+    return kind(
         name=name,
         version=version,
         detector=detector,

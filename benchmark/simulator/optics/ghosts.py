@@ -73,7 +73,8 @@ class Ghost:
         """Rims and light of the ghost for Suns (N, 3), as `Camera.project` has them.
 
         Between the rims lies what both leave open: of a mask, the ghost's image comes first, then,
-        with negative light, its overlap with the direct image.
+        with negative light, its overlap with the direct image. What leaves through another opening
+        than its own is not taken off (linear arrays and full frames do that by themselves).
         """
         thin, far, light = self.paths(camera, sun)
         if self.surface == "glass":

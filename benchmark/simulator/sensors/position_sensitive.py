@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
@@ -227,13 +228,15 @@ def common_rule(apart: float) -> tuple[Floats, Floats]:
         Distance of the centres in units of the diameter, below 1.
     """
     widest = math.acos(apart)
-    nodes, halves = np.polynomial.legendre.leggauss(6)
-    inner, shares = np.polynomial.legendre.leggauss(4)
-    points, weights = [], []
-    for node, half in zip(nodes.tolist(), halves.tolist(), strict=True):
-        turn = widest * node
-        reach = math.cos(turn) - apart
-        for place, share in zip(inner.tolist(), shares.tolist(), strict=True):
-            points.append((reach * place, math.sin(turn)))
-            weights.append(half * widest * math.cos(turn) * share * reach / math.pi)
-    return np.array(points), np.array(weights)
+    (turns, outer), (places, inner) = _nodes(6), _nodes(4)
+    cosine = np.array([math.cos(widest * turn) for turn in turns])
+    sine = np.array([math.sin(widest * turn) for turn in turns])
+    reach = cosine - apart
+    along = np.outer(reach, places).ravel()
+    weights = np.outer(outer * cosine * reach, inner).ravel() * (widest / math.pi)
+    return np.column_stack([along, np.repeat(sine, len(places))]), weights
+
+
+@lru_cache(maxsize=4)
+def _nodes(count: int) -> tuple[Floats, Floats]:
+    return np.polynomial.legendre.leggauss(count)
