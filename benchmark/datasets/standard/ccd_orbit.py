@@ -28,6 +28,6 @@ PRESET = in_orbit(
         "three whole orbits a quarter of a year on. The sensor relaxes towards 35 deg C in "
         "sunlight and -25 deg C in eclipse with a time constant of 2000 s. In eclipse the window "
         "stays where the Sun was last seen. The sunlit Earth shines through the hole, too, where "
-        "it is ahead: into so small a window less than a ten-thousandth of sunlight."
+        "it is ahead: onto the window about a ten-thousandth of sunlight at most."
     ),
 )

@@ -48,8 +48,7 @@ def _add(line: Floats, left: float, right: float, dead: float, weight: float) ->
 def add_ghosts(
     flux: Floats,
     slits: Floats,
-    paths: Floats,
-    light: Floats,
+    sunlight: tuple[Floats, Floats],
     lines: Floats,
     numbers: tuple[float, float, float],
 ) -> None:
@@ -61,11 +60,9 @@ def add_ghosts(
         (N, W), added to: share of each pixel's sensitive length lit, times the light.
     slits
         (A, 7) `Mask.table` in pixels, u along the array, v across it.
-    paths
+    sunlight
         (2, N, K, 2) by point of the Sun, (u, v): how far it displaces the direct image and the far
-        one, px.
-    light
-        (N, K) light of each of the K points of the Sun.
+        one, px; and (N, K) light of each of the K points.
     lines
         (Q,) places across the array over which light is averaged, px.
     numbers
@@ -73,6 +70,7 @@ def add_ghosts(
         slits let the light out again, else 0.
     """
     first, fill, lost = numbers
+    paths, light = sunlight
     dead = (1.0 - fill) / 2.0
     count = slits.shape[0]
     near, far = np.empty((count, 2)), np.empty((count, 2))

@@ -84,7 +84,7 @@ class Ghost:
 
 
 def let_out(camera: Camera, sun: Floats, holes_mm: Floats) -> Floats:
-    """(A,) share of each round hole's light that openings let out when it comes up again.
+    """Return the share (A,) of each round hole's light that openings let out as it comes up.
 
     Mean over the Sun's disc of what circles two heights apart share; each pair as if both had the
     mean of their radii.

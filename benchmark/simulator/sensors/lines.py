@@ -210,7 +210,7 @@ class LineSensor:
             # what slants crosses many pixels over the array's height
             count = _LINES if np.abs(slits[:, 6]).max() > _UPRIGHT else 1
             lines = ((np.arange(count) + 0.5) / count - 0.5) * (self.pixel_height_mm / pitch)
-            add_ghosts(part, slits, along, light, lines, numbers)
+            add_ghosts(part, slits, (along, light), lines, numbers)
             flux[:, number * columns : (number + 1) * columns] += part
 
     def _tilt(self, paths: Floats, tilt: float) -> None:
