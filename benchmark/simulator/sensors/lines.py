@@ -16,7 +16,7 @@ from benchmark.simulator.light.memory import memory
 from benchmark.simulator.masks.slits import SlitErrors
 from benchmark.simulator.optics.diffraction import SUNLIT_SILICON, Spectrum
 from benchmark.simulator.optics.diffraction_tables import layers
-from benchmark.simulator.optics.earthlight import EarthInView, add_between, on_window
+from benchmark.simulator.optics.earthlight import EarthInView, add_between, on_array
 from benchmark.simulator.optics.ghosts import Ghost
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.optics.slit_diffraction import SlitProfiles
@@ -233,13 +233,9 @@ class LineSensor:
         plate's own errors are left out.
         """
         reach = (self.detector.columns - 1) * self.detector.pitch_mm
-        first = np.tile([-reach / 2.0, 0.0], (len(scene), 1))
         view = EarthInView(earth, nadir, scene.sun)
-        arrays = [
-            on_window(self.camera, first, (reach, 0.0), view, swapped=axis == "y")
-            for axis in self.axes
-        ]
-        return np.concatenate(arrays, axis=1)
+        arrays = [on_array(self.camera, reach, view, swapped=axis == "y") for axis in self.axes]
+        return np.stack(arrays, axis=1)
 
     def _places(self) -> Floats:
         """(W, 2) of the pixels, in units of half an array's length from its middle."""

@@ -228,7 +228,7 @@ def common_rule(apart: float) -> tuple[Floats, Floats]:
         Distance of the centres in units of the diameter, below 1.
     """
     widest = math.acos(apart)
-    (turns, outer), (places, inner) = _nodes(6), _nodes(4)
+    (turns, outer), (places, inner) = _nodes(10), _nodes(4)
     cosine = np.array([math.cos(widest * turn) for turn in turns])
     sine = np.array([math.sin(widest * turn) for turn in turns])
     reach = cosine - apart
