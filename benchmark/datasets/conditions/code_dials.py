@@ -9,7 +9,7 @@ from algorithms.contract import Observation, SensorGeometry
 from benchmark.datasets.conditions.alignment import MISALIGNED
 from benchmark.datasets.conditions.line_arrays import ASSEMBLED, MISASSEMBLED
 from benchmark.datasets.conditions.masked_photodiodes import hot, noises
-from benchmark.datasets.conditions.other_light import with_albedo
+from benchmark.datasets.conditions.other_light import with_albedo, with_ghosts
 from benchmark.datasets.conditions.propagation import LIGHT
 from benchmark.datasets.fields import AngleField
 from benchmark.datasets.preset import Condition, Preset
@@ -112,5 +112,6 @@ def conditions(sensor: CodeDialSensor) -> dict[str, Condition]:
             replace(sensor, dial=replace(dial, fine_rows="square")),
             LIGHT,
         ),
+        "ghosts": with_ghosts(sensor),
         "albedo": with_albedo(sensor),
     }

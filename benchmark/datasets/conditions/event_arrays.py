@@ -8,6 +8,7 @@ from typing import Any, Final
 
 from algorithms.contract import Observation, SensorGeometry
 from benchmark.datasets.conditions.alignment import MISALIGNED, careful, misaligned
+from benchmark.datasets.conditions.other_light import with_albedo
 from benchmark.datasets.conditions.propagation import LIGHT
 from benchmark.datasets.fields import AngleField
 from benchmark.datasets.preset import Condition, Preset
@@ -125,4 +126,5 @@ def conditions(sensor: EventSensor) -> dict[str, Condition]:
             "The nominal unit at 80 deg C: dark current doubles every 7 K and hastens dim pixels.",
             replace(sensor, detector=hot),
         ),
+        "albedo": with_albedo(sensor),
     }

@@ -27,6 +27,7 @@ from benchmark.simulator.flight.orbit import (
 )
 from benchmark.simulator.flight.time_series import DriftingSensor, TimedScene
 from benchmark.simulator.light.sun_disc import tangent_axes
+from benchmark.simulator.sensor import SeesEarth
 from benchmark.simulator.sensors.faces import Faces
 
 #: Said in every card: what the bound of a time series does not cover.
@@ -179,11 +180,6 @@ class FlightPreset(Preset):
         for name, setup in self.setups.items():
             if not hasattr(setup.sensor, "thermal"):
                 raise TypeError(f"the sensor of condition {name} must have a thermal cycle")
-            if setup.earth is not None and not isinstance(setup.sensor, Faces):
-                raise TypeError(
-                    f"condition {name}: in flight the Earth shines on bare faces only; got "
-                    f"{type(setup.sensor).__name__}"
-                )
             if not isinstance(setup.bench, Instruments | None):
                 raise TypeError(
                     f"condition {name} must be calibrated in orbit (Instruments), or perfectly "
@@ -216,26 +212,26 @@ class FlightPreset(Preset):
         origin = sensor.origins(leg.sun_body, generator(*names, "window"))
         if origin is not None:
             origin = origin[_last_seen(~leg.eclipse)]
-        albedo = None
-        if setup.earth is not None and isinstance(setup.sensor, Faces):
-            lit = ~leg.eclipse  # from within the cylinder no sunlit ground is in view
-            light = setup.sensor.earthlight(
-                setup.earth,
-                leg.sun_body[lit],
-                leg.nadir_body[lit],
-                self.fixed_pattern(condition),
-            )
-            albedo = np.zeros((len(lit), light.shape[1]))
-            albedo[lit] = leg.sunlight * light
-        return TimedScene(
+        scene = TimedScene(
             leg.sun_body,
             np.where(leg.eclipse, 0.0, leg.sunlight),
             np.where(leg.eclipse, 0.0, stray),
             origin,
-            albedo,
             temperature_k=sensor.thermal.temperature(leg.orbit, leg.sun, leg.since_s),
             age_years=leg.time_s / (DAY_S * YEAR_DAYS),
         )
+        if setup.earth is None:
+            return scene
+        lit = np.flatnonzero(~leg.eclipse)  # from within the cylinder no sunlit ground is in view
+        nadir, pattern = leg.nadir_body[lit], self.fixed_pattern(condition)
+        if isinstance(setup.sensor, Faces):
+            light = setup.sensor.earthlight(setup.earth, scene.sun[lit], nadir, pattern)
+        else:
+            behind = cast("SeesEarth", setup.sensor)
+            light = behind.earth_through(setup.earth, nadir, scene.rows(lit), pattern)
+        albedo = np.zeros((len(scene), *light.shape[1:]))
+        albedo[lit] = leg.sunlight * light
+        return replace(scene, albedo=albedo)
 
     def context(self, condition: str, split: str) -> dict[str, NDArray[Any]]:
         """Return what else is known of each sample: the columns of the card's ``context``."""

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from benchmark.datasets.preset import Preset, first
+from benchmark.datasets.conditions.uneven_light import UnevenPreset
+from benchmark.datasets.preset import first
 from benchmark.metrics.bounds import Bound, cramer_rao
 from benchmark.simulator.masks.apertures import Mask
 from benchmark.simulator.sensors.lit_pixels import LitPixels
@@ -28,8 +29,8 @@ def drawn(mask: Mask) -> tuple[tuple[float, float, float], ...]:
 
 
 @dataclass(frozen=True)
-class FullFramePreset(Preset):
-    """A `Preset` whose conditions all hold a `MultiSpotSensor`."""
+class FullFramePreset(UnevenPreset):
+    """An `UnevenPreset` whose conditions all hold a `MultiSpotSensor`."""
 
     def bound(self, condition: str, split: str = "test", n: int | None = None) -> Bound:
         """Cramer-Rao bound of every sample of a split (see `benchmark.metrics.bounds.cramer_rao`).

@@ -9,6 +9,7 @@ from typing import Any
 
 from algorithms.contract import Observation, SensorGeometry
 from benchmark.datasets.conditions.alignment import careful, misaligned
+from benchmark.datasets.conditions.other_light import with_albedo
 from benchmark.datasets.conditions.pixel_arrays import as_bought
 from benchmark.datasets.conditions.propagation import GLASS, LIGHT
 from benchmark.datasets.fields import AngleField
@@ -52,9 +53,13 @@ def line_arrays(
     follows: tuple[str, ...],
     description: str,
     more: Mapping[str, Condition] = MappingProxyType({}),
+    kind: type[Preset] = Preset,
 ) -> Preset:
-    """Return a dataset of linear arrays behind slits, with conditions of its own at the end."""
-    return Preset(
+    """Return a dataset of linear arrays behind slits, with conditions of its own at the end.
+
+    `kind` is its class.
+    """
+    return kind(
         name=name,
         version=version,
         detector=detector,
@@ -220,12 +225,13 @@ def conditions(sensor: LineSensor, half_fov_deg: float) -> dict[str, Condition]:
             ),
             replace(sensor, camera=replace(sensor.camera, glass=GLASS)),
         )
-    return {
+    named = {
         name: Condition(
             text, setup, LIGHT, geometry=design(setup, half_fov_deg) if name == "glass" else None
         )
         for name, (text, setup) in setups.items()
     }
+    return {**named, "albedo": with_albedo(named["nominal"].sensor)}
 
 
 def design(sensor: LineSensor, half_fov_deg: float) -> SensorGeometry:

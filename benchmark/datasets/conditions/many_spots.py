@@ -8,6 +8,7 @@ from typing import Any
 
 from algorithms.contract import Observation
 from benchmark.datasets.conditions.full_frames import FullFramePreset, drawn
+from benchmark.datasets.conditions.other_light import with_albedo
 from benchmark.datasets.conditions.pixel_arrays import (
     assembled,
     design,
@@ -41,7 +42,7 @@ def many_spots(
     half_fov_deg: float,
     directions: Field,
     without: tuple[str, ...] = (),
-    others: Mapping[str, Condition] = MappingProxyType({}),
+    more: Mapping[str, Condition] = NOTHING,
     follows: tuple[str, ...],
     description: str,
     known: Mapping[str, Any] = NOTHING,
@@ -53,8 +54,8 @@ def many_spots(
     ----------
     without
         Conditions of pixel arrays that it does without.
-    others
-        Conditions that it has beside.
+    more
+        Conditions of its own, at the end.
     known, regime
         What else the builder knows of the sensor, and what else the regime says.
     """
@@ -78,7 +79,8 @@ def many_spots(
         setups={
             **{condition: setup for condition, setup in setups.items() if condition not in without},
             "missing-apertures": missing_apertures(sensor),
-            **others,
+            "albedo": with_albedo(setups["nominal"].sensor),
+            **more,
         },
         directions=directions,
         repeats=FEW,

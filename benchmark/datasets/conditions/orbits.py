@@ -76,7 +76,7 @@ def in_orbit(
 
 
 def frames_aloft(ground: Preset, drift: AssemblyDrift) -> dict[str, Condition]:
-    """Return the conditions of a ground dataset's sensor under a filter of glass, in orbit."""
+    """Return the conditions of a ground dataset's sensor in orbit, under glass, Earth in view."""
 
     def flying(condition: str) -> DriftingFrameSensor:
         still = ground.condition(condition).sensor
@@ -85,11 +85,11 @@ def frames_aloft(ground: Preset, drift: AssemblyDrift) -> dict[str, Condition]:
         return DriftingFrameSensor(**same, drift=drift, thermal=ThermalCycle())
 
     nominal, light = flying("nominal"), ground.condition("nominal").irradiance
-    seen, its = partial(Condition, irradiance=light), f"{ground.name}'s"
+    seen, its = partial(Condition, irradiance=light, earth=Earth()), f"{ground.name}'s"
     return {
         "nominal": seen(
             f"The nominal sensor of {ground.name} under a filter of 0.5 mm of glass (index 1.52), "
-            "its head moving with temperature and age.",
+            "its head moving with temperature and age, sunlit Earth in view.",
             nominal,
         ),
         "low-noise": seen(

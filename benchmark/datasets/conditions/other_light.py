@@ -12,12 +12,25 @@ from benchmark.simulator.light.clouds import CloudyEarth
 from benchmark.simulator.light.environment import Earth, Irradiance
 from benchmark.simulator.optics.ghosts import Ghost
 from benchmark.simulator.sensor import Sensor
+from benchmark.simulator.sensors.code_dial import CodeDialSensor
 from benchmark.simulator.sensors.frames import FrameSensor
+from benchmark.simulator.sensors.lines import LineSensor
+from benchmark.simulator.sensors.multi_spot_frames import MultiSpotSensor
+from benchmark.simulator.sensors.position_sensitive import PositionSensor
 from benchmark.simulator.sensors.quadrants import QuadrantSensor
 from benchmark.simulator.sensors.slit_pairs import SlitPairSensor
 from benchmark.simulator.sensors.stray_slope import UnevenIrradiance
 
-Haunted = TypeVar("Haunted", QuadrantSensor, SlitPairSensor, FrameSensor)
+Haunted = TypeVar(
+    "Haunted",
+    QuadrantSensor,
+    SlitPairSensor,
+    PositionSensor,
+    CodeDialSensor,
+    FrameSensor,
+    MultiSpotSensor,
+    LineSensor,
+)
 
 _ORBIT: Final = (
     "in a 600 km orbit with the sunlit Earth in view on the test split, position and attitude "

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from types import MappingProxyType
 from typing import Any, TypeVar
 
 from algorithms.contract import Observation, SensorGeometry
 from benchmark.datasets.conditions.alignment import MISALIGNED, careful, misaligned
+from benchmark.datasets.conditions.other_light import with_albedo
 from benchmark.datasets.conditions.propagation import GLASS, LIGHT
 from benchmark.datasets.fields import AngleField
 from benchmark.datasets.preset import Condition, Preset
@@ -57,10 +59,15 @@ def windows(
     directions: AngleField,
     follows: tuple[str, ...],
     description: str,
+    more: Mapping[str, Condition] = MappingProxyType({}),
     kind: type[Preset] = Preset,
 ) -> Preset:
-    """Return a dataset of windows around the light of one opening; `kind` is its class."""
+    """Return a dataset of windows around the light of one opening; `kind` is its class.
+
+    It sees the Earth in one condition beside `setups`; `more` come after it.
+    """
     columns, rows = sensor.window_px
+    nominal = setups["nominal"]
     return kind(
         name=name,
         version=version,
@@ -69,7 +76,7 @@ def windows(
         observation=Observation.FRAMES,
         units=units(columns, rows),
         geometry=geometry,
-        setups=setups,
+        setups={**setups, "albedo": with_albedo(nominal.sensor, nominal.irradiance), **more},
         directions=directions,
         follows=follows,
         description=description,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from benchmark.datasets.conditions import other_light
 from benchmark.datasets.conditions.many_spots import behind, many_spots
 from benchmark.datasets.conditions.pixel_arrays import ccd
 from benchmark.datasets.fields import AngleField
@@ -11,19 +12,24 @@ from benchmark.simulator.masks.apertures import Aperture
 from benchmark.simulator.masks.layouts import grid
 
 _MASK = grid(18, 18, 0.235, Aperture("round", 0.05, 0.05))
-
+# light gathers behind such holes to 1.9 times the open light: the exposure is shorter for it
+_SENSOR = behind(_MASK, 0.75, replace(ccd(512, 0.012), sunlit_e=40_000.0), widest_deg=61.0)
 
 PRESET = many_spots(
     name="ccd-multi-aperture",
     version=2,
     detector="CCD",
     mask="Multi-Ap.",
-    # light gathers behind such holes to 1.9 times the open light: the exposure is shorter for it
-    sensor=behind(_MASK, 0.75, replace(ccd(512, 0.012), sunlit_e=40_000.0), widest_deg=61.0),
+    sensor=_SENSOR,
     diameter_mm=0.05,
     half_fov_deg=50.0,
     directions=AngleField(50.0, steps=11, test_samples=40),
     without=("hot",),
+    more={
+        "albedo-clouds": other_light.with_clouds(_SENSOR),
+        "ghosts": other_light.with_ghosts(_SENSOR),
+        "stray-gradient": other_light.with_stray_gradient(_SENSOR),
+    },
     follows=("Liebe2001", "Mobasser2001"),
     description=(
         "Full frames of 512 x 512 px behind 18 x 18 round holes. A CCD, several hundred holes in "

@@ -27,7 +27,7 @@ PRESET = in_orbit(
         "hundredths of a degree a year. Calibration: sunlight of the first three orbits; test: "
         "three whole orbits a quarter of a year on. The sensor relaxes towards 35 deg C in "
         "sunlight and -25 deg C in eclipse with a time constant of 2000 s. In eclipse the window "
-        "stays where the Sun was last seen. Light from the Earth is left out: see "
-        "benchmark.sweeps.albedo_influence."
+        "stays where the Sun was last seen. The sunlit Earth shines through the hole, too, where "
+        "it is ahead: onto the window about a ten-thousandth of sunlight at most."
     ),
 )

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from benchmark.datasets.conditions import other_light
 from benchmark.datasets.conditions.line_arrays import SUN, behind, ccd, line_arrays
+from benchmark.datasets.conditions.uneven_light import UnevenPreset
 from benchmark.simulator.masks.slits import periodic
 
 _MASK = periodic(16, 0.4, width_mm=0.2, length_mm=8.0, thickness_mm=0.0)
+_SENSOR = behind(_MASK, 1.8, ccd(1024, 0.014), sun=SUN)
 
 PRESET = line_arrays(
     name="ccd-periodic",
     version=2,
     detector="CCD",
     mask="Multi-Slit",
-    sensor=behind(_MASK, 1.8, ccd(1024, 0.014), sun=SUN),
+    sensor=_SENSOR,
     half_fov_deg=60.0,
     follows=("Tsuno2019", "Kondo2024"),
     description=(
@@ -23,4 +26,10 @@ PRESET = line_arrays(
         "60 deg, 1.8 mm up; 1024 pixels of 14 um hold the whole pattern at 60 deg, so its ends "
         "tell which slit is which and the phase needs no coarse sensor."
     ),
+    more={
+        "albedo-clouds": other_light.with_clouds(_SENSOR),
+        "ghosts": other_light.with_ghosts(_SENSOR),
+        "stray-gradient": other_light.with_stray_gradient(_SENSOR),
+    },
+    kind=UnevenPreset,
 )

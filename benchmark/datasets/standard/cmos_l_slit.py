@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from benchmark.datasets.conditions import other_light
 from benchmark.datasets.conditions import pixel_arrays as pixels
 from benchmark.datasets.fields import AngleField
 from benchmark.simulator.masks.layouts import l_slit
@@ -36,4 +37,8 @@ PRESET = pixels.windows(
         "is coherent over some 60 um only); 512 px hold both at 60 deg. Windows are placed from "
         "the true spot, rounded, plus a uniform whole offset of up to 8 px an axis."
     ),
+    more={
+        "albedo-clouds": other_light.with_clouds(_SENSOR),
+        "ghosts": other_light.with_ghosts(_SENSOR),
+    },
 )

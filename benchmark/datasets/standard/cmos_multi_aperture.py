@@ -23,7 +23,7 @@ PRESET = many_spots(
     half_fov_deg=60.0,
     directions=AngleField(60.0, steps=11, test_samples=60),
     without=("hot",),
-    others={"spinning": spinning(_SENSOR, rolls=True)},
+    more={"spinning": spinning(_SENSOR, rolls=True)},
     follows=("Rufino2009b", "Rufino2012", "Mobasser2003"),
     description=(
         "Full frames of 1024 x 1024 px behind 10 x 10 round holes. The count and a CMOS array with "

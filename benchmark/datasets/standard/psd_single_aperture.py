@@ -29,6 +29,7 @@ PRESET = diodes.masked_photodiodes(
         **diodes.usual(_SENSOR, _NOMINAL, _OFF, misaligned(0.0375)),
         "linear": diodes.linear(_SENSOR),
         **diodes.temperatures(_SENSOR),
+        "ghosts": other_light.with_ghosts(_SENSOR),
         "albedo": other_light.with_albedo(_SENSOR),
     },
     follows=("Lin2016",),

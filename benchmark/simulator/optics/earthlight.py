@@ -30,12 +30,13 @@ from benchmark.simulator.scene import Scene
 #: Against six times as many the response of the standard sensors changes by less than 0.7 % of
 #: its largest value over random Earths, 0.07 % root mean square.
 RINGS, SPOKES = 64, 192
-#: Rays through all openings together, about: onto a window, and onto a single row of pixels.
-_RAYS, _RAYS_TO_A_ROW = 64, 32
-#: Steps between points along each axis of a window, and along a single row, at most. Against twice
-#: as many and 25 times the rays, frames and profiles of the standard sensors change by less than
-#: 1 % of their largest value, root mean square; more in single pixels where the limb's shadow is.
-_MOST, _MOST_IN_A_ROW = 16, 64
+#: Rays through all openings of a window together, about, and through each kind of slit.
+_RAYS, _RAYS_A_SLIT = 64, 64
+#: Steps between points along each axis of a window at most, along a linear array, and along the
+#: line on which one slit of several alike is worked out. Against twice as many and 16 to 25 times
+#: the rays, frames and profiles of the standard sensors change by less than 1 % of their largest
+#: value, root mean square; more in single pixels where the limb's shadow is.
+_MOST, _ALONG, _ALONG_A_SLIT = 16, 64, 128
 #: Steps of the table over distances from an opening; it ends at this incidence.
 _STEPS, _WIDEST_DEG = 2048, 85.0
 
@@ -170,34 +171,60 @@ def on_window(
     first_mm: Floats,
     reach_mm: tuple[float, float],
     view: EarthInView,
-    *,
-    swapped: bool = False,
 ) -> Floats:
     """(N, R, C) irradiance from the Earth at points evenly over windows of pixels.
 
-    Their distance is about a quarter of the smallest opening, and at least a 16th of the window
-    (of a single row, a 64th).
+    Their distance is about a quarter of the smallest opening, and at least a 16th of the window.
+
+    Parameters
+    ----------
+    camera, view
+        As of `on_points`.
+    first_mm
+        (N, 2) place of the first pixel's centre.
+    reach_mm
+        From there to the last one's, along x and y.
+    """
+    smallest = min(aperture.smallest_half_width_mm for aperture in camera.mask.apertures)
+    steps = [min(max(math.ceil(2.0 * reach / smallest), 1), _MOST) for reach in reach_mm]
+    apart = reach_mm[0] / steps[0], reach_mm[1] / steps[1]
+    points = Points(first_mm, apart, 1 + steps[1], 1 + steps[0])
+    return on_points(camera, points, view, _RAYS)
+
+
+def on_array(
+    camera: Camera, reach_mm: float, view: EarthInView, *, swapped: bool = False
+) -> Floats:
+    """(N, C) irradiance from the Earth at points evenly along a linear array behind slits.
+
+    Slits of one size and slant differ in their places alone: what one of them lets through is
+    worked out along a line that is longer by all their places, and taken from it for each.
 
     Parameters
     ----------
     camera, view, swapped
         As of `on_points`.
-    first_mm
-        (N, 2) place of the first pixel's centre.
     reach_mm
-        From there to the last one's, along x and y; 0 of a single row.
+        From the first pixel's centre to the last one's, symmetric about the detector's middle.
     """
-    smallest = min(aperture.smallest_half_width_mm for aperture in camera.mask.apertures)
-    single = min(reach_mm) == 0.0
-    most = _MOST_IN_A_ROW if single else _MOST
-    steps = [min(max(math.ceil(2.0 * reach / smallest), 1), most) for reach in reach_mm]
-    columns, rows = (
-        1 if reach == 0.0 else 1 + step for reach, step in zip(reach_mm, steps, strict=True)
-    )
-    apart = reach_mm[0] / steps[0], reach_mm[1] / steps[1]
-    points = Points(first_mm, apart, rows, columns)
-    rays = _RAYS_TO_A_ROW if single else _RAYS
-    return on_points(camera, points, view, rays, swapped=swapped)
+    alike: dict[Aperture, list[float]] = {}
+    for slit in camera.mask.apertures:
+        alike.setdefault(replace(slit, x_mm=0.0), []).append(slit.x_mm)
+    at = reach_mm * (np.arange(_ALONG + 1) / _ALONG - 0.5)
+    total = np.zeros((len(view.nadir), len(at)))
+    for slit, places in alike.items():
+        steps = _ALONG if len(places) == 1 else _ALONG_A_SLIT
+        low = -reach_mm / 2.0 - max(places)
+        step = (reach_mm + max(places) - min(places)) / steps
+        points = Points(np.tile([low, 0.0], (len(total), 1)), (step, 0.0), 1, steps + 1)
+        alone = replace(camera, mask=replace(camera.mask, apertures=(slit,)))
+        light = on_points(alone, points, view, _RAYS_A_SLIT, swapped=swapped)[:, 0]
+        for place in places:
+            along = np.clip((at - place - low) / step, 0.0, steps)
+            node = np.minimum(along.astype(np.int64), steps - 1)
+            part = along - node
+            total += light[:, node] * (1.0 - part) + light[:, node + 1] * part
+    return total
 
 
 def add_between(light: Floats, nodes: Floats) -> None:

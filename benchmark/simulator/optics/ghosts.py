@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -54,25 +55,64 @@ class Ghost:
         """Of direct light that is thrown back twice."""
         return self.detector_reflectance * self.surface_reflectance
 
-    def project(self, camera: Camera, sun: Floats) -> ProjectedLight:
-        """Rims and light of the ghost for Suns (N, 3), as `Camera.project` has them.
+    def paths(self, camera: Camera, sun: Floats) -> tuple[Floats, Floats, Floats]:
+        """Displacements of the direct image and of the ghost, (N, K, 2) mm each, and light (N, K).
 
-        Between the rims lies what both leave open: of a mask, the ghost's image comes first, then,
-        with negative light, its overlap with the direct image.
+        For Suns (N, 3) of K points; as of a thin mask.
         """
         points = camera.sun.directions(camera.assembly.to_head(sun))
         front = points[..., 2] > 1e-6
         safe = np.where(front[..., None], points, [0.0, 0.0, 1.0])
         direct = camera.project(sun)
-        thin = (direct.rims_mm[0] + direct.rims_mm[1]) / 2.0
-        glass = camera.glass
-        through = camera.height_mm if self.surface == "mask" else glass.thickness_mm
-        far = thin + 2.0 * glass.displacement(safe, through)
-        light = self.share * direct.light
+        thin = np.asarray((direct.rims_mm[0] + direct.rims_mm[1]) / 2.0)
+        through = camera.height_mm if self.surface == "mask" else camera.glass.thickness_mm
+        far = thin + 2.0 * camera.glass.displacement(safe, through)
+        return thin, far, self.share * direct.light
+
+    def project(self, camera: Camera, sun: Floats) -> ProjectedLight:
+        """Rims and light of the ghost for Suns (N, 3), as `Camera.project` has them.
+
+        Between the rims lies what both leave open: of a mask, the ghost's image comes first, then,
+        with negative light, its overlap with the direct image. What leaves through another opening
+        than its own is not taken off (linear arrays and full frames do that by themselves).
+        """
+        thin, far, light = self.paths(camera, sun)
         if self.surface == "glass":
             return ProjectedLight(np.stack([far, far]), light)
         rims = np.stack([np.concatenate([far, thin], axis=1), np.concatenate([far, far], axis=1)])
         return ProjectedLight(rims, np.concatenate([light, -light], axis=1))
+
+
+def let_out(camera: Camera, sun: Floats, holes_mm: Floats) -> Floats:
+    """Return the share (A,) of each round hole's light that openings let out as it comes up.
+
+    Mean over the Sun's disc of what circles two heights apart share; each pair as if both had the
+    mean of their radii.
+
+    Parameters
+    ----------
+    camera
+        Of the sensor, without glass.
+    sun
+        (1, 3) direction.
+    holes_mm
+        (A, 3) built x, y and radius.
+    """
+    coarse = replace(camera, sun=replace(camera.sun, rings=(8,), spiral=0))
+    points = coarse.sun.directions(camera.assembly.to_head(sun))[0]
+    _, shares = coarse.sun.quadrature()
+    out = np.zeros(len(holes_mm))
+    for (x, y, z), share in zip(points, shares, strict=True):
+        if z <= 1e-6:
+            continue
+        moved = holes_mm[:, :2] + 2.0 * camera.height_mm * np.array([x, y]) / z
+        apart2 = np.sum((moved[:, None] - holes_mm[None, :, :2]) ** 2, axis=2)
+        both = holes_mm[:, None, 2] + holes_mm[None, :, 2]
+        for one, other in np.argwhere(apart2 < both**2):
+            part = math.sqrt(apart2[one, other]) / both[one, other]
+            common = math.acos(part) - part * math.sqrt(1.0 - part * part)
+            out[one] += share * 2.0 / math.pi * common
+    return np.minimum(out, 1.0)
 
 
 def add_ghost(flux: Floats, camera: Camera, ghost: Ghost, scene: Scene, pitch_mm: float) -> None:

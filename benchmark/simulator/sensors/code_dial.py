@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -16,7 +16,8 @@ from benchmark.simulator.optics.diffraction import Spectrum
 from benchmark.simulator.optics.diffraction_tables import landing, layers
 from benchmark.simulator.optics.earthlight import EarthInView, on_elements
 from benchmark.simulator.optics.edge_light import REFERENCE_NM, crossing
-from benchmark.simulator.optics.projection import Camera
+from benchmark.simulator.optics.ghosts import Ghost
+from benchmark.simulator.optics.projection import Camera, ProjectedLight
 from benchmark.simulator.readout import currents as readout
 from benchmark.simulator.readout.detectors import CurrentReadout
 from benchmark.simulator.readout.noise import NoiseStreams
@@ -119,6 +120,9 @@ class CodeDialSensor:
         further along on tracks further across.
     spectrum
         Of light that diffracts at the slit's edges, or None for geometric light.
+    ghost
+        Light reflected between each dial and its slit, or None; the same from open and opaque
+        parts of a dial.
     """
 
     camera: Camera
@@ -127,6 +131,7 @@ class CodeDialSensor:
     axes: tuple[LineAxis, ...] = ("x", "y")
     deflection_deg: float = 0.0
     spectrum: Spectrum | None = None
+    ghost: Ghost | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
         apertures = self.camera.mask.apertures
@@ -149,13 +154,26 @@ class CodeDialSensor:
 
     def lit(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, K) light behind the tracks in units of what the slit gives an open one at noon."""
+        lit = self._behind(self.camera.project(scene.sun), scene, pattern, self._diffraction(scene))
+        if self.ghost is not None:
+            sharp = np.empty(0), np.empty((len(scene), 2))
+            lit += self._behind(self.ghost.project(self.camera, scene.sun), scene, pattern, sharp)
+        return lit
+
+    def _behind(
+        self,
+        projected: ProjectedLight,
+        scene: Scene,
+        pattern: FixedPattern,
+        diffraction: tuple[Floats, Floats],
+    ) -> Floats:
+        """(N, K) what of the slit's light is behind the tracks."""
         from benchmark.simulator.kernels.dial import read_dial  # noqa: PLC0415 - Numba on demand
 
-        projected = self.camera.project(scene.sun)
         light = projected.light * scene.irradiance[:, None]
         slit = self.camera.mask.table()[0]
         count = self.dial.tracks
-        edge, scales = self._diffraction(scene)
+        edge, scales = diffraction
         out = np.empty((len(scene), count * len(self.axes)))
         for number, axis in enumerate(self.axes):
             # swapped axes see the slit turn the other way

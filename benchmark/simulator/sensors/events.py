@@ -9,8 +9,10 @@ import numpy as np
 
 from algorithms.contract import Floats
 from benchmark.seeds import generator
+from benchmark.simulator.light.environment import Earth
 from benchmark.simulator.light.memory import memory
 from benchmark.simulator.optics.diffraction import SUNLIT_SILICON, Spectrum
+from benchmark.simulator.optics.earthlight import EarthInView, add_between, on_window
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout.detectors import DarkCurrent
 from benchmark.simulator.readout.noise import NoiseStreams
@@ -174,12 +176,30 @@ class EventSensor:
             widest_deg=self.widest_deg,
         )
 
+    def earth_through(
+        self,
+        earth: Earth,
+        nadir: Floats,
+        scene: Scene,
+        pattern: FixedPattern,  # noqa: ARG002 - the protocol's
+    ) -> Floats:
+        """(N, R, C) irradiance from the Earth at points over the array, for nadir (N, 3).
+
+        As of `FrameSensor`.
+        """
+        detector = self.detector
+        first = np.tile(-np.asarray(detector.centre_px) * detector.pitch_mm, (len(scene), 1))
+        reach = (detector.columns - 1) * detector.pitch_mm, (detector.rows - 1) * detector.pitch_mm
+        return on_window(self.camera, first, reach, EarthInView(earth, nadir, scene.sun))
+
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, H W) mean time to fire of every pixel, microseconds, also of those not read out.
 
         The events are a function of the pixels' actual times.
         """
         light = self.lit(scene)
+        if scene.albedo is not None:
+            add_between(light, scene.albedo)
         light += scene.stray[:, None, None]
         return self.detector.times_us(light, pattern).reshape(len(scene), -1)
 

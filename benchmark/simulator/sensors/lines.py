@@ -15,7 +15,8 @@ from benchmark.simulator.light.memory import memory
 from benchmark.simulator.masks.slits import SlitErrors
 from benchmark.simulator.optics.diffraction import SUNLIT_SILICON, Spectrum
 from benchmark.simulator.optics.diffraction_tables import layers
-from benchmark.simulator.optics.earthlight import EarthInView, add_between, on_window
+from benchmark.simulator.optics.earthlight import EarthInView, add_between, on_array
+from benchmark.simulator.optics.ghosts import Ghost
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.optics.slit_diffraction import SlitProfiles
 from benchmark.simulator.readout.detectors import PixelArray, tunnel_response
@@ -31,6 +32,8 @@ from benchmark.simulator.sensor import FixedPattern
 from benchmark.simulator.sensors.stray_slope import sloping
 
 LineAxis = Literal["x", "y"]
+#: Lines along an array on which ghosts of slits are worked out that slant by more than this sine.
+_LINES, _UPRIGHT = 8, 0.02
 
 
 @dataclass(frozen=True)
@@ -55,6 +58,8 @@ class LineSensor:
         How the plate with the slits stands over the arrays.
     spectrum
         Of the light, as the pixels detect it; None for light that does not diffract.
+    ghost
+        Light reflected between each array and its slits, or None.
 
     Raises
     ------
@@ -69,6 +74,7 @@ class LineSensor:
     fill_factor: float = 1.0
     errors: SlitErrors = field(default_factory=SlitErrors)
     spectrum: Spectrum | None = SUNLIT_SILICON
+    ghost: Ghost | None = field(default=None, kw_only=True)
     sees_slopes: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
@@ -119,6 +125,8 @@ class LineSensor:
         pixels = detector.columns, detector.pitch_mm, self.pixel_height_mm, self.fill_factor
         key = (type(self).__name__, self.camera, pixels, self.axes, self.errors, self.spectrum)
         flux = memory.rendered((*key, scene.sun.tobytes()), lambda: self._rendered(scene.sun))
+        if self.ghost is not None:
+            self._add_ghosts(flux, scene.sun, self.ghost)
         flux *= scene.irradiance[:, None]
         if detector.tunnel:
             cosine = self.camera.assembly.to_head(scene.sun)[:, 2]
@@ -185,6 +193,27 @@ class LineSensor:
             expose(part, self._slits(axis), along, light, numbers)
             flux[:, number * columns : (number + 1) * columns] = part
 
+    def _add_ghosts(self, flux: Floats, sun: Floats, ghost: Ghost) -> None:
+        """Add the light of the mean sunlight that comes a second time.
+
+        The plate's inclination is left out.
+        """
+        from benchmark.simulator.kernels.line_ghosts import add_ghosts  # noqa: PLC0415 - Numba on demand
+
+        pitch, columns = self.detector.pitch_mm, self.detector.columns
+        near, far, light = ghost.paths(self.camera, sun)
+        paths = np.stack([near, far]) / pitch
+        numbers = -columns / 2.0, self.fill_factor, 1.0 if ghost.surface == "mask" else 0.0
+        for number, axis in enumerate(self.axes):
+            slits = self._slits(axis)
+            part = np.zeros((len(sun), columns))
+            along = np.ascontiguousarray(paths if axis == "x" else paths[..., ::-1])
+            # what slants crosses many pixels over the array's height
+            count = _LINES if np.abs(slits[:, 6]).max() > _UPRIGHT else 1
+            lines = ((np.arange(count) + 0.5) / count - 0.5) * (self.pixel_height_mm / pitch)
+            add_ghosts(part, slits, (along, light), lines, numbers)
+            flux[:, number * columns : (number + 1) * columns] += part
+
     def _tilt(self, paths: Floats, tilt: float) -> None:
         """Let the plate's thickness stand along its own, tilted normal."""
         middle = (paths[0] + paths[1]) / 2.0
@@ -205,13 +234,9 @@ class LineSensor:
         plate's own errors are left out.
         """
         reach = (self.detector.columns - 1) * self.detector.pitch_mm
-        first = np.tile([-reach / 2.0, 0.0], (len(scene), 1))
         view = EarthInView(earth, nadir, scene.sun)
-        arrays = [
-            on_window(self.camera, first, (reach, 0.0), view, swapped=axis == "y")
-            for axis in self.axes
-        ]
-        return np.concatenate(arrays, axis=1)
+        arrays = [on_array(self.camera, reach, view, swapped=axis == "y") for axis in self.axes]
+        return np.stack(arrays, axis=1)
 
     def _places(self) -> Floats:
         """(W, 2) of the pixels, in units of half an array's length from its middle."""

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from algorithms.contract import Floats
 from benchmark.simulator.light.memory import digest_of, memory
-from benchmark.simulator.optics.earthlight import add_between
 from benchmark.simulator.readout.column_noise import CommonNoise, column_noise
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.readout.references import References
@@ -90,20 +89,19 @@ class LitPixels:
         return np.asarray(pixels % self.sensor.detector.columns)
 
     def _earthlight(self, pixels: NDArray[np.int64]) -> tuple[Floats, Floats]:
-        """Light of the Earth, before smear.
+        """Light of the Earth and uneven stray light, before smear.
 
         (N, P + K) on the pixels; last the others' means, with their gains. And (N, K) the others'
         sums, without.
         """
         out = np.zeros((len(pixels), pixels.shape[1] + self._means))
         beyond = np.zeros((len(pixels), self._means))
-        if self.scene.albedo is None:
-            return out, beyond
         detector, gain = self.sensor.detector, self.pattern["gain"]
         spilling = replace(detector.errors, smear=0.0)
         for n, mine in enumerate(pixels):
             frame = np.zeros((1, detector.rows, detector.columns))
-            add_between(frame, self.scene.albedo[n : n + 1])
+            if not self.sensor.add_uneven(frame, self.scene.part(n, n + 1)):
+                continue
             frame = spilling.gathered(frame)
             listed = mine >= 0
             out[n, : -self._means][listed] = frame.ravel()[mine[listed]]

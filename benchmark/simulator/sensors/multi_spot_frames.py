@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Hashable
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,7 @@ from benchmark.simulator.light.memory import Places, digest_of, memory
 from benchmark.simulator.masks.errors import MaskErrors
 from benchmark.simulator.optics.diffraction import SUNLIT_SILICON, Spectrum
 from benchmark.simulator.optics.earthlight import add_between
+from benchmark.simulator.optics.ghosts import Ghost, let_out
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.optics.round_spots import RoundSpots
 from benchmark.simulator.readout.column_noise import CommonNoise, window_noise
@@ -29,6 +31,7 @@ from benchmark.simulator.readout.references import (
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
 from benchmark.simulator.sensors.frames import FrameSensor
+from benchmark.simulator.sensors.stray_slope import slope_nodes
 
 Integers = NDArray[np.int64]
 
@@ -60,6 +63,9 @@ class MultiSpotSensor:
     skirt
         Of diffracted spots: where light has fallen to this share of the peak at normal incidence,
         it is left out.
+    ghost
+        Light reflected between detector and mask, or None: the spots of the same mask from three
+        times its height, each dimmer by what its light finds of openings on the way.
     """
 
     camera: Camera
@@ -68,6 +74,8 @@ class MultiSpotSensor:
     spectrum: Spectrum | None = SUNLIT_SILICON
     widest_deg: float = 70.0
     skirt: float = 1e-4
+    ghost: Ghost | None = field(default=None, kw_only=True)
+    sees_slopes: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         shapes = {aperture.shape for aperture in self.camera.mask.apertures}
@@ -80,6 +88,13 @@ class MultiSpotSensor:
             raise ValueError(f"widest_deg must be in (0, 90); got {self.widest_deg}")
         if not 0 < self.skirt < 1:
             raise ValueError(f"skirt must be in (0, 1); got {self.skirt}")
+        if self.ghost is not None and (
+            self.ghost.surface != "mask" or self.camera.glass.plates or shapes != {"round"}
+        ):
+            raise ValueError(
+                "ghosts on full frames are of round holes without glass, from the mask's "
+                f"underside; got {self.ghost}, {shapes}, {len(self.camera.glass.plates)} plates"
+            )
         if self.detector.read_noise_e < LEAST_READ_NOISE_E:
             raise ValueError(
                 f"full frames need a read noise of at least {LEAST_READ_NOISE_E} electrons; got "
@@ -107,8 +122,13 @@ class MultiSpotSensor:
     def boxes(self, scene: Scene, pattern: FixedPattern, margin_px: int = 0) -> Integers:
         """(N, A, 4) first and past-last column and row each aperture lights, on the detector.
 
-        Empty (past-last not above first) where its light misses the detector or it is closed.
+        Empty (past-last not above first) where its light misses the detector or it is closed. With
+        a ghost (N, 2 A, 4): its spots come after the others.
         """
+        if self.ghost is not None:
+            far = self._far.boxes(scene, pattern, margin_px)
+            near = self._near.boxes(scene, pattern, margin_px)
+            return np.concatenate([near, far], axis=1)
         if self.spectrum is not None:
             size = (self.detector.columns, self.detector.rows)
             boxes = self._spots.boxes(scene.sun, self._holes(pattern), size, margin_px)
@@ -116,6 +136,23 @@ class MultiSpotSensor:
             return boxes
         light = self.camera.project(scene.sun)
         return self._boxes(light.rims_mm / self.detector.pitch_mm, pattern, margin_px)
+
+    @cached_property
+    def _near(self) -> MultiSpotSensor:
+        """The sensor without its ghost."""
+        return replace(self, ghost=None)
+
+    @cached_property
+    def _far(self) -> MultiSpotSensor:
+        """The sensor as its ghost's light sees it: the mask at three times its height."""
+        camera = self.camera
+        focal = 3.0 * camera.height_mm - camera.assembly.focal_length_error_mm
+        return replace(self, camera=replace(camera, focal_length_mm=focal), ghost=None)
+
+    def _ghost_pattern(self, ghost: Ghost, one: Scene, pattern: FixedPattern) -> FixedPattern:
+        """Return the pattern with what is left of each hole's light when it comes again."""
+        out = let_out(self.camera, one.sun, self._holes(pattern))
+        return {**pattern, "transmission": pattern["transmission"] * ghost.share * (1.0 - out)}
 
     @cached_property
     def _spots(self) -> RoundSpots:
@@ -187,6 +224,10 @@ class MultiSpotSensor:
         -------
         (B, 4) the boxes (as `boxes`) outside of which nothing was added.
         """
+        if self.ghost is not None:
+            again = self._ghost_pattern(self.ghost, one, pattern)
+            far = self._far.add_light(frame, one, again)
+            return np.concatenate([far, self._near.add_light(frame, one, pattern)])
         if self.spectrum is not None:
             boxes = self.boxes(one, pattern)[0]
             passed = pattern["transmission"] * self.dimmed(one)[0]
@@ -223,7 +264,15 @@ class MultiSpotSensor:
         """Return what light on the detector depends on, besides pixels and the built mask."""
         # the holes that are tabulated lie as far apart as built ones are expected to
         numbers = self.widest_deg, self.skirt, self.errors.edge_mm, self.detector.tunnel
-        return type(self).__name__, self.camera, self.spectrum, numbers
+        return type(self).__name__, self.camera, self.spectrum, self.ghost, numbers
+
+    def add_uneven(self, frames: Floats, scene: Scene) -> bool:
+        """Add light of the Earth and sloping stray light to frames (N, rows, columns), if any."""
+        slope = slope_nodes(scene, self.detector.columns, self.detector.rows)
+        found = [nodes for nodes in (scene.albedo, slope) if nodes is not None]
+        for nodes in found:
+            add_between(frames, nodes)
+        return bool(found)
 
     def moment(self, scene: Scene) -> tuple[Hashable, ...]:
         """Return what light depends on of a scene, under mean sunlight."""
@@ -233,8 +282,7 @@ class MultiSpotSensor:
         """(N, rows, columns) mean digital numbers before rounding."""
         detector = self.detector
         electrons = self.lit(scene, pattern)
-        if scene.albedo is not None:
-            add_between(electrons, scene.albedo)
+        self.add_uneven(electrons, scene)
         electrons += scene.stray[:, None, None]
         electrons = detector.errors.gathered(electrons)
         electrons *= detector.sunlit_e * pattern["gain"]
@@ -304,8 +352,7 @@ class MultiSpotSensor:
                 (*key, *self.moment(one)), partial(self._places, light, one, pattern)
             )
             flat[places] = values * scene.irradiance[n]
-            if scene.albedo is not None:
-                add_between(light[None], scene.albedo[n : n + 1])
+            uneven = self.add_uneven(light[None], scene.part(n, n + 1))
             seen, stray = light, float(scene.stray[n])
             if gathered is not None:
                 gather(gathered, light, (stray, errors.crosstalk, errors.smear))
@@ -320,7 +367,7 @@ class MultiSpotSensor:
                 (*tables, added),
                 (stray, *numbers),
             )
-            flat[places if scene.albedo is None else slice(None)] = 0.0
+            flat[slice(None) if uneven else places] = 0.0
         return out
 
     def _places(self, frame: Floats, one: Scene, pattern: FixedPattern) -> Places:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
@@ -12,7 +13,8 @@ from algorithms.contract import Floats
 from benchmark.simulator.light.environment import Earth
 from benchmark.simulator.masks.apertures import Aperture
 from benchmark.simulator.optics.earthlight import EarthInView, on_elements
-from benchmark.simulator.optics.projection import Camera
+from benchmark.simulator.optics.ghosts import Ghost
+from benchmark.simulator.optics.projection import Camera, ProjectedLight
 from benchmark.simulator.readout import currents as readout
 from benchmark.simulator.readout.detectors import CurrentReadout
 from benchmark.simulator.readout.noise import NoiseStreams
@@ -67,12 +69,14 @@ class PositionSensor:
     """A position-sensitive device behind one or more sharp-edged apertures.
 
     The spot is a finite one: every point of the Sun casts the whole aperture. The mask must be
-    thin (`Mask.thickness_mm` 0), so that every such image has the aperture's own shape.
+    thin (`Mask.thickness_mm` 0), so that every such image has the aperture's own shape. Behind one
+    round aperture there may be a `ghost`.
     """
 
     camera: Camera
     detector: LateralEffect
     readout: CurrentReadout
+    ghost: Ghost | None = field(default=None, kw_only=True)
     sees_slopes: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
@@ -81,6 +85,9 @@ class PositionSensor:
                 "a position sensor is simulated behind a thin mask; got thickness_mm "
                 f"{self.camera.mask.thickness_mm}"
             )
+        shapes = [aperture.shape for aperture in self.camera.mask.apertures]
+        if self.ghost is not None and shapes != ["round"]:
+            raise ValueError(f"ghosts are simulated of one round aperture; got {shapes}")
 
     def fixed_pattern(self, *names: str | int) -> FixedPattern:
         """``gain`` (4,): relative gains of the electrodes' amplifiers."""
@@ -95,18 +102,43 @@ class PositionSensor:
         Exact (by Gauss's rule) while the spot lies whole inside the active area; light beyond it
         is lost, point by point of the rule.
         """
-        light = self.camera.project(scene.sun)
+        collected = self._collected(self.camera.project(scene.sun))
+        if self.ghost is not None:
+            collected += self._again(self.ghost, scene.sun)
+        return np.asarray(collected * scene.irradiance[:, None])
+
+    def _again(self, ghost: Ghost, sun: Floats) -> Floats:
+        """(N, 4) what the ghost gives: its whole image less what the aperture let out again."""
+        near, far, light = ghost.paths(self.camera, sun)
+        collected = self._collected(ProjectedLight(np.stack([far, far]), light), 4, 16)
+        if ghost.surface == "glass":
+            return collected
+        hole = self.camera.mask.apertures[0]
+        apart = np.sqrt(np.sum((far - near) ** 2, axis=2))
+        centre = (far + near) / 2.0 + (hole.x_mm, hole.y_mm)
+        for n, k in np.argwhere(apart < hole.width_mm):
+            span = float(apart[n, k])
+            along = (far[n, k] - near[n, k]) / span if span > 0.0 else np.array([1.0, 0.0])
+            points, shares = common_rule(span / hole.width_mm)
+            x = centre[n, k, 0] + hole.width_mm / 2.0 * (points @ (along * (1.0, -1.0)))
+            y = centre[n, k, 1] + hole.width_mm / 2.0 * (points @ along[::-1])
+            parts = self.detector.shares(x, y) * shares[:, None]
+            collected[n] -= light[n, k] * np.sum(parts, axis=0)
+        return collected
+
+    def _collected(self, light: ProjectedLight, radial: int = 2, turns: int = 8) -> Floats:
+        """(N, 4) shares that the electrodes take of images of the apertures, one a point."""
         apertures = self.camera.mask.apertures
         whole = sum(aperture.area_mm2 for aperture in apertures)
-        collected = np.zeros((len(scene), 4))
+        collected = np.zeros((len(light.light), 4))
         for aperture in apertures:
-            points, weights = aperture_rule(aperture)
+            points, weights = aperture_rule(aperture, radial, turns)
             shares = weights * (aperture.area_mm2 / whole)
             for (x, y), share in zip(points, shares, strict=True):
                 at = light.rims_mm[0] + (x, y)
                 parts = self.detector.shares(at[..., 0], at[..., 1])
                 collected += share * np.sum(light.light[..., None] * parts, axis=1)
-        return np.asarray(collected * scene.irradiance[:, None])
+        return collected
 
     def received(self, scene: Scene) -> Floats:
         """(N, 4) all light: direct, stray and from the Earth; units as of `lit`."""
@@ -154,14 +186,15 @@ class PositionSensor:
         return readout.converted(self.readout, self.expected(scene, pattern), streams)
 
 
-def aperture_rule(aperture: Aperture) -> tuple[Floats, Floats]:
+def aperture_rule(aperture: Aperture, radial: int = 2, turns: int = 8) -> tuple[Floats, Floats]:
     """Points (P, 2) in mm and weights (P,), sum 1, of a mean over an aperture's area.
 
-    Exact for polynomials of degree 6, that of `LateralEffect.shares`.
+    Exact for polynomials of degree 6, that of `LateralEffect.shares`; of round ones more radii and
+    turns may be asked for.
     """
     if aperture.shape == "round":
-        nodes, halves = np.polynomial.legendre.leggauss(2)
-        turns = [2.0 * math.pi * (step + 0.5) / 8 for step in range(8)]
+        nodes, halves = np.polynomial.legendre.leggauss(radial)
+        angles = [2.0 * math.pi * (step + 0.5) / turns for step in range(turns)]
         reach = aperture.width_mm / 2.0
         points = [
             (
@@ -169,9 +202,9 @@ def aperture_rule(aperture: Aperture) -> tuple[Floats, Floats]:
                 reach * math.sqrt((node + 1.0) / 2.0) * math.sin(turn),
             )
             for node in nodes
-            for turn in turns
+            for turn in angles
         ]
-        weights = np.repeat(halves / 2.0, 8) / 8
+        weights = np.repeat(halves / 2.0, turns) / turns
     else:
         nodes, halves = np.polynomial.legendre.leggauss(4)
         c = math.cos(math.radians(aperture.rotation_deg))
@@ -181,3 +214,29 @@ def aperture_rule(aperture: Aperture) -> tuple[Floats, Floats]:
         weights = np.outer(halves, halves).ravel() / 4.0
     centre = np.array([aperture.x_mm, aperture.y_mm])
     return np.array(points) + centre, np.asarray(weights)
+
+
+def common_rule(apart: float) -> tuple[Floats, Floats]:
+    """Points (P, 2) and weights (P,) over what two equal circles share, in units of their radius.
+
+    Coordinates from the middle between them, the first along the line of their centres; weights
+    sum to the shared area over a circle's.
+
+    Parameters
+    ----------
+    apart
+        Distance of the centres in units of the diameter, below 1.
+    """
+    widest = math.acos(apart)
+    (turns, outer), (places, inner) = _nodes(10), _nodes(4)
+    cosine = np.array([math.cos(widest * turn) for turn in turns])
+    sine = np.array([math.sin(widest * turn) for turn in turns])
+    reach = cosine - apart
+    along = np.outer(reach, places).ravel()
+    weights = np.outer(outer * cosine * reach, inner).ravel() * (widest / math.pi)
+    return np.column_stack([along, np.repeat(sine, len(places))]), weights
+
+
+@lru_cache(maxsize=4)
+def _nodes(count: int) -> tuple[Floats, Floats]:
+    return np.polynomial.legendre.leggauss(count)

@@ -57,6 +57,18 @@ class UnevenScene(Scene):
         return cls(**columns, slope=slope)
 
 
+def slope_nodes(scene: Scene, columns: int, rows: int) -> Floats | None:
+    """(N, 2, 2) uneven part of stray light on the corner pixels of a detector read out whole.
+
+    Between them it is bilinear (`add_between`). None for even scenes.
+    """
+    if not isinstance(scene, UnevenScene) or scene.slope is None:
+        return None
+    right, low = (columns - 1) / columns, (rows - 1) / rows
+    x, y = scene.slope[:, :1, None], scene.slope[:, 1:, None]
+    return np.asarray(x * np.array([[-right, right]]) + y * np.array([[-low], [low]]))
+
+
 def sloping(scene: Scene, places: Floats) -> Floats:
     """(N, K) stray light of a scene on elements at `places` (K, 2), uneven part included.
 
