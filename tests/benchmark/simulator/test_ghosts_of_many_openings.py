@@ -51,8 +51,9 @@ def shared(apart: float) -> float:
 
 def line(mask: Mask, height_mm: float = 1.0) -> LineSensor:
     camera = Camera(height_mm, mask, POINT)
+    base: LineSensor = nominal("ccd-periodic")
     return replace(
-        nominal("ccd-periodic"),
+        base,
         camera=camera,
         errors=SlitErrors(),
         spectrum=None,
@@ -133,7 +134,7 @@ def test_a_cover_glass_repeats_slits_whole() -> None:
 
 def holes() -> MultiSpotSensor:
     """Shadows of a grid of holes on a small detector."""
-    sensor = nominal("ccd-multi-aperture")
+    sensor: MultiSpotSensor = nominal("ccd-multi-aperture")
     mask = grid(3, 3, 0.3, Aperture("round", 0.1, 0.1))
     pixels = replace(sensor.detector, columns=256, rows=256)
     return replace(
