@@ -13,11 +13,15 @@ from benchmark import datasets
 from benchmark.datasets.conditions.flight import FlightPreset
 from benchmark.simulator.light.environment import Earth
 from benchmark.simulator.light.sun_disc import SolarDisc
+from benchmark.simulator.masks.apertures import Aperture
+from benchmark.simulator.masks.layouts import grid
 from benchmark.simulator.masks.slits import slit_row
 from benchmark.simulator.optics.assembly import Assembly
 from benchmark.simulator.optics.projection import Camera
+from benchmark.simulator.readout.pixel_errors import PixelErrors
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import SeesEarth
+from benchmark.simulator.sensors.events import EventSensor
 from benchmark.simulator.sensors.lit_pixels import LitPixels
 from benchmark.simulator.sensors.stray_slope import UnevenScene
 
@@ -146,8 +150,11 @@ def test_a_full_frame_counts_the_rays_through_all_its_holes() -> None:
     assert frame.max() > 5e-4
 
 
-def test_events_come_as_much_earlier_as_the_earth_adds_to_the_current() -> None:
-    """One over the time to fire is proportional to photo and dark current."""
+def test_events_come_as_much_earlier_as_the_earth_adds_to_the_current(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """One over the time to fire is proportional to photo and dark current; here without a Sun."""
+    monkeypatch.setattr(EventSensor, "_rendered", lambda _, sun: np.zeros((len(sun), 64, 64)))
     sensor = nominal("event-single-aperture")
     sun = np.array([[0.1, -0.2, 0.97]]) / math.sqrt(0.1**2 + 0.2**2 + 0.97**2)
     scene, pattern = lit_by(sun), sensor.fixed_pattern("test")
@@ -163,15 +170,18 @@ def test_events_come_as_much_earlier_as_the_earth_adds_to_the_current() -> None:
     assert lit - dark == pytest.approx(1e-3 * gain / detector.sunlit_us, rel=1e-6)
 
 
-@pytest.mark.slow
 def test_stray_light_slopes_across_full_frames_from_edge_to_edge() -> None:
-    sensor = replace(nominal("ccd-multi-aperture"), spectrum=None)
+    sensor = nominal("ccd-multi-aperture")
+    pixels = replace(sensor.detector, columns=128, rows=96, errors=PixelErrors())
+    mask = grid(3, 3, 0.3, Aperture("round", 0.1, 0.1))
+    camera = replace(sensor.camera, mask=mask)
+    sensor = replace(sensor, camera=camera, detector=pixels, spectrum=None)
     scene, pattern = lit_by(AHEAD), sensor.fixed_pattern("test")
     uneven = UnevenScene.of(scene, np.array([[0.004, -0.002]]))
     gain = sensor.detector.sunlit_e * pattern["gain"] / sensor.detector.gain_e_per_dn
     change = (sensor.expected(uneven, pattern) - sensor.expected(scene, pattern))[0] / gain
-    x = (np.arange(512) - 255.5) / 256.0
-    assert change == pytest.approx(0.004 * x[None, :] - 0.002 * x[:, None], abs=1e-9)
+    x, y = (np.arange(128) - 63.5) / 64.0, (np.arange(96) - 47.5) / 48.0
+    assert change == pytest.approx(0.004 * x[None, :] - 0.002 * y[:, None], abs=1e-9)
     near = LitPixels(sensor, uneven, pattern)
     whole, kept = sensor.expected(uneven, pattern)[0].ravel(), near.expected(uneven, pattern)[0]
     mine = near._pixels[0][near._pixels[0] >= 0]

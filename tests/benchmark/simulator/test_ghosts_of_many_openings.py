@@ -19,6 +19,7 @@ from benchmark.simulator.optics.assembly import Assembly
 from benchmark.simulator.optics.ghosts import Ghost, let_out
 from benchmark.simulator.optics.plates import CoverGlass, Plate
 from benchmark.simulator.optics.projection import Camera
+from benchmark.simulator.readout.pixel_errors import PixelErrors
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensors.code_dial import CodeDialSensor
 from benchmark.simulator.sensors.lines import LineSensor
@@ -51,8 +52,9 @@ def shared(apart: float) -> float:
 
 def line(mask: Mask, height_mm: float = 1.0) -> LineSensor:
     camera = Camera(height_mm, mask, POINT)
+    base: LineSensor = nominal("ccd-periodic")
     return replace(
-        nominal("ccd-periodic"),
+        base,
         camera=camera,
         errors=SlitErrors(),
         spectrum=None,
@@ -133,9 +135,9 @@ def test_a_cover_glass_repeats_slits_whole() -> None:
 
 def holes() -> MultiSpotSensor:
     """Shadows of a grid of holes on a small detector."""
-    sensor = nominal("ccd-multi-aperture")
+    sensor: MultiSpotSensor = nominal("ccd-multi-aperture")
     mask = grid(3, 3, 0.3, Aperture("round", 0.1, 0.1))
-    pixels = replace(sensor.detector, columns=256, rows=256)
+    pixels = replace(sensor.detector, columns=256, rows=256, errors=PixelErrors())
     return replace(
         sensor,
         camera=Camera(0.75, mask, POINT),
