@@ -17,9 +17,6 @@ Four = tuple[float, float, float, float]
 Rays = tuple[float, float, float]
 Integers = NDArray[np.int64]
 
-#: Nodes of the rays through glass, over the distance at which they land.
-_RAYS = 512
-
 
 @compiled
 def _shares(fraction: float) -> Four:
@@ -34,13 +31,18 @@ def _shares(fraction: float) -> Four:
 
 
 @compiled
-def _blended(out: Floats, tables: Floats, place: float) -> None:
-    """Interpolate (T, ...) tables at the node coordinate `place` by Lagrange's cubic."""
-    first = min(max(int(place), 1), tables.shape[0] - 3)
-    a, b, c, d = _shares(place - first)
-    one, two = tables[first - 1], tables[first]
-    three, four = tables[first + 1], tables[first + 2]
+def _blended(out: Floats, tables: Floats, place: float, slope: float) -> None:
+    """Interpolate (T, ...) tables at a node coordinate by Lagrange's cubic.
+
+    It is `place` in the middle row and grows by `slope` a row; below 0 it is mirrored.
+    """
+    middle, last = (out.shape[0] - 1) / 2.0, tables.shape[0] - 1.0
     for row in range(out.shape[0]):
+        here = min(abs(place + slope * (row - middle)), last)
+        first = min(max(int(here), 1), tables.shape[0] - 3)
+        a, b, c, d = _shares(here - first)
+        one, two = tables[first - 1], tables[first]
+        three, four = tables[first + 1], tables[first + 2]
         for column in range(out.shape[1]):
             out[row, column] = (
                 a * one[row, column]
@@ -81,114 +83,38 @@ def _looked_up(table: Floats, along: float, across: float) -> float:
 
 
 @compiled
-def _reach(sine: float, layers: Floats) -> Rays:
-    """Where a ray lands at this sine of incidence: distance, its derivative, distance / sine.
-
-    `layers` are rows (thickness, index), the empty gap first.
-    """
-    tangential, radial = 0.0, 0.0
-    for m in range(layers.shape[0]):
-        square = layers[m, 1] ** 2 - sine * sine
-        share = layers[m, 0] / math.sqrt(square)
-        tangential += share
-        radial += share * layers[m, 1] ** 2 / square
-    return sine * tangential, radial, tangential
-
-
-@compiled
-def _sine(distance: float, height: float, layers: Floats) -> float:
-    """Sine of incidence of the ray that lands this far out (Newton on `_reach`)."""
-    sine = distance / math.sqrt(distance * distance + height * height)
-    for _ in range(30):
-        found, slope, _ = _reach(sine, layers)
-        step = (distance - found) / slope
-        sine = min(sine + step, (sine + 1.0) / 2.0)
-        if abs(step) < 1e-14:
-            break
-    return sine
-
-
-@compiled
-def _rays(layers: Floats, farthest: float) -> Floats:
-    """Rays through the layers, (M, 2) by the distance at which they land.
-
-    Distance over sine, and cosine behind the aperture over ``J_r J_t``; the first node is the
-    mirror image of the third, so that a cubic goes through zero distance. The last two lie beyond
-    `farthest`. Cubic interpolation is good to ``3/128 (d / h)^4``, d from node to node, h the
-    height: below 1e-9 up to a distance of 6 h.
-    """
-    height = 0.0
-    for m in range(layers.shape[0]):
-        height += layers[m, 0]
-    rays = np.empty((_RAYS + 4, 2))
-    step = farthest / _RAYS
-    for i in range(1, _RAYS + 4):
-        sine = _sine((i - 1) * step, height, layers)
-        _, slope, scale = _reach(sine, layers)
-        rays[i, 0] = scale
-        rays[i, 1] = math.sqrt(1.0 - sine * sine) / (slope * scale)
-    rays[0] = rays[2]
-    return rays
-
-
-@compiled
-def _arriving(x: float, y: float, rays: Floats, per_mm: float, height: float) -> Rays:
-    """Direction cosines of the light from the aperture to (x, y), and what they spread by.
-
-    The last is the cosine behind the aperture over ``J_r J_t``: how much of the light leaving it
-    goes to a unit of the detector's area. Without glass `rays` is empty.
-    """
-    if rays.shape[0] == 0:
-        scale = 1.0 / math.sqrt(x * x + y * y + height * height)
-        cosine = height * scale
-        square = cosine * cosine
-        return x * scale, y * scale, square * cosine * scale * scale
-    place = math.sqrt(x * x + y * y) * per_mm
-    node = min(int(place), _RAYS)
-    a, b, c, d = _shares(place - node)
-    scale, spread = 0.0, 0.0
-    for i, share in ((0, a), (1, b), (2, c), (3, d)):
-        scale += share * rays[node + i, 0]
-        spread += share * rays[node + i, 1]
-    return x / scale, y / scale, spread
-
-
-@compiled
-def _seen(x: float, y: float, way: Floats, rays: Floats) -> Rays:
+def _seen(x: float, y: float, way: Floats) -> Rays:
     """Place in the tables, in steps, of a point seen from an aperture, and a factor of its light.
 
     `way` is of `_way`.
     """
-    along = (way[0] * x + way[1] * y - way[4]) / way[5]
-    across = (way[0] * y - way[1] * x) / way[6]
-    factor = 1.0
-    if way[8] > 0.0:
-        px, py, spreading = _arriving(x, y, rays, way[11], way[12])
-        px, py = px - way[2], py - way[3]
-        along += way[8] * (way[0] * px + way[1] * py - along)
-        across += way[8] * (way[0] * py - way[1] * px - across)
-        factor += way[8] * (way[7] * spreading - 1.0)
-    return along * way[9], across * way[10], factor
+    along = way[0] * x + way[1] * y - way[2]
+    across = way[0] * y - way[1] * x
+    row = (along + way[5] + way[6] * along * along + way[7] * across * across) * way[3]
+    column = across * max(1.0 + way[8] * along, 0.0) * way[4]
+    return row, column, max(1.0 + way[9] * along, 0.0)
 
 
 @compiled
-def _way(sun: Floats, numbers: Floats, share: float, layers: Floats, per_mm: float) -> Floats:
+def _way(sun: Floats, numbers: Floats, layers: Floats) -> Floats:
     """Return what `_seen` needs of one sample.
 
-    Azimuth (2), cosines of the chief ray (2), where it lands, J_r, J_t, the inverse of how its
-    light spreads, share of the direction cosines, steps a unit (2), nodes of rays a mm, height.
+    Azimuth (2), where the chief ray lands, steps a mm (2), ``c_0`` to ``c_4`` of
+    `RoundPattern.seen`.
     """
-    way = np.empty(13)
-    sx, sy, cosine = sun
+    way = np.empty(10)
+    sx, sy, _ = sun
     sine = math.sqrt(sx * sx + sy * sy)
     way[0], way[1] = (sx / sine, sy / sine) if sine > 0.0 else (1.0, 0.0)
-    way[2], way[3] = sx, sy
-    way[4], way[5], way[6] = _reach(sine, layers)
-    way[7] = way[5] * way[6] / cosine
-    way[8], way[9], way[10] = share, numbers[2], numbers[3]
-    way[11], way[12] = per_mm, 0.0
+    across, along = 0.0, 0.0
     for m in range(layers.shape[0]):
-        way[12] += layers[m, 0]
+        square = layers[m, 1] ** 2 - sine * sine
+        share = layers[m, 0] / math.sqrt(square)
+        across += share
+        along += share * layers[m, 1] ** 2 / square
+    way[2] = sine * across
+    way[3], way[4] = numbers[2] / along, numbers[3] / across
+    way[5:] = numbers[4:9]
     return way
 
 
@@ -197,7 +123,7 @@ def add_round(
     flux: Floats,
     tables: Floats,
     samples: tuple[Floats, Floats, Floats],
-    optics: tuple[Floats, Floats, bool],
+    optics: tuple[Floats, Floats],
 ) -> None:
     """Add the light behind round apertures of one size to frames.
 
@@ -208,29 +134,24 @@ def add_round(
     tables
         (T, 2 n + 1, n + 1) of `RoundPattern`.
     samples
-        (N, 3) unit vectors to the Sun; (N, 4) light of a fully lit pixel times the tables' unit,
-        coordinate among the tables, steps a unit of direction cosine along and across, or (N, 5)
-        with `RoundPattern.share` at the end; (N, A, 2) centres of the apertures, mm, seen from the
-        window's first corner.
+        (N, 3) unit vectors to the Sun; light of a fully lit pixel times the tables' unit,
+        coordinate among the tables, steps a unit of direction cosine along and across, and the six
+        of `RoundPattern.seen`, together (N, 10); (N, A, 2) centres of the apertures, mm, seen from
+        the window's first corner.
     optics
         (L, 2) thickness and index from the aperture down, the empty gap first; (Q, 2) nodes in a
-        pixel, mm from its first edge, and their weights (sum 1); where the samples do not say it,
-        whether positions are measured in direction cosines about the aperture, or in millimetres
-        about the chief ray.
+        pixel, mm from its first edge, and their weights (sum 1).
     """
     suns, numbers, places = samples
-    layers, nodes, by_cosines = optics
+    layers, nodes = optics
     count, rows, columns = flux.shape
     pitch = nodes[0, 0] + nodes[-1, 0]
     table = np.empty(tables.shape[1:])
-    farthest = math.sqrt(2.0) * (np.abs(places).max() + pitch * max(rows, columns))
-    rays = _rays(layers, farthest) if layers.shape[0] > 1 else np.empty((0, 2))
     for n in range(count):
         if numbers[n, 0] == 0.0:
             continue
-        _blended(table, tables, numbers[n, 1])
-        share = numbers[n, 4] if numbers.shape[1] > 4 else (1.0 if by_cosines else 0.0)
-        way = _way(suns[n], numbers[n], share, layers, _RAYS / farthest)
+        way = _way(suns[n], numbers[n], layers)
+        _blended(table, tables, numbers[n, 1], numbers[n, 9] / way[3])
         for m in range(places.shape[1]):
             for row in range(rows):
                 for column in range(columns):
@@ -239,7 +160,7 @@ def add_round(
                         y = row * pitch + nodes[i, 0] - places[n, m, 1]
                         for j in range(nodes.shape[0]):
                             x = column * pitch + nodes[j, 0] - places[n, m, 0]
-                            along, across, factor = _seen(x, y, way, rays)
+                            along, across, factor = _seen(x, y, way)
                             factor *= nodes[i, 1] * nodes[j, 1]
                             total += factor * _looked_up(table, along, across)
                     flux[n, row, column] += numbers[n, 0] * max(total, 0.0)
@@ -262,7 +183,7 @@ def add_spots(
     tables
         Two of (T, 2 n + 1, n + 1), of `RoundPattern`: of a smaller and of a larger hole.
     sample
-        (3,) to the Sun; (5,) as of `add_round`; (2,) half axes of the ellipse along and across the
+        (3,) to the Sun; (10,) as of `add_round`; (2,) half axes of the ellipse along and across the
         plane of incidence, mm.
     apertures
         (A, 4) centre, mm, seen from the frame's first corner, where the hole lies between the
@@ -278,12 +199,10 @@ def add_spots(
     pitch = nodes[0, 0] + nodes[-1, 0]
     shape = tables[0].shape[1:]
     table, small, large = np.empty(shape), np.empty(shape), np.empty(shape)
-    _blended(small, tables[0], numbers[1])
-    _blended(large, tables[1], numbers[1])
-    farthest = math.sqrt(2.0) * (np.abs(holes[:, :2]).max() + pitch * max(frame.shape))
-    rays = _rays(layers, farthest) if layers.shape[0] > 1 else np.empty((0, 2))
-    way = _way(sun, numbers, numbers[4], layers, _RAYS / farthest)
-    ex, ey, chief = way[0], way[1], way[4]
+    way = _way(sun, numbers, layers)
+    _blended(small, tables[0], numbers[1], numbers[9] / way[3])
+    _blended(large, tables[1], numbers[1], numbers[9] / way[3])
+    ex, ey, chief = way[0], way[1], way[2]
     turn = (ex / reach[0]) ** 2 + (ey / reach[1]) ** 2
     for m in range(boxes.shape[0]):
         left, right, top, bottom = boxes[m]
@@ -309,7 +228,7 @@ def add_spots(
                     y = row * pitch + nodes[i, 0] - holes[m, 1]
                     for j in range(nodes.shape[0]):
                         x = column * pitch + nodes[j, 0] - holes[m, 0]
-                        along, across, factor = _seen(x, y, way, rays)
+                        along, across, factor = _seen(x, y, way)
                         factor *= nodes[i, 1] * nodes[j, 1]
                         total += factor * _looked_up(table, along, across)
                 frame[row, column] += numbers[0] * holes[m, 3] * max(total, 0.0)

@@ -8,8 +8,13 @@ phase of the light from the point q of the aperture to the point S + delta of th
 Fresnel number ``a^2 / (lambda J)``, and oblique incidence makes the shadow of a round aperture
 elliptical far away and leaves it round close by.
 
-Left out: vector effects, the next (cubic) term of the phase - ``pi N (a / h) sin(theta)`` must be
-small against one - and interference of different points of the Sun, which is incoherent.
+The next term of the phase, cubic, ``-(pi / lambda) (J_r' rho_r^3 / (3 J_r^3) + (J_r - J_t) rho_r
+rho_t^2 / (s J_r J_t^2))`` for ``rho = delta - q`` and the prime a derivative by the sine s, moves
+spots outwards. It counts to first order, ``pi N (a / h) sin(theta)`` against one (`RoundPattern`,
+`rectangle_patterns`). How light leaves the opening is Kirchhoff's, whose flux does not lean
+towards the horizon or from it to that order: the mean of what either polarisation does.
+
+Left out: vector effects, and interference of different points of the Sun, which is incoherent.
 """
 
 from __future__ import annotations
@@ -70,7 +75,7 @@ def propagation(mask: Mask, height_mm: float, spectrum: Spectrum) -> dict[str, A
         "weights": list(spectrum.weights),
         "reason": "scalar Fresnel diffraction about the chief ray, every wavelength over the Sun's "
         "disc, through what both rims of the foil leave open",
-        "left_out": "vector effects, the cubic term of the phase, light that openings share",
+        "left_out": "vector effects, phases beyond the cubic term, light that openings share",
     }
 
 

@@ -75,6 +75,11 @@ class RoundPattern:
     def _wavelength_mm(self) -> float:
         return min(self.spectrum.wavelengths_nm) * 1e-6
 
+    @property
+    def _middle_mm(self) -> float:
+        waves = np.array(self.spectrum.wavelengths_nm) * 1e-6
+        return float(np.sum(waves * np.array(self.spectrum.weights)))
+
     def layers(self) -> Floats:
         """(L, 2) thickness and index from the aperture down; the first is empty."""
         return layers(self.height_mm, self.glass)
@@ -106,21 +111,80 @@ class RoundPattern:
         normal = float(self.numbers(np.zeros(1), self._wavelength_mm)[0, 0])
         return 12 + math.ceil(2.5 * normal)
 
-    def share(self, sine: Floats) -> Floats:
-        """(N,) how far positions count in direction cosines, rather than in mm about the chief ray.
+    def seen(self, sine: Floats) -> Floats:
+        """(N, 6) what `diffraction.add_round` takes points of the detector to the tables by.
 
-        Light from the point q of the aperture that lands at delta has turned by ``delta - q``, in
-        which the landing point is not linear. A far pattern is all turning and keeps its shape in
-        direction cosines; a shadow is none and keeps its shape in millimetres. Between them the
+        The phase's cubic term (see `diffraction`) is that of light whose ``J`` grows towards the
+        horizon. A distance ``rho = delta - q``, in radii, counts as ``rho_r - A rho_r^2 / 2`` along
+        and ``rho_t - B rho_r rho_t / 2`` across, with ``A = a J_r' / (3 J_r^2)`` and
+        ``B = a (J_r - J_t) / (J_r J_t s)``, which are the same without glass. Multiplied out, that
+        is to first order a round hole again, ``(3 A + B) / 8`` further out, as seen from delta with
+        Fresnel numbers ``N_r (1 - 2 A delta_r)`` and ``N_t (1 - B delta_r)`` and, beside the plane
+        of incidence, with turned axes. Tables of neighbouring incidences hold nearly such numbers:
+        their rows are taken from where the product of both is right, and what is left is a scale of
+        what has turned (`share`). That far, light also spreads thinner by ``A delta_r``.
+
+        Returns
+        -------
+        Rows ``c_0`` to ``c_5``, lengths in mm: the tables' row is that of
+        ``x + c_0 + c_1 x^2 + c_2 y^2``, the column that of ``y (1 + c_3 x)``, light is multiplied
+        by ``1 + c_4 x``, x along and y across from the chief ray; the incidence moves by ``c_5 x``
+        nodes.
+        """
+        limit = math.sin(math.radians(self.widest_deg))
+        sine = np.minimum(sine, limit)
+        small = 1e-4
+        low, high = np.maximum(sine - small, 0.0), np.minimum(sine + small, limit)
+        stack = self.layers()
+        _, along, across = landing(sine, stack).T
+        before, after = landing(low, stack), landing(high, stack)
+        change = (after[:, 1] - before[:, 1]) / (high - low)
+        safe = np.maximum(sine, small)
+        third = change / (3.0 * along**2)
+        beside = (along - across) / (along * across * safe)
+        part = (2.0 * third + beside) / np.maximum(3.0 * third + beside, 1e-30)
+        moved = part / along / (high - low)
+        (one, unit), (two, thin) = self.scales(high), self.scales(low)
+        # how the tables' steps and unit grow from one incidence to the next
+        grown = [
+            moved * np.array([math.log(float(v)) for v in a / b])
+            for a, b in (
+                (one[:, 0] * after[:, 1], two[:, 0] * before[:, 1]),
+                (one[:, 1] * after[:, 2], two[:, 1] * before[:, 2]),
+                (unit, thin),
+            )
+        ]
+        share = self.share(sine)
+        # axes turn by this much a mm beside the plane of incidence; not where there are none
+        apart = 1.0 - across / along
+        certain = apart**2 / (apart**2 + 1e-3)
+        turned = 0.5 * beside * certain / np.maximum(apart, 1e-9)
+        leaning = 0.5 * beside * (1.0 - certain) * share
+        return np.column_stack(
+            [
+                -(3.0 * third + beside) / 8.0 * self.radius_mm**2,
+                0.5 * third + share * (3.0 * part - 2.0) * third - grown[0],
+                turned - leaning * along / across,
+                0.5 * beside - turned - leaning + share * (part - 1.0) * beside - grown[1],
+                grown[2] - third * share,
+                moved * (self.place(high) - self.place(low)),
+            ]
+        )
+
+    def share(self, sine: Floats) -> Floats:
+        """(N,) which part of a distance from the shadow's middle is turning of the light.
+
+        Light from the point q of the aperture that lands at delta has turned by ``delta - q``. A
+        far pattern is all turning, a shadow is none. Between them the
         mean of ``delta - q``, given delta, is ``s^2 / (s^2 + a^2 / 4)`` of delta for normal
         distributions: ``a / 2`` is the aperture's, ``s = 0.42 lambda J_r / (2 a)`` that of a
         pattern of the width of Airy's. At the middle of the spectrum, with ``J_r`` the larger one,
         and a half the width of the lens that a thick foil leaves.
         """
-        waves = np.array(self.spectrum.wavelengths_nm) * 1e-6
-        middle = float(np.sum(waves * np.array(self.spectrum.weights)))
         shade = self.thickness_mm * sine / np.sqrt(1.0 - sine * sine) / (2.0 * self.radius_mm)
-        square = (self.numbers(sine, middle)[:, 0] * np.maximum(1.0 - shade, 0.0) ** 2) ** 2
+        square = (
+            self.numbers(sine, self._middle_mm)[:, 0] * np.maximum(1.0 - shade, 0.0) ** 2
+        ) ** 2
         return np.asarray(1.0 / (1.0 + square / 0.42**2))
 
     def place(self, sine: Floats) -> Floats:
@@ -172,13 +236,15 @@ class RoundPattern:
         """(K, 2) shifts in steps of the table and (K,) weights: the Sun's disc, and the cell."""
         centre = np.array([[sine, 0.0, math.sqrt(1.0 - sine * sine)]])
         points = self.sun.directions(centre)
-        shifts = (points[0, :, :2] - centre[:, :2]) / steps
+        chief, along, across = landing(np.array([sine]), self.layers())[0]
+        sines = np.sqrt(np.sum(points[0, :, :2] ** 2, axis=1))
+        places = points[0, :, :2] * landing(sines, self.layers())[:, 2:]
+        shifts = (places - np.array([chief, 0.0])) / (np.array([along, across]) * steps)
         _, shares = self.sun.quadrature()
         passed = self.glass.transmission(points)[0] / self.glass.transmission(centre)[0]
         weights = shares * points[0, :, 2] / centre[0, 2] * passed
         if self.cell_mm == 0.0:
             return shifts, weights
-        _, along, across = landing(np.array([sine]), self.layers())[0]
         per_mm = 1.0 / (np.array([along, across]) * steps)
         corner, share = _turned_cell(max(2, math.ceil(self.cell_mm * float(per_mm.max())) + 1))
         corner = corner * self.cell_mm * per_mm

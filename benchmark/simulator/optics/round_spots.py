@@ -204,7 +204,7 @@ class RoundSpots:
                     transmitted * unit[0],
                     small.place(known)[0],
                     *(1.0 / steps[0]),
-                    small.share(known)[0],
+                    *small.seen(known)[0],
                 ]
             )
             part = (holes_mm[lit, 2] / small.radius_mm - 1.0 - small.growth) / (

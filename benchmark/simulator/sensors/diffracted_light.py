@@ -59,9 +59,8 @@ class DiffractedLight:
     """Scalar Fresnel diffraction about the chief ray (see `diffraction`) on windows of pixels.
 
     For each wavelength, over the Sun's disc. Round apertures take tables in two coordinates,
-    which hold any oblique incidence; far patterns count positions in direction cosines, in which
-    they keep their shape however oblique the light, shadows in millimetres about the chief ray
-    (`RoundPattern.share`). Rectangles, however turned, take
+    which hold any oblique incidence, the cubic term of the phase to first order
+    (`RoundPattern.seen`). Rectangles, however turned, take
     the product of two slits' patterns along their own sides and what the coupling of both axes
     adds at the corners (see `rectangle_patterns`). Of a foil with a thickness light passes what
     both displaced rims leave open, in its middle.
@@ -155,10 +154,10 @@ class DiffractedLight:
             pattern.tables(),
             (
                 head,
-                np.column_stack([light, pattern.place(known), 1.0 / steps, pattern.share(known)]),
+                np.column_stack([light, pattern.place(known), 1.0 / steps, pattern.seen(known)]),
                 centres[None] - corner[:, None],
             ),
-            (pattern.layers(), np.column_stack([inside, np.full(cells, 1.0 / cells)]), False),
+            (pattern.layers(), np.column_stack([inside, np.full(cells, 1.0 / cells)])),
         )
 
     def _rectangle(self, aperture: Aperture) -> RectanglePattern:

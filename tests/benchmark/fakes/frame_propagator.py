@@ -1,9 +1,18 @@
 """Light behind apertures by angular spectrum: an oracle that shares nothing with the simulator.
 
 Masks, glass, wavelengths and the Sun are plain numbers here. The field behind the foil is a sum
-of plane waves (a discrete Fourier transform on a fine grid), each of which gets its exact phase
-through the gap and the glass. Nothing is expanded about the chief ray. The Sun is added by
-smearing the intensity with its own projected image, ray-traced point by point.
+of plane waves (a discrete Fourier transform), each of which gets its exact phase through the gap
+and the glass. Nothing is expanded about the chief ray. A hole and its foil have a grid of their
+own, `FINE_MM`: what bends between two rims of 10 um is some 2 um wide, and on the detector's cells
+the middle of a round spot came out 1.2 % of its peak too dark. The Sun is added by smearing the
+intensity with its own projected image, ray-traced point by point.
+
+Intensity is ``|U|^2`` times the cosine of the chief ray, as in `slit_propagator`. That is the flux
+of a black screen, field and slope of the incoming wave in the opening (Kirchhoff), to first order
+in how far light has turned. Rayleigh's two integrals, of the field alone and of the slope alone,
+lean by as much to either side of it: by the cosine of each plane wave over that of the chief ray
+or its inverse, which at 60 deg moves centroids by up to 0.06 pixels. A metal foil does the one to
+either polarisation; sunlight has none.
 
 What it leaves out: polarisation; that surfaces of the glass reflect more of one plane wave than
 of another (all get the transmission of the chief ray); that the pattern itself changes over half
@@ -14,7 +23,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import fft
@@ -22,6 +31,8 @@ from scipy.ndimage import map_coordinates
 
 Layers = Sequence[tuple[float, float]]
 
+#: Cells of holes and their foil, and how far beyond a hole what bends in the foil is followed, mm.
+FINE_MM, _AROUND_MM = 4e-4, 0.03
 #: Quantum efficiencies that `SUNLIT_SILICON` is made of, at 450, 550, ... 950 nm.
 _EFFICIENCY = (0.50, 0.60, 0.50, 0.35, 0.20, 0.08)
 
@@ -136,7 +147,6 @@ def monochrome(design: Design, sun: np.ndarray, wavelength_nm: float, grid: Grid
     Sun: a point in the direction `sun` (3,), in front.
     """
     wave = wavelength_nm * 1e-6
-    x, y = grid.axes
     fx, fy = grid.frequencies
     # x and y of the detector are flipped: light from +x goes on towards +x
     gx, gy = fx + sun[0] / wave, fy + sun[1] / wave
@@ -144,16 +154,7 @@ def monochrome(design: Design, sun: np.ndarray, wavelength_nm: float, grid: Grid
     going = square < wave**-2
     square = np.where(going, square, 0.0)
     half = design.thickness_mm / 2.0
-    opened = sum(hole.open(x, y, grid.step_mm) for hole in design.holes)
-    field = fft.ifftshift(np.asarray(opened, dtype=np.complex128))
-    spectrum = fft.fft2(field, overwrite_x=True)
-    if half > 0:
-        # through the foil: its walls take what hits them, its lower rim cuts
-        depth = np.sqrt(wave**-2 - square)
-        spectrum *= np.where(going, np.exp(2j * math.pi * 2.0 * half * depth), 0.0)
-        field = fft.ifft2(spectrum, overwrite_x=True)
-        field *= fft.ifftshift(opened)
-        spectrum = fft.fft2(field, overwrite_x=True)
+    spectrum = sum(_behind(hole, 2.0 * half, sun, wave, (fx[0], fy[:, 0])) for hole in design.holes)
     # through the foil's middle, wherever it crosses the lower rim's plane
     chief = design.landing(sun)
     phase = np.zeros(square.shape)
@@ -168,11 +169,35 @@ def monochrome(design: Design, sun: np.ndarray, wavelength_nm: float, grid: Grid
     lost |= np.abs(reach_y - chief[1]) > grid.rows // 2 * grid.step_mm * 0.98
     phase += fx * chief[0] + fy * chief[1]
     spectrum *= np.where(going & ~lost, np.exp(2j * math.pi * np.remainder(phase, 1.0)), 0.0)
-    # flux through the plane: the field times its own slope downwards
-    slope = fft.ifft2(spectrum * (wave * np.sqrt(wave**-2 - square)))
-    field = fft.ifft2(spectrum, overwrite_x=True)
-    flux = np.real(np.conj(field) * slope) * float(design.passed(sun))
+    field = fft.ifft2(spectrum, overwrite_x=True) / grid.step_mm**2
+    flux = (field.real**2 + field.imag**2) * float(sun[2] * design.passed(sun))
     return fft.fftshift(flux)
+
+
+def _behind(
+    hole: Hole, foil_mm: float, sun: np.ndarray, wave: float, frequencies: tuple[np.ndarray, ...]
+) -> np.ndarray:
+    """Fourier integral (rows, columns) of the field at a hole's lower rim, mm^2."""
+    extent = hole.width_mm, hole.width_mm if hole.shape == "round" else hole.height_mm
+    step = min(FINE_MM, hole.width_mm / 64.0)
+    grid = grid_for(tuple(size / 2.0 + (foil_mm > 0) * _AROUND_MM + step for size in extent), step)
+    x, y = grid.axes
+    opened = replace(hole, x_mm=0.0, y_mm=0.0).open(x, y, step)
+    field = opened.astype(np.complex128)
+    if foil_mm > 0:
+        # the foil's walls take what hits them, its lower rim cuts
+        fx, fy = grid.frequencies
+        square = (fx + sun[0] / wave) ** 2 + (fy + sun[1] / wave) ** 2
+        depth = np.sqrt((wave**-2 - square).astype(np.complex128))
+        field = fft.ifft2(fft.fft2(field) * np.exp(2j * math.pi * foil_mm * depth)) * opened
+    rows, columns = (np.flatnonzero(opened.any(axis=axis)) for axis in (1, 0))
+    across, along = (
+        np.exp(-2j * math.pi * np.outer(frequency, axis + place))
+        for frequency, axis, place in zip(
+            frequencies, (x[columns], y[rows]), (hole.x_mm, hole.y_mm), strict=True
+        )
+    )
+    return along @ (field[np.ix_(rows, columns)] @ across.T) * step**2
 
 
 def sun_image(

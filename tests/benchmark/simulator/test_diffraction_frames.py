@@ -58,7 +58,10 @@ def scene_at(sensor: FrameSensor, alpha: list[float], beta: list[float]) -> Scen
 
 
 def kirchhoff(sun, places, half_mm, height_mm, wavelength_mm, *, square=False, nodes=48):
-    """Irradiance at places (P, 2) from the whole path lengths over the aperture; normal Sun 1."""
+    """Irradiance at places (P, 2) from the whole path lengths over the aperture; normal Sun 1.
+
+    Behind a black screen: the mean of Rayleigh's integrals of the field and of its slope.
+    """
     grid, shares = np.polynomial.legendre.leggauss(nodes)
     if square:
         qx, qy = (axis.ravel() for axis in np.meshgrid(grid, grid))
@@ -71,7 +74,8 @@ def kirchhoff(sun, places, half_mm, height_mm, wavelength_mm, *, square=False, n
     qx, qy, weights = half_mm * qx, half_mm * qy, half_mm**2 * weights
     path = np.sqrt((places[:, :1] - qx) ** 2 + (places[:, 1:] - qy) ** 2 + height_mm**2)
     phase = 2.0 * math.pi / wavelength_mm * (path + sun[0] * qx + sun[1] * qy)
-    field = np.sum(weights * np.exp(1j * phase) * height_mm / path**2, axis=1) / wavelength_mm
+    slant = (height_mm / path + sun[2]) / 2.0
+    field = np.sum(weights * np.exp(1j * phase) * slant / path, axis=1) / wavelength_mm
     leaving = height_mm / np.sqrt(np.sum(places**2, axis=1) + height_mm**2)
     return np.abs(field) ** 2 * leaving
 
@@ -127,7 +131,7 @@ def test_pinhole_frames_are_the_kirchhoff_integral(alpha: float, beta: float) ->
 
 @pytest.mark.parametrize(("alpha", "beta"), [(0.0, 0.0), (0.0, 25.0), (-15.0, 20.0)])
 def test_close_hole_is_the_kirchhoff_integral(alpha: float, beta: float) -> None:
-    """Fresnel number 2; the cubic phase, left out, is pi N a / h sin(theta) = 0.08 at 25 deg."""
+    """Fresnel number 2, one colour of a point; the cubic phase counts to first order."""
     base = behind(2.0)
     camera = Camera(10.0, Mask((Aperture("round", 0.209761770, 0.209761770),)), SolarDisc(0.0))
     detector = replace(base.detector, pitch_mm=0.0065)

@@ -15,27 +15,26 @@ from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensors.multi_spot_frames import MultiSpotSensor
 
 #: Data set, alpha and beta, glass on the detector, cell of the propagator in um, largest pixel
-#: error in shares of the peak: 1 % at 0, 2 % elsewhere. Two cases miss that: 0.75 mm under holes of
-#: 50 um the cubic term of the phase, left out, has most effect half-way to the field's edge
-#: (2.04 %), and 68 deg off the boresight a foil of 10 um leaves lenses of hardly half of a hole
-#: (2.54 %).
+#: error in shares of the peak: 1 % at 0, 2 % elsewhere; largest shift of the centroid: 0.01 px.
+#: Two miss that (0.0105 and 0.0135 px): the sides of the lens that a foil leaves of a hole lie at
+#: different depths, as in `test_frames_propagated`.
 CASES = [
-    ("ccd-multi-aperture", 0.0, 0.0, False, 0.6, 0.01),
-    ("ccd-multi-aperture", 20.0, 30.0, False, 0.6, 0.025),
-    ("ccd-multi-aperture", 50.0, 0.0, False, 0.6, 0.02),
-    ("ccd-multi-aperture", 50.0, 50.0, False, 0.6, 0.02),
-    ("cmos-multi-aperture", 0.0, 0.0, False, 0.6, 0.01),
-    ("cmos-multi-aperture", 30.0, 20.0, False, 1.0, 0.02),
-    ("cmos-multi-aperture", 60.0, 0.0, False, 1.0, 0.02),
-    ("cmos-multi-aperture", 60.0, 60.0, False, 1.0, 0.03),
-    ("cmos-multi-aperture", 45.0, -30.0, True, 1.0, 0.02),
-    ("cmos-encoded", 0.0, 0.0, False, 1.0, 0.01),
-    ("cmos-encoded", 30.0, -20.0, False, 1.5, 0.02),
-    ("cmos-encoded", 52.5, 0.0, False, 1.5, 0.02),
-    ("cmos-encoded", 52.5, 52.5, False, 1.5, 0.02),
-    ("cmos-compound-eye", 0.0, 0.0, False, 1.0, 0.01),
-    ("cmos-compound-eye", 35.0, 25.0, False, 1.5, 0.02),
-    ("cmos-compound-eye", 0.0, -59.9, False, 1.5, 0.02),
+    ("ccd-multi-aperture", 0.0, 0.0, False, 1.0, 0.01, 0.01),
+    ("ccd-multi-aperture", 20.0, 30.0, False, 1.0, 0.02, 0.01),
+    ("ccd-multi-aperture", 50.0, 0.0, False, 1.0, 0.02, 0.01),
+    ("ccd-multi-aperture", 50.0, 50.0, False, 1.0, 0.02, 0.01),
+    ("cmos-multi-aperture", 0.0, 0.0, False, 1.0, 0.01, 0.01),
+    ("cmos-multi-aperture", 30.0, 20.0, False, 1.0, 0.02, 0.012),
+    ("cmos-multi-aperture", 60.0, 0.0, False, 1.0, 0.02, 0.01),
+    ("cmos-multi-aperture", 60.0, 60.0, False, 1.0, 0.02, 0.01),
+    ("cmos-multi-aperture", 45.0, -30.0, True, 1.0, 0.02, 0.01),
+    ("cmos-encoded", 0.0, 0.0, False, 1.0, 0.01, 0.01),
+    ("cmos-encoded", 30.0, -20.0, False, 1.5, 0.02, 0.01),
+    ("cmos-encoded", 52.5, 0.0, False, 1.5, 0.02, 0.01),
+    ("cmos-encoded", 52.5, 52.5, False, 1.5, 0.02, 0.015),
+    ("cmos-compound-eye", 0.0, 0.0, False, 1.0, 0.01, 0.01),
+    ("cmos-compound-eye", 35.0, 25.0, False, 1.5, 0.02, 0.01),
+    ("cmos-compound-eye", 0.0, -59.9, False, 1.5, 0.02, 0.01),
 ]
 
 
@@ -99,8 +98,8 @@ def differences(found: np.ndarray, expected: np.ndarray) -> tuple[float, float]:
 @pytest.mark.slow
 @pytest.mark.parametrize("case", CASES, ids=str)
 def test_spots_are_those_of_the_propagator(case: tuple) -> None:
-    name, alpha, beta, glass, step_um, limit = case
+    name, alpha, beta, glass, step_um, limit, pixels = case
     found, expected = spots(name, alpha, beta, glass=glass, step_um=step_um)
     worst, shift = differences(found, expected)
     assert worst < limit
-    assert shift < 0.01
+    assert shift < pixels
