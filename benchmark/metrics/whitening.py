@@ -50,13 +50,6 @@ class Whitening:
         white *= np.where(np.isfinite(self.deviation), self.deviation, 0.0)
         return white
 
-    @cached_property
-    def _places(self) -> NDArray[np.int64]:
-        """(N M,) group of every element, all samples' counted on."""
-        group = np.broadcast_to(np.asarray(self._shared.group), self.deviation.shape)
-        first = np.arange(len(group))[:, None] * self._groups
-        return np.asarray(group + first).reshape(-1)
-
     @property
     def _shared(self) -> CommonNoise:
         if self.common is None:
@@ -65,17 +58,27 @@ class Whitening:
 
     @cached_property
     def _groups(self) -> int:
-        return int(np.max(self._shared.group)) + 1
+        group = self._shared.group
+        return group if isinstance(group, int) else int(np.max(group)) + 1
+
+    @cached_property
+    def _places(self) -> NDArray[np.int64] | None:
+        """(N M,) group of every element, all samples' counted on; None for rows of columns."""
+        if isinstance(self._shared.group, int):
+            return None
+        group = np.broadcast_to(self._shared.group, self.deviation.shape)
+        first = np.arange(len(group))[:, None] * self._groups
+        return np.asarray(group + first).reshape(-1)
 
     @cached_property
     def _loading(self) -> Floats:
-        """(N M,) common deviation over each element's own: all groups' u in one."""
-        return np.asarray(self._shared.deviation / self.deviation).reshape(-1)
+        """(N, M) common deviation over each element's own: all groups' u in one."""
+        return np.asarray(self._shared.deviation / self.deviation)
 
     @cached_property
     def _square(self) -> Floats:
-        """u.u of all groups of all samples."""
-        return self._sums(self._loading**2)
+        """(N, G) u.u of all groups of all samples."""
+        return self._along(self._loading)
 
     @cached_property
     def _shrink(self) -> Floats:
@@ -87,12 +90,25 @@ class Whitening:
     def _grow(self) -> Floats:
         return np.asarray(1.0 / (1.0 + np.sqrt(1.0 + self._square)))
 
-    def _sums(self, values: Floats) -> Floats:
+    def _rows(self, vectors: Floats) -> Floats:
+        """View (N, M) as (N, rows, columns)."""
+        return vectors.reshape(len(vectors), -1, self._groups)
+
+    def _along(self, vectors: Floats) -> Floats:
+        """(N, G) products of vectors (N, M) with each u."""
+        if self._places is None:
+            rows = self._rows(self._loading), self._rows(vectors)
+            return np.asarray(np.einsum("nrc,nrc->nc", *rows))
+        weights = (self._loading * vectors).reshape(-1)
         size = len(self.deviation) * self._groups
-        return np.bincount(self._places, weights=values, minlength=size).astype(np.float64)
+        sums = np.bincount(self._places, weights=weights, minlength=size)
+        return np.asarray(sums, dtype=np.float64).reshape(-1, self._groups)
 
     def _stretch(self, vectors: Floats, factor: Floats) -> None:
         """Add to vectors (N, M) their products with each u, times a factor of its, times u."""
-        flat = vectors.reshape(-1)
-        along = self._sums(self._loading * flat) * factor
-        flat += self._loading * along[self._places]
+        along = self._along(vectors) * factor
+        if self._places is None:
+            rows = self._rows(vectors)
+            rows += self._rows(self._loading) * along[:, None]
+        else:
+            vectors += self._loading * along.reshape(-1)[self._places].reshape(vectors.shape)

@@ -22,12 +22,13 @@ class CommonNoise:
     Attributes
     ----------
     group
-        (M,) or (N, M): in which group each element is, from 0; elements of a group share theirs.
+        (M,) or (N, M): in which group each element is, from 0; elements of a group share theirs. A
+        number: elements are rows of so many columns, one after another, and columns are groups.
     deviation
         Standard deviation of it, in units of the signal; other groups' are independent.
     """
 
-    group: NDArray[np.int64]
+    group: NDArray[np.int64] | int
     deviation: float
 
 
@@ -50,7 +51,7 @@ def column_deviation_e(detector: PixelArray, references: References | None) -> f
 
 
 def column_noise(
-    detector: PixelArray, columns: NDArray[np.int64], references: References | None
+    detector: PixelArray, columns: NDArray[np.int64] | int, references: References | None
 ) -> CommonNoise | None:
     """Return what pixels in these columns share, in digital numbers; None for nothing."""
     deviation = column_deviation_e(detector, references)
@@ -61,4 +62,4 @@ def window_noise(
     detector: PixelArray, shape: tuple[int, ...], references: References | None
 ) -> CommonNoise | None:
     """`column_noise` of frames or windows of a shape (N, H, W)."""
-    return column_noise(detector, np.tile(np.arange(shape[2]), shape[1]), references)
+    return column_noise(detector, shape[2], references)

@@ -78,11 +78,16 @@ class PixelErrors:
         Beyond the edges the light goes on as it is at them. An image is shifted under the mask
         with the rows that are read out alone: a window's gathers the light of the window.
         """
-        if self.crosstalk:
-            light = _spilled(light, self.crosstalk)
-        if self.smear and light.ndim == 3:  # a line shifts no image
-            light = light + self.smear * light.sum(axis=1, keepdims=True)
-        return light
+        if light.ndim == 2:  # a line shifts no image
+            return _spilled(light, self.crosstalk) if self.crosstalk else light
+        if not self.moves_charge:
+            return light
+        from benchmark.simulator.kernels.digitising import gather  # noqa: PLC0415 - Numba on demand
+
+        out = np.empty(light.shape)
+        for frame, seen in zip(out, np.ascontiguousarray(light), strict=True):
+            gather(frame, seen, (0.0, self.crosstalk, self.smear))
+        return out
 
     @property
     def moves_charge(self) -> bool:
@@ -115,14 +120,12 @@ class PixelErrors:
 
 
 def _spilled(light: Floats, share: float) -> Floats:
-    """Give a share of every pixel of frames or profiles to its neighbours along each axis."""
+    """Give a share of every pixel of profiles (N, W) to its two neighbours."""
     out = (1.0 - share) * light
-    part = share / (2.0 * (light.ndim - 1)) * light
-    for axis in range(1, light.ndim):
-        # views: what is added to one is added to the frame; the outermost get their own once more
-        given, taken = np.moveaxis(part, axis, 0), np.moveaxis(out, axis, 0)
-        taken[1:] += given[:-1]
-        taken[:-1] += given[1:]
-        taken[0] += given[0]
-        taken[-1] += given[-1]
+    part = share / 2.0 * light
+    out[:, 1:] += part[:, :-1]
+    out[:, :-1] += part[:, 1:]
+    # beyond the ends the light goes on
+    out[:, 0] += part[:, 0]
+    out[:, -1] += part[:, -1]
     return out
