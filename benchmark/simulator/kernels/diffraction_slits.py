@@ -248,25 +248,6 @@ def _products(
 
 
 @compiled
-def _corners(patches: Floats, tables: Floats, places: Complex) -> None:
-    """Interpolate (2, M, M) corners at a place among (T, T, 2, M, M) incidences (cubic)."""
-    nodes = tables.shape[0]
-    patches[:] = 0.0
-    first = min(max(int(places[0]), 1), nodes - 3)
-    other = min(max(int(places[1]), 1), nodes - 3)
-    outer, inner = _shares(places[0] - first), _shares(places[1] - other)
-    size = tables.shape[3]
-    for i in range(4):
-        for j in range(4):
-            share = outer[i] * inner[j]
-            table = tables[first - 1 + i, other - 1 + j]
-            for kind in range(2):
-                for row in range(size):
-                    for column in range(size):
-                        patches[kind, row, column] += share * table[kind, row, column]
-
-
-@compiled
 def _cubic(table: Floats, x: float, y: float) -> float:
     """Value of a (rows, columns) table at column x, row y (Lagrange's cubic); 0 outside."""
     column, row = math.floor(x), math.floor(y)
@@ -301,34 +282,29 @@ def _of_cells(fine: Floats, at: Complex, turn: Complex, cells: tuple[float, int]
 @compiled
 def add_rectangle(
     flux: Floats,
-    samples: tuple[Floats, Floats, Floats],
+    samples: tuple[Floats, Floats],
     optics: tuple[Floats, Floats, Floats],
     widths: tuple[Slits, Slits],
-    corners: tuple[Floats, float],
 ) -> None:
-    """Add the light behind one rectangle to frames.
+    """Add the products of two slits' light behind one rectangle to frames (see `add_corners`).
 
     Parameters
     ----------
     flux
         (N, H, W) light averaged over each pixel.
     samples
-        (N, 2) middle of the spot seen from the window's first corner, mm; (N, 13) light, half
+        (N, 2) middle of the spot seen from the window's first corner, mm; (N, 12) light, half
         sizes, change of the landing point a unit of direction cosine, the image of the unit disc
         (semi-axis, shear, height), how patterns are bent (a mm), a thick foil's share,
-        across and along; what couples
-        both, -1 to 1; (N, 2) coordinates among the corners' incidences.
+        across and along.
     optics
         (4,) cosine and sine of the rectangle's turn, pixel pitch in mm, cells a pixel;
         (L, 2) wavelengths in mm and weights; (S, P, 3) nodes of the disc.
     widths
         Patterns across and along.
-    corners
-        (T, T, 2, M, M) what corners add, and their steps a root of millimetres; T = 0 for none.
     """
-    middles, shapes, places = samples
+    middles, shapes = samples
     turn, spectrum, disc = optics
-    tables, per_root = corners
     c, s, pitch, cells = turn
     turned = s != 0.0
     count, rows, columns = flux.shape
@@ -336,8 +312,6 @@ def add_rectangle(
     wide = math.ceil((abs(c) * columns + abs(s) * rows) * cells) + 8
     tall = math.ceil((abs(s) * columns + abs(c) * rows) * cells) + 8
     fine = np.empty((tall, wide)) if turned else np.empty((1, 1))
-    size = tables.shape[3]
-    patches = np.empty((2, size, size))
     sample = np.empty(15)
     for n in range(count):
         light, a, b = shapes[n, 0], shapes[n, 1], shapes[n, 2]
@@ -346,11 +320,6 @@ def add_rectangle(
         sample[0] = light
         sample[3:14] = shapes[n, 1:12]
         x, y = middles[n]
-        coupling = shapes[n, 12]
-        coupled = tables.shape[0] > 0 and coupling != 0.0
-        if coupled:
-            _corners(patches, tables, (places[n, 0], places[n, 1]))
-            root_x, root_y = math.sqrt(shapes[n, 3]), math.sqrt(shapes[n, 4])
         if turned:
             # the window's middle stands in the middle of the cells
             dx, dy = columns * pitch / 2.0 - x, rows * pitch / 2.0 - y
@@ -363,19 +332,8 @@ def add_rectangle(
             sample[1], sample[2], sample[14] = x, y, pitch
             _products(flux[n], sample, spectrum, disc, widths)
         steps = int(cells)
-        for row in range(rows if turned or coupled else 0):
+        for row in range(rows if turned else 0):
             for column in range(columns):
-                total = 0.0
                 dx, dy = (column + 0.5) * pitch - x, (row + 0.5) * pitch - y
-                if turned:
-                    at = c * dx + s * dy + sample[1], c * dy - s * dx + sample[2]
-                    total += _of_cells(fine, at, (c, s), (cell, steps))
-                if coupled:
-                    w, v = c * dx + s * dy, c * dy - s * dx
-                    kind = 0 if (w * v >= 0.0) == (coupling > 0.0) else 1
-                    total += light * _cubic(
-                        patches[kind],
-                        (abs(w) - a) / root_x * per_root + (size - 1) / 2.0,
-                        (abs(v) - b) / root_y * per_root + (size - 1) / 2.0,
-                    )
-                flux[n, row, column] += total
+                at = c * dx + s * dy + sample[1], c * dy - s * dx + sample[2]
+                flux[n, row, column] += _of_cells(fine, at, (c, s), (cell, steps))

@@ -33,6 +33,8 @@ _ROWS, _FRINGE = 20.0, 16.0
 _FAR = 40.0
 #: Corners are tabulated as far as this, and in such steps, in roots of 550 nm times J.
 _CORNER_REACH, _CORNER_STEP = 8.0, 0.25
+#: They repeat at so many of twice that reach, and fade out over their last few roots.
+_CORNER_PERIOD, _CORNER_FADE = 1.3, 2.0
 _ROOT = math.sqrt(550e-6)
 #: Incidences that corners are tabulated for, an axis.
 _INCIDENCES = 8
@@ -215,7 +217,7 @@ class RectanglePattern:
         return _running(round(lowest, 3), round(highest, 3), round(far, 1), self.softness)
 
     def _patches(self, directions: Floats) -> Floats:
-        """(2, M, M) about the corners for one direction (1, 3) in the own axes."""
+        """(2, M, M) about a corner for one direction (1, 3) in the own axes."""
         from benchmark.simulator.kernels.diffraction_corners import (  # noqa: PLC0415 - Numba
             corner_patches,
         )
@@ -226,22 +228,25 @@ class RectanglePattern:
         across, along, both = (float(j[0]) for j in spread)
         radius = math.sin(math.radians(self.sun.diameter_deg / 2.0))
         image = disc_image(directions, spread, radius)[0]
-        x, y, z = directions[0].tolist()
-        shade = self.thickness_mm / 2.0
-        a = max(self.half_mm[0] - shade * abs(x) / z, 0.0)
-        b = max(self.half_mm[1] - shade * abs(y) / z, 0.0)
-        far = 1.3 * _CORNER_REACH * _ROOT
-        periods = [2.0 * (h + far * math.sqrt(j)) for h, j in ((a, across), (b, along))]
+        periods = [
+            2.0 * _CORNER_PERIOD * _CORNER_REACH * _ROOT * math.sqrt(j) for j in (across, along)
+        ]
         # the Sun's image and the pixel let nothing finer through
         most = min(2.0 / self.pitch_mm, _CYCLES / max(float(image.max()), 1e-9))
         corner_patches(
             out,
-            np.array([a, b, across, along, both, *image, self.pitch_mm, _per_root()]),
+            np.array([across, along, both, *image, self.pitch_mm, _per_root()]),
             self.waves(),
             _transform(self.sun.limb_darkening),
             np.array([1.0 / periods[0], 1.0 / periods[1], most]),
         )
-        return out
+        # tables end without a step
+        fade = [
+            min(1.0, (steps - abs(i)) * _CORNER_STEP / _CORNER_FADE)
+            for i in range(-steps, steps + 1)
+        ]
+        ends = np.array([t * t * (3.0 - 2.0 * t) for t in fade])
+        return np.asarray(out * ends[:, None] * ends)
 
 
 def _per_root() -> float:

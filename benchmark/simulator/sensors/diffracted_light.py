@@ -193,6 +193,9 @@ class DiffractedLight:
         stance: Stance,
         aperture: Aperture,
     ) -> None:
+        from benchmark.simulator.kernels.diffraction_corners import (  # noqa: PLC0415 - Numba
+            add_corners,
+        )
         from benchmark.simulator.kernels.diffraction_slits import (  # noqa: PLC0415 - Numba
             add_rectangle,
         )
@@ -220,18 +223,24 @@ class DiffractedLight:
                 disc_image(known, spread, radius),
                 bend(known, stance.height_mm, self.camera.glass, spread),
                 soft,
-                both / np.sqrt(across * along),
             ]
         )
+        places = middles + np.array([aperture.x_mm, aperture.y_mm])
         add_rectangle(
             flux,
-            (middles + np.array([aperture.x_mm, aperture.y_mm]), shapes, pattern.place(known)),
+            (places, shapes),
             (
                 np.array([c, s, self.pitch_mm, _CELLS]),
                 pattern.waves(),
                 disc_strips(self.camera.sun.limb_darkening),
             ),
             pattern.widths(),
+        )
+        coupling = both / np.sqrt(across * along)
+        add_corners(
+            flux,
+            (places, np.column_stack([shapes[:, :5], coupling]), pattern.place(known)),
+            np.array([c, s, self.pitch_mm]),
             pattern.corners(),
         )
 
