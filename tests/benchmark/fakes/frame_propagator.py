@@ -96,8 +96,10 @@ class Design:
         """(..., 2) where rays through the foil's middle land, by Snell's law."""
         across = sun[..., :2]
         square = np.sum(across**2, axis=-1)
-        reach = sum(t / np.sqrt(n**2 - square) for t, n in self.layers(self.height_mm))
-        return across * reach[..., None]
+        reach = np.zeros(square.shape)
+        for thickness, index in self.layers(self.height_mm):
+            reach = reach + thickness / np.sqrt(index**2 - square)
+        return np.asarray(across * reach[..., None])
 
     def passed(self, sun: np.ndarray) -> np.ndarray:
         """Share of unpolarised light that passes the glass and goes on in vacuum."""
@@ -124,9 +126,10 @@ class Grid:
 
     @property
     def axes(self) -> tuple[np.ndarray, np.ndarray]:
-        return tuple(
+        x, y = (
             (np.arange(count) - count // 2) * self.step_mm for count in (self.columns, self.rows)
         )
+        return x, y
 
     @property
     def frequencies(self) -> tuple[np.ndarray, np.ndarray]:
@@ -180,7 +183,8 @@ def _behind(
     """Fourier integral (rows, columns) of the field at a hole's lower rim, mm^2."""
     extent = hole.width_mm, hole.width_mm if hole.shape == "round" else hole.height_mm
     step = min(FINE_MM, hole.width_mm / 64.0)
-    grid = grid_for(tuple(size / 2.0 + (foil_mm > 0) * _AROUND_MM + step for size in extent), step)
+    around = (foil_mm > 0) * _AROUND_MM + step
+    grid = grid_for((extent[0] / 2.0 + around, extent[1] / 2.0 + around), step)
     x, y = grid.axes
     opened = replace(hole, x_mm=0.0, y_mm=0.0).open(x, y, step)
     field = opened.astype(np.complex128)
