@@ -81,7 +81,7 @@ class MatchedProfile(Extractor):
         name="matched-profile",
         taxonomy="None",
         origin="ours",
-        version=2,
+        version=3,
         observation=Observation.FRAMES,
         kind=FeatureKind.SPOT,
     )

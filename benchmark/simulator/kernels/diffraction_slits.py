@@ -288,14 +288,6 @@ def add_rectangle(
 ) -> None:
     """Add the products of two slits' light behind one rectangle to frames (see `add_corners`).
 
-    Off both axes the light is not quite continuous in the Sun. What corners add is looked up about
-    the nearest one, of two kinds that are the same on the spot's middle lines at the incidences
-    tabulated, but not between them: fringes from the far corners turn by some radians from one to
-    the next. Where a row's or a column's centre crosses such a line, it jumps: behind a square of
-    0.2 mm, 2 mm high, by 0.0004 of the peak at 20 deg on the diagonal, 0.003 at 40, 0.04 at 55.
-    Halfway between incidences what is looked up is itself wrong: there by up to 0.08 of the open
-    light for 45 deg along both sides, which puts frames 3 % of their peak off.
-
     Parameters
     ----------
     flux
