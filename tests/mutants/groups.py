@@ -77,6 +77,7 @@ GROUPS: Mapping[str, Group] = {
                 *_in(_DATASETS, "repeatability"),
             ),
             "benchmark/metrics/rings.py": _in(_METRICS, "rings"),
+            "benchmark/metrics/whitening.py": _in(_METRICS, "common_noise"),
             "benchmark/metrics/bounds.py": _in(_METRICS, "bounds_closed_form", "bounds"),
         },
     ),

@@ -317,24 +317,34 @@ def test_wrong_dials_are_refused() -> None:
 
 
 def test_light_of_the_dial_is_conserved_over_the_field() -> None:
-    """Complementary fine rows share all the slit's light, wherever it falls."""
+    """Complementary fine rows share all the slit's light, wherever it falls; ghosts add to it.
+
+    What is thrown back twice adds at most its share: part of it falls beside the dial or leaves
+    through the slit again.
+    """
     for condition, setup in datasets.get("pd-code-dial").setups.items():
         sensor = setup.sensor
         assert isinstance(sensor, CodeDialSensor)
         camera = replace(sensor.camera, mask=Mask(sensor.camera.mask.apertures))
-        whole = replace(
-            sensor, camera=camera, dial=replace(sensor.dial, track_error_mm=0.0), deflection_deg=0.0
-        )
+        dial = replace(sensor.dial, track_error_mm=0.0)
+        whole = replace(sensor, camera=camera, dial=dial, deflection_deg=0.0, ghost=None)
         half = datasets.get("pd-code-dial").directions.half_fov_deg
         corners = np.array([-half, -half, half, half, 0.0])
         sun = from_angles(corners, np.array([-half, half, -half, half, 0.0]))
-        lit = whole.lit(Scene(sun, np.ones(5), np.zeros(5)), whole.fixed_pattern("test"))
-        fine = lit.reshape(5, 2, -1)[..., -4:]
+        scene, pattern = Scene(sun, np.ones(5), np.zeros(5)), whole.fixed_pattern("test")
+        fine = whole.lit(scene, pattern).reshape(5, 2, -1)[..., -4:]
+        twice = replace(whole, ghost=sensor.ghost).lit(scene, pattern).reshape(5, 2, -1)[..., -4:]
+        share = 0.0 if sensor.ghost is None else sensor.ghost.share
+        assert (share > 0.0) == (condition == "ghosts")
         head = camera.assembly.to_head(sun)
         light = camera.sun.directions(head)[..., 2] @ camera.sun.quadrature()[1]
         for pair in ((0, 2), (1, 3)):
             both = fine[..., pair[0]] + fine[..., pair[1]]
             assert both == pytest.approx(np.repeat(light[:, None], 2, 1), rel=1e-9), condition
+            added = twice[..., pair[0]] + twice[..., pair[1]] - both
+            assert (added >= -1e-12).all()
+            assert (added <= share * light[:, None] + 1e-12).all()
+            assert (added.max() > 0.0) == (share > 0.0)
 
 
 def test_quadrant_balances_are_not_planned_on_a_code_dial() -> None:
