@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from benchmark.simulator.light.sun_disc import tangent_axes
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensors.diffractive_frames import DiffractiveFrameSensor
 from benchmark.simulator.sensors.frames import FrameSensor
-from tests.speed.references import counted_light
+from tests.speed.references import counted_light, shadows_of
 
 Floats = NDArray[np.float64]
 
@@ -31,7 +32,7 @@ _PATCH = 32
 def light_of_frames() -> dict[str, Any]:
     """Render the shadow of `cmos-single-aperture`, no noise, against counting sub-pixels."""
     bent, scene = _parts("cmos-single-aperture")
-    sensor = FrameSensor(bent.camera, bent.detector, bent.window_px, bent.window_jitter_px)
+    sensor = shadows_of(bent)
     one = scene.part(0, 1)
     exact, counted = sensor.lit(one), counted_light(sensor, one)
     return {
@@ -59,7 +60,8 @@ def diffracted_frames() -> dict[str, Any]:
     one = scene.part(0, 1)
     columns, rows = ((size - _PATCH) // 2 for size in sensor.window_px)
     middle = slice(rows, rows + _PATCH), slice(columns, columns + _PATCH)
-    exact, integrated = sensor.lit(one)[0][middle], integrated_light(sensor, one)
+    open_pixels = replace(sensor, detector=replace(sensor.detector, tunnel=0.0))
+    exact, integrated = open_pixels.lit(one)[0][middle], integrated_light(sensor, one)
     return {
         "name": "rendering cmos-single-aperture-pinhole, a (64, 64) frame, light only",
         "reference_name": (

@@ -10,7 +10,12 @@ from tests.speed import recommendations, startup
 from tests.speed import simulator as speed
 from tests.speed.comparing import Subject
 from tests.speed.light import diffracted_frames, light_of_frames
-from tests.speed.references import centroid_of_spots, counted_light, rendering_of_frames
+from tests.speed.references import (
+    centroid_of_spots,
+    counted_light,
+    rendering_of_frames,
+    shadows_of,
+)
 
 
 @pytest.mark.slow
@@ -27,7 +32,7 @@ def test_the_counted_light_is_an_oracle_for_the_total_of_a_frame():
     preset = datasets.get("cmos-single-aperture")
     sensor = preset.condition("nominal").sensor
     scene = preset.scene("nominal", "test").part(0, 3)
-    counted, exact = counted_light(sensor, scene), sensor.lit(scene)
+    counted, exact = counted_light(sensor, scene), shadows_of(sensor).lit(scene)
     np.testing.assert_allclose(counted.sum(axis=(1, 2)), exact.sum(axis=(1, 2)), rtol=2e-3)
     most = sensor.camera.mask.apertures[0].area_mm2 / sensor.detector.pitch_mm**2
     assert (counted.sum(axis=(1, 2)) <= most * scene.irradiance).all()

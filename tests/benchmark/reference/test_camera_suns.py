@@ -120,8 +120,10 @@ def test_events_place_lines_and_spots_to_a_fraction_of_a_pixel(dataset):
     hot = samples.observations.copy()
     hot[:, 1:] = hot[:, :-1]
     hot[:, 0] = (3.0, 50.0, 0.3)  # a hot pixel that fires before all others
-    moved = np.abs(EventCentroid.for_sensor(preset.geometry).extract(hot) - found)
-    assert moved.max() < 0.1  # the last event, of the dimmest pixel, had to make room
+    # The last event, of the dimmest pixel, has to make room. What that costs, not how far it moves
+    # what is found: without it the brightest pixels of a soft spot are now and then taken for hot.
+    away = np.abs(EventCentroid.for_sensor(preset.geometry).extract(hot) - truth)
+    assert (away - np.abs(found - truth)).max() < 0.1
 
 
 def test_the_overlay_draws_what_is_found_and_refuses_what_it_cannot_show():
