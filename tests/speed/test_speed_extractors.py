@@ -74,6 +74,7 @@ def test_a_library_that_is_not_installed_is_named(monkeypatch, capsys):
     assert "scikit-image: not installed" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_peers_that_are_there_find_the_spot():
     """What is installed here; the whole-frame moments are biased, the rest are not."""
     frames, centres = REFERENCE_SETS["disc"].frames(4)

@@ -38,6 +38,7 @@ def unpublished(tmp_path, monkeypatch):
     return tmp_path
 
 
+@pytest.mark.slow
 def test_a_study_s_pipelines_are_scored_against_the_bound_and_its_gaps_listed():
     shown = sunatlas("run", "Chang2008", "--condition", "nominal", "--format", "json")
     assert shown.exit_code == 0, shown.stderr

@@ -17,6 +17,7 @@ ROOT = Path(__file__).resolve().parents[3]
 SERVE = (sys.executable, "-m", "api.cli.command_line", "serve")
 
 
+@pytest.mark.slow
 def test_serve_prints_where_it_answers_and_ctrl_c_ends_it_with_130():
     with subprocess.Popen(
         [*SERVE, "--port", "0"],

@@ -48,7 +48,7 @@ def test_a_picture_is_the_same_each_time_and_another_one_for_another_condition()
 
 
 def test_frames_are_drawn_from_the_first_samples_only(monkeypatch):
-    preset = datasets.get("cmos-multi-aperture")
+    preset = datasets.get("cmos-single-aperture")
     asked = []
     generate = type(preset).generate
 

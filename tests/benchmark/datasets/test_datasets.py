@@ -27,6 +27,16 @@ ROOT = Path(__file__).parents[3]
 NAMES = datasets.names()
 CASES = [(name, c) for name in NAMES for c in datasets.get(name).conditions]
 SPLITS = ("calibration", "test")
+#: Sets of seconds' worth of light: the others state the same in the quick run.
+COSTLY = {
+    "ccd-multi-aperture",
+    "ccd-orbit",
+    "cmos-compound-eye",
+    "cmos-l-slit",
+    "cmos-multi-aperture",
+    "cmos-single-aperture",
+    "event-single-aperture",
+}
 #: Samples of a split that stand for all of them; that all are as pinned, runs and pins check.
 FEW = 3
 
@@ -196,7 +206,9 @@ for name in reversed(datasets.names()):
         assert digest == samples_hash(first(*place.split())), place
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=[pytest.mark.slow] if n in COSTLY else []) for n in NAMES]
+)
 def test_generation_depends_on_neither_the_batch_nor_how_much_is_wanted(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:

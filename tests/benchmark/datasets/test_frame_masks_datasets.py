@@ -80,7 +80,17 @@ def test_wherever_the_sun_is_enough_is_seen(name: str) -> None:
         assert whole_spots(name, "nominal", sun).min() >= 3
 
 
-@pytest.mark.parametrize("name", WHOLE + WINDOWS)
+@pytest.mark.parametrize(
+    "name",
+    [
+        "cmos-encoded",
+        "ccd-single-aperture",
+        *(
+            pytest.param(name, marks=pytest.mark.slow)
+            for name in ("cmos-multi-aperture", "cmos-compound-eye", "cmos-slit")
+        ),
+    ],
+)
 def test_frames_are_neither_dark_nor_saturated(name: str) -> None:
     data = preset(name)
     for condition, setup in data.setups.items():
@@ -141,7 +151,13 @@ def still(sun: np.ndarray) -> Scene:
     return Scene(sun, np.ones(len(sun)), np.full(len(sun), 0.002), np.zeros((len(sun), 2), int))
 
 
-@pytest.mark.parametrize("spectrum", [None, SUNLIT_SILICON], ids=["shadows", "diffracted"])
+@pytest.mark.parametrize(
+    "spectrum",
+    [
+        pytest.param(None, id="shadows"),
+        pytest.param(SUNLIT_SILICON, id="diffracted", marks=pytest.mark.slow),
+    ],
+)
 def test_the_bound_of_lit_pixels_is_the_bound_of_the_frame(spectrum: Spectrum | None) -> None:
     sensor = replace(small(3), spectrum=spectrum)
     pattern = sensor.fixed_pattern("unit")

@@ -159,7 +159,10 @@ def few(name: str, steps: int = 3) -> Preset:
     return replace(data, directions=replace(data.directions, steps=steps, test_samples=7))
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(n, marks=[pytest.mark.slow] if n == "cmos-l-slit" else []) for n in NAMES],
+)
 def test_samples_have_the_sizes_of_the_card(name: str) -> None:
     data = few(name)
     shape = {

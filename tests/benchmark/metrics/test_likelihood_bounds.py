@@ -161,7 +161,7 @@ def test_below_a_count_the_bound_is_still_reached(
 
 def test_sensors_whose_elements_do_not_differ_each_by_itself_have_no_second_bound() -> None:
     """Absent, never equal to the first one."""
-    setup = datasets.get("event-single-aperture").setups["nominal"]
+    setup = datasets.get("event-l-slit").setups["nominal"]
     pattern = setup.sensor.fixed_pattern("test")
     found = cramer_rao(
         setup.sensor, seen_at(setup, 5.0, 3.0), pattern, setup.irradiance, references=OFFERED
