@@ -14,6 +14,7 @@ from pathlib import Path
 from types import FrameType
 
 import httpx
+import pytest
 
 from algorithms.extractors.frames.centroid import BasicCentroid
 from algorithms.models.geometric.standard_projection import StandardProjection
@@ -75,6 +76,7 @@ def spelt(frame: FrameType) -> str | None:
     return f"{path.relative_to(ROOT).as_posix()}: {name}" if name else None
 
 
+@pytest.mark.slow
 def test_a_frame_passes_the_functions_listed_from_data_set_to_score() -> None:
     ways = listed("A frame, from data set to score")
     assert len(ways) <= MOST
