@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from bare_pixels import bare
 from closed_forms import slit_intensity
 
 from benchmark import datasets
@@ -36,7 +37,8 @@ GREEN_MM = 550e-6
 def pinhole() -> DiffractiveFrameSensor:
     sensor = datasets.get(NAME).setups["nominal"].sensor
     assert isinstance(sensor, DiffractiveFrameSensor)
-    return replace(sensor, camera=replace(sensor.camera, assembly=Assembly()))
+    camera = replace(sensor.camera, assembly=Assembly())
+    return replace(sensor, camera=camera, detector=bare(sensor.detector))
 
 
 @cache

@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from bare_pixels import bare
+from shadows import shadows
 
 from benchmark import datasets
 from benchmark.datasets.conditions.other_light import with_albedo
@@ -139,7 +141,7 @@ def wide_frame() -> FrameSensor:
     sensor = datasets.get("cmos-single-aperture").setups["nominal"].sensor
     assert isinstance(sensor, FrameSensor)
     camera = replace(sensor.camera, assembly=Assembly(), mask=Mask((Aperture("round", 0.2, 0.2),)))
-    return replace(sensor, camera=camera)
+    return shadows(sensor, camera=camera, detector=bare(sensor.detector))
 
 
 def frame_of(sensor: FrameSensor, earth: Earth, nadir: np.ndarray, sun: np.ndarray, at: list[int]):
