@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from bare_pixels import bare
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -90,7 +91,7 @@ def test_quadrants_count_the_folded_rays(shape: str) -> None:
 def one_hole(glass: CoverGlass | None = None) -> FrameSensor:
     sensor = datasets.get("cmos-single-aperture").setups["nominal"].sensor
     camera = Camera(1.2, Mask((Aperture("round", 0.1, 0.1),)), POINT, glass or CoverGlass())
-    detector = replace(sensor.detector, pitch_mm=0.012, prnu=0.0, dsnu=0.0, full_well_e=1e9)
+    detector = replace(bare(sensor.detector), pitch_mm=0.012, full_well_e=1e9)
     return FrameSensor(camera, detector, (200, 64))
 
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from bare_pixels import bare
 
 from benchmark import datasets
 from benchmark.simulator.flight.drift import (
@@ -264,6 +265,7 @@ def test_known_gains_invert_the_drifting_cube() -> None:
 
 def test_dark_pixels_follow_the_temperature() -> None:
     sensor = ccd_sensor()
+    sensor = replace(sensor, detector=bare(sensor.detector))
     pattern = sensor.fixed_pattern("test")
     sun = np.tile([0.0, 0.0, 1.0], (2, 1))
     scene = replace(

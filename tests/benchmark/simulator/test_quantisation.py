@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from bare_pixels import bare
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.special import ndtr
@@ -134,6 +135,9 @@ def test_ends_in_the_wrong_order_are_refused() -> None:
 def test_pixels_end_at_their_full_well_and_the_dark_ones_keep_their_read_noise() -> None:
     detector = datasets.get("cmos-slit").setups["nominal"].sensor.detector  # type: ignore[attr-defined]
     detector = replace(detector, full_well_e=500 * detector.gain_e_per_dn, offset_dn=20.0)
+    assert detector.errors.nonlinearity == 0.01
+    assert detector.last_code_dn == 515  # a hundredth of 500 short of proportion
+    detector = bare(detector)
     assert detector.last_code_dn == 520
     per_dn, read = detector.gain_e_per_dn, detector.read_noise_e
     mean = np.array([20.0, 300.0, 700.0])

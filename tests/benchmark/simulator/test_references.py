@@ -248,7 +248,7 @@ def test_lit_pixels_know_as_little_of_a_unit_as_the_whole_frame() -> None:
     wide: Any = datasets.get("cmos-multi-aperture").setups["nominal"].sensor
     camera = Camera(0.4, Mask(apertures=(Aperture("round", 0.1, 0.1),)))
     detector = replace(wide.detector, columns=80, rows=70, prnu=0.05)
-    sensor = replace(wide, camera=camera, detector=detector)
+    sensor = replace(wide, camera=camera, detector=detector, spectrum=None)
     scene = Scene(
         from_angles(np.array([0.0, 12.0]), np.array([3.0, -20.0])),
         np.ones(2), np.full(2, 0.002), np.zeros((2, 2), int),

@@ -51,6 +51,7 @@ def unit() -> dict:
     return dict(still().fixed_pattern("test"))
 
 
+@pytest.mark.slow
 def test_without_rates_frames_are_those_of_the_sensor_at_rest(unit) -> None:
     scene = scene_of(12.0, -7.0, None)
     sensor = rolling()

@@ -147,6 +147,7 @@ def test_incidences_between_those_tabulated_are_interpolated(thickness: float) -
         assert np.abs(found - exact).max() < 5e-3 * exact.max(), (place, units)
 
 
+@pytest.mark.slow
 def test_a_hole_between_two_tabulated_ones_is_that_hole() -> None:
     """Built 1 um wider than drawn, against a mask that is drawn that wide."""
     sun = from_angles(np.array([5.0]), np.array([-8.0]))
@@ -158,6 +159,7 @@ def test_a_hole_between_two_tabulated_ones_is_that_hole() -> None:
     assert np.abs(found - expected).max() < 1e-3 * expected.max()
 
 
+@pytest.mark.slow
 def test_holes_of_several_built_sizes_are_those_holes() -> None:
     base = sensor_of(0.1)
     mask = Mask(

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from bare_pixels import bare
 from numba import njit
 from shadows import shadows
 
@@ -33,7 +34,8 @@ def sensor_with(
     nominal = datasets.get("cmos-single-aperture").setups["nominal"].sensor
     mask = Mask((aperture,), thickness)
     camera = Camera(H_MM, mask, SolarDisc(**sun), glass or CoverGlass())
-    return shadows(nominal, camera=camera, window_px=(SIZE, SIZE), pitch_mm=PITCH_MM)
+    detector = replace(bare(nominal.detector), pitch_mm=PITCH_MM)
+    return shadows(nominal, camera=camera, window_px=(SIZE, SIZE), detector=detector)
 
 
 def scene_of(sensor: FrameSensor, sun: np.ndarray) -> Scene:

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from bare_pixels import bare
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from shadows import shadows
@@ -29,7 +30,7 @@ NAME = "cmos-single-aperture-pinhole"
 
 def sensors() -> tuple[FrameSensor, UnevenFrameSensor]:
     base = datasets.get("cmos-single-aperture").setups["nominal"].sensor
-    detector = replace(base.detector, prnu=0.0, dsnu=0.0)
+    detector = replace(bare(base.detector), prnu=0.0, dsnu=0.0)
     even = shadows(base, detector=detector)
     return even, UnevenFrameSensor(even.camera, detector, even.window_px, even.window_jitter_px)
 
