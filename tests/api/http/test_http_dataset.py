@@ -21,7 +21,18 @@ def pinned(tmp_path_factory, client_of):
     """A service whose published pins are two, one of them of another version."""
     directory = tmp_path_factory.mktemp("published")
     pins = [
-        Pin(NAME, "nominal", "test", 1, 1000, "a" * 32, "c" * 32, 1000, 0.25, 0.25),
+        Pin(
+            NAME,
+            "nominal",
+            "test",
+            datasets.get(NAME).version,
+            1000,
+            "a" * 32,
+            "c" * 32,
+            1000,
+            0.25,
+            0.25,
+        ),
         Pin(NAME, "hot", "test", 99, 1000, "b" * 32, "c" * 32, 1000, 0.5, 0.5),
     ]
     Store(directory).write({}, pins, [], Components())

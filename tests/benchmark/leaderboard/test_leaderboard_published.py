@@ -81,10 +81,11 @@ def test_it_is_small_and_holds_nothing_that_can_be_derived():
     }  # fmt: skip
 
 
-#: Of which four samples take a second or more: light from the Earth, or megapixels.
+#: Of which four samples take seconds: light from the Earth, motion, tables of holes, megapixels.
 COSTLY = {
-    "ccd-multi-aperture", "ccd-orbit", "cmos-compound-eye", "cmos-encoded", "cmos-multi-aperture",
-    "ltf-maskless-cube", "pd-maskless-cube", "pd-maskless-pyramid", "pd-orbit",
+    "ccd-multi-aperture", "ccd-orbit", "ccd-periodic", "cmos-compound-eye", "cmos-encoded",
+    "cmos-l-slit", "cmos-multi-aperture", "cmos-single-aperture", "cmos-slit",
+    "event-single-aperture", "ltf-maskless-cube", "pd-maskless-cube", "pd-maskless-pyramid", "pd-orbit",
     "pva-maskless-panels", "pva-maskless-sphere",
 }  # fmt: skip
 BY_COST = [
