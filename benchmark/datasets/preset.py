@@ -56,8 +56,7 @@ class Condition:
     bench
         What the calibration split is taken on; None for a perfect one, which knows the Sun.
     spin
-        How the sensor turns while test samples are exposed (calibration is at rest), or None.
-        The bound takes each sample's rate as known.
+        How the sensor turns while test samples are exposed, at known rates, or None.
     """
 
     description: str
@@ -85,9 +84,8 @@ class Condition:
 class Preset:
     """A standard dataset.
 
-    All conditions share one sensor unit, the Sun directions, irradiances and window offsets of
-    each split; only the parameters that a condition names and the noise differ, so that
-    conditions compare sample by sample.
+    All conditions share one sensor unit, and the Suns, irradiances and window offsets of each split;
+    only what a condition names and the noise differ: conditions compare sample by sample.
 
     Attributes
     ----------
@@ -112,8 +110,7 @@ class Preset:
     repeats, unit
         Poses and passes of the split ``repeat``; which unit of the sensor is seen (`as_unit`).
     batch
-        Samples simulated together, `BATCH` for None; the numbers do not depend on it. Frames of a
-        quarter megabyte are faster a few at a time.
+        Samples simulated together, `BATCH` for None; large frames are faster a few at a time.
     """
 
     name: str
@@ -155,8 +152,7 @@ class Preset:
     def as_unit(self, number: int) -> Self:
         """Return the dataset seen by another unit of its sensor; 0 is the standard one.
 
-        Its errors of assembly are others within the tolerances (`benchmark.datasets.units`), as
-        are its elements' own, and so is the noise. Suns and light are the same.
+        Errors of assembly, elements and noise are others, within the tolerances; light is the same.
 
         Raises
         ------
@@ -179,9 +175,8 @@ class Preset:
     def reference_error_deg(self, condition: str) -> float:
         """Root mean square of what the calibration's directions are wrong by, always alike.
 
-        Over the field, as the test split covers it, and over the benches that may have been used:
-        of the sizes that the condition states, not of what one bench drew. No number of poses
-        takes it away; 0 where the calibration is perfect.
+        Over the field and the benches that may have been used: of the sizes stated, not of what one
+        bench drew. No number of poses takes it away; 0 where the calibration is perfect.
         """
         bench = self.condition(condition).bench
         if bench is None:
@@ -255,9 +250,7 @@ class Preset:
         return Scene(sun, light, stray, origin, albedo, rate)
 
     def generate(self, condition: str, split: str, n: int | None = None) -> Samples:
-        """Simulate the samples of a split: ``calibration``, ``test`` or ``repeat``.
-
-        Returns the same numbers whenever, wherever and beside whatever it is called.
+        """Simulate a split, ``calibration``, ``test`` or ``repeat``: always the same numbers.
 
         Parameters
         ----------
@@ -312,10 +305,9 @@ class Preset:
     def references(self, condition: str) -> dict[str, NDArray[Any]]:
         """Mean flat and dark readings of this unit, as a calibration offers them.
 
-        Of every element of the detector, whatever windows the samples have: ``dark_dn`` and
-        ``flat_dn`` of pixels, ``dark_ua`` and ``flat_ua`` of currents, ``dark_hz`` and
-        ``flat_hz`` of frequencies. Empty for sensors whose elements have no readings of their
-        own (lenses with trails, events). Light and number: `offered`.
+        Of every element of the detector: ``dark_dn`` and ``flat_dn`` of pixels, ``_ua`` of
+        currents, ``_hz`` of frequencies. Empty for sensors whose elements have no readings of
+        their own (lenses with trails, events). Light and number: `offered`.
 
         Raises
         ------

@@ -85,8 +85,8 @@ def test_it_is_small_and_holds_nothing_that_can_be_derived():
 COSTLY = {
     "ccd-multi-aperture", "ccd-orbit", "ccd-periodic", "cmos-compound-eye", "cmos-encoded",
     "cmos-l-slit", "cmos-multi-aperture", "cmos-single-aperture", "cmos-slit",
-    "event-single-aperture", "ltf-maskless-cube", "pd-maskless-cube", "pd-maskless-pyramid", "pd-orbit",
-    "pva-maskless-panels", "pva-maskless-sphere",
+    "event-single-aperture", "ltf-maskless-cube", "pd-maskless-cube", "pd-maskless-pyramid",
+    "pd-orbit", "pva-maskless-panels", "pva-maskless-sphere",
 }  # fmt: skip
 BY_COST = [
     pytest.param(name, marks=pytest.mark.slow) if name in COSTLY else name
