@@ -84,7 +84,7 @@ class Condition:
 class Preset:
     """A standard dataset.
 
-    All conditions share one sensor unit, and the Suns, irradiances and window offsets of each split;
+    All conditions share one sensor unit, and the Suns, irradiances and window offsets of a split;
     only what a condition names and the noise differ: conditions compare sample by sample.
 
     Attributes
