@@ -21,6 +21,10 @@ from survey_data.csv_writing import csv_text
 Row = Mapping[str, Any]
 
 
+#: Characters of a line that goes to a file or a pipe: room for the widest table.
+WIDE = 240
+
+
 class Format(StrEnum):
     """How rows are printed."""
 
@@ -59,9 +63,12 @@ def emit(
         table = Table(title=title, title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
         for name in columns:
             numeric = any(_numeric(row.get(name)) for row in rows)
-            # Words may wrap; a number broken over two lines is another number.
+            # Words may wrap, and are never cut; a number over two lines is another number.
             table.add_column(
-                name.replace("_", " "), justify="right" if numeric else "left", no_wrap=numeric
+                name.replace("_", " "),
+                justify="right" if numeric else "left",
+                no_wrap=numeric,
+                overflow="fold",
             )
         for row in rows:
             table.add_row(*(Text(_shown(row.get(name))) for name in columns))
@@ -76,7 +83,7 @@ def emit_json(document: Any) -> None:
 def console(*, stderr: bool = False) -> Console:
     """Make a console on stdout or stderr; piped output is not cut to a terminal's width."""
     found = Console(stderr=stderr, highlight=False, soft_wrap=False)
-    return found if found.is_terminal else Console(stderr=stderr, highlight=False, width=160)
+    return found if found.is_terminal else Console(stderr=stderr, highlight=False, width=WIDE)
 
 
 def _numeric(value: Any) -> bool:
