@@ -76,7 +76,7 @@ def test_examples_are_what_is_answered(atlas, document):
                 assert answer.json() == example
                 validator(document, content[accept]["schema"]).validate(example)
             checked += 1
-    assert checked == 28
+    assert checked == 30
 
 
 def test_examples_of_refusals_are_what_is_refused(atlas, document):
