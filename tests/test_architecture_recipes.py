@@ -101,7 +101,7 @@ def test_a_dataset_is_one_short_file_in_the_recipe_and_here() -> None:
     lines = {path.name: len(path.read_text().splitlines()) for path in standard.glob("*_*.py")}
     assert len(lines) > 30
     assert {name: count for name, count in lines.items() if count > 45} == {}
-    assert sum(count > 40 for count in lines.values()) <= 4
+    assert sum(count > 40 for count in lines.values()) <= 6
 
 
 def test_an_algorithm_with_its_docstring_takes_at_most_60_lines() -> None:

@@ -51,7 +51,8 @@ def _subject(name: str, sensor: MultiSpotSensor, scene: Scene) -> dict[str, Any]
     """
     pattern = sensor.fixed_pattern("speed", name)
     one = scene.part(0, 1)
-    shadows = replace(sensor, spectrum=None)
+    # what stands above the pixels is not counted either
+    shadows = replace(sensor, spectrum=None, detector=replace(sensor.detector, tunnel=0.0))
     exact = shadows.lit(one, pattern)[0]
     counted = counted_spots(shadows, one, pattern)
     return {

@@ -125,3 +125,25 @@ def with_stray_gradient(
         UnevenIrradiance(irradiance.spread, stray, stray / 5.0, stray / 4.0),
         geometry=geometry,
     )
+
+
+#: Conditions by the names that data sets give them.
+_NAMED: Final = {
+    "albedo": with_albedo,
+    "albedo-clouds": with_clouds,
+    "ghosts": with_ghosts,
+    "stray-gradient": with_stray_gradient,
+}
+
+
+def seen_with(sensor: Haunted, *names: str) -> dict[str, Condition]:
+    """Return conditions of a sensor under `LIGHT` by their names.
+
+    Parameters
+    ----------
+    sensor
+        Under its nominal condition.
+    names
+        Of ``albedo``, ``albedo-clouds``, ``ghosts`` and ``stray-gradient``.
+    """
+    return {name: _NAMED[name](sensor) for name in names}

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from benchmark.datasets.conditions import other_light
 from benchmark.datasets.conditions.line_arrays import SUN, behind, ccd, line_arrays
+from benchmark.datasets.conditions.other_light import seen_with
 from benchmark.datasets.conditions.uneven_light import UnevenPreset
 from benchmark.simulator.masks.slits import periodic
 
@@ -26,10 +26,6 @@ PRESET = line_arrays(
         "60 deg, 1.8 mm up; 1024 pixels of 14 um hold the whole pattern at 60 deg, so its ends "
         "tell which slit is which and the phase needs no coarse sensor."
     ),
-    more={
-        "albedo-clouds": other_light.with_clouds(_SENSOR),
-        "ghosts": other_light.with_ghosts(_SENSOR),
-        "stray-gradient": other_light.with_stray_gradient(_SENSOR),
-    },
+    more=seen_with(_SENSOR, "albedo-clouds", "ghosts", "stray-gradient"),
     kind=UnevenPreset,
 )

@@ -17,7 +17,6 @@ _MASK = compound_eye(
     thickness_mm=0.01,
 )
 
-
 PRESET = many_spots(
     name="cmos-compound-eye",
     version=2,
@@ -36,7 +35,6 @@ PRESET = many_spots(
         "cmos-encoded, h = 6 mm and holes of 0.12 mm near the Fresnel number of 1, growing "
         "outwards with the slant ray to 0.16 mm. A triangular lattice of 0.655 mm lets 1026 holes "
         "cover what a detector of 192 x 192 px of 10 um sees over the whole cone; each is moved by "
-        "25 um in a direction drawn for its sub-eye, so that the pattern seen tells the sub-eye. "
-        "The foil is 10 um thick."
+        "25 um in a direction drawn for its sub-eye, so that the pattern seen tells the sub-eye."
     ),
 )

@@ -12,7 +12,6 @@ _MASK = spacing_coded(
     13, pitch_mm=_PITCH_MM, diameter_mm=0.12, first_mm=0.46, step_mm=0.011, thickness_mm=0.01
 )
 
-
 PRESET = many_spots(
     name="cmos-encoded",
     version=2,

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from benchmark.datasets.conditions import other_light
 from benchmark.datasets.conditions import pixel_arrays as pixels
+from benchmark.datasets.conditions.other_light import seen_with
 from benchmark.datasets.fields import AngleField
 from benchmark.simulator.masks.layouts import l_slit
 
@@ -32,13 +32,9 @@ PRESET = pixels.windows(
         "array and windowed read-out are those of Jing2016, which gives no dimensions in what was "
         "mapped. Round numbers: slits of 0.1 mm by 0.57 mm, 1.2 mm up in a foil of 10 um, within "
         "what such slits have (tens of um to 0.2 mm), have a Fresnel number of 3.8 and sides as "
-        "soft as 26 um; 12 um pixels make them 8 by 48 px; a web of 0.1 mm where the L's corner "
-        "would be keeps the foil in one piece (light that both slits share is left out: the Sun "
-        "is coherent over some 60 um only); 512 px hold both at 60 deg. Windows are placed from "
-        "the true spot, rounded, plus a uniform whole offset of up to 8 px an axis."
+        "soft as 26 um; a web of 0.1 mm where the L's corner would be keeps the foil in one piece "
+        "(light that both slits share is left out: the Sun is coherent over some 60 um only); "
+        "512 px hold both at 60 deg. Windows miss the true spot by up to 8 whole px an axis."
     ),
-    more={
-        "albedo-clouds": other_light.with_clouds(_SENSOR),
-        "ghosts": other_light.with_ghosts(_SENSOR),
-    },
+    more=seen_with(_SENSOR, "albedo-clouds", "ghosts"),
 )

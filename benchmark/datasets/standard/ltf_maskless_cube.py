@@ -29,14 +29,12 @@ PRESET = faces(
     follows=("Allgeier2009",),
     description=(
         "One converter a face, Sun from anywhere on the sphere. No mapped study is known to use "
-        "light-to-frequency converters (the survey lists them among its detectors), and no sun "
-        "sensor of that kind was found: an idealisation, in Allgeier2009's arrangement. The "
-        "converter is that of a data sheet (TI TSL230B): up to 1 MHz, frequencies within 5 % from "
-        "part to part, taken as two standard deviations, 0.2 % short of proportion at 100 kHz, "
-        "100 ppm/K, 1.4 mm2 of silicon, whose 5 pC a pulse average the light's noise away. Round "
-        "numbers: full sunlight at 100 kHz, behind a neutral filter; a dark frequency of 1 Hz; a "
-        "gate of 20 ms, which fits a 50 Hz attitude loop, and a hundredth of a pulse of jitter. "
-        "What is left is that counts are whole: 0.02 % of full sunlight."
+        "light-to-frequency converters, and no sun sensor of that kind was found: an idealisation, "
+        "in Allgeier2009's arrangement. The converter is that of a data sheet (TI TSL230B): up to "
+        "1 MHz, frequencies within 5 % from part to part, taken as two standard deviations, 0.2 % "
+        "short of proportion at 100 kHz, 100 ppm/K, 1.4 mm2 of silicon, whose 5 pC a pulse average "
+        "the light's noise away. Round numbers: full sunlight at 100 kHz, behind a neutral filter; "
+        "a dark frequency of 1 Hz; a gate of 20 ms and a hundredth of a pulse of jitter."
     ),
     unit="hertz",
 )

@@ -5,18 +5,15 @@ from __future__ import annotations
 import math
 
 from benchmark.datasets.conditions import masked_photodiodes as diodes
-from benchmark.datasets.conditions import other_light
 from benchmark.datasets.conditions.alignment import careful, misaligned
+from benchmark.datasets.conditions.other_light import seen_with
 from benchmark.datasets.conditions.propagation import measured_geometric
 from benchmark.simulator.sensors.slit_pairs import DiodePair, SlitPairSensor
 
 _CAMERA = diodes.through(diodes.opening(2.8, 5.0, thickness_mm=0.02), 0.5, careful(0.001))
 _PAIR = DiodePair(reach_mm=2.9, breadth_mm=2.0, gap_mm=0.05)
 _SENSOR = SlitPairSensor(_CAMERA, _PAIR, diodes.amplifiers(250.0, 0.02, 120.0))
-_NOMINAL = (
-    "Carefully assembled, slits 20 um thick, 50 um gaps, 1 % gain mismatch, noise of 2e-4 of full "
-    "sunlight."
-)
+_NOMINAL = "Slits 20 um thick, 50 um gaps, 1 % gain mismatch, noise of 2e-4 of full sunlight."
 _OFF = "focal length 2.5 % long, slits 50 and -40 um off centre"
 
 PRESET = diodes.masked_photodiodes(
@@ -30,8 +27,7 @@ PRESET = diodes.masked_photodiodes(
         **diodes.usual(_SENSOR, _NOMINAL, _OFF, misaligned(0.0125)),
         "thick-slit": diodes.thick_slit(_SENSOR),
         **diodes.temperatures(_SENSOR),
-        "ghosts": other_light.with_ghosts(_SENSOR),
-        "albedo": other_light.with_albedo(_SENSOR),
+        **seen_with(_SENSOR, "ghosts", "albedo"),
     },
     follows=("Chang2006", "Abhilash2014", "Hales2002"),
     description=(

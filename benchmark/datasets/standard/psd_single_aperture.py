@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from benchmark.datasets.conditions import masked_photodiodes as diodes
-from benchmark.datasets.conditions import other_light
 from benchmark.datasets.conditions.alignment import careful, misaligned
+from benchmark.datasets.conditions.other_light import seen_with
 from benchmark.datasets.conditions.pixel_arrays import hole
 from benchmark.datasets.conditions.propagation import measured_geometric
 from benchmark.simulator.sensors.position_sensitive import LateralEffect, PositionSensor
@@ -12,10 +12,7 @@ from benchmark.simulator.sensors.position_sensitive import LateralEffect, Positi
 _CAMERA = diodes.through(hole(0.56), 1.5, careful(0.004, 0.01, -0.008))
 _READOUT = diodes.amplifiers(100.0, 0.01, 120.0, gain_mismatch=0.005)
 _SENSOR = PositionSensor(_CAMERA, LateralEffect(4.0, nonlinearity=0.01), _READOUT)
-_NOMINAL = (
-    "Position non-linearity of 1 % at the middle of an edge, amplifiers matched to 0.5 %, noise of "
-    "1e-4 of full sunlight an electrode."
-)
+_NOMINAL = "Non-linear by 1 % at an edge's middle, amplifiers within 0.5 %, noise 1e-4 of sunlight."
 _OFF = "focal length 2.5 % long, aperture 50 and -40 um off centre"
 
 PRESET = diodes.masked_photodiodes(
@@ -29,8 +26,7 @@ PRESET = diodes.masked_photodiodes(
         **diodes.usual(_SENSOR, _NOMINAL, _OFF, misaligned(0.0375)),
         "linear": diodes.linear(_SENSOR),
         **diodes.temperatures(_SENSOR),
-        "ghosts": other_light.with_ghosts(_SENSOR),
-        "albedo": other_light.with_albedo(_SENSOR),
+        **seen_with(_SENSOR, "ghosts", "albedo"),
     },
     follows=("Lin2016",),
     description=(
@@ -41,8 +37,7 @@ PRESET = diodes.masked_photodiodes(
         "without thickness, but no lengths in what was mapped. These are the design document's of "
         "the Foresail-1 sensor: a hole of 0.56 mm 1.5 mm above a device of 4 x 4 mm. Its field is "
         "+-50 deg; +-45 deg keep the whole spot on the device in every corner, misaligned too. "
-        "Currents and noise are round numbers: 100 uA are what such a hole lets through to "
-        "silicon, to a fifth or so."
+        "Currents and noise are round numbers: 100 uA are what such a hole lets through."
     ),
     regime=measured_geometric(0.06, (1.0, 1.0, 1.0)),
 )

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from benchmark.datasets.conditions import masked_photodiodes as diodes
-from benchmark.datasets.conditions import other_light
 from benchmark.datasets.conditions.alignment import careful, misaligned
+from benchmark.datasets.conditions.other_light import seen_with
 from benchmark.datasets.conditions.propagation import measured_geometric
 
 _MASK = diodes.opening(2.0, 2.0, thickness_mm=0.02, rotation_deg=0.1)
@@ -25,10 +25,7 @@ PRESET = diodes.masked_photodiodes(
         **diodes.usual(_SENSOR, _NOMINAL, _OFF, misaligned(0.025)),
         "wide-gap": diodes.wide_gap(_SENSOR),
         "round-aperture": diodes.round_aperture(_SENSOR, _GEOMETRY),
-        "stray-gradient": other_light.with_stray_gradient(_SENSOR),
-        "ghosts": other_light.with_ghosts(_SENSOR),
-        "albedo": other_light.with_albedo(_SENSOR),
-        "albedo-clouds": other_light.with_clouds(_SENSOR),
+        **seen_with(_SENSOR, "stray-gradient", "ghosts", "albedo", "albedo-clouds"),
     },
     follows=("Boslooper2017", "Faizullin2017"),
     description=(
@@ -37,8 +34,7 @@ PRESET = diodes.masked_photodiodes(
         "quadrant sensors that was looked up; round numbers instead. A 2 mm aperture 1 mm up makes "
         "tan(alpha_max) = d / (2 h) = 1 (alg:VB), so the balance saturates at 45 deg and the field "
         "stops at 40 deg; a detector of 3.6 mm cuts the spot off in the last degree of it (from "
-        "38.7 deg), as small detectors do. Reflectances of the ghosts are round numbers for bare "
-        "silicon and for blackened chromium."
+        "38.7 deg), as small detectors do. Reflectances of the ghosts are round numbers."
     ),
     regime=measured_geometric(0.25, (1.0, 1.0, 1.0)),
 )

@@ -270,17 +270,17 @@ def test_the_window_says_little_about_the_spot() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("condition", datasets.get("cmos-single-aperture").conditions)
 def test_spots_lie_whole_inside_their_windows_neither_dark_nor_saturated(condition: str) -> None:
+    """Of the light itself: hot pixels of an aged detector stand anywhere, and are full."""
     preset = datasets.get("cmos-single-aperture")
+    sensor: Any = preset.setups[condition].sensor
+    scene = preset.scene(condition, "test")
+    light = sensor.lit(scene)
+    border = np.concatenate([light[:, [0, -1]], light[:, :, [0, -1]].swapaxes(1, 2)], axis=1)
+    assert (border.max(axis=(1, 2)) < 0.1 * light.max(axis=(1, 2))).all()
     frames = preset.generate(condition, "test").observations
-    border = np.concatenate(
-        [
-            frames[:, [0, -1]].reshape(len(frames), -1),
-            frames[:, :, [0, -1]].reshape(len(frames), -1),
-        ],
-        axis=1,
-    )
-    assert (border.max(axis=1) < 0.5 * frames.max(axis=(1, 2))).all()
-    assert frames.max() < 2 ** preset.setups[condition].sensor.detector.bits - 1
+    lit = frames[light > 0.5 * light.max(axis=(1, 2))[:, None, None]]
+    # one pixel in a hundred is hot at the end of life
+    assert np.mean(lit == 2**sensor.detector.bits - 1) < (0.02 if condition == "aged" else 1e-9)
     assert np.mean(frames == 0) < 1e-3
 
 

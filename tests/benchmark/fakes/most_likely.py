@@ -21,7 +21,6 @@ from benchmark.simulator.readout.detectors import CurrentReadout, PixelArray
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
-from benchmark.simulator.sensors.light_to_frequency import FrequencyCounter
 from benchmark.simulator.sensors.opto_isolator import OptoIsolatorSensor
 
 Floats = NDArray[np.float64]
@@ -61,10 +60,6 @@ def readout_of(sensor: Any) -> Readout:
         )  # fmt: skip
     mismatch, dark = part.gain_mismatch, part.dark.level()
     dimmed = 0.5 if isinstance(sensor, OptoIsolatorSensor) else 1.0
-    if isinstance(part, FrequencyCounter):
-        gate = part.gate_s
-        last, end = np.floor(part.full_scale_hz * gate), part.full_scale_hz
-        return Readout(1 / gate, 0.0, 1 / gate, 0.0, 0.0, last, mismatch, dark, 0.0, end)
     assert isinstance(part, CurrentReadout)
     top, charge = 2.0 ** (part.bits - 1), 1.602176634e-13 / part.integration_s
     if hasattr(sensor, "cells"):

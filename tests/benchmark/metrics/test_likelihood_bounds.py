@@ -2,6 +2,7 @@
 
 Estimates are of `most_likely`, by the chances of whole codes. A direction's error has two axes, of
 which one may be all of it: of n trials the root mean square is known to 1 / sqrt(2 n) at worst.
+Counts of pulses are estimated in `test_likelihood_counts`.
 """
 
 from __future__ import annotations
@@ -43,7 +44,6 @@ ARCHITECTURES = [
     ("pd-maskless-cube", 25.0, 40.0, 1000),
     ("pd-code-dial", 21.0, -9.0, 1000),
     ("pd-slit", 11.0, -9.0, 1000),
-    ("ltf-maskless-cube", 25.0, 40.0, 1000),
     ("oi-maskless-pyramid", -18.0, 27.0, 1000),
     ("pva-maskless-sphere", 35.0, 50.0, 1000),
 ]

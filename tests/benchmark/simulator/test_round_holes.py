@@ -259,7 +259,9 @@ def off_by(name: str, turn: int) -> float:
     sensor, pattern = data.setups["nominal"].sensor, data.fixed_pattern("nominal")
     assert isinstance(sensor, MultiSpotSensor)
     camera = replace(sensor.camera, sun=SolarDisc(spiral=1152))
-    sensor = replace(sensor, camera=camera, spectrum=None)
+    # rays are counted where they meet the pixels' plane, not below a tunnel
+    bare = replace(sensor.detector, tunnel=0.0)
+    sensor = replace(sensor, camera=camera, spectrum=None, detector=bare)
     edge = data.geometry.half_fov_deg or 0.0
     alpha, beta = [(edge, edge), (-edge, 0.37 * edge), (0.6, edge), (0.7 * edge, -0.7 * edge)][turn]
     if name == "cmos-compound-eye":  # a cone
