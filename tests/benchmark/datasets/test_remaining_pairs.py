@@ -210,7 +210,7 @@ def test_bounds_are_finite_everywhere_and_order_with_the_noise(name: str) -> Non
 @pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_all_light_falls_on_the_pixels_read_out_and_saturates_none(name: str) -> None:
-    """Also in the field's corners, in every condition: windows cut no more than a skirt of light."""
+    """Also in the field's corners, in every condition: windows cut a skirt of light at most."""
     data = few(name)
     for condition, setup in data.setups.items():
         scene = data.scene(condition, "calibration")
