@@ -18,7 +18,7 @@ def compile_command(
     workers: WorkersOption = 1,
     quiet: Annotated[bool, typer.Option(help="Say nothing when done.")] = False,
 ) -> None:
-    """Compile every kernel ahead of its first use.
+    """Compile every kernel now instead of at its first call.
 
     Numerical kernels are compiled at their first call and kept on disk, beside the source or in
     the user's cache directory. Afterwards the first extraction and the first frame in any new

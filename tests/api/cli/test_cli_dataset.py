@@ -171,6 +171,7 @@ def test_what_is_in_the_way_stays(made, tmp_path):
     assert "holds mine" in shown.stderr
 
 
+@pytest.mark.slow
 def test_data_other_than_published_are_noted(tmp_path, monkeypatch):
     real = Store.pins
 
@@ -200,6 +201,7 @@ def test_coverage_is_the_table_in_every_format():
     assert "pd-maskless-cube" in shown.stdout
 
 
+@pytest.mark.slow
 def test_list_says_what_is_covered():
     shown = sunatlas("list")
     assert shown.stderr.startswith("10 of 10 detectors and 10 of 10 masks")

@@ -39,6 +39,7 @@ def pinned(tmp_path_factory, client_of):
     return client_of(create_app(Knowledge(Measurements(directory))))
 
 
+@pytest.mark.slow
 def test_the_card_is_the_preset_s_with_bounds_hashes_and_the_picture(atlas):
     card = atlas.get(f"/v1/datasets/{NAME}").json()
     preset = datasets.get(NAME)

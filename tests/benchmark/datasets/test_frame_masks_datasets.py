@@ -80,6 +80,7 @@ def test_wherever_the_sun_is_enough_is_seen(name: str) -> None:
         assert whole_spots(name, "nominal", sun).min() >= 3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     [
@@ -106,6 +107,7 @@ def test_frames_are_neither_dark_nor_saturated(name: str) -> None:
         assert np.mean(frames == 0) < 1e-3, condition
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", WINDOWS)
 def test_spots_lie_inside_their_windows_but_for_their_skirts(name: str) -> None:
     """Light that is bent has no end: at a window's border it is below 2 % of the peak."""

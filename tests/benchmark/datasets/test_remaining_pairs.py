@@ -159,6 +159,7 @@ def few(name: str, steps: int = 3) -> Preset:
     return replace(data, directions=replace(data.directions, steps=steps, test_samples=7))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     [pytest.param(n, marks=[pytest.mark.slow] if n == "cmos-l-slit" else []) for n in NAMES],
@@ -180,6 +181,7 @@ def test_samples_have_the_sizes_of_the_card(name: str) -> None:
         assert (samples.origin_px is None) == name.endswith("n-slit")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_generation_depends_on_neither_batch_nor_order(
     name: str, monkeypatch: pytest.MonkeyPatch

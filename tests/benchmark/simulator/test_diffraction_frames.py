@@ -155,6 +155,7 @@ def test_close_hole_is_the_kirchhoff_integral(alpha: float, beta: float) -> None
     assert worst < (1e-3 if alpha == beta == 0.0 else 0.03)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("beta", [0.0, 25.0])
 @pytest.mark.parametrize(
     ("pitch_mm", "step"), [(0.02, 1), pytest.param(0.0065, 3, marks=pytest.mark.slow)]
@@ -212,6 +213,7 @@ def test_near_pattern_lies_where_the_shadow_would(shape: str, pixels: float) -> 
             assert abs(apart) < pixels
 
 
+@pytest.mark.slow
 def test_light_of_a_square_hole_in_the_window_is_that_of_two_slits() -> None:
     """Window of 16/6 hole widths; the Sun's blur at its edge is far below the tail's change."""
     sensor = behind(2.0, "rectangle", 3)

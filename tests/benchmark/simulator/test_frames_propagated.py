@@ -128,6 +128,7 @@ def test_frames_are_the_propagated_light(case: tuple[str, float, float, float, f
     assert off < pixels
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", QUICK, ids=str)
 def test_far_patterns_are_the_propagated_light(
     case: tuple[str, float, float, float, float],

@@ -63,6 +63,7 @@ def test_without_rates_frames_are_those_of_the_sensor_at_rest(unit) -> None:
     assert one.tobytes() == other.tobytes()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("row_s", [2e-4, -1e-4, 0.0])
 def test_rows_are_those_of_a_loop_over_times(unit, row_s: float) -> None:
     sensor, scene = rolling(row_time_s=row_s), scene_of(12.0, -7.0)

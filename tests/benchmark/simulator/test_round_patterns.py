@@ -180,6 +180,7 @@ def test_holes_of_several_built_sizes_are_those_holes() -> None:
     assert np.abs(found - expected).max() < 0.28**2 / 8.0 * expected.max() + 1e-4
 
 
+@pytest.mark.slow
 def test_one_averaged_cell_is_a_pixel_of_many() -> None:
     data = datasets.get("ccd-multi-aperture")
     sensor = data.setups["nominal"].sensor

@@ -73,6 +73,7 @@ def assert_alike(found: np.ndarray, true: np.ndarray, share: float) -> None:
         assert abs(middles[0] - middles[1]) < 0.01
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("angles", [(0.0, 0.0), (0.0, 8.0), (60.0, 60.0)])
 @pytest.mark.parametrize(
     ("name", "foil_mm"),
