@@ -15,6 +15,8 @@ from algorithms.contract import Floats
 Complex = tuple[float, float]
 Four = tuple[float, float, float, float]
 Three = tuple[float, float, float]
+#: Share of a wave that Sun and pixels leave, below which an end does without it.
+_FAINT = 1e-3
 
 
 @compiled
@@ -56,6 +58,22 @@ def _box(cycles: float) -> float:
 
 
 @compiled
+def _waves(tall: int, step: float, y: Floats) -> tuple[Floats, Floats]:
+    """Cosines and sines (2 tall, M) of waves at places y.
+
+    Frequencies lie half a step off 0, where the transform of one corner jumps; across only
+    positive ones count: it is Hermitian.
+    """
+    size = y.shape[0]
+    cosines, sines = np.empty((2 * tall, size)), np.empty((2 * tall, size))
+    for j in range(2 * tall):
+        for i in range(size):
+            phase = 2.0 * math.pi * (j - tall + 0.5) * step * y[i]
+            cosines[j, i], sines[j, i] = math.cos(phase), math.sin(phase)
+    return cosines, sines
+
+
+@compiled
 def corner_patches(
     out: Floats, design: Floats, spectrum: Floats, radial: Floats, grid: Floats
 ) -> None:
@@ -87,13 +105,7 @@ def corner_patches(
     for i in range(size):
         at = (i - (size - 1) / 2.0) / per_root
         x[i], y[i] = at * math.sqrt(jw), at * math.sqrt(jv)
-    # frequencies lie half a step off 0, where the transform of one corner jumps; across only
-    # positive ones: it is Hermitian
-    cosines, sines = np.empty((2 * tall, size)), np.empty((2 * tall, size))
-    for j in range(2 * tall):
-        for i in range(size):
-            phase = 2.0 * math.pi * (j - tall + 0.5) * step_y * y[i]
-            cosines[j, i], sines[j, i] = math.cos(phase), math.sin(phase)
+    cosines, sines = _waves(tall, step_y, y)
     sums = np.zeros((4, reach, size))
     for k in range(reach):
         fx = (k + 0.5) * step_x
@@ -114,6 +126,70 @@ def corner_patches(
                 sums[3, k, i] += c * sine + d * cosine
     for kind in range(2):
         _from_frequencies(out[kind], (sums[2 * kind], sums[2 * kind + 1]), x, (step_x, step_y))
+
+
+@compiled
+def _lost(fx: float, fy: float, spreads: Four, spectrum: Floats) -> Complex:
+    """Return what two corners so close together lack of two lone ones, at a frequency.
+
+    Where light of a rectangle is moved by more than its size it has nothing in common with itself;
+    corners by themselves do not know.
+    """
+    jw, jv, jc, size = spreads
+    moved = abs(jw * fx + jc * fy), abs(jv * fy + jc * fx)
+    near = abs(jw * fx), abs(jv * fy)
+    unit = 1.0 / (2.0 * math.pi * math.pi * fx * fy)
+    re, im = 0.0, 0.0
+    for m in range(spectrum.shape[0]):
+        wave, share = spectrum[m, 0], unit * spectrum[m, 1]
+        if wave * moved[0] > size:
+            sine = share * math.sin(math.pi * fx * (size - wave * moved[0]))
+            re += sine * math.sin(math.pi * fy * wave * moved[1])
+            im -= sine * math.cos(math.pi * fy * wave * moved[1])
+        if wave * near[0] > size:
+            sine = share * math.sin(math.pi * fx * (size - wave * near[0]))
+            re -= sine * math.sin(math.pi * fy * wave * near[1])
+            im += sine * math.cos(math.pi * fy * wave * near[1])
+    return re, im
+
+
+@compiled
+def end_patch(out: Floats, design: Floats, spectrum: Floats, radial: Floats, grid: Floats) -> None:
+    """Fill (M, M) what lacks of two lone corners at the end of a slit, where they lie close by.
+
+    Units and parameters as of `corner_patches`, but that `design` (9,) ends with the slit's full
+    width, coupling is positive, columns count from the slit's middle, and rows from its end.
+    """
+    jw, jv, jc, wide, shear, high, pitch, per_root, width = design
+    step_x, step_y, most = grid
+    size = out.shape[1]
+    reach, tall = int(most / step_x), int(most / step_y)
+    longest = 0.0
+    for m in range(spectrum.shape[0]):
+        longest = max(longest, spectrum[m, 0])
+    x, y = np.empty(size), np.empty(size)
+    for i in range(size):
+        at = (i - (size - 1) / 2.0) / per_root
+        x[i], y[i] = at * math.sqrt(jw), at * math.sqrt(jv)
+    cosines, sines = _waves(tall, step_y, y)
+    sums = np.zeros((2, reach, size))
+    for k in range(reach):
+        fx = (k + 0.5) * step_x
+        for j in range(2 * tall):
+            fy = (j - tall + 0.5) * step_y
+            if longest * max(abs(jw * fx + jc * fy), jw * fx) <= width:
+                continue
+            light = _disc(wide * fx, high * fy + shear * fx, radial)
+            light *= _box(fx * pitch) * _box(fy * pitch)
+            if abs(light) < _FAINT:
+                continue
+            a, b = _lost(fx, fy, (jw, jv, jc, width), spectrum)
+            a, b = light * a, light * b
+            for i in range(size):
+                cosine, sine = cosines[j, i], sines[j, i]
+                sums[0, k, i] += a * cosine - b * sine
+                sums[1, k, i] += a * sine + b * cosine
+    _from_frequencies(out, (sums[0], sums[1]), x, (step_x, step_y))
 
 
 @compiled
@@ -149,7 +225,7 @@ def _shares(fraction: float) -> Four:
 
 @compiled
 def _corners(patches: Floats, tables: Floats, places: Complex) -> None:
-    """Interpolate (2, M, M) corners at a place among (T, T, 2, M, M) incidences (cubic)."""
+    """Interpolate (K, M, M) patches at a place among (T, T, K, M, M) incidences (cubic)."""
     nodes = tables.shape[0]
     patches[:] = 0.0
     first = min(max(int(places[0]), 1), nodes - 3)
@@ -160,7 +236,7 @@ def _corners(patches: Floats, tables: Floats, places: Complex) -> None:
         for j in range(4):
             share = outer[i] * inner[j]
             table = tables[first - 1 + i, other - 1 + j]
-            for kind in range(2):
+            for kind in range(table.shape[0]):
                 for row in range(size):
                     for column in range(size):
                         patches[kind, row, column] += share * table[kind, row, column]
@@ -184,42 +260,93 @@ def _cubic(table: Floats, x: float, y: float) -> float:
 
 
 @compiled
-def _add_in_rows(
-    out: Floats, patches: Floats, places: Four, steps: Complex, kinds: tuple[int, int]
-) -> None:
-    """Add all four corners to (rows, columns) of pixels along the sides.
+def _add_in_rows(out: Floats, patch: Floats, first: Complex, steps: Complex) -> None:
+    """Add a patch to (rows, columns) of pixels along its sides.
 
-    `places` are x and y of the first pixel's centre, seen from the spot's middle, and half sizes,
-    `steps` the pitch, all in steps of the patches; `kinds` of corners on the rising and on the
-    falling diagonal.
+    `first` is the column and the row of the patch at the first pixel, `steps` those a pixel.
     """
-    size = patches.shape[1]
-    middle = (size - 1) / 2.0
+    size, columns = patch.shape[0], out.shape[1]
     line = np.empty(size)
+    # of every column once: where it reads the patch, and how its four nodes share
+    places, weights = np.empty(columns, np.int64), np.empty((columns, 4))
+    begin, end = columns, 0
+    for column in range(columns):
+        x = first[0] + column * steps[0]
+        left = math.floor(x)
+        places[column] = left
+        if 1 <= left <= size - 3:
+            begin, end = min(begin, column), column + 1
+            a, b, c, d = _shares(x - left)
+            weights[column, 0], weights[column, 1] = a, b
+            weights[column, 2], weights[column, 3] = c, d
     for row in range(out.shape[0]):
-        for along in (-1.0, 1.0):
-            y = along * (places[1] + row * steps[1]) - places[3] + middle
-            low = math.floor(y)
-            if low < 1 or low > size - 3:
-                continue
-            a, b, c, d = _shares(y - low)
-            for across in (-1.0, 1.0):
-                patch = patches[kinds[0] if across == along else kinds[1]]
-                for i in range(size):
-                    line[i] = (
-                        a * patch[low - 1, i]
-                        + b * patch[low, i]
-                        + c * patch[low + 1, i]
-                        + d * patch[low + 2, i]
-                    )
-                for column in range(out.shape[1]):
-                    x = across * (places[0] + column * steps[0]) - places[2] + middle
-                    left = math.floor(x)
-                    if 1 <= left <= size - 3:
-                        shares = _shares(x - left)
-                        total = shares[0] * line[left - 1] + shares[1] * line[left]
-                        total += shares[2] * line[left + 1] + shares[3] * line[left + 2]
-                        out[row, column] += total
+        y = first[1] + row * steps[1]
+        low = math.floor(y)
+        if low < 1 or low > size - 3:
+            continue
+        a, b, c, d = _shares(y - low)
+        for i in range(size):
+            line[i] = (
+                a * patch[low - 1, i]
+                + b * patch[low, i]
+                + c * patch[low + 1, i]
+                + d * patch[low + 2, i]
+            )
+        for column in range(begin, end):
+            left = places[column]
+            total = weights[column, 0] * line[left - 1] + weights[column, 1] * line[left]
+            total += weights[column, 2] * line[left + 1] + weights[column, 3] * line[left + 2]
+            out[row, column] += total
+
+
+@compiled
+def _add_patch(out: Floats, patch: Floats, turn: Four, first: Four, ways: Four) -> None:
+    """Add a patch to pixels.
+
+    Parameters
+    ----------
+    out
+        (rows, columns).
+    patch
+        (M, M).
+    turn
+        Cosine and sine of the rectangle's turn; steps of the patch a mm, across and along.
+    first
+        x and y of the first pixel's centre, seen from the spot's middle, mm; how far the patch
+        stands from there, across and along its own ways, mm.
+    ways
+        Signs of its columns and rows; pixel pitch, mm.
+    """
+    c, s, unit_x, unit_y = turn
+    x, y, off_x, off_y = first
+    along_x, along_y, pitch, _ = ways
+    along_x, along_y = along_x * unit_x, along_y * unit_y
+    middle = (patch.shape[0] - 1) / 2.0
+    start_x, start_y = middle - off_x * unit_x, middle - off_y * unit_y
+    if s == 0.0 and c == 1.0:
+        start = start_x + along_x * x, start_y + along_y * y
+        _add_in_rows(out, patch, start, (along_x * pitch, along_y * pitch))
+        return
+    for row in range(out.shape[0]):
+        for column in range(out.shape[1]):
+            dx, dy = x + column * pitch, y + row * pitch
+            w, v = c * dx + s * dy, c * dy - s * dx
+            out[row, column] += _cubic(patch, start_x + along_x * w, start_y + along_y * v)
+
+
+@compiled
+def _some(tables: Floats, places: Complex) -> bool:
+    """Whether any of the tables between which `_corners` interpolates has anything."""
+    first = min(max(int(places[0]), 1), tables.shape[0] - 3)
+    other = min(max(int(places[1]), 1), tables.shape[1] - 3)
+    middle = tables.shape[3] // 2
+    for i in range(4):
+        for j in range(4):
+            line = tables[first - 1 + i, other - 1 + j, 0, middle]
+            for column in range(line.shape[0]):
+                if line[column] != 0.0:
+                    return True
+    return False
 
 
 @compiled
@@ -227,14 +354,13 @@ def add_corners(
     flux: Floats,
     samples: tuple[Floats, Floats, Floats],
     turn: Floats,
-    corners: tuple[Floats, float],
+    corners: tuple[Floats, Floats, Floats, float],
 ) -> None:
     """Add to frames what coupling adds at the four corners of a rectangle.
 
-    Every corner adds its own, wherever the pixel: light is continuous in the Sun. Where two
-    corners lie so near that fringes between them outlast the Sun and the pixel, those are left
-    out: 0.004 of the open light behind a hole of 0.2 mm, 2 mm high, at 55 deg along both sides;
-    behind a slit of 0.1 mm, 1.2 mm high, 0.007 at 45 deg and 0.05 at 60.
+    Every corner adds its own, wherever the pixel, and every end what its two corners lack where
+    they lie so near that fringes between them outlast the Sun and the pixel: light is continuous
+    in the Sun. All four corners share nothing beyond that.
 
     Parameters
     ----------
@@ -243,39 +369,42 @@ def add_corners(
     samples
         (N, 2) middle of the spot seen from the window's first corner, mm; (N, 6) light, half
         sizes, change of the landing point a unit of direction cosine, what couples both, -1 to 1;
-        (N, 2) coordinates among the corners' incidences.
+        (N, 4) coordinates among the corners' and among the ends' incidences.
     turn
         (3,) cosine and sine of the rectangle's turn, pixel pitch in mm.
     corners
-        (T, T, 2, M, M) what corners add, and their steps a root of millimetres.
+        (T, T, 2, M, M) what corners add; (U, U, 1, L, L) what both ends along the rectangle and
+        what both across it add, U = 0 where that is nothing; steps a root of millimetres.
     """
     middles, shapes, places = samples
     c, s, pitch = turn
-    tables, per_root = corners
-    size = tables.shape[3]
-    middle = (size - 1) / 2.0
-    patches = np.empty((2, size, size))
+    tables, along, across, per_root = corners
+    patches, end = np.empty(tables.shape[2:]), np.empty((1, *along.shape[3:]))
+    side = np.empty((1, *across.shape[3:]))
     for n in range(flux.shape[0]):
         light, a, b, spread_x, spread_y, coupling = shapes[n]
         if light == 0.0 or a <= 0.0 or b <= 0.0 or coupling == 0.0:
             continue
         _corners(patches, tables, (places[n, 0], places[n, 1]))
         patches *= light
-        unit_x, unit_y = per_root / math.sqrt(spread_x), per_root / math.sqrt(spread_y)
-        kinds = (0, 1) if coupling > 0.0 else (1, 0)
+        scale = c, s, per_root / math.sqrt(spread_x), per_root / math.sqrt(spread_y)
         x, y = pitch / 2.0 - middles[n, 0], pitch / 2.0 - middles[n, 1]
-        if s == 0.0 and c == 1.0:
-            first = x * unit_x, y * unit_y, a * unit_x, b * unit_y
-            _add_in_rows(flux[n], patches, first, (pitch * unit_x, pitch * unit_y), kinds)
-            continue
-        for row in range(flux.shape[1]):
-            for column in range(flux.shape[2]):
-                dx, dy = x + column * pitch, y + row * pitch
-                w, v = (c * dx + s * dy) * unit_x, (c * dy - s * dx) * unit_y
-                for i in range(4):
-                    across, along = 2.0 * (i // 2) - 1.0, 2.0 * (i % 2) - 1.0
-                    flux[n, row, column] += _cubic(
-                        patches[kinds[0] if across == along else kinds[1]],
-                        across * w - a * unit_x + middle,
-                        along * v - b * unit_y + middle,
-                    )
+        for i in range(4):
+            way_x, way_y = 2.0 * (i // 2) - 1.0, 2.0 * (i % 2) - 1.0
+            kind = 0 if (way_x == way_y) == (coupling > 0.0) else 1
+            _add_patch(flux[n], patches[kind], scale, (x, y, a, b), (way_x, way_y, pitch, 0.0))
+        # an end is the other one turned by half a turn; negative coupling mirrors both
+        mirror = 1.0 if coupling > 0.0 else -1.0
+        place = places[n, 2], places[n, 3]
+        if along.shape[0] > 0 and _some(along, place):
+            _corners(end, along, place)
+            end *= light
+            for way in (-1.0, 1.0):
+                ways = mirror * way, way, pitch, 0.0
+                _add_patch(flux[n], end[0], scale, (x, y, 0.0, b), ways)
+        if across.shape[0] > 0 and _some(across, place):
+            _corners(side, across, place)
+            side *= light
+            for way in (-1.0, 1.0):
+                ways = way, mirror * way, pitch, 0.0
+                _add_patch(flux[n], side[0], scale, (x, y, a, 0.0), ways)

@@ -13,7 +13,7 @@ arguments. What that differs by from the product of slits is tabulated about a c
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -36,8 +36,13 @@ _CORNER_REACH, _CORNER_STEP = 8.0, 0.25
 #: They repeat at so many of twice that reach, and fade out over their last few roots.
 _CORNER_PERIOD, _CORNER_FADE = 1.3, 2.0
 _ROOT = math.sqrt(550e-6)
-#: Incidences that corners are tabulated for, an axis.
+#: Incidences that corners are tabulated for, an axis, at equal steps of the angle.
 _INCIDENCES = 8
+#: What corners close together lack, at equal steps of the tangent: it comes up far off axis, where
+#: fringes change with its square. As far as this from an end, in roots as above.
+_SLOPES, _END_REACH, _END_FADE = 12, 4.0, 1.0
+#: Less than this of the open light, all over a table, is nothing.
+_NOTHING = 1e-3
 #: How finely the Sun's disc is sampled: strips, and points of each.
 _STRIPS, _POINTS = 8, 8
 #: Cycles a radius up to which the disc's transform counts, and steps a cycle.
@@ -179,9 +184,14 @@ class RectanglePattern:
         """Return running integrals of the slits' patterns along both axes."""
         return self._slits(self.half_mm[0]), self._slits(self.half_mm[1])
 
-    def corners(self) -> tuple[Floats, float]:
-        """Return (T, T, 2, M, M) what coupling adds about corners, and steps a root of mm."""
-        return _corners(self)
+    def corners(self) -> tuple[Floats, Floats, Floats, float]:
+        """Return what coupling adds, and steps a root of mm.
+
+        (T, T, 2, M, M) about corners by themselves; (U, U, 1, L, L) about both ends along the
+        rectangle, where corners across from each other are near, and about both across it. U is
+        0 where they are far apart. The incidences are those of `place`.
+        """
+        return _corners(self), _ends(self), _sides(self), _per_root()
 
     @property
     def softness(self) -> float:
@@ -194,14 +204,16 @@ class RectanglePattern:
         return np.column_stack([nm * 1e-6, np.array(self.spectrum.weights)])
 
     def place(self, directions: Floats) -> Floats:
-        """(N, 2) coordinates among the corners' incidences of directions in the own axes."""
-        last = _INCIDENCES - 1
+        """(N, 4) coordinates among the corners' and the ends' incidences, in the own axes."""
+        last, end = _INCIDENCES - 1, _SLOPES - 1
         widest = math.radians(self.widest_deg)
         rows = [
             (math.atan2(abs(x), z) / widest * last, math.atan2(abs(y), z) / widest * last)
             for x, y, z in directions.tolist()
         ]
-        return np.asarray(np.minimum(np.array(rows).reshape(-1, 2), float(last)))
+        slopes = np.abs(directions[:, :2]) / directions[:, 2:] / math.tan(widest) * end
+        places = np.column_stack([np.array(rows).reshape(-1, 2), slopes])
+        return np.asarray(np.minimum(places, [last, last, end, end]))
 
     def _slits(self, half: float) -> Slits:
         limit = math.radians(self.widest_deg)
@@ -224,29 +236,52 @@ class RectanglePattern:
 
         steps = round(_CORNER_REACH / _CORNER_STEP)
         out = np.empty((2, 2 * steps + 1, 2 * steps + 1))
+        design, grid = self._frequencies(directions, _CORNER_REACH)
+        corner_patches(out, design, self.waves(), _transform(self.sun.limb_darkening), grid)
+        return np.asarray(out * _window(steps, _CORNER_FADE))
+
+    def _end(self, directions: Floats) -> Floats:
+        """(1, L, L) about the end for one direction (1, 3) off both own axes."""
+        from benchmark.simulator.kernels.diffraction_corners import (  # noqa: PLC0415 - Numba
+            end_patch,
+        )
+
+        steps = round(_END_REACH / _CORNER_STEP)
+        out = np.zeros((1, 2 * steps + 1, 2 * steps + 1))
+        apart = self.thickness_mm * np.abs(directions[:, :2]) / directions[:, 2:]
+        shade, _ = shaded(directions, apart, self.thickness_mm)
+        half = self.half_mm[0] - float(shade[0, 0])
+        if half > 0.0:
+            design, grid = self._frequencies(directions, _END_REACH)
+            end_patch(
+                out[0],
+                np.append(design, 2.0 * half),
+                self.waves(),
+                _transform(self.sun.limb_darkening),
+                grid,
+            )
+        return np.asarray(out * _window(steps, _END_FADE))
+
+    def _frequencies(self, directions: Floats, reach: float) -> tuple[Floats, Floats]:
+        """Return `design` and `grid` of `corner_patches`."""
         spread = matrix(directions, np.array([self.height_mm]), self.glass)
         across, along, both = (float(j[0]) for j in spread)
         radius = math.sin(math.radians(self.sun.diameter_deg / 2.0))
         image = disc_image(directions, spread, radius)[0]
-        periods = [
-            2.0 * _CORNER_PERIOD * _CORNER_REACH * _ROOT * math.sqrt(j) for j in (across, along)
-        ]
+        periods = [2.0 * _CORNER_PERIOD * reach * _ROOT * math.sqrt(j) for j in (across, along)]
         # the Sun's image and the pixel let nothing finer through
         most = min(2.0 / self.pitch_mm, _CYCLES / max(float(image.max()), 1e-9))
-        corner_patches(
-            out,
-            np.array([across, along, both, *image, self.pitch_mm, _per_root()]),
-            self.waves(),
-            _transform(self.sun.limb_darkening),
-            np.array([1.0 / periods[0], 1.0 / periods[1], most]),
-        )
-        # tables end without a step
-        fade = [
-            min(1.0, (steps - abs(i)) * _CORNER_STEP / _CORNER_FADE)
-            for i in range(-steps, steps + 1)
-        ]
-        ends = np.array([t * t * (3.0 - 2.0 * t) for t in fade])
-        return np.asarray(out * ends[:, None] * ends)
+        design = np.array([across, along, both, *image, self.pitch_mm, _per_root()])
+        return design, np.array([1.0 / periods[0], 1.0 / periods[1], most])
+
+
+def _window(steps: int, fade: float) -> Floats:
+    """(M, M) by which tables end without a step, over so many of their last roots."""
+    shares = [
+        min(1.0, (steps - abs(i)) * _CORNER_STEP / fade) for i in range(-steps, steps + 1)
+    ]
+    ends = np.array([t * t * (3.0 - 2.0 * t) for t in shares])
+    return np.asarray(ends[:, None] * ends)
 
 
 def _per_root() -> float:
@@ -272,13 +307,39 @@ def _running(lowest: float, highest: float, far: float, softness: float) -> Slit
 
 
 @lru_cache(maxsize=8)
-def _corners(pattern: RectanglePattern) -> tuple[Floats, float]:
+def _corners(pattern: RectanglePattern) -> Floats:
     angles = [math.radians(pattern.widest_deg) * n / (_INCIDENCES - 1) for n in range(_INCIDENCES)]
     slopes = [math.tan(angle) for angle in angles]
     found = [[pattern._patches(_towards(x, y)) for y in slopes] for x in slopes]  # noqa: SLF001 - cached here: a dataclass method cannot be
     tables = np.array(found)
     tables.flags.writeable = False
-    return tables, _per_root()
+    return tables
+
+
+@lru_cache(maxsize=8)
+def _ends(pattern: RectanglePattern) -> Floats:
+    slopes = [math.tan(math.radians(pattern.widest_deg)) * n / (_SLOPES - 1) for n in range(_SLOPES)]
+    size = 2 * round(_END_REACH / _CORNER_STEP) + 1
+    tables = np.zeros((_SLOPES, _SLOPES, 1, size, size))
+    # where the Sun stands over an axis nothing is coupled
+    for i in range(1, _SLOPES):
+        for j in range(1, _SLOPES):
+            table = pattern._end(_towards(slopes[i], slopes[j]))  # noqa: SLF001 - as in `_corners`
+            if float(np.abs(table).max()) > _NOTHING:
+                tables[i, j] = table
+    if not tables.any():
+        tables = np.zeros((0, 0, 1, size, size))
+    tables.flags.writeable = False
+    return tables
+
+
+@lru_cache(maxsize=8)
+def _sides(pattern: RectanglePattern) -> Floats:
+    """As `_ends`, of the rectangle on its side."""
+    half = pattern.half_mm[1], pattern.half_mm[0]
+    tables = np.ascontiguousarray(_ends(replace(pattern, half_mm=half)).transpose(1, 0, 2, 4, 3))
+    tables.flags.writeable = False
+    return tables
 
 
 def _towards(x: float, y: float) -> Floats:
