@@ -32,7 +32,7 @@ _ROWS, _FRINGE = 20.0, 16.0
 #: A slit's table ends so many half widths from its middle at the latest.
 _FAR = 40.0
 #: Corners are tabulated as far as this, and in such steps, in roots of 550 nm times J.
-_CORNER_REACH, _CORNER_STEP = 8.0, 0.25
+_CORNER_REACH, _CORNER_STEP = 6.4, 0.2
 #: They repeat at so many of twice that reach, and fade out over their last few roots.
 _CORNER_PERIOD, _CORNER_FADE = 1.3, 2.0
 _ROOT = math.sqrt(550e-6)
@@ -40,7 +40,7 @@ _ROOT = math.sqrt(550e-6)
 _INCIDENCES = 8
 #: What corners close together lack, at equal steps of the tangent: it comes up far off axis, where
 #: fringes change with its square. As far as this from an end, in roots as above.
-_SLOPES, _END_REACH, _END_FADE = 12, 4.0, 1.0
+_SLOPES, _END_REACH, _END_FADE = 12, 3.2, 1.0
 #: Less than this of the open light, all over a table, is nothing.
 _NOTHING = 1e-3
 #: How finely the Sun's disc is sampled: strips, and points of each.
