@@ -48,8 +48,8 @@ _STRIPS, _POINTS = 8, 8
 #: Cycles a radius up to which the disc's transform counts, and steps a cycle.
 _CYCLES, _STEPS = 6, 16
 
-#: (2, R, M) running integrals, of a thin foil and what a thick one adds; the first row's Fresnel
-#: number, rows a unit of it, steps a half width.
+#: (4, R, M) running integrals, of a thin foil and what a thick one, a bend and edges at two depths
+#: add; the first row's Fresnel number, rows a unit of it, steps a half width.
 Slits = tuple[Floats, float, float, float]
 
 
@@ -112,6 +112,20 @@ def shaded(directions: Floats, apart_mm: Floats, thickness_mm: float) -> tuple[F
     fringe = _ROOT * np.sqrt(np.stack(spread[:2], axis=1) / 2.0)
     share = 1.0 / (1.0 + math.pi * apart_mm / fringe)
     return apart_mm / 2.0 + fringe / (2.0 * math.pi) * share, share
+
+
+def apart(
+    directions: Floats, soft: Floats, thickness_mm: float, spread: tuple[Floats, ...]
+) -> Floats:
+    """(N, 2) by which share J is larger at a rectangle's edges of positive x and y.
+
+    And smaller at the other ones: oblique light is cut by the lower rim where it goes to and by
+    the upper one where it comes from. `soft` (N, 2) are the shares of `shaded`, by which both rims
+    cut alike.
+    """
+    foil = matrix(directions, np.full(len(directions), thickness_mm), CoverGlass())
+    share = np.stack(foil[:2], axis=1) / np.stack(spread[:2], axis=1) / 2.0
+    return np.asarray(-np.sign(directions[:, :2]) * share * (1.0 - soft))
 
 
 def disc_image(directions: Floats, spread: tuple[Floats, ...], radius: float) -> Floats:
@@ -290,18 +304,20 @@ def _per_root() -> float:
 
 @lru_cache(maxsize=16)
 def _running(lowest: float, highest: float, far: float, softness: float) -> Slits:
-    from benchmark.simulator.kernels.diffraction_slits import (  # noqa: PLC0415 - Numba on demand
+    from benchmark.simulator.kernels.slit_integrals import (  # noqa: PLC0415 - Numba on demand
         running_integrals,
+        skew_integrals,
     )
 
     rows = max(math.ceil((highest - lowest) * _ROWS) + 1, 4)
     numbers = lowest + np.arange(rows) / _ROWS
     per_half = max(_FRINGE * highest, 32.0)
-    sums = np.zeros((2, rows, math.ceil(far * per_half) + 2))
+    sums = np.zeros((4, rows, math.ceil(far * per_half) + 2))
     running_integrals(sums[0], numbers, 1.0 / per_half, 0.0, fresnel_table())
     if softness > 0:
         running_integrals(sums[1], numbers, 1.0 / per_half, softness, fresnel_table())
         sums[1] -= sums[0]
+    skew_integrals(sums[2:], numbers, 1.0 / per_half, fresnel_table())
     sums.flags.writeable = False
     return sums, lowest, _ROWS, per_half
 

@@ -10,7 +10,7 @@ from closed_forms import slit_intensity
 from scipy import integrate
 from scipy.special import j1
 
-from benchmark.simulator.kernels import diffraction_slits
+from benchmark.simulator.kernels import slit_integrals
 from benchmark.simulator.masks.apertures import Aperture, Mask
 from benchmark.simulator.optics.diffraction import (
     SUNLIT_SILICON,
@@ -37,7 +37,7 @@ def test_slit_is_the_integral_of_the_fresnel_phase(number: float, position: floa
 def test_slit_of_the_frames_is_the_closed_form() -> None:
     position = np.linspace(-8.0, 8.0, 4001)
     for number in (0.003, 0.5, 9.0, 80.0):
-        out = [diffraction_slits._slit(x, number, 0.0, fresnel_table()) for x in position]
+        out = [slit_integrals._slit(x, number, 0.0, fresnel_table()) for x in position]
         assert out == pytest.approx(slit_intensity(position, number), abs=2e-8), number
 
 
