@@ -38,9 +38,9 @@ def _shares(fraction: float) -> Four:
 
 @compiled
 def _blended_row(out: Floats, slits: Slits, number: float, shares: Three) -> None:
-    """Interpolate running integrals (2 M - 1,) for this Fresnel number, within the table's.
+    """Interpolate running integrals for this Fresnel number, within the table's.
 
-    From the far side over the slit's middle, where they are 0. `shares` are those of a thick
+    As far to either side of the slit's middle, where they are 0, as `out` (odd) is long. `shares` are those of a thick
     foil's softness, of the bend a half width, and of how much J differs at the edges.
     """
     both, first_number, per_row, _ = slits
@@ -48,22 +48,25 @@ def _blended_row(out: Floats, slits: Slits, number: float, shares: Three) -> Non
     place = min(max((number - first_number) * per_row, 0.0), sums.shape[0] - 1.0)
     first = min(max(int(place), 1), sums.shape[0] - 3)
     a, b, c, d = _shares(place - first)
-    rows = first - 1, first, first + 1, first + 2
-    weights = a, b, c, d
-    size = sums.shape[1]
-    middle = size - 1
-    out[:] = 0.0
-    for k in range(4):
-        row, weight = rows[k], weights[k]
-        first_share, second_share = weight * shares[1], weight * shares[2]
-        third_share = weight * shares[0]
-        for i in range(size):
-            even = first_share * bent[row, i] + second_share * apart[row, i]
-            odd = weight * sums[row, i] + third_share * soft[row, i]
-            out[middle + i] += odd + even
-            out[middle - i] += even - odd
-    # the middle was written twice
-    out[middle] = 0.0
+    middle = out.shape[0] // 2
+    one, two, three, four = sums[first - 1], sums[first], sums[first + 1], sums[first + 2]
+    for i in range(middle + 1):
+        odd = a * one[i] + b * two[i] + c * three[i] + d * four[i]
+        out[middle - i], out[middle + i] = -odd, odd
+    if shares[0] != 0.0:
+        one, two, three, four = soft[first - 1], soft[first], soft[first + 1], soft[first + 2]
+        for i in range(middle + 1):
+            odd = shares[0] * (a * one[i] + b * two[i] + c * three[i] + d * four[i])
+            out[middle - i] -= odd
+            out[middle + i] += odd
+    for table, share in ((bent, shares[1]), (apart, shares[2])):
+        if share == 0.0:
+            continue
+        one, two, three, four = table[first - 1], table[first], table[first + 1], table[first + 2]
+        for i in range(1, middle + 1):
+            even = share * (a * one[i] + b * two[i] + c * three[i] + d * four[i])
+            out[middle - i] += even
+            out[middle + i] += even
 
 
 @compiled
@@ -115,6 +118,12 @@ def _turning(number: float) -> float:
 
 
 @compiled
+def _used(far: float, slits: Slits) -> int:
+    """How many of a row's values are read as far as this from the middle, in half widths."""
+    return 2 * min(int(far * slits[3]) + 3, slits[0].shape[2]) - 1
+
+
+@compiled
 def _products(
     out: Floats, sample: Floats, spectrum: Floats, disc: Floats, widths: tuple[Slits, Slits]
 ) -> None:
@@ -142,8 +151,12 @@ def _products(
     soft_x, soft_y, apart_x, apart_y, cell = sample[12:17]
     count = spectrum.shape[0] * strips
     across, along = np.zeros((count, columns)), np.zeros((count, rows))
-    row_x = np.empty(2 * widths[0][0].shape[2] - 1)
-    row_y = np.empty(2 * widths[1][0].shape[2] - 1)
+    all_x = np.empty(2 * widths[0][0].shape[2] - 1)
+    all_y = np.empty(2 * widths[1][0].shape[2] - 1)
+    far_x = max(abs(x0), abs(columns * cell - x0)) + wide + abs(shear)
+    far_y = max(abs(y0), abs(rows * cell - y0)) + high
+    far_x += abs(bend_x) * far_x * far_x
+    far_y += abs(bend_y) * far_y * far_y
     most_x = widths[0][1] + (widths[0][0].shape[1] - 1) / widths[0][2]
     most_y = widths[1][1] + (widths[1][0].shape[1] - 1) / widths[1][2]
     for m in range(spectrum.shape[0]):
@@ -152,6 +165,10 @@ def _products(
         # a wide slit is two edges of a narrower one, further apart
         half_x = a * math.sqrt(min(1.0, most_x / number_x))
         half_y = b * math.sqrt(min(1.0, most_y / number_y))
+        # as far as they are read
+        used_x = _used((far_x - a + half_x) / half_x, widths[0])
+        used_y = _used((far_y - b + half_y) / half_y, widths[1])
+        row_x, row_y = all_x[:used_x], all_y[:used_y]
         _blended_row(row_x, widths[0], number_x, (soft_x, bend_x * half_x, apart_x))
         _blended_row(row_y, widths[1], number_y, (soft_y, bend_y * half_y, apart_y))
         scale_x = half_x, a - half_x, widths[0][3], bend_x * _turning(number_x)
