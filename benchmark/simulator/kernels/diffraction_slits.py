@@ -120,7 +120,7 @@ def _turning(number: float) -> float:
 @compiled
 def _used(far: float, slits: Slits) -> int:
     """How many of a row's values are read as far as this from the middle, in half widths."""
-    return 2 * min(int(far * slits[3]) + 3, slits[0].shape[2]) - 1
+    return 2 * min(max(int(far * slits[3]), 1) + 3, slits[0].shape[2]) - 1
 
 
 @compiled

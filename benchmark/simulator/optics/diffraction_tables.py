@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -10,7 +11,13 @@ import numpy as np
 
 from algorithms.contract import Floats
 from benchmark.simulator.light.sun_disc import SolarDisc
-from benchmark.simulator.optics.diffraction import Spectrum, fresnel, round_intensity
+from benchmark.simulator.optics.diffraction import (
+    _SKEWED,
+    Spectrum,
+    fresnel,
+    round_intensity,
+    round_skew,
+)
 from benchmark.simulator.optics.plates import CoverGlass
 
 #: Steps of a table in ``k a`` times the direction cosine, at the shortest wavelength: of the far
@@ -22,6 +29,8 @@ _OUTSIDE = 60.0
 #: Where the shadow outgrows the far pattern: first zero of J1.
 _AIRY = 3.8317
 _FRESNEL_STEPS, _FRESNEL_REACH = 64, 10
+#: Light at places, for Fresnel numbers, a wavelength, and rims so far apart and blurred.
+Pattern = Callable[[tuple[Floats, Floats], tuple[float, float], float, tuple[float, float]], Floats]
 
 
 @dataclass(frozen=True)
@@ -202,6 +211,54 @@ class RoundPattern:
         return _tables(self)
 
     def _table(self, sine: float, reach: int) -> Floats:
+        def light(
+            places: tuple[Floats, Floats],
+            numbers: tuple[float, float],
+            wave: float,  # noqa: ARG001 - as `_skew`'s
+            rims: tuple[float, float],
+        ) -> Floats:
+            return round_intensity(*places, numbers, apart=rims[0], blur=rims[1])
+
+        return self._averaged(sine, reach, light, 1.0)
+
+    def _skew(self, sine: float, reach: int) -> Floats:
+        """As `_table`: what the cubic phase and the rims' own depths change to first order."""
+        changes = self._changes(sine)
+
+        def light(
+            places: tuple[Floats, Floats],
+            numbers: tuple[float, float],
+            wave: float,
+            rims: tuple[float, float],
+        ) -> Floats:
+            grown = 1.0 + self.growth
+            third, beside, more, other = changes
+            if self.thickness_mm > 0.0:
+                # rims that lie upon each other cut alike
+                part = 1.0 - 1.0 / (1.0 + math.pi * rims[0] / max(rims[1], 1e-12))
+                more, other = part * more, part * other
+            all_of = third * grown, beside * grown, more, other
+            return round_skew(*places, numbers, all_of, apart=rims[0], blur=rims[1])
+
+        return self._averaged(sine, reach, light, -1.0)
+
+    def _changes(self, sine: float) -> tuple[float, float, float, float]:
+        """A and B of `seen` times the radius, and by how much J differs at the lens' arcs."""
+        small = 1e-4
+        angle = np.array([max(sine, small)])
+        stack = self.layers()
+        _, along, across = landing(angle, stack)[0]
+        slope = (landing(angle + small, stack) - landing(angle - small, stack))[0, 1] / (2 * small)
+        foil = landing(angle, np.array([[self.thickness_mm, 1.0]]))[0] / 2.0
+        share = self.radius_mm * sine / float(angle[0])
+        return (
+            share * slope / (3.0 * along**2),
+            share * (along - across) / (along * across * float(angle[0])),
+            -foil[1] / along,
+            -foil[2] / across,
+        )
+
+    def _averaged(self, sine: float, reach: int, light: Pattern, sign: float) -> Floats:
         from benchmark.simulator.kernels.diffraction_patterns import (  # noqa: PLC0415 - Numba
             spread_over_sun,
         )
@@ -221,15 +278,39 @@ class RoundPattern:
             wave = wavelength * 1e-6
             along, across = self.numbers(np.array([sine]), wave)[0] * (1.0 + self.growth) ** 2
             turn = radius / wave
-            quadrant += weight * round_intensity(
-                grid[0] * turn / along,
-                grid[1] * turn / across,
-                (along, across),
-                apart=apart,
-                blur=math.sqrt(wave * through / 2.0) / radius,
-            )
+            places = grid[0] * turn / along, grid[1] * turn / across
+            blur = math.sqrt(wave * through / 2.0) / radius
+            quadrant += weight * light(places, (along, across), wave, (apart, blur))
         out = np.empty((2 * reach + 1, reach + 1))
-        spread_over_sun(out, quadrant / unit[0], np.ascontiguousarray(shifts), weights, margin)
+        spread_over_sun(
+            out, quadrant / unit[0], np.ascontiguousarray(shifts), weights, (margin, sign)
+        )
+        return out
+
+    def rest(self, tables: Floats) -> Floats:
+        """(T, 2 n + 1, n + 1) what `seen` leaves of the cubic phase, and the rims' own depths.
+
+        To first order: the whole of it less what taking points to other places of the tables, and
+        to neighbouring incidences, does.
+        """
+        last, reach = len(tables) - 1, tables.shape[2] - 1
+        out = np.zeros(tables.shape)
+        nodes = np.gradient(tables, axis=0)
+        for node in range(1, last + 1):
+            sine = math.sin(math.radians(self.widest_deg) * node / last)
+            steps, _ = self.scales(np.array([sine]))
+            _, along, across = landing(np.array([sine]), self.layers())[0]
+            c = self.seen(np.array([sine]))[0]
+            x = np.arange(-reach, reach + 1)[:, None] * (steps[0, 0] * along)
+            y = np.arange(reach + 1)[None, :] * (steps[0, 1] * across)
+            table = tables[node]
+            down = np.gradient(table, axis=0) / (steps[0, 0] * along)
+            right = np.gradient(table, axis=1) / (steps[0, 1] * across)
+            done = down * (c[0] + c[1] * x * x + c[2] * y * y) + right * c[3] * x * y
+            done += c[4] * x * table + c[5] * x * nodes[node]
+            waves = self.numbers(np.array([sine]), self._middle_mm)[0, 0]
+            waves = waves * (x / self.radius_mm) ** 2 / _SKEWED
+            out[node] = self._skew(sine, reach) - np.exp(-waves * waves) * done
         return out
 
     def _spread(self, sine: float, steps: Floats) -> tuple[Floats, Floats]:
@@ -265,6 +346,7 @@ def _tables(pattern: RoundPattern) -> Floats:
         for node in range(pattern.nodes)
     ]
     tables = np.array(found)
+    tables += pattern.rest(tables)
     tables.flags.writeable = False
     return tables
 
