@@ -141,38 +141,34 @@ def _stencil(shifts: Floats, weights: Floats, margin: int) -> Floats:
 
 @compiled
 def spread_over_sun(
-    out: Floats, quadrant: Floats, shifts: Floats, weights: Floats, parity: tuple[int, float]
+    out: Floats, light: Floats, shifts: Floats, weights: Floats, margin: int
 ) -> None:
-    """Fill ``sum_k w_k G(v - v_k)`` on half the plane from one quadrant of a symmetric G.
+    """Fill ``sum_k w_k G(v - v_k)`` on half the plane, G even across.
 
     Parameters
     ----------
     out
         (2 n + 1, n + 1): along from -n to n, across from 0 to n.
-    quadrant
-        (n + margin + 1, n + margin + 1).
+    light
+        (2 (n + margin) + 1, n + margin + 1) values of G as `out`.
     shifts
-        (K, 2) in steps of the grid, less than the margin - 2.
-    parity
-        The margin, and the sign of G on the other side along.
+        (K, 2) in steps of the grid, less than `margin` - 2.
     """
-    margin, sign = parity
     stencil = _stencil(shifts, weights, margin)
     size = stencil.shape[0]
     reach = out.shape[1] - 1
     # with its mirror image to the left, so that the innermost loop runs straight on
-    side = np.empty((quadrant.shape[0], quadrant.shape[1] + margin))
-    for row in range(quadrant.shape[0]):
-        for column in range(quadrant.shape[1] + margin):
-            side[row, column] = quadrant[row, abs(column - margin)]
+    side = np.empty((light.shape[0], light.shape[1] + margin))
+    for row in range(light.shape[0]):
+        for column in range(light.shape[1] + margin):
+            side[row, column] = light[row, abs(column - margin)]
     out[:] = 0.0
     for row in range(out.shape[0]):
         to = out[row]
         for i in range(size):
-            line = side[abs(row - reach + i - margin)]
-            way = sign if row - reach + i - margin < 0 else 1.0
+            line = side[row + i]
             for j in range(size):
-                weight = way * stencil[i, j]
+                weight = stencil[i, j]
                 if weight != 0.0:
                     part = line[j : j + reach + 1]
                     for column in range(reach + 1):

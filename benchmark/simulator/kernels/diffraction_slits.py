@@ -40,8 +40,8 @@ def _shares(fraction: float) -> Four:
 def _blended_row(out: Floats, slits: Slits, number: float, shares: Three) -> None:
     """Interpolate running integrals for this Fresnel number, within the table's.
 
-    As far to either side of the slit's middle, where they are 0, as `out` (odd) is long. `shares` are those of a thick
-    foil's softness, of the bend a half width, and of how much J differs at the edges.
+    As far to either side of the slit's middle, where they are 0, as `out` (odd) is long. `shares`
+    are a thick foil's softness, the bend a half width, and by how much J differs at the edges.
     """
     both, first_number, per_row, _ = slits
     sums, soft, bent, apart = both[0], both[1], both[2], both[3]
@@ -120,7 +120,8 @@ def _turning(number: float) -> float:
 @compiled
 def _used(far: float, slits: Slits) -> int:
     """How many of a row's values are read as far as this from the middle, in half widths."""
-    return 2 * min(max(int(far * slits[3]), 1) + 3, slits[0].shape[2]) - 1
+    used: int = min(max(int(far * slits[3]), 1) + 3, slits[0].shape[2])
+    return 2 * used - 1
 
 
 @compiled

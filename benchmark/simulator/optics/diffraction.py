@@ -11,7 +11,8 @@ elliptical far away and leaves it round close by.
 The next term of the phase, cubic, ``-(pi / lambda) (J_r' rho_r^3 / (3 J_r^3) + (J_r - J_t) rho_r
 rho_t^2 / (s J_r J_t^2))`` for ``rho = delta - q`` and the prime a derivative by the sine s, moves
 spots outwards. It counts to first order, ``pi N (a / h) sin(theta)`` against one (`RoundPattern`,
-`rectangle_patterns`). How light leaves the opening is Kirchhoff's, whose flux does not lean
+`rectangle_patterns`), as does that the rims of a foil that bound either side of an opening lie at
+depths of their own. How light leaves the opening is Kirchhoff's, whose flux does not lean
 towards the horizon or from it to that order: the mean of what either polarisation does.
 
 Left out: vector effects, and interference of different points of the Sun, which is incoherent.
@@ -50,8 +51,8 @@ class Spectrum:
             raise ValueError(f"weights must add up to 1; got {math.fsum(self.weights)}")
 
 
-#: Half waves from a point of the opening at which its terms of first order fade out: fringes further
-#: out have turned by more than they describe, and neither Sun nor colours leave any.
+#: Half waves from a point of the opening at which its terms of first order fade out: fringes
+#: further out have turned by more than they describe, and neither Sun nor colours leave any.
 _SKEWED = 8.0
 
 #: Sunlight on silicon: photons of a black body of 5772 K times the quantum efficiencies 0.50,
@@ -183,7 +184,7 @@ def round_skew(
         out,
         np.ascontiguousarray(radial),
         np.stack([places, np.sign(places)]),
-        np.array([along, across, *changes, _SKEWED]),
+        np.array([along, across, *changes, fading(along)]),
         np.stack([whole.real, whole.imag, square.real, square.imag]),
     )
     return out
@@ -214,6 +215,14 @@ def _strips(
         lost = blur * root * lost_at_rims(apart * sines / blur) * shares * math.sqrt(along / 2.0)
         field -= lost[:, None] * (_turned(below) + _turned(above))
     return along_it, heights, weights, field
+
+
+def fading(number: float) -> float:
+    """Half waves from a point of the opening at which `round_skew` fades out there.
+
+    Of far patterns, which have few, much later.
+    """
+    return _SKEWED * max(1.0, 1.0 / number) ** 2
 
 
 def lost_at_rims(displaced: Floats) -> NDArray[np.complex128]:

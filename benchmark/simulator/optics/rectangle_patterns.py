@@ -7,7 +7,10 @@ slits' patterns, exactly so where the Sun stands over one of the axes. Off both 
 ``q_w q_v`` couples the sides near the corners. Its part is known in closed form as a Fourier
 transform: the field of a rectangle and the same, moved by ``lambda J f``, have a rectangle in
 common, so that the intensity's transform at the frequency f is a product of two sines over their
-arguments. What that differs by from the product of slits is tabulated about a corner.
+arguments. What that differs by from the product of slits is tabulated about a corner. Where two
+corners are so near that ``lambda J f`` takes a rectangle past itself, the product of sines is 0,
+which corners by themselves do not know: what they lack is tabulated about the end of a slit. Of the
+cubic phase and the depths of a foil's two rims a slit's pattern has what is of first order.
 """
 
 from __future__ import annotations
@@ -244,7 +247,7 @@ class RectanglePattern:
 
     def _patches(self, directions: Floats) -> Floats:
         """(2, M, M) about a corner for one direction (1, 3) in the own axes."""
-        from benchmark.simulator.kernels.diffraction_corners import (  # noqa: PLC0415 - Numba
+        from benchmark.simulator.kernels.corner_patches import (  # noqa: PLC0415 - Numba
             corner_patches,
         )
 
@@ -256,14 +259,14 @@ class RectanglePattern:
 
     def _end(self, directions: Floats) -> Floats:
         """(1, L, L) about the end for one direction (1, 3) off both own axes."""
-        from benchmark.simulator.kernels.diffraction_corners import (  # noqa: PLC0415 - Numba
+        from benchmark.simulator.kernels.corner_patches import (  # noqa: PLC0415 - Numba
             end_patch,
         )
 
         steps = round(_END_REACH / _CORNER_STEP)
         out = np.zeros((1, 2 * steps + 1, 2 * steps + 1))
-        apart = self.thickness_mm * np.abs(directions[:, :2]) / directions[:, 2:]
-        shade, _ = shaded(directions, apart, self.thickness_mm)
+        parted = self.thickness_mm * np.abs(directions[:, :2]) / directions[:, 2:]
+        shade, _ = shaded(directions, parted, self.thickness_mm)
         half = self.half_mm[0] - float(shade[0, 0])
         if half > 0.0:
             design, grid = self._frequencies(directions, _END_REACH)
@@ -291,9 +294,7 @@ class RectanglePattern:
 
 def _window(steps: int, fade: float) -> Floats:
     """(M, M) by which tables end without a step, over so many of their last roots."""
-    shares = [
-        min(1.0, (steps - abs(i)) * _CORNER_STEP / fade) for i in range(-steps, steps + 1)
-    ]
+    shares = [min(1.0, (steps - abs(i)) * _CORNER_STEP / fade) for i in range(-steps, steps + 1)]
     ends = np.array([t * t * (3.0 - 2.0 * t) for t in shares])
     return np.asarray(ends[:, None] * ends)
 
@@ -334,7 +335,9 @@ def _corners(pattern: RectanglePattern) -> Floats:
 
 @lru_cache(maxsize=8)
 def _ends(pattern: RectanglePattern) -> Floats:
-    slopes = [math.tan(math.radians(pattern.widest_deg)) * n / (_SLOPES - 1) for n in range(_SLOPES)]
+    slopes = [
+        math.tan(math.radians(pattern.widest_deg)) * n / (_SLOPES - 1) for n in range(_SLOPES)
+    ]
     size = 2 * round(_END_REACH / _CORNER_STEP) + 1
     tables = np.zeros((_SLOPES, _SLOPES, 1, size, size))
     # where the Sun stands over an axis nothing is coupled
