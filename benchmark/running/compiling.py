@@ -23,7 +23,7 @@ from benchmark.running.threads import one_thread
 #: Samples of a split that are generated.
 _SAMPLES = 2
 #: Conditions that call kernels of their own, where a data set has them.
-_OWN_KERNELS = ("albedo", "ghosts", "spinning", "stray-gradient")
+_OWN_KERNELS = ("albedo", "ghosts")
 
 
 @dataclass(frozen=True)
@@ -109,13 +109,12 @@ def _call(work: _Data | _Reading) -> str:
 
 
 def _readers(known: Parts) -> Iterator[_Reading]:
-    """Give each extractor with the first data set of every kind of sensor that it reads."""
+    """Give each extractor with the first data set of every kind of observation that it reads."""
     read = {(cell.extractor, cell.dataset) for cell in cells(parts=known)}
     for name, extractor in known.extractors.items():
-        kinds: dict[tuple[str, str], Preset] = {}
+        kinds: dict[Observation, Preset] = {}
         for dataset, preset in known.presets.items():
             if (name, dataset) in read:
-                sensor = preset.condition(preset.conditions[0]).sensor
-                kinds.setdefault((preset.observation, type(sensor).__name__), preset)
+                kinds.setdefault(preset.observation, preset)
         if kinds:
             yield _Reading(extractor, tuple(kinds.values()))
