@@ -101,6 +101,7 @@ def test_an_unknown_name_is_answered_with_the_nearest(atlas, path):
     assert document["errors"][0]["nearest"] == NAME
 
 
+@pytest.mark.slow
 def test_the_picture_is_drawn_once_and_revalidated(atlas, client_of, monkeypatch):
     drawn = []
     draw = dataset_preview.preview_png

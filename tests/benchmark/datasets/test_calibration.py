@@ -135,6 +135,7 @@ def test_sizes_are_finite_and_not_negative(wrong: float) -> None:
         Bench(mounting_deg=wrong)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", ["cmos-single-aperture", "qpd-single-aperture", "pd-maskless-cube"]
 )

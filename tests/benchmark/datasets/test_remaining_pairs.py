@@ -197,6 +197,7 @@ def test_generation_depends_on_neither_batch_nor_order(
     assert np.array_equal(part.observations, first.observations[:2])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_bounds_are_finite_everywhere_and_order_with_the_noise(name: str) -> None:
     data = few(name, steps=2)  # the field's corners

@@ -104,6 +104,7 @@ def test_pixels_that_ask_at_once_go_by_their_address() -> None:
     assert np.array_equal(address, np.tile(np.arange(address.shape[1]), (2, 1)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_the_standard_bus_serves_bursts_late_and_loses_none(name: str) -> None:
     preset = datasets.get(name)

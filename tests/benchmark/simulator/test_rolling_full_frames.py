@@ -85,6 +85,7 @@ def test_rows_are_those_of_a_loop_over_times(unit, row_s: float) -> None:
     assert np.abs(found - at_rest).max() > 5 * NEAR * found.max()
 
 
+@pytest.mark.slow
 def test_more_moments_change_less_than_a_thousandth_of_the_peak(unit) -> None:
     for angles in ((0.0, 0.0), (-35.0, 20.0), (10.0, 48.0)):
         few, many = (rolling(more_nodes=more).lit(scene_of(*angles), unit) for more in (0, 6))
