@@ -295,8 +295,8 @@ def test_bounds_order_with_the_noise(name: str, monkeypatch: pytest.MonkeyPatch)
     # whole frames take up to a second each
     count = 5 if isinstance(preset, FullFramePreset) or preset.mask == "Lens" else 25
 
-    def some(self, condition, split):
-        scene = whole(self, condition, split)
+    def some(self, condition, split, n=None):
+        scene = whole(self, condition, split, n)
         rows = np.linspace(0, len(scene) - 1, count).round().astype(int)
         columns = {f.name: getattr(scene, f.name) for f in dataclasses.fields(scene)}
         return dataclasses.replace(
