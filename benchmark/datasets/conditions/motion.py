@@ -10,11 +10,7 @@ from benchmark.datasets.preset import Condition
 from benchmark.simulator.flight.spin import Spin
 from benchmark.simulator.light.environment import Irradiance
 from benchmark.simulator.sensors.diffractive_frames import DiffractiveFrameSensor
-from benchmark.simulator.sensors.multi_spot_frames import MultiSpotSensor
-from benchmark.simulator.sensors.rolling_frames import (
-    RollingDiffractiveSensor,
-    RollingMultiSpotSensor,
-)
+from benchmark.simulator.sensors.rolling_frames import RollingDiffractiveSensor
 
 #: What student CubeSats must be able to end after their release, about any axis (requirements of
 #: Stanford's AA236B); the CubeSat Design Specification wants deployers to leave less than 3.
@@ -25,7 +21,7 @@ PIXEL_S: Final = 80e-9
 
 
 def spinning(
-    sensor: DiffractiveFrameSensor | MultiSpotSensor,
+    sensor: DiffractiveFrameSensor,
     *,
     rolls: bool,
     irradiance: Irradiance = LIGHT,
@@ -35,7 +31,7 @@ def spinning(
     Parameters
     ----------
     sensor
-        Under its nominal condition; of windows or of full frames.
+        Under its nominal condition.
     rolls
         Rows are exposed one after another, as by an electronic rolling shutter that reads whole
         rows of the detector; else all together, as in a CCD of frame transfer.
@@ -44,16 +40,13 @@ def spinning(
     """
     row_s = round(PIXEL_S * sensor.detector.columns, 9) if rolls else 0.0
     parts = {field.name: getattr(sensor, field.name) for field in fields(sensor)}
-    whole = isinstance(sensor, MultiSpotSensor)
-    turning = RollingMultiSpotSensor if whole else RollingDiffractiveSensor
-    spot = "the spot under the mask's middle" if whole else "its spot"
     order = f"row by row, {1e6 * row_s:.0f} us apart" if rolls else "all pixels together"
     return Condition(
         f"The nominal sensor on a satellite that tumbles at {TUMBLING.rate_deg_s:g} deg/s, about "
         "another axis in every sample of the test split; calibrated at rest. Exposed for "
         f"{1e3 * sensor.detector.exposure_s:g} ms, {order}; the Sun is that of the moment when "
-        f"the row through {spot} is half exposed.",
-        turning(**parts, row_time_s=row_s),
+        "the row through its spot is half exposed.",
+        RollingDiffractiveSensor(**parts, row_time_s=row_s),
         irradiance,
         spin=TUMBLING,
     )

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -81,38 +80,6 @@ class Ghost:
             return ProjectedLight(np.stack([far, far]), light)
         rims = np.stack([np.concatenate([far, thin], axis=1), np.concatenate([far, far], axis=1)])
         return ProjectedLight(rims, np.concatenate([light, -light], axis=1))
-
-
-def let_out(camera: Camera, sun: Floats, holes_mm: Floats) -> Floats:
-    """Return the share (A,) of each round hole's light that openings let out as it comes up.
-
-    Mean over the Sun's disc of what circles two heights apart share; each pair as if both had the
-    mean of their radii.
-
-    Parameters
-    ----------
-    camera
-        Of the sensor, without glass.
-    sun
-        (1, 3) direction.
-    holes_mm
-        (A, 3) built x, y and radius.
-    """
-    coarse = replace(camera, sun=replace(camera.sun, rings=(8,), spiral=0))
-    points = coarse.sun.directions(camera.assembly.to_head(sun))[0]
-    _, shares = coarse.sun.quadrature()
-    out = np.zeros(len(holes_mm))
-    for (x, y, z), share in zip(points, shares, strict=True):
-        if z <= 1e-6:
-            continue
-        moved = holes_mm[:, :2] + 2.0 * camera.height_mm * np.array([x, y]) / z
-        apart2 = np.sum((moved[:, None] - holes_mm[None, :, :2]) ** 2, axis=2)
-        both = holes_mm[:, None, 2] + holes_mm[None, :, 2]
-        for one, other in np.argwhere(apart2 < both**2):
-            part = math.sqrt(apart2[one, other]) / both[one, other]
-            common = math.acos(part) - part * math.sqrt(1.0 - part * part)
-            out[one] += share * 2.0 / math.pi * common
-    return np.minimum(out, 1.0)
 
 
 def add_ghost(flux: Floats, camera: Camera, ghost: Ghost, scene: Scene, pitch_mm: float) -> None:

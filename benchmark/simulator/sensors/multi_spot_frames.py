@@ -16,7 +16,6 @@ from benchmark.simulator.light.memory import Places, digest_of, memory
 from benchmark.simulator.masks.errors import MaskErrors
 from benchmark.simulator.optics.diffraction import SUNLIT_SILICON, Spectrum
 from benchmark.simulator.optics.earthlight import add_between
-from benchmark.simulator.optics.ghosts import Ghost, let_out
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.optics.round_spots import RoundSpots
 from benchmark.simulator.readout.column_noise import CommonNoise, window_noise
@@ -74,7 +73,6 @@ class MultiSpotSensor:
     spectrum: Spectrum | None = SUNLIT_SILICON
     widest_deg: float = 70.0
     skirt: float = 1e-4
-    ghost: Ghost | None = field(default=None, kw_only=True)
     sees_slopes: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
@@ -88,13 +86,6 @@ class MultiSpotSensor:
             raise ValueError(f"widest_deg must be in (0, 90); got {self.widest_deg}")
         if not 0 < self.skirt < 1:
             raise ValueError(f"skirt must be in (0, 1); got {self.skirt}")
-        if self.ghost is not None and (
-            self.ghost.surface != "mask" or self.camera.glass.plates or shapes != {"round"}
-        ):
-            raise ValueError(
-                "ghosts on full frames are of round holes without glass, from the mask's "
-                f"underside; got {self.ghost}, {shapes}, {len(self.camera.glass.plates)} plates"
-            )
         if self.detector.read_noise_e < LEAST_READ_NOISE_E:
             raise ValueError(
                 f"full frames need a read noise of at least {LEAST_READ_NOISE_E} electrons; got "
@@ -122,13 +113,8 @@ class MultiSpotSensor:
     def boxes(self, scene: Scene, pattern: FixedPattern, margin_px: int = 0) -> Integers:
         """(N, A, 4) first and past-last column and row each aperture lights, on the detector.
 
-        Empty (past-last not above first) where its light misses the detector or it is closed. With
-        a ghost (N, 2 A, 4): its spots come after the others.
+        Empty (past-last not above first) where its light misses the detector or it is closed.
         """
-        if self.ghost is not None:
-            far = self._far.boxes(scene, pattern, margin_px)
-            near = self._near.boxes(scene, pattern, margin_px)
-            return np.concatenate([near, far], axis=1)
         if self.spectrum is not None:
             size = (self.detector.columns, self.detector.rows)
             boxes = self._spots.boxes(scene.sun, self._holes(pattern), size, margin_px)
@@ -136,23 +122,6 @@ class MultiSpotSensor:
             return boxes
         light = self.camera.project(scene.sun)
         return self._boxes(light.rims_mm / self.detector.pitch_mm, pattern, margin_px)
-
-    @cached_property
-    def _near(self) -> MultiSpotSensor:
-        """The sensor without its ghost."""
-        return replace(self, ghost=None)
-
-    @cached_property
-    def _far(self) -> MultiSpotSensor:
-        """The sensor as its ghost's light sees it: the mask at three times its height."""
-        camera = self.camera
-        focal = 3.0 * camera.height_mm - camera.assembly.focal_length_error_mm
-        return replace(self, camera=replace(camera, focal_length_mm=focal), ghost=None)
-
-    def _ghost_pattern(self, ghost: Ghost, one: Scene, pattern: FixedPattern) -> FixedPattern:
-        """Return the pattern with what is left of each hole's light when it comes again."""
-        out = let_out(self.camera, one.sun, self._holes(pattern))
-        return {**pattern, "transmission": pattern["transmission"] * ghost.share * (1.0 - out)}
 
     @cached_property
     def _spots(self) -> RoundSpots:
@@ -224,10 +193,6 @@ class MultiSpotSensor:
         -------
         (B, 4) the boxes (as `boxes`) outside of which nothing was added.
         """
-        if self.ghost is not None:
-            again = self._ghost_pattern(self.ghost, one, pattern)
-            far = self._far.add_light(frame, one, again)
-            return np.concatenate([far, self._near.add_light(frame, one, pattern)])
         if self.spectrum is not None:
             boxes = self.boxes(one, pattern)[0]
             passed = pattern["transmission"] * self.dimmed(one)[0]
@@ -264,7 +229,7 @@ class MultiSpotSensor:
         """Return what light on the detector depends on, besides pixels and the built mask."""
         # the holes that are tabulated lie as far apart as built ones are expected to
         numbers = self.widest_deg, self.skirt, self.errors.edge_mm, self.detector.tunnel
-        return type(self).__name__, self.camera, self.spectrum, self.ghost, numbers
+        return type(self).__name__, self.camera, self.spectrum, numbers
 
     def add_uneven(self, frames: Floats, scene: Scene) -> bool:
         """Add light of the Earth and sloping stray light to frames (N, rows, columns), if any."""
@@ -273,10 +238,6 @@ class MultiSpotSensor:
         for nodes in found:
             add_between(frames, nodes)
         return bool(found)
-
-    def moment(self, scene: Scene) -> tuple[Hashable, ...]:
-        """Return what light depends on of a scene, under mean sunlight."""
-        return (scene.sun.tobytes(),)
 
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, rows, columns) mean digital numbers before rounding."""
@@ -349,7 +310,7 @@ class MultiSpotSensor:
         for n in range(len(scene)):
             one = scene.part(n, n + 1).alone()
             places, values = memory.places(
-                (*key, *self.moment(one)), partial(self._places, light, one, pattern)
+                (*key, one.sun.tobytes()), partial(self._places, light, one, pattern)
             )
             flat[places] = values * scene.irradiance[n]
             uneven = self.add_uneven(light[None], scene.part(n, n + 1))

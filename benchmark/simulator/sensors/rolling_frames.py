@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable, Iterator, Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
@@ -12,10 +12,8 @@ from numpy.typing import NDArray
 
 from algorithms.contract import Floats
 from benchmark.simulator.scene import Scene
-from benchmark.simulator.sensor import FixedPattern
 from benchmark.simulator.sensors.diffractive_frames import DiffractiveFrameSensor
 from benchmark.simulator.sensors.frames import FrameSensor
-from benchmark.simulator.sensors.multi_spot_frames import MultiSpotSensor
 
 #: Nodes in time of a spot that hardly moves, and how many more each pixel of motion takes: light
 #: of the standard datasets is then within 1e-3 of peak of many nodes.
@@ -121,102 +119,6 @@ class RollingDiffractiveSensor(RollingFrameSensor, DiffractiveFrameSensor):
     def __post_init__(self) -> None:
         RollingFrameSensor.__post_init__(self)
         DiffractiveFrameSensor.__post_init__(self)
-
-
-@dataclass(frozen=True)
-class RollingMultiSpotSensor(MultiSpotSensor):
-    """A `MultiSpotSensor` that turns while it is exposed, as `RollingFrameSensor` does.
-
-    Time 0 is when the row through the spot under the middle of the mask is half exposed. Spots
-    far from it are exposed some time before or after, when the Sun stands elsewhere: those of
-    each row of holes are rendered at moments of their own.
-
-    Attributes
-    ----------
-    row_time_s, more_nodes
-        As of `RollingFrameSensor`.
-    """
-
-    sees_motion: ClassVar[bool] = True
-
-    row_time_s: float = field(default=0.0, kw_only=True)
-    more_nodes: int = field(default=0, kw_only=True)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        _check(self.row_time_s, self.more_nodes)
-
-    def optics(self) -> tuple[Hashable, ...]:
-        """As of the sensor at rest, whose light is the same."""
-        _, *rest = super().optics()
-        return (MultiSpotSensor.__name__, *rest)
-
-    def moment(self, scene: Scene) -> tuple[Hashable, ...]:
-        """As of the sensor at rest; of one that turns its rates, too, and how it is exposed."""
-        still = super().moment(scene)
-        if scene.rate_deg_s is None:
-            return still
-        shutter = self.row_time_s, self.detector.exposure_s, self.more_nodes
-        return (*still, *shutter, scene.rate_deg_s.tobytes())
-
-    def boxes(self, scene: Scene, pattern: FixedPattern, margin_px: int = 0) -> NDArray[np.int64]:
-        """As of the sensor at rest, wherever a spot is while it is exposed."""
-        if scene.rate_deg_s is None:
-            return super().boxes(scene, pattern, margin_px)
-        found = np.zeros((len(scene), len(pattern["transmission"]), 4), dtype=np.int64)
-        for n in range(len(scene)):
-            one = scene.part(n, n + 1)
-            for masked, middle, half in self._rows_of_holes(one, pattern):
-                for there in super().boxes(_at(one, (-half, 0.0, half), middle), masked, margin_px):
-                    _join(found[n], there)
-        return found
-
-    def _rows_of_holes(
-        self, one: Scene, pattern: FixedPattern
-    ) -> Iterator[tuple[FixedPattern, float, float]]:
-        """Holes by row: the unit with the others closed, and when their spots are exposed.
-
-        A moment, and how long before and after it; rows of holes without light are left out.
-        """
-        exposure, centre = self.detector.exposure_s, self._whole().spot_px(one.sun)[0, 1]
-        across = np.array([aperture.y_mm for aperture in self.camera.mask.apertures])
-        for place in np.unique(across):
-            passed = np.where(across == place, pattern["transmission"], 0.0)
-            masked = {**pattern, "transmission": passed}
-            middle, half = place / self.detector.pitch_mm * self.row_time_s, exposure / 2.0
-            for _ in range(2):  # spots of another time lie elsewhere, and are exposed then
-                lit = super().boxes(_at(one, (-half, 0.0, half), middle), masked)
-                lit = lit[lit[..., 3] > lit[..., 2]]
-                if not len(lit):
-                    break
-                rows = np.array([lit[:, 2].min(), lit[:, 3].max() - 1.0])
-                middle, half = _span((rows - centre) * self.row_time_s, exposure)
-            else:
-                yield masked, middle, half
-
-    def add_light(self, frame: Floats, one: Scene, pattern: FixedPattern) -> NDArray[np.int64]:
-        """As of the sensor at rest, every row over its own exposure; a box a row of holes."""
-        if one.rate_deg_s is None:
-            return super().add_light(frame, one, pattern)
-        whole, exposure, found = self._whole(), self.detector.exposure_s, []
-        rows_s = (np.arange(frame.shape[0]) - whole.spot_px(one.sun)[0, 1]) * self.row_time_s
-        light = np.zeros_like(frame)
-        for masked, middle, half in self._rows_of_holes(one, pattern):
-            count = int(_nodes(whole, one, np.array([middle]), half)[0]) + self.more_nodes
-            place, weight = np.polynomial.legendre.leggauss(count)
-            for k in range(count):
-                boxes = super().add_light(light, _at(one, (half * place[k],), middle), masked)
-                if not len(boxes):
-                    continue
-                left, top = boxes[:, ::2].min(axis=0)
-                right, bottom = boxes[:, 1::2].max(axis=0)
-                part = slice(top, bottom), slice(left, right)
-                within = (rows_s[top:bottom] - middle) / half
-                share = _share(k, within, exposure / (2.0 * half), place, weight)
-                frame[part] += share[:, None] * light[part]
-                light[part] = 0.0
-                found.append((left, right, top, bottom))
-        return np.array(found, dtype=np.int64).reshape(-1, 4)
 
 
 def seen_at(scene: Scene, time_s: Floats) -> Floats:

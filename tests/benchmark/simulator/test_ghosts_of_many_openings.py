@@ -1,4 +1,4 @@
-"""Second images on lines, full frames, dials and position sensors, against folded rays and sums."""
+"""Second images on lines, dials and position sensors, against folded rays and sums."""
 
 from __future__ import annotations
 
@@ -12,19 +12,14 @@ import pytest
 from benchmark import datasets
 from benchmark.simulator.light.sun_disc import SolarDisc, from_angles
 from benchmark.simulator.masks.apertures import Aperture, Mask
-from benchmark.simulator.masks.errors import MaskErrors
-from benchmark.simulator.masks.layouts import grid
 from benchmark.simulator.masks.slits import SlitErrors, crossed_pairs, periodic, slit_row
 from benchmark.simulator.optics.assembly import Assembly
-from benchmark.simulator.optics.ghosts import Ghost, let_out
+from benchmark.simulator.optics.ghosts import Ghost
 from benchmark.simulator.optics.plates import CoverGlass, Plate
 from benchmark.simulator.optics.projection import Camera
-from benchmark.simulator.readout.pixel_errors import PixelErrors
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensors.code_dial import CodeDialSensor
 from benchmark.simulator.sensors.lines import LineSensor
-from benchmark.simulator.sensors.lit_pixels import LitPixels
-from benchmark.simulator.sensors.multi_spot_frames import MultiSpotSensor
 from benchmark.simulator.sensors.position_sensitive import PositionSensor, common_rule
 
 POINT = SolarDisc(diameter_deg=0.0)
@@ -133,53 +128,7 @@ def test_a_cover_glass_repeats_slits_whole() -> None:
     assert total == pytest.approx(0.02 * passed * 0.2, rel=1e-9)
 
 
-def holes() -> MultiSpotSensor:
-    """Shadows of a grid of holes on a small detector."""
-    sensor: MultiSpotSensor = nominal("ccd-multi-aperture")
-    mask = grid(3, 3, 0.3, Aperture("round", 0.1, 0.1))
-    pixels = replace(sensor.detector, columns=256, rows=256, errors=PixelErrors())
-    return replace(
-        sensor,
-        camera=Camera(0.75, mask, POINT),
-        detector=pixels,
-        errors=MaskErrors(),
-        spectrum=None,
-        ghost=GHOST,
-    )
-
-
-@pytest.mark.parametrize("beta", [0.0, 2.0, 11.0, 25.0])
-def test_a_full_frame_has_every_hole_again_less_what_other_holes_let_out(beta: float) -> None:
-    sensor, sun = holes(), toward(0.0, beta)
-    pattern, pitch = sensor.fixed_pattern("test"), sensor.detector.pitch_mm
-    moved = 2.0 * 0.75 * math.tan(math.radians(beta))
-    lost = sum((3 - k) / 3 * shared(abs(moved - 0.3 * k) / 0.1) for k in range(3))
-    open_mm2 = 9.0 * math.pi * 0.05**2
-    found = ghost_alone(sensor, sun, pattern)[0]
-    expected = 0.2 * sun[0, 2] * open_mm2 * (1.0 - lost)
-    assert found.sum() * pitch**2 == pytest.approx(expected, abs=1e-9 * open_mm2)
-    mean = let_out(sensor.camera, sun, sensor._holes(pattern)).mean()
-    assert mean == pytest.approx(lost, abs=1e-9)
-    if lost == 0.0:
-        place = (np.arange(256) - 127.5) * pitch
-        assert found.sum(axis=0) @ place / found.sum() == pytest.approx(1.5 * moved, abs=1e-4)
-
-
-def test_bounds_see_the_ghosts_that_frames_show() -> None:
-    sensor, scene = holes(), lit_by(toward(5.0, 15.0))
-    pattern = sensor.fixed_pattern("test")
-    near = LitPixels(sensor, scene, pattern)
-    whole, kept = sensor.expected(scene, pattern)[0].ravel(), near.expected(scene, pattern)[0]
-    mine = near._pixels[0][near._pixels[0] >= 0]
-    assert kept[: len(mine)] == pytest.approx(whole[mine], rel=1e-12)
-    rest = np.setdiff1d(np.arange(whole.size), mine)
-    assert kept[-1] == pytest.approx(whole[rest].mean(), rel=1e-9)
-    assert len(mine) > 2 * 9 * math.pi * 4**2  # direct spots and ghosts
-
-
-def test_ghosts_that_full_frames_and_position_sensors_do_not_have_are_refused() -> None:
-    with pytest.raises(ValueError, match="of round holes without glass"):
-        replace(holes(), ghost=Ghost(surface="glass"))
+def test_ghosts_that_position_sensors_do_not_have_are_refused() -> None:
     square = Mask((Aperture("rectangle", 0.5, 0.5),))
     psd = nominal("psd-single-aperture")
     with pytest.raises(ValueError, match=r"one round aperture; got \['rectangle'\]"):
