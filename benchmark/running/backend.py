@@ -73,17 +73,18 @@ def bundles(tasks: Sequence[Task], workers: int = 1) -> list[list[Task]]:
     """Group tasks that follow each other and share samples or light, for one worker to do.
 
     Generating samples and their bound often costs more than the rest. With many datasets to do, a
-    bundle is a unit of a dataset, whose conditions see the same light (see
-    `benchmark.simulator.light.memory`); else at most four tasks of a dataset, unit and condition.
+    bundle is a dataset, whose conditions see the same light and whose units look it up in the same
+    tables (see `benchmark.simulator.light.memory`); else at most four tasks of a dataset, unit and
+    condition.
     """
-    many = len({_sensor(task) for task in tasks}) >= _DATASETS_A_WORKER * workers
+    many = len({task.preset.name for task in tasks}) >= _DATASETS_A_WORKER * workers
     found: list[list[Task]] = []
     for task in tasks:
         last = found[-1] if found else []
         if (
             last
-            and _sensor(last[0]) == _sensor(task)
-            and (many or (len(last) < _BUNDLE and last[0].condition == task.condition))
+            and last[0].preset.name == task.preset.name
+            and (many or (len(last) < _BUNDLE and _place(last[0]) == _place(task)))
         ):
             last.append(task)
         else:
@@ -91,8 +92,8 @@ def bundles(tasks: Sequence[Task], workers: int = 1) -> list[list[Task]]:
     return found
 
 
-def _sensor(task: Task) -> tuple[str, int]:
-    return task.preset.name, task.unit
+def _place(task: Task) -> tuple[int, str]:
+    return task.unit, task.condition
 
 
 def _measure_for(coordinator: tuple[str, int], bundle: Sequence[Task]) -> list[TaskResult]:

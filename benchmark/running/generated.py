@@ -52,6 +52,8 @@ class Generated:
 
 _Place = tuple[str, str, int, str]  # dataset, condition, unit, digest of the parameters
 _kept: OrderedDict[_Place, Generated] = OrderedDict()
+#: Which test samples can be observed, of data whose other units asked; a unit is asked of each.
+_observable: dict[_Place, NDArray[np.bool_]] = {}
 
 
 def generated(
@@ -89,6 +91,7 @@ def generated(
 def forget() -> None:
     """Let go of everything that is kept."""
     _kept.clear()
+    _observable.clear()
 
 
 def generated_pins(preset: Preset, condition: str) -> tuple[Pin, ...]:
@@ -117,12 +120,14 @@ def _of_another_unit(
     preset: Preset, condition: str, splits: dict[str, Samples], all_observable: bool
 ) -> Generated:
     """Without bounds; what is observable is taken from the standard unit's."""
-    seen = (
-        np.ones(len(splits["test"].sun), dtype=np.bool_)
-        if all_observable
-        else np.asarray(preset.bound(condition, "test").observable, dtype=np.bool_)
-    )
-    return Generated(preset, splits, None, None, seen, ())
+    if all_observable:
+        everything = np.ones(len(splits["test"].sun), dtype=np.bool_)
+        return Generated(preset, splits, None, None, everything, ())
+    place = _place_of(preset, condition, 0)
+    if place not in _observable:
+        bound = preset.bound(condition, "test")
+        _observable[place] = np.asarray(bound.observable, dtype=np.bool_)
+    return Generated(preset, splits, None, None, _observable[place], ())
 
 
 def _pin(preset: Preset, condition: str, split: str, samples: Samples, bound: Bound) -> Pin:

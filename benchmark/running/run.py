@@ -130,10 +130,15 @@ def measure_missing(
     Parameters and errors as `run`.
     """
     missing = [cell for cell in sorted(wanted) if not record.is_scored(cell, components)]
+    # the standard units first: what they tell of the directions that can be observed saves every
+    # other unit a bound
+    stages = [[c for c in missing if c.unit == 0], [c for c in missing if c.unit != 0]]
     if missing:
-        results = outcomes(_tasks(missing, record, parts), workers, scheduler)
         with terminal_progress() if progress is None else nullcontext(progress) as report:
-            _keep_all(results, record, components, len(missing), report)
+            counted = _Count(report, len(missing))
+            for stage in filter(None, stages):
+                results = outcomes(_tasks(stage, record, parts), workers, scheduler)
+                _keep_all(results, record, components, counted)
     return len(missing)
 
 
@@ -196,27 +201,37 @@ def _all_observable(record: Record, dataset: str, condition: str) -> bool:
     return pin is not None and pin.observable == pin.n
 
 
+@dataclass
+class _Count:
+    """How far measuring has come, for who is told."""
+
+    report: ProgressCallback
+    total: int
+    done: int = 0
+
+    def __post_init__(self) -> None:
+        self.report(0, self.total, "")
+
+    def add(self, cells: int, what: str) -> None:
+        self.done += cells
+        self.report(self.done, self.total, what)
+
+
 def _keep_all(
-    results: Iterable[TaskResult],
-    record: Record,
-    components: Components,
-    total: int,
-    report: ProgressCallback,
+    results: Iterable[TaskResult], record: Record, components: Components, counted: _Count
 ) -> None:
     """Take every finished task into the record, which is on disk before the next is awaited."""
-    done = 0
-    report(done, total, "")
     try:
         for result in results:
             task = result.task
             scores = {_cell(task, outcome): _numbers(outcome) for outcome in result.outcomes}
             new = [pin for pin in result.pins if not record.is_pinned(pin.place, components)]
             record.keep(components, pins=new, scores=scores)
-            done += len(scores)
-            report(done, total, f"{task.preset.name} {task.condition} {task.extractor.about.name}")
+            what = f"{task.preset.name} {task.condition} {task.extractor.about.name}"
+            counted.add(len(scores), what)
     except KeyboardInterrupt as error:
         raise RunInterruptedError(
-            f"interrupted with {done} of {total} cells measured; they are kept in "
+            f"interrupted with {counted.done} of {counted.total} cells measured; they are kept in "
             f"{record.journal} and not measured again by the next run"
         ) from error
 

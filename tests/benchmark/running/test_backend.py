@@ -96,14 +96,17 @@ def test_bundles_end_with_the_sensor_or_the_condition_and_after_four() -> None:
 
 
 @pytest.mark.parametrize(
-    ("sensors", "workers", "many"), [(4, 1, True), (3, 1, False), (8, 2, True), (7, 2, False)]
+    ("sets", "workers", "many"), [(4, 1, True), (3, 1, False), (8, 2, True), (7, 2, False)]
 )
-def test_from_four_sensors_a_worker_on_each_is_one_workers(
-    sensors: int, workers: int, many: bool
+def test_from_four_data_sets_a_worker_on_each_is_one_workers_with_all_its_units(
+    sets: int, workers: int, many: bool
 ) -> None:
-    some = [one for unit in range(sensors) for one in tasks(6, unit=unit)]
+    presets = [fake_atlas.Diodes(name=f"set-{n}") for n in range(sets)]
+    some = [
+        one for preset in presets for unit in (1, 2) for one in tasks(6, unit=unit, preset=preset)
+    ]
     sizes = [len(bundle) for bundle in backend.bundles(some, workers)]
-    assert sizes == ([6] * sensors if many else [4, 2] * sensors)
+    assert sizes == ([12] * sets if many else [4, 2, 4, 2] * sets)
 
 
 def test_a_scheduler_is_asked_though_there_is_one_worker(
