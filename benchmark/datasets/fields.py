@@ -37,7 +37,7 @@ class AngleField:
 
     half_fov_deg: float
     steps: int = 21
-    test_samples: int = 1000
+    test_samples: int = 400
 
     def sun(self, split: Split, generator: np.random.Generator) -> Floats:
         """(N, 3) unit vectors of a split."""

@@ -63,12 +63,10 @@ class Whitening:
 
     @cached_property
     def _places(self) -> NDArray[np.int64] | None:
-        """(N M,) group of every element, all samples' counted on; None for rows of columns."""
+        """(N, M) group of every element; None for rows of columns."""
         if isinstance(self._shared.group, int):
             return None
-        group = np.broadcast_to(self._shared.group, self.deviation.shape)
-        first = np.arange(len(group))[:, None] * self._groups
-        return np.asarray(group + first).reshape(-1)
+        return np.broadcast_to(self._shared.group, self.deviation.shape)
 
     @cached_property
     def _loading(self) -> Floats:
@@ -99,10 +97,11 @@ class Whitening:
         if self._places is None:
             rows = self._rows(self._loading), self._rows(vectors)
             return np.asarray(np.einsum("nrc,nrc->nc", *rows))
-        weights = (self._loading * vectors).reshape(-1)
-        size = len(self.deviation) * self._groups
-        sums = np.bincount(self._places, weights=weights, minlength=size)
-        return np.asarray(sums, dtype=np.float64).reshape(-1, self._groups)
+        from benchmark.metrics.grouped_kernel import products  # noqa: PLC0415 - Numba on demand
+
+        out = np.zeros((len(self.deviation), self._groups))
+        products(out, self._places, self._loading, vectors)
+        return out
 
     def _stretch(self, vectors: Floats, factor: Floats) -> None:
         """Add to vectors (N, M) their products with each u, times a factor of its, times u."""
@@ -111,4 +110,6 @@ class Whitening:
             rows = self._rows(vectors)
             rows += self._rows(self._loading) * along[:, None]
         else:
-            vectors += self._loading * along.reshape(-1)[self._places].reshape(vectors.shape)
+            from benchmark.metrics.grouped_kernel import add_along  # noqa: PLC0415 - Numba on demand
+
+            add_along(vectors, self._places, self._loading, along)

@@ -22,7 +22,7 @@ class ConeField:
 
     half_angle_deg: float
     calibration_samples: int = 500
-    test_samples: int = 1000
+    test_samples: int = 400
 
     @property
     def _lowest(self) -> float:

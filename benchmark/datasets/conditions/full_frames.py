@@ -11,7 +11,7 @@ from benchmark.simulator.sensors.lit_pixels import LitPixels
 from benchmark.simulator.sensors.multi_spot_frames import MultiSpotSensor
 
 #: Samples whose bound is computed together; memory only, the numbers do not depend on it.
-BOUND_BATCH = 8
+BOUND_BATCH = 4
 #: Bounds do without light below this share of the brightest spot's peak: a signal of the order of
 #: the read noise at most.
 BOUND_SKIRT = 2e-3
@@ -46,10 +46,10 @@ class FullFramePreset(UnevenPreset):
         if not isinstance(sensor, MultiSpotSensor):
             raise TypeError(f"{self.name} must hold a MultiSpotSensor; got {type(sensor).__name__}")
         scene, pattern = self.scene(condition, split, n), self.fixed_pattern(condition)
-        parts = []
+        parts, seen = [], for_bound(sensor)
         for start in range(0, len(scene), BOUND_BATCH):
             part = scene.part(start, start + BOUND_BATCH)
-            lit = LitPixels(for_bound(sensor), part, pattern)
+            lit = LitPixels(seen, part, pattern)
             parts.append(
                 cramer_rao(
                     lit,

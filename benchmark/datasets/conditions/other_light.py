@@ -16,7 +16,6 @@ from benchmark.simulator.sensor import Sensor
 from benchmark.simulator.sensors.code_dial import CodeDialSensor
 from benchmark.simulator.sensors.frames import FrameSensor
 from benchmark.simulator.sensors.lines import LineSensor
-from benchmark.simulator.sensors.multi_spot_frames import MultiSpotSensor
 from benchmark.simulator.sensors.position_sensitive import PositionSensor
 from benchmark.simulator.sensors.quadrants import QuadrantSensor
 from benchmark.simulator.sensors.slit_pairs import SlitPairSensor
@@ -29,7 +28,6 @@ Haunted = TypeVar(
     PositionSensor,
     CodeDialSensor,
     FrameSensor,
-    MultiSpotSensor,
     LineSensor,
 )
 
@@ -137,7 +135,7 @@ _NAMED: Final[Mapping[str, Callable[[Any], Condition]]] = {
 }
 
 
-def seen_with(sensor: Haunted, *names: str) -> dict[str, Condition]:
+def seen_with(sensor: Sensor, *names: str) -> dict[str, Condition]:
     """Return conditions of a sensor under `LIGHT` by their names.
 
     Parameters

@@ -14,7 +14,7 @@ PRESET = event_array(
     mask="Single-Ap.",
     sensor=_SENSOR,
     geometry=design(_SENSOR, 50.0, aperture_width_mm=0.1, aperture_shape="round"),
-    directions=AngleField(50.0, steps=21, test_samples=1000),
+    directions=AngleField(50.0, steps=21),
     follows=("Bardallo2017a", "Bardallo2017b", "Merchan2023"),
     description=(
         "64 x 64 integrate-and-fire pixels in time-to-first-spike mode behind one round hole. The "

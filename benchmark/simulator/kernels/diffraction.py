@@ -170,6 +170,24 @@ def add_round(
 
 
 @compiled
+def _lit_columns(y: float, hole_x: float, way: Floats, reach: Floats) -> tuple[float, float]:
+    """Return from where to where a row `y` below a hole lies in its spot's ellipse; 0 to 0 for not.
+
+    Of a quadratic form in x, which is below 1 within.
+    """
+    ex, ey, chief = way[0], way[1], way[2]
+    turn = (ex / reach[0]) ** 2 + (ey / reach[1]) ** 2
+    past = ey * y - chief
+    middle = (ex * ey * y / reach[1] ** 2 - ex * past / reach[0] ** 2) / turn
+    rest = 1.0 - (past / reach[0]) ** 2 - (ex * y / reach[1]) ** 2
+    square = middle * middle + rest / turn
+    if square <= 0.0:
+        return 0.0, 0.0
+    half = math.sqrt(square)
+    return hole_x + middle - half, hole_x + middle + half
+
+
+@compiled
 def add_spots(
     frame: Floats,
     tables: tuple[Floats, Floats],
@@ -205,26 +223,17 @@ def add_spots(
     way = _way(sun, numbers, layers)
     _blended(small, tables[0], numbers[1], numbers[9] / way[3])
     _blended(large, tables[1], numbers[1], numbers[9] / way[3])
-    ex, ey, chief = way[0], way[1], way[2]
-    turn = (ex / reach[0]) ** 2 + (ey / reach[1]) ** 2
     for m in range(boxes.shape[0]):
         left, right, top, bottom = boxes[m]
         for i in range(shape[0]):
             for j in range(shape[1]):
                 table[i, j] = small[i, j] + holes[m, 2] * (large[i, j] - small[i, j])
         for row in range(top, bottom):
-            # columns within the ellipse: where a quadratic form in x stays below 1
-            y = (row + 0.5) * pitch - holes[m, 1]
-            past = ey * y - chief
-            middle = (ex * ey * y / reach[1] ** 2 - ex * past / reach[0] ** 2) / turn
-            rest = 1.0 - (past / reach[0]) ** 2 - (ex * y / reach[1]) ** 2
-            square = middle * middle + rest / turn
-            if square <= 0.0:
-                continue
-            half = math.sqrt(square)
-            middle += holes[m, 0]
-            first = max(left, math.floor((middle - half) / pitch))
-            last = min(right, math.ceil((middle + half) / pitch))
+            ends = _lit_columns((row + 0.5) * pitch - holes[m, 1], holes[m, 0], way, reach)
+            first, last = (
+                max(left, math.floor(ends[0] / pitch)),
+                min(right, math.ceil(ends[1] / pitch)),
+            )
             for column in range(first, last):
                 total = 0.0
                 for i in range(nodes.shape[0]):
@@ -234,4 +243,113 @@ def add_spots(
                         along, across, factor = _seen(x, y, way)
                         factor *= nodes[i, 1] * nodes[j, 1]
                         total += factor * _looked_up(table, along, across)
+                frame[row, column] += numbers[0] * holes[m, 3] * max(total, 0.0)
+
+
+@compiled
+def _six_shares(fraction: float, out: Floats) -> None:
+    """Weights of the six nodes -2 to 3 in Lagrange's quintic through them."""
+    t = fraction
+    a, b, c, d, e, f = t + 2.0, t + 1.0, t, t - 1.0, t - 2.0, t - 3.0
+    out[0] = -b * c * d * e * f / 120.0
+    out[1] = a * c * d * e * f / 24.0
+    out[2] = -a * b * d * e * f / 12.0
+    out[3] = a * b * c * e * f / 12.0
+    out[4] = -a * b * c * d * f / 24.0
+    out[5] = a * b * c * d * e / 120.0
+
+
+@compiled
+def _lattice(
+    tables: tuple[Floats, Floats], way: Floats, reach: Floats, nodes: Floats, corner: Rays
+) -> tuple[Floats, Floats]:
+    """Means over a pixel about each point of a lattice around a spot: smaller hole, and difference.
+
+    `corner` is the first point, x and y from the hole, and the points' distance.
+    """
+    left, top, spacing = corner
+    ex, ey, chief = way[0], way[1], way[2]
+    half = 0.5 * (nodes[0, 0] + nodes[-1, 0])
+    # a pixel at the ellipse's end may lie outside by its own size, and is interpolated
+    far = 2.0 * half + 4.0 * spacing
+    width = math.ceil(2.0 * (chief * ex - left) / spacing) + 2
+    height = math.ceil(2.0 * (chief * ey - top) / spacing) + 2
+    one, more = np.zeros((height, width)), np.zeros((height, width))
+    for row in range(height):
+        for column in range(width):
+            y, x = top + row * spacing, left + column * spacing
+            past, beside = ex * x + ey * y - chief, ex * y - ey * x
+            if (past / (reach[0] + far)) ** 2 + (beside / (reach[1] + far)) ** 2 > 1.0:
+                continue
+            for i in range(nodes.shape[0]):
+                for j in range(nodes.shape[0]):
+                    along, across, factor = _seen(
+                        x + nodes[j, 0] - half, y + nodes[i, 0] - half, way
+                    )
+                    factor *= nodes[i, 1] * nodes[j, 1]
+                    small = factor * _looked_up(tables[0], along, across)
+                    one[row, column] += small
+                    more[row, column] += factor * _looked_up(tables[1], along, across) - small
+    return one, more
+
+
+@compiled
+def add_spots_alike(
+    frame: Floats,
+    tables: tuple[Floats, Floats],
+    sample: tuple[Floats, Floats, Floats],
+    apertures: tuple[Floats, Integers],
+    optics: tuple[Floats, Floats, int],
+) -> None:
+    """`add_spots` for many holes: looked up once, on a lattice.
+
+    The mean over a pixel about a point is the same for every hole, seen from its middle; where a
+    hole's pixels lie between the points, along both axes alike, it is interpolated. `optics` has
+    one number more, points of the lattice a pixel.
+    """
+    sun, numbers, reach = sample
+    holes, boxes = apertures
+    layers, nodes, steps = optics
+    pitch = nodes[0, 0] + nodes[-1, 0]
+    spacing = pitch / steps
+    shape = tables[0].shape[1:]
+    small, large = np.empty(shape), np.empty(shape)
+    way = _way(sun, numbers, layers)
+    _blended(small, tables[0], numbers[1], numbers[9] / way[3])
+    _blended(large, tables[1], numbers[1], numbers[9] / way[3])
+    far = pitch + 5.0 * spacing
+    wide = math.sqrt((reach[0] * way[0]) ** 2 + (reach[1] * way[1]) ** 2) + far
+    high = math.sqrt((reach[0] * way[1]) ** 2 + (reach[1] * way[0]) ** 2) + far
+    corner = way[2] * way[0] - wide, way[2] * way[1] - high, spacing
+    one, more = _lattice((small, large), way, reach, nodes, corner)
+    down, over, line = np.empty(6), np.empty(6), np.empty(one.shape[1])
+    for m in range(boxes.shape[0]):
+        left, right, top, bottom = boxes[m]
+        start = (0.5 * pitch - holes[m, 0] - corner[0]) / spacing
+        whole = math.floor(start)
+        _six_shares(start - whole, over)
+        for row in range(top, bottom):
+            y = (row + 0.5) * pitch - holes[m, 1]
+            ends = _lit_columns(y, holes[m, 0], way, reach)
+            first, last = (
+                max(left, math.floor(ends[0] / pitch)),
+                min(right, math.ceil(ends[1] / pitch)),
+            )
+            if last <= first:
+                continue
+            place = (y - corner[1]) / spacing
+            level = math.floor(place)
+            _six_shares(place - level, down)
+            begin, size = whole + steps * first - 2, steps * (last - 1 - first) + 6
+            line[:size] = 0.0
+            for k in range(6):
+                share, grown = down[k], down[k] * holes[m, 2]
+                here = one[level + k - 2, begin : begin + size]
+                there = more[level + k - 2, begin : begin + size]
+                for i in range(size):
+                    line[i] += share * here[i] + grown * there[i]
+            for column in range(first, last):
+                total = 0.0
+                for k in range(6):
+                    total += over[k] * line[steps * (column - first) + k]
                 frame[row, column] += numbers[0] * holes[m, 3] * max(total, 0.0)

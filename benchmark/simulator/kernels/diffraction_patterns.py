@@ -124,10 +124,13 @@ def _shares(fraction: float) -> Four:
 
 
 @compiled
-def _stencil(shifts: Floats, weights: Floats, margin: int) -> Floats:
-    """Weights (2 margin + 1, 2 margin + 1) of the grid's values around a node, by cubics."""
+def stencil(shifts: Floats, weights: Floats, margin: int) -> Floats:
+    """Weights (2 margin + 1, 2 margin + 1) of a grid's values around a node, by cubics.
+
+    `shifts` (K, 2), in steps of the grid, less than `margin` - 2; `weights` (K,) of each.
+    """
     size = 2 * margin + 1
-    stencil = np.zeros((size, size))
+    found = np.zeros((size, size))
     for k in range(weights.shape[0]):
         first, second = math.floor(-shifts[k, 0]), math.floor(-shifts[k, 1])
         along = _shares(-shifts[k, 0] - first)
@@ -135,41 +138,5 @@ def _stencil(shifts: Floats, weights: Floats, margin: int) -> Floats:
         for i in range(4):
             for j in range(4):
                 place = margin + first + i - 1, margin + second + j - 1
-                stencil[place] += weights[k] * along[i] * across[j]
-    return stencil
-
-
-@compiled
-def spread_over_sun(
-    out: Floats, light: Floats, shifts: Floats, weights: Floats, margin: int
-) -> None:
-    """Fill ``sum_k w_k G(v - v_k)`` on half the plane, G even across.
-
-    Parameters
-    ----------
-    out
-        (2 n + 1, n + 1): along from -n to n, across from 0 to n.
-    light
-        (2 (n + margin) + 1, n + margin + 1) values of G as `out`.
-    shifts
-        (K, 2) in steps of the grid, less than `margin` - 2.
-    """
-    stencil = _stencil(shifts, weights, margin)
-    size = stencil.shape[0]
-    reach = out.shape[1] - 1
-    # with its mirror image to the left, so that the innermost loop runs straight on
-    side = np.empty((light.shape[0], light.shape[1] + margin))
-    for row in range(light.shape[0]):
-        for column in range(light.shape[1] + margin):
-            side[row, column] = light[row, abs(column - margin)]
-    out[:] = 0.0
-    for row in range(out.shape[0]):
-        to = out[row]
-        for i in range(size):
-            line = side[row + i]
-            for j in range(size):
-                weight = stencil[i, j]
-                if weight != 0.0:
-                    part = line[j : j + reach + 1]
-                    for column in range(reach + 1):
-                        to[column] += weight * part[column]
+                found[place] += weights[k] * along[i] * across[j]
+    return found

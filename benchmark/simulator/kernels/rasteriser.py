@@ -319,10 +319,13 @@ def add_apertures(
 
 
 @compiled
-def take_light(frame: Floats, boxes: Integers, places: NDArray[np.int32], values: Floats) -> int:
+def take_light(
+    frame: Floats, boxes: Integers, places: NDArray[np.int32], values: NDArray[np.float32]
+) -> int:
     """Move what is lit within boxes (B, 4) out of a frame, which is dark there afterwards.
 
-    Writes places in the flattened frame and the light there, and returns how many.
+    Writes places in the flattened frame and the light there, in single precision, and returns how
+    many.
     """
     width = frame.shape[1]
     count = 0

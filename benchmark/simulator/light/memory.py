@@ -9,20 +9,19 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Hashable
-from typing import Any
+from typing import Any, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
-
-from algorithms.contract import Floats
 
 #: A worker's data and code take 600 MB; with this it stays below 1.5 GB.
 LIMIT_BYTES = 384 * 2**20
 
 #: Places of light other than 0 in a flattened array, and its values there.
-Places = tuple[NDArray[np.int32], Floats]
+Places = tuple[NDArray[np.int32], NDArray[np.float32]]
 #: Such places (None: everywhere), the values, the array's shape.
-_Kept = tuple[NDArray[np.int32] | None, Floats, tuple[int, ...]]
+_Kept = tuple[NDArray[np.int32] | None, NDArray[Any], tuple[int, ...]]
+Light = TypeVar("Light", bound=NDArray[Any])
 
 
 class LightMemory:
@@ -31,6 +30,7 @@ class LightMemory:
     def __init__(self, limit_bytes: int = LIMIT_BYTES) -> None:
         self.limit_bytes = limit_bytes
         self.kept_bytes = 0
+        self.places_bytes = 0
         self.hits = 0
         self._owner: Hashable = None
         self._kept: dict[Hashable, _Kept] = {}
@@ -46,10 +46,10 @@ class LightMemory:
         """Let go of everything and keep nothing more."""
         self._kept.clear()
         self._places.clear()
-        self.kept_bytes = 0
+        self.kept_bytes = self.places_bytes = 0
         self._owner = None
 
-    def rendered(self, key: Hashable, render: Callable[[], Floats]) -> Floats:
+    def rendered(self, key: Hashable, render: Callable[[], Light]) -> Light:
         """Return what `render` makes, which the key names, as an array of the caller's own.
 
         Once the limit is reached nothing more is kept: letting go of the oldest would lose
@@ -62,10 +62,10 @@ class LightMemory:
             self.hits += 1
             places, values, shape = known
             if places is None:
-                return values.reshape(shape).copy()
-            light = np.zeros(shape)
-            light.reshape(-1)[places] = values
-            return light
+                return cast("Light", values.reshape(shape).copy())
+            whole = np.zeros(shape, dtype=values.dtype)
+            whole.reshape(-1)[places] = values
+            return cast("Light", whole)
         light = render()
         kept = _packed(light)
         if self._has_room(kept[1].nbytes + (0 if kept[0] is None else kept[0].nbytes)):
@@ -84,7 +84,10 @@ class LightMemory:
             self.hits += 1
             return known
         found = render()
-        if self._has_room(found[0].nbytes + found[1].nbytes):
+        size = found[0].nbytes + found[1].nbytes
+        # half of the room is left to what bounds ask for more often
+        if self.places_bytes + size <= self.limit_bytes // 2 and self._has_room(size):
+            self.places_bytes += size
             self._places[key] = found
         return found
 
@@ -104,11 +107,11 @@ def digest_of(*arrays: NDArray[Any]) -> bytes:
     return state.digest()
 
 
-def _packed(light: Floats) -> _Kept:
+def _packed(light: NDArray[Any]) -> _Kept:
     """Copy `light` in whichever form is smaller."""
     flat = light.reshape(-1)
     places = np.flatnonzero(flat)
-    if 12 * len(places) >= 8 * flat.size:
+    if (4 + flat.itemsize) * len(places) >= flat.nbytes:
         return None, flat.copy(), light.shape
     return places.astype(np.int32), flat[places], light.shape
 

@@ -1,4 +1,4 @@
-"""The diffracted spots of many round holes on one detector: `RoundSpots`."""
+"""The diffracted spots of many round holes on one detector: `RoundSpots`, `RoundLight`."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from algorithms.contract import Floats
 from benchmark.simulator.optics.diffraction import Spectrum
-from benchmark.simulator.optics.diffraction_tables import RoundPattern, landing
+from benchmark.simulator.optics.diffraction_tables import RoundPattern, landing, layers
 from benchmark.simulator.optics.projection import Camera
 
 Integers = NDArray[np.int64]
@@ -25,6 +25,31 @@ _TABULATED = 25.0
 _CELL_RAD = 5.5
 #: Sizes of the tabulated holes differ at least so much, relatively.
 _LEAST_GROWTH = 1e-3
+#: Points a pixel, an axis, of the lattice that holes share: frames of the standard data sets are
+#: within 5e-4 of peak of looking every pixel up.
+_LATTICE = 4
+
+
+@dataclass(frozen=True)
+class _Holes:
+    """Holes of one drawn diameter, and what their light is looked up in."""
+
+    diameter_mm: float
+    mine: NDArray[np.int64]
+    small: RoundPattern
+    large: RoundPattern
+    #: Light below which a spot is left out.
+    level: float
+    #: (Q, 2) nodes in a pixel, mm from its first edge, and their weights.
+    nodes: Floats
+    pitch_mm: float
+    #: Points a pixel of the lattice that the holes share; 0 for none.
+    lattice: int
+
+    @cached_property
+    def tables(self) -> tuple[Floats, Floats]:
+        """Of the smaller and of the larger hole."""
+        return self.small.tables(), self.large.tables()
 
 
 @dataclass(frozen=True)
@@ -32,13 +57,21 @@ class RoundSpots:
     """What a camera's round holes put on pixels: Fresnel diffraction of every hole by itself.
 
     Holes of one drawn diameter share two tables (`RoundPattern`), of holes smaller and larger by
-    `size_mm` than their built mean, between which each is interpolated linearly in its radius a:
+    `size_mm` than drawn, between which each is interpolated linearly in its radius a:
     the edges lie where the built rim puts them and the light follows the built area, to first
     order. What is left is ``(da^2 - size_mm^2) / 2`` times the second derivative over the radius,
     which is at most ``(2 pi N / a)^2`` times the peak: 1e-3 of it for a = 50 um, N = 4 and 0.25 um.
 
+    Tables are of the drawn height, whatever the built one: light that has gone ``r`` times as far
+    has the Fresnel numbers, and so the pattern, of a hole ``sqrt(r)`` times smaller, ``sqrt(r)``
+    times as large. Of the Sun's image and the pixel that leaves out ``(r - 1) / 2`` of their
+    width, 1e-3 of it in the units of the standard data sets; in return all units, built a little
+    differently, look their light up in the same tables.
+
     A pixel is divided into cells over which tables are averaged whichever way they are turned
-    (`RoundPattern.cell_mm`): one look-up a cell.
+    (`RoundPattern.cell_mm`): one look-up a cell. Where many holes light one frame, their common
+    pattern is looked up once, on a lattice finer than the pixels, and interpolated by Lagrange's
+    quintic along rows and columns at the place of each.
 
     Light of a spot is left out where its skirt - ``4 pi N_r N_t / v^3`` of the open light, v the
     ``k a`` times the direction cosine, on average over the rings of Airy's pattern - is below
@@ -53,10 +86,12 @@ class RoundSpots:
         Wavelengths and weights.
     pitch_mm
         Of the pixels.
+    size_px
+        Columns and rows of the detector.
     widest_deg
         Largest incidence tabulated; beyond, the pattern keeps this one's Fresnel numbers.
     size_mm
-        By how much radii of built holes typically differ from each other's mean.
+        By how much radii of built holes typically differ from the drawn ones.
     skirt
         Share of the peak at normal incidence below which light is left out.
     """
@@ -64,15 +99,50 @@ class RoundSpots:
     camera: Camera
     spectrum: Spectrum
     pitch_mm: float
+    size_px: tuple[int, int]
     widest_deg: float
     size_mm: float
     skirt: float
 
     @cached_property
-    def _groups(self) -> tuple[tuple[float, NDArray[np.int64]], ...]:
-        """Drawn diameters and the holes that have them."""
+    def groups(self) -> tuple[_Holes, ...]:
+        """Holes by their drawn diameters."""
         widths = np.array([aperture.width_mm for aperture in self.camera.mask.apertures])
-        return tuple((float(width), np.flatnonzero(widths == width)) for width in np.unique(widths))
+        return tuple(
+            self._group(float(width), np.flatnonzero(widths == width))
+            for width in np.unique(widths)
+        )
+
+    def _group(self, diameter_mm: float, mine: NDArray[np.int64]) -> _Holes:
+        growth = max(2.0 * self.size_mm / diameter_mm, _LEAST_GROWTH)
+        cells = self.cells(diameter_mm)
+        small = self._pattern(diameter_mm, -growth, cells)
+        _, unit = small.scales(np.zeros(1))
+        inside = (np.arange(cells) + 0.5) * (self.pitch_mm / cells)
+        # as many as lie over the detector light it at a time
+        half = np.array(self.size_px) * self.pitch_mm / 2.0
+        places = np.array([(a.x_mm, a.y_mm) for a in self.camera.mask.apertures])[mine]
+        shown = int((np.abs(places) <= half).all(axis=1).sum())
+        return _Holes(
+            diameter_mm,
+            mine,
+            small,
+            self._pattern(diameter_mm, growth, cells),
+            self.skirt * float(small.tables()[0].max() * unit[0]),
+            np.column_stack([inside, np.full(cells, 1.0 / cells)]),
+            self.pitch_mm,
+            # two tables on every point of it, against one look-up a pixel
+            _LATTICE if shown > 4 * _LATTICE**2 else 0,
+        )
+
+    @cached_property
+    def _stretch(self) -> float:
+        """How many times larger a spot is than from the drawn height: the root of the way's."""
+        ways = [
+            float(landing(np.zeros(1), layers(height, self.camera.glass))[0, 1])
+            for height in (self.camera.height_mm, self.camera.focal_length_mm)
+        ]
+        return math.sqrt(ways[0] / ways[1])
 
     @cached_property
     def _wave_mm(self) -> float:
@@ -85,23 +155,13 @@ class RoundSpots:
         phase = math.pi * diameter_mm / (self._wave_mm * across) * self.pitch_mm
         return max(1, math.ceil(phase / _CELL_RAD))
 
-    def patterns(self, diameter_mm: float, radii_mm: Floats) -> tuple[RoundPattern, RoundPattern]:
-        """Return tables of a smaller and a larger hole than the mean of the built radii."""
-        mean = math.fsum(radii_mm) / len(radii_mm) / (diameter_mm / 2.0) - 1.0
-        growth = max(2.0 * self.size_mm / diameter_mm, _LEAST_GROWTH)
-        cells = self.cells(diameter_mm)
-        return (
-            self._pattern(diameter_mm, mean - growth, cells),
-            self._pattern(diameter_mm, mean + growth, cells),
-        )
-
     def _pattern(self, diameter_mm: float, growth: float, cells: int) -> RoundPattern:
         camera = self.camera
-        radius = diameter_mm / 2.0
-        reach = _TABULATED * self._wave_mm * camera.height_mm / (2.0 * math.pi * radius)
+        radius, height = diameter_mm / 2.0, camera.focal_length_mm
+        reach = _TABULATED * self._wave_mm * height / (2.0 * math.pi * radius)
         return RoundPattern(
             radius_mm=radius,
-            height_mm=camera.height_mm,
+            height_mm=height,
             glass=camera.glass,
             sun=camera.sun,
             spectrum=self.spectrum,
@@ -112,20 +172,19 @@ class RoundSpots:
             cell_mm=self.pitch_mm / cells,
         )
 
-    def _half_axes(self, head: Floats, pattern: RoundPattern) -> Floats:
+    def _half_axes(self, head: Floats, group: _Holes) -> Floats:
         """(N, 2) of the ellipses that hold a spot, along and across the plane of incidence, mm."""
+        pattern = group.small
         sine = np.sqrt(np.sum(head[:, :2] ** 2, axis=1))
         spread = landing(sine, pattern.layers())[:, 1:]
         numbers = pattern.numbers(sine, self._wave_mm)
-        _, unit = pattern.scales(np.zeros(1))
-        level = self.skirt * float(pattern.tables()[0].max() * unit[0])
         light = 4.0 * math.pi * numbers[:, 0] * numbers[:, 1] * head[:, 2]
-        out = np.array([(float(share) / level) ** (1.0 / 3.0) for share in light])
+        out = np.array([(float(share) / group.level) ** (1.0 / 3.0) for share in light])
         turned = out[:, None] * self._wave_mm / (2.0 * math.pi * pattern.radius_mm)
         turned += math.sin(math.radians(self.camera.sun.diameter_deg / 2.0))
         return np.asarray(spread * turned + pattern.radius_mm + self.pitch_mm)
 
-    def boxes(self, sun: Floats, holes_mm: Floats, size: tuple[int, int], margin: int) -> Integers:
+    def boxes(self, sun: Floats, holes_mm: Floats, margin: int = 0) -> Integers:
         """(N, A, 4) first and past-last column and row each hole lights, within the detector.
 
         Parameters
@@ -134,8 +193,6 @@ class RoundSpots:
             (N, 3) directions.
         holes_mm
             (A, 3) built x and y from the detector's first corner, and radius.
-        size
-            Columns and rows.
         margin
             Pixels added all around.
         """
@@ -145,8 +202,8 @@ class RoundSpots:
         turn = np.where(sine[:, None] > 0.0, head[:, :2] / safe[:, None], [1.0, 0.0])
         chief = self.camera.glass.displacement(head, self.camera.height_mm)
         boxes = np.zeros((len(sun), len(holes_mm), 4), dtype=np.int64)
-        for diameter, mine in self._groups:
-            half = self._half_axes(head, self.patterns(diameter, holes_mm[mine, 2])[0])
+        for group in self.groups:
+            half, mine = self._half_axes(head, group), group.mine
             wide = np.stack(
                 [
                     np.sqrt((half[:, 0] * turn[:, 0]) ** 2 + (half[:, 1] * turn[:, 1]) ** 2),
@@ -157,7 +214,7 @@ class RoundSpots:
             middle = chief[:, None, :] + holes_mm[None, mine, :2]
             low = (middle - wide[:, None, :]) / self.pitch_mm - margin
             high = (middle + wide[:, None, :]) / self.pitch_mm + margin
-            limit = np.array(size, dtype=np.float64)
+            limit = np.array(self.size_px, dtype=np.float64)
             first = np.clip(np.floor(low), 0.0, limit).astype(np.int64)
             last = np.clip(np.ceil(high), 0.0, limit).astype(np.int64)
             empty = (last <= first).any(axis=2) | ~front[:, None]
@@ -167,64 +224,124 @@ class RoundSpots:
             )
         return boxes
 
-    def add(
-        self, frame: Floats, sun: Floats, holes_mm: Floats, passed: Floats, boxes: Integers
-    ) -> None:
-        """Add the light of one sample, in units of mean sunlight, to a frame (rows, columns).
+    def light(self, sun: Floats, holes_mm: Floats, passed: Floats) -> RoundLight:
+        """Return the light of Suns (N, 3), in units of mean sunlight, to be added to frames.
 
         Parameters
         ----------
-        frame
-            Added to.
         sun
-            (1, 3) direction.
+            (N, 3) directions.
         holes_mm
             As of `boxes`.
         passed
-            (A,) light that each hole passes.
-        boxes
-            (A, 4) as of `boxes`, without a margin.
+            (N, A) light that each hole passes; 0 where it is closed.
         """
-        from benchmark.simulator.kernels.diffraction import add_spots  # noqa: PLC0415 - Numba
-
         head, front = self._head(sun)
-        if not front[0]:
-            return
+        boxes = self.boxes(sun, holes_mm)
+        boxes[(passed == 0.0) | ~front[:, None]] = 0
         sine = np.sqrt(np.sum(head[:, :2] ** 2, axis=1))
         known = np.minimum(sine, math.sin(math.radians(self.widest_deg)))
-        transmitted = head[0, 2] * self.camera.glass.transmission(head)[0]
-        for diameter, mine in self._groups:
-            lit = mine[(boxes[mine, 1] > boxes[mine, 0]) & (boxes[mine, 3] > boxes[mine, 2])]
-            if not len(lit):
-                continue
-            small, large = self.patterns(diameter, holes_mm[mine, 2])
-            steps, unit = small.scales(known)
-            numbers = np.array(
-                [
-                    transmitted * unit[0],
-                    small.place(known)[0],
-                    *(1.0 / steps[0]),
-                    *small.seen(known)[0],
-                ]
-            )
-            part = (holes_mm[lit, 2] / small.radius_mm - 1.0 - small.growth) / (
-                large.growth - small.growth
-            )
-            cells = self.cells(diameter)
-            inside = (np.arange(cells) + 0.5) * (self.pitch_mm / cells)
-            add_spots(
-                frame,
-                (small.tables(), large.tables()),
-                (head[0], numbers, self._half_axes(head, small)[0]),
-                (
-                    np.column_stack([holes_mm[lit, :2], part, passed[lit]]),
-                    np.ascontiguousarray(boxes[lit]),
-                ),
-                (small.layers(), np.column_stack([inside, np.full(cells, 1.0 / cells)])),
-            )
+        transmitted = head[:, 2] * self.camera.glass.transmission(head)
+        wide = self._stretch
+        numbers, axes = [], []
+        for group in self.groups:
+            steps, unit = group.small.scales(known)
+            # lengths of the drawn height's pattern, on the built one's
+            seen = group.small.seen(known) * np.array([wide, *(1.0 / wide,) * 5])
+            place = group.small.place(known)
+            light = transmitted * unit
+            numbers.append(np.column_stack([light, place, wide / steps, seen]))
+            axes.append(self._half_axes(head, group))
+        return RoundLight(
+            self.groups,
+            layers(self.camera.height_mm, self.camera.glass),
+            # tables are of the drawn height: so much smaller is a hole that looks alike there
+            np.column_stack([holes_mm[:, :2], holes_mm[:, 2] / wide]),
+            head,
+            passed,
+            boxes,
+            (tuple(numbers), tuple(axes)),
+        )
 
     def _head(self, sun: Floats) -> tuple[Floats, NDArray[np.bool_]]:
         """(N, 3) the Sun as the head sees it, (N,) if in front; straight above where it is not."""
         head = self.camera.assembly.to_head(sun)
         front = head[:, 2] > 1e-6
         return np.where(front[:, None], head, [0.0, 0.0, 1.0]), front
+
+
+@dataclass(frozen=True, eq=False)
+class RoundLight:
+    """The spots of some samples, rendered one sample at a time.
+
+    Attributes
+    ----------
+    groups, layers
+        Of `RoundSpots`; (L, 2) of the built camera.
+    holes_mm
+        (A, 3) built x and y from the detector's first corner; radius at the drawn height.
+    head
+        (N, 3) the Sun as the head sees it.
+    passed
+        (N, A) light that each hole passes.
+    boxes
+        (N, A, 4) pixels that each hole lights; empty where none.
+    patterns
+        Of every group (N, 10) light of an open pixel, place among the tables, steps a unit of
+        direction cosine (2), and `RoundPattern.seen` (6); and (N, 2) half axes of spots.
+    """
+
+    groups: tuple[_Holes, ...]
+    layers: Floats
+    holes_mm: Floats
+    head: Floats
+    passed: Floats
+    boxes: Integers
+    patterns: tuple[tuple[Floats, ...], tuple[Floats, ...]]
+
+    def add(self, frame: Floats, n: int) -> Integers:
+        """Add the light of sample n to a frame (rows, columns).
+
+        Returns
+        -------
+        (B, 4) the boxes outside of which nothing was added.
+        """
+        from benchmark.simulator.kernels.diffraction import (  # noqa: PLC0415 - Numba
+            add_spots,
+            add_spots_alike,
+        )
+
+        boxes = self.boxes[n]
+        lit = (boxes[:, 1] > boxes[:, 0]) & (boxes[:, 3] > boxes[:, 2])
+        for group, numbers, axes in zip(self.groups, *self.patterns, strict=True):
+            mine = group.mine[lit[group.mine]]
+            if not len(mine):
+                continue
+            small, large = group.small, group.large
+            part = self.holes_mm[mine, 2] / small.radius_mm - 1.0 - small.growth
+            part /= large.growth - small.growth
+            sample = self.head[n], numbers[n], axes[n]
+            holes = (
+                np.column_stack([self.holes_mm[mine, :2], part, self.passed[n, mine]]),
+                np.ascontiguousarray(boxes[mine]),
+            )
+            if group.lattice:
+                optics = self.layers, group.nodes, group.lattice
+                add_spots_alike(frame, group.tables, sample, holes, optics)
+            else:
+                add_spots(frame, group.tables, sample, holes, (self.layers, group.nodes))
+        return np.asarray(boxes[lit])
+
+    def mark(self, near: NDArray[np.bool_], n: int, margin_px: int) -> None:
+        """Mark pixels (rows, columns) in sample n's spots, or within `margin_px` of them."""
+        from benchmark.simulator.kernels.ellipses import mark_ellipses  # noqa: PLC0415 - Numba
+
+        boxes, sun = self.boxes[n], self.head[n]
+        lit = (boxes[:, 1] > boxes[:, 0]) & (boxes[:, 3] > boxes[:, 2])
+        sine = math.hypot(sun[0], sun[1])
+        direction = sun[:2] / sine if sine > 0.0 else np.array([1.0, 0.0])
+        chief = direction * float(landing(np.array([sine]), self.layers)[0, 0])
+        for group, axes in zip(self.groups, self.patterns[1], strict=True):
+            mine = group.mine[lit[group.mine]]
+            middles = (self.holes_mm[mine, :2] + chief) / group.pitch_mm
+            mark_ellipses(near, middles, axes[n] / group.pitch_mm + margin_px, direction)

@@ -30,15 +30,21 @@ def both_sides(light: Floats, rest: Floats | None = None) -> Floats:
 
 
 def spread(light: Floats, shifts: Floats, weights: Floats, margin: int) -> Floats:
-    """(2 n + 1, n + 1) means of light, a `margin` wider all around, moved by (K, 2) steps."""
-    from benchmark.simulator.kernels.diffraction_patterns import (  # noqa: PLC0415 - Numba
-        spread_over_sun,
-    )
+    """(2 n + 1, n + 1) means of light, a `margin` wider all around, moved by (K, 2) steps.
 
-    reach = light.shape[1] - margin - 1
-    out = np.empty((2 * reach + 1, reach + 1))
-    spread_over_sun(out, light, np.ascontiguousarray(shifts), weights, margin)
-    return out
+    Light is even across its second axis, and is known on one side of it.
+    """
+    from scipy.fft import irfft2, next_fast_len, rfft2  # noqa: PLC0415 - SciPy on demand
+
+    from benchmark.simulator.kernels.diffraction_patterns import stencil  # noqa: PLC0415 - Numba
+
+    weight = stencil(np.ascontiguousarray(shifts), weights, margin)
+    both = np.concatenate([light[:, margin:0:-1], light], axis=1)
+    # whole as long as no sum goes round the ends
+    size = tuple(next_fast_len(n, real=True) for n in both.shape)
+    product = rfft2(both, size) * rfft2(weight[::-1, ::-1], size)
+    whole = irfft2(product, size)
+    return np.asarray(whole[2 * margin : both.shape[0], 2 * margin : both.shape[1]])
 
 
 def turned_cell(side: int) -> tuple[Floats, Floats]:

@@ -166,7 +166,9 @@ class DiffractedLight:
         return RectanglePattern(
             half_mm=(aperture.width_mm / 2.0, aperture.height_mm / 2.0),
             thickness_mm=camera.mask.thickness_mm,
-            height_mm=camera.height_mm,
+            # the drawn one, so that all units share their tables: those of edges are in Fresnel's
+            # own coordinate, and what is left at corners hardly depends on it
+            height_mm=camera.focal_length_mm,
             glass=camera.glass,
             sun=camera.sun,
             spectrum=self.spectrum,

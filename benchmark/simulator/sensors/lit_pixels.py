@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Hashable
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -16,10 +18,10 @@ from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
 from benchmark.simulator.sensors.multi_spot_frames import MultiSpotSensor
+from benchmark.simulator.sensors.stray_slope import UnevenScene
 
-#: Pixels kept around every spot, for derivatives over direction: a step of 5e-4 rad moves a spot
-#: 12 mm below its aperture, at 60 deg, by 1.2 pixels of 20 micrometres.
-MARGIN_PX = 3
+#: Largest step of the differences that bounds are made of, radians.
+STEP_RAD = 5e-4
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,41 +38,53 @@ class LitPixels:
     sensor: MultiSpotSensor
     scene: Scene
     pattern: FixedPattern
-    _pixels: NDArray[np.int64] = field(init=False)
-    _nowhere: NDArray[np.bool_] = field(init=False)
-    _gain: Floats = field(init=False)
-    _dark: Floats = field(init=False)
+    _pixels: NDArray[np.int32] = field(init=False)
+    _place: tuple[Hashable, ...] = field(init=False)
+    _unit: tuple[Floats, Floats, Floats] = field(init=False)
     _rest: Floats = field(init=False)
-    _earth: Floats = field(init=False)
-    _beyond: Floats = field(init=False)
-    _light: Floats = field(init=False)
+    _earth: tuple[Floats, Floats, Floats] = field(init=False)
 
     def __post_init__(self) -> None:
-        detector = self.sensor.detector
-        boxes = self.sensor.boxes(self.scene, self.pattern, MARGIN_PX)
-        gain, dark = self.pattern["gain"].ravel(), self.pattern["dark_e"].ravel()
-        chosen, rest = [], np.zeros((3, len(self.scene), self._means))
-        for n, mine in enumerate(boxes):
-            near = np.zeros((detector.rows, detector.columns), dtype=np.bool_)
-            for left, right, top, bottom in mine:
-                near[top:bottom, left:right] = True
-            chosen.append(np.flatnonzero(near))
-            far = ~near.ravel()
-            count = self._sums(np.ones(far.size), far)
-            some = np.maximum(count, 1.0)
-            rest[:, n] = count, self._sums(gain, far) / some, self._sums(dark, far) / some
-        pixels = np.full((len(chosen), max((len(c) for c in chosen), default=0)), -1)
-        for row, mine in zip(pixels, chosen, strict=True):
-            row[: len(mine)] = mine
+        detector, pattern = self.sensor.detector, self.pattern
+        pixels, sums = self._listed()
+        gain, dark = pattern["gain"].ravel(), pattern["dark_e"].ravel()
+        offsets = pattern.get("column_e", np.zeros(detector.columns))
+        name = self.sensor.place(pattern), digest_of(pixels), detector.errors.crosstalk
+        count, *totals = sums
+        some = np.maximum(count, 1.0)
         object.__setattr__(self, "_pixels", pixels)
-        object.__setattr__(self, "_nowhere", pixels < 0)
-        object.__setattr__(self, "_gain", detector.sunlit_e * gain[pixels])
-        object.__setattr__(self, "_dark", dark[pixels])
-        object.__setattr__(self, "_rest", rest)
-        earth, beyond = self._earthlight(pixels)
-        object.__setattr__(self, "_earth", earth)
-        object.__setattr__(self, "_beyond", beyond)
-        object.__setattr__(self, "_light", self._rendered(self.scene.sun))
+        object.__setattr__(self, "_place", name)
+        object.__setattr__(self, "_unit", (detector.sunlit_e * gain[pixels], dark[pixels], offsets))
+        object.__setattr__(self, "_rest", np.stack([count, *(total / some for total in totals)]))
+        object.__setattr__(self, "_earth", self._earthlight())
+
+    def _listed(self) -> tuple[NDArray[np.int32], Floats]:
+        """Places (N, P) of the pixels near light; (3, N, K) the others' number, gains and darks."""
+        from benchmark.simulator.sensors.lit_pixels_kernel import listed  # noqa: PLC0415 - Numba on demand
+
+        detector = self.sensor.detector
+        shape = detector.rows, detector.columns
+        near, place = np.zeros(shape, dtype=np.bool_), np.empty(shape, dtype=np.int32).reshape(-1)
+        light = self.sensor.light(self.scene.alone(), self.pattern)
+        unit = self.pattern["gain"], self.pattern["dark_e"]
+        sums, chosen = np.empty((3, len(self.scene), detector.columns)), []
+        for n, margin in enumerate(self._margins()):
+            light.mark(near, n, margin)
+            mine = np.empty((3, detector.columns))
+            count = listed(place, near, unit, mine)
+            sums[:, n] = mine
+            chosen.append(place[:count].copy())
+        pixels = np.full((len(chosen), max(map(len, chosen), default=0)), -1, dtype=np.int32)
+        for row, found in zip(pixels, chosen, strict=True):
+            row[: len(found)] = found
+        return pixels, sums if self._means > 1 else sums.sum(axis=2, keepdims=True)
+
+    def _margins(self) -> list[int]:
+        """Pixels that a step of the differences moves each sample's spots by, and one more."""
+        camera = self.sensor.camera
+        cosine = np.maximum(camera.assembly.to_head(self.scene.sun)[:, 2], 0.1)
+        moved = STEP_RAD * camera.height_mm / self.sensor.detector.pitch_mm / cosine**3
+        return [1 + math.ceil(float(one)) for one in np.minimum(moved, 16.0)]
 
     @property
     def _means(self) -> int:
@@ -79,119 +93,104 @@ class LitPixels:
         apart = detector.errors.smear or detector.shared_noise_e or detector.errors.column_offset_e
         return detector.columns if apart else 1
 
-    def _sums(self, values: Floats, chosen: NDArray[np.bool_]) -> Floats:
-        """(K,) sums of some pixels of a flat frame: of all, or of every column."""
-        if self._means == 1:
-            return np.array([values[chosen].sum()])
-        return np.asarray(np.where(chosen, values, 0.0).reshape(-1, self._means).sum(axis=0))
+    @property
+    def _nowhere(self) -> NDArray[np.bool_]:
+        return self._pixels < 0
 
-    def _columns_of(self, pixels: NDArray[np.int64]) -> NDArray[np.int64]:
-        return np.asarray(pixels % self.sensor.detector.columns)
-
-    def _earthlight(self, pixels: NDArray[np.int64]) -> tuple[Floats, Floats]:
+    def _earthlight(self) -> tuple[Floats, Floats, Floats]:
         """Light of the Earth and uneven stray light, before smear.
 
-        (N, P + K) on the pixels; last the others' means, with their gains. And (N, K) the others'
-        sums, without.
+        (N, P) on the pixels, (N, K) the others' means with their gains, (N, K) the others' sums
+        without.
         """
-        out = np.zeros((len(pixels), pixels.shape[1] + self._means))
+        detector, pixels = self.sensor.detector, self._pixels
+        out = np.zeros(pixels.shape)
+        means = np.zeros((len(pixels), self._means))
         beyond = np.zeros((len(pixels), self._means))
-        detector, gain = self.sensor.detector, self.pattern["gain"]
+        if self.scene.albedo is None and not isinstance(self.scene, UnevenScene):
+            return out, means, beyond
         spilling = replace(detector.errors, smear=0.0)
+        ones = np.ones(detector.rows * detector.columns)
         for n, mine in enumerate(pixels):
             frame = np.zeros((1, detector.rows, detector.columns))
             if not self.sensor.add_uneven(frame, self.scene.part(n, n + 1)):
                 continue
             frame = spilling.gathered(frame)
-            listed = mine >= 0
-            out[n, : -self._means][listed] = frame.ravel()[mine[listed]]
-            others = np.ones(frame.size, dtype=np.bool_)
-            others[mine[listed]] = False
-            count = np.maximum(self._sums(np.ones(frame.size), others), 1.0)
-            beyond[n] = self._sums(frame.ravel(), others)
-            frame[0] *= gain
-            out[n, -self._means :] = self._sums(frame.ravel(), others) / count
-        return out, beyond
+            listed = mine[mine >= 0]
+            out[n, : len(listed)] = frame.ravel()[listed]
+            frame.ravel()[listed] = 0.0
+            beyond[n] = self._summed(frame.ravel())
+            frame[0] *= self.pattern["gain"]
+            ones[listed] = 0.0
+            means[n] = self._summed(frame.ravel()) / np.maximum(self._summed(ones), 1.0)
+            ones[listed] = 1.0
+        return out, means, beyond
 
-    def _rendered(self, sun: Floats) -> Floats:
-        """(N, P) light of mean sunlight on the pixels."""
-        detector = self.sensor.detector
-        mask = digest_of(self.pattern["apertures"], self.pattern["transmission"], self._pixels)
-        place = detector.rows, detector.columns, detector.pitch_mm
-        moment = self.sensor.moment(self.scene.seen_from(sun))
-        key = (*self.sensor.optics(), mask, place, detector.errors.crosstalk, *moment)
+    def _summed(self, values: Floats) -> Floats:
+        """(K,) sums of a flat frame: of all, or of every column."""
+        if self._means == 1:
+            return np.array([values.sum()])
+        return np.asarray(values.reshape(-1, self._means).sum(axis=0))
+
+    def _rendered(self, sun: Floats) -> NDArray[np.float32]:
+        """(N, P) light of mean sunlight on the pixels; single precision, half the room to keep."""
+        key = (*self._place, sun.tobytes())
         return memory.rendered(key, lambda: self._from(sun))
 
-    def _from(self, sun: Floats) -> Floats:
+    def _from(self, sun: Floats) -> NDArray[np.float32]:
+        from benchmark.simulator.sensors.lit_pixels_kernel import take  # noqa: PLC0415 - Numba on demand
+
         detector = self.sensor.detector
         frame = np.zeros((detector.rows, detector.columns))
-        out = np.zeros(self._pixels.shape)
+        out = np.zeros(self._pixels.shape, dtype=np.float32)
+        light = self.sensor.light(self.scene.alone().seen_from(sun), self.pattern)
         for n, pixels in enumerate(self._pixels):
-            one = self.scene.part(n, n + 1).alone().seen_from(sun[n : n + 1])
-            boxes = self.sensor.add_light(frame, one, self.pattern)
-            listed = pixels >= 0
-            out[n, listed] = self._picked(frame, pixels[listed])
+            boxes = light.add(frame, n)
+            take(out[n], frame, pixels, detector.errors.crosstalk)
             for left, right, top, bottom in boxes:
                 frame[top:bottom, left:right] = 0.0
         return out
 
-    def _picked(self, frame: Floats, pixels: NDArray[np.int64]) -> Floats:
-        """(P,) light of some pixels of a frame, after crosstalk."""
-        flat, share = frame.ravel(), self.sensor.detector.errors.crosstalk
-        if not share:
-            return np.asarray(flat[pixels])
-        rows, columns = frame.shape
-        y, x = np.divmod(pixels, columns)
-        around = flat[np.maximum(y - 1, 0) * columns + x]
-        around += flat[np.minimum(y + 1, rows - 1) * columns + x]
-        around += flat[y * columns + np.maximum(x - 1, 0)]
-        around += flat[y * columns + np.minimum(x + 1, columns - 1)]
-        return np.asarray((1.0 - share) * flat[pixels] + share / 4.0 * around)
-
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, P + K) mean digital numbers before rounding; 0 where a row has no such pixel."""
-        detector = self.sensor.detector
-        same = np.array_equal(scene.sun, self.scene.sun)
-        light = self._light if same else self._rendered(scene.sun)
+        from benchmark.simulator.sensors.lit_pixels_kernel import read_out  # noqa: PLC0415 - Numba on demand
+
+        detector, errors = self.sensor.detector, self.sensor.detector.errors
+        light = self._rendered(scene.sun)
         count, gain, dark = self._rest
+        near, means, _ = self._earth
         numbers = np.empty((len(scene), light.shape[1] + self._means))
-        near, rest = numbers[:, : -self._means], numbers[:, -self._means :]
-        np.multiply(light, scene.irradiance[:, None], out=near)
-        near += scene.stray[:, None]
-        near += self._earth[:, : -self._means]
-        smeared = self._smear(near, scene)
-        near *= self._gain
-        near += self._dark
-        rest[:] = scene.stray[:, None] * detector.sunlit_e * gain + dark
-        rest += detector.sunlit_e * self._earth[:, -self._means :]
-        if smeared is not None:
+        levels = np.column_stack([scene.irradiance, scene.stray])
+        smeared = self._smear(light, levels)
+        well = detector.full_well_e
+        read_out(
+            numbers,
+            (light, near, smeared, levels),
+            self._pixels,
+            self._unit,
+            (well, errors.nonlinearity / well, detector.gain_e_per_dn, float(detector.offset_dn)),
+        )
+        rest = scene.stray[:, None] * detector.sunlit_e * gain + dark
+        rest += detector.sunlit_e * means
+        if errors.smear:
             rest += smeared * detector.sunlit_e * gain
-        np.minimum(numbers, detector.full_well_e, out=numbers)
-        numbers = detector.errors.read(numbers, detector.full_well_e)
-        near, rest = numbers[:, : -self._means], numbers[:, -self._means :]
+        rest = errors.read(np.minimum(rest, well), well)
         if "column_e" in pattern:
-            near += pattern["column_e"][self._columns_of(self._pixels)]
-            rest += pattern["column_e"]
-        numbers /= detector.gain_e_per_dn
-        numbers += detector.offset_dn
-        near[self._nowhere] = 0.0
-        rest[count == 0] = 0.0
+            rest = rest + pattern["column_e"]
+        rest = rest / detector.gain_e_per_dn + detector.offset_dn
+        numbers[:, light.shape[1] :] = np.where(count > 0, rest, 0.0)
         return numbers
 
-    def _smear(self, near: Floats, scene: Scene) -> Floats | None:
-        """(N, K) light that every pixel of a column gets of all of it, added to `near` (N, P)."""
-        errors = self.sensor.detector.errors
-        if not errors.smear:
-            return None
-        light = np.where(self._nowhere, 0.0, near)
-        columns = self._columns_of(self._pixels)
-        first = np.arange(len(light))[:, None] * self._means
-        total = np.bincount(
-            (columns + first).ravel(), light.ravel(), minlength=len(light) * self._means
-        ).reshape(len(light), -1)
-        total = errors.smear * (total + self._beyond + scene.stray[:, None] * self._rest[0])
-        near += np.take_along_axis(total, columns, axis=1)
-        return np.asarray(total)
+    def _smear(self, light: NDArray[np.float32], levels: Floats) -> Floats:
+        """(N, K) light that every pixel of a column gets of all of it; (N, 0) without smear."""
+        from benchmark.simulator.sensors.lit_pixels_kernel import column_light  # noqa: PLC0415 - Numba on demand
+
+        if not self.sensor.detector.errors.smear:
+            return np.zeros((len(light), 0))
+        near, _, beyond = self._earth
+        total = beyond + levels[:, 1:] * self._rest[0]
+        column_light(total, light, near, self._pixels, levels)
+        return np.asarray(self.sensor.detector.errors.smear * total)
 
     def variance(self, expected: Floats) -> Floats:
         """Squared digital numbers; 1 where a row has no such pixel."""
@@ -218,7 +217,7 @@ class LitPixels:
         if self._means == 1:
             return None
         # elements that are none have a group of their own
-        near = np.where(self._nowhere, detector.columns, self._columns_of(self._pixels))
+        near = np.where(self._nowhere, detector.columns, self._pixels % detector.columns)
         rest = np.where(self._rest[0] > 0, np.arange(self._means), detector.columns)
         return column_noise(detector, np.concatenate([near, rest], axis=1), references)
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field, replace
-from functools import cached_property, partial
-from typing import ClassVar
+from functools import cache, cached_property, partial
+from typing import ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,6 +36,16 @@ Integers = NDArray[np.int64]
 
 #: Below this read noise the Gaussian shot noise of dim pixels is not good enough.
 LEAST_READ_NOISE_E = 10.0
+
+
+class Rendering(Protocol):
+    """The light of some samples under mean sunlight, one sample at a time."""
+
+    def add(self, frame: Floats, n: int) -> Integers:
+        """Add sample n's to a frame; (B, 4) boxes outside of which nothing was added."""
+
+    def mark(self, near: NDArray[np.bool_], n: int, margin_px: int) -> None:
+        """Mark the pixels that sample n's lights, and so many around them."""
 
 
 @dataclass(frozen=True)
@@ -116,8 +126,7 @@ class MultiSpotSensor:
         Empty (past-last not above first) where its light misses the detector or it is closed.
         """
         if self.spectrum is not None:
-            size = (self.detector.columns, self.detector.rows)
-            boxes = self._spots.boxes(scene.sun, self._holes(pattern), size, margin_px)
+            boxes = self._spots.boxes(scene.sun, self._holes(pattern), margin_px)
             boxes[:, pattern["transmission"] == 0.0] = 0
             return boxes
         light = self.camera.project(scene.sun)
@@ -133,6 +142,7 @@ class MultiSpotSensor:
             camera=self.camera,
             spectrum=self.spectrum,
             pitch_mm=self.detector.pitch_mm,
+            size_px=(self.detector.columns, self.detector.rows),
             widest_deg=self.widest_deg,
             size_mm=size,
             skirt=self.skirt,
@@ -175,8 +185,9 @@ class MultiSpotSensor:
         The rendering alone: the built mask, but no pixel gains, noise or stray light.
         """
         frames = np.zeros((len(scene), self.detector.rows, self.detector.columns))
+        light = self.light(scene, pattern)
         for n, frame in enumerate(frames):
-            self.add_light(frame, scene.part(n, n + 1), pattern)
+            light.add(frame, n)
         return frames
 
     def dimmed(self, scene: Scene) -> Floats:
@@ -186,30 +197,16 @@ class MultiSpotSensor:
         cosine = self.camera.assembly.to_head(scene.sun)[:, 2]
         return scene.irradiance * tunnel_response(cosine, self.detector.tunnel)
 
-    def add_light(self, frame: Floats, one: Scene, pattern: FixedPattern) -> Integers:
-        """Add the light of one sample to `frame` (rows, columns).
-
-        Returns
-        -------
-        (B, 4) the boxes (as `boxes`) outside of which nothing was added.
-        """
+    def light(self, scene: Scene, pattern: FixedPattern) -> Rendering:
+        """Return the light of the samples of a scene, to be added to frames one by one."""
+        dimmed = self.dimmed(scene)
         if self.spectrum is not None:
-            boxes = self.boxes(one, pattern)[0]
-            passed = pattern["transmission"] * self.dimmed(one)[0]
-            self._spots.add(frame, one.sun, self._holes(pattern), passed, boxes)
-            lit = (boxes[:, 1] > boxes[:, 0]) & (boxes[:, 3] > boxes[:, 2])
-            return np.asarray(boxes[lit])
-        from benchmark.simulator.kernels.rasteriser import add_apertures  # noqa: PLC0415 - Numba on demand
-
-        projected = self.camera.project(one.sun)
+            passed = dimmed[:, None] * pattern["transmission"]
+            return self._spots.light(scene.sun, self._holes(pattern), passed)
+        projected = self.camera.project(scene.sun)
         rims = np.ascontiguousarray(projected.rims_mm / self.detector.pitch_mm)
-        light = projected.light * self.dimmed(one)[:, None]
-        if not light.any():
-            return np.zeros((0, 4), dtype=np.int64)
-        boxes = self._boxes(rims, pattern, 0)[0]
-        add_apertures(frame, (pattern["apertures"], pattern["transmission"]), rims, light, boxes)
-        lit = (boxes[:, 1] > boxes[:, 0]) & (boxes[:, 3] > boxes[:, 2])
-        return np.asarray(boxes[lit])
+        light = projected.light * dimmed[:, None]
+        return _Shadows(pattern, rims, light, self._boxes(rims, pattern, 0))
 
     def earth_through(
         self,
@@ -225,11 +222,16 @@ class MultiSpotSensor:
         whole = replace(scene, origin_px=np.zeros((len(scene), 2), dtype=np.int64))
         return self._whole().earth_through(earth, nadir, whole, {})
 
-    def optics(self) -> tuple[Hashable, ...]:
-        """Return what light on the detector depends on, besides pixels and the built mask."""
-        # the holes that are tabulated lie as far apart as built ones are expected to
-        numbers = self.widest_deg, self.skirt, self.errors.edge_mm, self.detector.tunnel
-        return type(self).__name__, self.camera, self.spectrum, numbers
+    def place(self, pattern: FixedPattern) -> tuple[Hashable, ...]:
+        """Return what light on the detector depends on besides the Sun, in brief."""
+        detector = self.detector
+        pixels = detector.rows, detector.columns, detector.pitch_mm, detector.tunnel
+        # tables are of holes as far apart as built ones are expected to be
+        spots = self.widest_deg, self.skirt, self.errors.edge_mm
+        # spelt once: to compare masks hole by hole, sample by sample, would take longer
+        said = repr((type(self).__name__, self.camera, self.spectrum, spots, pixels))
+        mask = digest_of(pattern["apertures"], pattern["transmission"])
+        return digest_of(np.frombuffer(said.encode(), dtype=np.uint8)), mask
 
     def add_uneven(self, frames: Floats, scene: Scene) -> bool:
         """Add light of the Earth and sloping stray light to frames (N, rows, columns), if any."""
@@ -305,14 +307,14 @@ class MultiSpotSensor:
         gathered = np.empty(shape) if errors.moves_charge else None
         words = (shape[0] * shape[1] + 1) // 2
         flat = light.reshape(-1)
-        mask = digest_of(pattern["apertures"], pattern["transmission"])
-        key = (*self.optics(), mask, shape, detector.pitch_mm)
+        key = self.place(pattern)
+        # made only where some light is not known yet
+        rendering = cache(partial(self.light, scene.alone(), pattern))
         for n in range(len(scene)):
-            one = scene.part(n, n + 1).alone()
             places, values = memory.places(
-                (*key, one.sun.tobytes()), partial(self._places, light, one, pattern)
+                (*key, scene.sun[n].tobytes()), partial(_places, light, rendering, n)
             )
-            flat[places] = values * scene.irradiance[n]
+            flat[places] = np.multiply(values, scene.irradiance[n], dtype=np.float64)
             uneven = self.add_uneven(light[None], scene.part(n, n + 1))
             seen, stray = light, float(scene.stray[n])
             if gathered is not None:
@@ -331,13 +333,40 @@ class MultiSpotSensor:
             flat[slice(None) if uneven else places] = 0.0
         return out
 
-    def _places(self, frame: Floats, one: Scene, pattern: FixedPattern) -> Places:
-        """Light of one sample, rendered in a dark frame that is dark again afterwards."""
-        from benchmark.simulator.kernels.rasteriser import take_light  # noqa: PLC0415 - Numba on demand
 
-        boxes = self.add_light(frame, one, pattern)
-        room = int(((boxes[:, 1] - boxes[:, 0]) * (boxes[:, 3] - boxes[:, 2])).sum())
-        room = min(room, frame.size)
-        places, values = np.empty(room, dtype=np.int32), np.empty(room)
-        count = take_light(frame, boxes, places, values)
-        return places[:count].copy(), values[:count].copy()
+@dataclass(frozen=True, eq=False)
+class _Shadows:
+    """Shadows of a mask: `Rendering` without diffraction."""
+
+    pattern: FixedPattern
+    rims: Floats
+    light: Floats
+    boxes: Integers
+
+    def add(self, frame: Floats, n: int) -> Integers:
+        from benchmark.simulator.kernels.rasteriser import add_apertures  # noqa: PLC0415 - Numba on demand
+
+        light, boxes = self.light[n : n + 1], self.boxes[n]
+        if not light.any():
+            return np.zeros((0, 4), dtype=np.int64)
+        table = self.pattern["apertures"], self.pattern["transmission"]
+        add_apertures(frame, table, np.ascontiguousarray(self.rims[:, n : n + 1]), light, boxes)
+        lit = (boxes[:, 1] > boxes[:, 0]) & (boxes[:, 3] > boxes[:, 2])
+        return np.asarray(boxes[lit])
+
+    def mark(self, near: NDArray[np.bool_], n: int, margin_px: int) -> None:
+        from benchmark.simulator.sensors.lit_pixels_kernel import mark_boxes  # noqa: PLC0415 - Numba on demand
+
+        mark_boxes(near, self.boxes[n], margin_px)
+
+
+def _places(frame: Floats, rendering: Callable[[], Rendering], n: int) -> Places:
+    """Light of one sample, rendered in a dark frame that is dark again afterwards."""
+    from benchmark.simulator.kernels.rasteriser import take_light  # noqa: PLC0415 - Numba on demand
+
+    boxes = rendering().add(frame, n)
+    room = int(((boxes[:, 1] - boxes[:, 0]) * (boxes[:, 3] - boxes[:, 2])).sum())
+    room = min(room, frame.size)
+    places, values = np.empty(room, dtype=np.int32), np.empty(room, dtype=np.float32)
+    count = take_light(frame, boxes, places, values)
+    return places[:count].copy(), values[:count].copy()

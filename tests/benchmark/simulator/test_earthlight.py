@@ -266,7 +266,7 @@ def test_full_frames_behind_many_holes_have_the_earth_in_every_way_they_are_made
     kept = near.expected(scene, pattern)
     for n in range(2):
         mine = near._pixels[n][near._pixels[n] >= 0]
-        assert kept[n, : len(mine)] == pytest.approx(bright[n].ravel()[mine], rel=1e-12)
+        assert kept[n, : len(mine)] == pytest.approx(bright[n].ravel()[mine], rel=1e-7)
         # columns have amplifiers of their own, and a mean of the other pixels each
         others = bright[n].copy()
         others.ravel()[mine] = np.nan

@@ -185,7 +185,8 @@ def test_stray_light_slopes_across_full_frames_from_edge_to_edge() -> None:
     near = LitPixels(sensor, uneven, pattern)
     whole, kept = sensor.expected(uneven, pattern)[0].ravel(), near.expected(uneven, pattern)[0]
     mine = near._pixels[0][near._pixels[0] >= 0]
-    assert kept[: len(mine)] == pytest.approx(whole[mine], rel=1e-12)
+    # light on them is kept in single precision
+    assert kept[: len(mine)] == pytest.approx(whole[mine], rel=1e-7)
     rest = np.setdiff1d(np.arange(whole.size), mine)
     assert kept[-1] == pytest.approx(whole[rest].mean(), rel=1e-9)
 
