@@ -76,7 +76,8 @@ def generated(
     place = _place_of(preset, condition, unit)
     if place not in _kept:
         _make_room()
-        memory.remember((preset.name, unit))  # the conditions of a dataset see the same Suns
+        # the conditions of a dataset see the same Suns, its units look up the same tables
+        memory.remember((preset.name, unit), preset.name)
         seen_by = preset.as_unit(unit) if unit else preset
         wanted = SPLITS if not unit else ("calibration", "test")
         splits = {split: seen_by.generate(condition, split) for split in wanted}

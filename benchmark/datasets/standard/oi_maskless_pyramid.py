@@ -17,7 +17,7 @@ _SENSOR = OptoIsolatorSensor(QUADRANTS, _READOUT, normal_error_deg=1.0)
 
 PRESET = faces(
     name="oi-maskless-pyramid",
-    version=2,
+    version=3,
     detector="OI",
     normals=QUADRANTS,
     order=TOWARDS_QUADRANTS,

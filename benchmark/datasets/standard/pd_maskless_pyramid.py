@@ -10,7 +10,7 @@ _NORMALS = pyramid(6, 30.0)
 
 PRESET = faces(
     name="pd-maskless-pyramid",
-    version=2,
+    version=3,
     detector="PD",
     normals=_NORMALS,
     order="faces at azimuths 0, 60, ..., 300 deg from +x to +y",

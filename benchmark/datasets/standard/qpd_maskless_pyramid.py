@@ -13,7 +13,7 @@ from benchmark.datasets.conditions.faces import (
 
 PRESET = faces(
     name="qpd-maskless-pyramid",
-    version=2,
+    version=3,
     detector="QPD",
     normals=QUADRANTS,
     order=TOWARDS_QUADRANTS,

@@ -16,7 +16,7 @@ _OFF = "focal length 2.5 % long, aperture 50 and -40 um off centre"
 
 PRESET = diodes.masked_photodiodes(
     name="qpd-single-aperture",
-    version=2,
+    version=3,
     detector="QPD",
     mask="Single-Ap.",
     readings=diodes.QUADRANTS,

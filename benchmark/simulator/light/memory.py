@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Hashable
+from functools import lru_cache
 from typing import Any, TypeVar, cast
 
 import numpy as np
@@ -22,6 +23,7 @@ Places = tuple[NDArray[np.int32], NDArray[np.float32]]
 #: Such places (None: everywhere), the values, the array's shape.
 _Kept = tuple[NDArray[np.int32] | None, NDArray[Any], tuple[int, ...]]
 Light = TypeVar("Light", bound=NDArray[Any])
+Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 class LightMemory:
@@ -33,14 +35,33 @@ class LightMemory:
         self.places_bytes = 0
         self.hits = 0
         self._owner: Hashable = None
+        self._family: Hashable = None
+        self._tables: list[Callable[[], None]] = []
         self._kept: dict[Hashable, _Kept] = {}
         self._places: dict[Hashable, Places] = {}
 
-    def remember(self, owner: Hashable) -> None:
-        """Keep light from now on; what was kept for another owner is let go."""
+    def remember(self, owner: Hashable, family: Hashable = None) -> None:
+        """Keep light from now on; what was kept for another owner is let go.
+
+        So are tables (`tables`) when owners of another family come, who look up others.
+        """
         if owner != self._owner:
             self.forget()
             self._owner = owner
+        if family != self._family:
+            for let_go in self._tables:
+                let_go()
+            self._family = family
+
+    def tables(self, most: int) -> Callable[[Function], Function]:
+        """Keep what a function made for its last so many arguments until `remember` lets go."""
+
+        def kept(function: Function) -> Function:
+            known = lru_cache(maxsize=most)(function)
+            self._tables.append(known.cache_clear)
+            return cast("Function", known)
+
+        return kept
 
     def forget(self) -> None:
         """Let go of everything and keep nothing more."""

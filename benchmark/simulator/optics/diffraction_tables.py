@@ -10,6 +10,7 @@ from functools import lru_cache
 import numpy as np
 
 from algorithms.contract import Floats
+from benchmark.simulator.light.memory import memory
 from benchmark.simulator.light.sun_disc import SolarDisc
 from benchmark.simulator.optics.diffraction import (
     Spectrum,
@@ -338,7 +339,7 @@ class RoundPattern:
         return both.reshape(-1, 2), np.outer(weights, share).ravel()
 
 
-@lru_cache(maxsize=16)
+@memory.tables(16)
 def _tables(pattern: RoundPattern) -> Floats:
     steps, _ = pattern.scales(np.zeros(1))
     across = landing(np.zeros(1), pattern.layers())[0, 1]

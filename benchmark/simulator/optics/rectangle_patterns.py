@@ -17,11 +17,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from functools import lru_cache
 
 import numpy as np
 
 from algorithms.contract import Floats
+from benchmark.simulator.light.memory import memory
 from benchmark.simulator.light.sun_disc import SolarDisc
 from benchmark.simulator.optics.diffraction import Spectrum
 from benchmark.simulator.optics.diffraction_tables import fresnel_table
@@ -303,7 +303,7 @@ def _per_root() -> float:
     return 1.0 / (_CORNER_STEP * _ROOT)
 
 
-@lru_cache(maxsize=16)
+@memory.tables(16)
 def _running(lowest: float, highest: float, far: float, softness: float) -> Slits:
     from benchmark.simulator.kernels.slit_integrals import (  # noqa: PLC0415 - Numba on demand
         running_integrals,
@@ -323,7 +323,7 @@ def _running(lowest: float, highest: float, far: float, softness: float) -> Slit
     return sums, lowest, _ROWS, per_half
 
 
-@lru_cache(maxsize=8)
+@memory.tables(8)
 def _corners(pattern: RectanglePattern) -> Floats:
     angles = [math.radians(pattern.widest_deg) * n / (_INCIDENCES - 1) for n in range(_INCIDENCES)]
     slopes = [math.tan(angle) for angle in angles]
@@ -333,7 +333,7 @@ def _corners(pattern: RectanglePattern) -> Floats:
     return tables
 
 
-@lru_cache(maxsize=8)
+@memory.tables(8)
 def _ends(pattern: RectanglePattern) -> Floats:
     slopes = [
         math.tan(math.radians(pattern.widest_deg)) * n / (_SLOPES - 1) for n in range(_SLOPES)
@@ -352,7 +352,7 @@ def _ends(pattern: RectanglePattern) -> Floats:
     return tables
 
 
-@lru_cache(maxsize=8)
+@memory.tables(8)
 def _sides(pattern: RectanglePattern) -> Floats:
     """As `_ends`, of the rectangle on its side."""
     half = pattern.half_mm[1], pattern.half_mm[0]
@@ -366,7 +366,7 @@ def _towards(x: float, y: float) -> Floats:
     return np.array([[x / length, y / length, 1.0 / length]])
 
 
-@lru_cache(maxsize=8)
+@memory.tables(8)
 def _transform(darkening: float) -> Floats:
     """(Z,) transform of the unit disc, at steps of 1/16 cycle a radius."""
     disc = disc_strips(darkening, 40, 24)

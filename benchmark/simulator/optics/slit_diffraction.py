@@ -38,11 +38,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 
 from algorithms.contract import Floats
+from benchmark.simulator.light.memory import memory
 from benchmark.simulator.light.sun_disc import SolarDisc
 from benchmark.simulator.optics.diffraction import Spectrum
 from benchmark.simulator.optics.diffraction_tables import fresnel_table
@@ -130,7 +130,7 @@ def chords(disc: SolarDisc, widest_mm: float, wavelength_mm: float) -> Floats:
     return _chords(disc, widest_mm, wavelength_mm)
 
 
-@lru_cache(maxsize=32)
+@memory.tables(32)
 def _chords(disc: SolarDisc, widest_mm: float, wavelength_mm: float) -> Floats:
     if disc.diameter_deg == 0.0:
         return np.array([[0.0, 0.0, 1.0]])
