@@ -116,7 +116,7 @@ def _reach(
 
 
 @compiled
-def normal_equations(  # noqa: PLR0917 - Numba takes no keyword-only ones
+def normal_equations(  # noqa: C901, PLR0917 - one pass over the pixels; Numba takes no keyword-only ones
     row: Floats,
     floor: float,
     places: Floats,
@@ -141,34 +141,49 @@ def normal_equations(  # noqa: PLR0917 - Numba takes no keyword-only ones
     amplitudes = column.max() + 1
     q = np.zeros(size)
     touched = np.empty(size, dtype=np.int64)
+    met = np.zeros(size, dtype=np.bool_)
     first, last = _reach(places, groups, halves, amplitudes, around)
+    middles = np.empty(places.size)
+    for i in range(places.size):
+        middles[i] = places[i] + around[amplitudes + groups[i]]
+    order = np.argsort(middles)
+    widest = _FAR * halves.max()
+    nearest = 0
     for n in range(max(math.floor(first), 0), min(math.ceil(last) + 1, row.size)):
         model = 0.0
-        lit = False
-        for i in range(places.size):
+        count = 0
+        # spots from left to right: a pixel asks those whose light may reach it
+        while nearest < places.size and middles[order[nearest]] + widest + 1.0 < n:
+            nearest += 1
+        for k in range(nearest, places.size):
+            i = order[k]
+            if middles[i] - widest - 1.0 > n:
+                break
             group = amplitudes + groups[i]
             if abs(n - places[i] - around[group]) <= _FAR * halves[i]:
                 u = (n - places[i] - found[group]) / halves[i]
-                if not lit:
-                    q[:] = 0.0
-                    lit = True
                 value, slope = image_of(u, kind, c)
                 a = found[column[i]]
                 model += a * value
+                for one in (column[i], group):
+                    if not met[one]:
+                        met[one] = True
+                        touched[count] = one
+                        count += 1
                 q[column[i]] += value
                 q[group] -= a * slope / halves[i]
-        if lit:
-            beta = row[n] - floor - model
-            count = 0
-            for i in range(size):
-                if q[i] != 0.0:
-                    touched[count] = i
-                    count += 1
-            for k in range(count):
-                i = touched[k]
-                right[i] += q[i] * beta
-                for m in range(k + 1):
-                    matrix[i, touched[m]] += q[i] * q[touched[m]]
+        if count == 0:
+            continue
+        beta = row[n] - floor - model
+        for k in range(count):
+            i = touched[k]
+            right[i] += q[i] * beta
+            for m in range(k + 1):
+                j = touched[m]
+                matrix[max(i, j), min(i, j)] += q[i] * q[j]
+        for k in range(count):
+            q[touched[k]] = 0.0
+            met[touched[k]] = False
 
 
 @compiled
