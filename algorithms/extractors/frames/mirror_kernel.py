@@ -27,19 +27,25 @@ TAPS = np.array(
         [0.0518314, -0.0676519, 0.0497708, -0.0240701, 0.0074510, -0.0011357],
     ]
 )
+#: The sharpest weighting: slope along one axis by four pixels, mean along the other by three.
+_SLOPE_1, _SLOPE_2, _BESIDE, _MIDDLE = 2.0 / 3.0, -1.0 / 12.0, 1.0 / 6.0, 2.0 / 3.0
 #: Pixels around the box of the mean that hold its border's values.
 _PAD = 8
 #: Half the core, px: the lit extent times one and a bit, more where the light falls off slowly.
 _WIDER, _SOFTER, _MARGIN = 1.1, 1.5, 3.0
 #: The ring about the core that tells the background's slope, px and over the core.
 _RING, _RING_SHARE = 3.0, 0.3
-#: Levels of smoothing of the weighting, by binomials 1, 2, 4 ... px apart.
+#: Levels of smoothing of the weighting, by binomials 2, 4 ... px apart.
 _LEVELS = 5
 #: Share of noise in the weighting from which a smoother one is tried.
 _NOISY = 0.05
-_PASSES, _CENTRES = 6, 3
-#: Change of d, px, up to which the filters of the last one stand.
-_SAME = 0.02
+_TURNS, _CENTRES = 6, 3
+#: Change of d, px, up to which the slopes for the last one stand.
+_SAME = 0.05
+#: What the slopes miss of a sharp rim, over the peak: pixels are not trusted to better than that.
+_FLOOR = 0.0015
+#: A pixel counts as lit above this fraction of the peak.
+_CUT = 0.3
 #: A pair is left out whose difference departs by so many deviations and this share of the slope.
 _BAD, _BAD_SLOPE = 6.0, 0.4
 #: Light that departs in clusters of pairs, over the spot's, above which it is not symmetric.
@@ -48,6 +54,8 @@ _ASYMMETRIC = 0.06
 _UNSURE = 0.5
 #: From the lit light's centroid, in half extents and px, no registration leads further.
 _ASTRAY, _ASTRAY_PX = 0.25, 0.75
+#: Standard deviation of the background's slope, over the spot's own, before anything is known.
+_PRIOR = 0.01
 
 
 def _noise_of_levels() -> tuple[Floats, Floats]:
@@ -55,16 +63,17 @@ def _noise_of_levels() -> tuple[Floats, Floats]:
     squares, products = np.empty(_LEVELS), np.empty(_LEVELS)
     smooth = np.array([1.0])
     for level in range(_LEVELS):
-        binomial = np.zeros(2 * 2**level + 1)
-        binomial[[0, 2**level, -1]] = 0.25, 0.5, 0.25
-        smooth = np.convolve(smooth, binomial)
-        slope = np.convolve(smooth, [-0.5, 0.0, 0.5])
-        if level==0: slope=np.array([-.5,0,.5])
-        squares[level] = np.sum(slope**2) * np.sum(smooth**2)
+        if level > 0:
+            binomial = np.zeros(2 ** (level + 1) + 1)
+            binomial[[0, 2**level, -1]] = 0.25, 0.5, 0.25
+            smooth = np.convolve(smooth, binomial)
+        slope = np.convolve(smooth, [-_SLOPE_2, -_SLOPE_1, 0.0, _SLOPE_1, _SLOPE_2])
+        mean = np.convolve(smooth, [_BESIDE, _MIDDLE, _BESIDE])
+        squares[level] = np.sum(slope**2) * np.sum(mean**2)
         middle = len(slope) // 2
         reach = min(TAPS.shape[1], middle)
         taps = slope[middle + 1 : middle + 1 + reach]
-        products[level] = 2.0 * taps @ TAPS[0, :reach] * smooth[len(smooth) // 2]
+        products[level] = 2.0 * np.sum(taps * TAPS[0, :reach]) * mean[len(mean) // 2]
     return squares, products
 
 
@@ -72,39 +81,64 @@ _SQUARES, _PRODUCTS = _noise_of_levels()
 
 
 @compiled
+def _dot(a: Floats, b: Floats) -> float:
+    """Sum of products in eight sums side by side: one alone waits for itself at every number."""
+    whole = a.size - a.size % 8
+    s0, s1, s2, s3, s4, s5, s6, s7 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for q in range(0, whole, 8):
+        s0 += a[q] * b[q]
+        s1 += a[q + 1] * b[q + 1]
+        s2 += a[q + 2] * b[q + 2]
+        s3 += a[q + 3] * b[q + 3]
+        s4 += a[q + 4] * b[q + 4]
+        s5 += a[q + 5] * b[q + 5]
+        s6 += a[q + 6] * b[q + 6]
+        s7 += a[q + 7] * b[q + 7]
+    for q in range(whole, a.size):
+        s0 += a[q] * b[q]
+    return ((s0 + s1) + (s2 + s3)) + ((s4 + s5) + (s6 + s7))
+
+
+@compiled
 def _pairs(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    frame: NDArray[Any], box: NDArray[np.int64], base: float, most: float, s: Floats, d: Floats
+    frame: NDArray[Any], left: int, top: int, last: int, light: tuple[float, float], s: Floats, d: Floats
 ) -> None:
     """Write means of pairs to `s`, with a margin, and differences to `d`, the upper half's rows.
 
-    `box` holds first and last column and first and last row. Light above `most` counts as `most`.
+    The box begins at column `left` and row `top` and ends with row `last`; `light` is what to take
+    off, and the most that a pixel counts.
     """
-    left, right, top, bottom = box
-    rows, columns = len(d), right - left + 1
+    rows, columns = d.shape
+    base, most = light
     for i in range(rows):
-        upper = frame[top + i, left : right + 1]
-        lower = frame[bottom - i, left : right + 1][::-1]
+        upper = frame[top + i, left : left + columns]
+        lower = frame[last - i, left : left + columns][::-1]
         means, differences = s[i + _PAD, _PAD : _PAD + columns], d[i]
         for j in range(columns):
-            a = min(upper[j] - base, most)
-            b = min(lower[j] - base, most)
+            a = upper[j] - base
+            b = lower[j] - base
+            a = a if a < most else most
+            b = b if b < most else most
             means[j] = 0.5 * (a + b)
             differences[j] = a - b
-    _complete(s, rows, columns, bottom - top + 1)
+    _complete(s, rows, columns, last - top + 1)
 
 
 @compiled
 def _complete(s: Floats, rows: int, columns: int, height: int) -> None:
     """Fill the rows below the middle by symmetry and the margin with its neighbours' values."""
-    for i in range(rows, min(rows + _PAD, height)):
-        above = s[height - 1 - i + _PAD, _PAD : _PAD + columns][::-1]
-        below = s[i + _PAD, _PAD : _PAD + columns]
+    last = _PAD + min(rows + _PAD, height) - 1
+    for i in range(_PAD + rows, last + 1):
+        above = s[height - 1 - i + 2 * _PAD, _PAD : _PAD + columns][::-1]
+        below = s[i, _PAD : _PAD + columns]
         for j in range(columns):
             below[j] = above[j]
-    last = _PAD + min(rows + _PAD, height) - 1
     for i in range(_PAD, last + 1):
-        s[i, :_PAD] = s[i, _PAD]
-        s[i, _PAD + columns :] = s[i, _PAD + columns - 1]
+        row = s[i]
+        first, end = row[_PAD], row[_PAD + columns - 1]
+        for j in range(_PAD):
+            row[j] = first
+            row[_PAD + columns + j] = end
     for i in range(_PAD):
         s[i] = s[_PAD]
     for i in range(last + 1, len(s)):
@@ -121,130 +155,94 @@ def _smoothed(s: Floats, apart: int, line: Floats, out: Floats) -> None:
         for j in range(width):
             line[j] = 0.25 * (above[j] + below[j]) + 0.5 * here[j]
         for j in range(width):
-            if apart <= j < width - apart:
-                to[j] = 0.25 * (line[j - apart] + line[j + apart]) + 0.5 * line[j]
-            else:
-                near, far = line[max(j - apart, 0)], line[min(j + apart, width - 1)]
-                to[j] = 0.25 * (near + far) + 0.5 * line[j]
+            near, far = line[max(j - apart, 0)], line[min(j + apart, width - 1)]
+            to[j] = 0.25 * (near + far) + 0.5 * line[j]
 
 
 @compiled
 def _slopes(  # noqa: PLR0917 - the formulas in their order
-    s: Floats, core: NDArray[np.int64], d_x: float, d_y: float, mixed: Floats, g: Floats
+    s: Floats, left: int, top: int, d_x: float, d_y: float, mixed: Floats, g: Floats
 ) -> None:
     """Write to `g` (2, rows, columns) what a unit of d along x and along y takes off a difference.
 
     ``tan(a + b)`` of both axes is ``(tan a + tan b) / (1 - tan a tan b)``; of the latter the
-    first order. `core` holds first column and row and the number of both, in the margin's frame.
+    first order. The core begins at (`left`, `top`) of `s`.
     """
-    left, top, columns, rows = core
+    _, rows, columns = g.shape
     scale = -0.0625 * d_x * d_y
-    width = columns + 12
     for i in range(rows + 12):
-        at = top - 6 + i
-        begin = left - 6
-        above, here = s[at - 1, begin - 1 : begin + width + 1], s[at, begin : begin + width]
-        below, to = s[at + 1, begin - 1 : begin + width + 1], mixed[i]
-        for j in range(width):
-            cross = below[j + 2] - below[j] - above[j + 2] + above[j]
-            to[j] = here[j] + scale * cross
-    for axis in range(2):
-        d2 = d_x * d_x if axis == 0 else d_y * d_y
-        t1 = TAPS[0, 0] + d2 * (TAPS[1, 0] + d2 * (TAPS[2, 0] + d2 * TAPS[3, 0]))
-        t2 = TAPS[0, 1] + d2 * (TAPS[1, 1] + d2 * (TAPS[2, 1] + d2 * TAPS[3, 1]))
-        t3 = TAPS[0, 2] + d2 * (TAPS[1, 2] + d2 * (TAPS[2, 2] + d2 * TAPS[3, 2]))
-        t4 = TAPS[0, 3] + d2 * (TAPS[1, 3] + d2 * (TAPS[2, 3] + d2 * TAPS[3, 3]))
-        t5 = TAPS[0, 4] + d2 * (TAPS[1, 4] + d2 * (TAPS[2, 4] + d2 * TAPS[3, 4]))
-        t6 = TAPS[0, 5] + d2 * (TAPS[1, 5] + d2 * (TAPS[2, 5] + d2 * TAPS[3, 5]))
-        for i in range(rows):
-            to = g[axis, i]
-            if axis == 0:
-                row = mixed[i + 6, :width]
-                for j in range(columns):
-                    to[j] = (
-                        t1 * (row[j + 7] - row[j + 5])
-                        + t2 * (row[j + 8] - row[j + 4])
-                        + t3 * (row[j + 9] - row[j + 3])
-                        + t4 * (row[j + 10] - row[j + 2])
-                        + t5 * (row[j + 11] - row[j + 1])
-                        + t6 * (row[j + 12] - row[j])
-                    )
-            else:
-                part = mixed[i : i + 13, 6 : 6 + columns]
-                for j in range(columns):
-                    to[j] = (
-                        t1 * (part[7, j] - part[5, j])
-                        + t2 * (part[8, j] - part[4, j])
-                        + t3 * (part[9, j] - part[3, j])
-                        + t4 * (part[10, j] - part[2, j])
-                        + t5 * (part[11, j] - part[1, j])
-                        + t6 * (part[12, j] - part[0, j])
-                    )
+        above, here = s[top + i - 7, left - 7 :], s[top + i - 6, left - 6 :]
+        below, to = s[top + i - 5, left - 7 :], mixed[i]
+        for j in range(columns + 12):
+            to[j] = here[j] + scale * (below[j + 2] - below[j] - above[j + 2] + above[j])
+    t1, t2, t3, t4, t5, t6 = _taps(d_x)
+    for i in range(rows):
+        row, to = mixed[i + 6], g[0, i]
+        for j in range(columns):
+            to[j] = (
+                t1 * (row[j + 7] - row[j + 5])
+                + t2 * (row[j + 8] - row[j + 4])
+                + t3 * (row[j + 9] - row[j + 3])
+                + t4 * (row[j + 10] - row[j + 2])
+                + t5 * (row[j + 11] - row[j + 1])
+                + t6 * (row[j + 12] - row[j])
+            )
+    taps = _taps(d_y)
+    for i in range(rows):
+        to = g[1, i]
+        to[:] = 0.0
+        for n in range(6):
+            below, above, t = mixed[i + 7 + n, 6:], mixed[i + 5 - n, 6:], taps[n]
+            for j in range(columns):
+                to[j] += t * (below[j] - above[j])
 
 
 @compiled
-def _weighting(s: Floats, core: NDArray[np.int64], line: Floats, h: Floats) -> None:
-    """Write to `h` (2, rows, columns) the slopes of the mean smoothed by (1, 2, 1) / 4."""
-    left, top, columns, rows = core
+def _taps(d: float) -> tuple[float, float, float, float, float, float]:
+    d2 = d * d
+    t = TAPS[0] + d2 * (TAPS[1] + d2 * (TAPS[2] + d2 * TAPS[3]))
+    return t[0], t[1], t[2], t[3], t[4], t[5]
+
+
+@compiled
+def _weighting(s: Floats, left: int, top: int, line: Floats, h: Floats) -> None:
+    """Write to `h` (2, rows, columns) the slopes of the mean, sharp but with little noise."""
+    _, rows, columns = h.shape
     for i in range(rows):
-        at = top + i
-        begin = left - 2
-        width = columns + 4
-        a, b, c = s[at - 2, begin:], s[at - 1, begin:], s[at, begin:]
-        d, e = s[at + 1, begin:], s[at + 2, begin:]
+        a, b, c = s[top + i - 2, left - 2 :], s[top + i - 1, left - 2 :], s[top + i, left - 2 :]
+        d, e = s[top + i + 1, left - 2 :], s[top + i + 2, left - 2 :]
         along, across = h[0, i], h[1, i]
-        for j in range(width):
-            line[j] = 0.25 * (b[j] + d[j]) + 0.5 * c[j]
+        for j in range(columns + 4):
+            line[j] = _BESIDE * (b[j] + d[j]) + _MIDDLE * c[j]
         for j in range(columns):
-            along[j] = 0.5 * (line[j + 3] - line[j + 1])
-        for j in range(width):
-            line[j] = 0.5 * (d[j] - b[j])
+            along[j] = _SLOPE_1 * (line[j + 3] - line[j + 1]) + _SLOPE_2 * (line[j + 4] - line[j])
+        for j in range(columns + 4):
+            line[j] = _SLOPE_1 * (d[j] - b[j]) + _SLOPE_2 * (e[j] - a[j])
         for j in range(columns):
-            across[j] = 0.25 * (line[j + 1] + line[j + 3]) + 0.5 * line[j + 2]
+            across[j] = _BESIDE * (line[j + 1] + line[j + 3]) + _MIDDLE * line[j + 2]
 
 
 @compiled
 def _fit(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    h: Floats, g: Floats, d: Floats, w: Floats, level: int, along: Floats, found: Floats
+    h: Floats, g: Floats, d: Floats, w: Floats, common: tuple[float, float], work: Floats, found: Floats
 ) -> None:
     """Solve ``sum w h (d + d_x g_x + d_y g_y) = 0``; differences have twice a pixel's variance.
 
-    What the noise of weighting and slope have in common is taken off their products. `found`
-    holds d_x, d_y, the variance of the centre (that of d over four) and the noise's share in h.
+    `common` is what noise adds to the products of weighting and slope, and to the weighting's
+    square. Written to `found`: d_x, d_y, the variance of the centre, and noise's share in h.
     """
-    rows, columns = w.shape
-    along[:10, :columns] = 0.0
-    for i in range(rows):
-        h_x, h_y, g_x, g_y = h[0, i], h[1, i], g[0, i], g[1, i]
-        for j in range(columns):
-            a, b = w[i, j] * h_x[j], w[i, j] * h_y[j]
-            along[0, j] += a * g_x[j]
-            along[1, j] += a * g_y[j]
-            along[2, j] += b * g_x[j]
-            along[3, j] += b * g_y[j]
-            along[4, j] += a * d[i, j]
-            along[5, j] += b * d[i, j]
-            along[6, j] += a * h_x[j]
-            along[7, j] += b * h_y[j]
-            along[8, j] += a * h_y[j]
-    xx, xy, yx, yy, x, y, hh_x, hh_y, hh_xy = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    for j in range(columns):
-        xx += along[0, j]
-        xy += along[1, j]
-        yx += along[2, j]
-        yy += along[3, j]
-        x += along[4, j]
-        y += along[5, j]
-        hh_x += along[6, j]
-        hh_y += along[7, j]
-        hh_xy += along[8, j]
-    # Weights are per variance of a pixel, of which a mean has half.
-    common = 0.5 * _PRODUCTS[level] * found[4]
-    xx -= common
-    yy -= common
+    g_x, g_y, h_x, h_y = g[0].ravel(), g[1].ravel(), h[0].ravel(), h[1].ravel()
+    a, b = work[0, : d.size], work[1, : d.size]
+    for q in range(d.size):
+        a[q] = w[q] * h_x[q]
+        b[q] = w[q] * h_y[q]
+    xx, yy = _dot(a, g_x) - common[0], _dot(b, g_y) - common[0]
+    xy, yx = _dot(a, g_y), _dot(b, g_x)
+    x, y = _dot(a, d), _dot(b, d)
+    hh_x, hh_y, hh_xy = _dot(a, h_x), _dot(b, h_y), _dot(a, h_y)
     determinant = xx * yy - xy * yx
     found[2] = np.inf
-    found[3] = 0.5 * _SQUARES[level] * found[4] / max(min(hh_x, hh_y), 1e-300)
+    found[3] = common[1] / max(min(hh_x, hh_y), 1e-300)
     if xx > 0.0 and yy > 0.0 and determinant > 1e-6 * xx * yy:
         found[0] = -(yy * x - xy * y) / determinant
         found[1] = -(xx * y - yx * x) / determinant
@@ -254,152 +252,157 @@ def _fit(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def _weights(  # noqa: PLR0917 - Numba takes no keyword-only ones
+def _smoother(  # noqa: PLR0917 - Numba takes no keyword-only ones
     s: Floats,
-    core: NDArray[np.int64],
-    noise: float,
-    gain: float,
-    whole: bool,
-    kept: Floats,
+    left: int,
+    top: int,
+    g: Floats,
+    d: Floats,
     w: Floats,
-) -> None:
-    """One over the variance of a pixel; a middle row's pairs appear twice and count half."""
-    left, top, columns, rows = core
+    number: float,
+    extent: float,
+    work: Floats,
+    found: Floats,
+    h: Floats,
+) -> int:
+    """Smooth the weighting as long as the centre's variance falls; return the level reached."""
+    size = s.size
+    level, old = 0, s
+    tried = work[17, : h.size].reshape(h.shape)
+    other = found.copy()
+    while level + 1 < _LEVELS and found[3] > _NOISY and 2**level < extent:
+        smooth = work[18 + level % 2, :size].reshape(s.shape)
+        _smoothed(old, 2 ** (level + 1), work[10], smooth)
+        _weighting(smooth, left, top, work[10], tried)
+        common = 0.5 * number * _PRODUCTS[level + 1], 0.5 * number * _SQUARES[level + 1]
+        _fit(tried, g, d, w, common, work[11:17], other)
+        if not other[2] < found[2]:
+            break
+        level += 1
+        old = smooth
+        h[:] = tried
+        found[:] = other
+    return level
+
+
+@compiled
+def _ring_pairs(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    s: Floats, d: Floats, first: int, above: int, middle: float, found: Floats, pairs: Floats
+) -> int:
+    """List the pairs around the core and return how many they are.
+
+    Rows of `pairs`: difference without what the spot's own slope explains, x, y and the mean. The
+    core begins at column `first` and row `above` of the box and ends as far from its end.
+    """
+    rows, columns = d.shape
+    count = 0
     for i in range(rows):
-        part = s[top + i, left : left + columns]
-        share = 0.5 if whole and i == rows - 1 else 1.0
-        for j in range(columns):
-            w[i, j] = share * max(kept[i, j], 0.0) / (noise + gain * max(part[j], 0.0))
+        at, before, after = s[i + _PAD], s[i + _PAD - 1], s[i + _PAD + 1]
+        for part in range(2):
+            begin = 0 if part == 0 else columns - first
+            end = first if part == 0 else columns
+            if i < above:
+                begin, end = (0, columns) if part == 0 else (0, 0)
+            r, x = pairs[0, count : count + end - begin], pairs[1, count : count + end - begin]
+            y, mean = pairs[2, count : count + end - begin], pairs[3, count : count + end - begin]
+            own = at[_PAD + begin - 1 :]
+            up, down, differences = before[_PAD + begin :], after[_PAD + begin :], d[i, begin:]
+            for j in range(end - begin):
+                slope = found[0] * (own[j + 2] - own[j]) + found[1] * (down[j] - up[j])
+                r[j] = differences[j] + 0.5 * slope
+                x[j] = begin + j - 0.5 * (columns - 1)
+                y[j] = i - middle
+                mean[j] = own[j + 1]
+            count += end - begin
+    return count
 
 
 @compiled
 def _ring_slope(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    s: Floats,
-    d: Floats,
-    core: NDArray[np.int64],
-    half_height: float,
-    found: Floats,
-    noise: float,
-    gain: float,
-    prior: float,
-    e: Floats,
-    along: Floats,
-    slope: Floats,
+    pairs: Floats, count: int, noise: float, gain: float, prior: float, slope: Floats
 ) -> None:
-    """Fit ``d = 2 slope . u`` to the pairs around the core; each departure counts up to a limit.
+    """Fit ``difference = 2 slope . u`` to the pairs around the core, none with much influence.
 
-    The spot's own difference there is taken off by its slope. `prior` is the variance of a slope
-    before anything is known, which counts where the frame's edge leaves few pairs.
+    `prior` is the variance of a slope before anything is known, which counts where the frame's
+    edge leaves few pairs.
     """
-    rows, columns = d.shape
-    half_width = 0.5 * (columns - 1)
-    first, end = core[0] - _PAD, core[0] - _PAD + core[2]
-    for i in range(rows):
-        at = s[i + _PAD, _PAD - 1 : _PAD + columns + 1]
-        above, below = s[i + _PAD - 1, _PAD:], s[i + _PAD + 1, _PAD:]
-        for j in range(columns):
-            moved = found[0] * (at[j + 2] - at[j]) + found[1] * (below[j] - above[j])
-            e[i, j] = d[i, j] + 0.5 * moved
-    for _ in range(3):
-        along[:4, :columns] = 0.0
-        for i in range(rows):
-            y = i - half_height
-            inner = i >= core[1] - _PAD
-            for part in range(2):
-                begin, stop = 0, columns
-                if inner:
-                    begin, stop = (0, first) if part == 0 else (end, columns)
-                elif part == 1:
-                    continue
-                for j in range(begin, stop):
-                    variance = 2.0 * (noise + gain * max(s[i + _PAD, j + _PAD], 0.0))
-                    far = 4.0 * math.sqrt(variance)
-                    r = e[i, j] - 2.0 * (slope[0] * (j - half_width) + slope[1] * y)
-                    r = min(max(r, -far), far) / variance
-                    along[0, j] += r
-                    along[1, j] += r * y
-                    along[2, j] += 1.0 / variance
-                    along[3, j] += y * y / variance
-        x, y, xx, yy = 0.0, 0.0, 0.0, 0.0
-        for j in range(columns):
-            u = j - half_width
-            x += u * along[0, j]
-            y += along[1, j]
-            xx += u * u * along[2, j]
-            yy += along[3, j]
-        slope[0] += (2.0 * x - slope[0] / prior) / (4.0 * xx + 1.0 / prior)
-        slope[1] += (2.0 * y - slope[1] / prior) / (4.0 * yy + 1.0 / prior)
+    r, x, y = pairs[0, :count], pairs[1, :count], pairs[2, :count]
+    size, ones = pairs[4, :count], pairs[5, :count]
+    ones[:] = 1.0
+    for q in range(count):
+        size[q] = abs(r[q])
+    variance = 2.0 * (noise + gain * max(_dot(pairs[3, :count], ones) / max(count, 1), 0.0))
+    xx = 4.0 * _dot(x, x) / variance + 1.0 / prior
+    yy = 4.0 * _dot(y, y) / variance + 1.0 / prior
+    far = max(4.0 * math.sqrt(variance), 3.0 * _dot(size, ones) / max(count, 1))
+    for _ in range(4):
+        for q in range(count):
+            e = r[q] - 2.0 * (slope[0] * x[q] + slope[1] * y[q])
+            e = e if e < far else far
+            size[q] = e if e > -far else -far
+        slope[0] += (2.0 * _dot(size, x) / variance - slope[0] / prior) / xx
+        slope[1] += (2.0 * _dot(size, y) / variance - slope[1] / prior) / yy
+        far = 4.0 * math.sqrt(variance)
 
 
 @compiled
 def _departures(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    s: Floats,
-    core: NDArray[np.int64],
-    g: Floats,
-    d: Floats,
-    found: Floats,
-    cut: float,
-    noise: float,
-    e: Floats,
-    along: Floats,
+    mean: Floats, kept: Floats, g: Floats, d: Floats, found: Floats, cut: float, work: Floats, e: Floats
 ) -> tuple[float, float]:
-    """Write what the fit leaves of the differences to `e`; noise a unit of light, and the light."""
-    left, top, columns, rows = core
-    along[:4, :columns] = 0.0
-    for i in range(rows):
-        part = s[top + i, left : left + columns]
-        for j in range(columns):
-            r = d[i, j] + found[0] * g[0, i, j] + found[1] * g[1, i, j]
-            e[i, j] = r
-            lit = 1.0 if part[j] > cut else 0.0
-            along[0, j] += lit
-            along[1, j] += lit * abs(r)
-            along[2, j] += lit * part[j]
-            along[3, j] += max(part[j], 0.0)
-    number, size, light, all_light = 0.0, 0.0, 0.0, 0.0
-    for j in range(columns):
-        number += along[0, j]
-        size += along[1, j]
-        light += along[2, j]
-        all_light += along[3, j]
-    if light <= 0.0:
-        return 0.0, 0.0
-    # Of a normal variable, the mean size is sqrt(2 / pi) of the standard deviation.
-    variance = 0.25 * math.pi * (size / number) ** 2
-    return max(variance - noise, 0.0) * number / light, 2.0 * all_light
+    """Write what the fit leaves of the differences to `e`; its mean size and light where lit."""
+    g_x, g_y = g[0].ravel(), g[1].ravel()
+    lit, size = work[0, : d.size], work[1, : d.size]
+    for q in range(d.size):
+        e[q] = d[q] + found[0] * g_x[q] + found[1] * g_y[q]
+        steep = 3.0 * (abs(g_x[q]) + abs(g_y[q])) / cut
+        lit[q] = kept[q] / (1.0 + steep * steep) if mean[q] > cut else 0.0
+        size[q] = abs(e[q])
+    number = max(_dot(lit, kept), 1e-300)
+    return _dot(lit, size) / number, _dot(lit, mean) / number
 
 
 @compiled
 def _leave_out(  # noqa: PLR0917 - Numba takes no keyword-only ones
     s: Floats,
+    left: int,
+    top: int,
     d: Floats,
-    core: NDArray[np.int64],
     g: Floats,
     noise: float,
     gain: float,
+    least: float,
     e: Floats,
     kept: Floats,
+    work: Floats,
 ) -> tuple[int, float]:
     """Mark pairs that depart by too much, replace their worse pixel; how many, and clusters' light.
 
     The worse pixel is that farther from the mean of its neighbours; it becomes its partner.
     """
-    left, top, columns, rows = core
+    rows, columns = d.shape
     bad = 0
+    limit = work[0]
     for i in range(rows):
-        part = s[top + i, left : left + columns]
+        part, g_x, g_y = s[top + i, left:], g[0, i], g[1, i]
         for j in range(columns):
-            slope = abs(g[0, i, j]) + abs(g[1, i, j])
-            far = _BAD * math.sqrt(2.0 * (noise + gain * max(part[j], 0.0))) + _BAD_SLOPE * slope
-            if abs(e[i, j]) > far and kept[i, j] > 0.0:
-                kept[i, j] = 0.0
-                bad += 1
+            light = part[j] if part[j] > 0.0 else 0.0
+            limit[j] = least + _BAD * math.sqrt(2.0 * (noise + gain * light))
+            limit[j] += _BAD_SLOPE * (abs(g_x[j]) + abs(g_y[j]))
+        row, keep = e[i], kept[i]
+        beyond = 0
+        for j in range(columns):
+            beyond += abs(row[j]) * keep[j] > limit[j]
+        if beyond:
+            for j in range(columns):
+                if abs(row[j]) * keep[j] > limit[j]:
+                    keep[j] = -1.0
+            bad += beyond
     if bad == 0:
         return 0, 0.0
     clusters = 0.0
     for i in range(rows):
         for j in range(columns):
-            if kept[i, j] != 0.0:
+            if kept[i, j] >= 0.0:
                 continue
             beside = -1
             for a in range(max(i - 1, 0), min(i + 2, rows)):
@@ -407,154 +410,158 @@ def _leave_out(  # noqa: PLR0917 - Numba takes no keyword-only ones
                     beside += kept[a, b] <= 0.0
             if beside >= 2:
                 clusters += abs(e[i, j])
-            kept[i, j] = -1.0
-            at, column = top + i, left + j
-            near = 0.25 * (
-                s[at - 1, column] + s[at + 1, column] + s[at, column - 1] + s[at, column + 1]
-            )
-            mean, half = s[at, column], 0.5 * d[i, j]
-            shift = 0.5 * (d[i, j] - e[i, j])
+            y, x = top + i, left + j
+            near = 0.25 * (s[y - 1, x] + s[y + 1, x] + s[y, x - 1] + s[y, x + 1])
             # One pixel is mean + half, its partner mean - half; the fit sets them 2 shift apart.
-            if abs(mean + half - near) > abs(mean - half - near):
-                s[at, column] = mean - half + shift
-            else:
-                s[at, column] = mean + half - shift
-            d[i, j] -= e[i, j]
+            mean, half, shift = s[y, x], 0.5 * d[i, j], 0.5 * (d[i, j] - e[i, j])
+            upper_is_worse = abs(mean + half - near) > abs(mean - half - near)
+            s[y, x] = mean - half + shift if upper_is_worse else mean + half - shift
+    for i in range(rows):
+        for j in range(columns):
+            kept[i, j] = max(kept[i, j], 0.0)
     return bad, clusters
 
 
 @compiled
-def _frame_box(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    middle: int, half: float, outer: float, size: int
-) -> tuple[int, int, int]:
-    """First pixel of the box and of the core about middle / 2, and last of the box."""
-    first = max(math.ceil(0.5 * middle - outer), 0, middle - (size - 1))
-    return first, max(math.ceil(0.5 * middle - half), first), middle - first
+def _flatten(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    s: Floats, left: int, top: int, d: Floats, slope: Floats, at: tuple[float, float], mean: Floats, out: Floats
+) -> None:
+    """Copy the core's means, and its differences less the background's slope.
+
+    `at` is where the core's first pixel lies from the middle.
+    """
+    rows, columns = out.shape
+    first = d.shape[0] - rows
+    for i in range(rows):
+        part, row = s[top + i, left:], d[first + i, left - _PAD :]
+        to, differences = mean[i], out[i]
+        along = 2.0 * (slope[0] * at[0] + slope[1] * (at[1] + i))
+        step = 2.0 * slope[0]
+        for j in range(columns):
+            to[j] = part[j]
+            differences[j] = row[j] - along - step * j
 
 
 @compiled
-def _half_core(extent: float, fill: float) -> float:
-    return (_WIDER + _SOFTER * (1.0 - min(max(fill, 0.5), 1.0))) * extent + _MARGIN
+def _register(  # noqa: PLR0914, PLR0915, PLR0917 - the method's steps in order
+    frame: NDArray[Any], light: Floats, middle: tuple[int, int], work: Floats, found: Floats
+) -> float:
+    """Write d_x, d_y and the centre's variance about middle / 2 to `found`; asymmetric light.
+
+    The variance is infinite where nothing is found.
+    """
+    x, y, wide, high, base, noise, peak, fill = light
+    height, width = frame.shape
+    found[2] = np.inf
+    noise += (_FLOOR * peak) ** 2
+    wider = _WIDER + _SOFTER * (1.0 - min(max(fill, 0.5), 1.0))
+    half_x, half_y = wider * wide + _MARGIN, wider * high + _MARGIN
+    ring_x, ring_y = max(_RING, _RING_SHARE * half_x), max(_RING, _RING_SHARE * half_y)
+    m_x, m_y = middle
+    left = max(math.ceil(0.5 * m_x - half_x - ring_x), 0, m_x - (width - 1))
+    top = max(math.ceil(0.5 * m_y - half_y - ring_y), 0, m_y - (height - 1))
+    columns, last = m_x - 2 * left + 1, m_y - top
+    if columns < 2.0 * wide + 2.0 or last - top < 2.0 * high + 1.0:
+        return 0.0  # cut by the frame's edge
+    rows = (last - top + 2) // 2
+    first = max(math.ceil(0.5 * m_x - half_x) - left, 0)
+    above = max(math.ceil(0.5 * m_y - half_y) - top, 0)
+    c, n = columns - 2 * first, rows - above
+    core_left, core_top = first + _PAD, above + _PAD
+    shape = rows + 2 * _PAD, columns + 2 * _PAD
+    s = work[0, : shape[0] * shape[1]].reshape(shape)
+    d = work[1, : rows * columns].reshape(rows, columns)
+    mixed = work[2, : (n + 12) * (c + 12)].reshape(n + 12, c + 12)
+    g = work[3, : 2 * n * c].reshape(2, n, c)
+    h = work[4, : 2 * n * c].reshape(2, n, c)
+    dc, mean = work[5, : n * c].reshape(n, c), work[6, : n * c].reshape(n, c)
+    e, kept = work[7, : n * c].reshape(n, c), work[8, : n * c].reshape(n, c)
+    w, line, spare = work[9, : n * c], work[10], work[11:17]
+    _pairs(frame, left, top, last, (base, 4.0 * peak), s, d)
+    slope = np.zeros(2)
+    at = first - 0.5 * (columns - 1), above - 0.5 * (last - top)
+    kept[:] = 1.0
+    # A middle row's pairs appear twice.
+    twice = (last - top) % 2 == 0
+    number = c * (n - 0.5 if twice else n + 0.0)
+    gain, clusters, level = 0.0, 0.0, 0
+    prior = (_PRIOR * peak / max(wide, high)) ** 2
+    d_x, d_y = found[0], found[1]
+    fresh = False
+    for turn in range(_TURNS):
+        if not fresh:
+            level = 0
+            _weighting(s, core_left, core_top, line, h)
+            d_x, d_y = min(max(found[0], -1.0), 1.0), min(max(found[1], -1.0), 1.0)
+            if turn > 0:
+                _slopes(s, core_left, core_top, d_x, d_y, mixed, g)
+        _flatten(s, core_left, core_top, d, slope, at, mean, dc)
+        flat, keep, means = dc.ravel(), kept.ravel(), mean.ravel()
+        for q in range(n * c):
+            lit = means[q] if means[q] > 0.0 else 0.0
+            w[q] = keep[q] / (noise + gain * lit)
+        if twice:
+            w[(n - 1) * c :] *= 0.5
+        # For a first guess the weighting is slope enough.
+        slopes = g if turn > 0 else h
+        product = _PRODUCTS[level] if turn > 0 else _SQUARES[level]
+        common = 0.5 * number * product, 0.5 * number * _SQUARES[level]
+        _fit(h, slopes, flat, w, common, spare, found)
+        if not np.isfinite(found[2]):
+            return 0.0
+        if turn > 0 and level == 0 and found[3] > _NOISY:
+            level = _smoother(s, core_left, core_top, slopes, flat, w, number, wide, work, found, h)
+            common = 0.5 * number * _PRODUCTS[level], 0.5 * number * _SQUARES[level]
+        if turn == 1:
+            pairs = _ring_pairs(s, d, first, above, 0.5 * (last - top), found, spare)
+            _ring_slope(spare, pairs, noise, gain, prior, slope)
+            _flatten(s, core_left, core_top, d, slope, at, mean, dc)
+            _fit(h, slopes, flat, w, common, spare, found)
+            if not np.isfinite(found[2]):
+                return 0.0
+        size, lit = _departures(means, keep, slopes, flat, found, _CUT * peak, spare, e.ravel())
+        # Of a normal variable, the mean size is sqrt(2 / pi) of the standard deviation.
+        before = gain
+        gain = max(0.25 * math.pi * size * size - noise, 0.0) / max(lit, 1e-300)
+        least = (0.1 if turn == 0 else 0.02) * peak
+        bad, more = _leave_out(s, core_left, core_top, dc, slopes, noise, gain, least, e, kept, spare)
+        clusters += more
+        number -= bad
+        if bad:
+            _complete(s, rows, columns, last - top + 1)
+        same = abs(gain - before) <= 0.2 * before + 0.02 * noise / peak
+        fresh = turn > 0 and bad == 0 and max(abs(found[0] - d_x), abs(found[1] - d_y)) < _SAME
+        if fresh and same:
+            break
+    return clusters / max(2.0 * means.sum(), 1e-300)
 
 
 @compiled
-def mirror_centres(frames: NDArray[Any], lights: Floats, out: Floats) -> None:  # noqa: C901, PLR0912, PLR0914, PLR0915 - one loop, its steps in order
-    """Write the centre (x, y) of each frame's spot to `out` (N, 3) and its standard deviation.
+def mirror_centres(frames: NDArray[Any], lights: Floats, out: Floats) -> None:
+    """Write the centre (x, y) of each frame's spot and its standard deviation to `out` (N, 3).
 
     `lights` (N, 8) are what `find_lights` of the search wrote. NaN where there is no answer.
     """
     count, height, width = frames.shape
-    size = (height + 2 * _PAD) * (width + 2 * _PAD)
-    work = np.empty((12, size))
-    line = np.empty(width + 2 * _PAD)
-    along = np.empty((10, width + 2 * _PAD))
-    box, core = np.empty(4, dtype=np.int64), np.empty(4, dtype=np.int64)
-    found, other, slope, at = np.zeros(5), np.zeros(5), np.zeros(2), np.zeros(2)
+    work = np.empty((20, (height + 2 * _PAD) * (width + 2 * _PAD)))
+    found = np.zeros(4)
     for k in range(count):
         out[k] = np.nan
-        x, y, wide, high, base, noise, peak, fill = lights[k]
-        if np.isnan(x):
+        light = lights[k]
+        if np.isnan(light[0]):
             continue
-        noise = max(noise, 1e-12 * peak * peak)
-        half_x, half_y = _half_core(wide, fill), _half_core(high, fill)
-        outer_x = half_x + max(_RING, _RING_SHARE * half_x)
-        outer_y = half_y + max(_RING, _RING_SHARE * half_y)
-        start_x, start_y = x, y
+        x, y = light[0], light[1]
+        asymmetry = 0.0
         for _ in range(_CENTRES):
             m_x, m_y = round(2.0 * x), round(2.0 * y)
-            left, core_left, right = _frame_box(m_x, half_x, outer_x, width)
-            top, core_top, bottom = _frame_box(m_y, half_y, outer_y, height)
-            if right - left < 2.0 * wide + 1.0 or bottom - top < 2.0 * high + 1.0:
-                found[2] = np.inf
-                break
-            columns, rows = right - left + 1, (bottom - top + 2) // 2
-            box[0], box[1], box[2], box[3] = left, right, top, bottom
-            core[0], core[1] = core_left - left + _PAD, core_top - top + _PAD
-            core[2] = m_x - 2 * core_left + 1
-            core[3] = rows - (core_top - top)
-            whole = (bottom - top) % 2 == 0
-            wider = columns + 2 * _PAD
-            taller = rows + 2 * _PAD
-            s = work[0, : taller * wider].reshape(taller, wider)
-            t = work[1, : taller * wider].reshape(taller, wider)
-            u = work[2, : taller * wider].reshape(taller, wider)
-            d = work[3, : rows * columns].reshape(rows, columns)
-            ring = work[4, : rows * columns].reshape(rows, columns)
-            n, c = core[3], core[2]
-            mixed = work[5, : (n + 12) * (c + 12)].reshape(n + 12, c + 12)
-            # Two planes each: half a frame's rows twice fit in.
-            g = work[6, : 2 * n * c].reshape(2, n, c)
-            h = work[7, : 2 * n * c].reshape(2, n, c)
-            h2 = work[8, : 2 * n * c].reshape(2, n, c)
-            w = work[9, : n * c].reshape(n, c)
-            e = work[10, : n * c].reshape(n, c)
-            kept = work[11, : n * c].reshape(n, c)
-            kept[:] = 1.0
-            _pairs(frames[k], box, base, 4.0 * peak, s, d)
-            dc = d[rows - n :, core[0] - _PAD : core[0] - _PAD + c]
             found[0], found[1] = 2.0 * x - m_x, 2.0 * y - m_y
-            found[4] = c * (n - (0.5 if whole else 0.0))
-            slope[:] = 0.0
-            gain, clusters, light = 0.0, 0.0, 0.0
-            level = 0
-            dirty = True
-            middle_x, middle_y = 0.5 * (columns - 1), 0.5 * (bottom - top)
-            for turn in range(_PASSES):
-                if dirty:
-                    at[0], at[1] = min(max(found[0], -1.0), 1.0), min(max(found[1], -1.0), 1.0)
-                    _slopes(s, core, at[0], at[1], mixed, g)
-                    _weighting(s, core, line, h)
-                    level = 0
-                _weights(s, core, noise, gain, whole, kept, w)
-                _fit(h, g, dc, w, level, along, found)
-                while turn > 0 and level + 1 < _LEVELS and found[3] > _NOISY and 2**level < wide:
-                    if level == 0:
-                        _smoothed(s, 2, line, t)
-                    else:
-                        u[:] = t
-                        _smoothed(u, 2 ** (level + 1), line, t)
-                    _weighting(t, core, line, h2)
-                    other[4] = found[4]
-                    _fit(h2, g, dc, w, level + 1, along, other)
-                    if not other[2] < found[2]:
-                        break
-                    level += 1
-                    h[:] = h2
-                    found[:] = other
-                if not np.isfinite(found[2]):
-                    break
-                if turn < 2 or dirty:
-                    for i in range(n):
-                        v = 2.0 * slope[1] * (i + rows - n - middle_y)
-                        for j in range(c):
-                            dc[i, j] += 2.0 * slope[0] * (j + core[0] - _PAD - middle_x) + v
-                    prior = (0.01 * peak / max(wide, high)) ** 2
-                    _ring_slope(
-                        s, d, core, middle_y, found, noise, gain, prior, ring, along, slope
-                    )
-                    for i in range(n):
-                        v = 2.0 * slope[1] * (i + rows - n - middle_y)
-                        for j in range(c):
-                            dc[i, j] -= 2.0 * slope[0] * (j + core[0] - _PAD - middle_x) + v
-                gain, light = _departures(s, core, g, dc, found, 0.3 * peak, noise, e, along)
-                bad, more = _leave_out(s, dc, core, g, noise, gain, e, kept)
-                clusters += more
-                change = max(abs(found[0] - at[0]), abs(found[1] - at[1]))
-                if turn > 0 and bad == 0 and change < _SAME:
-                    break
-                found[4] -= bad
-                dirty = bad > 0 or change >= _SAME
-                if bad:
-                    _complete(s, rows, columns, bottom - top + 1)
-            if not np.isfinite(found[2]):
-                break
+            asymmetry = _register(frames[k], light, (m_x, m_y), work, found)
             x, y = 0.5 * (m_x + found[0]), 0.5 * (m_y + found[1])
-            if abs(found[0]) <= 0.75 and abs(found[1]) <= 0.75:
+            if not max(abs(found[0]), abs(found[1])) > 0.75 or not np.isfinite(found[2]):
                 break
-        near = abs(x - start_x) <= _ASTRAY * wide + _ASTRAY_PX
-        near = near and abs(y - start_y) <= _ASTRAY * high + _ASTRAY_PX
-        known = math.sqrt(found[2]) <= _UNSURE
-        if near and known and clusters <= _ASYMMETRIC * light:
+        near = abs(x - light[0]) <= _ASTRAY * light[2] + _ASTRAY_PX
+        near = near and abs(y - light[1]) <= _ASTRAY * light[3] + _ASTRAY_PX
+        if near and math.sqrt(found[2]) <= _UNSURE and asymmetry <= _ASYMMETRIC:
             out[k, 0] = x
             out[k, 1] = y
             out[k, 2] = math.sqrt(found[2])

@@ -18,10 +18,8 @@ from algorithms.contract import Floats
 #: Standard deviations of a dark pixel by which the brightest block must be above the background,
 #: and a lit one; the fraction of the brightest block's light that a lit one must have.
 _SEEN, _LIT, _CUT = 5.0, 3.0, 0.3
-#: Fits of the background to the border; departures beyond so many deviations are left out.
-_FITS, _CLIP = 4, 3.0
-#: Variance of a normal variable clipped at three deviations.
-_CLIPPED = 0.9733
+#: Numbers of the border are left out beyond so many mean departures, then standard deviations.
+_FAR, _CLIP = 4.0, 3.5
 #: Light of all other regions, over that of the brightest, from which they are a second light.
 _RIVAL = 0.15
 #: Root of the determinant of the second moments, over that of an ellipse of the same area, above
@@ -36,46 +34,62 @@ FOUND = 8
 
 
 @compiled
-def _border(frame: NDArray[Any], pixels: Floats) -> tuple[float, float]:
-    """Mean and variance of the outermost pixels about a plane; `pixels` (3, P) is work space.
+def _sum(a: Floats) -> float:
+    """Sum in four sums side by side: one alone waits for itself at every number."""
+    whole = a.size - a.size % 4
+    first, second, third, fourth = 0.0, 0.0, 0.0, 0.0
+    for q in range(0, whole, 4):
+        first += a[q]
+        second += a[q + 1]
+        third += a[q + 2]
+        fourth += a[q + 3]
+    for q in range(whole, a.size):
+        first += a[q]
+    return (first + second) + (third + fourth)
 
-    Fitted several times, each time without those that departed from the last plane by much.
+
+@compiled
+def _mean_of_small(a: Floats, size: Floats, far: float, chosen: Floats, number: Floats) -> float:
+    """Mean of the numbers in `a` whose `size` is at most `far`; the last two are work space."""
+    for q in range(a.size):
+        chosen[q] = a[q] if size[q] <= far else 0.0
+        number[q] = 1.0 if size[q] <= far else 0.0
+    return _sum(chosen) / max(_sum(number), 1.0)
+
+
+@compiled
+def _border(frame: NDArray[Any], work: Floats) -> tuple[float, float]:
+    """Mean of the outermost pixels, and the variance of one, without those that depart by much.
+
+    The variance is that of neighbours' differences, which a background's slope hardly enters.
     """
     height, width = frame.shape
-    half_x, half_y = 0.5 * (width - 1), 0.5 * (height - 1)
-    count = 0
+    around = work[0]
+    for j in range(width):
+        around[j] = frame[0, j]
+        around[width + j] = frame[height - 1, j]
     for i in range(height):
-        step = 1 if i in {0, height - 1} else max(width - 1, 1)
-        for j in range(0, width, step):
-            pixels[0, count] = j - half_x
-            pixels[1, count] = i - half_y
-            pixels[2, count] = float(frame[i, j])
-            count += 1
-    first = pixels[2, 0]
-    mean, slope_x, slope_y, variance = 0.0, 0.0, 0.0, 0.0
-    for fit in range(_FITS):
-        far = np.inf if fit == 0 else _CLIP * _CLIP * variance
-        number, moved, along_x, along_y, xx, yy, squares = 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-        for p in range(count):
-            x, y = pixels[0, p], pixels[1, p]
-            e = pixels[2, p] - first - mean - slope_x * x - slope_y * y
-            if e * e <= far:
-                number += 1
-                moved += e
-                along_x += e * x
-                along_y += e * y
-                xx += x * x
-                yy += y * y
-                squares += e * e
-        mean += moved / number
-        slope_x += along_x / max(xx, 1.0)
-        slope_y += along_y / max(yy, 1.0)
-        # What the fit takes off is known without another pass: the axes are nearly orthogonal.
-        squares -= moved * moved / number + along_x**2 / max(xx, 1.0) + along_y**2 / max(yy, 1.0)
-        variance = max(squares / number, 0.0)
-        if fit > 0:
-            variance /= _CLIPPED
-    return first + mean, variance
+        around[2 * width + i] = frame[i, 0]
+        around[2 * width + height + i] = frame[i, width - 1]
+    count = 2 * (width + height)
+    values, size, chosen, number = around[:count], work[1, :count], work[2, :count], work[3, :count]
+    mean = _sum(values) / count
+    for _ in range(2):
+        for q in range(count):
+            size[q] = abs(values[q] - mean)
+        mean = _mean_of_small(values, size, _FAR * _sum(size) / count, chosen, number)
+    squares = work[4, : count - 1]
+    size = size[: count - 1]
+    for q in range(count - 1):
+        e = values[q + 1] - values[q]
+        squares[q] = e * e
+        size[q] = abs(e)
+    far = _FAR * _sum(size) / (count - 1)
+    variance = 0.0
+    for _ in range(3):
+        variance = _mean_of_small(squares, size, far, chosen[: count - 1], number[: count - 1])
+        far = _CLIP * math.sqrt(variance)
+    return mean, 0.5 * variance
 
 
 @compiled
@@ -88,18 +102,10 @@ def _erode(frame: NDArray[Any], least: NDArray[Any], maxima: NDArray[Any]) -> No
             a = upper[j] if upper[j] < lower[j] else lower[j]
             b = upper[j + 1] if upper[j + 1] < lower[j + 1] else lower[j + 1]
             out[j] = a if a < b else b
-        # Four side by side: one alone waits for itself at every pixel.
-        a = out[0]
-        b, c, d = a, a, a
-        whole = out.size - out.size % 4
-        for j in range(0, whole, 4):
-            a = max(a, out[j])
-            b = max(b, out[j + 1])
-            c = max(c, out[j + 2])
-            d = max(d, out[j + 3])
-        for j in range(whole, out.size):
-            a = max(a, out[j])
-        maxima[i] = max(a, b, c, d)
+        largest = out[0]
+        for j in range(out.size):
+            largest = out[j] if out[j] > largest else largest
+        maxima[i] = largest
 
 
 @compiled
@@ -158,52 +164,57 @@ def _regions(  # noqa: PLR0917 - Numba takes no keyword-only ones
     work space. A label whose parent is another one has handed its sums over.
     """
     height, width = least.shape
-    labels = 0
-    above = 0
+    labels, above = 0, 0
+    lit = np.zeros(width + 1, dtype=np.uint8)
     for i in range(height):
-        before, now = runs[i % 2], runs[1 - i % 2]
-        here = 0
-        if maxima[i] > cut:
-            row = least[i]
-            j = 0
-            p = 0
-            while j < width:
-                if not row[j] > cut:
-                    j += 1
-                    continue
+        if not maxima[i] > cut:
+            above = 0
+            continue
+        old, new = i % 2, 1 - i % 2
+        row = least[i]
+        for j in range(width):
+            lit[j] = 1 if row[j] > cut else 0
+        here, p, first = 0, 0, 0
+        for j in range(width + 1):
+            if lit[j] == (j > 0 and lit[j - 1]):
+                continue
+            if lit[j]:
                 first = j
-                while j < width and row[j] > cut:
-                    j += 1
-                label = -1
-                while p < above and before[1, p] < first:
-                    p += 1
-                q = p
-                while q < above and before[0, q] <= j:
-                    other = _root(parents, before[2, q])
-                    if label < 0:
-                        label = other
-                    elif other != label:
-                        parents[other] = label
-                        for s in range(10):
-                            sums[label, s] += sums[other, s]
-                        for s in (10, 12):
-                            sums[label, s] = min(sums[label, s], sums[other, s])
-                            sums[label, s + 1] = max(sums[label, s + 1], sums[other, s + 1])
-                    q += 1
+                continue
+            label = -1
+            while p < above and runs[old, 1, p] < first:
+                p += 1
+            q = p
+            while q < above and runs[old, 0, q] <= j:
+                other = _root(parents, runs[old, 2, q])
                 if label < 0:
-                    if labels == len(parents):
-                        return -1
-                    label = labels
-                    labels += 1
-                    parents[label] = label
-                    sums[label, :10] = 0.0
-                    sums[label, 10], sums[label, 11] = np.inf, -np.inf
-                    sums[label, 12], sums[label, 13] = np.inf, -np.inf
-                _add_run(row, i, first, j, base, cut, sums[label])
-                now[0, here], now[1, here], now[2, here] = first, j, label
-                here += 1
+                    label = other
+                elif other != label:
+                    parents[other] = label
+                    _join(sums[label], sums[other])
+                q += 1
+            if label < 0:
+                if labels == len(parents):
+                    return -1
+                label = labels
+                labels += 1
+                parents[label] = label
+                sums[label] = 0.0
+                sums[label, 10], sums[label, 11] = np.inf, -np.inf
+                sums[label, 12], sums[label, 13] = np.inf, -np.inf
+            _add_run(row, i, first, j, base, cut, sums[label])
+            runs[new, 0, here], runs[new, 1, here], runs[new, 2, here] = first, j, label
+            here += 1
         above = here
     return labels
+
+
+@compiled
+def _join(sums: Floats, other: Floats) -> None:
+    """Add the sums of one region to those of another one."""
+    sums[:10] += other[:10]
+    sums[10], sums[12] = min(sums[10], other[10]), min(sums[12], other[12])
+    sums[11], sums[13] = max(sums[11], other[11]), max(sums[13], other[13])
 
 
 @compiled
@@ -226,7 +237,7 @@ def find_lights(frames: NDArray[Any], unusable: NDArray[np.bool_], out: Floats) 
     count, height, width = frames.shape
     least = np.empty((height - 1, width - 1), dtype=frames.dtype)
     maxima = np.empty(height - 1, dtype=frames.dtype)
-    pixels = np.empty((3, 2 * (height + width)))
+    work = np.empty((5, 2 * (height + width)))
     runs = np.empty((2, 3, width), dtype=np.int64)
     parents = np.empty(_MOST, dtype=np.int64)
     sums = np.empty((_MOST, _SUMS))
@@ -236,7 +247,7 @@ def find_lights(frames: NDArray[Any], unusable: NDArray[np.bool_], out: Floats) 
             continue
         frame = frames[k]
         _erode(frame, least, maxima)
-        base, noise = _border(frame, pixels)
+        base, noise = _border(frame, work)
         peak = float(maxima.max()) - base
         sigma = math.sqrt(noise)
         if not peak > _SEEN * sigma:
