@@ -34,7 +34,7 @@ _PAD = 8
 #: Half the core, px: the lit extent times one and a bit, more where the light falls off slowly.
 _WIDER, _SOFTER, _MARGIN = 1.1, 1.5, 3.0
 #: The ring about the core that tells the background's slope, px and over the core.
-_RING, _RING_SHARE = 3.0, 0.3
+_RING, _RING_SHARE = 4.0, 0.5
 #: Levels of smoothing of the weighting, by binomials 2, 4 ... px apart.
 _LEVELS = 5
 #: Share of noise in the weighting from which a smoother one is tried.
@@ -47,9 +47,10 @@ _FLOOR = 0.0015
 #: A pixel counts as lit above this fraction of the peak.
 _CUT = 0.3
 #: A pair is left out whose difference departs by so many deviations and this share of the slope.
-_BAD, _BAD_SLOPE = 6.0, 0.4
-#: Light that departs in clusters of pairs, over the spot's, above which it is not symmetric.
-_ASYMMETRIC = 0.06
+_BAD, _BAD_SLOPE = 4.5, 0.2
+#: Light that departs in clusters of pairs, over the spot's, and the square of what neighbours miss
+#: alike, over that of the light: above either, the spot is not symmetric.
+_CLUSTERS, _ALIKE = 0.06, 0.003
 #: Standard deviation of the centre, px, over which it is not known.
 _UNSURE = 0.5
 #: From the lit light's centroid, in half extents and px, no registration leads further.
@@ -286,6 +287,20 @@ def _smoother(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
+def _clean_ring(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    s: Floats, d: Floats, first: int, above: int, far: float
+) -> None:
+    """Where a pair around the core differs by more than `far`, take the darker pixel for both."""
+    rows, columns = d.shape
+    for i in range(rows):
+        at, row = s[i + _PAD], d[i]
+        for j in range(columns):
+            if abs(row[j]) > far and (i < above or j < first or j >= columns - first):
+                at[_PAD + j] -= 0.5 * abs(row[j])
+                row[j] = 0.0
+
+
+@compiled
 def _ring_pairs(  # noqa: PLR0917 - Numba takes no keyword-only ones
     s: Floats, d: Floats, first: int, above: int, middle: float, found: Floats, pairs: Floats
 ) -> int:
@@ -321,44 +336,84 @@ def _ring_pairs(  # noqa: PLR0917 - Numba takes no keyword-only ones
 def _ring_slope(  # noqa: PLR0917 - Numba takes no keyword-only ones
     pairs: Floats, count: int, noise: float, gain: float, prior: float, slope: Floats
 ) -> None:
-    """Fit ``difference = 2 slope . u`` to the pairs around the core, none with much influence.
+    """Fit ``difference = 2 (slope + bend |u|^2 / r^2) . u`` to the pairs around the core.
 
-    `prior` is the variance of a slope before anything is known, which counts where the frame's
-    edge leaves few pairs.
+    No pair has much influence. `slope` holds the slope along x and y, the bend along both, and
+    r^2, the mean of ``|u|^2``. `prior` is the variance of a slope and of a bend before anything is
+    known, which counts where the frame's edge leaves few pairs.
     """
     r, x, y = pairs[0, :count], pairs[1, :count], pairs[2, :count]
-    size, ones = pairs[4, :count], pairs[5, :count]
-    ones[:] = 1.0
+    size, far_x, far_y = pairs[4, :count], pairs[5, :count], pairs[3, :count]
+    slope[4] = (_dot(x, x) + _dot(y, y)) / max(count, 1) + 1e-300
+    light = 0.0
     for q in range(count):
+        light += pairs[3, q]
         size[q] = abs(r[q])
-    variance = 2.0 * (noise + gain * max(_dot(pairs[3, :count], ones) / max(count, 1), 0.0))
-    xx = 4.0 * _dot(x, x) / variance + 1.0 / prior
-    yy = 4.0 * _dot(y, y) / variance + 1.0 / prior
-    far = max(4.0 * math.sqrt(variance), 3.0 * _dot(size, ones) / max(count, 1))
-    for _ in range(4):
-        for q in range(count):
-            e = r[q] - 2.0 * (slope[0] * x[q] + slope[1] * y[q])
-            e = e if e < far else far
-            size[q] = e if e > -far else -far
-        slope[0] += (2.0 * _dot(size, x) / variance - slope[0] / prior) / xx
-        slope[1] += (2.0 * _dot(size, y) / variance - slope[1] / prior) / yy
-        far = 4.0 * math.sqrt(variance)
+    far = 0.0
+    for q in range(count):
+        far += size[q]
+    variance = 2.0 * (noise + gain * max(light / max(count, 1), 0.0))
+    for q in range(count):
+        squared = (x[q] * x[q] + y[q] * y[q]) / slope[4]
+        far_x[q] = squared * x[q]
+        far_y[q] = squared * y[q]
+    far = max(4.0 * math.sqrt(variance), 3.0 * far / max(count, 1))
+    scale, ridge = 4.0 / variance, 1.0 / prior
+    for axis in range(2):
+        u, v = (x, far_x) if axis == 0 else (y, far_y)
+        own, mixed, bent = _dot(u, u) * scale + ridge, _dot(u, v) * scale, _dot(v, v) * scale + ridge
+        determinant = own * bent - mixed * mixed
+        limit = far
+        for _ in range(4):
+            a, b = 2.0 * slope[axis], 2.0 * slope[2 + axis]
+            for q in range(count):
+                e = r[q] - a * u[q] - b * v[q]
+                e = e if e < limit else limit
+                size[q] = e if e > -limit else -limit
+            first = 0.5 * scale * _dot(size, u) - slope[axis] * ridge
+            second = 0.5 * scale * _dot(size, v) - slope[2 + axis] * ridge
+            slope[axis] += (bent * first - mixed * second) / determinant
+            slope[2 + axis] += (own * second - mixed * first) / determinant
+            limit = max(4.0 * math.sqrt(variance), 0.3 * limit)
 
 
 @compiled
 def _departures(  # noqa: PLR0917 - Numba takes no keyword-only ones
     mean: Floats, kept: Floats, g: Floats, d: Floats, found: Floats, cut: float, work: Floats, e: Floats
-) -> tuple[float, float]:
-    """Write what the fit leaves of the differences to `e`; its mean size and light where lit."""
+) -> tuple[float, float, float]:
+    """Write what the fit leaves of the differences to `e`; its noise and light where lit.
+
+    Noise is told by neighbours' differences, which a light beside the spot hardly enters. Last
+    is the share of the light that neighbours miss alike: that of a shape without symmetry.
+    """
     g_x, g_y = g[0].ravel(), g[1].ravel()
-    lit, size = work[0, : d.size], work[1, : d.size]
+    lit, flat, apart, own = work[0, : d.size], work[1, : d.size], work[2, : d.size], work[3, : d.size]
     for q in range(d.size):
         e[q] = d[q] + found[0] * g_x[q] + found[1] * g_y[q]
+        lit[q] = kept[q] if mean[q] > cut else 0.0
+        own[q] = lit[q] * e[q]
         steep = 3.0 * (abs(g_x[q]) + abs(g_y[q])) / cut
-        lit[q] = kept[q] / (1.0 + steep * steep) if mean[q] > cut else 0.0
-        size[q] = abs(e[q])
-    number = max(_dot(lit, kept), 1e-300)
-    return _dot(lit, size) / number, _dot(lit, mean) / number
+        flat[q] = lit[q] / (1.0 + steep * steep)
+    last = d.size - 1
+    for q in range(last):
+        flat[q] *= flat[q + 1]
+        apart[q] = abs(e[q + 1] - e[q])
+    number = max(_sum(flat[:last]), 1e-300)
+    light = _dot(flat[:last], mean[:last]) / number
+    # Of a normal variable, the mean size is sqrt(2 / pi) of the standard deviation.
+    variance = 0.25 * math.pi * (_dot(flat[:last], apart[:last]) / number) ** 2
+    squares = _dot(lit, mean * mean)
+    alike = _dot(own[:last], own[1:])
+    by_chance = 5.0 * _dot(own, own) / math.sqrt(max(_sum(lit), 1.0))
+    return 0.5 * variance, max(light, 1e-300), (alike - by_chance) / max(squares, 1e-300)
+
+
+@compiled
+def _sum(a: Floats) -> float:
+    total = 0.0
+    for q in range(a.size):
+        total += a[q]
+    return total
 
 
 @compiled
@@ -371,6 +426,7 @@ def _leave_out(  # noqa: PLR0917 - Numba takes no keyword-only ones
     noise: float,
     gain: float,
     least: float,
+    slack: float,
     e: Floats,
     kept: Floats,
     work: Floats,
@@ -387,7 +443,7 @@ def _leave_out(  # noqa: PLR0917 - Numba takes no keyword-only ones
         for j in range(columns):
             light = part[j] if part[j] > 0.0 else 0.0
             limit[j] = least + _BAD * math.sqrt(2.0 * (noise + gain * light))
-            limit[j] += _BAD_SLOPE * (abs(g_x[j]) + abs(g_y[j]))
+            limit[j] += slack * (abs(g_x[j]) + abs(g_y[j]))
         row, keep = e[i], kept[i]
         beyond = 0
         for j in range(columns):
@@ -435,11 +491,13 @@ def _flatten(  # noqa: PLR0917 - Numba takes no keyword-only ones
     for i in range(rows):
         part, row = s[top + i, left:], d[first + i, left - _PAD :]
         to, differences = mean[i], out[i]
-        along = 2.0 * (slope[0] * at[0] + slope[1] * (at[1] + i))
-        step = 2.0 * slope[0]
+        y = at[1] + i
         for j in range(columns):
+            x = at[0] + j
+            bend = (x * x + y * y) / slope[4]
+            background = (slope[0] + slope[2] * bend) * x + (slope[1] + slope[3] * bend) * y
             to[j] = part[j]
-            differences[j] = row[j] - along - step * j
+            differences[j] = row[j] - 2.0 * background
 
 
 @compiled
@@ -478,13 +536,16 @@ def _register(  # noqa: PLR0914, PLR0915, PLR0917 - the method's steps in order
     e, kept = work[7, : n * c].reshape(n, c), work[8, : n * c].reshape(n, c)
     w, line, spare = work[9, : n * c], work[10], work[11:17]
     _pairs(frame, left, top, last, (base, 4.0 * peak), s, d)
-    slope = np.zeros(2)
+    _clean_ring(s, d, first, above, 0.1 * peak + _BAD * math.sqrt(2.0 * noise))
+    _complete(s, rows, columns, last - top + 1)
+    slope = np.zeros(5)
+    slope[4] = 1.0
     at = first - 0.5 * (columns - 1), above - 0.5 * (last - top)
     kept[:] = 1.0
     # A middle row's pairs appear twice.
     twice = (last - top) % 2 == 0
     number = c * (n - 0.5 if twice else n + 0.0)
-    gain, clusters, level = 0.0, 0.0, 0
+    gain, clusters, share, level = 0.0, 0.0, 0.0, 0
     prior = (_PRIOR * peak / max(wide, high)) ** 2
     d_x, d_y = found[0], found[1]
     fresh = False
@@ -519,12 +580,14 @@ def _register(  # noqa: PLR0914, PLR0915, PLR0917 - the method's steps in order
             _fit(h, slopes, flat, w, common, spare, found)
             if not np.isfinite(found[2]):
                 return 0.0
-        size, lit = _departures(means, keep, slopes, flat, found, _CUT * peak, spare, e.ravel())
-        # Of a normal variable, the mean size is sqrt(2 / pi) of the standard deviation.
+        variance, lit, share = _departures(means, keep, slopes, flat, found, _CUT * peak, spare, e.ravel())
         before = gain
-        gain = max(0.25 * math.pi * size * size - noise, 0.0) / max(lit, 1e-300)
-        least = (0.1 if turn == 0 else 0.02) * peak
-        bad, more = _leave_out(s, core_left, core_top, dc, slopes, noise, gain, least, e, kept, spare)
+        gain = max(variance - noise, 0.0) / lit
+        least = (0.1 if turn == 0 else 0.01) * peak
+        slack = (2.0 if turn == 0 else 1.0) * _BAD_SLOPE
+        bad, more = _leave_out(
+            s, core_left, core_top, dc, slopes, noise, gain, least, slack, e, kept, spare
+        )
         clusters += more
         number -= bad
         if bad:
@@ -533,7 +596,8 @@ def _register(  # noqa: PLR0914, PLR0915, PLR0917 - the method's steps in order
         fresh = turn > 0 and bad == 0 and max(abs(found[0] - d_x), abs(found[1] - d_y)) < _SAME
         if fresh and same:
             break
-    return clusters / max(2.0 * means.sum(), 1e-300)
+    # Of the symmetric light, clusters and what neighbours miss alike, each over its limit.
+    return max(clusters / max(2.0 * means.sum(), 1e-300) / _CLUSTERS, share / _ALIKE)
 
 
 @compiled
@@ -561,7 +625,7 @@ def mirror_centres(frames: NDArray[Any], lights: Floats, out: Floats) -> None:
                 break
         near = abs(x - light[0]) <= _ASTRAY * light[2] + _ASTRAY_PX
         near = near and abs(y - light[1]) <= _ASTRAY * light[3] + _ASTRAY_PX
-        if near and math.sqrt(found[2]) <= _UNSURE and asymmetry <= _ASYMMETRIC:
+        if near and math.sqrt(found[2]) <= _UNSURE and asymmetry <= 1.0:
             out[k, 0] = x
             out[k, 1] = y
             out[k, 2] = math.sqrt(found[2])
