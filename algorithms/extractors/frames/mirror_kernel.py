@@ -47,16 +47,18 @@ _FLOOR = 0.0015
 #: A pixel counts as lit above this fraction of the peak.
 _CUT = 0.3
 #: A pair is left out whose difference departs by so many deviations and this share of the slope.
-_BAD, _BAD_SLOPE = 4.5, 0.2
+_BAD, _BAD_SLOPE = 5.0, 0.2
 #: Light that departs in clusters of pairs, over the spot's, and the square of what neighbours miss
 #: alike, over that of the light: above either, the spot is not symmetric.
-_CLUSTERS, _ALIKE = 0.06, 0.003
+_CLUSTERS, _ALIKE = 0.02, 0.003
 #: Standard deviation of the centre, px, over which it is not known.
 _UNSURE = 0.5
 #: From the lit light's centroid, in half extents and px, no registration leads further.
 _ASTRAY, _ASTRAY_PX = 0.25, 0.75
 #: Standard deviation of the background's slope, over the spot's own, before anything is known.
 _PRIOR = 0.01
+#: Standard deviations of a bend of the background from which it is one: extrapolating costs noise.
+_BENT = 3.0
 
 
 def _noise_of_levels() -> tuple[Floats, Floats]:
@@ -363,18 +365,26 @@ def _ring_slope(  # noqa: PLR0917 - Numba takes no keyword-only ones
         u, v = (x, far_x) if axis == 0 else (y, far_y)
         own, mixed, bent = _dot(u, u) * scale + ridge, _dot(u, v) * scale, _dot(v, v) * scale + ridge
         determinant = own * bent - mixed * mixed
-        limit = far
-        for _ in range(4):
-            a, b = 2.0 * slope[axis], 2.0 * slope[2 + axis]
-            for q in range(count):
-                e = r[q] - a * u[q] - b * v[q]
-                e = e if e < limit else limit
-                size[q] = e if e > -limit else -limit
-            first = 0.5 * scale * _dot(size, u) - slope[axis] * ridge
-            second = 0.5 * scale * _dot(size, v) - slope[2 + axis] * ridge
-            slope[axis] += (bent * first - mixed * second) / determinant
-            slope[2 + axis] += (own * second - mixed * first) / determinant
-            limit = max(4.0 * math.sqrt(variance), 0.3 * limit)
+        for bends in (True, False):
+            limit = far
+            for _ in range(4):
+                a, b = 2.0 * slope[axis], 2.0 * slope[2 + axis]
+                for q in range(count):
+                    e = r[q] - a * u[q] - b * v[q]
+                    e = e if e < limit else limit
+                    size[q] = e if e > -limit else -limit
+                first = 0.5 * scale * _dot(size, u) - slope[axis] * ridge
+                second = 0.5 * scale * _dot(size, v) - slope[2 + axis] * ridge
+                if bends:
+                    slope[axis] += (bent * first - mixed * second) / determinant
+                    slope[2 + axis] += (own * second - mixed * first) / determinant
+                else:
+                    slope[axis] += first / own
+                limit = max(4.0 * math.sqrt(variance), 0.3 * limit)
+            if bends and slope[2 + axis] ** 2 * determinant <= _BENT * _BENT * own:
+                slope[axis], slope[2 + axis] = 0.0, 0.0
+            else:
+                break
 
 
 @compiled
