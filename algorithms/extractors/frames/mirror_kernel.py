@@ -104,7 +104,13 @@ def _dot(a: Floats, b: Floats) -> float:
 
 @compiled
 def _pairs(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    frame: NDArray[Any], left: int, top: int, last: int, light: tuple[float, float], s: Floats, d: Floats
+    frame: NDArray[Any],
+    left: int,
+    top: int,
+    last: int,
+    light: tuple[float, float],
+    s: Floats,
+    d: Floats,
 ) -> None:
     """Write means of pairs to `s`, with a margin, and differences to `d`, the upper half's rows.
 
@@ -115,15 +121,19 @@ def _pairs(  # noqa: PLR0917 - Numba takes no keyword-only ones
     base, most = light
     for i in range(rows):
         upper = frame[top + i, left : left + columns]
-        lower = frame[last - i, left : left + columns][::-1]
+        lower = frame[last - i, left : left + columns]
         means, differences = s[i + _PAD, _PAD : _PAD + columns], d[i]
         for j in range(columns):
             a = upper[j] - base
+            means[j] = min(most, a)
+        for j in range(columns):
             b = lower[j] - base
-            a = a if a < most else most
-            b = b if b < most else most
-            means[j] = 0.5 * (a + b)
-            differences[j] = a - b
+            differences[j] = min(most, b)
+        for j in range((columns + 1) // 2):
+            k = columns - 1 - j
+            a, b, c, e = means[j], differences[k], means[k], differences[j]
+            means[j], differences[j] = 0.5 * (a + b), a - b
+            means[k], differences[k] = 0.5 * (c + e), c - e
     _complete(s, rows, columns, last - top + 1)
 
 
@@ -163,7 +173,7 @@ def _smoothed(s: Floats, apart: int, line: Floats, out: Floats) -> None:
 
 
 @compiled
-def _slopes(  # noqa: PLR0917 - the formulas in their order
+def _slopes(  # noqa: PLR0917 - Numba takes no keyword-only ones
     s: Floats, left: int, top: int, d_x: float, d_y: float, mixed: Floats, g: Floats
 ) -> None:
     """Write to `g` (2, rows, columns) what a unit of d along x and along y takes off a difference.
@@ -227,7 +237,13 @@ def _weighting(s: Floats, left: int, top: int, line: Floats, h: Floats) -> None:
 
 @compiled
 def _fit(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    h: Floats, g: Floats, d: Floats, w: Floats, common: tuple[float, float], work: Floats, found: Floats
+    h: Floats,
+    g: Floats,
+    d: Floats,
+    w: Floats,
+    common: tuple[float, float],
+    work: Floats,
+    found: Floats,
 ) -> None:
     """Solve ``sum w h (d + d_x g_x + d_y g_y) = 0``; differences have twice a pixel's variance.
 
@@ -289,9 +305,7 @@ def _smoother(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def _clean_ring(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    s: Floats, d: Floats, first: int, above: int, far: float
-) -> None:
+def _clean_ring(s: Floats, d: Floats, first: int, above: int, far: float) -> None:
     """Where a pair around the core differs by more than `far`, take the darker pixel for both."""
     rows, columns = d.shape
     for i in range(rows):
@@ -335,7 +349,7 @@ def _ring_pairs(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def _ring_slope(  # noqa: PLR0917 - Numba takes no keyword-only ones
+def _ring_slope(  # noqa: C901, PLR0917 - the method's steps in order
     pairs: Floats, count: int, noise: float, gain: float, prior: float, slope: Floats
 ) -> None:
     """Fit ``difference = 2 (slope + bend |u|^2 / r^2) . u`` to the pairs around the core.
@@ -363,16 +377,22 @@ def _ring_slope(  # noqa: PLR0917 - Numba takes no keyword-only ones
     scale, ridge = 4.0 / variance, 1.0 / prior
     for axis in range(2):
         u, v = (x, far_x) if axis == 0 else (y, far_y)
-        own, mixed, bent = _dot(u, u) * scale + ridge, _dot(u, v) * scale, _dot(v, v) * scale + ridge
+        own, mixed, bent = (
+            _dot(u, u) * scale + ridge,
+            _dot(u, v) * scale,
+            _dot(v, v) * scale + ridge,
+        )
         determinant = own * bent - mixed * mixed
         for bends in (True, False):
             limit = far
             for _ in range(4):
                 a, b = 2.0 * slope[axis], 2.0 * slope[2 + axis]
+                beyond = 0
                 for q in range(count):
                     e = r[q] - a * u[q] - b * v[q]
-                    e = e if e < limit else limit
-                    size[q] = e if e > -limit else -limit
+                    beyond += abs(e) > limit
+                    e = min(limit, e)
+                    size[q] = max(-limit, e)
                 first = 0.5 * scale * _dot(size, u) - slope[axis] * ridge
                 second = 0.5 * scale * _dot(size, v) - slope[2 + axis] * ridge
                 if bends:
@@ -380,6 +400,8 @@ def _ring_slope(  # noqa: PLR0917 - Numba takes no keyword-only ones
                     slope[2 + axis] += (own * second - mixed * first) / determinant
                 else:
                     slope[axis] += first / own
+                if beyond == 0 and limit <= 4.0 * math.sqrt(variance):
+                    break  # one step solves what is linear
                 limit = max(4.0 * math.sqrt(variance), 0.3 * limit)
             if bends and slope[2 + axis] ** 2 * determinant <= _BENT * _BENT * own:
                 slope[axis], slope[2 + axis] = 0.0, 0.0
@@ -389,7 +411,14 @@ def _ring_slope(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 @compiled
 def _departures(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    mean: Floats, kept: Floats, g: Floats, d: Floats, found: Floats, cut: float, work: Floats, e: Floats
+    mean: Floats,
+    kept: Floats,
+    g: Floats,
+    d: Floats,
+    found: Floats,
+    cut: float,
+    work: Floats,
+    e: Floats,
 ) -> tuple[float, float, float]:
     """Write what the fit leaves of the differences to `e`; its noise and light where lit.
 
@@ -397,22 +426,35 @@ def _departures(  # noqa: PLR0917 - Numba takes no keyword-only ones
     is the share of the light that neighbours miss alike: that of a shape without symmetry.
     """
     g_x, g_y = g[0].ravel(), g[1].ravel()
-    lit, flat, apart, own = work[0, : d.size], work[1, : d.size], work[2, : d.size], work[3, : d.size]
+    lit, flat, apart, own = (
+        work[0, : d.size],
+        work[1, : d.size],
+        work[2, : d.size],
+        work[3, : d.size],
+    )
+    # A loop each: of many arrays in one, none is seen to be apart from the others.
     for q in range(d.size):
         e[q] = d[q] + found[0] * g_x[q] + found[1] * g_y[q]
+    for q in range(d.size):
         lit[q] = kept[q] if mean[q] > cut else 0.0
+    for q in range(d.size):
         own[q] = lit[q] * e[q]
-        steep = 3.0 * (abs(g_x[q]) + abs(g_y[q])) / cut
+    scale = 3.0 / cut
+    for q in range(d.size):
+        steep = scale * (abs(g_x[q]) + abs(g_y[q]))
         flat[q] = lit[q] / (1.0 + steep * steep)
     last = d.size - 1
     for q in range(last):
-        flat[q] *= flat[q + 1]
         apart[q] = abs(e[q + 1] - e[q])
+    for q in range(last):
+        flat[q] *= flat[q + 1]
     number = max(_sum(flat[:last]), 1e-300)
     light = _dot(flat[:last], mean[:last]) / number
     # Of a normal variable, the mean size is sqrt(2 / pi) of the standard deviation.
     variance = 0.25 * math.pi * (_dot(flat[:last], apart[:last]) / number) ** 2
-    squares = _dot(lit, mean * mean)
+    for q in range(d.size):
+        work[4, q] = mean[q] * mean[q]
+    squares = _dot(lit, work[4, : d.size])
     alike = _dot(own[:last], own[1:])
     by_chance = 5.0 * _dot(own, own) / math.sqrt(max(_sum(lit), 1.0))
     return 0.5 * variance, max(light, 1e-300), (alike - by_chance) / max(squares, 1e-300)
@@ -420,14 +462,21 @@ def _departures(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 @compiled
 def _sum(a: Floats) -> float:
-    total = 0.0
-    for q in range(a.size):
-        total += a[q]
-    return total
+    """Sum in four sums side by side."""
+    whole = a.size - a.size % 4
+    s0, s1, s2, s3 = 0.0, 0.0, 0.0, 0.0
+    for q in range(0, whole, 4):
+        s0 += a[q]
+        s1 += a[q + 1]
+        s2 += a[q + 2]
+        s3 += a[q + 3]
+    for q in range(whole, a.size):
+        s0 += a[q]
+    return (s0 + s1) + (s2 + s3)
 
 
 @compiled
-def _leave_out(  # noqa: PLR0917 - Numba takes no keyword-only ones
+def _leave_out(  # noqa: C901, PLR0912, PLR0917 - the method's steps in order
     s: Floats,
     left: int,
     top: int,
@@ -451,7 +500,7 @@ def _leave_out(  # noqa: PLR0917 - Numba takes no keyword-only ones
     for i in range(rows):
         part, g_x, g_y = s[top + i, left:], g[0, i], g[1, i]
         for j in range(columns):
-            light = part[j] if part[j] > 0.0 else 0.0
+            light = max(0.0, part[j])
             limit[j] = least + _BAD * math.sqrt(2.0 * (noise + gain * light))
             limit[j] += slack * (abs(g_x[j]) + abs(g_y[j]))
         row, keep = e[i], kept[i]
@@ -490,7 +539,14 @@ def _leave_out(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 @compiled
 def _flatten(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    s: Floats, left: int, top: int, d: Floats, slope: Floats, at: tuple[float, float], mean: Floats, out: Floats
+    s: Floats,
+    left: int,
+    top: int,
+    d: Floats,
+    slope: Floats,
+    at: tuple[float, float],
+    mean: Floats,
+    out: Floats,
 ) -> None:
     """Copy the core's means, and its differences less the background's slope.
 
@@ -511,14 +567,14 @@ def _flatten(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def _register(  # noqa: PLR0914, PLR0915, PLR0917 - the method's steps in order
+def _register(  # noqa: C901, PLR0915 - the method's steps in order
     frame: NDArray[Any], light: Floats, middle: tuple[int, int], work: Floats, found: Floats
 ) -> float:
     """Write d_x, d_y and the centre's variance about middle / 2 to `found`; asymmetric light.
 
     The variance is infinite where nothing is found.
     """
-    x, y, wide, high, base, noise, peak, fill = light
+    wide, high, base, noise, peak, fill = light[2:]
     height, width = frame.shape
     found[2] = np.inf
     noise += (_FLOOR * peak) ** 2
@@ -569,7 +625,7 @@ def _register(  # noqa: PLR0914, PLR0915, PLR0917 - the method's steps in order
         _flatten(s, core_left, core_top, d, slope, at, mean, dc)
         flat, keep, means = dc.ravel(), kept.ravel(), mean.ravel()
         for q in range(n * c):
-            lit = means[q] if means[q] > 0.0 else 0.0
+            lit = max(0.0, means[q])
             w[q] = keep[q] / (noise + gain * lit)
         if twice:
             w[(n - 1) * c :] *= 0.5
@@ -590,7 +646,9 @@ def _register(  # noqa: PLR0914, PLR0915, PLR0917 - the method's steps in order
             _fit(h, slopes, flat, w, common, spare, found)
             if not np.isfinite(found[2]):
                 return 0.0
-        variance, lit, share = _departures(means, keep, slopes, flat, found, _CUT * peak, spare, e.ravel())
+        variance, lit, share = _departures(
+            means, keep, slopes, flat, found, _CUT * peak, spare, e.ravel()
+        )
         before = gain
         gain = max(variance - noise, 0.0) / lit
         least = (0.1 if turn == 0 else 0.01) * peak
@@ -602,12 +660,13 @@ def _register(  # noqa: PLR0914, PLR0915, PLR0917 - the method's steps in order
         number -= bad
         if bad:
             _complete(s, rows, columns, last - top + 1)
-        same = abs(gain - before) <= 0.2 * before + 0.02 * noise / peak
+        same = abs(gain - before) <= 0.5 * before + 0.02 * noise / peak
         fresh = turn > 0 and bad == 0 and max(abs(found[0] - d_x), abs(found[1] - d_y)) < _SAME
         if fresh and same:
             break
     # Of the symmetric light, clusters and what neighbours miss alike, each over its limit.
-    return max(clusters / max(2.0 * means.sum(), 1e-300) / _CLUSTERS, share / _ALIKE)
+    departing: float = clusters / max(2.0 * means.sum(), 1e-300)
+    return max(departing / _CLUSTERS, share / _ALIKE)
 
 
 @compiled

@@ -1,7 +1,8 @@
 """Find the one light of each frame: background, lit regions, how large and how compact they are.
 
 Works on the least value of every 2 x 2 block of pixels: there a hot pixel leaves no trace, and a
-light of some pixels keeps its shape. Frames are (N, H, W) arrays from `algorithms.inputs.as_frames`.
+light of some pixels keeps its shape. Frames are (N, H, W) arrays from
+`algorithms.inputs.as_frames`.
 """
 
 from __future__ import annotations
@@ -94,17 +95,17 @@ def _border(frame: NDArray[Any], work: Floats) -> tuple[float, float]:
 
 @compiled
 def _erode(frame: NDArray[Any], least: NDArray[Any], maxima: NDArray[Any]) -> None:
-    """Write the least of each 2 x 2 block to `least` (H - 1, W - 1), its rows' largest to `maxima`."""
+    """Write the least of each 2 x 2 block to `least` (H - 1, W - 1), rows' largest to `maxima`."""
     height, width = frame.shape
     for i in range(height - 1):
         upper, lower, out = frame[i], frame[i + 1], least[i]
         for j in range(width - 1):
-            a = upper[j] if upper[j] < lower[j] else lower[j]
-            b = upper[j + 1] if upper[j + 1] < lower[j + 1] else lower[j + 1]
-            out[j] = a if a < b else b
+            a = min(lower[j], upper[j])
+            b = min(lower[j + 1], upper[j + 1])
+            out[j] = min(b, a)
         largest = out[0]
         for j in range(out.size):
-            largest = out[j] if out[j] > largest else largest
+            largest = max(largest, out[j])
         maxima[i] = largest
 
 
@@ -149,7 +150,7 @@ def _add_run(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def _regions(  # noqa: PLR0917 - Numba takes no keyword-only ones
+def _regions(  # noqa: C901, PLR0917 - one scan, its cases
     least: NDArray[Any],
     maxima: NDArray[Any],
     base: float,
@@ -224,7 +225,8 @@ def _compact(s: Floats) -> bool:
     xx = s[7] / n - (s[5] / n) ** 2 + 1.0 / 12.0
     yy = s[8] / n - (s[6] / n) ** 2 + 1.0 / 12.0
     xy = s[9] / n - s[5] * s[6] / (n * n)
-    return 4.0 * math.pi * math.sqrt(max(xx * yy - xy * xy, 0.0)) <= _LOOSE * max(n, 4.0)
+    area: float = 4.0 * math.pi * math.sqrt(max(xx * yy - xy * xy, 0.0))
+    return area <= _LOOSE * max(float(n), 4.0)
 
 
 @compiled
