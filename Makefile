@@ -3,9 +3,10 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 # What is installed already: what serving and every command need, the rest of development, peers,
-# what puts faults into code.
+# what puts faults into code; what is compiled.
 SERVING := $(VENV)/.serving
 DEVELOPING := $(VENV)/.developing
+COMPILED := $(VENV)/.compiled
 PEERS := $(VENV)/.peers
 MUTANTS := $(VENV)/.mutants
 WORKERS ?= 2
@@ -24,7 +25,7 @@ export NUMBA_NUM_THREADS = 1
 help: ## show this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 14
 
-install: $(DEVELOPING) ## set up .venv with everything that development needs, pinned and hashed
+install: $(COMPILED) ## set up .venv with everything that development needs, pinned and hashed
 
 $(SERVING): requirements.lock pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
@@ -38,6 +39,11 @@ $(DEVELOPING): $(SERVING) requirements-dev.lock
 	$(PIP) --require-hashes -r requirements-dev.lock
 	touch $@
 
+# Numerical kernels, compiled once and kept: else every first call of a test would wait for its own.
+$(COMPILED): $(DEVELOPING)
+	$(BIN)/sunatlas compile --workers $(WORKERS) --quiet
+	touch $@
+
 $(PEERS): $(DEVELOPING) requirements-peers.lock
 	$(PIP) --require-hashes -r requirements-peers.lock
 	touch $@
@@ -49,13 +55,13 @@ $(MUTANTS): $(DEVELOPING) requirements-mutants.lock
 serve: $(SERVING) ## serve the page and the API on http://127.0.0.1:8000 (installs only what that needs)
 	$(BIN)/sunatlas serve --port $(PORT) --times
 
-test: $(DEVELOPING) ## run the tests, the slow ones left out
+test: $(COMPILED) ## run the tests, the slow ones left out
 	$(BIN)/python -m pytest -n $(WORKERS) -m "not slow"
 
-test-all: $(DEVELOPING) ## run every test, as CI does
+test-all: $(COMPILED) ## run every test, as CI does
 	$(BIN)/python -m pytest -n $(WORKERS)
 
-coverage: $(DEVELOPING) ## run every test and tell which lines and branches of the floors it reached
+coverage: $(COMPILED) ## run every test and tell which lines and branches of the floors it reached
 	$(BIN)/python -m pytest -n $(WORKERS) --cov --cov-report=term:skip-covered --cov-report=html:out/coverage
 
 lint: $(DEVELOPING) ## ruff, mypy (strict), the floors

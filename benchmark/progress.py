@@ -18,14 +18,14 @@ def silent(done: int, total: int, what: str) -> None:
 
 
 @contextmanager
-def terminal_progress() -> Iterator[ProgressCallback]:
+def terminal_progress(doing: str = "measuring") -> Iterator[ProgressCallback]:
     """Show a bar on standard error when that is a terminal; silence otherwise."""
     if not sys.stderr.isatty():
         yield silent
         return
 
     columns = (
-        TextColumn("measuring"),
+        TextColumn(doing),
         BarColumn(),
         MofNCompleteColumn(),
         TimeElapsedColumn(),

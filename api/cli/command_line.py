@@ -30,6 +30,7 @@ COMMANDS: dict[str, str] = {
     "assess": "Show the survey's scores of extractors beside measured ones.",
     "dataset": "List, describe, export or verify the standard datasets.",
     "deposit": "Build or verify the bundle an archive takes.",
+    "compile": "Compile every kernel now instead of at its first call.",
 }
 DEBUG = "SUNATLAS_DEBUG"
 INTERRUPTED = 130

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any, Self, cast, get_args
 
 import numpy as np
@@ -17,7 +18,7 @@ from benchmark.datasets.card import stream_names, told_once
 from benchmark.datasets.fields import Field, Split
 from benchmark.datasets.parameters import described
 from benchmark.datasets.realism import standing
-from benchmark.datasets.repeats import REPEAT, Repeats
+from benchmark.datasets.repeats import REPEAT, Repeats, Rows
 from benchmark.datasets.samples import Samples
 from benchmark.datasets.units import assembled, tolerances
 from benchmark.metrics.bounds import STEP_RAD, Bound, cramer_rao
@@ -181,22 +182,23 @@ class Preset:
         bench = self.condition(condition).bench
         if bench is None:
             return 0.0
-        names = (self.name, self.version, "test", "sun")
-        return bench.systematic_deg(self.directions.sun("test", generator(*names)))
+        stream = generator(self.name, self.version, "test", "sun")
+        return bench.systematic_deg(self.directions.sun("test", stream))
 
     def with_ideal_calibration(self) -> Self:
         """Return the dataset with one condition more: the first one, perfectly calibrated."""
-        shown = dataclasses.replace(
-            next(iter(self.setups.values())),
-            description="As nominal, calibrated perfectly: neither what tells the Sun's direction "
-            "nor its light has an error.",
-            bench=None,
-        )
+        said = "As nominal, calibrated perfectly: the Sun's direction and light are told rightly."
+        shown = dataclasses.replace(next(iter(self.setups.values())), description=said, bench=None)
         return dataclasses.replace(self, setups={**self.setups, IDEAL: shown})
 
     def _of_unit(self, *names: str | int) -> tuple[str | int, ...]:
         """Names of a random stream that every unit has of its own."""
         return (*names, "unit", self.unit) if self.unit else names
+
+    @property
+    def _tested(self) -> int:
+        """Samples of the test split."""
+        return int(self.directions.card()["test"]["samples"])
 
     @property
     def _bench_names(self) -> tuple[str | int, ...]:
@@ -212,19 +214,25 @@ class Preset:
 
     def fixed_pattern(self, condition: str) -> FixedPattern:
         """Return the unit as this condition shows it."""
-        names: tuple[str | int, ...] = (self.name, self.version, "unit")
-        if self.unit:
-            names = (*names, self.unit)
+        names = (self.name, self.version, "unit", *((self.unit,) if self.unit else ()))
         return self.condition(condition).sensor.fixed_pattern(*names)
 
-    def scene(self, condition: str, split: str) -> Scene:
-        """Sun, irradiance, stray light, windows and light from the Earth of a split."""
-        if split == REPEAT:
-            return self.repeats.scene(self._scene(condition, "test"))
-        return self._scene(condition, drawn_split(split))
+    def scene(self, condition: str, split: str, n: int | None = None) -> Scene:
+        """Sun, irradiance, stray light, windows and light from the Earth of a split.
 
-    def _scene(self, condition: str, known: Split) -> Scene:
-        """`scene` of a split that directions are drawn for."""
+        Of its first n samples, or of all; ValueError for n below 1.
+        """
+        if n is not None and n < 1:
+            raise ValueError(f"n must be at least 1; got {n}")
+        if split == REPEAT:
+            return self.repeats.scene(partial(self._scene, condition, "test"), self._tested, n)
+        return self._scene(condition, drawn_split(split), slice(n))
+
+    def _scene(self, condition: str, known: Split, rows: Rows = slice(None)) -> Scene:
+        """`scene` of some rows of a split that directions are drawn for.
+
+        What is drawn is drawn for all of them; the Earth, which costs more, is seen from these.
+        """
         setup = self.condition(condition)
         names = (self.name, self.version, known)
         sun = self.directions.sun(known, generator(*names, "sun"))
@@ -232,22 +240,21 @@ class Preset:
         if known == "calibration" and isinstance(setup.bench, Bench):
             light = setup.bench.light(sun, *self._bench_names)  # no seasons before a lamp
         origin = setup.sensor.origins(sun, generator(*names, "window"))
-        albedo = None
-        if setup.earth is not None and known == "test":
-            nadir = setup.earth.draw_nadir(sun, generator(*names, "nadir"))
-            pattern = self.fixed_pattern(condition)
-            if isinstance(setup.sensor, Faces):
-                seen = setup.sensor.earthlight(setup.earth, sun, nadir, pattern)
-            else:
-                bare = Scene(sun, light, stray, origin)
-                seen = cast("SeesEarth", setup.sensor).earth_through(
-                    setup.earth, nadir, bare, pattern
-                )
-            albedo = light.reshape(-1, *(1,) * (seen.ndim - 1)) * seen
         rate = None
         if setup.spin is not None and known == "test":
             rate = setup.spin.draw(len(sun), generator(*names, "spin"))
-        return Scene(sun, light, stray, origin, albedo, rate)
+        bare = Scene(sun, light, stray, origin, None, rate).rows(rows)
+        if setup.earth is None or known != "test":
+            return bare
+        nadir = setup.earth.draw_nadir(sun, generator(*names, "nadir"))[rows]
+        pattern = self.fixed_pattern(condition)
+        if isinstance(setup.sensor, Faces):
+            seen = setup.sensor.earthlight(setup.earth, bare.sun, nadir, pattern)
+        else:
+            behind = cast("SeesEarth", setup.sensor)
+            seen = behind.earth_through(setup.earth, nadir, bare, pattern)
+        albedo = bare.irradiance.reshape(-1, *(1,) * (seen.ndim - 1)) * seen
+        return dataclasses.replace(bare, albedo=albedo)
 
     def generate(self, condition: str, split: str, n: int | None = None) -> Samples:
         """Simulate a split, ``calibration``, ``test`` or ``repeat``: always the same numbers.
@@ -265,13 +272,13 @@ class Preset:
             On an unknown condition or split, naming the known ones; on n below 1.
         """
         sensor = self.sensor_for(condition, split)
-        whole = self.scene(condition, split)
-        scene = first(whole, n)
+        scene = self.scene(condition, split, n)
         pattern = self.fixed_pattern(condition)
         names = self._of_unit(self.name, self.version, condition, split)
         streams = NoiseStreams.named(*names)
         # passes over the same poses share their light where light is remembered
-        size = len(whole) // self.repeats.passes if split == REPEAT else self.batch or BATCH
+        poses = len(self.repeats.chosen(self._tested))
+        size = poses if split == REPEAT else self.batch or BATCH
         batch = sensor.observe(scene.part(0, size), pattern, streams)
         # filled batch by batch: joining a list of batches would hold everything twice
         observations = np.empty((len(scene), *batch.shape[1:]), batch.dtype)
@@ -294,7 +301,7 @@ class Preset:
         setup = self.condition(condition)
         return cramer_rao(
             self.sensor_for(condition, split),
-            first(self.scene(condition, split), n),
+            self.scene(condition, split, n),
             self.fixed_pattern(condition),
             setup.irradiance,
             self.bound_step_rad,
@@ -340,11 +347,9 @@ class Preset:
                 "offered": self.offered,
                 "repeats": self.repeats,
                 "unit": self.unit,
+                "spin": setup.spin,
             }
         )
-        if setup.spin is not None:
-            # told where there is one: the parameters of all others stay as they were
-            plain["spin"] = described(setup.spin)
         return plain
 
     def card(self) -> dict[str, Any]:
@@ -390,10 +395,3 @@ def drawn_split(name: str) -> Split:
         if name == split:
             return split
     raise ValueError(f"no split {name!r}; there are {', '.join(SPLITS)}")
-
-
-def first(scene: Scene, n: int | None) -> Scene:
-    """Return the first n samples, all for None; ValueError for n below 1."""
-    if n is not None and n < 1:
-        raise ValueError(f"n must be at least 1; got {n}")
-    return scene if n is None else scene.part(0, n)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,6 +12,9 @@ from numpy.typing import NDArray
 from benchmark.simulator.scene import Scene
 
 REPEAT = "repeat"
+
+#: Which samples of a split.
+Rows = slice | NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -35,9 +39,11 @@ class Repeats:
         poses = min(self.poses, test_samples)
         return (np.arange(poses) * test_samples + test_samples // 2) // poses
 
-    def scene(self, test: Scene) -> Scene:
-        """Return the poses of the test split's scene, pass after pass."""
-        return test.rows(np.tile(self.chosen(len(test)), self.passes))
+    def scene(self, test: Callable[[Rows], Scene], test_samples: int, n: int | None) -> Scene:
+        """Return the first n of the poses' scenes, pass after pass; `test` makes rows of it."""
+        poses = self.chosen(test_samples)
+        again = np.tile(np.arange(len(poses)), self.passes)[:n]
+        return test(poses).rows(again)
 
     def card(self, test_samples: int) -> dict[str, Any]:
         """Size and directions, as cards say it of a split."""

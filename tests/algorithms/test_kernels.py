@@ -6,11 +6,14 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 import algorithms
 
 ROOT = Path(algorithms.__file__).parent.parent
 
 
+@pytest.mark.slow
 def test_kernels_work_where_nothing_can_be_cached():
     """A read-only installation: Numba finds no place for its cache and says so with an error."""
     code = (

@@ -85,6 +85,7 @@ def test_peers_that_are_there_find_the_spot():
         )
 
 
+@pytest.mark.slow
 def test_scipys_moments_are_opencvs():
     frames, _ = REFERENCE_SETS["disc"].frames(5)
     found = speed_extractors_peers.peers()[0]["scipy center_of_mass"](frames)

@@ -52,6 +52,7 @@ def test_a_comparison_writes_nothing_and_shows_every_kind(copy: Any) -> None:
     assert json.loads(json.dumps(plan.to_dict()))["differences"][0]["study"] == "Alvi2014"
 
 
+@pytest.mark.slow
 def test_applying_raises_the_basis_and_keeps_what_was_said_before(copy: Any) -> None:
     old_mask = cell(copy, "Alvi2014", "mask")[0]
     plan = import_table(offer(copy, THEIRS), copy.directory, apply=True)

@@ -13,7 +13,7 @@ from algorithms.contract import Floats
 from benchmark.datasets.conditions.instruments import Instruments
 from benchmark.datasets.fields import Split
 from benchmark.datasets.preset import DRAWN, Preset, drawn_split
-from benchmark.datasets.repeats import REPEAT
+from benchmark.datasets.repeats import REPEAT, Rows
 from benchmark.datasets.samples import Samples
 from benchmark.seeds import generator
 from benchmark.simulator.flight.attitude import Attitude, rotated, turned
@@ -199,7 +199,7 @@ class FlightPreset(Preset):
         """Where the satellite flies."""
         return cast("Flight", self.directions)
 
-    def _scene(self, condition: str, known: Split) -> TimedScene:
+    def _scene(self, condition: str, known: Split, rows: Rows = slice(None)) -> TimedScene:
         """Return what a split looks at; no sunlight, direct or stray, reaches it in eclipse.
 
         There a window stays where it was when the Sun was last seen.
@@ -219,11 +219,12 @@ class FlightPreset(Preset):
             origin,
             temperature_k=sensor.thermal.temperature(leg.orbit, leg.sun, leg.since_s),
             age_years=leg.time_s / (DAY_S * YEAR_DAYS),
-        )
+        ).rows(rows)
         if setup.earth is None:
             return scene
-        lit = np.flatnonzero(~leg.eclipse)  # from within the cylinder no sunlit ground is in view
-        nadir, pattern = leg.nadir_body[lit], self.fixed_pattern(condition)
+        # from within the cylinder no sunlit ground is in view
+        lit = np.flatnonzero(~leg.eclipse[rows])
+        nadir, pattern = leg.nadir_body[rows][lit], self.fixed_pattern(condition)
         if isinstance(setup.sensor, Faces):
             light = setup.sensor.earthlight(setup.earth, scene.sun[lit], nadir, pattern)
         else:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from benchmark.datasets.conditions.uneven_light import UnevenPreset
-from benchmark.datasets.preset import first
 from benchmark.metrics.bounds import Bound, cramer_rao
 from benchmark.simulator.masks.apertures import Mask
 from benchmark.simulator.sensors.lit_pixels import LitPixels
@@ -46,7 +45,7 @@ class FullFramePreset(UnevenPreset):
         sensor = setup.sensor
         if not isinstance(sensor, MultiSpotSensor):
             raise TypeError(f"{self.name} must hold a MultiSpotSensor; got {type(sensor).__name__}")
-        scene, pattern = first(self.scene(condition, split), n), self.fixed_pattern(condition)
+        scene, pattern = self.scene(condition, split, n), self.fixed_pattern(condition)
         parts = []
         for start in range(0, len(scene), BOUND_BATCH):
             part = scene.part(start, start + BOUND_BATCH)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Final, TypeVar
+from typing import Any, Final, TypeVar
 
 from algorithms.contract import SensorGeometry
 from benchmark.datasets.conditions.propagation import LIGHT
@@ -128,7 +129,7 @@ def with_stray_gradient(
 
 
 #: Conditions by the names that data sets give them.
-_NAMED: Final = {
+_NAMED: Final[Mapping[str, Callable[[Any], Condition]]] = {
     "albedo": with_albedo,
     "albedo-clouds": with_clouds,
     "ghosts": with_ghosts,

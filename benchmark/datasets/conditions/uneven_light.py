@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from benchmark.datasets.fields import Split
 from benchmark.datasets.preset import Preset
+from benchmark.datasets.repeats import Rows
 from benchmark.seeds import generator
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensors.stray_slope import UnevenIrradiance, UnevenScene
@@ -29,11 +30,12 @@ class UnevenPreset(Preset):
                     "does not see"
                 )
 
-    def _scene(self, condition: str, known: Split) -> Scene:
+    def _scene(self, condition: str, known: Split, rows: Rows = slice(None)) -> Scene:
         """Sun, irradiance, stray light and windows of a split; slopes from their own stream."""
-        scene = super()._scene(condition, known)
+        scene = super()._scene(condition, known, rows)
         irradiance = self.condition(condition).irradiance
         if not isinstance(irradiance, UnevenIrradiance):
             return scene
         stream = generator(self.name, self.version, known, "stray-slope")
-        return UnevenScene.of(scene, irradiance.draw_slopes(len(scene), stream))
+        size = len(self.directions.sun(known, generator(self.name, self.version, known, "sun")))
+        return UnevenScene.of(scene, irradiance.draw_slopes(size, stream)[rows])

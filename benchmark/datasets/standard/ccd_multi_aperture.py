@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 from benchmark.datasets.conditions.many_spots import behind, many_spots
-from benchmark.datasets.conditions.other_light import seen_with
 from benchmark.datasets.conditions.pixel_arrays import ccd
 from benchmark.datasets.fields import AngleField
 from benchmark.simulator.masks.apertures import Aperture
@@ -17,7 +16,7 @@ _SENSOR = behind(_MASK, 0.75, replace(ccd(512, 0.012), sunlit_e=40_000.0), wides
 
 PRESET = many_spots(
     name="ccd-multi-aperture",
-    version=2,
+    version=3,
     detector="CCD",
     mask="Multi-Ap.",
     sensor=_SENSOR,
@@ -25,7 +24,6 @@ PRESET = many_spots(
     half_fov_deg=50.0,
     directions=AngleField(50.0, steps=11, test_samples=40),
     without=("hot",),
-    more=seen_with(_SENSOR, "albedo-clouds", "ghosts", "stray-gradient"),
     follows=("Liebe2001", "Mobasser2001"),
     description=(
         "Full frames of 512 x 512 px behind 18 x 18 round holes. A CCD, several hundred holes in "

@@ -10,7 +10,7 @@ _GROUND = ccd_single_aperture.PRESET
 
 PRESET = in_orbit(
     name="ccd-orbit",
-    version=3,
+    version=4,
     ground=_GROUND,
     setups=frames_aloft(_GROUND, SPACER),
     attitude=Tumble(24.0, nutation_deg=24.0, precession_deg_s=0.2531, inertia_ratio=0.75),

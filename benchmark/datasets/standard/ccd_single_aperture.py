@@ -13,7 +13,7 @@ _SENSOR = pixels.windowed(_MASK, 2.0, pixels.ccd(512, 0.013, prnu=0.005))
 
 PRESET = pixels.windows(
     name="ccd-single-aperture",
-    version=2,
+    version=3,
     detector="CCD",
     mask="Single-Ap.",
     sensor=_SENSOR,

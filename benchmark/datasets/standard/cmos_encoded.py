@@ -14,7 +14,7 @@ _MASK = spacing_coded(
 
 PRESET = many_spots(
     name="cmos-encoded",
-    version=2,
+    version=3,
     detector="CMOS",
     mask="Encoded",
     # light gathers behind such holes to 1.9 times the open light: a shorter exposure

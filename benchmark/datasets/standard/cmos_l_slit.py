@@ -16,7 +16,7 @@ _SENSOR = pixels.windowed(_MASK, 1.2, _DETECTOR, window_px=(96, 96))
 
 PRESET = pixels.windows(
     name="cmos-l-slit",
-    version=2,
+    version=3,
     detector="CMOS",
     mask="L-Slit",
     sensor=_SENSOR,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from benchmark.datasets.conditions.many_spots import behind, many_spots
-from benchmark.datasets.conditions.motion import spinning
 from benchmark.datasets.conditions.pixel_arrays import cmos
 from benchmark.datasets.fields import AngleField
 from benchmark.simulator.masks.apertures import Aperture
@@ -15,7 +14,7 @@ _SENSOR = behind(_MASK, 1.0, cmos(1024, 0.01, sunlit_e=16_000.0), widest_deg=69.
 
 PRESET = many_spots(
     name="cmos-multi-aperture",
-    version=2,
+    version=3,
     detector="CMOS",
     mask="Multi-Ap.",
     sensor=_SENSOR,
@@ -23,7 +22,6 @@ PRESET = many_spots(
     half_fov_deg=60.0,
     directions=AngleField(60.0, steps=11, test_samples=60),
     without=("hot",),
-    more={"spinning": spinning(_SENSOR, rolls=True)},
     follows=("Rufino2009b", "Rufino2012", "Mobasser2003"),
     description=(
         "Full frames of 1024 x 1024 px behind 10 x 10 round holes. The count and a CMOS array with "

@@ -12,7 +12,7 @@ _ALSO, _OFF = ", read noise of one digital number", "aperture eight and six pixe
 
 PRESET = pixels.windows(
     name="cmos-single-aperture",
-    version=2,
+    version=3,
     detector="CMOS",
     mask="Single-Ap.",
     sensor=_SENSOR,

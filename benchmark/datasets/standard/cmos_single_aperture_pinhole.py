@@ -13,7 +13,7 @@ _LIGHT = Irradiance(stray=2e-5, stray_spread=4e-6)
 
 PRESET = pixels.windows(
     name="cmos-single-aperture-pinhole",
-    version=2,
+    version=3,
     detector="CMOS",
     mask="Single-Ap.",
     sensor=_SENSOR,

@@ -12,7 +12,7 @@ _SENSOR = pixels.windowed(_MASK, 1.2, _DETECTOR, window_px=(64, 96))
 
 PRESET = pixels.windows(
     name="cmos-slit",
-    version=2,
+    version=3,
     detector="CMOS",
     mask="Slit",
     sensor=_SENSOR,

@@ -34,21 +34,24 @@ def _shares(fraction: float) -> Four:
 def _blended(out: Floats, tables: Floats, place: float, slope: float) -> None:
     """Interpolate (T, ...) tables at a node coordinate by Lagrange's cubic.
 
-    It is `place` in the middle row and grows by `slope` a row; below 0 it is mirrored.
+    It is `place` in the middle row and grows by `slope` a row; below 0 light comes from the other
+    side, and tables are turned round.
     """
     middle, last = (out.shape[0] - 1) / 2.0, tables.shape[0] - 1.0
     for row in range(out.shape[0]):
-        here = min(abs(place + slope * (row - middle)), last)
+        there = place + slope * (row - middle)
+        seen = row if there >= 0.0 else out.shape[0] - 1 - row
+        here = min(abs(there), last)
         first = min(max(int(here), 1), tables.shape[0] - 3)
         a, b, c, d = _shares(here - first)
         one, two = tables[first - 1], tables[first]
         three, four = tables[first + 1], tables[first + 2]
         for column in range(out.shape[1]):
             out[row, column] = (
-                a * one[row, column]
-                + b * two[row, column]
-                + c * three[row, column]
-                + d * four[row, column]
+                a * one[seen, column]
+                + b * two[seen, column]
+                + c * three[seen, column]
+                + d * four[seen, column]
             )
 
 

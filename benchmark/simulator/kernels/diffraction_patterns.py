@@ -40,6 +40,68 @@ def squared_sums(
 
 
 @compiled
+def skewed_sums(
+    out: Floats, radial: Floats, strips: Floats, numbers: Floats, side_on: Floats
+) -> None:
+    """Write how `squared_sums` change to first order: (R, T).
+
+    Parameters
+    ----------
+    out
+        Odd along the radial axis.
+    radial
+        (R,) places.
+    strips
+        (2, J) places of the strips, and on which side of the opening each lies, -1 or 1.
+    numbers
+        (7,) Fresnel numbers along and across; what the cubic phase has along, and across; by which
+        share J is larger on side 1, along and across; half waves from a strip at which all that
+        fades out.
+    side_on
+        (4, J + 1, T) real and imaginary parts of B, and of B with the square of the distance
+        across in its integral; last the strip over the middle.
+    """
+    along, across, third, beside, more, other, most = numbers
+    width, count = side_on.shape[2], strips.shape[1]
+    sums = np.empty((4, width))
+    for row in range(out.shape[0]):
+        sums[:] = 0.0
+        for j in range(count + 1):
+            # the last one takes back the step between both sides
+            place = strips[0, j] if j < count else 0.0
+            rho = radial[row] - place
+            phase = math.pi * along * rho * rho
+            waves = along * rho * rho / most
+            fade = math.exp(-waves * waves)
+            c, s = math.cos(phase), math.sin(phase)
+            if j < count:
+                side = strips[1, j]
+                real = -fade * ((3.0 * third + beside) * rho + side * (more + other)) / 2.0
+                slope = -fade * math.pi * along * rho * rho * (third * rho + side * more)
+                square = -fade * math.pi * across * (beside * rho + side * other)
+            else:
+                real, slope, square = fade * more * radial[row], 0.0, 0.0
+            first, second = side_on[0, j], side_on[1, j]
+            third_part, fourth = side_on[2, j], side_on[3, j]
+            keep = 1.0 if j < count else 0.0
+            for column in range(width):
+                a = c * first[column] - s * second[column]
+                b = c * second[column] + s * first[column]
+                sums[0, column] += keep * a
+                sums[1, column] += keep * b
+                sums[2, column] += real * a - slope * b
+                sums[3, column] += real * b + slope * a
+                a = c * third_part[column] - s * fourth[column]
+                b = c * fourth[column] + s * third_part[column]
+                sums[2, column] -= square * b
+                sums[3, column] += square * a
+        for column in range(width):
+            out[row, column] = 2.0 * (
+                sums[0, column] * sums[2, column] + sums[1, column] * sums[3, column]
+            )
+
+
+@compiled
 def turned(cosines: Floats, sines: Floats, argument: Floats) -> None:
     """Write ``exp(i pi u^2 / 2)`` of every argument u; (R, T) each."""
     for row in range(argument.shape[0]):
@@ -79,16 +141,16 @@ def _stencil(shifts: Floats, weights: Floats, margin: int) -> Floats:
 
 @compiled
 def spread_over_sun(
-    out: Floats, quadrant: Floats, shifts: Floats, weights: Floats, margin: int
+    out: Floats, light: Floats, shifts: Floats, weights: Floats, margin: int
 ) -> None:
-    """Fill ``sum_k w_k G(v - v_k)`` on half the plane from one quadrant of a symmetric G.
+    """Fill ``sum_k w_k G(v - v_k)`` on half the plane, G even across.
 
     Parameters
     ----------
     out
         (2 n + 1, n + 1): along from -n to n, across from 0 to n.
-    quadrant
-        (n + margin + 1, n + margin + 1).
+    light
+        (2 (n + margin) + 1, n + margin + 1) values of G as `out`.
     shifts
         (K, 2) in steps of the grid, less than `margin` - 2.
     """
@@ -96,15 +158,15 @@ def spread_over_sun(
     size = stencil.shape[0]
     reach = out.shape[1] - 1
     # with its mirror image to the left, so that the innermost loop runs straight on
-    side = np.empty((quadrant.shape[0], quadrant.shape[1] + margin))
-    for row in range(quadrant.shape[0]):
-        for column in range(quadrant.shape[1] + margin):
-            side[row, column] = quadrant[row, abs(column - margin)]
+    side = np.empty((light.shape[0], light.shape[1] + margin))
+    for row in range(light.shape[0]):
+        for column in range(light.shape[1] + margin):
+            side[row, column] = light[row, abs(column - margin)]
     out[:] = 0.0
     for row in range(out.shape[0]):
         to = out[row]
         for i in range(size):
-            line = side[abs(row - reach + i - margin)]
+            line = side[row + i]
             for j in range(size):
                 weight = stencil[i, j]
                 if weight != 0.0:

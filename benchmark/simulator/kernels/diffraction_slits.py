@@ -1,4 +1,4 @@
-"""Compiled diffraction of rectangles and slits: running integrals, cell by cell.
+"""Compiled diffraction of rectangles: running integrals of slits, cell by cell.
 
 Loaded on first use (Numba).
 """
@@ -14,10 +14,10 @@ from algorithms.contract import Floats
 
 Complex = tuple[float, float]
 Four = tuple[float, float, float, float]
-#: (2, M) auxiliary functions of the Fresnel integrals from -1 step on, and steps a unit.
-Table = tuple[Floats, float]
-#: (2, R, M) running integrals of slit patterns, of a thin foil and how a thick one differs; the
-#: first row's Fresnel number, rows a unit of it, and steps a half width.
+Three = tuple[float, float, float]
+#: (4, R, M) running integrals of slit patterns, of a thin foil, how a thick one differs, what a
+#: bend adds, and edges at two depths (`slit_integrals`); the first row's Fresnel number, rows a
+#: unit of it, and steps a half width.
 Slits = tuple[Floats, float, float, float]
 
 
@@ -37,108 +37,36 @@ def _shares(fraction: float) -> Four:
 
 
 @compiled
-def _fresnel(u: float, table: Table) -> Complex:
-    """Fresnel's C and S of u by their smooth auxiliary functions f and g.
+def _blended_row(out: Floats, slits: Slits, number: float, shares: Three) -> None:
+    """Interpolate running integrals for this Fresnel number, within the table's.
 
-    Beyond the table the asymptotic series is used.
-    """
-    auxiliary, per_unit = table
-    size = abs(u)
-    place = size * per_unit + 1.0
-    if place < auxiliary.shape[1] - 3.0:
-        first = int(place)
-        a, b, c, d = _shares(place - first)
-        line = auxiliary[0]
-        f = a * line[first - 1] + b * line[first] + c * line[first + 1] + d * line[first + 2]
-        line = auxiliary[1]
-        g = a * line[first - 1] + b * line[first] + c * line[first + 1] + d * line[first + 2]
-    else:
-        q = 1.0 / (math.pi * size * size) ** 2
-        f = (1.0 - 3.0 * q) / (math.pi * size)
-        g = (1.0 - 15.0 * q) / (math.pi * math.pi * size * size * size)
-    phase = math.pi / 2.0 * size * size
-    sine, cosine = math.sin(phase), math.cos(phase)
-    re = 0.5 + f * sine - g * cosine
-    im = 0.5 - f * cosine - g * sine
-    return (re, im) if u >= 0.0 else (-re, -im)
-
-
-@compiled
-def _slit(position: float, number: float, softness: float, table: Table) -> float:
-    """Intensity behind an endless slit, in units of the open light.
-
-    At a position in units of the slit's half width, for a Fresnel number of the half width.
-    `softness` moves both edges inwards by an imaginary length, in the Fresnel integrals' unit.
-    """
-    root = math.sqrt(2.0 * number)
-    re, im = _fresnel(root * (position + 1.0), table)
-    other_re, other_im = _fresnel(root * (position - 1.0), table)
-    re, im = re - other_re, im - other_im
-    if softness > 0.0:
-        # each edge adds -i softness exp(i pi w^2 / 2)
-        for side in (-1.0, 1.0):
-            phase = math.pi * number * (position + side) ** 2
-            re += softness * math.sin(phase)
-            im -= softness * math.cos(phase)
-    return float((re * re + im * im) / 2.0)
-
-
-@compiled
-def running_integrals(
-    sums: Floats, numbers: Floats, step: float, softness: float, table: Table
-) -> None:
-    """Fill (R, M) the light behind slits from their middle to equal steps of a half width.
-
-    Parameters
-    ----------
-    sums
-        Overwritten; exact where a pattern is cubic over three steps.
-    numbers
-        (R,) Fresnel numbers of the half width.
-    step
-        In half widths.
-    softness
-        Of the edges, as of `_slit`.
-    table
-        For `_fresnel`.
-    """
-    profile = np.empty(sums.shape[1] + 2)
-    for row in range(sums.shape[0]):
-        for i in range(profile.shape[0]):
-            profile[i] = _slit((i - 1) * step, numbers[row], softness, table)
-        sums[row, 0] = 0.0
-        for i in range(1, sums.shape[1]):
-            inner = 13.0 * (profile[i] + profile[i + 1]) - profile[i - 1] - profile[i + 2]
-            sums[row, i] = sums[row, i - 1] + step * inner / 24.0
-
-
-@compiled
-def _blended_row(out: Floats, slits: Slits, number: float, soft: float) -> None:
-    """Interpolate the running integral for this Fresnel number, within the table's.
-
-    `soft` is the share of a thick foil's effect.
+    As far to either side of the slit's middle, where they are 0, as `out` (odd) is long. `shares`
+    are a thick foil's softness, the bend a half width, and by how much J differs at the edges.
     """
     both, first_number, per_row, _ = slits
-    sums, change = both[0], both[1]
+    sums, soft, bent, apart = both[0], both[1], both[2], both[3]
     place = min(max((number - first_number) * per_row, 0.0), sums.shape[0] - 1.0)
     first = min(max(int(place), 1), sums.shape[0] - 3)
     a, b, c, d = _shares(place - first)
-    for i in range(out.shape[0]):
-        out[i] = (
-            a * sums[first - 1, i]
-            + b * sums[first, i]
-            + c * sums[first + 1, i]
-            + d * sums[first + 2, i]
-        )
-    if soft == 0.0:
-        return
-    for i in range(out.shape[0]):
-        out[i] += soft * (
-            a * change[first - 1, i]
-            + b * change[first, i]
-            + c * change[first + 1, i]
-            + d * change[first + 2, i]
-        )
+    middle = out.shape[0] // 2
+    one, two, three, four = sums[first - 1], sums[first], sums[first + 1], sums[first + 2]
+    for i in range(middle + 1):
+        odd = a * one[i] + b * two[i] + c * three[i] + d * four[i]
+        out[middle - i], out[middle + i] = -odd, odd
+    if shares[0] != 0.0:
+        one, two, three, four = soft[first - 1], soft[first], soft[first + 1], soft[first + 2]
+        for i in range(middle + 1):
+            odd = shares[0] * (a * one[i] + b * two[i] + c * three[i] + d * four[i])
+            out[middle - i] -= odd
+            out[middle + i] += odd
+    for table, share in ((bent, shares[1]), (apart, shares[2])):
+        if share == 0.0:
+            continue
+        one, two, three, four = table[first - 1], table[first], table[first + 1], table[first + 2]
+        for i in range(1, middle + 1):
+            even = share * (a * one[i] + b * two[i] + c * three[i] + d * four[i])
+            out[middle - i] += even
+            out[middle + i] += even
 
 
 @compiled
@@ -150,7 +78,7 @@ def _means(out: Floats, row: Floats, scale: Four, cells: Complex, weight: float)
     out
         (M,) cells.
     row
-        Running integral in half widths.
+        Running integral in half widths, from one far side to the other.
     scale
         Half width, how far the middle of the slit is filled evenly, steps a half width, and how
         the pattern is bent: half the second derivative of the landing point over J squared.
@@ -159,7 +87,7 @@ def _means(out: Floats, row: Floats, scale: Four, cells: Complex, weight: float)
     """
     half, gap, per, bend = scale
     start, size = cells
-    last = row.shape[0] - 2
+    middle = row.shape[0] // 2
     before = 0.0
     for i in range(-1, out.shape[0]):
         place = start + (i + 1) * size
@@ -168,18 +96,16 @@ def _means(out: Floats, row: Floats, scale: Four, cells: Complex, weight: float)
             place = 0.5 / bend
         # far away patterns keep their shape in direction cosines; edges stay where they are
         place -= bend * place * place
-        far = abs(place)
-        value = far
-        if far > gap:
-            steps = (far - gap) / half * per
+        value = min(max(place, -gap), gap)
+        steps = (place - value) / half * per + middle
+        if steps <= 0.0:
+            value += half * row[0]
+        elif steps >= 2.0 * middle:
+            value += half * row[2 * middle]
+        else:
             cell = int(steps)
-            if cell > last:
-                value = gap + half * row[last + 1]
-            else:
-                below = row[cell]
-                value = gap + half * (below + (steps - cell) * (row[cell + 1] - below))
-        if place < 0.0:
-            value = -value
+            below = row[cell]
+            value += half * (below + (steps - cell) * (row[cell + 1] - below))
         if i >= 0:
             out[i] += weight * (value - before) / size
         before = value
@@ -189,6 +115,13 @@ def _means(out: Floats, row: Floats, scale: Four, cells: Complex, weight: float)
 def _turning(number: float) -> float:
     """How far a pattern of this Fresnel number is turning, not shadow (`RoundPattern.share`)."""
     return 1.0 / (1.0 + (number / 0.42) ** 2)
+
+
+@compiled
+def _used(far: float, slits: Slits) -> int:
+    """How many of a row's values are read as far as this from the middle, in half widths."""
+    used: int = min(max(int(far * slits[3]), 1) + 3, slits[0].shape[2])
+    return 2 * used - 1
 
 
 @compiled
@@ -202,10 +135,10 @@ def _products(
     out
         (rows, columns) of cells.
     sample
-        (15,) light; where the spot's middle is from the first cell's corner, along both sides;
+        (17,) light; where the spot's middle is from the first cell's corner, along both sides;
         half sizes; change of the landing point a unit of direction cosine; the image of the unit
         disc: its semi-axis, shear and height; how the patterns are bent; a
-        thick foil's share; cell size.
+        thick foil's share; how J differs at the edges; cell size.
     spectrum
         (L, 2) wavelengths in mm and weights.
     disc
@@ -216,10 +149,15 @@ def _products(
     rows, columns = out.shape
     strips = disc.shape[0]
     light, x0, y0, a, b, spread_x, spread_y, wide, shear, high, bend_x, bend_y = sample[:12]
-    soft_x, soft_y, cell = sample[12:15]
+    soft_x, soft_y, apart_x, apart_y, cell = sample[12:17]
     count = spectrum.shape[0] * strips
     across, along = np.zeros((count, columns)), np.zeros((count, rows))
-    row_x, row_y = np.empty(widths[0][0].shape[2]), np.empty(widths[1][0].shape[2])
+    all_x = np.empty(2 * widths[0][0].shape[2] - 1)
+    all_y = np.empty(2 * widths[1][0].shape[2] - 1)
+    far_x = max(abs(x0), abs(columns * cell - x0)) + wide + abs(shear)
+    far_y = max(abs(y0), abs(rows * cell - y0)) + high
+    far_x += abs(bend_x) * far_x * far_x
+    far_y += abs(bend_y) * far_y * far_y
     most_x = widths[0][1] + (widths[0][0].shape[1] - 1) / widths[0][2]
     most_y = widths[1][1] + (widths[1][0].shape[1] - 1) / widths[1][2]
     for m in range(spectrum.shape[0]):
@@ -228,8 +166,12 @@ def _products(
         # a wide slit is two edges of a narrower one, further apart
         half_x = a * math.sqrt(min(1.0, most_x / number_x))
         half_y = b * math.sqrt(min(1.0, most_y / number_y))
-        _blended_row(row_x, widths[0], number_x, soft_x)
-        _blended_row(row_y, widths[1], number_y, soft_y)
+        # as far as they are read
+        used_x = _used((far_x - a + half_x) / half_x, widths[0])
+        used_y = _used((far_y - b + half_y) / half_y, widths[1])
+        row_x, row_y = all_x[:used_x], all_y[:used_y]
+        _blended_row(row_x, widths[0], number_x, (soft_x, bend_x * half_x, apart_x))
+        _blended_row(row_y, widths[1], number_y, (soft_y, bend_y * half_y, apart_y))
         scale_x = half_x, a - half_x, widths[0][3], bend_x * _turning(number_x)
         scale_y = half_y, b - half_y, widths[1][3], bend_y * _turning(number_y)
         for j in range(strips):
@@ -293,10 +235,10 @@ def add_rectangle(
     flux
         (N, H, W) light averaged over each pixel.
     samples
-        (N, 2) middle of the spot seen from the window's first corner, mm; (N, 12) light, half
+        (N, 2) middle of the spot seen from the window's first corner, mm; (N, 14) light, half
         sizes, change of the landing point a unit of direction cosine, the image of the unit disc
         (semi-axis, shear, height), how patterns are bent (a mm), a thick foil's share,
-        across and along.
+        and how much larger J is at the edges of positive coordinates, in all across and along.
     optics
         (4,) cosine and sine of the rectangle's turn, pixel pitch in mm, cells a pixel;
         (L, 2) wavelengths in mm and weights; (S, P, 3) nodes of the disc.
@@ -312,24 +254,24 @@ def add_rectangle(
     wide = math.ceil((abs(c) * columns + abs(s) * rows) * cells) + 8
     tall = math.ceil((abs(s) * columns + abs(c) * rows) * cells) + 8
     fine = np.empty((tall, wide)) if turned else np.empty((1, 1))
-    sample = np.empty(15)
+    sample = np.empty(17)
     for n in range(count):
         light, a, b = shapes[n, 0], shapes[n, 1], shapes[n, 2]
         if light == 0.0 or a <= 0.0 or b <= 0.0:
             continue
         sample[0] = light
-        sample[3:14] = shapes[n, 1:12]
+        sample[3:16] = shapes[n, 1:14]
         x, y = middles[n]
         if turned:
             # the window's middle stands in the middle of the cells
             dx, dy = columns * pitch / 2.0 - x, rows * pitch / 2.0 - y
             mid_x, mid_y = c * dx + s * dy, c * dy - s * dx
             sample[1], sample[2] = wide * cell / 2.0 - mid_x, tall * cell / 2.0 - mid_y
-            sample[14] = cell
+            sample[16] = cell
             fine[:] = 0.0
             _products(fine, sample, spectrum, disc, widths)
         else:
-            sample[1], sample[2], sample[14] = x, y, pitch
+            sample[1], sample[2], sample[16] = x, y, pitch
             _products(flux[n], sample, spectrum, disc, widths)
         steps = int(cells)
         for row in range(rows if turned else 0):

@@ -11,7 +11,8 @@ elliptical far away and leaves it round close by.
 The next term of the phase, cubic, ``-(pi / lambda) (J_r' rho_r^3 / (3 J_r^3) + (J_r - J_t) rho_r
 rho_t^2 / (s J_r J_t^2))`` for ``rho = delta - q`` and the prime a derivative by the sine s, moves
 spots outwards. It counts to first order, ``pi N (a / h) sin(theta)`` against one (`RoundPattern`,
-`rectangle_patterns`). How light leaves the opening is Kirchhoff's, whose flux does not lean
+`rectangle_patterns`), as does that the rims of a foil that bound either side of an opening lie at
+depths of their own. How light leaves the opening is Kirchhoff's, whose flux does not lean
 towards the horizon or from it to that order: the mean of what either polarisation does.
 
 Left out: vector effects, and interference of different points of the Sun, which is incoherent.
@@ -49,6 +50,10 @@ class Spectrum:
         if abs(math.fsum(self.weights) - 1.0) > 1e-9:
             raise ValueError(f"weights must add up to 1; got {math.fsum(self.weights)}")
 
+
+#: Half waves from a point of the opening at which its terms of first order fade out: fringes
+#: further out have turned by more than they describe, and neither Sun nor colours leave any.
+_SKEWED = 8.0
 
 #: Sunlight on silicon: photons of a black body of 5772 K times the quantum efficiencies 0.50,
 #: 0.60, 0.50, 0.35, 0.20 and 0.08, round numbers for a front-illuminated CMOS pixel.
@@ -123,31 +128,101 @@ def round_intensity(
     blur
         ``sqrt(lambda t / 2)`` in units of the radius, t the way of the light through the foil.
     """
+    out = np.zeros((len(radial), len(tangential)))
+    if apart >= 2.0:
+        return out
     from benchmark.simulator.kernels.diffraction_patterns import (  # noqa: PLC0415 - Numba
         squared_sums,
+    )
+
+    places, _, _, field = _strips((radial, tangential), numbers, points, (apart, blur))
+    parts = np.stack([field.real, field.imag])
+    squared_sums(out, np.ascontiguousarray(radial), places, numbers[0], parts)
+    return out
+
+
+def round_skew(
+    radial: Floats,
+    tangential: Floats,
+    numbers: tuple[float, float],
+    changes: tuple[float, float, float, float],
+    *,
+    apart: float = 0.0,
+    blur: float = 0.0,
+) -> Floats:
+    """Return how `round_intensity` changes to first order, (R, T), odd along `radial`.
+
+    Parameters
+    ----------
+    radial, tangential, numbers, apart, blur
+        As of `round_intensity`.
+    changes
+        Of the phase's cubic term ``-pi (N_r A rho_r^3 + N_t B rho_r rho_t^2)``, distances in
+        radii, A and B, with what J along and across changes in the amplitude, and by which shares
+        J_r and J_t are larger for the arc of positive coordinates, and smaller for the other one:
+        the rims of a foil that bound either side of the lens lie at depths of their own.
+    """
+    from benchmark.simulator.kernels.diffraction_patterns import (  # noqa: PLC0415 - Numba
+        skewed_sums,
     )
 
     out = np.zeros((len(radial), len(tangential)))
     if apart >= 2.0:
         return out
     along, across = numbers
+    places, heights, weights, field = _strips((radial, tangential), numbers, None, (apart, blur))
+    # with the strip over the middle, where one side's depth ends and the other's begins
+    root, unit = math.sqrt(2.0 * across), math.sqrt(along / 2.0)
+    heights = np.append(heights, math.sqrt(1.0 - apart * apart / 4.0))[:, None]
+    weights = np.append(weights, unit)[:, None]
+    below, above = tangential + heights, tangential - heights
+    last = unit * (fresnel(root * below[-1:]) - fresnel(root * above[-1:]))
+    whole = np.concatenate([field, last])
+    ends = below * _turned(root * below) - above * _turned(root * above)
+    square = (root * weights * ends - whole) / (2j * math.pi * across)
+    skewed_sums(
+        out,
+        np.ascontiguousarray(radial),
+        np.stack([places, np.sign(places)]),
+        np.array([along, across, *changes, fading(along)]),
+        np.stack([whole.real, whole.imag, square.real, square.imag]),
+    )
+    return out
+
+
+def _strips(
+    places: tuple[Floats, Floats],
+    numbers: tuple[float, float],
+    points: int | None,
+    rims: tuple[float, float],
+) -> tuple[Floats, Floats, Floats, NDArray[np.complex128]]:
+    """Return places, half heights and weights (J,) of strips and their fields (J, T)."""
+    radial, tangential = places
+    along, across = numbers
+    apart, blur = rims
     if points is None:
         reach = 1.0 + float(np.max(np.abs(radial), initial=0.0))
         side = 1.0 + float(np.max(np.abs(tangential), initial=0.0))
         points = 24 + math.ceil(4.0 * max(along * reach, across * side))
-    sines, places, shares = _openings(points, apart / 2.0)
+    sines, along_it, shares = _openings(points, apart / 2.0)
     heights = np.sqrt(1.0 - sines**2)
     root = math.sqrt(2.0 * across)
     below, above = (root * (tangential + side * heights[:, None]) for side in (1.0, -1.0))
-    side_on = (fresnel(below) - fresnel(above)) * heights[:, None]
-    if blur > 0.0:
-        lost = blur * root * lost_at_rims(apart * sines / blur)
-        side_on -= lost[:, None] * (_turned(below) + _turned(above))
     # sqrt(N_r N_t) of the amplitude over sqrt(2 N_t) of the substitution
-    side_on *= shares[:, None] * math.sqrt(along / 2.0)
-    parts = np.stack([side_on.real, side_on.imag])
-    squared_sums(out, np.ascontiguousarray(radial), places, along, parts)
-    return out
+    weights = heights * shares * math.sqrt(along / 2.0)
+    field = (fresnel(below) - fresnel(above)) * weights[:, None]
+    if blur > 0.0:
+        lost = blur * root * lost_at_rims(apart * sines / blur) * shares * math.sqrt(along / 2.0)
+        field -= lost[:, None] * (_turned(below) + _turned(above))
+    return along_it, heights, weights, field
+
+
+def fading(number: float) -> float:
+    """Half waves from a point of the opening at which `round_skew` fades out there.
+
+    Of far patterns, which have few, much later.
+    """
+    return _SKEWED * max(1.0, 1.0 / number) ** 2
 
 
 def lost_at_rims(displaced: Floats) -> NDArray[np.complex128]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -10,8 +11,15 @@ import numpy as np
 
 from algorithms.contract import Floats
 from benchmark.simulator.light.sun_disc import SolarDisc
-from benchmark.simulator.optics.diffraction import Spectrum, fresnel, round_intensity
+from benchmark.simulator.optics.diffraction import (
+    Spectrum,
+    fading,
+    fresnel,
+    round_intensity,
+    round_skew,
+)
 from benchmark.simulator.optics.plates import CoverGlass
+from benchmark.simulator.optics.table_grids import both_sides, slopes, spread, turned_cell
 
 #: Steps of a table in ``k a`` times the direction cosine, at the shortest wavelength: of the far
 #: pattern, and of a shadow's fringes, of which many wavelengths and the Sun leave only the coarse
@@ -22,6 +30,11 @@ _OUTSIDE = 60.0
 #: Where the shadow outgrows the far pattern: first zero of J1.
 _AIRY = 3.8317
 _FRESNEL_STEPS, _FRESNEL_REACH = 64, 10
+#: Turn of the cubic phase, radians, at which terms of first order fade out.
+_TURNED = 2.0
+Pair = tuple[Floats, Floats]
+#: Light at places, for Fresnel numbers, rims so far apart and blurred, and a sine.
+Pattern = Callable[[Pair, tuple[float, float], tuple[float, float], float], Floats]
 
 
 @dataclass(frozen=True)
@@ -48,7 +61,7 @@ class RoundPattern:
         of holes a little smaller and larger are on one grid.
     cell_mm
         Side of a square of the detector over which light is averaged beforehand, whichever way it
-        is turned (`_turned_cell`); 0: not.
+        is turned (`turned_cell`); 0: not.
     """
 
     radius_mm: float
@@ -202,15 +215,88 @@ class RoundPattern:
         return _tables(self)
 
     def _table(self, sine: float, reach: int) -> Floats:
-        from benchmark.simulator.kernels.diffraction_patterns import (  # noqa: PLC0415 - Numba
-            spread_over_sun,
+        shifts, weights, margin = self._sun_on_table(sine)
+        light = self._quadrant(sine, reach + margin + 1, self._light)
+        return spread(both_sides(light), shifts, weights, margin)
+
+    def filled(self, reach: int) -> Floats:
+        """(T, 2 n + 1, n + 1) tables, with what `seen` leaves of the cubic phase.
+
+        And of the rims' own depths. To first order: the whole of it less what taking points to
+        other places of the tables, and to neighbouring incidences, does.
+        """
+        last = self.nodes - 1
+        sines = [math.sin(math.radians(self.widest_deg) * node / last) for node in range(last + 1)]
+        suns = [self._sun_on_table(sine) for sine in sines]
+        size = reach + max(margin for _, _, margin in suns) + 1
+        lights = np.array([self._quadrant(sine, size, self._light) for sine in sines])
+        nodes = slopes(lights, 0)
+        out = np.empty((last + 1, 2 * reach + 1, reach + 1))
+        for node, (shifts, weights, margin) in enumerate(suns):
+            part = reach + margin + 1
+            rest = self._rest(sines[node], lights[node], nodes[node])
+            both = both_sides(lights[node, :part, :part], rest[:part, :part])
+            out[node] = spread(both, shifts, weights, margin)
+        return out
+
+    def _rest(self, sine: float, light: Floats, change: Floats) -> Floats:
+        """(S, S) what is left of first order, of light and its change a node; odd along."""
+        if sine == 0.0:
+            return np.zeros(light.shape)
+        steps, _ = self.scales(np.array([sine]))
+        _, along, across = landing(np.array([sine]), self.layers())[0]
+        c = self.seen(np.array([sine]))[0]
+        places = np.arange(len(light))
+        x, y = places[:, None] * (steps[0, 0] * along), places * (steps[0, 1] * across)
+        done = slopes(light, 0) / (steps[0, 0] * along) * (c[0] + c[1] * x * x + c[2] * y * y)
+        done += slopes(light, 1) / (steps[0, 1] * across) * c[3] * x * y
+        done += c[4] * x * light + c[5] * x * change
+        number = float(self.numbers(np.array([sine]), self._middle_mm)[0, 0])
+        place = x / self.radius_mm
+        waves = number * place * place / fading(number)
+        turned = math.pi * number * self._changes(sine)[0] * place**3 / _TURNED
+        whole = self._quadrant(sine, len(light), self._skew)
+        rest = np.exp(-turned * turned) * (whole - np.exp(-waves * waves) * done)
+        # odd: the finite differences of `slopes` leave a little in the middle
+        rest[0] = 0.0
+        return np.asarray(rest)
+
+    def _light(
+        self, places: Pair, numbers: tuple[float, float], rims: tuple[float, float], _: float
+    ) -> Floats:
+        return round_intensity(*places, numbers, apart=rims[0], blur=rims[1])
+
+    def _skew(
+        self, places: Pair, numbers: tuple[float, float], rims: tuple[float, float], sine: float
+    ) -> Floats:
+        third, beside, more, other = self._changes(sine)
+        grown = 1.0 + self.growth
+        # rims that lie upon each other cut alike
+        part = 1.0 - 1.0 / (1.0 + math.pi * rims[0] / rims[1]) if rims[1] > 0.0 else 0.0
+        changes = third * grown, beside * grown, part * more, part * other
+        return round_skew(*places, numbers, changes, apart=rims[0], blur=rims[1])
+
+    def _changes(self, sine: float) -> tuple[float, float, float, float]:
+        """Return A and B of `seen`, and by how much J differs at the lens' arcs."""
+        small = 1e-4
+        angle = np.array([max(sine, small)])
+        stack = self.layers()
+        _, along, across = landing(angle, stack)[0]
+        slope = (landing(angle + small, stack) - landing(angle - small, stack))[0, 1] / (2 * small)
+        foil = landing(angle, np.array([[self.thickness_mm, 1.0]]))[0] / 2.0
+        share = self.radius_mm * sine / float(angle[0])
+        return (
+            share * slope / (3.0 * along**2),
+            share * (along - across) / (along * across * float(angle[0])),
+            -foil[1] / along,
+            -foil[2] / across,
         )
 
+    def _quadrant(self, sine: float, size: int, light: Pattern) -> Floats:
+        """(S, S) light of a point, of all wavelengths, in the tables' unit and steps."""
         steps, unit = self.scales(np.array([sine]))
-        shifts, weights = self._spread(sine, steps[0])
-        margin = math.ceil(float(np.abs(shifts).max())) + 3
-        grid = np.arange(reach + margin + 1) * steps.T
-        quadrant = np.zeros((grid.shape[1], grid.shape[1]))
+        grid = np.arange(size) * steps.T
+        quadrant = np.zeros((size, size))
         radius = self.radius_mm * (1.0 + self.growth)
         through = self.thickness_mm / math.sqrt(1.0 - sine * sine)
         apart = through * sine / radius
@@ -221,16 +307,16 @@ class RoundPattern:
             wave = wavelength * 1e-6
             along, across = self.numbers(np.array([sine]), wave)[0] * (1.0 + self.growth) ** 2
             turn = radius / wave
-            quadrant += weight * round_intensity(
-                grid[0] * turn / along,
-                grid[1] * turn / across,
-                (along, across),
-                apart=apart,
-                blur=math.sqrt(wave * through / 2.0) / radius,
-            )
-        out = np.empty((2 * reach + 1, reach + 1))
-        spread_over_sun(out, quadrant / unit[0], np.ascontiguousarray(shifts), weights, margin)
-        return out
+            places = grid[0] * turn / along, grid[1] * turn / across
+            blur = math.sqrt(wave * through / 2.0) / radius
+            quadrant += weight * light(places, (along, across), (apart, blur), sine)
+        return np.asarray(quadrant / unit[0])
+
+    def _sun_on_table(self, sine: float) -> tuple[Floats, Floats, int]:
+        """Return `_spread` in steps of the table, and by how many it reaches beyond."""
+        steps, _ = self.scales(np.array([sine]))
+        shifts, weights = self._spread(sine, steps[0])
+        return shifts, weights, math.ceil(float(np.abs(shifts).max())) + 3
 
     def _spread(self, sine: float, steps: Floats) -> tuple[Floats, Floats]:
         """(K, 2) shifts in steps of the table and (K,) weights: the Sun's disc, and the cell."""
@@ -246,7 +332,7 @@ class RoundPattern:
         if self.cell_mm == 0.0:
             return shifts, weights
         per_mm = 1.0 / (np.array([along, across]) * steps)
-        corner, share = _turned_cell(max(2, math.ceil(self.cell_mm * float(per_mm.max())) + 1))
+        corner, share = turned_cell(max(2, math.ceil(self.cell_mm * float(per_mm.max())) + 1))
         corner = corner * self.cell_mm * per_mm
         both = shifts[:, None, :] + corner[None, :, :]
         return both.reshape(-1, 2), np.outer(weights, share).ravel()
@@ -259,32 +345,9 @@ def _tables(pattern: RoundPattern) -> Floats:
     wave = min(pattern.spectrum.wavelengths_nm) * 1e-6 / (2.0 * math.pi * pattern.radius_mm)
     widest = min(pattern.reach_mm / across, pattern.radius_mm / across + _OUTSIDE * wave)
     reach = math.ceil(widest / float(steps[0, 0])) + 3
-    last = pattern.nodes - 1
-    found = [
-        pattern._table(math.sin(math.radians(pattern.widest_deg) * node / last), reach)  # noqa: SLF001 - cached here: a dataclass method cannot be
-        for node in range(pattern.nodes)
-    ]
-    tables = np.array(found)
+    tables = pattern.filled(reach)
     tables.flags.writeable = False
     return tables
-
-
-def _turned_cell(side: int) -> tuple[Floats, Floats]:
-    """(K, 2) places in a square of side 1 about its middle, turned all ways, and (K,) weights.
-
-    The mean over all ways to turn a square leaves out what changes four times a turn: for a wave
-    of k radians a side ``k^4 / 11520`` of it at most. Gauss's rule of `side` nodes; eight turns of
-    an eighth of a right angle leave out what changes 32 times a turn.
-    """
-    nodes, weights = np.polynomial.legendre.leggauss(side)
-    x, y = np.repeat(nodes / 2.0, side), np.tile(nodes / 2.0, side)
-    places = []
-    for turn in range(8):
-        angle = math.pi / 2.0 * (turn + 0.5) / 8.0
-        c, s = math.cos(angle), math.sin(angle)
-        places.append(np.column_stack([c * x - s * y, s * x + c * y]))
-    shares = np.outer(weights, weights).ravel() / 4.0
-    return np.concatenate(places), np.tile(shares / 8.0, 8)
 
 
 def layers(height_mm: float, glass: CoverGlass) -> Floats:

@@ -7,13 +7,16 @@ slits' patterns, exactly so where the Sun stands over one of the axes. Off both 
 ``q_w q_v`` couples the sides near the corners. Its part is known in closed form as a Fourier
 transform: the field of a rectangle and the same, moved by ``lambda J f``, have a rectangle in
 common, so that the intensity's transform at the frequency f is a product of two sines over their
-arguments. What that differs by from the product of slits is tabulated about a corner.
+arguments. What that differs by from the product of slits is tabulated about a corner. Where two
+corners are so near that ``lambda J f`` takes a rectangle past itself, the product of sines is 0,
+which corners by themselves do not know: what they lack is tabulated about the end of a slit. Of the
+cubic phase and the depths of a foil's two rims a slit's pattern has what is of first order.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -32,19 +35,24 @@ _ROWS, _FRINGE = 20.0, 16.0
 #: A slit's table ends so many half widths from its middle at the latest.
 _FAR = 40.0
 #: Corners are tabulated as far as this, and in such steps, in roots of 550 nm times J.
-_CORNER_REACH, _CORNER_STEP = 8.0, 0.25
+_CORNER_REACH, _CORNER_STEP = 6.4, 0.2
 #: They repeat at so many of twice that reach, and fade out over their last few roots.
 _CORNER_PERIOD, _CORNER_FADE = 1.3, 2.0
 _ROOT = math.sqrt(550e-6)
-#: Incidences that corners are tabulated for, an axis.
+#: Incidences that corners are tabulated for, an axis, at equal steps of the angle.
 _INCIDENCES = 8
+#: What corners close together lack, at equal steps of the tangent: it comes up far off axis, where
+#: fringes change with its square. As far as this from an end, in roots as above.
+_SLOPES, _END_REACH, _END_FADE = 12, 3.2, 1.0
+#: Less than this of the open light, all over a table, is nothing.
+_NOTHING = 1e-3
 #: How finely the Sun's disc is sampled: strips, and points of each.
 _STRIPS, _POINTS = 8, 8
 #: Cycles a radius up to which the disc's transform counts, and steps a cycle.
 _CYCLES, _STEPS = 6, 16
 
-#: (2, R, M) running integrals, of a thin foil and what a thick one adds; the first row's Fresnel
-#: number, rows a unit of it, steps a half width.
+#: (4, R, M) running integrals, of a thin foil and what a thick one, a bend and edges at two depths
+#: add; the first row's Fresnel number, rows a unit of it, steps a half width.
 Slits = tuple[Floats, float, float, float]
 
 
@@ -107,6 +115,20 @@ def shaded(directions: Floats, apart_mm: Floats, thickness_mm: float) -> tuple[F
     fringe = _ROOT * np.sqrt(np.stack(spread[:2], axis=1) / 2.0)
     share = 1.0 / (1.0 + math.pi * apart_mm / fringe)
     return apart_mm / 2.0 + fringe / (2.0 * math.pi) * share, share
+
+
+def apart(
+    directions: Floats, soft: Floats, thickness_mm: float, spread: tuple[Floats, ...]
+) -> Floats:
+    """(N, 2) by which share J is larger at a rectangle's edges of positive x and y.
+
+    And smaller at the other ones: oblique light is cut by the lower rim where it goes to and by
+    the upper one where it comes from. `soft` (N, 2) are the shares of `shaded`, by which both rims
+    cut alike.
+    """
+    foil = matrix(directions, np.full(len(directions), thickness_mm), CoverGlass())
+    share = np.stack(foil[:2], axis=1) / np.stack(spread[:2], axis=1) / 2.0
+    return np.asarray(-np.sign(directions[:, :2]) * share * (1.0 - soft))
 
 
 def disc_image(directions: Floats, spread: tuple[Floats, ...], radius: float) -> Floats:
@@ -179,9 +201,14 @@ class RectanglePattern:
         """Return running integrals of the slits' patterns along both axes."""
         return self._slits(self.half_mm[0]), self._slits(self.half_mm[1])
 
-    def corners(self) -> tuple[Floats, float]:
-        """Return (T, T, 2, M, M) what coupling adds about corners, and steps a root of mm."""
-        return _corners(self)
+    def corners(self) -> tuple[Floats, Floats, Floats, float]:
+        """Return what coupling adds, and steps a root of mm.
+
+        (T, T, 2, M, M) about corners by themselves; (U, U, 1, L, L) about both ends along the
+        rectangle, where corners across from each other are near, and about both across it. U is
+        0 where they are far apart. The incidences are those of `place`.
+        """
+        return _corners(self), _ends(self), _sides(self), _per_root()
 
     @property
     def softness(self) -> float:
@@ -194,14 +221,16 @@ class RectanglePattern:
         return np.column_stack([nm * 1e-6, np.array(self.spectrum.weights)])
 
     def place(self, directions: Floats) -> Floats:
-        """(N, 2) coordinates among the corners' incidences of directions in the own axes."""
-        last = _INCIDENCES - 1
+        """(N, 4) coordinates among the corners' and the ends' incidences, in the own axes."""
+        last, end = _INCIDENCES - 1, _SLOPES - 1
         widest = math.radians(self.widest_deg)
         rows = [
             (math.atan2(abs(x), z) / widest * last, math.atan2(abs(y), z) / widest * last)
             for x, y, z in directions.tolist()
         ]
-        return np.asarray(np.minimum(np.array(rows).reshape(-1, 2), float(last)))
+        slopes = np.abs(directions[:, :2]) / directions[:, 2:] / math.tan(widest) * end
+        places = np.column_stack([np.array(rows).reshape(-1, 2), slopes])
+        return np.asarray(np.minimum(places, [last, last, end, end]))
 
     def _slits(self, half: float) -> Slits:
         limit = math.radians(self.widest_deg)
@@ -218,35 +247,56 @@ class RectanglePattern:
 
     def _patches(self, directions: Floats) -> Floats:
         """(2, M, M) about a corner for one direction (1, 3) in the own axes."""
-        from benchmark.simulator.kernels.diffraction_corners import (  # noqa: PLC0415 - Numba
+        from benchmark.simulator.kernels.corner_patches import (  # noqa: PLC0415 - Numba
             corner_patches,
         )
 
         steps = round(_CORNER_REACH / _CORNER_STEP)
         out = np.empty((2, 2 * steps + 1, 2 * steps + 1))
+        design, grid = self._frequencies(directions, _CORNER_REACH)
+        corner_patches(out, design, self.waves(), _transform(self.sun.limb_darkening), grid)
+        return np.asarray(out * _window(steps, _CORNER_FADE))
+
+    def _end(self, directions: Floats) -> Floats:
+        """(1, L, L) about the end for one direction (1, 3) off both own axes."""
+        from benchmark.simulator.kernels.corner_patches import (  # noqa: PLC0415 - Numba
+            end_patch,
+        )
+
+        steps = round(_END_REACH / _CORNER_STEP)
+        out = np.zeros((1, 2 * steps + 1, 2 * steps + 1))
+        parted = self.thickness_mm * np.abs(directions[:, :2]) / directions[:, 2:]
+        shade, _ = shaded(directions, parted, self.thickness_mm)
+        half = self.half_mm[0] - float(shade[0, 0])
+        if half > 0.0:
+            design, grid = self._frequencies(directions, _END_REACH)
+            end_patch(
+                out[0],
+                np.append(design, 2.0 * half),
+                self.waves(),
+                _transform(self.sun.limb_darkening),
+                grid,
+            )
+        return np.asarray(out * _window(steps, _END_FADE))
+
+    def _frequencies(self, directions: Floats, reach: float) -> tuple[Floats, Floats]:
+        """Return `design` and `grid` of `corner_patches`."""
         spread = matrix(directions, np.array([self.height_mm]), self.glass)
         across, along, both = (float(j[0]) for j in spread)
         radius = math.sin(math.radians(self.sun.diameter_deg / 2.0))
         image = disc_image(directions, spread, radius)[0]
-        periods = [
-            2.0 * _CORNER_PERIOD * _CORNER_REACH * _ROOT * math.sqrt(j) for j in (across, along)
-        ]
+        periods = [2.0 * _CORNER_PERIOD * reach * _ROOT * math.sqrt(j) for j in (across, along)]
         # the Sun's image and the pixel let nothing finer through
         most = min(2.0 / self.pitch_mm, _CYCLES / max(float(image.max()), 1e-9))
-        corner_patches(
-            out,
-            np.array([across, along, both, *image, self.pitch_mm, _per_root()]),
-            self.waves(),
-            _transform(self.sun.limb_darkening),
-            np.array([1.0 / periods[0], 1.0 / periods[1], most]),
-        )
-        # tables end without a step
-        fade = [
-            min(1.0, (steps - abs(i)) * _CORNER_STEP / _CORNER_FADE)
-            for i in range(-steps, steps + 1)
-        ]
-        ends = np.array([t * t * (3.0 - 2.0 * t) for t in fade])
-        return np.asarray(out * ends[:, None] * ends)
+        design = np.array([across, along, both, *image, self.pitch_mm, _per_root()])
+        return design, np.array([1.0 / periods[0], 1.0 / periods[1], most])
+
+
+def _window(steps: int, fade: float) -> Floats:
+    """(M, M) by which tables end without a step, over so many of their last roots."""
+    shares = [min(1.0, (steps - abs(i)) * _CORNER_STEP / fade) for i in range(-steps, steps + 1)]
+    ends = np.array([t * t * (3.0 - 2.0 * t) for t in shares])
+    return np.asarray(ends[:, None] * ends)
 
 
 def _per_root() -> float:
@@ -255,30 +305,60 @@ def _per_root() -> float:
 
 @lru_cache(maxsize=16)
 def _running(lowest: float, highest: float, far: float, softness: float) -> Slits:
-    from benchmark.simulator.kernels.diffraction_slits import (  # noqa: PLC0415 - Numba on demand
+    from benchmark.simulator.kernels.slit_integrals import (  # noqa: PLC0415 - Numba on demand
         running_integrals,
+        skew_integrals,
     )
 
     rows = max(math.ceil((highest - lowest) * _ROWS) + 1, 4)
     numbers = lowest + np.arange(rows) / _ROWS
     per_half = max(_FRINGE * highest, 32.0)
-    sums = np.zeros((2, rows, math.ceil(far * per_half) + 2))
+    sums = np.zeros((4, rows, math.ceil(far * per_half) + 2))
     running_integrals(sums[0], numbers, 1.0 / per_half, 0.0, fresnel_table())
     if softness > 0:
         running_integrals(sums[1], numbers, 1.0 / per_half, softness, fresnel_table())
         sums[1] -= sums[0]
+    skew_integrals(sums[2:], numbers, 1.0 / per_half, fresnel_table())
     sums.flags.writeable = False
     return sums, lowest, _ROWS, per_half
 
 
 @lru_cache(maxsize=8)
-def _corners(pattern: RectanglePattern) -> tuple[Floats, float]:
+def _corners(pattern: RectanglePattern) -> Floats:
     angles = [math.radians(pattern.widest_deg) * n / (_INCIDENCES - 1) for n in range(_INCIDENCES)]
     slopes = [math.tan(angle) for angle in angles]
     found = [[pattern._patches(_towards(x, y)) for y in slopes] for x in slopes]  # noqa: SLF001 - cached here: a dataclass method cannot be
     tables = np.array(found)
     tables.flags.writeable = False
-    return tables, _per_root()
+    return tables
+
+
+@lru_cache(maxsize=8)
+def _ends(pattern: RectanglePattern) -> Floats:
+    slopes = [
+        math.tan(math.radians(pattern.widest_deg)) * n / (_SLOPES - 1) for n in range(_SLOPES)
+    ]
+    size = 2 * round(_END_REACH / _CORNER_STEP) + 1
+    tables = np.zeros((_SLOPES, _SLOPES, 1, size, size))
+    # where the Sun stands over an axis nothing is coupled
+    for i in range(1, _SLOPES):
+        for j in range(1, _SLOPES):
+            table = pattern._end(_towards(slopes[i], slopes[j]))  # noqa: SLF001 - as in `_corners`
+            if float(np.abs(table).max()) > _NOTHING:
+                tables[i, j] = table
+    if not tables.any():
+        tables = np.zeros((0, 0, 1, size, size))
+    tables.flags.writeable = False
+    return tables
+
+
+@lru_cache(maxsize=8)
+def _sides(pattern: RectanglePattern) -> Floats:
+    """As `_ends`, of the rectangle on its side."""
+    half = pattern.half_mm[1], pattern.half_mm[0]
+    tables = np.ascontiguousarray(_ends(replace(pattern, half_mm=half)).transpose(1, 0, 2, 4, 3))
+    tables.flags.writeable = False
+    return tables
 
 
 def _towards(x: float, y: float) -> Floats:

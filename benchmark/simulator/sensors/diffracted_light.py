@@ -14,6 +14,7 @@ from benchmark.simulator.optics.diffraction_tables import RoundPattern
 from benchmark.simulator.optics.projection import Camera, ProjectedLight
 from benchmark.simulator.optics.rectangle_patterns import (
     RectanglePattern,
+    apart,
     bend,
     disc_image,
     disc_strips,
@@ -200,7 +201,7 @@ class DiffractedLight:
             add_rectangle,
         )
 
-        light, middles, apart = spots
+        light, middles, parted = spots
         pattern = self._rectangle(aperture)
         turn = math.radians(aperture.rotation_deg)
         c, s = math.cos(turn), math.sin(turn)
@@ -212,7 +213,7 @@ class DiffractedLight:
         spread = matrix(known, stance.height_mm, self.camera.glass)
         across, along, both = spread
         radius = math.sin(math.radians(self.camera.sun.diameter_deg / 2.0))
-        shade, soft = shaded(known, np.abs(_turned(apart, c, s)), self.camera.mask.thickness_mm)
+        shade, soft = shaded(known, np.abs(_turned(parted, c, s)), self.camera.mask.thickness_mm)
         shapes = np.column_stack(
             [
                 light,
@@ -223,6 +224,7 @@ class DiffractedLight:
                 disc_image(known, spread, radius),
                 bend(known, stance.height_mm, self.camera.glass, spread),
                 soft,
+                apart(known, soft, self.camera.mask.thickness_mm, spread),
             ]
         )
         places = middles + np.array([aperture.x_mm, aperture.y_mm])

@@ -147,7 +147,7 @@ def test_an_overlay_shows_what_an_extractor_finds(tmp_path):
 @pytest.mark.parametrize(
     ("name", "count", "low", "high"),
     # a window looks past its hole at some 30 deg of sky, where the Earth seldom stands
-    [(CUBE, 10, 1.0, 90.0), (APERTURE, 40, 1e-9, 1e-3)],
+    [(CUBE, 10, 1.0, 90.0), (APERTURE, 40, 0.0, 1e-3)],
 )
 def test_earth_s_light_moves_bare_diodes_and_not_what_a_mask_shades(name, count, low, high):
     asked = "albedo", name, "--n", str(count)
@@ -155,7 +155,7 @@ def test_earth_s_light_moves_bare_diodes_and_not_what_a_mask_shades(name, count,
     found = influence(name, count)
     assert row["dataset"] == name
     assert row["samples"] == str(count)
-    assert low < float(row["rms_deg"]) < high
+    assert low <= float(row["rms_deg"]) < high
     for quantity in ("rms_deg", "worst_deg", "rms_over_bound", "share_above_a_tenth"):
         assert float(row[quantity]) == getattr(found, quantity)
     as_json = json.loads(sunatlas(*asked, "--format", "json").stdout)
@@ -171,6 +171,7 @@ def test_what_is_in_the_way_stays(made, tmp_path):
     assert "holds mine" in shown.stderr
 
 
+@pytest.mark.slow
 def test_data_other_than_published_are_noted(tmp_path, monkeypatch):
     real = Store.pins
 
@@ -200,6 +201,7 @@ def test_coverage_is_the_table_in_every_format():
     assert "pd-maskless-cube" in shown.stdout
 
 
+@pytest.mark.slow
 def test_list_says_what_is_covered():
     shown = sunatlas("list")
     assert shown.stderr.startswith("10 of 10 detectors and 10 of 10 masks")

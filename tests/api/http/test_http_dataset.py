@@ -39,6 +39,7 @@ def pinned(tmp_path_factory, client_of):
     return client_of(create_app(Knowledge(Measurements(directory))))
 
 
+@pytest.mark.slow
 def test_the_card_is_the_preset_s_with_bounds_hashes_and_the_picture(atlas):
     card = atlas.get(f"/v1/datasets/{NAME}").json()
     preset = datasets.get(NAME)
@@ -100,6 +101,7 @@ def test_an_unknown_name_is_answered_with_the_nearest(atlas, path):
     assert document["errors"][0]["nearest"] == NAME
 
 
+@pytest.mark.slow
 def test_the_picture_is_drawn_once_and_revalidated(atlas, client_of, monkeypatch):
     drawn = []
     draw = dataset_preview.preview_png

@@ -141,6 +141,7 @@ def test_results_as_csv_are_the_same_numbers(measured):
             assert row[name] == ("" if value is None else str(value)), name
 
 
+@pytest.mark.slow
 def test_the_leaderboard_ranks_by_error_within_a_condition(measured):
     board = measured.walk(f"/v1/leaderboard/{CMOS}?condition=nominal&limit=1")
     assert [(r["rank"], r["tied"], r["extractor"], r["model"]) for r in board] == [
@@ -190,6 +191,7 @@ def test_the_leaderboard_ranks_by_the_field_that_keeps_an_error(measured):
     assert measured.get(f"{address}-1").status_code == 422
 
 
+@pytest.mark.slow
 def test_measured_answers_fit_their_schemas(measured):
     document = measured.get("/openapi.json").json()
     for template in ("/v1/leaderboard", "/v1/leaderboard/{dataset}", "/v1/results", "/v1/datasets"):
@@ -273,6 +275,7 @@ def test_where_nothing_is_published_lists_are_empty(unmeasured, path):
     assert unmeasured.get(path, accept="text/csv").text.count("\r\n") == 1
 
 
+@pytest.mark.slow
 def test_where_nothing_is_published_the_rest_is_served(unmeasured):
     assert unmeasured.get("/v1/leaderboard").json() == {"schema": None, "datasets": []}
     assert unmeasured.get("/healthz").json()["scores"] == 0

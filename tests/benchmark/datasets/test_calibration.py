@@ -135,6 +135,7 @@ def test_sizes_are_finite_and_not_negative(wrong: float) -> None:
         Bench(mounting_deg=wrong)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", ["cmos-single-aperture", "qpd-single-aperture", "pd-maskless-cube"]
 )
@@ -168,6 +169,7 @@ def test_conditions_share_a_bench_and_units_do_not() -> None:
     assert not np.array_equal(other.scene("nominal", "calibration").irradiance, lamps[0])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SHOWN_IDEAL)
 def test_the_effect_can_be_seen_beside_a_perfect_calibration(name: str) -> None:
     preset = datasets.get(name)

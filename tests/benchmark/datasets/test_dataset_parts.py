@@ -266,6 +266,7 @@ def test_parameters_are_all_that_the_numbers_depend_on() -> None:
         "offered": {"type": "References", "flats": 16, "darks": 16, "level": 0.5},
         "repeats": {"type": "Repeats", "poses": 3, "passes": 4},
         "unit": 0,
+        "spin": None,
     }  # fmt: skip
     lines = fake(geometry=SensorGeometry(line_axes=("x", "y")))
     assert lines.parameters("nominal")["geometry"]["line_axes"] == ["x", "y"]

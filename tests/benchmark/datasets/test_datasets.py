@@ -25,7 +25,8 @@ from benchmark.simulator.sensors.frames import FrameSensor
 
 ROOT = Path(__file__).parents[3]
 NAMES = datasets.names()
-CASES = [(name, c) for name in NAMES for c in datasets.get(name).conditions]
+#: The first and the last condition of each; that all are as pinned, and differ, pins check.
+ENDS = [(name, datasets.get(name).conditions[k]) for name in NAMES for k in (0, -1)]
 SPLITS = ("calibration", "test")
 #: Sets of seconds' worth of light: the others state the same in the quick run.
 COSTLY = {
@@ -84,7 +85,7 @@ ARRAYS = {
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("name", "condition"), CASES)
+@pytest.mark.parametrize(("name", "condition"), ENDS)
 def test_samples_are_what_the_card_says(name: str, condition: str) -> None:
     preset = datasets.get(name)
     kind, dimensions, windows = ARRAYS[preset.observation]
@@ -158,12 +159,6 @@ def test_cards_and_parameters_are_plain_json(name: str) -> None:
 
 
 @pytest.mark.slow
-def test_all_samples_differ_from_one_condition_and_split_to_another() -> None:
-    digests = {samples_hash(first(*case, split)) for case in CASES for split in SPLITS}
-    assert len(digests) == len(CASES) * len(SPLITS)
-
-
-@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_conditions_share_the_sun_and_calibration_is_apart_from_test(name: str) -> None:
     preset = datasets.get(name)
@@ -193,7 +188,7 @@ for name in datasets.names():
     datasets.get(name).parameters("nominal")
 assert "numba" not in sys.modules
 for name in reversed(datasets.names()):
-    for condition in datasets.get(name).conditions[:-3:-1]:  # two are as good as all
+    for condition in datasets.get(name).conditions[:-2:-1]:  # one is as good as all
         for split in ("test", "calibration"):
             samples = datasets.get(name).generate(condition, split, {FEW})
             print(name, condition, split, datasets.samples_hash(samples))
@@ -203,7 +198,7 @@ for name in reversed(datasets.names()):
     )
     assert run.returncode == 0, run.stderr
     lines = dict(line.rsplit(" ", 1) for line in run.stdout.splitlines())
-    assert len(lines) == 4 * len(NAMES)
+    assert len(lines) == 2 * len(NAMES)
     for place, digest in lines.items():
         assert digest == samples_hash(first(*place.split())), place
 
@@ -300,8 +295,8 @@ def test_bounds_order_with_the_noise(name: str, monkeypatch: pytest.MonkeyPatch)
     # whole frames take up to a second each
     count = 5 if isinstance(preset, FullFramePreset) or preset.mask == "Lens" else 25
 
-    def some(self, condition, split):
-        scene = whole(self, condition, split)
+    def some(self, condition, split, n=None):
+        scene = whole(self, condition, split, n)
         rows = np.linspace(0, len(scene) - 1, count).round().astype(int)
         columns = {f.name: getattr(scene, f.name) for f in dataclasses.fields(scene)}
         return dataclasses.replace(

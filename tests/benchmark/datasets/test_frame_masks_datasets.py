@@ -12,6 +12,7 @@ import pytest
 from benchmark.datasets import Preset
 from benchmark.datasets.conditions.full_frames import FullFramePreset
 from benchmark.metrics.bounds import cramer_rao
+from benchmark.seeds import generator
 from benchmark.simulator.light.environment import Irradiance
 from benchmark.simulator.light.sun_disc import from_angles
 from benchmark.simulator.masks.apertures import Aperture
@@ -80,6 +81,7 @@ def test_wherever_the_sun_is_enough_is_seen(name: str) -> None:
         assert whole_spots(name, "nominal", sun).min() >= 3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     [
@@ -106,6 +108,7 @@ def test_frames_are_neither_dark_nor_saturated(name: str) -> None:
         assert np.mean(frames == 0) < 1e-3, condition
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", WINDOWS)
 def test_spots_lie_inside_their_windows_but_for_their_skirts(name: str) -> None:
     """Light that is bent has no end: at a window's border it is below 2 % of the peak."""
@@ -128,12 +131,17 @@ def test_spots_lie_inside_their_windows_but_for_their_skirts(name: str) -> None:
 
 
 def test_the_slit_measures_one_angle_better_than_the_other() -> None:
+    """Information is proportional to edge length: 0.72 mm of sides against 0.1 mm of ends."""
     data = preset("cmos-slit")
     setup, pattern = data.setups["nominal"], data.fixed_pattern("nominal")
-    bound = cramer_rao(setup.sensor, data.scene("nominal", "test").part(0, 20), pattern, LIGHT)
-    # information is proportional to edge length: 0.72 mm of sides against 0.17 mm of ends
-    ratio = np.median(bound.alpha_deg / bound.beta_deg)
-    assert ratio == pytest.approx(math.sqrt(0.72 / 0.17), rel=0.25)
+    # near normal incidence, where both edges are as soft as each other
+    sun = from_angles(np.array([0.3, -1.0, 2.0]), np.array([0.2, 1.5, -0.7]))
+    scene = Scene(
+        sun, np.ones(3), np.full(3, LIGHT.stray), setup.sensor.origins(sun, generator("test"))
+    )
+    bound = cramer_rao(setup.sensor, scene, pattern, LIGHT)
+    ratio = bound.alpha_deg / bound.beta_deg
+    assert ratio == pytest.approx(math.sqrt(0.72 / 0.1), rel=0.05)
 
 
 def small(count: int, spacing: float = 0.25, sunlit: float = 20_000.0) -> MultiSpotSensor:

@@ -112,6 +112,7 @@ def test_dials_too_far_and_off_centre_are_inverted(model: str) -> None:
     assert error_deg(DIAL, model, ideal_dial(assembly=away)).max() < 1e-6
 
 
+@pytest.mark.slow
 def test_a_head_assembled_badly_is_a_projection() -> None:
     """Tilted, turned, off centre, too far, slits askew: the two-axis conversion is exact."""
     sensor = ideal_dial(assembly=MISASSEMBLED)
@@ -119,6 +120,7 @@ def test_a_head_assembled_badly_is_a_projection() -> None:
     assert error_deg(DIAL, "periodic", sensor).max() > 0.1
 
 
+@pytest.mark.slow
 def test_slits_askew_shift_every_fine_row_by_its_own_height() -> None:
     """Rows a pitch apart see the slit ``pitch tan(deflection)`` further along: a phase error.
 
@@ -129,6 +131,7 @@ def test_slits_askew_shift_every_fine_row_by_its_own_height() -> None:
     assert error_deg(DIAL, "periodic", ideal_dial(deflection_deg=0.5)).max() > 0.1
 
 
+@pytest.mark.slow
 def test_gains_and_displaced_rows_are_in_the_series_and_partly_in_the_one_term() -> None:
     """Gain mismatch errs once a period, displaced rows twice: eq:pamulti has the second alone."""
     sensor = ideal_dial()

@@ -22,7 +22,6 @@ from benchmark.simulator.sensors.stray_slope import UnevenScene
 SETS = {
     "cmos-single-aperture": 512 * 80e-9,
     "ccd-single-aperture": 0.0,
-    "cmos-multi-aperture": 1024 * 80e-9,
 }
 NAMES = tuple(SETS)
 
@@ -63,6 +62,7 @@ def test_passes_of_a_pose_turn_alike(name: str) -> None:
     assert len(np.unique(passes[0], axis=0)) == passes.shape[1]
 
 
+@pytest.mark.slow
 def test_at_rest_light_is_that_of_the_nominal_condition() -> None:
     preset = datasets.get("cmos-single-aperture")
     means = []

@@ -98,17 +98,17 @@ def test_another_unit_sees_the_same_suns_otherwise(name: str) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", PRESETS)
-def test_every_condition_of_another_unit_can_be_generated(name: str) -> None:
+def test_the_last_condition_of_another_unit_can_be_generated(name: str) -> None:
     preset = PRESETS[name].as_unit(3)
-    for condition in preset.conditions:
-        for split in ("calibration", "test", "repeat"):
-            assert len(preset.generate(condition, split, 2).sun) == 2
-            sensor, scene = preset.condition(condition).sensor, preset.scene(condition, split)
-            if isinstance(sensor, FrameSensor):
-                size = (sensor.detector.columns, sensor.detector.rows)
-                origin = np.asarray(scene.origin_px)
-                assert (origin >= 0).all()
-                assert (origin + sensor.window_px <= size).all()
+    condition = preset.conditions[-1]
+    sensor = preset.condition(condition).sensor
+    for split in ("calibration", "test", "repeat"):
+        assert len(preset.generate(condition, split, 2).sun) == 2
+        if isinstance(sensor, FrameSensor):
+            size = (sensor.detector.columns, sensor.detector.rows)
+            origin = np.asarray(preset.scene(condition, split, 40).origin_px)
+            assert (origin >= 0).all()
+            assert (origin + sensor.window_px <= size).all()
 
 
 def test_errors_of_assembly_are_uniform_within_the_tolerance_of_unit_0() -> None:

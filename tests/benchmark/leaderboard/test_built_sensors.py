@@ -11,10 +11,16 @@ from benchmark import datasets
 from benchmark.datasets.realism import standings
 from benchmark.results.store import PUBLISHED, Store
 
+#: Rings of the field, degrees from the boresight, as columns of a score.
+RINGS = [f"rms_{low}_{low + 10}_deg" for low in range(0, 70, 10)] + ["rms_70_90_deg"]
+
 
 @cache
-def leaders() -> dict[str, Mapping[str, Any]]:
-    """Best answering pipeline of every data set that stands for built sensors, as it is bought."""
+def leaders(model: str | None = None) -> dict[str, Mapping[str, Any]]:
+    """Best answering pipeline of every data set that stands for built sensors, as it is bought.
+
+    Of all models, or behind one.
+    """
     best: dict[str, Mapping[str, Any]] = {}
     built = {name for name, one in standings().items() if one.sensors}
     for row in Store(PUBLISHED).rows():
@@ -22,6 +28,8 @@ def leaders() -> dict[str, Mapping[str, Any]]:
         if name not in built or row["condition"] != datasets.get(name).conditions[0] or row["unit"]:
             continue
         if row["rms_deg"] is None or row["availability"] < 0.95:
+            continue
+        if model not in (None, row["model"]):
             continue
         if name not in best or row["rms_deg"] < best[name]["rms_deg"]:
             best[name] = row
@@ -44,6 +52,26 @@ def test_errors_are_not_below_what_the_calibration_is_wrong_by() -> None:
         preset = datasets.get(row["dataset"])
         error = preset.reference_error_deg(row["condition"])
         assert row["rms_deg"] > error / 3.0
+
+
+def growth(row: Mapping[str, Any]) -> float:
+    """Error in the outermost ring over that in the innermost."""
+    rings = [row[name] for name in RINGS if row[name] is not None]
+    return float(rings[-1] / rings[0])
+
+
+def test_errors_grow_several_times_towards_the_edge_but_behind_tables() -> None:
+    """Behind a polynomial an axis, and half as much where distance and tilt alone are fitted.
+
+    Tables have no shape of their own: with the field's curvature they take its growth away.
+    """
+    by_model = {
+        model: median(growth(row) for row in leaders(model).values())
+        for model in ("polynomial-1d", "lsq", "lut")
+    }
+    assert by_model["polynomial-1d"] > 2.5
+    assert by_model["lsq"] > 1.5
+    assert by_model["lut"] < 1.5
 
 
 def test_balances_of_quadrants_bend_towards_the_edge() -> None:

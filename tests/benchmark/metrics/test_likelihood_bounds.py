@@ -61,9 +61,10 @@ def setup_of(name: str) -> Condition:
     if isinstance(getattr(sensor, "detector", None), PixelArray):
         sensor = replace(sensor, detector=replace(sensor.detector, errors=PixelErrors()))
     if hasattr(sensor, "window_px"):
-        columns, rows = (size + 24 for size in sensor.window_px)
-        small = replace(sensor.detector, columns=columns, rows=rows)
-        sensor = replace(sensor, detector=small, window_jitter_px=0)
+        # a spot is 20 px wide, a slit's image longer
+        window = (44, 44) if "aperture" in name else sensor.window_px
+        small = replace(sensor.detector, columns=window[0] + 24, rows=window[1] + 24)
+        sensor = replace(sensor, detector=small, window_px=window, window_jitter_px=0)
     return replace(setup, sensor=sensor)
 
 

@@ -107,6 +107,7 @@ def test_two_cameras_find_the_sun_under_clouds():
     assert error_deg.max() < 0.2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("dataset", ["event-l-slit", "event-single-aperture"])
 def test_events_place_lines_and_spots_to_a_fraction_of_a_pixel(dataset):
     preset = get(dataset)

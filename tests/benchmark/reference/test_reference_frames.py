@@ -72,6 +72,7 @@ def test_the_template_depends_little_on_noise():
     assert found[10.0] < 1.5 * found[0.5]
 
 
+@pytest.mark.slow
 def test_the_table_and_its_json(capsys):
     given = ["--sets", "gaussian", "--methods", "mt-acm", "tm", "--frames", "40", "--repeats", "1"]
     assert speed_extractors.main(given) == 0

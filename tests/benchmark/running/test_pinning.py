@@ -286,6 +286,7 @@ def test_everything_there_is_is_pinned():
     assert set(pins) == pinning.places(), "run `sunatlas dataset pin`"
     assert len({pin.data_hash for pin in pins.values()}) == len(pins)
     presets = installed().presets
+    splits = {name: preset.card()["splits"] for name, preset in presets.items()}
     for (name, _, split), pin in pins.items():
-        assert pin.n == presets[name].card()["splits"][split]["samples"]
+        assert pin.n == splits[name][split]["samples"]
         assert pin.version == presets[name].version

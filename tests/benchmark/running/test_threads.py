@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import cv2
+import pytest
 import scipy.linalg  # noqa: F401 - brings a BLAS of its own
 from threadpoolctl import threadpool_info, threadpool_limits
 
@@ -47,6 +48,7 @@ def test_a_blas_that_is_not_loaded_yet_is_held_to_one_thread_too():
     subprocess.run([sys.executable, "-c", code], check=True, env=environment, timeout=600)
 
 
+@pytest.mark.slow
 def test_measuring_does_without_opencv():
     code = (
         "import sys\n"

@@ -91,6 +91,7 @@ def test_ground_elsewhere_has_other_clouds() -> None:
     assert np.array_equal(light, earth.sent_back(ground))
 
 
+@pytest.mark.slow
 def test_conditions_with_and_without_clouds_differ_in_them_alone() -> None:
     preset = datasets.get("qpd-single-aperture")
     even, cloudy = preset.scene("albedo", "test"), preset.scene("albedo-clouds", "test")

@@ -7,10 +7,10 @@ import math
 import numpy as np
 import pytest
 from closed_forms import slit_intensity
-from scipy import integrate
+from scipy import integrate, special
 from scipy.special import j1
 
-from benchmark.simulator.kernels import diffraction_slits
+from benchmark.simulator.kernels import slit_integrals
 from benchmark.simulator.masks.apertures import Aperture, Mask
 from benchmark.simulator.optics.diffraction import (
     SUNLIT_SILICON,
@@ -37,7 +37,7 @@ def test_slit_is_the_integral_of_the_fresnel_phase(number: float, position: floa
 def test_slit_of_the_frames_is_the_closed_form() -> None:
     position = np.linspace(-8.0, 8.0, 4001)
     for number in (0.003, 0.5, 9.0, 80.0):
-        out = [diffraction_slits._slit(x, number, 0.0, fresnel_table()) for x in position]
+        out = [slit_integrals._slit(x, number, 0.0, fresnel_table()) for x in position]
         assert out == pytest.approx(slit_intensity(position, number), abs=2e-8), number
 
 
@@ -155,3 +155,29 @@ def test_no_fresnel_number_leaves_diffraction_out() -> None:
 def test_impossible_spectra_are_refused(wavelengths, weights, said: str) -> None:
     with pytest.raises(ValueError, match=said):
         Spectrum(wavelengths, weights)
+
+
+@pytest.mark.parametrize("position", [-1.6, -0.3, 0.8, 1.4])
+def test_bent_and_tilted_slits_change_light_by_the_first_order(position: float) -> None:
+    """The cubic phase by quadrature; edges at two depths have Fresnel's integrals of their own."""
+    number, step = 0.15, 1e-3
+    nodes, shares = np.polynomial.legendre.leggauss(200)
+    rho = position - nodes
+
+    def bent(share: float) -> float:
+        phase = rho**2 - 2.0 / 3.0 * share * rho**3
+        field = np.sum(shares * (1.0 - share * rho) * np.exp(1j * math.pi * number * phase))
+        return number * abs(field) ** 2
+
+    def tilted(share: float) -> float:
+        edges = [
+            special.fresnel(math.sqrt(2.0 * number / (1.0 + side * share)) * (position - side))
+            for side in (-1.0, 1.0)
+        ]
+        return sum((one - other) ** 2 for one, other in zip(*edges, strict=True)) / 2.0
+
+    found = slit_integrals._skew(position, number, fresnel_table())
+    for value, light in zip(found, (bent, tilted), strict=True):
+        # waves from further away are faded out, here by 8 % at most
+        expected = (light(step) - light(-step)) / (2.0 * step)
+        assert value == pytest.approx(expected, rel=0.08, abs=2e-3)

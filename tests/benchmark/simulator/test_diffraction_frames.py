@@ -155,6 +155,7 @@ def test_close_hole_is_the_kirchhoff_integral(alpha: float, beta: float) -> None
     assert worst < (1e-3 if alpha == beta == 0.0 else 0.03)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("beta", [0.0, 25.0])
 @pytest.mark.parametrize(
     ("pitch_mm", "step"), [(0.02, 1), pytest.param(0.0065, 3, marks=pytest.mark.slow)]
@@ -196,11 +197,9 @@ def test_diffraction_fades_into_the_shadow_as_the_hole_grows() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("shape", "pixels"), [("round", 0.05), ("rectangle", 0.03)])
+@pytest.mark.parametrize(("shape", "pixels"), [("round", 0.03), ("rectangle", 0.03)])
 def test_near_pattern_lies_where_the_shadow_would(shape: str, pixels: float) -> None:
-    """Of pixels of 3 um. The cubic term of a round hole's phase, taken to first order, is too much
-    here: Kirchhoff's light lies 0.03 px within the shadow, ours up to 0.045 px without.
-    """
+    """Of pixels of 3 um: what the cubic phase moves, 0.02 px, and less behind a square hole."""
     sensor = behind(2.0, shape)
     scene = scene_at(sensor, [0.0, 20.0, -35.0], [0.0, -30.0, 10.0])
     shadow = shadows(sensor).lit(scene)
@@ -212,6 +211,7 @@ def test_near_pattern_lies_where_the_shadow_would(shape: str, pixels: float) -> 
             assert abs(apart) < pixels
 
 
+@pytest.mark.slow
 def test_light_of_a_square_hole_in_the_window_is_that_of_two_slits() -> None:
     """Window of 16/6 hole widths; the Sun's blur at its edge is far below the tail's change."""
     sensor = behind(2.0, "rectangle", 3)

@@ -70,6 +70,7 @@ def test_the_mean_wait_is_that_of_a_queue_with_random_requests_and_one_service_t
     assert means.mean() == pytest.approx(expected, abs=4.0 * error)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_a_burst_leaves_no_faster_than_the_bus_and_in_the_order_it_came(name: str) -> None:
     fine = {"clock_us": 1e-6}
@@ -103,6 +104,7 @@ def test_pixels_that_ask_at_once_go_by_their_address() -> None:
     assert np.array_equal(address, np.tile(np.arange(address.shape[1]), (2, 1)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_the_standard_bus_serves_bursts_late_and_loses_none(name: str) -> None:
     preset = datasets.get(name)

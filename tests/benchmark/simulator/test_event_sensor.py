@@ -196,6 +196,7 @@ def test_a_silent_pixel_is_worth_what_a_censored_gaussian_is() -> None:
     assert (np.diff(share) > 0).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("loaded", [False, True])
 def test_the_bound_is_what_the_events_tell(name: str, loaded: bool) -> None:

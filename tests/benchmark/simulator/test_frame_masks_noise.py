@@ -53,6 +53,7 @@ def drawn(words: np.ndarray) -> np.ndarray:
     return out
 
 
+@pytest.mark.slow
 def test_every_word_is_the_quantile_of_its_probability() -> None:
     ends = np.arange(0, 1 << 23, 257)
     words = np.concatenate([ends, np.arange(0, 1 << 32, 65_521), (1 << 32) - 1 - ends])
@@ -68,6 +69,7 @@ def test_every_word_is_the_quantile_of_its_probability() -> None:
     assert mirrored == pytest.approx(-values, abs=1e-12)
 
 
+@pytest.mark.slow
 def test_values_are_normal_as_a_test_of_four_million_shows() -> None:
     raw = np.random.default_rng(5).bit_generator.random_raw(1 << 21)
     values = np.empty(1 << 22)

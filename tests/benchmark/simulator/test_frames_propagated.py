@@ -81,11 +81,9 @@ def apart(found: np.ndarray, expected: np.ndarray) -> tuple[float, float]:
 
 
 #: Name, alpha and beta in degrees, most of the peak and of a pixel apart: 1 % at 0, 2 % elsewhere,
-#: and 0.01 px, but for four. Round holes in a foil of 10 um miss the last (0.013, 0.010, 0.012 px):
-#: one side of the lens that it leaves lies deeper than the other, while tables have all of it in
-#: the foil's middle (at 40 deg 0.002 px without a foil, 0.014 with it), and at 60 deg terms of
-#: second order in the cubic phase come in (0.009 px without a foil). At 68 deg the lens is hardly
-#: half of the hole (2.7 %, at the window's corner). An L misses by 1 % of the limit, not traced.
+#: and 0.01 px, but for the round hole at 68 deg off axis. There its pattern is so much wider than
+#: its shadow at normal incidence that tables, on one grid for all incidences, end within it: 2.7 %
+#: of the peak at the window's corner.
 CASES = [
     ("ccd-single-aperture", 0.0, 0.0, 0.01, 0.01),
     ("ccd-single-aperture", 20.0, -25.0, 0.02, 0.01),
@@ -97,18 +95,17 @@ CASES = [
     ("cmos-slit", -30.0, 25.0, 0.02, 0.01),
     ("cmos-slit", 0.0, 60.0, 0.02, 0.01),
     ("cmos-slit", 60.0, 0.0, 0.02, 0.01),
-    # fringes between near corners, which are left out: 2.3 % here
-    ("cmos-slit", 45.0, 45.0, 0.025, 0.01),
-    # and 6.1 % in the field's very corner, 68 deg off axis
-    ("cmos-slit", 60.0, 60.0, 0.065, 0.01),
+    ("cmos-slit", 37.0, 52.0, 0.02, 0.01),
+    ("cmos-slit", 45.0, 45.0, 0.02, 0.01),
+    ("cmos-slit", 60.0, 60.0, 0.02, 0.01),
     ("cmos-l-slit", 0.0, 0.0, 0.01, 0.01),
     ("cmos-l-slit", 30.0, -30.0, 0.02, 0.01),
-    ("cmos-l-slit", 60.0, 0.0, 0.02, 0.011),
-    ("cmos-l-slit", 60.0, 60.0, 0.065, 0.01),  # as behind the slit: 5.9 %
+    ("cmos-l-slit", 60.0, 0.0, 0.02, 0.01),
+    ("cmos-l-slit", 60.0, 60.0, 0.02, 0.01),
     ("cmos-single-aperture", 0.0, 0.0, 0.01, 0.01),
-    ("cmos-single-aperture", 25.0, -30.0, 0.02, 0.015),
-    ("cmos-single-aperture", 0.0, 60.0, 0.02, 0.012),
-    ("cmos-single-aperture", 60.0, 60.0, 0.03, 0.015),
+    ("cmos-single-aperture", 25.0, -30.0, 0.02, 0.01),
+    ("cmos-single-aperture", 0.0, 60.0, 0.02, 0.01),
+    ("cmos-single-aperture", 60.0, 60.0, 0.03, 0.01),
 ]
 #: As `CASES`; far patterns do with coarse cells.
 QUICK = [
@@ -120,7 +117,7 @@ QUICK = [
 @pytest.mark.slow
 @pytest.mark.parametrize("case", CASES, ids=str)
 def test_frames_are_the_propagated_light(case: tuple[str, float, float, float, float]) -> None:
-    """Within 1 % of the peak at normal incidence, 2 % off it, and 0.01 px; exceptions above."""
+    """Within 1 % of the peak at normal incidence, 2 % off it, and 0.01 px; an exception above."""
     name, alpha_deg, beta_deg, share, pixels = case
     found, expected = both(name, "nominal", alpha_deg, beta_deg)
     worst, off = apart(found, expected)
@@ -128,6 +125,7 @@ def test_frames_are_the_propagated_light(case: tuple[str, float, float, float, f
     assert off < pixels
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", QUICK, ids=str)
 def test_far_patterns_are_the_propagated_light(
     case: tuple[str, float, float, float, float],
@@ -137,6 +135,23 @@ def test_far_patterns_are_the_propagated_light(
     worst, off = apart(found, expected)
     assert worst < share
     assert off < pixels
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("alpha_deg", "beta_deg"), [(58.0, 57.0), (44.0, 41.0)])
+def test_light_is_continuous_in_the_sun(alpha_deg: float, beta_deg: float) -> None:
+    """In steps of 0.02 deg second differences are nowhere more than twice what they mostly are.
+
+    Where tables meet, a jump would stand out against them: spots move by 0.1 px a step.
+    """
+    sensor = datasets.get("cmos-slit").condition("nominal").sensor
+    assert isinstance(sensor, DiffractiveFrameSensor)
+    steps = 0.02 * (np.arange(81) - 40)
+    sun = from_angles(alpha_deg + steps, beta_deg + steps)
+    middle = np.rint(sensor.spot_px(sun[40:41])).astype(np.int64) - np.array(sensor.window_px) // 2
+    scene = Scene(sun, np.ones(81), np.zeros(81), np.repeat(middle, 81, axis=0))
+    seconds = np.abs(np.diff(sensor.lit(scene), n=2, axis=0)).max(axis=(1, 2))
+    assert seconds.max() < 2.0 * np.median(seconds)
 
 
 def test_the_propagator_gives_the_shadow_of_a_point_sun_its_place_and_light() -> None:

@@ -121,6 +121,7 @@ def test_albedo_moves_a_thresholded_centroid_by_far_less_than_a_tenth_of_the_bou
     assert influence.rms_over_bound < 0.1
 
 
+@pytest.mark.slow
 def test_albedo_moves_a_plain_centroid_by_about_the_bound_where_earth_is_in_the_window() -> None:
     """Reported, not wished away: without a threshold every lit pixel counts."""
     influence = on_aperture(samples=100, extractor=BasicCentroid())

@@ -65,6 +65,7 @@ def windowed(array: np.ndarray, scene: Scene, shape: tuple[int, ...]) -> np.ndar
     return np.stack([array[y : y + shape[1], x : x + shape[2]] for x, y in scene.origin_px])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["cmos-single-aperture", "cmos-encoded"])
 def test_frames_go_through_the_chain_in_order(name: str) -> None:
     """Written down anew: light, neighbours, column's light, gain, dark, well, bend, offset."""

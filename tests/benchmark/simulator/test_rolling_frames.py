@@ -110,6 +110,7 @@ def test_rows_are_those_of_a_loop_over_rows_and_times(row_s: float) -> None:
     assert np.abs(found - at_rest).max() > 10 * NEAR * expected.max()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "angles"),
     [
@@ -126,6 +127,7 @@ def test_more_moments_change_less_than_a_thousandth_of_the_peak(name: str, angle
         assert (np.abs(few - many).max(axis=(1, 2)) < NEAR * peak).all()
 
 
+@pytest.mark.slow
 def test_turning_about_a_column_shears_the_spot() -> None:
     """Row by row the Sun is ``w t`` further on, and its light at ``h tan`` of where it stands."""
     rate, beta = 40.0, 10.0

@@ -63,6 +63,7 @@ def test_without_rates_frames_are_those_of_the_sensor_at_rest(unit) -> None:
     assert one.tobytes() == other.tobytes()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("row_s", [2e-4, -1e-4, 0.0])
 def test_rows_are_those_of_a_loop_over_times(unit, row_s: float) -> None:
     sensor, scene = rolling(row_time_s=row_s), scene_of(12.0, -7.0)
@@ -84,6 +85,7 @@ def test_rows_are_those_of_a_loop_over_times(unit, row_s: float) -> None:
     assert np.abs(found - at_rest).max() > 5 * NEAR * found.max()
 
 
+@pytest.mark.slow
 def test_more_moments_change_less_than_a_thousandth_of_the_peak(unit) -> None:
     for angles in ((0.0, 0.0), (-35.0, 20.0), (10.0, 48.0)):
         few, many = (rolling(more_nodes=more).lit(scene_of(*angles), unit) for more in (0, 6))

@@ -15,14 +15,16 @@ from benchmark.simulator.kernels import diffraction
 from benchmark.simulator.light.sun_disc import SolarDisc, from_angles
 from benchmark.simulator.masks.apertures import Aperture, Mask
 from benchmark.simulator.optics.assembly import Assembly
-from benchmark.simulator.optics.diffraction import Spectrum, lost_at_rims, round_intensity
-from benchmark.simulator.optics.diffraction_tables import (
-    RoundPattern,
-    _turned_cell,
-    landing,
+from benchmark.simulator.optics.diffraction import (
+    Spectrum,
+    lost_at_rims,
+    round_intensity,
+    round_skew,
 )
+from benchmark.simulator.optics.diffraction_tables import RoundPattern, landing
 from benchmark.simulator.optics.plates import CoverGlass, Plate
 from benchmark.simulator.optics.projection import Camera
+from benchmark.simulator.optics.table_grids import turned_cell
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensors.multi_spot_frames import MultiSpotSensor
 
@@ -64,6 +66,35 @@ def test_two_displaced_rims_leave_the_integral_over_their_lens(apart, numbers) -
             phase = numbers[0] * (x[i] - q) ** 2 + numbers[1] * (y[j] - p[:, None]) ** 2
             field = np.sum(weights * np.exp(1j * math.pi * phase))
             assert found[i, j] == pytest.approx(numbers[0] * numbers[1] * abs(field) ** 2, abs=1e-7)
+
+
+@pytest.mark.parametrize("apart", [0.0, 0.4])
+def test_the_cubic_phase_changes_light_by_its_first_order(apart: float) -> None:
+    """Quadrature over the lens with the cubic phase, and the amplitude that goes with it."""
+    x, y, numbers = np.array([-0.7, 0.2, 1.3]), np.array([0.0, 0.8]), (0.3, 0.45)
+    third, beside = 0.03, 0.02
+    nodes, shares = np.polynomial.legendre.leggauss(120)
+    psi = math.pi / 2.0 * nodes
+    top = math.sqrt(1.0 - apart**2 / 4.0)
+    p = top * np.sin(psi)
+    half = np.sqrt(1.0 - p**2) - apart / 2.0
+    q = half[:, None] * nodes
+    weights = (math.pi / 2.0 * shares * top * np.cos(psi) * half)[:, None] * shares
+
+    def light(i: int, j: int, step: float) -> float:
+        rho, tau = x[i] - q, y[j] - p[:, None]
+        phase = numbers[0] * rho**2 * (1.0 - step * third * rho)
+        phase = phase + numbers[1] * tau**2 * (1.0 - step * beside * rho)
+        less = 1.0 - step * (3.0 * third + beside) / 2.0 * rho
+        field = np.sum(weights * less * np.exp(1j * math.pi * phase))
+        return numbers[0] * numbers[1] * abs(field) ** 2
+
+    found = round_skew(x, y, numbers, (third, beside, 0.0, 0.0), apart=apart)
+    for i in range(3):
+        for j in range(2):
+            expected = (light(i, j, 1e-3) - light(i, j, -1e-3)) / 2e-3
+            # farther waves are faded out: 4e-4 of it here
+            assert found[i, j] == pytest.approx(expected, abs=2e-5)
 
 
 def test_rims_that_do_not_overlap_leave_nothing() -> None:
@@ -110,7 +141,7 @@ def test_rims_take_as_much_light_as_passes_the_one_and_hits_the_other() -> None:
 
 
 def test_a_turned_cell_has_the_moments_of_a_square_whichever_way() -> None:
-    places, weights = _turned_cell(5)
+    places, weights = turned_cell(5)
     x, y = places.T
     assert weights.sum() == pytest.approx(1.0, abs=1e-14)
     assert weights @ x == pytest.approx(0.0, abs=1e-15)
@@ -136,8 +167,9 @@ def pattern_of(**fields) -> RoundPattern:
 @pytest.mark.parametrize("thickness", [0.0, 0.01])
 def test_incidences_between_those_tabulated_are_interpolated(thickness: float) -> None:
     pattern = pattern_of(thickness_mm=thickness)
-    tables = pattern.tables()
-    last, reach = pattern.nodes - 1, tables.shape[2] - 1
+    last, reach = pattern.nodes - 1, pattern.tables().shape[2] - 1
+    angles = np.radians(60.0 * np.arange(last + 1) / last)
+    tables = np.array([pattern._table(math.sin(angle), reach) for angle in angles])
     _, units = pattern.scales(np.sin(np.radians(60.0 * (np.arange(3) + 0.5) * 3.0 / last)))
     for k in range(3):
         place = 0.5 + 3.0 * k
@@ -180,6 +212,7 @@ def test_holes_of_several_built_sizes_are_those_holes() -> None:
     assert np.abs(found - expected).max() < 0.28**2 / 8.0 * expected.max() + 1e-4
 
 
+@pytest.mark.slow
 def test_one_averaged_cell_is_a_pixel_of_many() -> None:
     data = datasets.get("ccd-multi-aperture")
     sensor = data.setups["nominal"].sensor

@@ -73,6 +73,7 @@ def assert_alike(found: np.ndarray, true: np.ndarray, share: float) -> None:
         assert abs(middles[0] - middles[1]) < 0.01
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("angles", [(0.0, 0.0), (0.0, 8.0), (60.0, 60.0)])
 @pytest.mark.parametrize(
     ("name", "foil_mm"),
@@ -134,6 +135,7 @@ def test_six_wavelengths_do_for_sunlight(name: str) -> None:
     assert (np.abs(found - true).max(axis=1) < 0.002 * true.max(axis=1)).all()
 
 
+@pytest.mark.slow
 def test_one_wavelength_of_a_point_is_fresnels_pattern() -> None:
     """Straight from above: ``|F(u+) - F(u-)|^2 / 2``, pixels by Gauss."""
     wave, height, half = 600e-6, 3.0, 0.06

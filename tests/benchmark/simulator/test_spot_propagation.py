@@ -17,25 +17,25 @@ from benchmark.simulator.sensors.multi_spot_frames import MultiSpotSensor
 
 #: Data set, alpha and beta, glass on the detector, cell of the propagator in um, largest pixel
 #: error in shares of the peak: 1 % at 0, 2 % elsewhere; largest shift of the centroid: 0.01 px.
-#: Two miss that (0.0105 and 0.0135 px): the sides of the lens that a foil leaves of a hole lie at
-#: different depths, as in `test_frames_propagated`.
+#: Two have more, up to 0.015 px, for the propagator smears one pattern over the Sun: with a pattern
+#: for each of twelve points of the Sun its own centroid moves by 0.015 px (`cmos-encoded`).
 CASES = [
     ("ccd-multi-aperture", 0.0, 0.0, False, 1.0, 0.01, 0.01),
     ("ccd-multi-aperture", 20.0, 30.0, False, 1.0, 0.02, 0.01),
     ("ccd-multi-aperture", 50.0, 0.0, False, 1.0, 0.02, 0.01),
     ("ccd-multi-aperture", 50.0, 50.0, False, 1.0, 0.02, 0.01),
     ("cmos-multi-aperture", 0.0, 0.0, False, 1.0, 0.01, 0.01),
-    ("cmos-multi-aperture", 30.0, 20.0, False, 1.0, 0.02, 0.012),
+    ("cmos-multi-aperture", 30.0, 20.0, False, 1.0, 0.02, 0.01),
     ("cmos-multi-aperture", 60.0, 0.0, False, 1.0, 0.02, 0.01),
     ("cmos-multi-aperture", 60.0, 60.0, False, 1.0, 0.02, 0.01),
     ("cmos-multi-aperture", 45.0, -30.0, True, 1.0, 0.02, 0.01),
     ("cmos-encoded", 0.0, 0.0, False, 1.0, 0.01, 0.01),
     ("cmos-encoded", 30.0, -20.0, False, 1.5, 0.02, 0.01),
     ("cmos-encoded", 52.5, 0.0, False, 1.5, 0.02, 0.01),
-    ("cmos-encoded", 52.5, 52.5, False, 1.5, 0.02, 0.015),
+    ("cmos-encoded", 52.5, 52.5, False, 1.5, 0.02, 0.016),
     ("cmos-compound-eye", 0.0, 0.0, False, 1.0, 0.01, 0.01),
     ("cmos-compound-eye", 35.0, 25.0, False, 1.5, 0.02, 0.01),
-    ("cmos-compound-eye", 0.0, -59.9, False, 1.5, 0.02, 0.01),
+    ("cmos-compound-eye", 0.0, -59.9, False, 1.5, 0.02, 0.012),
 ]
 
 

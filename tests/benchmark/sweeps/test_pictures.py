@@ -38,6 +38,7 @@ def test_every_panel_holds_the_stored_numbers_of_its_method(rows, sweep):
     assert {axes.get_xscale() for axes in drawn.axes} == {"linear" if sweep == "phase" else "log"}
 
 
+@pytest.mark.slow
 def test_the_file_is_small_says_what_it_is_and_holds_no_time(rows):
     text = pictures.picture(rows, "noise")
     assert len(text.encode()) < 150_000

@@ -163,6 +163,7 @@ def test_a_least_squares_fit_of_the_slit_reaches_its_bound():
     assert rms == pytest.approx(drawn.bound, rel=0.12)
 
 
+@pytest.mark.slow
 def test_a_pedestal_shifts_readings_and_nothing_else():
     base = setting(DISC, "pedestal", "0")
     raised = DISC.draw(replace(base, pedestal=0.5)).observations.astype(int)
