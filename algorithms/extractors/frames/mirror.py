@@ -18,6 +18,7 @@ from algorithms.contract import (
 )
 from algorithms.extractors.frames.matched import require_one_spot
 from algorithms.inputs import as_frames
+from algorithms.measurement import Measurement
 
 
 @dataclass(frozen=True)
@@ -89,19 +90,12 @@ class MirrorRegistration(Extractor):
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Centres (N, 2) in frames (N, H, W); ValueError on wrong input."""
-        from algorithms.extractors.frames import (  # noqa: PLC0415 - Numba, at first use
-            mirror_kernel,
-            mirror_search_kernel,
-        )
-        from algorithms.kernels import moments  # noqa: PLC0415 - Numba, at first use
+        from algorithms.extractors.frames.registration import register  # noqa: PLC0415 - Numba
 
-        frames = as_frames(observations)
-        count, height, width = frames.shape
-        found = np.full((count, 3), np.nan)
-        if min(height, width) >= 5:
-            unusable = np.empty(count, dtype=np.bool_)
-            moments.unusable(frames, frames.dtype.kind == "f", unusable)
-            lights = np.empty((count, mirror_search_kernel.FOUND))
-            mirror_search_kernel.find_lights(frames, unusable, lights)
-            mirror_kernel.mirror_centres(frames, lights, found)
-        return np.ascontiguousarray(found[:, :2])
+        return register(as_frames(observations))[0]
+
+    def measure(self, observations: ArrayLike, bad: ArrayLike | None = None) -> Measurement:
+        """As `extract`, with covariance and doubts; bad pixels are left out."""
+        from algorithms.extractors.frames.registration import register
+
+        return Measurement(*register(as_frames(observations)))

@@ -1,0 +1,158 @@
+"""Numbers that tell one point-symmetric spot from two lights and from light without symmetry.
+
+The last stage of `algorithms.extractors.frames.registration`, which says what the arrays hold.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.compiled import compiled
+from algorithms.contract import Floats
+
+Line = NDArray[np.float32]
+
+#: What `shapes` writes of a window.
+SHAPE = 7
+_REACH, _LANES = 7, 64
+_ZERO, _HALF, _ONE = np.float32(0.0), np.float32(0.5), np.float32(1.0)
+#: A pixel counts as lit above this fraction of the peak.
+_CUT = np.float32(0.3)
+#: Heights, over the peak, whose outlines are compared, and half of what they are blurred by.
+_LOW, _HIGH, _BLUR = np.float32(0.3), np.float32(0.75), np.float32(0.1)
+
+
+@compiled
+def _outlines(s: Line, box: Any, columns: Line, sums: Floats) -> None:
+    """Write area, xx, yy and xy of the pixels above three heights to `sums` (3, 4).
+
+    Above the low and the high one, blurred, and above the high one, sharp.
+    """
+    stride, first, above, rows = box[4], box[5], box[6], box[7]
+    width = box[3] - 2 * first
+    columns[:] = _ZERO
+    n = columns.size // 9
+    a, a_y, a_yy = columns[:n], columns[n : 2 * n], columns[2 * n : 3 * n]
+    b, b_y, b_yy = columns[3 * n : 4 * n], columns[4 * n : 5 * n], columns[5 * n : 6 * n]
+    c, c_y, c_yy = columns[6 * n : 7 * n], columns[7 * n : 8 * n], columns[8 * n :]
+    bottom_low, bottom_high = _LOW - _BLUR, _HIGH - _BLUR
+    scale = _HALF / _BLUR
+    for i in range(rows):
+        y = np.float32(above + i - 0.5 * (box[2] - box[1]))
+        twice = i == rows - 1 and (box[2] - box[1]) % 2 == 0
+        share = _HALF if twice else _ONE
+        p = 8 + (_REACH + above + i) * stride + first
+        row = s[p : p + width]
+        share_y, share_yy = share * y, share * y * y
+        for j in range(width):
+            t = (row[j] - bottom_low) * scale
+            t = t if t > _ZERO else _ZERO
+            t = t if t < _ONE else _ONE
+            a[j] += share * t
+            a_y[j] += share_y * t
+            a_yy[j] += share_yy * t
+        for j in range(width):
+            t = (row[j] - bottom_high) * scale
+            t = t if t > _ZERO else _ZERO
+            t = t if t < _ONE else _ONE
+            b[j] += share * t
+            b_y[j] += share_y * t
+            b_yy[j] += share_yy * t
+        for j in range(width):
+            t = _ONE if row[j] > _HIGH else _ZERO
+            c[j] += share * t
+            c_y[j] += share_y * t
+            c_yy[j] += share_yy * t
+    sums[:] = 0.0
+    for q in range(3):
+        number, ys, yys = columns[3 * q * n :], columns[(3 * q + 1) * n :], columns[3 * q * n + 2 * n :]
+        for j in range(width):
+            x = j - 0.5 * (width - 1)
+            sums[q, 0] += number[j]
+            sums[q, 1] += x * x * number[j]
+            sums[q, 2] += yys[j]
+            sums[q, 3] += x * ys[j]
+
+
+@compiled
+def _tensor(sums: Floats) -> tuple[float, float, float]:
+    """Second moments xx, yy, xy over the area, a pixel's own among them."""
+    n = max(sums[0], 1e-30)
+    return sums[1] / n + 1.0 / 12.0, sums[2] / n + 1.0 / 12.0, sums[3] / n
+
+
+@compiled
+def _axes(
+    low: tuple[float, float, float], high: tuple[float, float, float]
+) -> tuple[float, float]:
+    """Squared extents of the high outline over the low one's, along two conjugate directions."""
+    a, b, c = low
+    d, e, f = high
+    determinant = max(a * b - c * c, 1e-30)
+    trace = (b * d + a * e - 2.0 * c * f) / determinant
+    product = (d * e - f * f) / determinant
+    root = math.sqrt(max(0.25 * trace * trace - product, 0.0))
+    return 0.5 * trace + root, max(0.5 * trace - root, 0.0)
+
+
+@compiled
+def _alike(mean: Line, keep: Line, e: Line, stride: int, own: Line) -> tuple[float, float]:
+    """What neighbours miss alike, over the square of the light where lit; sum of the light."""
+    n = e.size
+    number, squares, light, noise = 0.0, 0.0, 0.0, 0.0
+    own[: n + stride] = _ZERO
+    for q in range(n):
+        lit = keep[q] if mean[q] > _CUT else _ZERO
+        own[q] = lit * e[q]
+        number += lit
+        squares += lit * mean[q] * mean[q]
+        light += keep[q] * mean[q]
+    across, along = 0.0, 0.0
+    for q in range(n):
+        noise += own[q] * own[q]
+        across += own[q] * own[q + 1]
+        along += own[q] * own[q + stride]
+    chance = 5.0 * noise / math.sqrt(max(number, 1.0))
+    share = (max(across, along) - chance) / max(squares, 1e-30)
+    return share, light
+
+
+@compiled
+def shapes(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    todo: NDArray[np.int64],
+    boxes: NDArray[np.int64],
+    s: Line,
+    keep: Line,
+    e: Line,
+    states: Floats,
+    out: Floats,
+) -> None:
+    """Write the shape of the windows `todo` to `out` (N, 7).
+
+    Columns: light of departing clusters over all; what neighbours miss alike; larger and smaller
+    ratio of the squared extents of the high outline to the low one's; smaller squared extent of
+    the low outline; area of the high outline, and that of an ellipse with its moments over it.
+    """
+    sums = np.empty((3, 4))
+    columns = np.empty(9 * (s.shape[1] + 8), dtype=np.float32)
+    own = np.empty(keep.shape[1] + 2 * _LANES + s.shape[1], dtype=np.float32)
+    for k in todo:
+        box = boxes[k]
+        n = box[7] * box[4]
+        p = 8 + (_REACH + box[6]) * box[4]
+        share, light = _alike(s[k, p : p + n], keep[k, :n], e[k, :n], box[4], own)
+        out[k, 0] = 0.5 * states[k, 14] / max(light, 1e-30)
+        out[k, 1] = share
+        _outlines(s[k], box, columns[: 9 * (box[3] + 8)], sums)
+        low, high, sharp = _tensor(sums[0]), _tensor(sums[1]), _tensor(sums[2])
+        out[k, 2], out[k, 3] = _axes(low, high)
+        half_trace, det = 0.5 * (low[0] + low[1]), low[0] * low[1] - low[2] * low[2]
+        out[k, 4] = half_trace - math.sqrt(max(half_trace * half_trace - det, 0.0))
+        area = 2.0 * sums[2, 0]
+        out[k, 5] = area
+        det = max(sharp[0] * sharp[1] - sharp[2] * sharp[2], 0.0)
+        out[k, 6] = 4.0 * math.pi * math.sqrt(det) / max(area, 1e-30)

@@ -1,0 +1,159 @@
+"""Centres, covariances and doubts of point-symmetric spots: one frame or window each.
+
+What `algorithms.extractors.frames.mirror.MirrorRegistration` does to whole frames, for whoever
+has windows of frames. Stages of compiled loops are run here one after the other, on as many frames
+at once as the processor's cache holds: the light is found (`mirror_search_kernel`), the pixels
+about its middle are paired (`mirror_pairs_kernel`); then, by turns, the displacement is fitted
+(`mirror_fit_kernel`) and pairs that depart are left out (`mirror_outlier_kernel`). After the first
+turn the background's slope is taken off (`mirror_ring_kernel`); shapes are looked at in the end
+(`mirror_shape_kernel`).
+
+The stages share these arrays, a row a frame. Lengths are in pixels, light is over the peak's.
+
+- `boxes`: first column and row, last row and number of columns of the window about the middle;
+  the stride, columns and rows before the core, rows of the core's upper half.
+- `s`, `d`: means and differences of the window's pairs, upper half, row after row a stride apart;
+  those of `s` after 7 rows and 8 numbers of margin.
+- `keep`: what a pair of the core counts: 1, a half in a middle row, 0 for one left out, and -1 for
+  one to be replaced. `e`: what the fit leaves of the difference; `slack`: the size of its slopes.
+- `states`: variance of a dark pixel, and what light adds to it; displacement d along x and y;
+  covariance xx, yy, xy of the centre; noise's share in the weighting; how the centre moves with
+  the sums that the fit solves for (4); the new value of column 1; pairs left out; the departures
+  of those in clusters; whether it is done.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from algorithms.contract import Floats
+from algorithms.extractors.frames import (
+    mirror_fit_kernel,
+    mirror_outlier_kernel,
+    mirror_pairs_kernel,
+    mirror_ring_kernel,
+    mirror_search_kernel,
+    mirror_shape_kernel,
+)
+from algorithms.inputs import Frames, as_frames
+from algorithms.kernels import moments
+from algorithms.measurement import Doubt, as_bad, without_bad
+
+#: Turns of fit and leaving out; middles that are tried.
+_TURNS, _CENTRES = 6, 3
+#: d, px, from which another middle is nearer.
+_FAR = 0.75
+#: Numbers that the stages share are at most so many a line of all frames of a chunk.
+_CHUNK = 2**15
+#: Limits of light in departing clusters, and of what neighbours miss alike: see `_doubts`.
+_CLUSTERS, _ALIKE = 0.02, 0.003
+#: Standard deviation of the centre, px, over which it is not known.
+_UNSURE = 0.5
+#: From the lit light's centroid, in half extents and px, no registration leads further.
+_ASTRAY, _ASTRAY_PX = 0.25, 0.75
+_FLOOR = 0.0015
+
+
+def register(frames: Frames, bad: NDArray[np.bool_] | None = None) -> tuple[Floats, Floats, Any]:
+    count, height, width = frames.shape
+    centres = np.full((count, 2), np.nan)
+    covariances = np.full((count, 2, 2), np.nan)
+    doubts = np.zeros(count, dtype=np.int64)
+    lights = np.full((count, mirror_search_kernel.FOUND), np.nan)
+    if min(height, width) >= 5:
+        unusable = np.empty(count, dtype=np.bool_)
+        moments.unusable(frames, frames.dtype.kind == "f", unusable)
+        mirror_search_kernel.find_lights(frames, unusable, lights)
+    mask = np.zeros((0, 0), dtype=np.bool_) if bad is None else bad
+    seen = np.flatnonzero(~np.isnan(lights[:, 0]))
+    if len(seen) == 0:
+        return centres, covariances, doubts
+    lengths = _lengths(lights[seen], height, width)
+    step = max(1, min(len(seen), int(_CHUNK / np.median(lengths))))
+    lines = np.empty((5, step, int(lengths.max())), dtype=np.float32)
+    for begin in range(0, len(seen), step):
+        part = seen[begin : begin + step]
+        found = _chunk(frames, part, lights[part], mask, lines)
+        centres[part], covariances[part], doubts[part] = found
+    return centres, covariances, doubts
+
+
+def _lengths(lights: Floats, height: int, width: int) -> NDArray[np.int64]:
+    """Numbers that a line of each window may take."""
+    half = 1.85 * lights[:, 2:4] + 3.0
+    half += np.maximum(7.0, 0.25 * half)
+    across = np.minimum(2.0 * half[:, 0] + 2.0, width) + 15.0
+    along = np.minimum(half[:, 1] + 2.0, (height + 2) // 2) + 15.0
+    return (across * along + 192.0).astype(np.int64)
+
+
+def _chunk(
+    frames: Frames, which: NDArray[np.int64], lights: Floats, bad: NDArray[np.bool_], lines: Any
+) -> tuple[Floats, Floats, NDArray[np.int64]]:
+    """Centres, covariances and doubts of the frames `which`."""
+    n = len(which)
+    s, d, keep, e, slack = lines
+    states, slopes = np.zeros((n, 16)), np.zeros((n, 11))
+    states[:, 0] = lights[:, 5] / lights[:, 6] ** 2
+    boxes = np.zeros((n, 8), dtype=np.int64)
+    middles = np.rint(2.0 * lights[:, :2]).astype(np.int64)
+    states[:, 2:4] = 2.0 * lights[:, :2] - middles
+    todo = np.arange(n)
+    for attempt in range(_CENTRES):
+        mirror_pairs_kernel.pair_up(frames, which, todo, lights, middles, bad, boxes, s, d, keep)
+        inside = boxes[todo, 3] > 0
+        states[todo[~inside], 4] = np.inf
+        todo = todo[inside]
+        mirror_fit_kernel.fit(todo, boxes, True, slopes, s, d, keep, e, slack, states)
+        found = states[todo]
+        again = (np.abs(found[:, 2:4]).max(axis=1) > _FAR) & np.isfinite(found[:, 4])
+        if attempt + 1 == _CENTRES or not again.any():
+            break
+        todo = todo[again]
+        moved = np.rint(middles[todo] + np.clip(states[todo, 2:4], -4.0, 4.0)).astype(np.int64)
+        states[todo, 2:4] += middles[todo] - moved
+        middles[todo] = moved
+    todo = np.flatnonzero(np.isfinite(states[:, 4]))
+    used = np.zeros((n, 2))
+    for turn in range(_TURNS):
+        if turn:
+            used[todo] = np.clip(states[todo, 2:4], -1.0, 1.0)
+            mirror_fit_kernel.fit(todo, boxes, False, slopes, s, d, keep, e, slack, states)
+        mirror_outlier_kernel.leave_out(
+            todo, boxes, turn == 0, bad, s, d, keep, e, slack, used, states
+        )
+        if turn == 0:
+            mirror_ring_kernel.flatten(todo, boxes, lights, s, d, states, slopes)
+        todo = todo[(states[todo, 15] == 0.0) & np.isfinite(states[todo, 4])]
+        if len(todo) == 0:
+            break
+    shapes = np.full((n, mirror_shape_kernel.SHAPE), np.nan)
+    todo = np.flatnonzero(np.isfinite(states[:, 4]))
+    mirror_shape_kernel.shapes(todo, boxes, s, keep, e, states, shapes)
+    global LAST
+    LAST = (lights, boxes, states, slopes, shapes)
+    return _answers(lights, boxes, middles, states, shapes)
+
+
+def _answers(lights, boxes, middles, states, shapes):
+    centres = 0.5 * (middles + states[:, 2:4])
+    covariances = np.empty((len(centres), 2, 2))
+    covariances[:, 0, 0], covariances[:, 1, 1] = states[:, 4], states[:, 5]
+    covariances[:, 0, 1] = covariances[:, 1, 0] = states[:, 6]
+    doubts = np.zeros(len(centres), dtype=np.int64)
+    lost = ~np.isfinite(states[:, 4])
+    doubts[lost] |= int(Doubt.NO_SPOT)
+    doubts[boxes[:, 3] == 0] |= int(Doubt.CUT)
+    far = np.abs(centres - lights[:, :2]) > _ASTRAY * lights[:, 2:4] + _ASTRAY_PX
+    with np.errstate(invalid="ignore"):
+        crooked = far.any(axis=1) | (shapes[:, 0] > _CLUSTERS) | (shapes[:, 1] > _ALIKE)
+        doubts[crooked & ~lost] |= int(Doubt.NOT_SYMMETRIC)
+        unsure = np.maximum(states[:, 4], states[:, 5]) > _UNSURE**2
+        doubts[unsure & ~lost] |= int(Doubt.NO_SPOT)
+    refused = doubts != 0
+    centres[refused] = np.nan
+    covariances[refused] = np.nan
+    return centres, covariances, doubts
