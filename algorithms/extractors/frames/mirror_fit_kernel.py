@@ -200,16 +200,15 @@ def _smoothed(s: Line, apart: int, stride: int, line: Line, out: Line) -> None:
 
 
 @compiled
-def _weights(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    mean: Line, keep: Line, h_x: Line, h_y: Line, noise: float, gain: float, w: Line
-) -> None:
+def _weights(mean: Line, keep: Line, noise: float, gain: float, w: Line) -> None:
     """One over the variance of a pixel, zero where a pair is left out."""
     least, more = np.float32(noise + _FLOOR * _FLOOR), np.float32(gain)
-    missed = np.float32(_FLOOR_SLOPE * _FLOOR_SLOPE)
     for q in range(w.size):
-        lit = mean[q] if mean[q] > _ZERO else _ZERO
-        kept = keep[q] if keep[q] > _ZERO else _ZERO
-        w[q] = kept / (least + more * lit + missed * (h_x[q] * h_x[q] + h_y[q] * h_y[q]))
+        lit, kept = mean[q], keep[q]
+        lit = lit if lit > _ZERO else _ZERO
+        kept = kept if kept > _ZERO else _ZERO
+        # Numba's own division would look for zeros, one by one.
+        w[q] = np.divide(kept, least + more * lit)
 
 
 @compiled
@@ -246,8 +245,10 @@ def _noise(  # noqa: PLR0917 - Numba takes no keyword-only ones
     """
     n = e.size
     for q in range(n):
-        lit = keep[q] if mean[q] > _CUT and keep[q] > _ZERO else _ZERO
-        flat[q] = lit / (_ONE + _STEEP * slack[q] * slack[q])
+        lit = _ONE if mean[q] > _CUT else _ZERO
+        kept = keep[q]
+        lit *= kept if kept > _ZERO else _ZERO
+        flat[q] = np.divide(lit, _ONE + _STEEP * slack[q] * slack[q])
     flat[n - 1] = _ZERO
     for q in range(n - 1):
         apart[q] = abs(e[q + 1] - e[q])
@@ -269,25 +270,40 @@ def _noise(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 @compiled
 def _background(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    box: Any, slope: Floats, h_x: Line, h_y: Line, w: Line, line: Line, lanes: Line, state: Floats
+    box: Any,
+    slope: Floats,
+    h_x: Line,
+    h_y: Line,
+    w: Line,
+    x: Line,
+    y: Line,
+    lanes: Line,
+    sums: Floats,
+    state: Floats,
 ) -> None:
     """Add to the centre's covariance what the background's slopes are uncertain by."""
-    stride, middle, scale = box[4], np.float32(0.5 * (box[3] - 1)), np.float32(1.0 / slope[4])
+    stride = box[4]
+    left = np.float32(0.5 * (box[3] - 1))
     two = np.float32(2.0)
+    x[:], y[:] = _ZERO, _ZERO
+    for i in range(box[7]):
+        at = np.float32(2 * box[6] + 2 * i - (box[2] - box[1]))
+        part, beside = x[i * stride : (i + 1) * stride], y[i * stride : (i + 1) * stride]
+        for j in range(stride):
+            part[j] = two * (np.float32(j) - left)
+        beside[:] = at
+    scale = np.float32(0.25 / slope[4])
     for bend in range(2):
-        if bend == 1 and slope[2] == 0.0 and slope[3] == 0.0:
-            break
+        if bend == 1:
+            if slope[2] == 0.0 and slope[3] == 0.0:
+                break
+            for q in range(w.size):
+                rho = (x[q] * x[q] + y[q] * y[q]) * scale
+                x[q] *= rho
+                y[q] *= rho
+        _normal(h_x, h_y, x, y, x, w, lanes, sums)
         for axis in range(2):
-            line[:] = _ZERO
-            for i in range(box[7]):
-                y = np.float32(box[6] + i - 0.5 * (box[2] - box[1]))
-                part, weight = line[i * stride :], w[i * stride :]
-                for j in range(box[3]):
-                    x = np.float32(j) - middle
-                    u = two * (x if axis == 0 else y)
-                    u *= (x * x + y * y) * scale if bend == 1 else _ONE
-                    part[j] = weight[j] * u
-            right_x, right_y = _product(line, h_x, lanes), _product(line, h_y, lanes)
+            right_x, right_y = (sums[0], sums[3]) if axis == 0 else (sums[2], sums[1])
             moved_x = state[8] * right_x + state[9] * right_y
             moved_y = state[10] * right_x + state[11] * right_y
             variance = slope[5 + 2 * bend + axis]
@@ -329,7 +345,7 @@ def fit(  # noqa: PLR0914, PLR0917 - the method's steps in order
         differences = d[k, from_row : from_row + n]
         w, h_x, h_y, g_x, g_y = work[0, :n], work[1, :n], work[2, :n], work[3, :n], work[4, :n]
         _weighting(s[k], p, stride, work[5], h_x, h_y)
-        _weights(mean, kept, h_x, h_y, state[0], state[1], w)
+        _weights(mean, kept, state[0], state[1], w)
         if first:
             g_x, g_y = h_x, h_y
         else:
@@ -340,7 +356,8 @@ def fit(  # noqa: PLR0914, PLR0917 - the method's steps in order
         for q in range(0, n, _LANES):
             part = kept[q : q + _LANES]
             for j in range(_LANES):
-                lanes[j] += part[j] if part[j] > _ZERO else _ZERO
+                one = part[j]
+                lanes[j] += one if one > _ZERO else _ZERO
         number = _fold(lanes[:_LANES])
         products = _SQUARES if first else _PRODUCTS
         found = _solve(sums, 0.5 * number * products[0], 0.5 * number * _SQUARES[0], state)
@@ -373,4 +390,6 @@ def fit(  # noqa: PLR0914, PLR0917 - the method's steps in order
         variance, light = _noise(mean, kept, steep, left, work[8, :n], work[9, :n], lanes[:_LANES])
         state[12] = max(variance - state[0], 0.0) / light
         if not first:
-            _background(box, slopes[k], h_x, h_y, w, work[10, :n], lanes[:_LANES], state)
+            _background(
+                box, slopes[k], h_x, h_y, w, work[9, :n], work[10, :n], lanes, sums, state
+            )

@@ -26,6 +26,21 @@ _SAME = 0.05
 
 
 @compiled
+def _fold(lanes: Line) -> float:
+    """Sum of the lanes, halves added to halves."""
+    size = lanes.size
+    while size > 8:
+        size //= 2
+        first, second = lanes[:size], lanes[size : 2 * size]
+        for j in range(size):
+            first[j] += second[j]
+    total = 0.0
+    for j in range(size):
+        total += lanes[j]
+    return total
+
+
+@compiled
 def _complete(s: Line, box: Any) -> None:
     """Fill the rows below the middle by symmetry once more."""
     columns, stride, rows, height = box[3], box[4], box[6] + box[7], box[2] - box[1] + 1
@@ -48,19 +63,17 @@ def _beyond(  # noqa: PLR0917 - Numba takes no keyword-only ones
         np.float32(_BAD_PEAK[good]),
     )
     for q in range(e.size):
-        lit = mean[q] if mean[q] > _ZERO else _ZERO
+        lit = mean[q]
+        lit = lit if lit > _ZERO else _ZERO
         over[q] = least + share * slack[q] + sigmas * np.sqrt(noise + gain * lit)
     for q in range(e.size):
-        over[q] = _ONE if keep[q] > _ZERO and abs(e[q]) > over[q] else _ZERO
+        over[q] = _ONE if (keep[q] > _ZERO) & (abs(e[q]) > over[q]) else _ZERO
     lanes[:] = _ZERO
     for k in range(0, e.size, _LANES):
         part = over[k : k + _LANES]
         for j in range(_LANES):
             lanes[j] += part[j]
-    total = 0.0
-    for j in range(_LANES):
-        total += lanes[j]
-    return total
+    return _fold(lanes)
 
 
 @compiled

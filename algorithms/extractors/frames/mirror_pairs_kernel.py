@@ -85,7 +85,7 @@ def _complete(s: Line, rows: int, columns: int, height: int, stride: int) -> Non
         here, there = 8 + (REACH + rows + i) * stride, 8 + (REACH + mirrored) * stride
         for j in range(columns):
             s[here + j] = s[there + columns - 1 - j]
-    for i in range(REACH, rows + 2 * REACH):
+    for i in range(REACH if stride > columns else rows + 2 * REACH, rows + 2 * REACH):
         end = 8 + i * stride + columns
         following = 8 + (min(i, rows + 2 * REACH - 2) + 1) * stride
         between = _HALF * (s[end - 1] + s[following])

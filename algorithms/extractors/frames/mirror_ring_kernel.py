@@ -46,36 +46,35 @@ def _fold(lanes: Line) -> float:
 
 @compiled
 def _lines(s: Line, d: Line, box: Any, d_x: float, d_y: float, lines: Line) -> int:
-    """Write the ring's pairs, one after the other, to `lines`; return how many.
+    """Write the window's pairs to `lines`, zero in the core; return how many are not.
 
-    Rows: difference without what the spot's own slope explains, x, y, mean of the pair.
+    Rows: difference without what the spot's own slope explains, x, y.
     """
     columns, stride, first, above = box[3], box[4], box[5], box[6]
     across, along = np.float32(0.5 * d_x), np.float32(0.5 * d_y)
     middle = np.float32(0.5 * (columns - 1))
-    count = 0
-    for i in range(above + box[7]):
-        y = np.float32(i - 0.5 * (box[2] - box[1]))
-        p = 8 + (i + _REACH) * stride
-        for part in range(2):
-            begin = 0 if part == 0 else columns - first
-            end = first if part == 0 else columns
-            if i < above:
-                begin, end = (0, columns) if part == 0 else (0, 0)
-            n = end - begin
-            r, x = lines[0, count : count + n], lines[1, count : count + n]
-            own, row = s[p + begin - 1 : p + end + 1], d[i * stride + begin :]
-            up, down = s[p + begin - stride :], s[p + begin + stride :]
-            for j in range(n):
-                r[j] = row[j] + across * (own[j + 2] - own[j]) + along * (down[j] - up[j])
-            for j in range(n):
-                x[j] = np.float32(begin + j) - middle
-            lines[2, count : count + n] = y
-            lines[3, count : count + n] = own[1 : n + 1]
-            count += n
-    end = (count + _LANES - 1) // _LANES * _LANES
-    lines[:4, count:end] = _ZERO
-    return count
+    rows = above + box[7]
+    n = (rows * stride + _LANES - 1) // _LANES * _LANES
+    r, x, y = lines[0, :n], lines[1, :n], lines[2, :n]
+    x[:], y[:] = _ZERO, _ZERO
+    for i in range(rows):
+        at = np.float32(i - 0.5 * (box[2] - box[1]))
+        part, beside = x[i * stride :], y[i * stride :]
+        end = columns if i < above else first
+        for j in range(end):
+            part[j] = np.float32(j) - middle
+            beside[j] = at
+        if i >= above:
+            for j in range(columns - first, columns):
+                part[j] = np.float32(j) - middle
+                beside[j] = at
+    p = 8 + _REACH * stride
+    own, up, down = s[p - 1 :], s[p - stride :], s[p + stride :]
+    for q in range(n):
+        r[q] = d[q] + across * (own[q + 2] - own[q]) + along * (down[q] - up[q])
+    for q in range(n):
+        r[q] *= _ONE if x[q] * x[q] + y[q] * y[q] > _ZERO else _ZERO
+    return rows * columns - box[7] * (columns - 2 * first)
 
 
 @compiled
@@ -120,23 +119,24 @@ def _right(lines: Line, n: int, inverse: Any, slope: Floats, limit: float, lanes
 
 
 @compiled
-def _solve(lines: Line, count: int, variance: float, prior: float, lanes: Line, slope: Any) -> None:
+def _solve(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    lines: Line, n: int, count: int, variance: float, prior: float, lanes: Line, slope: Floats
+) -> None:
     """Fit ``difference = 2 (slope + bend |u|^2 / r^2) . u`` to the ring's pairs, all at first.
 
     No pair has much influence. `prior` is the variance of a slope and of a bend before anything is
     known, which counts where the frame's edge leaves few pairs.
     """
-    n = (count + _LANES - 1) // _LANES * _LANES
-    x, y = lines[1, :n], lines[2, :n]
     sums = np.empty(6)
-    _moments(x, y, _ONE, lanes, sums)
-    slope[4] = (sums[0] + sums[1]) / count + 1e-30
     inverse = np.float32(1.0 / slope[4])
-    _moments(x, y, inverse, lanes, sums)
+    _moments(lines[1, :n], lines[2, :n], inverse, lanes, sums)
     scale, ridge = 4.0 / variance, 1.0 / prior
-    size = 0.0
-    for q in range(count):
-        size += abs(lines[0, q])
+    lanes[:] = _ZERO
+    for k in range(0, n, _LANES):
+        part = lines[0, k : k + _LANES]
+        for j in range(_LANES):
+            lanes[j] += abs(part[j])
+    size = _fold(lanes[:_LANES])
     least = _FAR * math.sqrt(variance)
     limit = max(least, 3.0 * size / count)
     slope[:4] = 0.0
@@ -211,19 +211,18 @@ def flatten(  # noqa: PLR0917 - Numba takes no keyword-only ones
     Columns: slope along x and y, bend along both, the square of the length it is told at; the
     variances of slope and bend of each axis, and their covariance.
     """
-    lines = np.empty((4, d.shape[1] + 2 * _LANES), dtype=np.float32)
+    lines = np.empty((3, d.shape[1] + 2 * _LANES), dtype=np.float32)
     lanes = np.empty(6 * _LANES, dtype=np.float32)
     for k in todo:
         state, slope = states[k], slopes[k]
+        box = boxes[k]
         slope[:] = 0.0
-        slope[4] = 1.0
-        count = _lines(s[k], d[k], boxes[k], state[2], state[3], lines)
+        slope[4] = 0.25 * (box[3] * box[3] + (box[2] - box[1]) ** 2)
+        count = _lines(s[k], d[k], box, state[2], state[3], lines)
         if count == 0:
             continue
-        light = 0.0
-        for q in range(count):
-            light += lines[3, q]
-        variance = 2.0 * (state[0] + state[1] * max(light / count, 0.0)) + 1e-12
+        n = ((box[6] + box[7]) * box[4] + _LANES - 1) // _LANES * _LANES
+        variance = 2.0 * state[0] + 1e-12
         prior = (_PRIOR / max(lights[k, 2], lights[k, 3])) ** 2
-        _solve(lines, count, variance, prior, lanes, slope)
+        _solve(lines, n, count, variance, prior, lanes, slope)
         _flatten(d[k], boxes[k], slope)

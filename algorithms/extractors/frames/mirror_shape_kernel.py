@@ -27,6 +27,21 @@ _LOW, _HIGH, _BLUR = np.float32(0.3), np.float32(0.75), np.float32(0.1)
 
 
 @compiled
+def _fold(lanes: Line) -> float:
+    """Sum of the lanes, halves added to halves."""
+    size = lanes.size
+    while size > 8:
+        size //= 2
+        first, second = lanes[:size], lanes[size : 2 * size]
+        for j in range(size):
+            first[j] += second[j]
+    total = 0.0
+    for j in range(size):
+        total += lanes[j]
+    return total
+
+
+@compiled
 def _outlines(s: Line, box: Any, columns: Line, sums: Floats) -> None:
     """Write area, xx, yy and xy of the pixels above three heights to `sums` (3, 4).
 
@@ -100,25 +115,38 @@ def _axes(
 
 
 @compiled
-def _alike(mean: Line, keep: Line, e: Line, stride: int, own: Line) -> tuple[float, float]:
+def _products(a: Line, b: Line, lanes: Line) -> float:
+    """Sum of products; lines are a multiple of the lanes long."""
+    lanes[:] = _ZERO
+    for k in range(0, a.size, _LANES):
+        u, v = a[k : k + _LANES], b[k : k + _LANES]
+        for j in range(_LANES):
+            lanes[j] += u[j] * v[j]
+    return _fold(lanes)
+
+
+@compiled
+def _alike(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    mean: Line, keep: Line, e: Line, stride: int, own: Line, line: Line, lanes: Line
+) -> tuple[float, float]:
     """What neighbours miss alike, over the square of the light where lit; sum of the light."""
     n = e.size
-    number, squares, light, noise = 0.0, 0.0, 0.0, 0.0
-    own[: n + stride] = _ZERO
+    own[n : n + stride + 1] = _ZERO
     for q in range(n):
-        lit = keep[q] if mean[q] > _CUT else _ZERO
-        own[q] = lit * e[q]
-        number += lit
-        squares += lit * mean[q] * mean[q]
-        light += keep[q] * mean[q]
-    across, along = 0.0, 0.0
+        lit = _ONE if mean[q] > _CUT else _ZERO
+        line[q] = lit * keep[q]
     for q in range(n):
-        noise += own[q] * own[q]
-        across += own[q] * own[q + 1]
-        along += own[q] * own[q + stride]
+        own[q] = line[q] * e[q]
+    number = _products(line, line, lanes)
+    for q in range(n):
+        line[q] *= mean[q]
+    squares = _products(line, mean, lanes)
+    light = _products(keep, mean, lanes)
+    noise = _products(own[:n], own[:n], lanes)
+    across = _products(own[:n], own[1 : n + 1], lanes)
+    along = _products(own[:n], own[stride : n + stride], lanes)
     chance = 5.0 * noise / math.sqrt(max(number, 1.0))
-    share = (max(across, along) - chance) / max(squares, 1e-30)
-    return share, light
+    return (max(across, along) - chance) / max(squares, 1e-30), light
 
 
 @compiled
@@ -139,12 +167,14 @@ def shapes(  # noqa: PLR0917 - Numba takes no keyword-only ones
     """
     sums = np.empty((3, 4))
     columns = np.empty(9 * (s.shape[1] + 8), dtype=np.float32)
-    own = np.empty(keep.shape[1] + 2 * _LANES + s.shape[1], dtype=np.float32)
+    own = np.empty(2 * s.shape[1], dtype=np.float32)
+    line, lanes = np.empty(s.shape[1], dtype=np.float32), np.empty(_LANES, dtype=np.float32)
     for k in todo:
         box = boxes[k]
-        n = box[7] * box[4]
+        n = (box[7] * box[4] + _LANES - 1) // _LANES * _LANES
         p = 8 + (_REACH + box[6]) * box[4]
-        share, light = _alike(s[k, p : p + n], keep[k, :n], e[k, :n], box[4], own)
+        mean, kept, left = s[k, p : p + n], keep[k, :n], e[k, :n]
+        share, light = _alike(mean, kept, left, box[4], own, line[:n], lanes)
         out[k, 0] = 0.5 * states[k, 14] / max(light, 1e-30)
         out[k, 1] = share
         _outlines(s[k], box, columns[: 9 * (box[3] + 8)], sums)

@@ -47,7 +47,7 @@ _TURNS, _CENTRES = 6, 3
 #: d, px, from which another middle is nearer.
 _FAR = 0.75
 #: Numbers that the stages share are at most so many a line of all frames of a chunk.
-_CHUNK = 2**15
+_CHUNK = 2**16
 #: Limits of light in departing clusters, and of what neighbours miss alike: see `_doubts`.
 _CLUSTERS, _ALIKE = 0.02, 0.003
 #: Standard deviation of the centre, px, over which it is not known.
@@ -74,32 +74,39 @@ def register(frames: Frames, bad: NDArray[np.bool_] | None = None) -> tuple[Floa
     lengths = _lengths(lights[seen], height, width)
     step = max(1, min(len(seen), int(_CHUNK / np.median(lengths))))
     lines = np.empty((5, step, int(lengths.max())), dtype=np.float32)
-    for begin in range(0, len(seen), step):
-        part = seen[begin : begin + step]
-        found = _chunk(frames, part, lights[part], mask, lines)
-        centres[part], covariances[part], doubts[part] = found
+    lights = lights[seen]
+    n = len(seen)
+    states, slopes = np.zeros((n, 16)), np.zeros((n, 11))
+    boxes, middles = np.zeros((n, 8), dtype=np.int64), np.empty((n, 2), dtype=np.int64)
+    shapes = np.full((n, mirror_shape_kernel.SHAPE), np.nan)
+    for begin in range(0, n, step):
+        part = slice(begin, begin + step)
+        _chunk(frames, seen[part], lights[part], mask, lines, boxes[part], middles[part], states[part], slopes[part], shapes[part])
+    global LAST
+    LAST = (lights, boxes, states, slopes, shapes)
+    centres[seen], covariances[seen], doubts[seen] = _answers(lights, boxes, middles, states, shapes)
     return centres, covariances, doubts
 
 
 def _lengths(lights: Floats, height: int, width: int) -> NDArray[np.int64]:
     """Numbers that a line of each window may take."""
-    half = 1.85 * lights[:, 2:4] + 3.0
+    wider = 1.1 + 1.5 * (1.0 - np.clip(lights[:, 7:8], 0.5, 1.0))  # as `pair_up` does
+    half = wider * lights[:, 2:4] + 3.0
     half += np.maximum(7.0, 0.25 * half)
-    across = np.minimum(2.0 * half[:, 0] + 2.0, width) + 15.0
-    along = np.minimum(half[:, 1] + 2.0, (height + 2) // 2) + 15.0
-    return (across * along + 192.0).astype(np.int64)
+    across = np.minimum(2.0 * half[:, 0] + 2.0, width + 7) + 7.0
+    along = np.minimum(half[:, 1] + 2.0, (height + 2) // 2) + 14.0
+    return (across * along + 160.0).astype(np.int64)
 
 
 def _chunk(
-    frames: Frames, which: NDArray[np.int64], lights: Floats, bad: NDArray[np.bool_], lines: Any
-) -> tuple[Floats, Floats, NDArray[np.int64]]:
+    frames: Frames, which: NDArray[np.int64], lights: Floats, bad: NDArray[np.bool_], lines: Any,
+    boxes, middles, states, slopes, shapes
+) -> None:
     """Centres, covariances and doubts of the frames `which`."""
     n = len(which)
     s, d, keep, e, slack = lines
-    states, slopes = np.zeros((n, 16)), np.zeros((n, 11))
     states[:, 0] = lights[:, 5] / lights[:, 6] ** 2
-    boxes = np.zeros((n, 8), dtype=np.int64)
-    middles = np.rint(2.0 * lights[:, :2]).astype(np.int64)
+    middles[:] = np.rint(2.0 * lights[:, :2])
     states[:, 2:4] = 2.0 * lights[:, :2] - middles
     todo = np.arange(n)
     for attempt in range(_CENTRES):
@@ -130,12 +137,8 @@ def _chunk(
         todo = todo[(states[todo, 15] == 0.0) & np.isfinite(states[todo, 4])]
         if len(todo) == 0:
             break
-    shapes = np.full((n, mirror_shape_kernel.SHAPE), np.nan)
     todo = np.flatnonzero(np.isfinite(states[:, 4]))
     mirror_shape_kernel.shapes(todo, boxes, s, keep, e, states, shapes)
-    global LAST
-    LAST = (lights, boxes, states, slopes, shapes)
-    return _answers(lights, boxes, middles, states, shapes)
 
 
 def _answers(lights, boxes, middles, states, shapes):
