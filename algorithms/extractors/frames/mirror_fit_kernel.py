@@ -33,6 +33,8 @@ _BESIDE, _MIDDLE = np.float32(1.0 / 6.0), np.float32(2.0 / 3.0)
 _ZERO, _ONE, _HALF, _QUARTER = np.float32(0.0), np.float32(1.0), np.float32(0.5), np.float32(0.25)
 #: Rows around the core that its slopes reach; lanes of the sums.
 _REACH, _LANES = 7, 64
+#: d, px, from which another middle is nearer.
+_AWAY = 0.75
 #: Levels of smoothing of the weighting, by binomials 2, 4 ... px apart.
 _LEVELS = 5
 #: Share of noise in the weighting from which a smoother one is tried.
@@ -323,20 +325,22 @@ def fit(  # noqa: PLR0914, PLR0917 - the method's steps in order
     keep: Line,
     e: Line,
     slack: Line,
+    space: Line,
     states: Floats,
-) -> None:
+) -> int:
     """Fit the windows `todo`: displacement, covariance, and what is left of the differences.
 
-    In a `first` fit the weighting is slope enough. The variance is infinite where nothing is found.
+    In a `first` fit the weighting is slope enough. The variance is infinite where nothing is
+    found, and such windows are passed over. Return how many another middle is nearer to.
     """
-    size = s.shape[1]
-    length = keep.shape[1]
-    work = np.empty((11, length + 64), dtype=np.float32)
-    wide = np.empty((4, size + 64), dtype=np.float32)
+    away = 0
+    work, wide = space[:11], space[11:15]
     lanes = np.empty(9 * _LANES, dtype=np.float32)
     sums, other_sums, other = np.empty(9), np.empty(9), np.empty(states.shape[1])
     for k in todo:
         box, state = boxes[k], states[k]
+        if not np.isfinite(state[4]):
+            continue
         stride = box[4]
         n = (box[7] * stride + _LANES - 1) // _LANES * _LANES
         p = 8 + (_REACH + box[6]) * stride
@@ -350,6 +354,7 @@ def fit(  # noqa: PLR0914, PLR0917 - the method's steps in order
             g_x, g_y = h_x, h_y
         else:
             d_x, d_y = min(max(state[2], -1.0), 1.0), min(max(state[3], -1.0), 1.0)
+            state[16], state[17] = d_x, d_y
             _slopes(s[k], p, stride, d_x, d_y, wide[3], g_x, g_y)
         _normal(h_x, h_y, g_x, g_y, differences, w, lanes, sums)
         lanes[:_LANES] = _ZERO
@@ -363,6 +368,7 @@ def fit(  # noqa: PLR0914, PLR0917 - the method's steps in order
         found = _solve(sums, 0.5 * number * products[0], 0.5 * number * _SQUARES[0], state)
         if not found:
             continue
+        away += max(abs(state[2]), abs(state[3])) > _AWAY
         level, old = 0, s[k]
         end = 8 + (box[6] + box[7] + 2 * _REACH) * stride
         while not first and level + 1 < _LEVELS and state[7] > _NOISY and 2**level < 0.5 * stride:
@@ -393,3 +399,4 @@ def fit(  # noqa: PLR0914, PLR0917 - the method's steps in order
             _background(
                 box, slopes[k], h_x, h_y, w, work[9, :n], work[10, :n], lanes, sums, state
             )
+    return away

@@ -128,14 +128,19 @@ def leave_out(  # noqa: PLR0917 - Numba takes no keyword-only ones
     keep: Line,
     e: Line,
     slack: Line,
-    used: Floats,
+    space: Line,
     states: Floats,
-) -> None:
-    """Leave out pairs of the windows `todo`, take over the noise, and say which are done."""
-    over = np.empty(keep.shape[1], dtype=np.float32)
-    lanes = np.empty(_LANES, dtype=np.float32)
+) -> int:
+    """Leave out pairs of the windows `todo` and take over the noise; keep in it those not done.
+
+    Return how many these are.
+    """
+    remaining = 0
+    over, lanes = space[0], space[1, :_LANES]
     for k in todo:
         box, state = boxes[k], states[k]
+        if not np.isfinite(state[4]):
+            continue
         n = (box[7] * box[4] + _LANES - 1) // _LANES * _LANES
         p = 8 + (_REACH + box[6]) * box[4]
         before = state[1]
@@ -160,5 +165,8 @@ def leave_out(  # noqa: PLR0917 - Numba takes no keyword-only ones
             _complete(s[k], box)
         state[13] += number
         same = abs(state[1] - before) <= 0.5 * before + 0.02 * state[0]
-        moved = max(abs(state[2] - used[k, 0]), abs(state[3] - used[k, 1]))
-        state[15] = 1.0 if same and number == 0.0 and not first and moved < _SAME else 0.0
+        moved = max(abs(state[2] - state[16]), abs(state[3] - state[17]))
+        if first or number > 0.0 or not same or moved >= _SAME:
+            todo[remaining] = k
+            remaining += 1
+    return remaining

@@ -148,6 +148,7 @@ def pair_up(  # noqa: PLR0917 - Numba takes no keyword-only ones
     s: Line,
     d: Line,
     keep: Line,
+    states: Floats,
 ) -> None:
     """Pair up the windows `todo` of the frames `which`; 0 columns where the edge cuts the spot."""
     _, height, width = frames.shape
@@ -156,6 +157,7 @@ def pair_up(  # noqa: PLR0917 - Numba takes no keyword-only ones
         box = boxes[k]
         box[:] = 0
         if not _window(lights[k], middles[k], height, width, box):
+            states[k, 4] = np.inf
             continue
         base, noise, peak = lights[k, 4], lights[k, 5], lights[k, 6]
         rows = box[6] + box[7]

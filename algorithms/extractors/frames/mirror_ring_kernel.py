@@ -203,6 +203,7 @@ def flatten(  # noqa: PLR0917 - Numba takes no keyword-only ones
     lights: Floats,
     s: Line,
     d: Line,
+    space: Line,
     states: Floats,
     slopes: Floats,
 ) -> None:
@@ -211,7 +212,7 @@ def flatten(  # noqa: PLR0917 - Numba takes no keyword-only ones
     Columns: slope along x and y, bend along both, the square of the length it is told at; the
     variances of slope and bend of each axis, and their covariance.
     """
-    lines = np.empty((3, d.shape[1] + 2 * _LANES), dtype=np.float32)
+    lines = space[:3]
     lanes = np.empty(6 * _LANES, dtype=np.float32)
     for k in todo:
         state, slope = states[k], slopes[k]

@@ -156,6 +156,7 @@ def shapes(  # noqa: PLR0917 - Numba takes no keyword-only ones
     s: Line,
     keep: Line,
     e: Line,
+    space: Line,
     states: Floats,
     out: Floats,
 ) -> None:
@@ -166,11 +167,12 @@ def shapes(  # noqa: PLR0917 - Numba takes no keyword-only ones
     the low outline; area of the high outline, and that of an ellipse with its moments over it.
     """
     sums = np.empty((3, 4))
-    columns = np.empty(9 * (s.shape[1] + 8), dtype=np.float32)
-    own = np.empty(2 * s.shape[1], dtype=np.float32)
-    line, lanes = np.empty(s.shape[1], dtype=np.float32), np.empty(_LANES, dtype=np.float32)
+    own, line, lanes = space[0], space[1], space[2, :_LANES]
+    columns = space[3:].ravel()
     for k in todo:
         box = boxes[k]
+        if not np.isfinite(states[k, 4]):
+            continue
         n = (box[7] * box[4] + _LANES - 1) // _LANES * _LANES
         p = 8 + (_REACH + box[6]) * box[4]
         mean, kept, left = s[k, p : p + n], keep[k, :n], e[k, :n]

@@ -24,6 +24,7 @@ The stages share these arrays, a row a frame. Lengths are in pixels, light is ov
 
 from __future__ import annotations
 
+import threading
 from typing import Any
 
 import numpy as np
@@ -54,7 +55,7 @@ _CLUSTERS, _ALIKE = 0.02, 0.003
 _UNSURE = 0.5
 #: From the lit light's centroid, in half extents and px, no registration leads further.
 _ASTRAY, _ASTRAY_PX = 0.25, 0.75
-_FLOOR = 0.0015
+_KEPT = threading.local()
 
 
 def register(frames: Frames, bad: NDArray[np.bool_] | None = None) -> tuple[Floats, Floats, Any]:
@@ -73,19 +74,30 @@ def register(frames: Frames, bad: NDArray[np.bool_] | None = None) -> tuple[Floa
         return centres, covariances, doubts
     lengths = _lengths(lights[seen], height, width)
     step = max(1, min(len(seen), int(_CHUNK / np.median(lengths))))
-    lines = np.empty((5, step, int(lengths.max())), dtype=np.float32)
+    length = int(lengths.max()) + 64
+    space = _space((5 * step + 16) * length)
+    lines = space[: 5 * step * length].reshape(5, step, length)
+    work = space[5 * step * length :].reshape(16, length)
     lights = lights[seen]
     n = len(seen)
-    states, slopes = np.zeros((n, 16)), np.zeros((n, 11))
+    states, slopes = np.zeros((n, 18)), np.zeros((n, 11))
     boxes, middles = np.zeros((n, 8), dtype=np.int64), np.empty((n, 2), dtype=np.int64)
     shapes = np.full((n, mirror_shape_kernel.SHAPE), np.nan)
     for begin in range(0, n, step):
         part = slice(begin, begin + step)
-        _chunk(frames, seen[part], lights[part], mask, lines, boxes[part], middles[part], states[part], slopes[part], shapes[part])
+        _chunk(frames, seen[part], lights[part], mask, lines, work, boxes[part], middles[part], states[part], slopes[part], shapes[part])
     global LAST
     LAST = (lights, boxes, states, slopes, shapes)
     centres[seen], covariances[seen], doubts[seen] = _answers(lights, boxes, middles, states, shapes)
     return centres, covariances, doubts
+
+
+def _space(size: int) -> NDArray[np.float32]:
+    """Work space of so many numbers, kept between calls, one a thread: new memory is slow."""
+    space: NDArray[np.float32] | None = getattr(_KEPT, "space", None)
+    if space is None or space.size < size:
+        space = _KEPT.space = np.empty(size, dtype=np.float32)
+    return space[:size]
 
 
 def _lengths(lights: Floats, height: int, width: int) -> NDArray[np.int64]:
@@ -99,7 +111,7 @@ def _lengths(lights: Floats, height: int, width: int) -> NDArray[np.int64]:
 
 
 def _chunk(
-    frames: Frames, which: NDArray[np.int64], lights: Floats, bad: NDArray[np.bool_], lines: Any,
+    frames: Frames, which: NDArray[np.int64], lights: Floats, bad: NDArray[np.bool_], lines: Any, work,
     boxes, middles, states, slopes, shapes
 ) -> None:
     """Centres, covariances and doubts of the frames `which`."""
@@ -109,36 +121,35 @@ def _chunk(
     middles[:] = np.rint(2.0 * lights[:, :2])
     states[:, 2:4] = 2.0 * lights[:, :2] - middles
     todo = np.arange(n)
-    for attempt in range(_CENTRES):
-        mirror_pairs_kernel.pair_up(frames, which, todo, lights, middles, bad, boxes, s, d, keep)
-        inside = boxes[todo, 3] > 0
-        states[todo[~inside], 4] = np.inf
-        todo = todo[inside]
-        mirror_fit_kernel.fit(todo, boxes, True, slopes, s, d, keep, e, slack, states)
-        found = states[todo]
-        again = (np.abs(found[:, 2:4]).max(axis=1) > _FAR) & np.isfinite(found[:, 4])
-        if attempt + 1 == _CENTRES or not again.any():
+    mirror_pairs_kernel.pair_up(frames, which, todo, lights, middles, bad, boxes, s, d, keep, states)
+    far = mirror_fit_kernel.fit(todo, boxes, True, slopes, s, d, keep, e, slack, work, states)
+    for _ in range(_CENTRES - 1):
+        if far == 0:
             break
-        todo = todo[again]
-        moved = np.rint(middles[todo] + np.clip(states[todo, 2:4], -4.0, 4.0)).astype(np.int64)
-        states[todo, 2:4] += middles[todo] - moved
-        middles[todo] = moved
-    todo = np.flatnonzero(np.isfinite(states[:, 4]))
-    used = np.zeros((n, 2))
+        again = np.flatnonzero(np.abs(states[:, 2:4]).max(axis=1) > _FAR)
+        moved = np.rint(np.clip(states[again, 2:4], -4.0, 4.0)).astype(np.int64)
+        states[again, 2:4] -= moved
+        middles[again] += moved
+        states[again, 4] = 0.0
+        mirror_pairs_kernel.pair_up(
+            frames, which, again, lights, middles, bad, boxes, s, d, keep, states
+        )
+        far = mirror_fit_kernel.fit(again, boxes, True, slopes, s, d, keep, e, slack, work, states)
+    left = n
     for turn in range(_TURNS):
         if turn:
-            used[todo] = np.clip(states[todo, 2:4], -1.0, 1.0)
-            mirror_fit_kernel.fit(todo, boxes, False, slopes, s, d, keep, e, slack, states)
-        mirror_outlier_kernel.leave_out(
-            todo, boxes, turn == 0, bad, s, d, keep, e, slack, used, states
+            mirror_fit_kernel.fit(
+                todo[:left], boxes, False, slopes, s, d, keep, e, slack, work, states
+            )
+        left = mirror_outlier_kernel.leave_out(
+            todo[:left], boxes, turn == 0, bad, s, d, keep, e, slack, work, states
         )
         if turn == 0:
-            mirror_ring_kernel.flatten(todo, boxes, lights, s, d, states, slopes)
-        todo = todo[(states[todo, 15] == 0.0) & np.isfinite(states[todo, 4])]
-        if len(todo) == 0:
+            mirror_ring_kernel.flatten(todo[:left], boxes, lights, s, d, work, states, slopes)
+        if left == 0:
             break
-    todo = np.flatnonzero(np.isfinite(states[:, 4]))
-    mirror_shape_kernel.shapes(todo, boxes, s, keep, e, states, shapes)
+    todo = np.arange(n)
+    mirror_shape_kernel.shapes(todo, boxes, s, keep, e, work, states, shapes)
 
 
 def _answers(lights, boxes, middles, states, shapes):
