@@ -20,7 +20,7 @@ _REACH, _LANES = 7, 64
 _ZERO, _HALF, _ONE = np.float32(0.0), np.float32(0.5), np.float32(1.0)
 #: A pair is left out whose difference departs by so many deviations, this share of the slope and
 #: this of the peak: at first, and when the fit is good.
-_BAD, _BAD_SLOPE, _BAD_PEAK = (5.0, 5.0), (0.4, 0.2), (0.1, 0.01)
+_BAD, _BAD_SLOPE, _BAD_PEAK = (5.0, 4.5), (0.4, 0.05), (0.1, 0.003)
 #: Change of d, px, up to which the slopes for the last one stand.
 _SAME = 0.05
 

@@ -17,9 +17,11 @@ from algorithms.contract import Floats
 Line = NDArray[np.float32]
 
 #: What `shapes` writes of a window.
-SHAPE = 7
+SHAPE = 8
 _REACH, _LANES = 7, 64
 _ZERO, _HALF, _ONE = np.float32(0.0), np.float32(0.5), np.float32(1.0)
+#: Pairs that are taken to depart as expected, beside those that are seen.
+_EXPECTED = 10.0
 #: A pixel counts as lit above this fraction of the peak.
 _CUT = np.float32(0.3)
 #: Heights, over the peak, whose outlines are compared, and half of what they are blurred by.
@@ -150,12 +152,35 @@ def _alike(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
+def _scatter(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    mean: Line, keep: Line, e: Line, slack: Line, state: Floats, z: Line, q: Line, lanes: Line
+) -> float:
+    """Mean square of the departures over their variance, by the information of each pair.
+
+    As if some more pairs had been as expected: few pairs tell little.
+    """
+    noise, gain = np.float32(2.0 * state[0] + 1e-12), np.float32(2.0 * state[1])
+    for j in range(e.size):
+        lit = mean[j]
+        lit = lit if lit > _ZERO else _ZERO
+        variance = noise + gain * lit
+        z[j] = np.divide(e[j] * e[j], variance)
+        q[j] = np.divide(keep[j] * slack[j] * slack[j], variance)
+    lanes[:] = _ZERO
+    total, squares = _products(q, keep, lanes), _products(q, q, lanes)
+    number = total * total / max(squares, 1e-30)
+    departing = _products(q, z, lanes) / max(total, 1e-30)
+    return (number * departing + _EXPECTED) / (max(number - 2.0, 0.0) + _EXPECTED)
+
+
+@compiled
 def shapes(  # noqa: PLR0917 - Numba takes no keyword-only ones
     todo: NDArray[np.int64],
     boxes: NDArray[np.int64],
     s: Line,
     keep: Line,
     e: Line,
+    slack: Line,
     space: Line,
     states: Floats,
     out: Floats,
@@ -177,6 +202,7 @@ def shapes(  # noqa: PLR0917 - Numba takes no keyword-only ones
         p = 8 + (_REACH + box[6]) * box[4]
         mean, kept, left = s[k, p : p + n], keep[k, :n], e[k, :n]
         share, light = _alike(mean, kept, left, box[4], own, line[:n], lanes)
+        out[k, 7] = _scatter(mean, kept, left, slack[k, :n], states[k], own[:n], line[:n], lanes)
         out[k, 0] = 0.5 * states[k, 14] / max(light, 1e-30)
         out[k, 1] = share
         _outlines(s[k], box, columns[: 9 * (box[3] + 8)], sums)

@@ -149,14 +149,15 @@ def _chunk(
         if left == 0:
             break
     todo = np.arange(n)
-    mirror_shape_kernel.shapes(todo, boxes, s, keep, e, work, states, shapes)
+    mirror_shape_kernel.shapes(todo, boxes, s, keep, e, slack, work, states, shapes)
 
 
 def _answers(lights, boxes, middles, states, shapes):
     centres = 0.5 * (middles + states[:, 2:4])
     covariances = np.empty((len(centres), 2, 2))
-    covariances[:, 0, 0], covariances[:, 1, 1] = states[:, 4], states[:, 5]
-    covariances[:, 0, 1] = covariances[:, 1, 0] = states[:, 6]
+    scatter = shapes[:, 7]
+    covariances[:, 0, 0], covariances[:, 1, 1] = states[:, 4] * scatter, states[:, 5] * scatter
+    covariances[:, 0, 1] = covariances[:, 1, 0] = states[:, 6] * scatter
     doubts = np.zeros(len(centres), dtype=np.int64)
     lost = ~np.isfinite(states[:, 4])
     doubts[lost] |= int(Doubt.NO_SPOT)
