@@ -92,10 +92,13 @@ class MirrorRegistration(Extractor):
         """Centres (N, 2) in frames (N, H, W); ValueError on wrong input."""
         from algorithms.extractors.frames.registration import register  # noqa: PLC0415 - Numba
 
-        return register(as_frames(observations))[0]
+        return register(as_frames(observations)).features
 
     def measure(self, observations: ArrayLike, bad: ArrayLike | None = None) -> Measurement:
-        """As `extract`, with covariance and doubts; bad pixels are left out."""
-        from algorithms.extractors.frames.registration import register
+        """Centres, covariances and doubts of frames (N, H, W) or of one; bad pixels are left out.
 
-        return Measurement(*register(as_frames(observations)))
+        See `algorithms.extractors.frames.registration.register`.
+        """
+        from algorithms.extractors.frames.registration import register  # noqa: PLC0415 - Numba
+
+        return register(observations, bad)

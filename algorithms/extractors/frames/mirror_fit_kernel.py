@@ -39,8 +39,8 @@ _AWAY = 0.75
 _LEVELS = 5
 #: Share of noise in the weighting from which a smoother one is tried.
 _NOISY = 0.05
-#: What the slopes miss, over the peak and over the slope: pixels are not trusted to better.
-_FLOOR, _FLOOR_SLOPE = 0.0015, 0.0
+#: What the slopes miss, over the peak: pixels are not trusted to better than that.
+_FLOOR = 0.0015
 #: Where the slope, over the peak, is above one over the root of this, little of noise is told.
 _STEEP = np.float32(100.0)
 #: A pixel counts as lit above this fraction of the peak.

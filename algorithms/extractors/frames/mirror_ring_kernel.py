@@ -22,6 +22,8 @@ _ZERO, _HALF, _ONE = np.float32(0.0), np.float32(0.5), np.float32(1.0)
 _PRIOR = 0.01
 #: Standard deviations of a bend of the background from which it is one: extrapolating costs noise.
 _BENT = 3.0
+#: Share of a bend by which it may be another one inside the ring.
+_UNKNOWN = 0.35
 #: Pairs that depart by so many deviations count no more than that.
 _FAR = 4.0
 _TURNS = 6
@@ -169,11 +171,10 @@ def _solve(  # noqa: PLR0917 - Numba takes no keyword-only ones
         determinant = own * bent - mixed * mixed
         if bends:
             slope[5 + axis], slope[7 + axis] = bent / determinant, own / determinant
-            slope[9 + axis] = -mixed / determinant
+            slope[5 + axis] += (_UNKNOWN * slope[2 + axis] * mixed / own) ** 2
         else:
             slope[axis] += slope[2 + axis] * mixed / own
             slope[5 + axis], slope[2 + axis], slope[7 + axis] = 1.0 / own, 0.0, 0.0
-            slope[9 + axis] = 0.0
 
 
 @compiled
@@ -207,7 +208,7 @@ def flatten(  # noqa: PLR0917 - Numba takes no keyword-only ones
     states: Floats,
     slopes: Floats,
 ) -> None:
-    """Fit the background around the windows `todo`, take it off, and write it to `slopes` (N, 11).
+    """Fit the background around the windows `todo`, take it off, and write it to `slopes` (N, 9).
 
     Columns: slope along x and y, bend along both, the square of the length it is told at; the
     variances of slope and bend of each axis, and their covariance.

@@ -30,8 +30,9 @@ _LOOSE = 1.25
 _MOST = 256
 #: Sums of a region: see `_add_run`.
 _SUMS = 14
-#: What `find_lights` writes of a frame.
-FOUND = 8
+#: What `find_lights` writes of a frame; why there is no light, in the last column.
+FOUND = 9
+DARK, SEVERAL, EDGE = 1.0, 2.0, 3.0
 
 
 @compiled
@@ -231,10 +232,11 @@ def _compact(s: Floats) -> bool:
 
 @compiled
 def find_lights(frames: NDArray[Any], unusable: NDArray[np.bool_], out: Floats) -> None:
-    """Write to `out` (N, 8) where the one light of a frame is; NaN rows where there is not one.
+    """Write to `out` (N, 9) where the one light of a frame is; NaN rows where there is not one.
 
     Columns: x, y of its blocks' light above the cut, half its extent along x and y, background,
-    variance of a dark pixel, light of the brightest block, and mean light of the lit ones over it.
+    variance of a dark pixel, light of the brightest block, and mean light of the lit ones over it;
+    last, zero, or why there is none: `DARK`, `SEVERAL` or `EDGE`.
     """
     count, height, width = frames.shape
     least = np.empty((height - 1, width - 1), dtype=frames.dtype)
@@ -245,6 +247,7 @@ def find_lights(frames: NDArray[Any], unusable: NDArray[np.bool_], out: Floats) 
     sums = np.empty((_MOST, _SUMS))
     for k in range(count):
         out[k] = np.nan
+        out[k, 8] = DARK
         if unusable[k]:
             continue
         frame = frames[k]
@@ -257,6 +260,8 @@ def find_lights(frames: NDArray[Any], unusable: NDArray[np.bool_], out: Floats) 
         cut = base + max(_CUT * peak, _LIT * sigma)
         labels = _regions(least, maxima, base, cut, runs, parents, sums)
         best, total = -1, 0.0
+        if labels < 0:
+            continue
         for label in range(labels):
             if parents[label] == label:
                 total += sums[label, 0]
@@ -267,7 +272,10 @@ def find_lights(frames: NDArray[Any], unusable: NDArray[np.bool_], out: Floats) 
         s = sums[best]
         inside = s[10] > 0 and s[12] > 0 and s[11] < width - 2 and s[13] < height - 2
         alone = total - s[0] <= _RIVAL * s[0]
-        if not (inside and alone and s[4] >= 2 and s[1] > 0.0 and _compact(s)):
+        if not (s[4] >= 2 and s[1] > 0.0):
+            continue
+        if not inside or not alone or not _compact(s):
+            out[k, 8] = EDGE if not inside else SEVERAL
             continue
         # A block's middle is half a pixel beyond its first pixel.
         x, y = s[2] / s[1] + 0.5, s[3] / s[1] + 0.5
@@ -279,3 +287,4 @@ def find_lights(frames: NDArray[Any], unusable: NDArray[np.bool_], out: Floats) 
         out[k, 5] = noise
         out[k, 6] = peak
         out[k, 7] = s[0] / (s[4] * peak)
+        out[k, 8] = 0.0

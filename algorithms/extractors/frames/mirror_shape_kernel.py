@@ -17,11 +17,13 @@ from algorithms.contract import Floats
 Line = NDArray[np.float32]
 
 #: What `shapes` writes of a window.
-SHAPE = 8
+SHAPE = 10
 _REACH, _LANES = 7, 64
 _ZERO, _HALF, _ONE = np.float32(0.0), np.float32(0.5), np.float32(1.0)
+#: What the slopes miss, over the peak, as the fit has it.
+_FLOOR = 0.0015
 #: Pairs that are taken to depart as expected, beside those that are seen.
-_EXPECTED = 10.0
+_EXPECTED = 5.0
 #: A pixel counts as lit above this fraction of the peak.
 _CUT = np.float32(0.3)
 #: Heights, over the peak, whose outlines are compared, and half of what they are blurred by.
@@ -159,7 +161,7 @@ def _scatter(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
     As if some more pairs had been as expected: few pairs tell little.
     """
-    noise, gain = np.float32(2.0 * state[0] + 1e-12), np.float32(2.0 * state[1])
+    noise, gain = np.float32(2.0 * (state[0] + _FLOOR * _FLOOR)), np.float32(2.0 * state[1])
     for j in range(e.size):
         lit = mean[j]
         lit = lit if lit > _ZERO else _ZERO
@@ -208,6 +210,7 @@ def shapes(  # noqa: PLR0917 - Numba takes no keyword-only ones
         _outlines(s[k], box, columns[: 9 * (box[3] + 8)], sums)
         low, high, sharp = _tensor(sums[0]), _tensor(sums[1]), _tensor(sums[2])
         out[k, 2], out[k, 3] = _axes(low, high)
+        out[k, 8], out[k, 9] = _axes(low, sharp)
         half_trace, det = 0.5 * (low[0] + low[1]), low[0] * low[1] - low[2] * low[2]
         out[k, 4] = half_trace - math.sqrt(max(half_trace * half_trace - det, 0.0))
         area = 2.0 * sums[2, 0]

@@ -25,7 +25,7 @@ The stages share these arrays, a row a frame. Lengths are in pixels, light is ov
 from __future__ import annotations
 
 import threading
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -41,55 +41,125 @@ from algorithms.extractors.frames import (
 )
 from algorithms.inputs import Frames, as_frames
 from algorithms.kernels import moments
-from algorithms.measurement import Doubt, as_bad, without_bad
+from algorithms.measurement import Doubt, Measurement, as_bad, as_batch, without_bad
 
-#: Turns of fit and leaving out; middles that are tried.
-_TURNS, _CENTRES = 6, 3
-#: d, px, from which another middle is nearer.
-_FAR = 0.75
-#: Numbers that the stages share are at most so many a line of all frames of a chunk.
+#: Turns of fit and leaving out; middles that are tried; d, px, from which another one is nearer.
+_TURNS, _CENTRES, _FAR = 6, 3, 0.75
+#: Numbers in a line of all frames that are worked on at once: with five lines, 1.3 MB.
 _CHUNK = 2**16
-#: Limits of light in departing clusters, and of what neighbours miss alike: see `_doubts`.
-_CLUSTERS, _ALIKE = 0.02, 0.003
+#: Light that departs in clusters of pairs, over the spot's, and the square of what neighbours miss
+#: alike, over that of the light: above either, the spot is not symmetric.
+_CLUSTERS, _ALIKE = 0.02, 0.0004
+#: Mean square of the departures, over what is expected, from which there is a ghost, and from which
+#: the spot is not symmetric; more, over the high outline's area, where few pixels tell.
+_SCATTER_GHOST, _SCATTER, _SCATTER_FEW = 2.5, 3.5, 150.0
+#: The outlines of one spot are alike at all heights: largest ratio of the squared ratios of their
+#: extents, more by 1 over the area and by the noise; px by which the extents may differ.
+_UNLIKE, _UNLIKE_FEW, _UNLIKE_NOISE, _UNLIKE_PX, _UNLIKE_NOISE_PX = 1.26, 5.0, 1.5, 0.42, 3.0
+#: Area of an ellipse with an outline's second moments over its own: 1.05 for a square.
+_WAIST, _WAIST_FEW, _WAIST_NOISE = 1.065, 2.0, 0.8
+#: Pixels of the sharp outline that tell its shape.
+_SHARP = 12.0
 #: Standard deviation of the centre, px, over which it is not known.
 _UNSURE = 0.5
 #: From the lit light's centroid, in half extents and px, no registration leads further.
 _ASTRAY, _ASTRAY_PX = 0.25, 0.75
+#: Pixels at the largest number of a converter of some bits that are no chance.
+_SATURATED = 3
 _KEPT = threading.local()
 
 
-def register(frames: Frames, bad: NDArray[np.bool_] | None = None) -> tuple[Floats, Floats, Any]:
+def register(observations: ArrayLike, bad: ArrayLike | None = None) -> Measurement:
+    """Register each frame's or window's spot against its own mirror image.
+
+    Parameters
+    ----------
+    observations : array_like, shape (N, H, W) or (H, W)
+        Frames, or windows of frames, that hold one spot each and some background around it.
+    bad : array_like of bool, shape (H, W), optional
+        Pixels to leave out, the same in all frames.
+
+    Returns
+    -------
+    Measurement
+        Centres (N, 2) ``(x, y)`` px from the first pixel's middle, their covariance (N, 2, 2) px^2
+        and doubts (N,): `NO_SPOT`, `SEVERAL_SPOTS`, `CUT` and `NOT_SYMMETRIC` say why a row is
+        NaN; `SATURATED` and `GHOST` stand beside an answer too.
+
+    Raises
+    ------
+    ValueError
+        If the frames are not three-dimensional, empty, masked or not real numbers, or the mask is
+        not a boolean one of a frame's shape that leaves pixels.
+
+    Examples
+    --------
+    >>> y, x = np.mgrid[:40, :40]
+    >>> disc = 900 / (1 + np.exp(2 * (np.hypot(x - 21.3, y - 18.8) - 7)))
+    >>> windows = np.random.default_rng(1).normal(50 + disc, 5.0)
+    >>> found = register(windows)
+    >>> found.features.round(1), found.deviations.round(3), found.doubts
+    (array([[21.3, 18.8]]), array([[0.004, 0.004]]), array([0]))
+    """
+    batch = as_batch(observations, "frames")
+    frames = as_frames(batch)
+    mask = np.zeros((0, 0), dtype=np.bool_)
+    if bad is not None:
+        mask = as_bad(bad, frames.shape[1:], "mirror registration")
+        frames = as_frames(without_bad(frames, mask, "mirror registration"))
     count, height, width = frames.shape
-    centres = np.full((count, 2), np.nan)
-    covariances = np.full((count, 2, 2), np.nan)
-    doubts = np.zeros(count, dtype=np.int64)
-    lights = np.full((count, mirror_search_kernel.FOUND), np.nan)
-    if min(height, width) >= 5:
-        unusable = np.empty(count, dtype=np.bool_)
-        moments.unusable(frames, frames.dtype.kind == "f", unusable)
-        mirror_search_kernel.find_lights(frames, unusable, lights)
-    mask = np.zeros((0, 0), dtype=np.bool_) if bad is None else bad
-    seen = np.flatnonzero(~np.isnan(lights[:, 0]))
-    if len(seen) == 0:
-        return centres, covariances, doubts
-    lengths = _lengths(lights[seen], height, width)
-    step = max(1, min(len(seen), int(_CHUNK / np.median(lengths))))
+    found = Measurement(
+        np.full((count, 2), np.nan),
+        np.full((count, 2, 2), np.nan),
+        np.full(count, int(Doubt.NO_SPOT), dtype=np.int64),
+    )
+    if min(height, width) < 5:
+        return found
+    lights = np.empty((count, mirror_search_kernel.FOUND))
+    unusable = np.empty(count, dtype=np.bool_)
+    moments.unusable(frames, frames.dtype.kind == "f", unusable)
+    mirror_search_kernel.find_lights(frames, unusable, lights)
+    why = lights[:, 8]
+    found.doubts[why == mirror_search_kernel.SEVERAL] = int(Doubt.SEVERAL_SPOTS)
+    found.doubts[why == mirror_search_kernel.EDGE] = int(Doubt.CUT)
+    seen = np.flatnonzero(why == 0.0)
+    if len(seen):
+        _register_seen(frames, seen, lights[seen], mask, found)
+    return found
+
+
+def _register_seen(
+    frames: Frames,
+    seen: NDArray[np.int64],
+    lights: Floats,
+    mask: NDArray[np.bool_],
+    found: Measurement,
+) -> None:
+    """Write centres, covariances and doubts of the frames `seen`, a chunk after the other."""
+    n = len(seen)
+    lengths = _lengths(lights, *frames.shape[1:])
+    step = max(1, min(n, int(_CHUNK / np.median(lengths))))
     length = int(lengths.max()) + 64
     space = _space((5 * step + 16) * length)
     lines = space[: 5 * step * length].reshape(5, step, length)
     work = space[5 * step * length :].reshape(16, length)
-    lights = lights[seen]
-    n = len(seen)
-    states, slopes = np.zeros((n, 18)), np.zeros((n, 11))
+    states, slopes = np.zeros((n, 18)), np.zeros((n, 9))
     boxes, middles = np.zeros((n, 8), dtype=np.int64), np.empty((n, 2), dtype=np.int64)
     shapes = np.full((n, mirror_shape_kernel.SHAPE), np.nan)
     for begin in range(0, n, step):
         part = slice(begin, begin + step)
-        _chunk(frames, seen[part], lights[part], mask, lines, work, boxes[part], middles[part], states[part], slopes[part], shapes[part])
-    global LAST
-    LAST = (lights, boxes, states, slopes, shapes)
-    centres[seen], covariances[seen], doubts[seen] = _answers(lights, boxes, middles, states, shapes)
-    return centres, covariances, doubts
+        state = _State(boxes[part], middles[part], states[part], slopes[part], shapes[part])
+        _chunk(frames, seen[part], lights[part], mask, lines, work, state)
+    centres = 0.5 * (middles + states[:, 2:4])
+    doubts = _doubts(lights, boxes, states, shapes, centres)
+    doubts[_saturated(frames, seen, lights)] |= int(Doubt.SATURATED)
+    refused = (doubts & ~int(Doubt.SATURATED | Doubt.GHOST)) != 0
+    scatter = shapes[:, 7]
+    covariance = states[:, [4, 6, 6, 5]] * scatter[:, None]
+    centres[refused], covariance[refused] = np.nan, np.nan
+    found.features[seen] = centres
+    found.covariance[seen] = covariance.reshape(n, 2, 2)
+    found.doubts[seen] = doubts
 
 
 def _space(size: int) -> NDArray[np.float32]:
@@ -110,13 +180,31 @@ def _lengths(lights: Floats, height: int, width: int) -> NDArray[np.int64]:
     return (across * along + 160.0).astype(np.int64)
 
 
+@dataclass(frozen=True)
+class _State:
+    """What the stages know of the frames of a chunk."""
+
+    boxes: NDArray[np.int64]
+    middles: NDArray[np.int64]
+    states: Floats
+    slopes: Floats
+    shapes: Floats
+
+
 def _chunk(
-    frames: Frames, which: NDArray[np.int64], lights: Floats, bad: NDArray[np.bool_], lines: Any, work,
-    boxes, middles, states, slopes, shapes
+    frames: Frames,
+    which: NDArray[np.int64],
+    lights: Floats,
+    bad: NDArray[np.bool_],
+    lines: NDArray[np.float32],
+    work: NDArray[np.float32],
+    state: _State,
 ) -> None:
-    """Centres, covariances and doubts of the frames `which`."""
+    """Run the stages on the frames `which`."""
     n = len(which)
     s, d, keep, e, slack = lines
+    boxes, middles, states = state.boxes, state.middles, state.states
+    slopes, shapes = state.slopes, state.shapes
     states[:, 0] = lights[:, 5] / lights[:, 6] ** 2
     middles[:] = np.rint(2.0 * lights[:, :2])
     states[:, 2:4] = 2.0 * lights[:, :2] - middles
@@ -152,23 +240,43 @@ def _chunk(
     mirror_shape_kernel.shapes(todo, boxes, s, keep, e, slack, work, states, shapes)
 
 
-def _answers(lights, boxes, middles, states, shapes):
-    centres = 0.5 * (middles + states[:, 2:4])
-    covariances = np.empty((len(centres), 2, 2))
-    scatter = shapes[:, 7]
-    covariances[:, 0, 0], covariances[:, 1, 1] = states[:, 4] * scatter, states[:, 5] * scatter
-    covariances[:, 0, 1] = covariances[:, 1, 0] = states[:, 6] * scatter
-    doubts = np.zeros(len(centres), dtype=np.int64)
+def _doubts(
+    lights: Floats, boxes: NDArray[np.int64], states: Floats, shapes: Floats, centres: Floats
+) -> NDArray[np.int64]:
+    """Say what speaks against each answer."""
+    doubts = np.zeros(len(lights), dtype=np.int64)
     lost = ~np.isfinite(states[:, 4])
-    doubts[lost] |= int(Doubt.NO_SPOT)
-    doubts[boxes[:, 3] == 0] |= int(Doubt.CUT)
+    doubts[lost] = int(Doubt.NO_SPOT)
+    doubts[boxes[:, 3] == 0] = int(Doubt.CUT)
+    clusters, alike, wide, narrow, minor, area, waist, scatter = shapes.T[:8]
+    sharp_wide, sharp_narrow = shapes.T[8:]
+    noise = np.sqrt(states[:, 0])
     far = np.abs(centres - lights[:, :2]) > _ASTRAY * lights[:, 2:4] + _ASTRAY_PX
-    with np.errstate(invalid="ignore"):
-        crooked = far.any(axis=1) | (shapes[:, 0] > _CLUSTERS) | (shapes[:, 1] > _ALIKE)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        few = _SCATTER_FEW / area
+        crooked = far.any(axis=1) | (clusters > _CLUSTERS) | (alike > _ALIKE)
+        crooked |= scatter > _SCATTER + few
+        several = waist > _WAIST + _WAIST_FEW / area + _WAIST_NOISE * noise
+        for one, other, tells in (
+            (wide, narrow, area > 0.0),
+            (sharp_wide, sharp_narrow, area >= _SHARP),
+        ):
+            unlike = one > (_UNLIKE + _UNLIKE_FEW / area + _UNLIKE_NOISE * noise) * other
+            apart = 2.0 * np.sqrt(minor) * (np.sqrt(one) - np.sqrt(other))
+            several |= tells & unlike & (apart > _UNLIKE_PX + _UNLIKE_NOISE_PX * noise)
         doubts[crooked & ~lost] |= int(Doubt.NOT_SYMMETRIC)
-        unsure = np.maximum(states[:, 4], states[:, 5]) > _UNSURE**2
+        doubts[several & ~lost] |= int(Doubt.SEVERAL_SPOTS)
+        doubts[(scatter > _SCATTER_GHOST + few) & ~lost] |= int(Doubt.GHOST)
+        unsure = np.maximum(states[:, 4], states[:, 5]) * scatter > _UNSURE**2
         doubts[unsure & ~lost] |= int(Doubt.NO_SPOT)
-    refused = doubts != 0
-    centres[refused] = np.nan
-    covariances[refused] = np.nan
-    return centres, covariances, doubts
+    return doubts
+
+
+def _saturated(frames: Frames, seen: NDArray[np.int64], lights: Floats) -> NDArray[np.bool_]:
+    """Whether neighbouring pixels of the spot are at ``2**bits - 1``, the most of a converter."""
+    found = np.zeros(len(seen), dtype=np.bool_)
+    brightest = np.rint(lights[:, 4] + lights[:, 6])
+    most = np.isin(brightest, 2.0 ** np.arange(8, 17) - 1.0)
+    for k in np.flatnonzero(most & (np.abs(brightest - lights[:, 4] - lights[:, 6]) < 1e-6)):
+        found[k] = np.count_nonzero(frames[seen[k]] == brightest[k]) >= _SATURATED
+    return found
