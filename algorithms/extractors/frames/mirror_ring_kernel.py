@@ -23,7 +23,7 @@ _PRIOR = 0.01
 #: Standard deviations of a bend of the background from which it is one: extrapolating costs noise.
 _BENT = 3.0
 #: Share of a bend by which it may be another one inside the ring.
-_UNKNOWN = 0.35
+_UNKNOWN = 0.45
 #: Pairs that depart by so many deviations count no more than that.
 _FAR = 4.0
 _TURNS = 6

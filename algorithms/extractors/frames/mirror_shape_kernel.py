@@ -17,7 +17,7 @@ from algorithms.contract import Floats
 Line = NDArray[np.float32]
 
 #: What `shapes` writes of a window.
-SHAPE = 10
+SHAPE = 11
 _REACH, _LANES = 7, 64
 _ZERO, _HALF, _ONE = np.float32(0.0), np.float32(0.5), np.float32(1.0)
 #: What the slopes miss, over the peak, as the fit has it.
@@ -187,11 +187,13 @@ def shapes(  # noqa: PLR0917 - Numba takes no keyword-only ones
     states: Floats,
     out: Floats,
 ) -> None:
-    """Write the shape of the windows `todo` to `out` (N, 7).
+    """Write the shape of the windows `todo` to `out` (N, 11).
 
     Columns: light of departing clusters over all; what neighbours miss alike; larger and smaller
     ratio of the squared extents of the high outline to the low one's; smaller squared extent of
-    the low outline; area of the high outline, and that of an ellipse with its moments over it.
+    the low outline; area of the high outline, that of an ellipse with its moments over it; mean
+    square of the departures over what is expected; the two ratios for the sharp high outline; area
+    of the low outline.
     """
     sums = np.empty((3, 4))
     own, line, lanes = space[0], space[1], space[2, :_LANES]
@@ -213,6 +215,7 @@ def shapes(  # noqa: PLR0917 - Numba takes no keyword-only ones
         out[k, 8], out[k, 9] = _axes(low, sharp)
         half_trace, det = 0.5 * (low[0] + low[1]), low[0] * low[1] - low[2] * low[2]
         out[k, 4] = half_trace - math.sqrt(max(half_trace * half_trace - det, 0.0))
+        out[k, 10] = 2.0 * sums[0, 0]
         area = 2.0 * sums[2, 0]
         out[k, 5] = area
         det = max(sharp[0] * sharp[1] - sharp[2] * sharp[2], 0.0)

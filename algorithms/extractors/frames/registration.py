@@ -58,14 +58,13 @@ _SCATTER_GHOST, _SCATTER, _SCATTER_FEW = 2.5, 3.5, 150.0
 _UNLIKE, _UNLIKE_FEW, _UNLIKE_NOISE, _UNLIKE_PX, _UNLIKE_NOISE_PX = 1.26, 5.0, 1.5, 0.42, 3.0
 #: Area of an ellipse with an outline's second moments over its own: 1.05 for a square.
 _WAIST, _WAIST_FEW, _WAIST_NOISE = 1.065, 2.0, 0.8
-#: Pixels of the sharp outline that tell its shape.
-_SHARP = 12.0
+#: Pixels of a sharp high outline that tell its shape; over the low one's, of what is but a top
+#: where two lights overlap: 0.24 for a Gaussian.
+_SHARP, _TOP = 12.0, 0.15
 #: Standard deviation of the centre, px, over which it is not known.
 _UNSURE = 0.5
 #: From the lit light's centroid, in half extents and px, no registration leads further.
 _ASTRAY, _ASTRAY_PX = 0.25, 0.75
-#: Pixels at the largest number of a converter of some bits that are no chance.
-_SATURATED = 3
 _KEPT = threading.local()
 
 
@@ -249,7 +248,7 @@ def _doubts(
     doubts[lost] = int(Doubt.NO_SPOT)
     doubts[boxes[:, 3] == 0] = int(Doubt.CUT)
     clusters, alike, wide, narrow, minor, area, waist, scatter = shapes.T[:8]
-    sharp_wide, sharp_narrow = shapes.T[8:]
+    sharp_wide, sharp_narrow, base = shapes.T[8:]
     noise = np.sqrt(states[:, 0])
     far = np.abs(centres - lights[:, :2]) > _ASTRAY * lights[:, 2:4] + _ASTRAY_PX
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -259,7 +258,7 @@ def _doubts(
         several = waist > _WAIST + _WAIST_FEW / area + _WAIST_NOISE * noise
         for one, other, tells in (
             (wide, narrow, area > 0.0),
-            (sharp_wide, sharp_narrow, area >= _SHARP),
+            (sharp_wide, sharp_narrow, (area >= _SHARP) & (area < _TOP * base)),
         ):
             unlike = one > (_UNLIKE + _UNLIKE_FEW / area + _UNLIKE_NOISE * noise) * other
             apart = 2.0 * np.sqrt(minor) * (np.sqrt(one) - np.sqrt(other))
@@ -278,5 +277,6 @@ def _saturated(frames: Frames, seen: NDArray[np.int64], lights: Floats) -> NDArr
     brightest = np.rint(lights[:, 4] + lights[:, 6])
     most = np.isin(brightest, 2.0 ** np.arange(8, 17) - 1.0)
     for k in np.flatnonzero(most & (np.abs(brightest - lights[:, 4] - lights[:, 6]) < 1e-6)):
-        found[k] = np.count_nonzero(frames[seen[k]] == brightest[k]) >= _SATURATED
+        largest = frames[seen[k]].max()
+        found[k] = largest == brightest[k]
     return found
