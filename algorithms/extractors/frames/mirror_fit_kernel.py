@@ -396,7 +396,5 @@ def fit(  # noqa: PLR0914, PLR0917 - the method's steps in order
         variance, light = _noise(mean, kept, steep, left, work[8, :n], work[9, :n], lanes[:_LANES])
         state[12] = max(variance - state[0], 0.0) / light
         if not first:
-            _background(
-                box, slopes[k], h_x, h_y, w, work[9, :n], work[10, :n], lanes, sums, state
-            )
+            _background(box, slopes[k], h_x, h_y, w, work[9, :n], work[10, :n], lanes, sums, state)
     return away

@@ -16,8 +16,6 @@ from algorithms.contract import Floats
 
 Line = NDArray[np.float32]
 
-#: What `shapes` writes of a window.
-SHAPE = 11
 _REACH, _LANES = 7, 64
 _ZERO, _HALF, _ONE = np.float32(0.0), np.float32(0.5), np.float32(1.0)
 #: What the slopes miss, over the peak, as the fit has it.
@@ -88,7 +86,11 @@ def _outlines(s: Line, box: Any, columns: Line, sums: Floats) -> None:
             c_yy[j] += share_yy * t
     sums[:] = 0.0
     for q in range(3):
-        number, ys, yys = columns[3 * q * n :], columns[(3 * q + 1) * n :], columns[3 * q * n + 2 * n :]
+        number, ys, yys = (
+            columns[3 * q * n :],
+            columns[(3 * q + 1) * n :],
+            columns[3 * q * n + 2 * n :],
+        )
         for j in range(width):
             x = j - 0.5 * (width - 1)
             sums[q, 0] += number[j]
@@ -105,9 +107,7 @@ def _tensor(sums: Floats) -> tuple[float, float, float]:
 
 
 @compiled
-def _axes(
-    low: tuple[float, float, float], high: tuple[float, float, float]
-) -> tuple[float, float]:
+def _axes(low: tuple[float, float, float], high: tuple[float, float, float]) -> tuple[float, float]:
     """Squared extents of the high outline over the low one's, along two conjugate directions."""
     a, b, c = low
     d, e, f = high

@@ -31,16 +31,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from algorithms.contract import Floats
-from algorithms.extractors.frames import (
-    mirror_fit_kernel,
-    mirror_outlier_kernel,
-    mirror_pairs_kernel,
-    mirror_ring_kernel,
-    mirror_search_kernel,
-    mirror_shape_kernel,
-)
 from algorithms.inputs import Frames, as_frames
-from algorithms.kernels import moments
 from algorithms.measurement import Doubt, Measurement, as_bad, as_batch, without_bad
 
 #: Turns of fit and leaving out; middles that are tried; d, px, from which another one is nearer.
@@ -65,6 +56,8 @@ _SHARP, _TOP = 12.0, 0.15
 _UNSURE = 0.5
 #: From the lit light's centroid, in half extents and px, no registration leads further.
 _ASTRAY, _ASTRAY_PX = 0.25, 0.75
+#: Columns that `mirror_shape_kernel.shapes` writes.
+_SHAPE = 11
 _KEPT = threading.local()
 
 
@@ -100,6 +93,9 @@ def register(observations: ArrayLike, bad: ArrayLike | None = None) -> Measureme
     >>> found.features.round(1), found.deviations.round(3), found.doubts
     (array([[21.3, 18.8]]), array([[0.004, 0.004]]), array([0]))
     """
+    from algorithms.extractors.frames import mirror_search_kernel as search  # noqa: PLC0415 - Numba
+    from algorithms.kernels import moments  # noqa: PLC0415 - Numba, at first use
+
     batch = as_batch(observations, "frames")
     frames = as_frames(batch)
     mask = np.zeros((0, 0), dtype=np.bool_)
@@ -114,13 +110,13 @@ def register(observations: ArrayLike, bad: ArrayLike | None = None) -> Measureme
     )
     if min(height, width) < 5:
         return found
-    lights = np.empty((count, mirror_search_kernel.FOUND))
+    lights = np.empty((count, search.FOUND))
     unusable = np.empty(count, dtype=np.bool_)
     moments.unusable(frames, frames.dtype.kind == "f", unusable)
-    mirror_search_kernel.find_lights(frames, unusable, lights)
+    search.find_lights(frames, unusable, lights)
     why = lights[:, 8]
-    found.doubts[why == mirror_search_kernel.SEVERAL] = int(Doubt.SEVERAL_SPOTS)
-    found.doubts[why == mirror_search_kernel.EDGE] = int(Doubt.CUT)
+    found.doubts[why == search.SEVERAL] = int(Doubt.SEVERAL_SPOTS)
+    found.doubts[why == search.EDGE] = int(Doubt.CUT)
     seen = np.flatnonzero(why == 0.0)
     if len(seen):
         _register_seen(frames, seen, lights[seen], mask, found)
@@ -144,7 +140,7 @@ def _register_seen(
     work = space[5 * step * length :].reshape(16, length)
     states, slopes = np.zeros((n, 18)), np.zeros((n, 9))
     boxes, middles = np.zeros((n, 8), dtype=np.int64), np.empty((n, 2), dtype=np.int64)
-    shapes = np.full((n, mirror_shape_kernel.SHAPE), np.nan)
+    shapes = np.full((n, _SHAPE), np.nan)
     for begin in range(0, n, step):
         part = slice(begin, begin + step)
         state = _State(boxes[part], middles[part], states[part], slopes[part], shapes[part])
@@ -200,6 +196,14 @@ def _chunk(
     state: _State,
 ) -> None:
     """Run the stages on the frames `which`."""
+    from algorithms.extractors.frames import (  # noqa: PLC0415 - Numba, at first use
+        mirror_fit_kernel,
+        mirror_outlier_kernel,
+        mirror_pairs_kernel,
+        mirror_ring_kernel,
+        mirror_shape_kernel,
+    )
+
     n = len(which)
     s, d, keep, e, slack = lines
     boxes, middles, states = state.boxes, state.middles, state.states
@@ -208,7 +212,9 @@ def _chunk(
     middles[:] = np.rint(2.0 * lights[:, :2])
     states[:, 2:4] = 2.0 * lights[:, :2] - middles
     todo = np.arange(n)
-    mirror_pairs_kernel.pair_up(frames, which, todo, lights, middles, bad, boxes, s, d, keep, states)
+    mirror_pairs_kernel.pair_up(
+        frames, which, todo, lights, middles, bad, boxes, s, d, keep, states
+    )
     far = mirror_fit_kernel.fit(todo, boxes, True, slopes, s, d, keep, e, slack, work, states)
     for _ in range(_CENTRES - 1):
         if far == 0:
