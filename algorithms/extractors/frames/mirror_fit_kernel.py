@@ -85,8 +85,19 @@ def _fold(lanes: Line) -> float:
 
 
 @compiled
+def _total(a: Line, lanes: Line) -> float:
+    """Sum of what is positive; all lines are a multiple of the lanes long."""
+    lanes[:] = _ZERO
+    for k in range(0, a.size, _LANES):
+        u = a[k : k + _LANES]
+        for j in range(_LANES):
+            lanes[j] += max(_ZERO, u[j])
+    return _fold(lanes)
+
+
+@compiled
 def _product(a: Line, b: Line, lanes: Line) -> float:
-    """Sum of products; all lines are a multiple of the lanes long."""
+    """Sum of products."""
     lanes[:] = _ZERO
     for k in range(0, a.size, _LANES):
         u, v = a[k : k + _LANES], b[k : k + _LANES]
@@ -96,7 +107,9 @@ def _product(a: Line, b: Line, lanes: Line) -> float:
 
 
 @compiled
-def _weighting(s: Line, p: int, stride: int, line: Line, h_x: Line, h_y: Line) -> None:
+def _weighting(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    s: Line, p: int, stride: int, line: Line, h_x: Line, h_y: Line
+) -> None:
     """Write the slopes of the mean, sharp but with little noise; the core begins at `p` of `s`."""
     n = h_x.size
     a, b, c = s[p - 2 - stride :], s[p - 2 :], s[p - 2 + stride :]
@@ -207,8 +220,8 @@ def _weights(mean: Line, keep: Line, noise: float, gain: float, w: Line) -> None
     least, more = np.float32(noise + _FLOOR * _FLOOR), np.float32(gain)
     for q in range(w.size):
         lit, kept = mean[q], keep[q]
-        lit = lit if lit > _ZERO else _ZERO
-        kept = kept if kept > _ZERO else _ZERO
+        lit = max(_ZERO, lit)
+        kept = max(_ZERO, kept)
         # Numba's own division would look for zeros, one by one.
         w[q] = np.divide(kept, least + more * lit)
 
@@ -249,7 +262,7 @@ def _noise(  # noqa: PLR0917 - Numba takes no keyword-only ones
     for q in range(n):
         lit = _ONE if mean[q] > _CUT else _ZERO
         kept = keep[q]
-        lit *= kept if kept > _ZERO else _ZERO
+        lit *= max(_ZERO, kept)
         flat[q] = np.divide(lit, _ONE + _STEEP * slack[q] * slack[q])
     flat[n - 1] = _ZERO
     for q in range(n - 1):
@@ -257,13 +270,7 @@ def _noise(  # noqa: PLR0917 - Numba takes no keyword-only ones
     for q in range(n - 1):
         flat[q] *= flat[q + 1]
     apart[n - 1] = _ZERO
-    number = 0.0
-    lanes[:] = _ZERO
-    for k in range(0, n, _LANES):
-        part = flat[k : k + _LANES]
-        for j in range(_LANES):
-            lanes[j] += part[j]
-    number = max(_fold(lanes), 1e-30)
+    number = max(_total(flat, lanes), 1e-30)
     light = max(_product(flat, mean, lanes) / number, 1e-30)
     # Of a normal variable, the mean size is sqrt(2 / pi) of the standard deviation.
     variance = 0.125 * np.pi * (_product(flat, apart, lanes) / number) ** 2
@@ -285,8 +292,7 @@ def _background(  # noqa: PLR0917 - Numba takes no keyword-only ones
 ) -> None:
     """Add to the centre's covariance what the background's slopes are uncertain by."""
     stride = box[4]
-    left = np.float32(0.5 * (box[3] - 1))
-    two = np.float32(2.0)
+    left, two = np.float32(0.5 * (box[3] - 1)), np.float32(2.0)
     x[:], y[:] = _ZERO, _ZERO
     for i in range(box[7]):
         at = np.float32(2 * box[6] + 2 * i - (box[2] - box[1]))
@@ -315,7 +321,7 @@ def _background(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def fit(  # noqa: PLR0914, PLR0917 - the method's steps in order
+def fit(  # noqa: C901, PLR0915, PLR0917 - the method's steps in order
     todo: NDArray[np.int64],
     boxes: NDArray[np.int64],
     first: bool,
@@ -357,16 +363,9 @@ def fit(  # noqa: PLR0914, PLR0917 - the method's steps in order
             state[16], state[17] = d_x, d_y
             _slopes(s[k], p, stride, d_x, d_y, wide[3], g_x, g_y)
         _normal(h_x, h_y, g_x, g_y, differences, w, lanes, sums)
-        lanes[:_LANES] = _ZERO
-        for q in range(0, n, _LANES):
-            part = kept[q : q + _LANES]
-            for j in range(_LANES):
-                one = part[j]
-                lanes[j] += one if one > _ZERO else _ZERO
-        number = _fold(lanes[:_LANES])
+        number = _total(kept, lanes[:_LANES])
         products = _SQUARES if first else _PRODUCTS
-        found = _solve(sums, 0.5 * number * products[0], 0.5 * number * _SQUARES[0], state)
-        if not found:
+        if not _solve(sums, 0.5 * number * products[0], 0.5 * number * _SQUARES[0], state):
             continue
         away += max(abs(state[2]), abs(state[3])) > _AWAY
         level, old = 0, s[k]
@@ -387,8 +386,7 @@ def fit(  # noqa: PLR0914, PLR0917 - the method's steps in order
             old = wide[(level - 1) % 2]
             h_x[:], h_y[:] = a, b
             state[:] = other
-        n_x, n_y = np.float32(state[2]), np.float32(state[3])
-        steep = slack[k, :n]
+        n_x, n_y, steep = np.float32(state[2]), np.float32(state[3]), slack[k, :n]
         for q in range(n):
             left[q] = differences[q] + n_x * g_x[q] + n_y * g_y[q]
         for q in range(n):

@@ -5,7 +5,6 @@ The fourth stage of `algorithms.extractors.frames.registration`, which says what
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
@@ -64,7 +63,7 @@ def _beyond(  # noqa: PLR0917 - Numba takes no keyword-only ones
     )
     for q in range(e.size):
         lit = mean[q]
-        lit = lit if lit > _ZERO else _ZERO
+        lit = max(_ZERO, lit)
         over[q] = least + share * slack[q] + sigmas * np.sqrt(noise + gain * lit)
     for q in range(e.size):
         over[q] = _ONE if (keep[q] > _ZERO) & (abs(e[q]) > over[q]) else _ZERO

@@ -66,7 +66,7 @@ def _pairs(  # noqa: PLR0917 - Numba takes no keyword-only ones
         means, differences = s[first : first + columns], d[i * stride : i * stride + columns]
         for j in range(columns):
             b = np.float32((lower[j] - base) * scale)
-            line[j] = b if b < _MOST else _MOST
+            line[j] = min(_MOST, b)
         for j in range(columns):
             differences[j] = line[end - np.uint64(j)]
         for j in range(columns):

@@ -47,7 +47,9 @@ def _fold(lanes: Line) -> float:
 
 
 @compiled
-def _lines(s: Line, d: Line, box: Any, d_x: float, d_y: float, lines: Line) -> int:
+def _lines(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    s: Line, d: Line, box: Any, d_x: float, d_y: float, lines: Line
+) -> int:
     """Write the window's pairs to `lines`, zero in the core; return how many are not.
 
     Rows: difference without what the spot's own slope explains, x, y.
@@ -76,12 +78,12 @@ def _lines(s: Line, d: Line, box: Any, d_x: float, d_y: float, lines: Line) -> i
         r[q] = d[q] + across * (own[q + 2] - own[q]) + along * (down[q] - up[q])
     for q in range(n):
         r[q] *= _ONE if x[q] * x[q] + y[q] * y[q] > _ZERO else _ZERO
-    return rows * columns - box[7] * (columns - 2 * first)
+    return int(rows * columns - box[7] * (columns - 2 * first))
 
 
 @compiled
 def _moments(x: Line, y: Line, inverse: Any, lanes: Line, sums: Floats) -> None:
-    """Sums of x^2, y^2, and these times rho and rho^2, ``rho = (x^2 + y^2) * inverse``."""
+    """Write the sums of x^2, y^2, and these times rho and rho^2, ``rho = inverse (x^2 + y^2)``."""
     lanes[:] = _ZERO
     for k in range(0, x.size, _LANES):
         u, v = x[k : k + _LANES], y[k : k + _LANES]
@@ -99,7 +101,9 @@ def _moments(x: Line, y: Line, inverse: Any, lanes: Line, sums: Floats) -> None:
 
 
 @compiled
-def _right(lines: Line, n: int, inverse: Any, slope: Floats, limit: float, lanes: Line) -> float:
+def _right(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    lines: Line, n: int, inverse: Any, slope: Floats, limit: float, lanes: Line
+) -> float:
     """Write sums of what is left times x, y, rho x and rho y to the lanes; how many are beyond."""
     a, b = np.float32(2.0 * slope[0]), np.float32(2.0 * slope[1])
     c, e = np.float32(2.0 * slope[2]), np.float32(2.0 * slope[3])
@@ -111,8 +115,8 @@ def _right(lines: Line, n: int, inverse: Any, slope: Floats, limit: float, lanes
             rho = (x[j] * x[j] + y[j] * y[j]) * inverse
             left = r[j] - (a + c * rho) * x[j] - (b + e * rho) * y[j]
             lanes[j + 4 * _LANES] += _ONE if abs(left) > far else _ZERO
-            left = left if left < far else far
-            left = left if left > -far else -far
+            left = min(far, left)
+            left = max(-far, left)
             lanes[j] += left * x[j]
             lanes[j + _LANES] += left * y[j]
             lanes[j + 2 * _LANES] += left * x[j] * rho

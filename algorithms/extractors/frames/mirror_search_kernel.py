@@ -231,7 +231,9 @@ def _compact(s: Floats) -> bool:
 
 
 @compiled
-def find_lights(frames: NDArray[Any], unusable: NDArray[np.bool_], out: Floats) -> None:
+def find_lights(  # noqa: C901 - one frame, its cases
+    frames: NDArray[Any], unusable: NDArray[np.bool_], out: Floats
+) -> None:
     """Write to `out` (N, 9) where the one light of a frame is; NaN rows where there is not one.
 
     Columns: x, y of its blocks' light above the cut, half its extent along x and y, background,

@@ -67,15 +67,15 @@ def _outlines(s: Line, box: Any, columns: Line, sums: Floats) -> None:
         share_y, share_yy = share * y, share * y * y
         for j in range(width):
             t = (row[j] - bottom_low) * scale
-            t = t if t > _ZERO else _ZERO
-            t = t if t < _ONE else _ONE
+            t = max(_ZERO, t)
+            t = min(_ONE, t)
             a[j] += share * t
             a_y[j] += share_y * t
             a_yy[j] += share_yy * t
         for j in range(width):
             t = (row[j] - bottom_high) * scale
-            t = t if t > _ZERO else _ZERO
-            t = t if t < _ONE else _ONE
+            t = max(_ZERO, t)
+            t = min(_ONE, t)
             b[j] += share * t
             b_y[j] += share_y * t
             b_yy[j] += share_yy * t
@@ -133,7 +133,7 @@ def _products(a: Line, b: Line, lanes: Line) -> float:
 def _alike(  # noqa: PLR0917 - Numba takes no keyword-only ones
     mean: Line, keep: Line, e: Line, stride: int, own: Line, line: Line, lanes: Line
 ) -> tuple[float, float]:
-    """What neighbours miss alike, over the square of the light where lit; sum of the light."""
+    """Return what neighbours miss alike, over the square of the light; sum of the light."""
     n = e.size
     own[n : n + stride + 1] = _ZERO
     for q in range(n):
@@ -164,7 +164,7 @@ def _scatter(  # noqa: PLR0917 - Numba takes no keyword-only ones
     noise, gain = np.float32(2.0 * (state[0] + _FLOOR * _FLOOR)), np.float32(2.0 * state[1])
     for j in range(e.size):
         lit = mean[j]
-        lit = lit if lit > _ZERO else _ZERO
+        lit = max(_ZERO, lit)
         variance = noise + gain * lit
         z[j] = np.divide(e[j] * e[j], variance)
         q[j] = np.divide(keep[j] * slack[j] * slack[j], variance)

@@ -186,7 +186,7 @@ class _State:
     shapes: Floats
 
 
-def _chunk(
+def _chunk(  # noqa: PLR0917 - the stages' arrays, in their order
     frames: Frames,
     which: NDArray[np.int64],
     lights: Floats,
