@@ -39,6 +39,11 @@ class Doubt(enum.IntFlag):
     AMBIGUOUS_PATTERN = 64
     """Another identity of the pattern's spots explains the frame nearly as well."""
 
+    @classmethod
+    def _missing_(cls, value: object) -> Any:
+        """Take NumPy's integers, as `Measurement.doubts` holds them."""
+        return super()._missing_(int(value) if isinstance(value, np.integer) else value)
+
 
 @dataclass(frozen=True)
 class Measurement:

@@ -43,20 +43,26 @@ class MirrorRegistration(Extractor):
     departures differ by where there is light. The slopes that weigh are smoothed as long as this
     lowers the variance, and the products with those that predict are freed of the noise both have
     in common. The background's odd part, linear and where it shows cubic, is fitted around the
-    spot. Pairs that depart by five deviations are left out, and the worse pixel of the two becomes
+    spot. Pairs that depart by 4.5 deviations are left out, and the worse pixel of the two becomes
     the other one.
+
+    `measure` gives the covariance of that fit, with what the background's slopes are uncertain by,
+    times the mean square of the departures over what was expected. Outlines of one spot are alike
+    at all heights; those of two that overlap are not, or have a waist.
 
     Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers.
 
-    Failure: a NaN row for a frame without contrast or with a NaN or infinity; where no 2 x 2 pixels
-    are five standard deviations above the border (no light, hot pixels alone); where a second
-    light has over 15 % of the first one's or both lie apart as one loose region; where the spot
-    reaches the frame's edge; and where neighbouring pairs depart alike, so that it is not
-    symmetric. Two equal lights that overlap are symmetric, and their middle is the answer; a ghost
-    of half the light less than four pixels away goes unseen. Rims sharper than a pixel resolves
-    are found to some thousandths of a pixel, those along rows or columns to hundredths.
+    Failure: a NaN row for a frame without contrast or with a NaN or infinity, where no 2 x 2 pixels
+    are five standard deviations above the border (`measure`: NO_SPOT); where a second light has
+    over 15 % of the first one's, both lie apart as one loose region, or outlines are not those of
+    one spot (SEVERAL_SPOTS); where the spot reaches the frame's edge (CUT); and where departures
+    are alike, in clusters or too large (NOT_SYMMETRIC). GHOST and SATURATED stand beside answers
+    too. Two Gaussians closer than two of their widths, or one and a ghost closer than that, look
+    like one wider spot, and so do two squares side by side. Ellipses longer than 2.2 times their
+    width may be taken for two lights. Rims sharper than a pixel resolves are found to some
+    thousandths of a pixel, those along rows or columns to hundredths.
 
-    Cost: 10 operations a pixel, some 400 a pixel of the spot's surroundings.
+    Cost: 10 operations a pixel, some 300 in single precision a pixel of the spot's surroundings.
 
     References
     ----------

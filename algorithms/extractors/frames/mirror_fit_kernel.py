@@ -321,7 +321,7 @@ def _background(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def fit(  # noqa: C901, PLR0915, PLR0917 - the method's steps in order
+def fit(  # noqa: PLR0915, PLR0917 - the method's steps in order
     todo: NDArray[np.int64],
     boxes: NDArray[np.int64],
     first: bool,

@@ -20,6 +20,8 @@ _REACH, _LANES = 7, 64
 _ZERO, _HALF, _ONE = np.float32(0.0), np.float32(0.5), np.float32(1.0)
 #: What the slopes miss, over the peak, as the fit has it.
 _FLOOR = 0.0015
+#: The square of the share of the slope by which sharp rims depart.
+_SHARP = np.float32(0.03**2)
 #: Pairs that are taken to depart as expected, beside those that are seen.
 _EXPECTED = 5.0
 #: A pixel counts as lit above this fraction of the peak.
@@ -156,10 +158,11 @@ def _alike(  # noqa: PLR0917 - Numba takes no keyword-only ones
 @compiled
 def _scatter(  # noqa: PLR0917 - Numba takes no keyword-only ones
     mean: Line, keep: Line, e: Line, slack: Line, state: Floats, z: Line, q: Line, lanes: Line
-) -> float:
+) -> tuple[float, float]:
     """Mean square of the departures over their variance, by the information of each pair.
 
-    As if some more pairs had been as expected: few pairs tell little.
+    As if some more pairs had been as expected: few pairs tell little. The second allows for what
+    a rim sharper than a pixel resolves departs by.
     """
     noise, gain = np.float32(2.0 * (state[0] + _FLOOR * _FLOOR)), np.float32(2.0 * state[1])
     for j in range(e.size):
@@ -172,7 +175,12 @@ def _scatter(  # noqa: PLR0917 - Numba takes no keyword-only ones
     total, squares = _products(q, keep, lanes), _products(q, q, lanes)
     number = total * total / max(squares, 1e-30)
     departing = _products(q, z, lanes) / max(total, 1e-30)
-    return (number * departing + _EXPECTED) / (max(number - 2.0, 0.0) + _EXPECTED)
+    all_of_it = (number * departing + _EXPECTED) / (max(number - 2.0, 0.0) + _EXPECTED)
+    for j in range(e.size):
+        variance = noise + gain * max(_ZERO, mean[j])
+        z[j] *= np.divide(variance, variance + _SHARP * slack[j] * slack[j])
+    departing = _products(q, z, lanes) / max(total, 1e-30)
+    return all_of_it, (number * departing + _EXPECTED) / (max(number - 2.0, 0.0) + _EXPECTED)
 
 
 @compiled
@@ -187,13 +195,13 @@ def shapes(  # noqa: PLR0917 - Numba takes no keyword-only ones
     states: Floats,
     out: Floats,
 ) -> None:
-    """Write the shape of the windows `todo` to `out` (N, 11).
+    """Write the shape of the windows `todo` to `out` (N, 12).
 
     Columns: light of departing clusters over all; what neighbours miss alike; larger and smaller
     ratio of the squared extents of the high outline to the low one's; smaller squared extent of
     the low outline; area of the high outline, that of an ellipse with its moments over it; mean
     square of the departures over what is expected; the two ratios for the sharp high outline; area
-    of the low outline.
+    of the low outline; the mean square once more, with allowance for sharp rims.
     """
     sums = np.empty((3, 4))
     own, line, lanes = space[0], space[1], space[2, :_LANES]
@@ -206,7 +214,9 @@ def shapes(  # noqa: PLR0917 - Numba takes no keyword-only ones
         p = 8 + (_REACH + box[6]) * box[4]
         mean, kept, left = s[k, p : p + n], keep[k, :n], e[k, :n]
         share, light = _alike(mean, kept, left, box[4], own, line[:n], lanes)
-        out[k, 7] = _scatter(mean, kept, left, slack[k, :n], states[k], own[:n], line[:n], lanes)
+        out[k, 7], out[k, 11] = _scatter(
+            mean, kept, left, slack[k, :n], states[k], own[:n], line[:n], lanes
+        )
         out[k, 0] = 0.5 * states[k, 14] / max(light, 1e-30)
         out[k, 1] = share
         _outlines(s[k], box, columns[: 9 * (box[3] + 8)], sums)

@@ -57,7 +57,7 @@ _UNSURE = 0.5
 #: From the lit light's centroid, in half extents and px, no registration leads further.
 _ASTRAY, _ASTRAY_PX = 0.25, 0.75
 #: Columns that `mirror_shape_kernel.shapes` writes.
-_SHAPE = 11
+_SHAPE = 12
 _KEPT = threading.local()
 
 
@@ -146,8 +146,8 @@ def _register_seen(
         state = _State(boxes[part], middles[part], states[part], slopes[part], shapes[part])
         _chunk(frames, seen[part], lights[part], mask, lines, work, state)
     centres = 0.5 * (middles + states[:, 2:4])
-    doubts = _doubts(lights, boxes, states, shapes, centres)
-    doubts[_saturated(frames, seen, lights)] |= int(Doubt.SATURATED)
+    saturated = _saturated(frames, seen, lights)
+    doubts = _doubts(lights, boxes, states, shapes, centres, saturated)
     refused = (doubts & ~int(Doubt.SATURATED | Doubt.GHOST)) != 0
     scatter = shapes[:, 7]
     covariance = states[:, [4, 6, 6, 5]] * scatter[:, None]
@@ -245,22 +245,27 @@ def _chunk(  # noqa: PLR0917 - the stages' arrays, in their order
     mirror_shape_kernel.shapes(todo, boxes, s, keep, e, slack, work, states, shapes)
 
 
-def _doubts(
-    lights: Floats, boxes: NDArray[np.int64], states: Floats, shapes: Floats, centres: Floats
+def _doubts(  # noqa: PLR0917 - what is known of each
+    lights: Floats,
+    boxes: NDArray[np.int64],
+    states: Floats,
+    shapes: Floats,
+    centres: Floats,
+    saturated: NDArray[np.bool_],
 ) -> NDArray[np.int64]:
     """Say what speaks against each answer."""
-    doubts = np.zeros(len(lights), dtype=np.int64)
+    doubts = np.where(saturated, int(Doubt.SATURATED), 0).astype(np.int64)
     lost = ~np.isfinite(states[:, 4])
-    doubts[lost] = int(Doubt.NO_SPOT)
-    doubts[boxes[:, 3] == 0] = int(Doubt.CUT)
+    doubts[lost] |= int(Doubt.NO_SPOT)
+    doubts[boxes[:, 3] == 0] |= int(Doubt.CUT)
     clusters, alike, wide, narrow, minor, area, waist, scatter = shapes.T[:8]
-    sharp_wide, sharp_narrow, base = shapes.T[8:]
+    sharp_wide, sharp_narrow, base, departing = shapes.T[8:]
     noise = np.sqrt(states[:, 0])
     far = np.abs(centres - lights[:, :2]) > _ASTRAY * lights[:, 2:4] + _ASTRAY_PX
     with np.errstate(invalid="ignore", divide="ignore"):
         few = _SCATTER_FEW / area
         crooked = far.any(axis=1) | (clusters > _CLUSTERS) | (alike > _ALIKE)
-        crooked |= scatter > _SCATTER + few
+        crooked |= ~saturated & (departing > _SCATTER + few)
         several = waist > _WAIST + _WAIST_FEW / area + _WAIST_NOISE * noise
         for one, other, tells in (
             (wide, narrow, area > 0.0),
@@ -271,7 +276,7 @@ def _doubts(
             several |= tells & unlike & (apart > _UNLIKE_PX + _UNLIKE_NOISE_PX * noise)
         doubts[crooked & ~lost] |= int(Doubt.NOT_SYMMETRIC)
         doubts[several & ~lost] |= int(Doubt.SEVERAL_SPOTS)
-        doubts[(scatter > _SCATTER_GHOST + few) & ~lost] |= int(Doubt.GHOST)
+        doubts[(departing > _SCATTER_GHOST + few) & ~lost & ~saturated] |= int(Doubt.GHOST)
         unsure = np.maximum(states[:, 4], states[:, 5]) * scatter > _UNSURE**2
         doubts[unsure & ~lost] |= int(Doubt.NO_SPOT)
     return doubts

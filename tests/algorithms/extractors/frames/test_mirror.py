@@ -7,9 +7,11 @@ import pytest
 from scipy.special import j1, ndtr
 
 from algorithms.contract import SensorGeometry, UnsuitableDesignError
-from algorithms.extractors.frames import mirror_kernel
+from algorithms.extractors.frames import mirror_fit_kernel
 from algorithms.extractors.frames.matched import MatchedProfile
 from algorithms.extractors.frames.mirror import MirrorRegistration
+from algorithms.extractors.frames.registration import register
+from algorithms.measurement import Doubt
 
 PEAK, DARK, READ = 2000.0, 20.0, 10.0
 #: Sigma of the rims, px, and points across a pixel over which light is averaged.
@@ -104,7 +106,7 @@ def test_the_filter_of_the_slopes_is_the_tangent():
     """2 sum t_n sin(2 pi k n) = 2 tan(pi k d) / d, up to where soft rims have no light left."""
     k = np.linspace(0.01, 0.3, 30)
     for d in (0.0, 0.2, 0.5):
-        taps = sum(mirror_kernel.TAPS[q] * d ** (2 * q) for q in range(4))
+        taps = sum(mirror_fit_kernel.TAPS[q] * d ** (2 * q) for q in range(4))
         response = 2 * np.sin(2 * np.pi * np.outer(k, np.arange(1, 7))) @ taps
         tangent = 2 * np.tan(np.pi * k * d) / d if d else 2 * np.pi * k
         np.testing.assert_allclose(response, tangent, rtol=6e-3)
@@ -153,10 +155,76 @@ def lights(second, apart, seed, count=40):
     return noisy(np.stack(light), rng)
 
 
-@pytest.mark.parametrize(("second", "apart"), [(1.0, 20.0), (0.5, 20.0), (0.5, 12.0), (0.5, 7.0)])
+@pytest.mark.parametrize("second", [1.0, 0.5])
+@pytest.mark.parametrize("apart", [6.0, 9.0, 12.0, 14.5, 16.0, 20.0])
 def test_two_lights_are_no_answer(second, apart):
-    found = MirrorRegistration().extract(lights(second, apart, 37))
-    assert np.isnan(found).all()
+    """Overlapping ones too: two equal ones are symmetric about their middle."""
+    found = MirrorRegistration().measure(lights(second, apart, 37, 15))
+    assert np.isnan(found.features).all()
+    two = int(Doubt.SEVERAL_SPOTS | Doubt.NOT_SYMMETRIC | Doubt.CUT)
+    assert (found.doubts & two != 0).all()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("shape", [disc, ellipse, square, gaussian])
+def test_the_covariance_is_that_of_the_errors(shape):
+    """Normalised errors squared average 2 for two coordinates; of 400, within 15 % (3 sigma)."""
+    frames, centres, _ = spots(shape, 400, 43, margin=28.0 if shape is ellipse else 24.0)
+    found = MirrorRegistration().measure(frames)
+    answered = np.isfinite(found.features).all(axis=1)
+    assert answered.mean() > 0.97
+    errors = (found.features - centres)[answered]
+    squares = np.einsum("ni,nij,nj->n", errors, np.linalg.inv(found.covariance[answered]), errors)
+    assert 1.7 < squares.mean() < 2.3
+
+
+def test_every_missing_answer_says_why():
+    rng = np.random.default_rng(44)
+    one = PEAK * render(disc, (30.3, 31.6))
+    light = DARK + np.stack(
+        [one, 0 * one, one + PEAK * render(disc, (12.0, 12.0)), PEAK * render(disc, (2.0, 30.0))]
+    )
+    found = MirrorRegistration().measure(noisy(light, rng))
+    assert [Doubt(d) for d in found.doubts] == [0, Doubt.NO_SPOT, Doubt.SEVERAL_SPOTS, Doubt.CUT]
+    half = np.where(np.arange(SIZE)[:, None] > 30, one, 0.0)
+    half[31:40] *= np.linspace(0.4, 1.0, SIZE)
+    found = MirrorRegistration().measure(noisy(DARK + half, rng))
+    assert found.doubts[0] & int(Doubt.NOT_SYMMETRIC | Doubt.SEVERAL_SPOTS)
+
+
+@pytest.mark.parametrize("value", [4095, 0])
+def test_hot_and_dead_pixels_on_the_spot_cost_little(value):
+    frames, centres, rng = spots(disc, 60, 45)
+    clean = rms(MirrorRegistration().extract(frames), centres)
+    for frame, (x, y) in zip(frames, centres, strict=True):
+        radius, turn = 8 * np.sqrt(rng.uniform(size=5)), rng.uniform(0, 2 * np.pi, 5)
+        rows, columns = y + radius * np.sin(turn), x + radius * np.cos(turn)
+        frame[rows.round().astype(int), columns.round().astype(int)] = value
+    found = MirrorRegistration().extract(frames)
+    answered = np.isfinite(found).all(axis=1)
+    assert answered.mean() > 0.95
+    assert rms(found[answered], centres[answered]) < 1.3 * clean
+
+
+def test_pixels_known_as_bad_are_left_out_whatever_they_hold():
+    frames, centres, rng = spots(disc, 40, 46)
+    bad = np.zeros((SIZE, SIZE), dtype=np.bool_)
+    bad[rng.integers(20, 44, 12), rng.integers(20, 44, 12)] = True
+    spoilt = np.where(bad, np.nan, frames.astype(np.float64))
+    found = MirrorRegistration().measure(spoilt, bad)
+    assert rms(found.features, centres) < 1.4 * bound(disc, centres[:3])
+    spoilt[:, bad] = 700.0
+    np.testing.assert_array_equal(
+        MirrorRegistration().measure(spoilt, bad).features, found.features
+    )
+
+
+def test_windows_of_a_frame_are_registered_like_frames():
+    frames, centres, _ = spots(gaussian, 6, 47)
+    windows = frames[:, 8:56, 10:58]
+    found = register(windows)
+    np.testing.assert_allclose(found.features + np.array([10, 8]), centres, atol=0.05)
+    assert (found.doubts == 0).all()
 
 
 def test_a_frame_without_the_sun_is_no_answer_whatever_its_hot_pixels():
@@ -174,8 +242,9 @@ def test_a_hot_pixel_does_not_outshine_a_weak_spot():
         near = rng.integers(-13, 14, 2)
         frame[round(y) + near[0], round(x) + near[1]] = 4095
     found = MirrorRegistration().extract(frames)
-    assert np.isfinite(found).all()
-    assert np.abs(found - centres).max() < 0.5
+    answered = np.isfinite(found).all(axis=1)
+    assert answered.mean() > 0.9
+    assert np.abs(found - centres)[answered].max() < 0.5
 
 
 def test_a_spot_cut_by_the_edge_is_no_answer():
@@ -188,10 +257,12 @@ def test_a_spot_cut_by_the_edge_is_no_answer():
         assert np.isnan(MirrorRegistration().extract(cut)).all()
 
 
-def test_saturation_leaves_a_symmetric_spot_where_it_is():
+def test_saturation_leaves_a_symmetric_spot_where_it_is_and_is_said():
     frames, centres, _ = spots(gaussian, 20, 41, peak=30_000.0)
     assert (frames == 4095).sum(axis=(1, 2)).min() > 20
-    assert rms(MirrorRegistration().extract(frames), centres) < 0.02
+    found = MirrorRegistration().measure(frames)
+    assert rms(found.features, centres) < 0.02
+    assert (found.doubts == int(Doubt.SATURATED)).all()
 
 
 def test_frames_too_small_for_a_spot_are_no_answer():
