@@ -43,7 +43,7 @@ _CHUNK = 2**16
 _CLUSTERS, _ALIKE = 0.02, 0.0004
 #: Mean square of the departures, over what is expected, from which there is a ghost, and from which
 #: the spot is not symmetric; more, over the high outline's area, where few pixels tell.
-_SCATTER_GHOST, _SCATTER, _SCATTER_FEW = 2.5, 3.5, 150.0
+_SCATTER_GHOST, _SCATTER, _GHOST_FEW, _SCATTER_FEW = 1.8, 3.5, 100.0, 150.0
 #: The outlines of one spot are alike at all heights: largest ratio of the squared ratios of their
 #: extents, more by 1 over the area and by the noise; px by which the extents may differ.
 _UNLIKE, _UNLIKE_FEW, _UNLIKE_NOISE, _UNLIKE_PX, _UNLIKE_NOISE_PX = 1.26, 5.0, 1.5, 0.42, 3.0
@@ -263,9 +263,9 @@ def _doubts(  # noqa: PLR0917 - what is known of each
     noise = np.sqrt(states[:, 0])
     far = np.abs(centres - lights[:, :2]) > _ASTRAY * lights[:, 2:4] + _ASTRAY_PX
     with np.errstate(invalid="ignore", divide="ignore"):
-        few = _SCATTER_FEW / area
+        ghost = departing > _SCATTER_GHOST + _GHOST_FEW / area
         crooked = far.any(axis=1) | (clusters > _CLUSTERS) | (alike > _ALIKE)
-        crooked |= ~saturated & (departing > _SCATTER + few)
+        crooked |= ~saturated & (departing > _SCATTER + _SCATTER_FEW / area)
         several = waist > _WAIST + _WAIST_FEW / area + _WAIST_NOISE * noise
         for one, other, tells in (
             (wide, narrow, area > 0.0),
@@ -276,7 +276,7 @@ def _doubts(  # noqa: PLR0917 - what is known of each
             several |= tells & unlike & (apart > _UNLIKE_PX + _UNLIKE_NOISE_PX * noise)
         doubts[crooked & ~lost] |= int(Doubt.NOT_SYMMETRIC)
         doubts[several & ~lost] |= int(Doubt.SEVERAL_SPOTS)
-        doubts[(departing > _SCATTER_GHOST + few) & ~lost & ~saturated] |= int(Doubt.GHOST)
+        doubts[ghost & ~lost & ~saturated] |= int(Doubt.GHOST)
         unsure = np.maximum(states[:, 4], states[:, 5]) * scatter > _UNSURE**2
         doubts[unsure & ~lost] |= int(Doubt.NO_SPOT)
     return doubts
