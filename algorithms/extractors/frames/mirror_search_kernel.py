@@ -156,7 +156,7 @@ def _add_run(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def _regions(  # noqa: C901, PLR0917 - one scan, its cases
+def _regions(  # noqa: C901, PLR0912, PLR0917 - one scan, its cases
     least: NDArray[Any],
     maxima: NDArray[Any],
     base: float,
