@@ -332,7 +332,7 @@ class Extractor(Protocol):
 
         A single sample is a batch of one; `bad`, True for a bad pixel, has one sample's shape.
         """
-        return measured(self, observations, bad)
+        return measured(self.extract, self.about.observation, self.about.name, observations, bad)
 
 
 @runtime_checkable

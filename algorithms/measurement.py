@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import enum
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-
-if TYPE_CHECKING:
-    from algorithms.contract import Extractor
 
 #: Dimensions of a batch, by the value of `algorithms.contract.Observation`.
 _BATCH_DIMENSIONS = {"frames": 3, "profiles": 2, "currents": 2, "events": 3}
@@ -205,14 +203,22 @@ def without_bad(batch: ArrayLike, bad: ArrayLike, by: str) -> NDArray[Any]:
 
 
 def measured(
-    extractor: Extractor, observations: ArrayLike, bad: ArrayLike | None = None
+    extract: Callable[[ArrayLike], NDArray[np.float64]],
+    observation: str,
+    by: str,
+    observations: ArrayLike,
+    bad: ArrayLike | None = None,
 ) -> Measurement:
     """Measure with an extractor that states no covariance: what `Extractor.measure` does.
 
     Parameters
     ----------
-    extractor : Extractor
-        Any.
+    extract : callable
+        Features (N, F) of a batch.
+    observation : {"frames", "profiles", "currents", "events"}
+        What it reads.
+    by : str
+        Whose it is, for messages.
     observations : array_like
         A batch, or one sample of it.
     bad : array_like of bool, optional
@@ -231,21 +237,20 @@ def measured(
     Examples
     --------
     >>> from algorithms.extractors.frames.centroid import BasicCentroid
-    >>> measured(BasicCentroid(), [[0, 0, 0], [0, 1, 0], [0, 0, 0]]).features
+    >>> measured(BasicCentroid().extract, "frames", "bcm", np.eye(3)).features
     array([[1., 1.]])
     """
-    about = extractor.about
-    batch = as_batch(observations, about.observation)
+    batch = as_batch(observations, observation)
     if bad is not None:
-        if about.observation not in _WITH_NEIGHBOURS:
+        if observation not in _WITH_NEIGHBOURS:
             raise ValueError(
-                f"{about.name} reads {about.observation}, which have no neighbouring pixels to "
+                f"{by} reads {observation}, which have no neighbouring pixels to "
                 "stand in for bad ones: leave bad=None; got a mask"
             )
         # Wrong batches get the message of `extract`; there is nothing to repair in them.
-        ready = np.ndim(batch) == _BATCH_DIMENSIONS[about.observation]
-        batch = without_bad(batch, bad, about.name) if ready else batch
-    features = extractor.extract(batch)
+        ready = np.ndim(batch) == _BATCH_DIMENSIONS[observation]
+        batch = without_bad(batch, bad, by) if ready else batch
+    features = extract(batch)
     n, f = features.shape
     missing = np.isnan(features).any(axis=1)
     doubts = np.where(missing, int(Doubt.NO_SPOT), 0).astype(np.int64)

@@ -91,7 +91,7 @@ def register(observations: ArrayLike, bad: ArrayLike | None = None) -> Measureme
     >>> windows = np.random.default_rng(1).normal(50 + disc, 5.0)
     >>> found = register(windows)
     >>> found.features.round(1), found.deviations.round(3), found.doubts
-    (array([[21.3, 18.8]]), array([[0.004, 0.004]]), array([0]))
+    (array([[21.3, 18.8]]), array([[0.003, 0.003]]), array([0]))
     """
     from algorithms.extractors.frames import mirror_search_kernel as search  # noqa: PLC0415 - Numba
     from algorithms.kernels import moments  # noqa: PLC0415 - Numba, at first use

@@ -107,7 +107,8 @@ class SlitLines:
 
     def measure(self, observations: ArrayLike, bad: ArrayLike | None = None) -> Measurement:
         """Features as `extract`, their covariance and doubts; see `algorithms.measurement`."""
-        return measured(cast("Extractor", self), observations, bad)
+        extract = cast("Extractor", self).extract
+        return measured(extract, self.about.observation, self.about.name, observations, bad)
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
