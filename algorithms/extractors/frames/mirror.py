@@ -58,8 +58,8 @@ class MirrorRegistration(Extractor):
     one spot (SEVERAL_SPOTS); where the spot reaches the frame's edge (CUT); and where departures
     are alike, in clusters or too large (NOT_SYMMETRIC). GHOST and SATURATED stand beside answers
     too. Two Gaussians closer than two of their widths, or one and a ghost closer than that, look
-    like one wider spot, and so do two squares side by side. Ellipses of a few pixels' width and
-    over 2.2 times its length may be taken for two lights. Rims sharper than a pixel resolves are found to some
+    like one wider spot, and so do two squares side by side. Ellipses a few pixels wide and over 2.2
+    times as long may be taken for two lights. Rims sharper than a pixel resolves are found to some
     thousandths of a pixel, those along rows or columns to hundredths.
 
     Cost: 10 operations a pixel, some 300 in single precision a pixel of the spot's surroundings.
