@@ -28,6 +28,8 @@ from typing import (
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from algorithms.measurement import Measurement, measured
+
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
@@ -294,8 +296,8 @@ class AboutModel(About):
 class Extractor(Protocol):
     """Observations in, features out; a frozen dataclass whose fields are its parameters.
 
-    An implementation names this class as its base and writes `about` and `extract`; the two other
-    members serve it as they stand unless its parameters or columns depend on the sensor.
+    An implementation names this class as its base and writes `about` and `extract`; the other
+    members serve it as they stand unless its parameters, columns or covariance are its own.
     """
 
     about: ClassVar[AboutExtractor]
@@ -324,6 +326,13 @@ class Extractor(Protocol):
     def extract(self, observations: ArrayLike) -> Floats:
         """(N, F) float64; a NaN row where nothing was found. ValueError on wrong input."""
         ...
+
+    def measure(self, observations: ArrayLike, bad: ArrayLike | None = None) -> Measurement:
+        """Features as `extract`, their covariance and doubts; see `algorithms.measurement`.
+
+        A single sample is a batch of one; `bad`, True for a bad pixel, has one sample's shape.
+        """
+        return measured(self.extract, self.about.observation, self.about.name, observations, bad)
 
 
 @runtime_checkable

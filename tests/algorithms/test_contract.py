@@ -127,7 +127,7 @@ def test_the_contract_is_structural():
     class Apart:
         about = ABOUT
         features = ("x_px", "y_px")
-        for_sensor = extract = len
+        for_sensor = extract = measure = len
 
     assert isinstance(Apart(), Extractor)
     assert not isinstance(Apart(), Model)

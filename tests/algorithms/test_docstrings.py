@@ -16,7 +16,7 @@ from algorithms.discovery import discover_extractors, discover_models
 
 IMPLEMENTATIONS = {**discover_extractors(), **discover_models()}
 #: Modules whose public functions and classes a user calls.
-PUBLIC = ("angles", "contract", "inputs", "pipeline")
+PUBLIC = ("angles", "contract", "inputs", "measurement", "pipeline")
 SECTIONS = ("Notes", "References", "Examples")
 #: What numpydoc reports that is not asked for: a "See Also" (SA01).
 NOT_ASKED = frozenset({"SA01"})

@@ -10,13 +10,20 @@ from __future__ import annotations
 import itertools
 import math
 from dataclasses import dataclass
-from typing import Any, ClassVar, Literal, Self
+from typing import Any, ClassVar, Literal, Self, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from algorithms.contract import AboutExtractor, Floats, SensorGeometry, UnsuitableDesignError
+from algorithms.contract import (
+    AboutExtractor,
+    Extractor,
+    Floats,
+    SensorGeometry,
+    UnsuitableDesignError,
+)
 from algorithms.inputs import as_currents, require_positive
+from algorithms.measurement import Measurement, measured
 from algorithms.row_arithmetic import medians
 
 LineAxis = Literal["x", "y"]
@@ -97,6 +104,11 @@ class SlitLines:
     def features(self) -> tuple[str, ...]:
         """Names of the two output columns."""
         return ("x_px", "y_px")
+
+    def measure(self, observations: ArrayLike, bad: ArrayLike | None = None) -> Measurement:
+        """Features as `extract`, their covariance and doubts; see `algorithms.measurement`."""
+        extract = cast("Extractor", self).extract
+        return measured(extract, self.about.observation, self.about.name, observations, bad)
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:

@@ -1,0 +1,171 @@
+"""Leave out the pairs of pixels that depart from what the fit says of them.
+
+The fourth stage of `algorithms.extractors.frames.registration`, which says what the arrays hold.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.compiled import compiled
+from algorithms.contract import Floats
+
+Line = NDArray[np.float32]
+
+_REACH, _LANES = 7, 64
+_ZERO, _HALF, _ONE = np.float32(0.0), np.float32(0.5), np.float32(1.0)
+#: A pair is left out whose difference departs by so many deviations, this share of the slope and
+#: this of the peak: at first, and when the fit is good.
+_BAD, _BAD_SLOPE, _BAD_PEAK = (5.0, 4.5), (0.4, 0.05), (0.1, 0.003)
+#: Change of d, px, up to which the slopes for the last one stand.
+_SAME = 0.05
+
+
+@compiled
+def _fold(lanes: Line) -> float:
+    """Sum of the lanes, halves added to halves."""
+    size = lanes.size
+    while size > 8:
+        size //= 2
+        first, second = lanes[:size], lanes[size : 2 * size]
+        for j in range(size):
+            first[j] += second[j]
+    total = 0.0
+    for j in range(size):
+        total += lanes[j]
+    return total
+
+
+@compiled
+def _complete(s: Line, box: Any) -> None:
+    """Fill the rows below the middle by symmetry once more."""
+    columns, stride, rows, height = box[3], box[4], box[6] + box[7], box[2] - box[1] + 1
+    for i in range(_REACH):
+        mirrored = max(height - 1 - (rows + i), 0)
+        here, there = 8 + (_REACH + rows + i) * stride, 8 + (_REACH + mirrored) * stride
+        for j in range(columns):
+            s[here + j] = s[there + columns - 1 - j]
+
+
+@compiled
+def _beyond(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    mean: Line, keep: Line, e: Line, slack: Line, state: Floats, good: int, over: Line, lanes: Line
+) -> float:
+    """Write which pairs are beyond the limit to `over`; return how many."""
+    noise, gain = np.float32(2.0 * state[0]), np.float32(2.0 * state[1])
+    sigmas, share, least = (
+        np.float32(_BAD[good]),
+        np.float32(_BAD_SLOPE[good]),
+        np.float32(_BAD_PEAK[good]),
+    )
+    for q in range(e.size):
+        lit = mean[q]
+        lit = max(_ZERO, lit)
+        over[q] = least + share * slack[q] + sigmas * np.sqrt(noise + gain * lit)
+    for q in range(e.size):
+        over[q] = _ONE if (keep[q] > _ZERO) & (abs(e[q]) > over[q]) else _ZERO
+    lanes[:] = _ZERO
+    for k in range(0, e.size, _LANES):
+        part = over[k : k + _LANES]
+        for j in range(_LANES):
+            lanes[j] += part[j]
+    return _fold(lanes)
+
+
+@compiled
+def _replace(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    frame_bad: NDArray[np.bool_], box: Any, s: Line, d: Line, keep: Line, e: Line
+) -> float:
+    """Replace the worse pixel of pairs marked -1 by the other one; light of those in clusters.
+
+    The worse pixel is the one known as bad, else that farther from the mean of its neighbours.
+    """
+    left, top, last, columns, stride = box[0], box[1], box[2], box[3], box[4]
+    first, above, rows = box[5], box[6], box[7]
+    clusters = 0.0
+    p = 8 + (_REACH + above) * stride
+    for i in range(rows):
+        for j in range(first, columns - first):
+            q = i * stride + j
+            if keep[q] >= _ZERO:
+                continue
+            beside = -1
+            for a in range(max(i - 1, 0), min(i + 2, rows)):
+                for b in range(max(j - 1, first), min(j + 2, columns - first)):
+                    beside += keep[a * stride + b] <= _ZERO
+            near = 0.25 * (s[p + q - stride] + s[p + q + stride] + s[p + q - 1] + s[p + q + 1])
+            # One pixel is mean + half, its partner mean - half; the fit sets them 2 shift apart.
+            mean, half = s[p + q], 0.5 * d[above * stride + q]
+            shift = 0.5 * (d[above * stride + q] - e[q])
+            upper_is_worse = abs(mean + half - near) > abs(mean - half - near)
+            known = False
+            if frame_bad.size > 0:
+                upper = frame_bad[top + above + i, left + j]
+                lower = frame_bad[last - above - i, left + columns - 1 - j]
+                known = upper or lower
+                if upper != lower:
+                    upper_is_worse = upper
+            if beside >= 2 and not known:
+                clusters += abs(e[q])
+            s[p + q] = mean - half + shift if upper_is_worse else mean + half - shift
+    for q in range(keep.size):
+        keep[q] = max(keep[q], _ZERO)
+    return clusters
+
+
+@compiled
+def leave_out(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    todo: NDArray[np.int64],
+    boxes: NDArray[np.int64],
+    first: bool,
+    bad: NDArray[np.bool_],
+    s: Line,
+    d: Line,
+    keep: Line,
+    e: Line,
+    slack: Line,
+    space: Line,
+    states: Floats,
+) -> int:
+    """Leave out pairs of the windows `todo` and take over the noise; keep in it those not done.
+
+    Return how many these are.
+    """
+    remaining = 0
+    over, lanes = space[0], space[1, :_LANES]
+    for k in todo:
+        box, state = boxes[k], states[k]
+        if not np.isfinite(state[4]):
+            continue
+        n = (box[7] * box[4] + _LANES - 1) // _LANES * _LANES
+        p = 8 + (_REACH + box[6]) * box[4]
+        before = state[1]
+        state[1] = state[12]
+        kept = keep[k, :n]
+        number = _beyond(
+            s[k, p : p + n],
+            kept,
+            e[k, :n],
+            slack[k, :n],
+            state,
+            0 if first else 1,
+            over[:n],
+            lanes,
+        )
+        if number > 0.0:
+            for q in range(n):
+                if over[q] > _ZERO:
+                    kept[q] = -_ONE
+        if number > 0.0 or (first and bad.size > 0):
+            state[14] += _replace(bad, box, s[k], d[k], kept, e[k])
+            _complete(s[k], box)
+        state[13] += number
+        same = abs(state[1] - before) <= 0.5 * before + 0.02 * state[0]
+        moved = max(abs(state[2] - state[16]), abs(state[3] - state[17]))
+        if first or number > 0.0 or not same or moved >= _SAME:
+            todo[remaining] = k
+            remaining += 1
+    return remaining

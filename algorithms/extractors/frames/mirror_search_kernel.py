@@ -1,0 +1,299 @@
+"""Find the one light of each frame: background, lit regions, how large and how compact they are.
+
+Works on the least value of every 2 x 2 block of pixels: there a hot pixel leaves no trace, and a
+light of some pixels keeps its shape. Frames are (N, H, W) arrays from
+`algorithms.inputs.as_frames`.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.compiled import compiled
+from algorithms.contract import Floats
+
+#: Standard deviations of a dark pixel by which the brightest block must be above the background,
+#: and a lit one; the fraction of the brightest block's light that a lit one must have.
+_SEEN, _LIT, _CUT = 5.0, 3.0, 0.3
+#: Numbers of the border are left out beyond so many mean departures, then standard deviations.
+_FAR, _CLIP = 4.0, 3.5
+#: Light of all other regions, over that of the brightest, from which they are a second light.
+_RIVAL = 0.15
+#: Root of the determinant of the second moments, over that of an ellipse of the same area, above
+#: which a region is not one spot: 1.05 for a square.
+_LOOSE = 1.25
+#: Regions from which on a frame is taken for noise.
+_MOST = 256
+#: Sums of a region: see `_add_run`.
+_SUMS = 14
+#: What `find_lights` writes of a frame; why there is no light, in the last column.
+FOUND = 9
+DARK, SEVERAL, EDGE = 1.0, 2.0, 3.0
+
+
+@compiled
+def _sum(a: Floats) -> float:
+    """Sum in eight sums side by side: one alone waits for itself at every number."""
+    whole = a.size - a.size % 8
+    s0, s1, s2, s3, s4, s5, s6, s7 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for q in range(0, whole, 8):
+        s0 += a[q]
+        s1 += a[q + 1]
+        s2 += a[q + 2]
+        s3 += a[q + 3]
+        s4 += a[q + 4]
+        s5 += a[q + 5]
+        s6 += a[q + 6]
+        s7 += a[q + 7]
+    for q in range(whole, a.size):
+        s0 += a[q]
+    return ((s0 + s1) + (s2 + s3)) + ((s4 + s5) + (s6 + s7))
+
+
+@compiled
+def _mean_of_small(a: Floats, size: Floats, far: float, chosen: Floats, number: Floats) -> float:
+    """Mean of the numbers in `a` whose `size` is at most `far`; the last two are work space."""
+    for q in range(a.size):
+        number[q] = 1.0 if size[q] <= far else 0.0
+    for q in range(a.size):
+        chosen[q] = a[q] * number[q]
+    return _sum(chosen) / max(_sum(number), 1.0)
+
+
+@compiled
+def _border(frame: NDArray[Any], work: Floats) -> tuple[float, float]:
+    """Mean of the outermost pixels, and the variance of one, without those that depart by much.
+
+    The variance is that of neighbours' differences, which a background's slope hardly enters.
+    """
+    height, width = frame.shape
+    around = work[0]
+    for j in range(width):
+        around[j] = frame[0, j]
+        around[width + j] = frame[height - 1, j]
+    for i in range(height):
+        around[2 * width + i] = frame[i, 0]
+        around[2 * width + height + i] = frame[i, width - 1]
+    count = 2 * (width + height)
+    values, size, chosen, number = around[:count], work[1, :count], work[2, :count], work[3, :count]
+    mean = _sum(values) / count
+    for _ in range(2):
+        for q in range(count):
+            size[q] = abs(values[q] - mean)
+        mean = _mean_of_small(values, size, _FAR * _sum(size) / count, chosen, number)
+    squares = work[4, : count - 1]
+    size = size[: count - 1]
+    for q in range(count - 1):
+        e = values[q + 1] - values[q]
+        squares[q] = e * e
+        size[q] = abs(e)
+    far = _FAR * _sum(size) / (count - 1)
+    variance = 0.0
+    for _ in range(3):
+        variance = _mean_of_small(squares, size, far, chosen[: count - 1], number[: count - 1])
+        far = _CLIP * math.sqrt(variance)
+    return mean, 0.5 * variance
+
+
+@compiled
+def _erode(frame: NDArray[Any], least: NDArray[Any], maxima: NDArray[Any]) -> None:
+    """Write the least of each 2 x 2 block to `least` (H - 1, W - 1), rows' largest to `maxima`."""
+    height, width = frame.shape
+    for i in range(height - 1):
+        upper, lower, out = frame[i], frame[i + 1], least[i]
+        for j in range(width - 1):
+            a = min(lower[j], upper[j])
+            b = min(lower[j + 1], upper[j + 1])
+            out[j] = min(b, a)
+        largest = out[0]
+        for j in range(out.size):
+            largest = max(largest, out[j])
+        maxima[i] = largest
+
+
+@compiled
+def _root(parents: NDArray[np.int64], label: int) -> int:
+    while parents[label] != label:
+        label = parents[label]
+    return label
+
+
+@compiled
+def _add_run(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    row: NDArray[Any], i: int, first: int, end: int, base: float, cut: float, sums: Floats
+) -> None:
+    """Add the blocks ``first .. end - 1`` of row i to a region.
+
+    `sums`: light, light above the cut and its x and y; blocks, their x, y, x^2, y^2 and x y;
+    first and last column, first and last row.
+    """
+    light, above, above_x = 0.0, 0.0, 0.0
+    for j in range(first, end):
+        u = float(row[j])
+        light += u - base
+        above += u - cut
+        above_x += j * (u - cut)
+    n = float(end - first)
+    x = 0.5 * n * (first + end - 1)
+    sums[0] += light
+    sums[1] += above
+    sums[2] += above_x
+    sums[3] += i * above
+    sums[4] += n
+    sums[5] += x
+    sums[6] += i * n
+    sums[7] += x * x / n + n * (n * n - 1.0) / 12.0
+    sums[8] += i * i * n
+    sums[9] += i * x
+    sums[10] = min(sums[10], first)
+    sums[11] = max(sums[11], end - 1)
+    sums[12] = min(sums[12], i)
+    sums[13] = max(sums[13], i)
+
+
+@compiled
+def _regions(  # noqa: C901, PLR0912, PLR0917 - one scan, its cases
+    least: NDArray[Any],
+    maxima: NDArray[Any],
+    base: float,
+    cut: float,
+    runs: NDArray[np.int64],
+    parents: NDArray[np.int64],
+    sums: Floats,
+) -> int:
+    """Gather the connected regions above a cut; return how many labels were given, -1 for too many.
+
+    Runs of lit blocks are joined with those of the row above that they touch. `runs` (2, 3, W) is
+    work space. A label whose parent is another one has handed its sums over.
+    """
+    height, width = least.shape
+    labels, above = 0, 0
+    lit = np.zeros(width + 1, dtype=np.uint8)
+    for i in range(height):
+        if not maxima[i] > cut:
+            above = 0
+            continue
+        old, new = i % 2, 1 - i % 2
+        row = least[i]
+        for j in range(width):
+            lit[j] = 1 if row[j] > cut else 0
+        here, p, j = 0, 0, 0
+        while True:
+            while j < width and lit[j] == 0:
+                j += 1
+            if j == width:
+                break
+            first = j
+            while lit[j] != 0:  # the last one is none
+                j += 1
+            label = -1
+            while p < above and runs[old, 1, p] < first:
+                p += 1
+            q = p
+            while q < above and runs[old, 0, q] <= j:
+                other = _root(parents, runs[old, 2, q])
+                if label < 0:
+                    label = other
+                elif other != label:
+                    parents[other] = label
+                    _join(sums[label], sums[other])
+                q += 1
+            if label < 0:
+                if labels == len(parents):
+                    return -1
+                label = labels
+                labels += 1
+                parents[label] = label
+                sums[label] = 0.0
+                sums[label, 10], sums[label, 11] = np.inf, -np.inf
+                sums[label, 12], sums[label, 13] = np.inf, -np.inf
+            _add_run(row, i, first, j, base, cut, sums[label])
+            runs[new, 0, here], runs[new, 1, here], runs[new, 2, here] = first, j, label
+            here += 1
+        above = here
+    return labels
+
+
+@compiled
+def _join(sums: Floats, other: Floats) -> None:
+    """Add the sums of one region to those of another one."""
+    sums[:10] += other[:10]
+    sums[10], sums[12] = min(sums[10], other[10]), min(sums[12], other[12])
+    sums[11], sums[13] = max(sums[11], other[11]), max(sums[13], other[13])
+
+
+@compiled
+def _compact(s: Floats) -> bool:
+    """Whether a region's blocks lie together as those of an ellipse or a square do."""
+    n = s[4]
+    xx = s[7] / n - (s[5] / n) ** 2 + 1.0 / 12.0
+    yy = s[8] / n - (s[6] / n) ** 2 + 1.0 / 12.0
+    xy = s[9] / n - s[5] * s[6] / (n * n)
+    area: float = 4.0 * math.pi * math.sqrt(max(xx * yy - xy * xy, 0.0))
+    return area <= _LOOSE * max(float(n), 4.0)
+
+
+@compiled
+def find_lights(  # noqa: C901 - one frame, its cases
+    frames: NDArray[Any], unusable: NDArray[np.bool_], out: Floats
+) -> None:
+    """Write to `out` (N, 9) where the one light of a frame is; NaN rows where there is not one.
+
+    Columns: x, y of its blocks' light above the cut, half its extent along x and y, background,
+    variance of a dark pixel, light of the brightest block, and mean light of the lit ones over it;
+    last, zero, or why there is none: `DARK`, `SEVERAL` or `EDGE`.
+    """
+    count, height, width = frames.shape
+    least = np.empty((height - 1, width - 1), dtype=frames.dtype)
+    maxima = np.empty(height - 1, dtype=frames.dtype)
+    work = np.empty((5, 2 * (height + width)))
+    runs = np.empty((2, 3, width), dtype=np.int64)
+    parents = np.empty(_MOST, dtype=np.int64)
+    sums = np.empty((_MOST, _SUMS))
+    for k in range(count):
+        out[k] = np.nan
+        out[k, 8] = DARK
+        if unusable[k]:
+            continue
+        frame = frames[k]
+        _erode(frame, least, maxima)
+        base, noise = _border(frame, work)
+        peak = float(maxima.max()) - base
+        sigma = math.sqrt(noise)
+        if not peak > _SEEN * sigma:
+            continue
+        cut = base + max(_CUT * peak, _LIT * sigma)
+        labels = _regions(least, maxima, base, cut, runs, parents, sums)
+        best, total = -1, 0.0
+        if labels < 0:
+            continue
+        for label in range(labels):
+            if parents[label] == label:
+                total += sums[label, 0]
+                if best < 0 or sums[label, 0] > sums[best, 0]:
+                    best = label
+        if best < 0:
+            continue
+        s = sums[best]
+        inside = s[10] > 0 and s[12] > 0 and s[11] < width - 2 and s[13] < height - 2
+        alone = total - s[0] <= _RIVAL * s[0]
+        if not (s[4] >= 2 and s[1] > 0.0):
+            continue
+        if not inside or not alone or not _compact(s):
+            out[k, 8] = EDGE if not inside else SEVERAL
+            continue
+        # A block's middle is half a pixel beyond its first pixel.
+        x, y = s[2] / s[1] + 0.5, s[3] / s[1] + 0.5
+        out[k, 0] = x
+        out[k, 1] = y
+        out[k, 2] = max(x - s[10], s[11] + 1.0 - x)
+        out[k, 3] = max(y - s[12], s[13] + 1.0 - y)
+        out[k, 4] = base
+        out[k, 5] = noise
+        out[k, 6] = peak
+        out[k, 7] = s[0] / (s[4] * peak)
+        out[k, 8] = 0.0

@@ -1,0 +1,107 @@
+"""`measure` on everything discovered: agrees with `extract`, takes one sample, takes a mask."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from algorithms.contract import Observation
+from algorithms.discovery import discover_extractors
+from algorithms.extractors.frames.centroid import BasicCentroid
+from algorithms.measurement import Doubt, Measurement, without_bad
+
+EXTRACTORS = discover_extractors()
+
+
+@pytest.fixture(params=EXTRACTORS)
+def case(request, design_for, observations_for):
+    cls = EXTRACTORS[request.param]
+    return cls.for_sensor(design_for(cls)), observations_for(cls)
+
+
+def test_features_are_those_of_extract_and_doubts_say_what_is_missing(case):
+    extractor, observations = case
+    observations = observations.copy()
+    observations[1] = 0
+    found = extractor.measure(observations)
+    expected = extractor.extract(observations)
+    np.testing.assert_array_equal(found.features, expected, strict=True)
+    n, f = expected.shape
+    assert found.covariance.shape == (n, f, f)
+    assert found.covariance.dtype == np.float64
+    assert found.doubts.shape == (n,)
+    missing = np.isnan(expected).any(axis=1)
+    assert missing[1]
+    assert (found.doubts[missing] != 0).all()
+    assert np.isnan(found.covariance[missing]).all()
+    stated = ~np.isnan(found.covariance).any(axis=(1, 2))
+    assert (np.linalg.eigvalsh(found.covariance[stated]) > 0).all()
+
+
+def test_a_single_sample_is_a_batch_of_one(case):
+    extractor, observations = case
+    one, batch = extractor.measure(observations[0]), extractor.measure(observations[:1])
+    np.testing.assert_array_equal(one.features, batch.features)
+    np.testing.assert_array_equal(one.covariance, batch.covariance)
+    np.testing.assert_array_equal(one.doubts, batch.doubts)
+
+
+def test_bad_pixels_do_not_count_or_the_mask_is_refused(case):
+    extractor, observations = case
+    shape = observations.shape[1:]
+    bad = np.zeros(shape, dtype=np.bool_)
+    bad.flat[3] = True
+    if extractor.about.observation not in {Observation.FRAMES, Observation.PROFILES}:
+        with pytest.raises(ValueError, match="got a mask"):
+            extractor.measure(observations, bad)
+        return
+    hot = observations.copy()
+    hot.reshape(len(hot), -1)[:, 3] = 255
+    np.testing.assert_array_equal(
+        extractor.measure(hot, bad).features, extractor.measure(observations, bad).features
+    )
+    none = np.zeros(shape, dtype=np.bool_)
+    np.testing.assert_array_equal(
+        extractor.measure(observations, none).features, extractor.extract(observations)
+    )
+    for wrong, said in (
+        (bad[1:], "shape"),
+        (bad[None], "shape"),
+        (bad.astype(np.uint8), "boolean"),
+        (np.ones(shape, dtype=np.bool_), "leave"),
+    ):
+        with pytest.raises(ValueError, match=said):
+            extractor.measure(observations, wrong)
+
+
+def test_wrong_observations_are_refused_as_by_extract(case):
+    extractor, observations = case
+    for wrong in (3.0, observations[None], observations[:0], observations.astype(str), None):
+        with pytest.raises(ValueError, match=r"got|hold|empty"):
+            extractor.measure(wrong)
+
+
+def test_a_bad_pixel_becomes_the_median_of_its_good_neighbours():
+    frame = np.arange(25.0).reshape(5, 5)
+    bad = np.zeros((5, 5), dtype=np.bool_)
+    bad[2, 2] = bad[2, 3] = bad[0, 0] = True
+    broken = np.where(bad, np.nan, frame)[None]
+    found = without_bad(broken, bad, "any")[0]
+    assert found[2, 2] == np.median([6, 7, 8, 11, 16, 17, 18])
+    assert found[0, 0] == np.median([1, 5, 6])
+    np.testing.assert_array_equal(found[~bad], frame[~bad])
+    assert np.isnan(broken[0][bad]).all()
+
+
+def test_a_nan_under_the_mask_is_no_reason_to_find_nothing():
+    frame = np.zeros((5, 5))
+    frame[2, 3], frame[0, 0] = 7.0, np.nan
+    bad = np.isnan(frame)
+    found = BasicCentroid().measure(frame, bad)
+    np.testing.assert_array_equal(found.features, [[3.0, 2.0]])
+    assert Doubt(BasicCentroid().measure(frame).doubts[0]) == Doubt.NO_SPOT
+
+
+def test_shapes_that_do_not_agree_are_refused():
+    with pytest.raises(ValueError, match="covariance"):
+        Measurement(np.zeros((2, 2)), np.zeros((2, 2)), np.zeros(2, dtype=np.int64))
