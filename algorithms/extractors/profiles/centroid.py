@@ -319,7 +319,7 @@ def _shifts(slits: SlitLines, lines: Floats, middle: float, middles: Middles) ->
     floors = dark_level(lines)
     if len(slits.tangents) == 1:
         return (middles(lines, floors) - middle)[:, None]
-    shifts = slits.locate(lines, floors, smooth=True)
+    shifts = slits.locate(lines, floors)
     spots = len(slits.slits)
     for _ in range(_MOVES + 1):
         windows, starts = slits.windows(lines, shifts)
