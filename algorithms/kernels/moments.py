@@ -267,7 +267,7 @@ def row_maxima(frames: NDArray[Any], out: NDArray[Any]) -> None:
 
 
 def dark_levels(frames: NDArray[Any], deviations: float) -> Floats:
-    """Return what dark pixels of each frame stay below (N,), whole for integers of 8 or 16 bits.
+    """Return what dark pixels of each frame stay below (N,).
 
     Each of the frame's four sides tells a mean and a standard deviation; the second smallest of
     the four levels ``mean + deviations s`` counts, so that light or a hot pixel on one or two

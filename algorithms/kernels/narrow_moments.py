@@ -127,10 +127,10 @@ def _row_above(row: NDArray[Any], deviations: float) -> float:
 
 
 @compiled
-def _maxima_and_dark(frame: NDArray[Any], deviations: float, maxima: NDArray[Any]) -> int:
+def _maxima_and_dark(frame: NDArray[Any], deviations: float, maxima: NDArray[Any]) -> float:
     """Write each row's largest value to `maxima` (H,) and return the frame's dark level.
 
-    Of what the four sides tell the second smallest, rounded down to a whole code.
+    Of what the four sides tell the second smallest.
     """
     height, width = frame.shape
     left, left_squares, right, right_squares = 0, 0, 0, 0
@@ -152,48 +152,55 @@ def _maxima_and_dark(frame: NDArray[Any], deviations: float, maxima: NDArray[Any
     second = min(second, max(side, least))
     least = min(least, side)
     side = _above(right, right_squares, height, deviations)
-    return math.floor(min(second, max(side, least)))
+    return min(second, max(side, least))
 
 
 @compiled
 def dark_levels(frames: NDArray[Any], deviations: float, out: NDArray[np.float64]) -> None:
-    """Write the dark level of each frame, rounded down to whole codes, to `out` (N,)."""
+    """Write the dark level of each frame to `out` (N,)."""
     maxima = np.empty(frames.shape[1], frames.dtype)
     for k in range(frames.shape[0]):
         out[k] = _maxima_and_dark(frames[k], deviations, maxima)
 
 
 @compiled
-def light_above_dark(frames: NDArray[Any], deviations: float, out: Sums) -> None:
-    """Sum over the pixels above each frame's dark level, reading it once.
+def light_above_dark(
+    frames: NDArray[Any], deviations: float, levels: NDArray[np.float64], out: Sums
+) -> None:
+    """Sum over the pixels above each frame's dark level, and write that to `levels` (N,).
 
-    For ``u = max(I - level, 0)``, the level rounded down to whole codes, `out` (N, 3) receives
-    ``sum(u), sum(x u), sum(y u)``.
+    For ``u = I - floor(level)`` and the pixels with ``u > 0``, `out` (N, 6) receives
+    ``sum(u), sum(x u), sum(y u), count, sum(x), sum(y)``.
     """
     count, height, width = frames.shape
     column = np.empty(width, np.uint32)
+    lit = np.empty(width, np.uint32)
     maxima = np.empty(height, frames.dtype)
     for k in range(count):
-        base = np.int32(_maxima_and_dark(frames[k], deviations, maxima))
+        levels[k] = _maxima_and_dark(frames[k], deviations, maxima)
+        base = np.int32(math.floor(levels[k]))
         column[:] = 0
-        total_y = 0
+        lit[:] = 0
+        out[k] = 0
         for i in range(height):
             if maxima[i] > base:
                 row = frames[k, i]
                 light = np.uint32(0)
+                pixels = np.uint32(0)
                 for j in range(width):
                     u = np.uint32(max(np.int32(row[j]) - base, 0))
+                    one = np.uint32(min(u, 1))
                     light = np.uint32(light + u)
+                    pixels = np.uint32(pixels + one)
                     column[j] = np.uint32(column[j] + u)
-                total_y += i * np.int64(light)
-        total = 0
-        total_x = 0
+                    lit[j] = np.uint32(lit[j] + one)
+                out[k, 2] += i * np.int64(light)
+                out[k, 5] += i * np.int64(pixels)
         for j in range(width):
-            total += np.int64(column[j])
-            total_x += j * np.int64(column[j])
-        out[k, 0] = total
-        out[k, 1] = total_x
-        out[k, 2] = total_y
+            out[k, 0] += np.int64(column[j])
+            out[k, 1] += j * np.int64(column[j])
+            out[k, 3] += np.int64(lit[j])
+            out[k, 4] += j * np.int64(lit[j])
 
 
 def narrow(frames: NDArray[Any]) -> bool:

@@ -181,9 +181,9 @@ class ThresholdedCentroid(Extractor):
         frames = as_frames(observations)
         shape = frames.shape[1:]
         if self.threshold is None and self.window_px is None and narrow_moments.narrow(frames):
-            light = np.empty((len(frames), 3), dtype=np.int64)
-            narrow_moments.light_above_dark(frames, _DEVIATIONS, light)
-            return quotient_rows(light[:, 1:].astype(np.float64), light[:, 0], light[:, 0] > 0)
+            sums, cut = np.empty((len(frames), 6), dtype=np.int64), np.empty(len(frames))
+            narrow_moments.light_above_dark(frames, _DEVIATIONS, cut, sums)
+            return _inside(_ratio(sums, cut - np.floor(cut)), _usable(frames), shape)
         zero = moments.zero_of(frames)
         maxima = np.empty(frames.shape[:2], dtype=frames.dtype)
         moments.row_maxima(frames, maxima)

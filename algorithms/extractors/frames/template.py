@@ -53,6 +53,13 @@ class TemplateMatch(Extractor):
     binarise : bool
         Compare with the lit pixels, as published. False goes on from there to where the outline
         holds most of the grey frame's light: ours, and some eight times finer on a clean disc.
+    candidates : {"search", "brightest"}
+        Positions compared. The published ones are the brightest pixels: whole numbers, which noise
+        chooses within even light, though the survey counts the method among the sub-pixel ones.
+    most_different : float or None
+        Pixels in which lit pixels and template may differ, as a fraction of the template's: beyond,
+        the light is taken for another shape, two spots or noise. None, as published, asks for
+        nothing.
 
     Raises
     ------

@@ -49,7 +49,7 @@ def bctm_as_printed(image, mu):
 def mu_of_the_noise(image):
     """The fraction that the survey leaves open: dark and six deviations over the maximum.
 
-    Of the frame's four sides the one with the second least; whole codes stay whole.
+    Of the frame's four sides the one with the second least.
     """
     levels = []
     for side in (image[0], image[-1], image[:, 0], image[:, -1]):
@@ -57,7 +57,7 @@ def mu_of_the_noise(image):
         mean = sum(values) / len(values)
         squares = sum((value - mean) ** 2 for value in values)
         levels.append(mean + 6.0 * math.sqrt(squares / len(values)))
-    return math.floor(sorted(levels)[1]) / float(image.max())
+    return sorted(levels)[1] / float(image.max())
 
 
 def ifm_as_printed(image):
