@@ -181,26 +181,38 @@ def light_above_dark(
         base = np.int32(math.floor(levels[k]))
         column[:] = 0
         lit[:] = 0
-        out[k] = 0
+        total_y = 0
+        pixels_y = 0
         for i in range(height):
             if maxima[i] > base:
                 row = frames[k, i]
                 light = np.uint32(0)
-                pixels = np.uint32(0)
                 for j in range(width):
                     u = np.uint32(max(np.int32(row[j]) - base, 0))
-                    one = np.uint32(min(u, 1))
                     light = np.uint32(light + u)
-                    pixels = np.uint32(pixels + one)
                     column[j] = np.uint32(column[j] + u)
+                pixels = np.uint32(0)
+                for j in range(width):
+                    one = np.uint32(np.int32(row[j]) > base)
+                    pixels = np.uint32(pixels + one)
                     lit[j] = np.uint32(lit[j] + one)
-                out[k, 2] += i * np.int64(light)
-                out[k, 5] += i * np.int64(pixels)
+                total_y += i * np.int64(light)
+                pixels_y += i * np.int64(pixels)
+        total = 0
+        total_x = 0
+        pixels_all = 0
+        pixels_x = 0
         for j in range(width):
-            out[k, 0] += np.int64(column[j])
-            out[k, 1] += j * np.int64(column[j])
-            out[k, 3] += np.int64(lit[j])
-            out[k, 4] += j * np.int64(lit[j])
+            total += np.int64(column[j])
+            total_x += j * np.int64(column[j])
+            pixels_all += np.int64(lit[j])
+            pixels_x += j * np.int64(lit[j])
+        out[k, 0] = total
+        out[k, 1] = total_x
+        out[k, 2] = total_y
+        out[k, 3] = pixels_all
+        out[k, 4] = pixels_x
+        out[k, 5] = pixels_y
 
 
 def narrow(frames: NDArray[Any]) -> bool:

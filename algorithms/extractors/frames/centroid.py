@@ -183,7 +183,7 @@ class ThresholdedCentroid(Extractor):
         if self.threshold is None and self.window_px is None and narrow_moments.narrow(frames):
             sums, cut = np.empty((len(frames), 6), dtype=np.int64), np.empty(len(frames))
             narrow_moments.light_above_dark(frames, _DEVIATIONS, cut, sums)
-            return _inside(_ratio(sums, cut - np.floor(cut)), _usable(frames), shape)
+            return _ratio(sums, cut - np.floor(cut))  # without contrast there is no light
         zero = moments.zero_of(frames)
         maxima = np.empty(frames.shape[:2], dtype=frames.dtype)
         moments.row_maxima(frames, maxima)
