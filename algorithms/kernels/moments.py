@@ -7,6 +7,7 @@ rest. Windows are half-open ``(first row, end row, first column, end column)``, 
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -89,7 +90,7 @@ def _side(values: NDArray[Any], deviations: float) -> float:
         total += more
         squares += more * more
     mean = total / values.size
-    return first + mean + deviations * np.sqrt(max(squares / values.size - mean * mean, 0.0))
+    return first + mean + deviations * math.sqrt(max(squares / values.size - mean * mean, 0.0))
 
 
 @compiled

@@ -75,7 +75,7 @@ def whole_moments(frames: NDArray[Any], reach: int, out: Sums) -> None:
     for k in range(count):
         column[:] = 0
         columns[:] = 0
-        total_y = 0
+        total_y: Any = 0
         for i in range(height):
             row = frames[k, i]
             light = np.uint32(0)
@@ -93,8 +93,8 @@ def whole_moments(frames: NDArray[Any], reach: int, out: Sums) -> None:
             if boxes < side:
                 for j in range(width):
                     columns[j] -= (side - boxes) * np.int64(row[j])
-        total = 0
-        total_x = 0
+        total: Any = 0
+        total_x: Any = 0
         for j in range(width):
             boxes, centres = _boxes_over(j, reach, width)
             along = columns[j] + side * np.int64(column[j])
@@ -117,8 +117,8 @@ def _above(total: int, squares: int, pixels: int, deviations: float) -> float:
 
 @compiled
 def _row_above(row: NDArray[Any], deviations: float) -> float:
-    total = 0
-    squares = 0
+    total: Any = 0
+    squares: Any = 0
     for j in range(row.size):
         u = np.int64(row[j])
         total += u
@@ -133,7 +133,10 @@ def _maxima_and_dark(frame: NDArray[Any], deviations: float, maxima: NDArray[Any
     Of what the four sides tell the second smallest.
     """
     height, width = frame.shape
-    left, left_squares, right, right_squares = 0, 0, 0, 0
+    left: Any = 0
+    left_squares: Any = 0
+    right: Any = 0
+    right_squares: Any = 0
     for i in range(height):
         row = frame[i]
         largest = row[0]
@@ -181,14 +184,15 @@ def light_above_dark(
         base = np.int32(math.floor(levels[k]))
         column[:] = 0
         lit[:] = 0
-        total_y = 0
-        pixels_y = 0
+        total_y: Any = 0
+        pixels_y: Any = 0
         for i in range(height):
             if maxima[i] > base:
                 row = frames[k, i]
                 light = np.uint32(0)
                 for j in range(width):
-                    u = np.uint32(max(np.int32(row[j]) - base, 0))
+                    over: Any = np.int32(row[j]) - base
+                    u = np.uint32(max(over, 0))
                     light = np.uint32(light + u)
                     column[j] = np.uint32(column[j] + u)
                 pixels = np.uint32(0)
@@ -198,10 +202,10 @@ def light_above_dark(
                     lit[j] = np.uint32(lit[j] + one)
                 total_y += i * np.int64(light)
                 pixels_y += i * np.int64(pixels)
-        total = 0
-        total_x = 0
-        pixels_all = 0
-        pixels_x = 0
+        total: Any = 0
+        total_x: Any = 0
+        pixels_all: Any = 0
+        pixels_x: Any = 0
         for j in range(width):
             total += np.int64(column[j])
             total_x += j * np.int64(column[j])
