@@ -114,7 +114,7 @@ class PeakPositionEstimate(SlitLines):
         studies=("Enright2007a",),
         labels=("fe:ppe", "alg:PPE"),
         origin="survey",
-        version=2,
+        version=3,
         needs=NEEDS,
         observation=Observation.PROFILES,
         kind=FeatureKind.SPOT,
