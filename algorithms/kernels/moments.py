@@ -7,6 +7,7 @@ rest. Windows are half-open ``(first row, end row, first column, end column)``, 
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -14,13 +15,27 @@ from numpy.typing import NDArray
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
+from algorithms.kernels import narrow_moments
 
 Sums = NDArray[Any]
 Windows = NDArray[np.int64]
 
 
 @compiled
-def row_maxima(frames: NDArray[Any], out: NDArray[Any]) -> None:
+def _whole_row_maxima(frames: NDArray[Any], out: NDArray[Any]) -> None:
+    """Write each row's largest integer to `out` (N, H): many at a time."""
+    count, height, width = frames.shape
+    for k in range(count):
+        for i in range(height):
+            row = frames[k, i]
+            largest = row[0]
+            for j in range(width):
+                largest = max(largest, row[j])
+            out[k, i] = largest
+
+
+@compiled
+def _real_row_maxima(frames: NDArray[Any], out: NDArray[Any]) -> None:
     """Write each row's largest value to `out` (N, H); meaningless where a frame is unusable."""
     count, height, width = frames.shape
     whole = width - width % 4
@@ -62,6 +77,33 @@ def unusable(frames: NDArray[Any], real: bool, out: NDArray[np.bool_]) -> None:
                 for j in range(width):
                     broken |= not np.isfinite(frames[k, i, j])
         out[k] = flat or broken != 0
+
+
+@compiled
+def _side(values: NDArray[Any], deviations: float) -> float:
+    """Mean of a frame's side and so many standard deviations more."""
+    first = float(values[0])
+    total = 0.0
+    squares = 0.0
+    for j in range(values.size):
+        more = float(values[j]) - first
+        total += more
+        squares += more * more
+    mean = total / values.size
+    return first + mean + deviations * math.sqrt(max(squares / values.size - mean * mean, 0.0))
+
+
+@compiled
+def _dark_levels(frames: NDArray[Any], deviations: float, out: Floats) -> None:
+    levels = np.empty(4)
+    for k in range(frames.shape[0]):
+        frame = frames[k]
+        levels[0] = _side(frame[0], deviations)
+        levels[1] = _side(frame[-1], deviations)
+        levels[2] = _side(frame[:, 0], deviations)
+        levels[3] = _side(frame[:, -1], deviations)
+        levels.sort()
+        out[k] = levels[1]
 
 
 @compiled
@@ -202,7 +244,7 @@ def box_moments(frames: NDArray[Any], windows: Windows, reach: int, zero: Any, o
 
 
 @compiled
-def profiles(frames: NDArray[Any], zero: Any, rows: Sums, columns: Sums) -> None:
+def _wide_profiles(frames: NDArray[Any], zero: Any, rows: Sums, columns: Sums) -> None:
     """Write the sums of each row to `rows` (N, H) and of each column to `columns` (N, W)."""
     count, height, width = frames.shape
     for k in range(count):
@@ -215,6 +257,37 @@ def profiles(frames: NDArray[Any], zero: Any, rows: Sums, columns: Sums) -> None
                 total += row[j]
                 column[j] += row[j]
             rows[k, i] = total
+
+
+def row_maxima(frames: NDArray[Any], out: NDArray[Any]) -> None:
+    """Write each row's largest value to `out` (N, H); meaningless where a frame is unusable."""
+    if frames.dtype.kind == "f":
+        _real_row_maxima(frames, out)
+    else:
+        _whole_row_maxima(frames, out)
+
+
+def dark_levels(frames: NDArray[Any], deviations: float) -> Floats:
+    """Return what dark pixels of each frame stay below (N,).
+
+    Each of the frame's four sides tells a mean and a standard deviation; the second smallest of
+    the four levels ``mean + deviations s`` counts, so that light or a hot pixel on one or two
+    sides does not raise it.
+    """
+    levels = np.empty(len(frames))
+    if narrow_moments.narrow(frames):
+        narrow_moments.dark_levels(frames, deviations, levels)
+    else:
+        _dark_levels(frames, deviations, levels)
+    return levels
+
+
+def profiles(frames: NDArray[Any], zero: Any, rows: Sums, columns: Sums) -> None:
+    """Write the sums of each row to `rows` (N, H) and of each column to `columns` (N, W)."""
+    if narrow_moments.narrow(frames):
+        narrow_moments.profiles(frames, rows, columns)
+    else:
+        _wide_profiles(frames, zero, rows, columns)
 
 
 def zero_of(frames: NDArray[Any]) -> Any:

@@ -45,6 +45,7 @@ class EventCentroid(Extractor):
         the pixels that a line touches, penumbra included, wherever it falls on them.
     hot : float
         Events with more than this many times the light of a lit pixel are left out: hot pixels.
+        Ours; the published sum takes all, as infinity does.
 
     Raises
     ------
@@ -55,12 +56,14 @@ class EventCentroid(Extractor):
     -----
     Implements: alg:ECM (fe:escm, Farian2022): ``X = sum(x / (t - t_reset)) / sum(1 / (t -
     t_reset))``, for each line over the events near it and away from the other line. Times count
-    from the reset (t_reset = 0). Survey prints one axis of a profile sensor and no way to tell
-    the L's lines apart; here the column and the row with most light start a window of the
-    line's width that is moved onto its own mean until it stays. A lit pixel's light is the third
-    quartile of all. Pixels in little light at a line's edge that have not fired when the array
-    is reset are missing in the mean; taking the last event's light off all others, as thresholded
-    centroids do, doubled the error.
+    from the reset (t_reset = 0). Survey prints one axis of a profile sensor and no way to tell the
+    L's lines apart; here the column and the row with most light start a window of the line's width
+    that is moved onto its own mean until it stays. A lit pixel's light is that of the third
+    quartile along lines, and in a spot of width w that of the brightest pixel after ``pi (w / 2 -
+    sqrt(1/2))^2 / 2`` others: half of those that the spot covers for sure (one at least, and none
+    below 2.2 px, where a single pixel may have all the light). Pixels in little light at a line's
+    edge that have not fired when the array is reset are missing in the mean; taking the last
+    event's light off all others, as thresholded centroids do, doubled the error.
 
     Shapes: events (N, M, 3) ``x_px, y_px, t_us``, rows of NaN after the last, to
     ``(x_px, y_px)`` (N, 2), pixel centres at integers.
@@ -91,6 +94,7 @@ class EventCentroid(Extractor):
         labels=("fe:escm", "alg:ECM"),
         origin="survey",
         needs=("pixel_pitch_mm",),
+        version=2,
         observation=Observation.EVENTS,
         kind=FeatureKind.SPOT,
     )

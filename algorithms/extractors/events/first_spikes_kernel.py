@@ -22,7 +22,10 @@ _MOVES = 10
 _SETTLED = 1e-9
 #: Share of the weight that lines or spot must hold, else the events are not theirs.
 _LEAST_SHARE = 0.5
-#: Light of fully lit pixels is taken from this quantile of the weights.
+#: Width of a round spot, px, from which on its second brightest pixel has half the light of the
+#: brightest, wherever it falls on them.
+_SHARED = 2.2
+#: Light of a line's lit pixels is taken from this quantile of the weights.
 _LIT = 0.75
 
 
@@ -51,11 +54,12 @@ def counted(events: Floats) -> NDArray[np.int64]:
 
 
 @compiled
-def _weights(events: Floats, count: int, hot: float, out: Floats) -> bool:
+def _weights(events: Floats, count: int, hot: float, rank: int, out: Floats) -> bool:
     """Write the light of one sample's pixels, the inverse of their times, to `out` (M,).
 
-    Zero where a time is not positive or the light is more than `hot` times that of lit pixels.
-    False where no light is left.
+    Zero where a time is not positive or the light is more than `hot` times that of a lit pixel,
+    which is the brightest after `rank` others, or the third quartile's where that is -1. False
+    where no light is left.
     """
     valid = 0
     for m in range(count):
@@ -65,7 +69,7 @@ def _weights(events: Floats, count: int, hot: float, out: Floats) -> bool:
     if valid == 0:
         return False
     ordered = np.sort(out[:count])[count - valid :]
-    lit = ordered[int(_LIT * (valid - 1))]
+    lit = ordered[int(_LIT * (valid - 1)) if rank < 0 else max(valid - 1 - rank, 0)]
     left = 0.0
     for m in range(count):
         if not out[m] <= hot * lit:
@@ -143,7 +147,7 @@ def line_means(  # noqa: PLR0917 - Numba takes no keyword-only ones
         out[k, 0] = np.nan
         out[k, 1] = np.nan
         count = counts[k]
-        if count < 1 or not _weights(events[k], count, hot, weights):
+        if count < 1 or not _weights(events[k], count, hot, -1, weights):
             continue
         x = _winner(events[k], count, 0, weights, side)
         y = _winner(events[k], count, 1, weights, side)
@@ -173,11 +177,16 @@ def spot_means(  # noqa: PLR0917 - Numba takes no keyword-only ones
     NaN where these hold less than half of the light.
     """
     weights = np.empty(events.shape[1])
+    # Pixels that lie in a round spot as a whole: those whose middle is half a diagonal inside its
+    # rim. Half of them, as the spot narrows off the axis, tell what light a lit pixel has. A
+    # narrower spot may light one pixel only, which leaves open what is hot.
+    inside = max(0.5 * width - math.sqrt(0.5), 0.0)
+    rank = max(int(0.5 * math.pi * inside * inside), 1) if width > _SHARED else 0
     for k in range(events.shape[0]):
         out[k, 0] = np.nan
         out[k, 1] = np.nan
         count = counts[k]
-        if count < 1 or not _weights(events[k], count, hot, weights):
+        if count < 1 or not _weights(events[k], count, hot, rank, weights):
             continue
         side = max(round(width), 1)
         x = _winner(events[k], count, 0, weights, side)

@@ -11,9 +11,6 @@ from numpy.typing import ArrayLike
 from algorithms.contract import AboutExtractor, Extractor, FeatureKind, Floats, Observation
 from algorithms.inputs import as_frames
 
-#: Window moves after which a spot is given up: a whole spot settles in two or three.
-_MOVES = 10
-
 
 @dataclass(frozen=True)
 class DoubleBalance(Extractor):
@@ -23,16 +20,27 @@ class DoubleBalance(Extractor):
     centre column, above and below its centre row, differs by less than that column or row would
     change it: the spot's median, found with additions and one division.
 
+    Parameters
+    ----------
+    moves : int
+        Windows tried before a spot is given up, at least 0: a whole spot settles in two or three.
+        0 leaves the window on the brightest pixel, as the pseudocode does.
+
+    Raises
+    ------
+    ValueError
+        If `moves` is negative.
+
     Notes
     -----
     Implements: alg:DBCM (fe:dbcm, Xie2014, deBoer2013): with S_A ... S_E the sums of the window's
     columns 1 | 9 | 1 | 9 | 1, ``x_c = x_ROI + (S_D - S_B) / (2 (S_C - S_A))``; y with the rows.
     Printed on the assumption S_A = S_E; their mean is taken here, which is that on a dark
     background and halves its noise. Survey counts the columns from 2; corrected because the five
-    areas fill 21. The printed threshold moves no maximum and is left out. Of equal brightest
-    pixels the first starts. Survey leaves the spot off-centre; here the window is moved by the
-    rounded offset until it stays. Pixels of the window outside the frame count as the mean of
-    the rim inside.
+    areas fill 21. The printed threshold moves no maximum and is left out. Of equal brightest pixels
+    the first starts. Survey's pseudocode leaves the spot off-centre, its words track it over
+    successive measurements: here the window is moved by the rounded offset until it stays. Pixels
+    of the window outside the frame count as the mean of the rim inside.
 
     Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers.
 
@@ -67,6 +75,12 @@ class DoubleBalance(Extractor):
         kind=FeatureKind.SPOT,
     )
 
+    moves: int = 10
+
+    def __post_init__(self) -> None:
+        if self.moves < 0:
+            raise ValueError(f"{self.about.name}: moves must be at least 0; got {self.moves!r}")
+
     def extract(self, observations: ArrayLike) -> Floats:
         """Positions (N, 2) in frames (N, H, W); ValueError on wrong input."""
         from algorithms.extractors.frames import balance_kernel  # noqa: PLC0415 - Numba, at first use
@@ -78,6 +92,7 @@ class DoubleBalance(Extractor):
         unusable = np.empty(len(frames), dtype=np.bool_)
         moments.unusable(frames, frames.dtype.kind == "f", unusable)
         found = np.empty((len(frames), 2))
-        balance_kernel.five_areas(frames, moments.first_brightest(frames, maxima), _MOVES, found)
+        start = moments.first_brightest(frames, maxima)
+        balance_kernel.five_areas(frames, start, self.moves, found)
         found[unusable | ~(maxima.max(axis=1) > 0)] = np.nan
         return found

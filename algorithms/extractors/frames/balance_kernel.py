@@ -83,11 +83,20 @@ def _balance(sums: Floats, first: int, last: int) -> tuple[float, bool]:
 
 
 @compiled
+def _single(sums: Floats) -> float:
+    """Offset that a window's sums tell, px, as printed; NaN where the centre is no brighter."""
+    rise = sums[_HALF] - 0.5 * (sums[0] + sums[2 * _HALF])
+    turned = sums[_HALF + 1 : 2 * _HALF].sum() - sums[1:_HALF].sum()
+    return float(0.5 * turned / rise) if rise > 0.0 else np.nan
+
+
+@compiled
 def five_areas(frames: NDArray[Any], start: Floats, moves: int, out: Floats) -> None:
     """Write the balanced position (x, y) of each frame's spot to `out` (N, 2).
 
     `start` (N, 2) are the pixels of the first windows. A NaN row where the window does not
-    settle within `moves`, or does not hold the whole spot.
+    settle within `moves`, or does not hold the whole spot. Without moves the balance in the first
+    window stands, where its centre is brighter than its ends on both axes.
     """
     count, height, width = frames.shape
     columns = np.empty(2 * _HALF + 1)
@@ -96,6 +105,10 @@ def five_areas(frames: NDArray[Any], start: Floats, moves: int, out: Floats) -> 
         out[k, 0] = np.nan
         out[k, 1] = np.nan
         x, y = int(start[k, 0]), int(start[k, 1])
+        if moves == 0:
+            _window_sums(frames[k], x, y, columns, rows)
+            out[k, 0] = x + _single(columns)
+            out[k, 1] = y + _single(rows)
         for _ in range(moves):
             left, right, top, bottom = _window_sums(frames[k], x, y, columns, rows)
             off_x, whole_x = _balance(columns, left, right)

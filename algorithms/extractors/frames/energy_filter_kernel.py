@@ -37,12 +37,14 @@ def border_level(frame: NDArray[Any]) -> tuple[float, float]:
 def energy_centre(energies: Floats, cut: float, spread: float, centre: Floats) -> int:
     """Write the centroid of what energies exceed a cut by to `centre` (2,); return how many do.
 
-    Zero where they reach the border, are fewer than two, or lie further apart than one spot's:
-    their mean squared distance exceeds `spread` times that of a disc of as many pixels.
+    Zero where they reach the border, are fewer than two, or lie further apart than one spot's: the
+    ellipse of their second moments is more than `spread` times as large as they are. Even light
+    fills its ellipse, however long it is drawn out; two spots leave most of it dark.
     """
     height, width = energies.shape
     light, light_x, light_y = 0.0, 0.0, 0.0
-    pixels, pixels_x, pixels_y, squares = 0, 0, 0, 0
+    pixels, pixels_x, pixels_y = 0, 0, 0
+    squares_x, squares_y, products = 0, 0, 0
     for i in range(height):
         row = energies[i]
         for j in range(width):
@@ -56,11 +58,17 @@ def energy_centre(energies: Floats, cut: float, spread: float, centre: Floats) -
                 pixels += 1
                 pixels_x += j
                 pixels_y += i
-                squares += i * i + j * j
+                squares_x += j * j
+                squares_y += i * i
+                products += i * j
     if pixels < 2:
         return 0
     x, y = pixels_x / pixels, pixels_y / pixels
-    if squares / pixels - x * x - y * y > spread * max(pixels, 3) / (2 * math.pi):
+    extent = 1.0 / 12.0  # of a pixel itself
+    xx = squares_x / pixels - x * x + extent
+    yy = squares_y / pixels - y * y + extent
+    xy = products / pixels - x * y
+    if 4.0 * math.pi * math.sqrt(max(xx * yy - xy * xy, 0.0)) > spread * pixels:
         return 0
     centre[0] = light_x / light
     centre[1] = light_y / light

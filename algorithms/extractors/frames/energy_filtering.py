@@ -20,8 +20,9 @@ from algorithms.contract import (
 from algorithms.extractors.profiles.single_spot import require_one_spot
 from algorithms.inputs import as_frames, require_positive
 
-#: Mean squared distance of the lit pixels, over that of a disc, above which they are not one spot.
-_SPREAD = 3.0
+#: Area of the ellipse of the lit pixels' second moments, over theirs, above which they are not one
+#: spot: one for a filled ellipse, this for two discs 3.2 radii apart.
+_SPREAD = 5.0 / 3.0
 #: Weight of a frame's shift in the mean of late ones: those of some ten frames count.
 _LATE = 0.2
 #: What a chi squared of two degrees of freedom exceeds once in a hundred times.
@@ -64,7 +65,7 @@ class AdaptiveEnergyFilter(Extractor):
 
     Failure: a NaN row for a frame that is dark, without contrast (all dark or all saturated) or
     holds a NaN or infinity, and where the pixels above the threshold are fewer than two, not one
-    compact spot (two spots, a line) or touch the edge (a spot cut by it); noise alone gives NaN.
+    spot (two of them, scattered light) or touch the edge (a spot cut by it); noise alone gives NaN.
     In a sequence a frame that holds a NaN is passed over, and one without a spot ends the mean. A
     drift that hides in the noise leaves a lag, at most about a frame's own error; frames of a
     Sun that moves by some six such errors a frame are better taken alone.
@@ -91,6 +92,7 @@ class AdaptiveEnergyFilter(Extractor):
         taxonomy="None",
         studies=("Bao2022",),
         origin="ours",
+        version=2,
         observation=Observation.FRAMES,
         kind=FeatureKind.SPOT,
     )

@@ -25,8 +25,8 @@ from algorithms.inputs import as_frames, require_positive
 
 Shape = Literal["round", "square"]
 
-#: Pixels that may differ, as a fraction of the template's: half of it missed or as many astray.
-_WORST = 0.5
+Candidates = Literal["search", "brightest"]
+"""``brightest``: the brightest pixels, as printed. ``search``: anywhere, to 1/16 px."""
 
 
 @dataclass(frozen=True)
@@ -53,6 +53,13 @@ class TemplateMatch(Extractor):
     binarise : bool
         Compare with the lit pixels, as published. False goes on from there to where the outline
         holds most of the grey frame's light: ours, and some eight times finer on a clean disc.
+    candidates : {"search", "brightest"}
+        Positions compared. The published ones are the brightest pixels: whole numbers, which noise
+        chooses within even light, though the survey counts the method among the sub-pixel ones.
+    most_different : float or None
+        Pixels in which lit pixels and template may differ, as a fraction of the template's: beyond,
+        the light is taken for another shape, two spots or noise. None, as published, asks for
+        nothing.
 
     Raises
     ------
@@ -66,7 +73,7 @@ class TemplateMatch(Extractor):
     vector does not change the template: parallel light projects a thin aperture onto a plane
     parallel to it in its own size and shape at every incidence, so the template at normal
     incidence serves (what a thick mask shades is left out). The printed candidates are the
-    brightest pixels; here the search walks from the brightest pixel and from the lit pixels'
+    brightest pixels; by default the search walks from the brightest pixel and from the lit pixels'
     mean down to half pixels, and then averages the positions on grids down to 1/16 px that differ
     from the best by at most the template's half width in pixels, some quarter of a pixel's move:
     the difference is a step function of position, and its minimum hangs on a few noisy pixels.
@@ -76,9 +83,9 @@ class TemplateMatch(Extractor):
     Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers.
 
     Failure: a NaN row for a frame that is dark (maximum not above the background), without
-    contrast (all dark or all saturated) or holds a NaN or infinity, where lit pixels and template
-    differ by half of the template (another shape, two spots, noise), and where the template
-    leaves the frame (spot cut by the edge).
+    contrast (all dark or all saturated) or holds a NaN or infinity, and where the template leaves
+    the frame (spot cut by the edge). Another shape, two spots and noise give the place that fits
+    best unseen, unless `most_different` is given.
 
     Cost: 3 operations a pixel, and some 1600 positions of 10 operations a row of the template;
     a grey frame 36 more of 60 operations a row.
@@ -107,6 +114,7 @@ class TemplateMatch(Extractor):
             "aperture_width_mm",
             "aperture_shape",
         ),
+        version=2,
         observation=Observation.FRAMES,
         kind=FeatureKind.SPOT,
     )
@@ -116,9 +124,18 @@ class TemplateMatch(Extractor):
     threshold: float = 0.5
     background: Background = "none"
     binarise: bool = True
+    candidates: Candidates = "search"
+    most_different: float | None = None
 
     def __post_init__(self) -> None:
         require_positive(self.about.name, width_px=self.width_px)
+        if self.most_different is not None:
+            require_positive(self.about.name, most_different=self.most_different)
+        if self.candidates not in get_args(Candidates):
+            raise ValueError(
+                f"{self.about.name}: candidates must be one of {', '.join(get_args(Candidates))}; "
+                f"got {self.candidates!r}"
+            )
         if self.shape not in get_args(Shape):
             raise ValueError(
                 f"{self.about.name}: shape must be one of {', '.join(get_args(Shape))}; "
@@ -163,7 +180,13 @@ class TemplateMatch(Extractor):
         levels[unusable] = np.inf
         found = np.empty((len(frames), 2))
         template_kernel.best_positions(
-            frames, levels, self.width_px / 2.0, self.shape == "square", _WORST, found
+            frames,
+            levels,
+            self.width_px / 2.0,
+            self.shape == "square",
+            np.inf if self.most_different is None else self.most_different,
+            self.candidates == "brightest",
+            found,
         )
         if not self.binarise:
             template_kernel.most_light(frames, self.width_px / 2.0, self.shape == "square", found)

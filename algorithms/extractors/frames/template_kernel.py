@@ -114,15 +114,55 @@ def _middle_of_good(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
+def _search(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    counts: NDArray[np.int32],
+    lit: int,
+    mean: tuple[float, float],
+    peak: tuple[int, int],
+    half: float,
+    square: bool,
+    differences: NDArray[np.int64],
+) -> tuple[float, float, int]:
+    """Walk from the lit pixels' mean and from the brightest, then refine the better place."""
+    x, y, least = _descend(counts, lit, mean[0], mean[1], half, square)
+    other_x, other_y, other = _descend(counts, lit, float(peak[0]), float(peak[1]), half, square)
+    if other < least:
+        x, y, least = other_x, other_y, other
+    for steps, reach in _SEARCHES:
+        x, y, least = _middle_of_good(counts, lit, x, y, half, square, steps, reach, differences)
+    return x, y, least
+
+
+@compiled
+def _best_of_brightest(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    frame: NDArray[Any], peak: Any, counts: NDArray[np.int32], lit: int, half: float, square: bool
+) -> tuple[float, float, int]:
+    """First of the brightest pixels at which the difference is least, and that."""
+    best_x, best_y = 0.0, 0.0
+    least = counts.size + lit
+    for i in range(frame.shape[0]):
+        for j in range(frame.shape[1]):
+            if frame[i, j] == peak:
+                found, _ = _difference(counts, lit, float(j), float(i), half, square)
+                if found < least:
+                    least = found
+                    best_x, best_y = float(j), float(i)
+    return best_x, best_y, least
+
+
+@compiled
 def best_positions(  # noqa: PLR0917 - Numba takes no keyword-only ones
     frames: NDArray[Any],
     levels: Floats,
     half: float,
     square: bool,
     worst: float,
+    brightest: bool,
     out: Floats,
 ) -> None:
     """Write the position (x, y) of the best template to `out` (N, 2).
+
+    Only the brightest pixels are compared if `brightest`, of which the first best one counts.
 
     Lit are pixels above a frame's level (N,). `half` is the template's radius or half side, px.
     Positions that differ little are averaged, on finer grids in turn. A NaN row where they differ
@@ -157,14 +197,11 @@ def best_positions(  # noqa: PLR0917 - Numba takes no keyword-only ones
             lit += before
         if lit == 0:
             continue
-        x, y, least = _descend(counts, lit, sum_x / lit, sum_y / lit, half, square)
-        other_x, other_y, other = _descend(counts, lit, float(peak_x), float(peak_y), half, square)
-        if other < least:
-            x, y, least = other_x, other_y, other
-        for steps, reach in _SEARCHES:
-            x, y, least = _middle_of_good(
-                counts, lit, x, y, half, square, steps, reach, differences
-            )
+        if brightest:
+            x, y, least = _best_of_brightest(frame, peak, counts, lit, half, square)
+        else:
+            start = (sum_x / lit, sum_y / lit)
+            x, y, least = _search(counts, lit, start, (peak_x, peak_y), half, square, differences)
         _, inside = _difference(counts, lit, x, y, half, square)
         area = 4 * half * half if square else math.pi * half * half
         if inside and least <= worst * area:

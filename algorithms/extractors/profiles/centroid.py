@@ -85,6 +85,7 @@ class ProfileCentroid(SlitLines):
         studies=("Enright2008b",),
         labels=("fe:bcm", "alg:BCM"),
         origin="survey",
+        version=2,
         needs=NEEDS,
         observation=Observation.PROFILES,
         kind=FeatureKind.SPOT,
@@ -169,6 +170,7 @@ class ProfileThresholdedCentroid(SlitLines):
         studies=("He2005",),
         labels=("fe:bctm", "alg:BCTM"),
         origin="survey",
+        version=2,
         needs=NEEDS,
         observation=Observation.PROFILES,
         kind=FeatureKind.SPOT,
@@ -264,6 +266,7 @@ class ProfileThresholdAverage(SlitLines):
         studies=("Massari2004",),
         labels=("fe:mtacm", "alg:MTACM1", "alg:MTACM2"),
         origin="survey",
+        version=2,
         needs=NEEDS,
         observation=Observation.PROFILES,
         kind=FeatureKind.SPOT,
@@ -319,7 +322,7 @@ def _shifts(slits: SlitLines, lines: Floats, middle: float, middles: Middles) ->
     floors = dark_level(lines)
     if len(slits.tangents) == 1:
         return (middles(lines, floors) - middle)[:, None]
-    shifts = slits.locate(lines, floors, smooth=True)
+    shifts = slits.locate(lines, floors)
     spots = len(slits.slits)
     for _ in range(_MOVES + 1):
         windows, starts = slits.windows(lines, shifts)

@@ -20,7 +20,7 @@ from algorithms.contract import (
 )
 from algorithms.extractors.profiles.single_spot import require_one_spot, spot_size_px
 from algorithms.extractors.profiles.slit_lines import NEEDS, SlitLines, box_means, dark_level
-from algorithms.extractors.profiles.spot_spectra import SpotSpectra
+from algorithms.extractors.profiles.spot_spectra import SpotSpectra, require_frequencies
 from algorithms.inputs import as_frames, require_positive
 
 Shape = Literal["round", "square"]
@@ -49,9 +49,10 @@ class LinearPhase(SlitLines):
         Largest displacement of the shadow on either axis, px, positive; used where slants differ.
     margin_px : float
         What a spot is wider than its slit on each side, px, positive.
-    lobes : float
-        Frequencies are fitted up to this many times the first zero of the slit's spectrum.
-        Ours: the study gives no limit. Above, light is as weak as its noise, and blur turns signs.
+    frequencies : int or None
+        How many frequencies from the lowest on are fitted. The study gives no limit. None, ours,
+        takes those whose power stands out of the noise, nine times, as the spectrum itself tells
+        that from a quarter of the sampling on.
 
     Raises
     ------
@@ -63,12 +64,14 @@ class LinearPhase(SlitLines):
     Implements: alg:linearphase (fe:linearphase, Enright2007b): ``Y[k] = S_a[k] / S_0[k]``, its
     phase ``Psi[k] = -2 pi a k / N``, the slope a by least squares, ``tau = a`` in pixels (Delta X
     = 1). Survey prints a plain fit over all k; corrected because bins without signal hold phases
-    of noise only: each counts by ``|S_0[k]|^2``, and only low ones do. The reference S_0 is
-    the spectrum of even light over the slit's width, known from the design; ``S_a conj(S_0)``
-    has the phase of the ratio and no division. The shift is first found to about a pixel as the
-    place where the pattern of slits is brightest (as PD does, on means over a slit's width), and
-    the transform is that of a window about each spot, whose phases are summed over the slits of
-    one slant: what is left to unwrap is a fraction of a turn, and the other spots stay out.
+    of noise only: each counts by ``|S_a[k]|^2``, less the noise's, and only those above it do.
+    The reference S_0 is the spectrum of even light over the slit's width, known from the design;
+    ``S_a conj(S_0)`` has the phase of the ratio and no division. Beyond the reference's first
+    zero a little less width turns the sign, so that phases there are known to half a turn. The
+    shift is first found to about a pixel as the place where the pattern of slits is brightest (as
+    PD does, on means over a slit's width), and the transform is that of a window about each spot,
+    whose phases are summed over the slits of one slant: what is left to unwrap is a fraction of a
+    turn, and the other spots stay out.
 
     Shapes: profiles (N, A L) of A lines, any unit, to ``(x_px, y_px)`` (N, 2), counted from the
     first pixel of a line whose middle is the sensor's.
@@ -78,7 +81,7 @@ class LinearPhase(SlitLines):
     another's, and where light elsewhere is half as bright (a second Sun, noise alone).
 
     Cost: 2 operations a pixel and slit, the median of each line, and 8 a frequency and pixel of
-    the windows, of which there are some 2 and 50.
+    the windows, half as many as pixels.
 
     References
     ----------
@@ -101,23 +104,27 @@ class LinearPhase(SlitLines):
         labels=("fe:linearphase", "alg:linearphase"),
         origin="survey",
         needs=NEEDS,
+        version=2,
         observation=Observation.PROFILES,
         kind=FeatureKind.SPOT,
     )
 
-    lobes: float = 1.0
+    frequencies: int | None = None
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        require_positive(self.about.name, lobes=self.lobes)
+        require_frequencies(self.frequencies, self.about.name)
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Positions (N, 2) in profiles (N, A L); ValueError on wrong input."""
         lines = self.lines(observations)
         floors = dark_level(lines)
-        spectra = SpotSpectra.behind(self, padded=False, lobes=self.lobes)
-        shifts = self.locate(lines, floors, smooth=True)
-        return self.spots(_refined(spectra, lines, floors, shifts))
+        spectra = SpotSpectra.behind(self, padded=False)
+        shifts = self.locate(lines, floors)
+        for _ in range(_PASSES):
+            cross = spectra.cross(lines, floors, shifts)
+            shifts = shifts + spectra.slopes(cross, self.frequencies)
+        return self.spots(shifts)
 
 
 @dataclass(frozen=True)
@@ -135,8 +142,8 @@ class FrameLinearPhase(Extractor):
         Its shape; a square's sides lie along the pixels.
     margin_px : float
         What the spot is wider than that on each side.
-    lobes : float
-        Frequencies are fitted up to this many times the first zero of the aperture's spectrum.
+    frequencies : int or None
+        How many frequencies from the lowest on are fitted; None as in `LinearPhase`.
 
     Raises
     ------
@@ -147,7 +154,7 @@ class FrameLinearPhase(Extractor):
     -----
     Implements: alg:linearphase (fe:linearphase, Enright2007b) on the sums by columns and rows.
     Survey prints a plain fit over all k; corrected because bins without signal hold phases of
-    noise only: each counts by ``|S_0[k]|^2``, and only low ones do. The reference S_0 is the
+    noise only: each counts by ``|S_a[k]|^2``, as in `LinearPhase`. The reference S_0 is the
     spectrum of the aperture's even light, summed. The spot is first found to about a pixel where
     the sums over half of its width are largest; the transform is that of the sums over a square
     window about it, so that pixels without light add no noise.
@@ -159,7 +166,7 @@ class FrameLinearPhase(Extractor):
     elsewhere are half as large as the spot's (a second Sun, noise alone).
 
     Cost: 2 operations a pixel for the sums, 4 a pixel of the window and 16 a frequency and
-    column of it, of which there are some 3.
+    column of it, half as many as columns.
 
     References
     ----------
@@ -187,6 +194,7 @@ class FrameLinearPhase(Extractor):
             "aperture_shape",
             "half_fov_deg",
         ),
+        version=2,
         observation=Observation.FRAMES,
         kind=FeatureKind.SPOT,
     )
@@ -194,12 +202,11 @@ class FrameLinearPhase(Extractor):
     width_px: float
     shape: Shape = "round"
     margin_px: float = 3.0
-    lobes: float = 1.0
+    frequencies: int | None = None
 
     def __post_init__(self) -> None:
-        require_positive(
-            self.about.name, width_px=self.width_px, margin_px=self.margin_px, lobes=self.lobes
-        )
+        require_positive(self.about.name, width_px=self.width_px, margin_px=self.margin_px)
+        require_frequencies(self.frequencies, self.about.name)
         if self.shape not in get_args(Shape):
             raise ValueError(
                 f"{self.about.name}: shape must be one of {', '.join(get_args(Shape))}; "
@@ -225,7 +232,7 @@ class FrameLinearPhase(Extractor):
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Positions (N, 2) in frames (N, H, W); ValueError on wrong input."""
-        from algorithms.kernels import moments, slit_patterns, window_sums  # noqa: PLC0415 - Numba
+        from algorithms.kernels import moments, window_sums  # noqa: PLC0415 - Numba, at first use
 
         frames = as_frames(observations)
         count, height, width = frames.shape
@@ -247,10 +254,8 @@ class FrameLinearPhase(Extractor):
             self.shape,
             half,
             padded=False,
-            lobes=self.lobes,
         )
         windows = np.empty((count, 2, 2 * half + 1))
-        step = np.empty((2 * count, 1))
         none = np.zeros(2 * count)
         for _ in range(_PASSES):
             unseen = np.isnan(found).any(axis=1)
@@ -258,7 +263,7 @@ class FrameLinearPhase(Extractor):
             centres = np.rint(found).astype(np.int64)
             window_sums.window_profiles(frames, centres, half, windows)
             cross = spectra.cross(windows.reshape(2 * count, -1), none, none[:, None])
-            slit_patterns.phase_slopes(cross, spectra.powers, spectra.period, step)
+            step = spectra.slopes(cross, self.frequencies)
             found = np.asarray(centres + step.reshape(count, 2), dtype=np.float64)
         found[~np.isfinite(found).all(axis=1)] = np.nan
         return found
@@ -282,15 +287,3 @@ class FrameLinearPhase(Extractor):
             near,
         )
         return near[:, 0]
-
-
-def _refined(spectra: SpotSpectra, lines: Floats, floors: Floats, shifts: Floats) -> Floats:
-    """Shifts (R, G) moved by what is left of the phase's slope there."""
-    from algorithms.kernels import slit_patterns  # noqa: PLC0415 - Numba, at first use
-
-    step = np.empty(shifts.shape)
-    for _ in range(_PASSES):
-        cross = spectra.cross(lines, floors, shifts)
-        slit_patterns.phase_slopes(cross, spectra.powers, spectra.period, step)
-        shifts = shifts + step
-    return shifts

@@ -42,6 +42,10 @@ class PeakDetection(SlitLines):
         Largest displacement of the shadow on either axis, px, positive; used where slants differ.
     margin_px : float
         What a spot is wider than its slit on each side, px, positive.
+    alone : bool
+        Whether light elsewhere that is half as bright as the pattern's darkest pixel gives
+        nothing (a second Sun, noise alone, a hot pixel). Ours: the published method always
+        answers.
 
     Raises
     ------
@@ -61,9 +65,9 @@ class PeakDetection(SlitLines):
     first pixel of a line whose middle is the sensor's.
 
     Failure: a NaN row for a profile without contrast (all dark or all saturated), one that holds
-    a NaN or infinity, where a slit's spot is missing, off the line or covered by another's, and
-    where light elsewhere is half as bright as the pattern's darkest pixel (a second Sun, noise
-    alone, a hot pixel).
+    a NaN or infinity, and behind two slants where no Sun in the field explains two patterns apart.
+    Noise alone, a second Sun, a hot pixel, and a slit's spot that is missing, off the line or
+    covered by another's give a place unseen, unless `alone` is asked for.
 
     Cost: 1 operation a pixel and slit, and the median of each line.
 
@@ -88,14 +92,18 @@ class PeakDetection(SlitLines):
         labels=("fe:peak", "alg:PDsp", "alg:PDmp"),
         origin="survey",
         needs=NEEDS,
+        version=2,
         observation=Observation.PROFILES,
         kind=FeatureKind.SPOT,
     )
 
+    alone: bool = False
+
     def extract(self, observations: ArrayLike) -> Floats:
         """Positions (N, 2) in profiles (N, A L); ValueError on wrong input."""
         lines = self.lines(observations)
-        return self.spots(self.locate(lines, dark_level(lines), smooth=False))
+        floors = dark_level(lines) if self.alone else lines.min(axis=1)
+        return self.spots(self.locate(lines, floors, smooth=False, alone=self.alone))
 
 
 @dataclass(frozen=True)

@@ -114,7 +114,7 @@ class PeakPositionEstimate(SlitLines):
         studies=("Enright2007a",),
         labels=("fe:ppe", "alg:PPE"),
         origin="survey",
-        version=2,
+        version=3,
         needs=NEEDS,
         observation=Observation.PROFILES,
         kind=FeatureKind.SPOT,
@@ -174,11 +174,11 @@ class PeakPositionEstimate(SlitLines):
         peak is then left over, both patterns were put on the brighter one, and have to keep apart.
         """
         if len(self.tangents) == 1 or min(np.bincount(self.groups)) == 1:
-            return self.locate(lines, floors, smooth=True)
+            return self.locate(lines, floors)
         starts = self._over_each_other(lines, floors)
         left = np.isnan(starts).any(axis=1)
         if left.any():
-            starts[left] = self.locate(lines[left], floors[left], smooth=True)
+            starts[left] = self.locate(lines[left], floors[left])
         return starts
 
     def _over_each_other(self, lines: Floats, floors: Floats) -> Floats:

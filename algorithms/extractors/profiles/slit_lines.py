@@ -177,20 +177,25 @@ class SlitLines:
         """Positions (S,) of the slits' spots on the line at zero shift, px."""
         return self.middle_px + np.array([slit[0] for slit in self.slits])
 
-    def locate(self, lines: Floats, floors: Floats, smooth: bool) -> Floats:
+    def locate(
+        self, lines: Floats, floors: Floats, *, smooth: bool = True, alone: bool = True
+    ) -> Floats:
         """Shifts (N A, G) to about a pixel: where the pattern's darkest spot is brightest.
 
         Parameters
         ----------
         lines, floors : ndarray, shapes (N A, L) and (N A,)
-            Light, and what is dark.
+            Light, and what is dark: a pattern is above it.
         smooth : bool
             Whether a spot's brightness is the mean over its slit's width, or one pixel's.
+        alone : bool
+            Whether light elsewhere that is half as bright leaves the pattern unsure.
 
         Returns
         -------
         ndarray
-            NaN where no pattern stands out: nothing lit, a spot missing or cut, light elsewhere.
+            NaN where no pattern stands out: nothing lit, a spot missing or off the line, light
+            elsewhere.
         """
         from algorithms.kernels import slit_patterns  # noqa: PLC0415 - Numba, at first use
 
@@ -206,7 +211,11 @@ class SlitLines:
             np.array(self.tangents),
             self.reach_px,
             2.0 * self.half_px,
-            self.half_px + box // 2,
+            # Places and shift are whole pixels here: a spot may lie up to one beside its place. A
+            # mean reaches as far out as its box; one pixel may be the brightest at a spot's end.
+            self.half_px + 1 + (box // 2 if smooth else math.ceil(width / 2.0))
+            if alone
+            else self.line_pixels,
             math.ceil(max(slit[2] for slit in self.slits)),
             shifts,
         )

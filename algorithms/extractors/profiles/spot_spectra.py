@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Literal, Self
 
@@ -33,8 +32,10 @@ class SpotSpectra:
     period : int
         Length of the transform, px: the window's, or more where it is padded with zeros.
     reference : ndarray, shape (S, K)
-        Spectra of the references at the frequencies 0 to K - 1, real: even light over the width
-        of each spot, about the middle of its window, summed over pixels.
+        Spectra of the references at the frequencies 0 to K - 1, up to half the sampling, real:
+        even light over the width of each spot, about the middle of its window, summed over pixels.
+    zero : float
+        First zero of the widest spot's reference, cycles a pixel.
     """
 
     places: Floats
@@ -42,12 +43,13 @@ class SpotSpectra:
     half_px: int
     period: int
     reference: Floats
+    zero: float
 
     @classmethod
-    def behind(cls, slits: SlitLines, padded: bool, lobes: float) -> Self:
-        """Windows and references of slits, up to `lobes` times their spectrum's first zero."""
+    def behind(cls, slits: SlitLines, padded: bool) -> Self:
+        """Windows and references of slits."""
         widths = [slit[2] for slit in slits.slits]
-        return cls.of(slits.pattern(), slits.groups, widths, "square", slits.half_px, padded, lobes)
+        return cls.of(slits.pattern(), slits.groups, widths, "square", slits.half_px, padded)
 
     @classmethod
     def of(  # noqa: PLR0917 - what the attributes are made of
@@ -58,29 +60,28 @@ class SpotSpectra:
         shape: Shape,
         half_px: int,
         padded: bool,
-        lobes: float,
     ) -> Self:
         """Windows and references of spots of these widths, px."""
         size = 2 * half_px + 1
         period = 2 * size - 1 if padded else size
-        last = math.ceil(lobes * FIRST_ZERO[shape] * period / max(widths)) - 1
-        frequencies = np.arange(min(max(last, 1), (period - 1) // 2) + 1) / period
+        frequencies = np.arange((period - 1) // 2 + 1) / period
         reference = np.array(
             [width * _spectrum(frequencies * width, shape) for width in widths]
         ) * np.sinc(frequencies)
-        return cls(places, groups, half_px, period, reference)
+        return cls(places, groups, half_px, period, reference, FIRST_ZERO[shape] / max(widths))
 
     @property
     def powers(self) -> Floats:
-        """Squared references (K,), summed over the spots of the first group."""
-        return np.asarray((self.reference[self.groups == 0] ** 2).sum(axis=0))
+        """Squared references (G, K), summed over the spots of each group."""
+        squares = self.reference**2
+        return np.array([squares[self.groups == g].sum(axis=0) for g in np.unique(self.groups)])
 
     def cross(self, lines: Floats, floors: Floats, shifts: Floats) -> NDArray[np.complex128]:
         """Cross-spectra (R, G, K) of lines (R, L) at shifts (R, G); NaN where a spot is cut."""
-        from algorithms.kernels import slit_patterns  # noqa: PLC0415 - Numba, at first use
+        from algorithms.kernels import spot_spectra_kernel  # noqa: PLC0415 - Numba, at first use
 
         spectra = np.empty((*shifts.shape, self.reference.shape[1]), dtype=np.complex128)
-        slit_patterns.cross_spectra(
+        spot_spectra_kernel.cross_spectra(
             lines,
             floors,
             shifts,
@@ -92,6 +93,33 @@ class SpotSpectra:
             spectra,
         )
         return spectra
+
+    def light(self, spectra: NDArray[np.complex128]) -> tuple[Floats, Floats]:
+        """Power of the light in cross-spectra (R, G, K), and that of their noise (R, G)."""
+        from algorithms.kernels import spot_spectra_kernel  # noqa: PLC0415 - Numba, at first use
+
+        powers, noise = np.empty(spectra.shape), np.empty(spectra.shape[:2])
+        spot_spectra_kernel.light_powers(spectra, self.powers, self.period, powers, noise)
+        return powers, noise
+
+    def slopes(self, spectra: NDArray[np.complex128], last: int | None) -> Floats:
+        """Shifts (R, G), px, that the phases of cross-spectra (R, G, K) are linear in.
+
+        Up to the frequency `last`, or those that stand out of the noise.
+        """
+        from algorithms.kernels import spot_spectra_kernel  # noqa: PLC0415 - Numba, at first use
+
+        found = np.empty(spectra.shape[:2])
+        spot_spectra_kernel.phase_slopes(
+            spectra, *self.light(spectra), last or 0, self.zero, self.period, found
+        )
+        return found
+
+
+def require_frequencies(frequencies: int | None, by: str) -> None:
+    """Raise ValueError unless `frequencies` is None or at least 1."""
+    if frequencies is not None and frequencies < 1:
+        raise ValueError(f"{by}: frequencies must be None or at least 1; got {frequencies!r}")
 
 
 def _spectrum(cycles: Floats, shape: Shape) -> Floats:

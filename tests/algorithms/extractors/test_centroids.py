@@ -29,6 +29,7 @@ CENTROIDS = [
     BasicCentroid(),
     BasicCentroid(background="border"),
     ThresholdedCentroid(),
+    ThresholdedCentroid(threshold=0.3),
     ThresholdedCentroid(threshold=0.1, background="median"),
     FilteredCentroid(),
     FilteredCentroid(background="border"),
@@ -222,7 +223,8 @@ def test_window_is_the_centroid_of_the_cut_out_patch(method, window):
     rng = np.random.default_rng(9)
     centres = rng.uniform(1, 46, (12, 2))  # some windows are cut by the edge
     frames = np.rint(gaussians(centres) + rng.uniform(0, 200, (12, 48, 56))).astype(np.uint16)
-    found = method(window_px=window).extract(frames)
+    mu = {"threshold": 0.3} if method is ThresholdedCentroid else {}
+    found = method(window_px=window, **mu).extract(frames)
     half = window // 2
     for k, raw in enumerate(frames.astype(float)):
         smooth = ndimage.uniform_filter(raw, size=3, mode="constant")
@@ -234,6 +236,52 @@ def test_window_is_the_centroid_of_the_cut_out_patch(method, window):
             patch = np.maximum(patch - 0.3 * frame.max(), 0)
         mean_y, mean_x = ndimage.center_of_mass(patch)
         np.testing.assert_allclose(found[k], [left + mean_x, top + mean_y], atol=1e-9)
+
+
+def threshold_by_noise(frame):
+    """Second smallest of what the four sides tell: mean and six standard deviations."""
+    sides = [frame[0], frame[-1], frame[:, 0], frame[:, -1]]
+    return sorted(side.mean() + 6 * side.std() for side in sides)[1]
+
+
+def noisy_spots(count, seed, sigma, peak):
+    rng = np.random.default_rng(seed)
+    light = gaussians(rng.uniform(14, 34, (count, 2)), sigma=sigma, peak=peak)
+    return rng.poisson(light + 25) + rng.normal(0, 6, light.shape)
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.uint16, np.int32, np.float64])
+@pytest.mark.parametrize("bright_sides", [0, 1, 2])
+def test_without_a_fraction_the_dark_sides_noise_sets_the_threshold(dtype, bright_sides):
+    frames = np.rint(noisy_spots(6, 3, 2.0, 150.0)).clip(0, 250)
+    frames[:, :bright_sides, 10:] = 240  # a hot row at the top
+    frames[:, :, :1][:, :, : bright_sides // 2] = 230
+    expected = []
+    for frame in frames:
+        cut = threshold_by_noise(frame)
+        y, x = ndimage.center_of_mass(np.maximum(frame - cut, 0))
+        expected.append((x, y))
+    found = ThresholdedCentroid().extract(frames.astype(dtype))
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-9)
+    windowed = ThresholdedCentroid(window_px=201).extract(frames.astype(dtype))
+    np.testing.assert_allclose(windowed, found, rtol=0, atol=1e-12)
+
+
+def test_noise_alone_is_not_above_its_threshold():
+    frames = noisy_spots(200, 5, 2.0, 0.0)
+    assert np.isnan(ThresholdedCentroid().extract(frames)).all()
+    assert np.isfinite(ThresholdedCentroid(threshold=0.3).extract(frames)).all()
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
+@pytest.mark.parametrize("shape", [(1, 1), (1, 6), (2, 2), (3, 5), (17, 9), (5, 40)])
+def test_narrow_integers_are_summed_as_wide_ones(shape, dtype):
+    """The kernels of 8 and 16 bits beside those of any number."""
+    rng = np.random.default_rng(9)
+    frames = rng.integers(0, np.iinfo(dtype).max + 1, (8, *shape)).astype(dtype)
+    for extractor in (BasicCentroid(), FilteredCentroid(), FilteredCentroid(background="median")):
+        found = extractor.extract(frames)
+        np.testing.assert_array_equal(found, extractor.extract(frames.astype(np.int64)))
 
 
 def test_window_keeps_a_second_weaker_light_out():
@@ -276,7 +324,7 @@ def test_values_too_large_to_sum_are_not_found(extractor):
 def test_sums_do_not_overflow_on_large_saturated_frames():
     frame = np.full((1, 2000, 3000), 65535, dtype=np.uint16)
     frame[0, 0, 0] = 65534
-    for extractor in (BasicCentroid(), ThresholdedCentroid(), FilteredCentroid()):
+    for extractor in (BasicCentroid(), ThresholdedCentroid(threshold=0.3), FilteredCentroid()):
         np.testing.assert_allclose(extractor.extract(frame), [[1499.5, 999.5]], atol=1e-6)
 
 

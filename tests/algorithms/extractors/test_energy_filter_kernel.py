@@ -63,19 +63,31 @@ def test_one_pixel_is_no_spot_and_what_equals_the_cut_is_not_above_it():
 
 
 @pytest.mark.parametrize("axis", [0, 1])
-def test_pixels_lie_as_close_as_a_discs_of_as_many_times_the_spread(axis):
-    """A bar of n pixels: mean squared distance (n^2 - 1) / 12 against spread n / (2 pi)."""
-    for length in range(3, 10):
+def test_a_bar_is_one_spot_and_two_pixels_apart_are_not(axis):
+    """A bar fills all but 3/pi of its ellipse at any length; two pixels leave what lies between."""
+    for length in range(2, 10):
         energies = np.zeros((13, 13))
         bar = energies[6] if axis else energies[:, 6]
         bar[2 : 2 + length] = 5.0
-        limit = (length**2 - 1) / 12 * 2 * math.pi / length
-        assert energy_centre(energies, 1.0, limit * 1.001, np.zeros(2)) == length
+        assert energy_centre(energies, 1.0, math.pi / 3 * 1.001, np.zeros(2)) == length
+        assert energy_centre(energies, 1.0, math.pi / 3 * 0.999, np.zeros(2)) == 0
+        bar[3 : 1 + length] = 0.0
+        apart = (length - 1) ** 2 / 4 + 1 / 12
+        limit = 2 * math.pi * math.sqrt(apart / 12)
+        assert energy_centre(energies, 1.0, limit * 1.001, np.zeros(2)) == 2
         assert energy_centre(energies, 1.0, limit * 0.999, np.zeros(2)) == 0
-    pair = np.zeros((5, 6))
-    pair[2, 2:4] = 5.0  # two are allowed as much as three: 1/4 against spread 3 / (2 pi)
-    assert energy_centre(pair, 1.0, 0.25 * 2 * math.pi / 3 * 1.001, np.zeros(2)) == 2
-    assert energy_centre(pair, 1.0, 0.25 * 2 * math.pi / 3 * 0.999, np.zeros(2)) == 0
+
+
+def test_the_ellipse_of_scattered_pixels_is_that_of_their_covariance():
+    rng = np.random.default_rng(3)
+    for _ in range(20):
+        energies = np.zeros((21, 23))
+        energies[1:-1, 1:-1] = 4.0 * (rng.uniform(size=(19, 21)) < 0.1)
+        lit = np.argwhere(energies > 0)
+        covariance = np.cov(lit.T, bias=True) + np.eye(2) / 12
+        limit = 4 * math.pi * math.sqrt(np.linalg.det(covariance)) / len(lit)
+        assert energy_centre(energies, 1.0, limit * 1.001, np.zeros(2)) == len(lit)
+        assert energy_centre(energies, 1.0, limit * 0.999, np.zeros(2)) == 0
 
 
 def test_the_shift_and_the_variance_it_leaves_are_numpys_least_squares():

@@ -89,6 +89,33 @@ def test_hot_pixels_do_not_move_a_line():
     np.testing.assert_allclose(LINES.extract(hot), LINES.extract(clean), atol=0.02)
 
 
+@pytest.mark.parametrize("width", [1.5, 2.3, 3.0, 4.0, 7.0])
+def test_no_pixel_of_a_spot_is_taken_for_a_hot_one(width):
+    """However small, wherever it falls and with dim pixels around: the mean of all its events."""
+    rng = np.random.default_rng(7)
+    fine = (np.arange(20 * 16) + 0.5) / 16 - 0.5
+    for place in rng.uniform(9.5, 10.5, (40, 2)):
+        inside = np.hypot(fine - place[0], (fine - place[1])[:, None]) <= 0.5 * width
+        light = 0.01 + inside.reshape(20, 16, 20, 16).mean(axis=(1, 3))
+        times = 100 / light * (1 + 0.02 * rng.standard_normal(light.shape))
+        rows, columns = np.unravel_index(np.argsort(times, axis=None)[:40], times.shape)
+        events = np.column_stack([columns, rows, times[rows, columns]])[None]
+        kept, everything = (
+            EventCentroid(width_px=width, layout="spot", hot=hot).extract(events)
+            for hot in (2.0, np.inf)
+        )
+        np.testing.assert_array_equal(kept, everything)
+
+
+@pytest.mark.parametrize("width", [2.5, 4.0, 7.0])
+def test_a_hot_pixel_does_not_move_a_spot(width):
+    light = np.outer(cover(20, 10.2, width), cover(20, 9.7, width))
+    clean = events_of(light)
+    hot = np.concatenate([[[[2.0, 15.0, 0.3]]], clean], axis=1)
+    method = EventCentroid(width_px=width, layout="spot")
+    np.testing.assert_allclose(method.extract(hot), method.extract(clean), atol=1e-9)
+
+
 def test_the_offset_of_the_slits_is_taken_off():
     method = EventCentroid.for_sensor(L_SLIT)
     assert method.width_px == pytest.approx(3.0)

@@ -232,10 +232,13 @@ def test_the_projection_of_a_thin_aperture_has_its_size_at_every_incidence():
         np.testing.assert_allclose(moved - moved[0], 0.0, atol=1e-12)
 
 
-def test_tm_of_another_shape_or_two_spots_is_not_found():
+def test_tm_of_another_shape_or_two_spots_is_not_found_where_that_is_asked_for():
     two = discs([[14.0, 30.0], [46.0, 30.0]], radius=5).sum(axis=0)
-    assert np.isnan(TemplateMatch(width_px=10.0).extract(two[None])).all()
-    assert np.isnan(TemplateMatch(width_px=20.0).extract(discs([[30.0, 30.0]], radius=4))).all()
+    other = discs([[30.0, 30.0]], radius=4)
+    for width, frames in ((10.0, two[None]), (20.0, other)):
+        asked = TemplateMatch(width_px=width, most_different=0.5)
+        assert np.isnan(asked.extract(frames)).all()
+        assert np.isfinite(TemplateMatch(width_px=width).extract(frames)).all()
 
 
 # Gaussian fit

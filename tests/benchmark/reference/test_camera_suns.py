@@ -91,7 +91,7 @@ def test_two_cameras_find_the_sun_under_clouds():
         streams = NoiseStreams.named("test", "two cameras", name)
         pattern = sensor.fixed_pattern("test", name)
         frames = sensor.observe(scene(sun @ turn.T), pattern, streams)
-        lines.append(HoughLines().lines(frames))
+        lines.append(HoughLines.for_sensor(preset.geometry).lines(frames))
         cameras.append(
             LineCamera(
                 camera.built_focal_length_mm,

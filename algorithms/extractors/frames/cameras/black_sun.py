@@ -60,7 +60,9 @@ class BlackSunCentroid(Extractor):
     threshold; corrected because the pseudocode's ``I > T + f`` is what leaves the black Sun a
     hole. Holes in every contour are tried, not in the largest alone, which under broken cloud is
     not the Sun's; a hole must be about round. The corner's refinement is that of structure
-    tensors, ``sum(n n^T (q - p)) = 0`` over the hole's rim. The published last resort, corners
+    tensors, ``sum(n n^T (q - p)) = 0`` over the hole's whole rim. The published one starts from
+    every strong corner and looks at a window about it, which holds corners of a black Sun wider
+    than some 3 px to its rim, about a radius off its centre. The published last resort, corners
     that did not survive, is left out: those are gaps.
 
     Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers.

@@ -231,9 +231,12 @@ def _gathered(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 @compiled
 def _fit(
-    edges: Floats, count: int, way: float, circle: tuple[float, float, float]
+    edges: Floats, count: int, way: float, circle: tuple[float, float, float], scattered: float
 ) -> tuple[float, float, float]:
-    """Fit a circle (x, y, r) to edges near one by Gauss-Newton steps; NaN where they scatter."""
+    """Fit a circle (x, y, r) to edges near one by Gauss-Newton steps.
+
+    NaN where the steps do not end, or edges are more than `scattered` px off it (root mean square).
+    """
     x, y, radius = circle
     matrix = np.empty((3, 3))
     side = np.empty(3)
@@ -250,7 +253,7 @@ def _fit(
         if abs(step[0]) + abs(step[1]) < 1e-9:
             break
     used, scatter = _gathered(edges, count, way, (x, y, radius), matrix, side)
-    if scatter > _SCATTER * _SCATTER * used:
+    if scatter > scattered * scattered * used:
         return np.nan, np.nan, np.nan
     return x, y, radius
 
@@ -281,13 +284,15 @@ def _best(  # noqa: PLR0917 - Numba takes no keyword-only ones
     largest: float,
     least: float,
     score: float,
+    sure: bool,
     sectors: Floats,
     out: Floats,
 ) -> bool:
     """Write the circle (x, y, r) about one of `places` with most edge to `out`; False if none.
 
-    NaN is written where another one elsewhere has about as much. It must have more than `score`
-    and, where it is bright, not be below `level` inside.
+    Where `sure`, NaN is written if another one elsewhere has about as much, and circles that edges
+    do not fit are none; else these stay where the accumulator has them. It must have more than
+    `score` and, where it is bright, not be below `level` inside.
     """
     scores = np.zeros(len(places))
     circles = np.zeros((len(places), 3))
@@ -297,9 +302,11 @@ def _best(  # noqa: PLR0917 - Numba takes no keyword-only ones
         found, radius = _radius(edges, count, x, y, way, smallest, largest, least, sectors)
         if found <= score:
             continue
-        circle = _fit(edges, count, way, (x, y, radius))
+        circle = _fit(edges, count, way, (x, y, radius), _SCATTER if sure else math.inf)
         if not smallest <= circle[2] <= largest:
-            continue
+            if sure:
+                continue
+            circle = (x, y, radius)
         if way < 0.0 and not _bright_inside(frame, circle, level):
             continue
         scores[n] = found
@@ -311,7 +318,7 @@ def _best(  # noqa: PLR0917 - Numba takes no keyword-only ones
     out[:] = circles[best]
     for n in range(len(places)):
         apart = math.hypot(circles[n, 0] - circles[best, 0], circles[n, 1] - circles[best, 1])
-        if scores[n] > _RIVAL * scores[best] and apart > circles[best, 2]:
+        if sure and scores[n] > _RIVAL * scores[best] and apart > circles[best, 2]:
             out[:] = np.nan
             break
     return True
@@ -326,6 +333,7 @@ def best_circles(  # noqa: PLR0917 - Numba takes no keyword-only ones
     largest: float,
     least: float,
     dark_first: bool,
+    sure: bool,
     out: Floats,
 ) -> None:
     """Write each frame's best circle (x, y, r) to `out` (N, 3); NaN where there is none.
@@ -371,6 +379,7 @@ def best_circles(  # noqa: PLR0917 - Numba takes no keyword-only ones
                 largest,
                 least,
                 score,
+                sure,
                 sectors,
                 out[k],
             ):

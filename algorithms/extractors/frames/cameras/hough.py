@@ -21,6 +21,8 @@ from algorithms.inputs import as_frames
 
 #: Step between the angles tried, degrees.
 _TURN_DEG = 0.25
+#: Columns of a line's row where x and y change places.
+_TURNED = [1, 0, 3, 2, 4, 6, 5]
 
 
 @dataclass(frozen=True)
@@ -37,8 +39,9 @@ class HoughLines(Extractor):
     saturated : float
         Fraction of the frame's range, in (0, 1), above which a pixel is taken to be full. Ours.
     tilt_deg : float
-        Largest angle between line and columns that is tried, in steps of 0.25 deg, at most 45.
-        Zero, as charge runs along the columns, unless the frames were turned since.
+        Largest angle between line and columns that is tried, in steps of 0.25 deg, at most 90: all
+        lines, as published. Zero tries the columns alone, along which charge runs unless the
+        frames were turned since.
     least_votes : int
         The accumulator threshold tau, at least 2: rows that must vote for a line.
     reach_px : float
@@ -71,7 +74,8 @@ class HoughLines(Extractor):
     (cloud), or the two sides' gradients meet the line in places 1 px apart. `lines` has the line
     then. Of two Suns the longer line wins unseen.
 
-    Cost: 3 operations a pixel for the runs, 4 a run and angle, and 40 a pixel within reach.
+    Cost: 6 operations a pixel for the runs, 4 a run and angle (720 of them) and 1 a cell and angle,
+    80 a pixel within reach.
 
     References
     ----------
@@ -93,13 +97,14 @@ class HoughLines(Extractor):
         studies=("Liu2016",),
         labels=("fe:ht", "alg:BHT"),
         origin="survey",
+        version=2,
         needs=("lens_distortion",),
         observation=Observation.FRAMES,
         kind=FeatureKind.SPOT,
     )
 
     saturated: float = 0.8
-    tilt_deg: float = 0.0
+    tilt_deg: float = 90.0
     least_votes: int = 20
     reach_px: float = 24.0
 
@@ -108,9 +113,9 @@ class HoughLines(Extractor):
             raise ValueError(
                 f"{self.about.name}: saturated must be in (0, 1); got {self.saturated!r}"
             )
-        if not 0.0 <= self.tilt_deg <= 45.0:
+        if not 0.0 <= self.tilt_deg <= 90.0:
             raise ValueError(
-                f"{self.about.name}: tilt_deg must be in [0, 45]; got {self.tilt_deg!r}"
+                f"{self.about.name}: tilt_deg must be in [0, 90]; got {self.tilt_deg!r}"
             )
         if self.least_votes < 2:
             raise ValueError(
@@ -126,10 +131,12 @@ class HoughLines(Extractor):
         """Return the method for a camera; UnsuitableDesignError for designs without a lens.
 
         Behind a mask no pixel overflows. Which cameras bloom, the design does not say; with a CMOS
-        detector no line is found.
+        detector no line is found. A detector's own frames need no other angle than that of its
+        columns, along which charge runs: an angle that votes have to tell as well makes the place
+        across the line a quarter to a half less certain.
         """
         geometry.require(*cls.about.needs, by=cls.about.name)
-        return cls()
+        return cls(tilt_deg=0.0)
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Places of the Sun (N, 2) in frames (N, H, W); ValueError on wrong input."""
@@ -143,19 +150,28 @@ class HoughLines(Extractor):
         return self._found(observations)[:, :5].copy()
 
     def _found(self, observations: ArrayLike) -> Floats:
+        frames = as_frames(observations)
+        usable = _usable(frames)
+        found = self._steep(frames, usable, 0.0, min(self.tilt_deg, 45.0))
+        if self.tilt_deg > 45.0:
+            turned = np.ascontiguousarray(frames.transpose(0, 2, 1))
+            turned.flags.writeable = False
+            flat = self._steep(turned, usable, 90.0 - self.tilt_deg, 45.0)[:, _TURNED]
+            better = flat[:, 4] > np.nan_to_num(found[:, 4])
+            found[better] = flat[better]
+        return found
+
+    def _steep(
+        self, frames: NDArray[Any], usable: NDArray[np.bool_], least_deg: float, most_deg: float
+    ) -> Floats:
+        """Lines (N, 7) within these angles of the columns; of equal ones the least leaning."""
         from algorithms.extractors.frames.cameras import blooming_kernel  # noqa: PLC0415 - Numba, at the first frame only
 
-        frames = as_frames(observations)
-        steps = round(self.tilt_deg / _TURN_DEG)
+        steps = np.arange(np.ceil(least_deg / _TURN_DEG), np.floor(most_deg / _TURN_DEG) + 1)
+        turns = np.radians(_TURN_DEG * np.column_stack([steps, -steps]).ravel())
         found = np.empty((len(frames), 7))
         blooming_kernel.blooming_lines(
-            frames,
-            _usable(frames),
-            np.radians(_TURN_DEG * np.arange(-steps, steps + 1)),
-            self.saturated,
-            self.least_votes,
-            self.reach_px,
-            found,
+            frames, usable, turns, self.saturated, self.least_votes, self.reach_px, found
         )
         return found
 
@@ -183,6 +199,10 @@ class HoughCircle(Extractor):
     dark_first : bool
         Whether a dark circle is sought first, for cameras whose Sun may be black, and a bright
         one only where there is none.
+    sure : bool
+        Whether nothing is found where another circle elsewhere has 0.8 of the best one's mean edge
+        (two Suns), and no circle whose edges scatter by more than half a pixel about it. Ours: the
+        published maximum always answers.
 
     Raises
     ------
@@ -196,15 +216,15 @@ class HoughCircle(Extractor):
     gradient, both ways, instead of all of them; votes count 1/r, so that circles of every size
     compare. The accumulator's highest cells are looked at again with their edges: the circle
     with the strongest mean edge around its rim wins, fitted to edges at sub-pixel places by least
-    squares. Ours: a bright circle must be bright inside its rim, else it is a ghost, and edges
-    that scatter by more than half a pixel about the fit are none.
+    squares; where they do not fit one it stays at its cell. Ours: a bright circle must be bright
+    inside its rim, else it is a ghost.
 
     Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers.
 
     Failure: a NaN row for a frame that is dark or without contrast or holds a NaN or infinity,
-    and where no circle has enough of its rim (noise, lines, a spot more than half cut) or another
-    one elsewhere has 0.8 of the best one's mean edge (two Suns). A bright round cloud can beat a
-    white Sun, and blooming breaks its rim.
+    and where no circle has enough of its rim (noise, lines, a spot more than half cut). Of two
+    Suns the one with the stronger rim is found unseen, unless `sure` is asked for. A bright round
+    cloud can beat a white Sun, and blooming breaks its rim.
 
     Cost: 30 operations a pixel for edges, 4 an edge and radius, 500 an edge for the candidates.
 
@@ -227,6 +247,7 @@ class HoughCircle(Extractor):
         studies=("Adatrao2016",),
         labels=("fe:ht", "alg:CHT"),
         origin="survey",
+        version=2,
         needs=("pixel_pitch_mm",),
         observation=Observation.FRAMES,
         kind=FeatureKind.SPOT,
@@ -237,6 +258,7 @@ class HoughCircle(Extractor):
     smallest_px: float = 2.0
     largest_px: float | None = None
     dark_first: bool = False
+    sure: bool = False
 
     def __post_init__(self) -> None:
         if not 0.0 < self.edge < 1.0:
@@ -295,6 +317,7 @@ class HoughCircle(Extractor):
             largest,
             self.threshold,
             self.dark_first,
+            self.sure,
             found,
         )
         return found

@@ -1,0 +1,232 @@
+"""Spectra of the light of spots on lines: their noise, phases, correlations and projections.
+
+Lines are (R, L) float64. ``places`` (S,) are the spots' positions at zero shift, px, and `groups`
+(S,) say which of the G shifts moves each.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.compiled import compiled
+from algorithms.contract import Floats
+
+Counts = NDArray[np.int64]
+
+#: Frequencies, cycles a pixel, from which on a spectrum is taken to be noise.
+_NOISE_FROM = 0.25
+#: Power over that of noise above which a frequency counts: three standard deviations.
+_SIGNIFICANT = 9.0
+#: Steps a pixel of the first search for the least projection; Newton's steps that follow it.
+_STEPS = 4
+_NEWTON = 6
+
+
+@compiled
+def cross_spectra(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    lines: Floats,
+    floors: Floats,
+    shifts: Floats,
+    places: Floats,
+    groups: Counts,
+    half: int,
+    period: int,
+    reference: Floats,
+    out: NDArray[np.complex128],
+) -> None:
+    """Write the pattern's cross-spectra with its spots' references to `out` (R, G, K).
+
+    A window of ``2 half + 1`` pixels about each spot is transformed at the frequencies 0 to K - 1
+    over `period`, its floor (R,) taken off, multiplied by its reference's spectrum (S, K), real,
+    and summed over the spots of a group, each turned back by where its shift (R, G) puts it. A
+    NaN row where a shift is NaN or a window leaves the line.
+    """
+    rows, length = lines.shape
+    spots, frequencies = reference.shape
+    cosine = np.empty(period)
+    sine = np.empty(period)
+    for n in range(period):
+        cosine[n] = math.cos(2 * math.pi * n / period)
+        sine[n] = math.sin(2 * math.pi * n / period)
+    for r in range(rows):
+        out[r] = 0.0
+        for i in range(spots):
+            g = groups[i]
+            at = places[i] + shifts[r, g]
+            if not (half - 0.5 <= at <= length - 1 - half + 0.49):
+                out[r, g] = np.nan
+                continue
+            centre = round(at)
+            if centre < half or centre > length - 1 - half:
+                out[r, g] = np.nan
+                continue
+            for k in range(frequencies):
+                real = 0.0
+                imaginary = 0.0
+                place = (-half * k) % period
+                for n in range(centre - half, centre + half + 1):
+                    u = lines[r, n] - floors[r]
+                    real += u * cosine[place]
+                    imaginary -= u * sine[place]
+                    place += k
+                    if place >= period:
+                        place -= period
+                angle = 2 * math.pi * k * (at - centre) / period
+                turn = complex(math.cos(angle), math.sin(angle))
+                out[r, g, k] += complex(real, imaginary) * turn * reference[i, k]
+
+
+@compiled
+def light_powers(
+    spectra: NDArray[np.complex128], norms: Floats, period: int, powers: Floats, noise: Floats
+) -> None:
+    """Write the light's power at each frequency to `powers` (R, G, K) and its noise to (R, G).
+
+    That is the power of the cross-spectrum (R, G, K) over its references' (G, K), so that white
+    noise has the same everywhere. The noise is read off the frequencies from a quarter of the
+    sampling on, whose powers are exponentially distributed: the median over ``ln 2``. Light that
+    sharp edges leave there is aliased, and counts as noise.
+    """
+    rows, kinds, frequencies = spectra.shape
+    first = min(math.ceil(_NOISE_FROM * period), frequencies - 1)
+    for r in range(rows):
+        for g in range(kinds):
+            for k in range(frequencies):
+                norm = norms[g, k]
+                value = spectra[r, g, k]
+                power = value.real * value.real + value.imag * value.imag
+                powers[r, g, k] = power / norm if norm > 0.0 else 0.0
+            noise[r, g] = np.median(powers[r, g, first:]) / math.log(2.0)
+
+
+@compiled
+def bands(powers: Floats, noise: Floats, out: Counts) -> None:
+    """Write the last frequency that stands out of the noise to `out` (R, G), at least 1."""
+    rows, kinds, frequencies = powers.shape
+    for r in range(rows):
+        for g in range(kinds):
+            out[r, g] = 1
+            for k in range(2, frequencies):
+                if powers[r, g, k] > _SIGNIFICANT * noise[r, g]:
+                    out[r, g] = k
+
+
+@compiled
+def phase_slopes(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    spectra: NDArray[np.complex128],
+    powers: Floats,
+    noise: Floats,
+    last: int,
+    zero: float,
+    period: int,
+    out: Floats,
+) -> None:
+    """Write the shifts, px, that the phases of spectra (R, G, K) are linear in to `out` (R, G).
+
+    The phases of the frequencies 1 to `last` are unwrapped one after the other to the branch next
+    to the line fitted to those before, then fitted with the light's powers (R, G, K) as weights;
+    the line meets zero at frequency zero. With `last` 0 those frequencies count whose power stands
+    out of the `noise` (R, G), less that. From the reference's first `zero` on, cycles a pixel,
+    light a little narrower than it has its sign turned: there branches are half a turn apart.
+    """
+    rows, kinds, frequencies = spectra.shape
+    end = min(last + 1, frequencies) if last > 0 else frequencies
+    for r in range(rows):
+        for g in range(kinds):
+            moment = 0.0
+            square = 0.0
+            for k in range(1, end):
+                weight = powers[r, g, k]
+                if last == 0:
+                    if k > 1 and not weight > _SIGNIFICANT * noise[r, g]:
+                        continue
+                    weight = max(weight - noise[r, g], 1e-9 * weight)
+                value = spectra[r, g, k]
+                phase = math.atan2(value.imag, value.real)
+                if square > 0:
+                    turn = 2 * math.pi if k < zero * period else math.pi
+                    ahead = k * moment / square
+                    phase += turn * np.rint((ahead - phase) / turn)
+                moment += weight * k * phase
+                square += weight * k * k
+            out[r, g] = -period / (2 * math.pi) * moment / square if square > 0 else np.nan
+
+
+@compiled
+def frequency_correlations(spectra: NDArray[np.complex128], out: NDArray[np.complex128]) -> None:
+    """Write the Toeplitz matrices of spectra (R, G, K)'s own correlation to `out` (R, G, K, K).
+
+    A spectrum of real light is continued to the frequencies ``1 - K .. K - 1`` by its conjugate;
+    entry (i, j) is its correlation at the lag i - j. Zero where a spectrum is not finite.
+    """
+    rows, kinds, frequencies = spectra.shape
+    series = np.empty(2 * frequencies - 1, dtype=np.complex128)
+    for r in range(rows):
+        for g in range(kinds):
+            out[r, g] = 0.0
+            for k in range(frequencies):
+                value = spectra[r, g, k]
+                series[frequencies - 1 + k] = value
+                series[frequencies - 1 - k] = value.conjugate()
+            if not np.isfinite(series).all():
+                continue
+            for lag in range(frequencies):
+                total = complex(0.0, 0.0)
+                for k in range(series.size - lag):
+                    total += series[k + lag] * series[k].conjugate()
+                for i in range(lag, frequencies):
+                    out[r, g, i, i - lag] = total
+                    out[r, g, i - lag, i] = total.conjugate()
+
+
+@compiled
+def least_projections(
+    signals: NDArray[np.complex128], powers: Floats, period: int, reach: float, out: Floats
+) -> None:
+    """Write the shift, px, of least projection on the noise subspace to `out` (R, G).
+
+    `signals` (R, G, K) are the unit eigenvectors of the signal, the only ones that are not of
+    noise, so the projection of ``b = powers exp(-2 pi j k shift / period)`` on the others is
+    ``|b|^2 - |signal^H b|^2``. It is searched over `reach` to both sides, then off the grid.
+    """
+    rows, kinds, frequencies = signals.shape
+    step = 2 * math.pi / period
+    tries = math.ceil(reach * _STEPS)
+    for r in range(rows):
+        for g in range(kinds):
+            out[r, g] = np.nan
+            best = 0.0
+            most = -1.0
+            for t in range(-tries, tries + 1):
+                shift = t / _STEPS
+                total = complex(0.0, 0.0)
+                for k in range(frequencies):
+                    angle = step * k * shift
+                    turn = complex(math.cos(angle), -math.sin(angle))
+                    total += signals[r, g, k].conjugate() * powers[k] * turn
+                size = total.real * total.real + total.imag * total.imag
+                if size > most:
+                    most = size
+                    best = shift
+            shift = best
+            for _ in range(_NEWTON):
+                value = complex(0.0, 0.0)
+                slope = complex(0.0, 0.0)
+                bend = complex(0.0, 0.0)
+                for k in range(frequencies):
+                    angle = step * k * shift
+                    turn = complex(math.cos(angle), -math.sin(angle))
+                    term = signals[r, g, k].conjugate() * powers[k] * turn
+                    value += term
+                    slope += complex(0.0, -step * k) * term
+                    bend -= (step * k) * (step * k) * term
+                first = (value.conjugate() * slope).real
+                second = (slope.conjugate() * slope + value.conjugate() * bend).real
+                if not second < 0:
+                    break
+                shift -= first / second
+            if most > 0 and abs(shift - best) <= 1.0 / _STEPS:
+                out[r, g] = shift
