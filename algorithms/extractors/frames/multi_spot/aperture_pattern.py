@@ -30,10 +30,10 @@ _WAVELENGTH_MM = 550e-6
 _AREAS = (0.4, 6.0)
 #: Least pixels of a spot: fewer are hot pixels.
 _LEAST_PIXELS = 4.0
-#: Price of an aperture that should be seen and is not, in spots found.
-_ABSENT = 0.15
-#: Spots by which the best displacement must be ahead of every other.
-_CLEAR = 0.5
+#: Displacements compared by what the frame shows of every aperture, those that match most spots.
+_COMPARED = 24
+#: Spots kept of a frame that its edge cuts.
+_CUTS = 64
 #: Least share of the expected spots.
 SHARE = 0.3
 #: Pixels of a frame whose median is its background.
@@ -53,6 +53,8 @@ class Lattice:
     table: NDArray[np.int64]  # (R, C) the aperture in a cell, -1 for none
     corner: Floats  # (2,) of the table's first cell
     cell_px: float
+    nearest_px: float  # least distance of two apertures, infinite for one
+    lines: NDArray[np.int64]  # (2, A) in which column and row each is
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,7 +135,12 @@ def design_pattern(geometry: SensorGeometry, by: str) -> dict[str, Any]:
 
 
 def require_pattern(
-    by: str, apertures_px: Apertures, blur_px: float, threshold: float, tolerance_px: float
+    by: str,
+    apertures_px: Apertures,
+    blur_px: float,
+    threshold: float,
+    tolerance_px: float,
+    faulty_lines: int,
 ) -> None:
     """Raise ValueError naming the first parameter of a pattern that is out of range."""
     rows = np.array(apertures_px, dtype=np.float64) if apertures_px else np.empty((0, 3))
@@ -146,6 +153,8 @@ def require_pattern(
     if not 0.0 < threshold < 1.0:
         raise ValueError(f"{by}: threshold must be in (0, 1); got {threshold!r}")
     require_positive(by, tolerance_px=tolerance_px)
+    if faulty_lines < 0:
+        raise ValueError(f"{by}: faulty_lines must not be negative; got {faulty_lines!r}")
     nearest = nearest_distance(rows)
     if not tolerance_px < nearest / 4.0:
         raise ValueError(
@@ -179,9 +188,19 @@ def lattice(apertures_px: Apertures) -> Lattice:
     j, i = np.floor((apertures[:, :2] - corner) / cell).astype(np.int64).T
     table = np.full((i.max() + 1, j.max() + 1), -1, dtype=np.int64)
     table[i, j] = np.arange(len(apertures))
-    for array in (apertures, table, corner):
+    nearest = nearest_distance(apertures)
+    lines = np.stack([_lines(apertures[:, axis], nearest / 4.0) for axis in (0, 1)])
+    for array in (apertures, table, corner, lines):
         array.flags.writeable = False
-    return Lattice(apertures, table, corner, cell)
+    return Lattice(apertures, table, corner, cell, nearest, lines)
+
+
+def _lines(coordinates: Floats, apart: float) -> NDArray[np.int64]:
+    """Number the lines that coordinates (A,) fall on: a step of more than `apart` begins one."""
+    order = np.argsort(coordinates, kind="stable")
+    lines = np.empty(len(coordinates), dtype=np.int64)
+    lines[order] = np.concatenate([[0], np.cumsum(np.diff(coordinates[order]) > apart)])
+    return lines
 
 
 def frame_levels(frames: NDArray[Any], apertures_px: Apertures, threshold: float) -> Levels:
@@ -215,13 +234,19 @@ def find_pattern(
     apertures_px: Apertures,
     blur_px: float,
     tolerance_px: float,
+    faulty_lines: int,
+    *,
+    sequence: bool = False,
 ) -> Pattern:
-    """Find the pattern in each of the frames (N, H, W) of `as_frames`, by itself.
+    """Find the pattern in each of the frames (N, H, W) of `as_frames`.
 
-    The spots are centroids of the light above the threshold.
+    The spots are centroids of the light above the threshold. Each frame is read by itself; in a
+    `sequence`, one that leaves several displacements open has that which is within a quarter of
+    the least distance of two apertures from the frame before's.
     """
     from algorithms.extractors.frames.multi_spot import (  # noqa: PLC0415 - Numba on first use
         aperture_grid_kernel,
+        evidence_kernel,
         spots_kernel,
     )
 
@@ -231,12 +256,15 @@ def find_pattern(
     least = max(_AREAS[0] * math.pi / 4.0 * float(widths.min()) ** 2, _LEAST_PIXELS)
     most = max(_AREAS[1] * (float(widths.max()) + blur_px) ** 2, 2.0 * least)
     room = min(_SPOTS_PER_APERTURE * len(widths) + 16, int(height * width / least) + 1)
-    seen = np.empty((count, room, 3))
-    counts = np.empty(count, dtype=np.int64)
-    spots_kernel.segment(frames, levels.maxima, levels.threshold, least, most, seen, counts)
+    seen, cuts = np.empty((count, room, 4)), np.empty((count, _CUTS, 3))
+    counts, cut_counts = np.empty((2, count), dtype=np.int64)
+    spots_kernel.segment(
+        frames, levels.maxima, levels.threshold, least, most, seen, counts, cuts, cut_counts
+    )
 
-    displacement = np.empty((count, 2))
-    partners = np.empty((count, len(widths)), dtype=np.int64)
+    places = np.empty((count, _COMPARED, 2))
+    matches = np.empty((count, _COMPARED, len(widths)), dtype=np.int32)
+    kept = np.empty(count, dtype=np.int64)
     aperture_grid_kernel.match(
         seen,
         counts,
@@ -245,9 +273,29 @@ def find_pattern(
         known.corner,
         known.cell_px,
         (height, width),
-        margin_px(blur_px),
         tolerance_px,
-        (_ABSENT, _CLEAR, SHARE),
+        places,
+        matches,
+        kept,
+    )
+    displacement = np.empty((count, 2))
+    partners = np.empty((count, len(widths)), dtype=np.int64)
+    apart = min(known.nearest_px, float(height + width)) / 4.0
+    evidence_kernel.decide(
+        frames,
+        levels.threshold,
+        seen,
+        counts,
+        cuts,
+        cut_counts,
+        known.apertures,
+        known.lines,
+        margin_px(blur_px),
+        2.0 * tolerance_px,
+        (float(faulty_lines), SHARE, apart if sequence else 0.0),
+        places,
+        matches,
+        kept,
         displacement,
         partners,
     )

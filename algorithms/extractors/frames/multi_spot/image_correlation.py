@@ -71,6 +71,10 @@ class ImageCorrelation(Extractor):
     tolerance_px : float
         Largest distance of a spot from its aperture's place, px, in that search; below a quarter
         of the least distance of two apertures.
+    faulty_lines : int
+        Lines of apertures (columns or rows) that may be dark or doubled at once without a wrong
+        answer, not negative: a displacement is an answer where every other one leaves more of
+        them unexplained.
 
     Raises
     ------
@@ -135,10 +139,16 @@ class ImageCorrelation(Extractor):
     presence: float = 0.3
     threshold: float = 0.3
     tolerance_px: float = 0.75
+    faulty_lines: int = 1
 
     def __post_init__(self) -> None:
         require_pattern(
-            self.about.name, self.apertures_px, self.blur_px, self.threshold, self.tolerance_px
+            self.about.name,
+            self.apertures_px,
+            self.blur_px,
+            self.threshold,
+            self.tolerance_px,
+            self.faulty_lines,
         )
         if self.shape not in get_args(Shape):
             raise ValueError(
@@ -208,8 +218,18 @@ class ImageCorrelation(Extractor):
         without_gaps(follow, pattern, len(frames))
         return found
 
-    def _pattern(self, frames: NDArray[Any], levels: Levels) -> Pattern:
-        return find_pattern(frames, levels, self.apertures_px, self.blur_px, self.tolerance_px)
+    def _pattern(
+        self, frames: NDArray[Any], levels: Levels, *, sequence: bool = False
+    ) -> Pattern:
+        return find_pattern(
+            frames,
+            levels,
+            self.apertures_px,
+            self.blur_px,
+            self.tolerance_px,
+            self.faulty_lines,
+            sequence=sequence,
+        )
 
     def _correlated(self, observations: ArrayLike) -> tuple[Floats, Floats]:
         frames = as_frames(observations)

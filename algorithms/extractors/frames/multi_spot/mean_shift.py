@@ -66,6 +66,10 @@ class MeanShift(Extractor):
     tolerance_px : float
         Largest distance of a spot from its aperture's place, px; below a quarter of the least
         distance of two apertures.
+    faulty_lines : int
+        Lines of apertures (columns or rows) that may be dark or doubled at once without a wrong
+        answer, not negative: a displacement is an answer where every other one leaves more of
+        them unexplained.
 
     Raises
     ------
@@ -134,10 +138,16 @@ class MeanShift(Extractor):
     convergence_px: float = 0.01
     similarity: float = 0.5
     tolerance_px: float = 0.75
+    faulty_lines: int = 1
 
     def __post_init__(self) -> None:
         require_pattern(
-            self.about.name, self.apertures_px, self.blur_px, self.threshold, self.tolerance_px
+            self.about.name,
+            self.apertures_px,
+            self.blur_px,
+            self.threshold,
+            self.tolerance_px,
+            self.faulty_lines,
         )
         require_positive(
             self.about.name, bandwidth_px=self.bandwidth_px, convergence_px=self.convergence_px
@@ -203,8 +213,18 @@ class MeanShift(Extractor):
         without_gaps(follow, pattern, len(frames))
         return found
 
-    def _pattern(self, frames: NDArray[Any], levels: Levels) -> Pattern:
-        return find_pattern(frames, levels, self.apertures_px, self.blur_px, self.tolerance_px)
+    def _pattern(
+        self, frames: NDArray[Any], levels: Levels, *, sequence: bool = False
+    ) -> Pattern:
+        return find_pattern(
+            frames,
+            levels,
+            self.apertures_px,
+            self.blur_px,
+            self.tolerance_px,
+            self.faulty_lines,
+            sequence=sequence,
+        )
 
     def _shifted(self, observations: ArrayLike) -> tuple[Floats, Floats, Floats]:
         frames = as_frames(observations)

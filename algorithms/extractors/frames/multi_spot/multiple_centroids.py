@@ -48,6 +48,10 @@ class MultipleCentroids(Extractor):
     tolerance_px : float
         Largest distance of a spot from its aperture's place, px; below a quarter of the least
         distance of two apertures.
+    faulty_lines : int
+        Lines of apertures (columns or rows) that may be dark or doubled at once without a wrong
+        answer, not negative: a displacement is an answer where every other one leaves more of
+        them unexplained.
 
     Raises
     ------
@@ -105,10 +109,16 @@ class MultipleCentroids(Extractor):
     blur_px: float = 0.0
     threshold: float = 0.3
     tolerance_px: float = 0.75
+    faulty_lines: int = 1
 
     def __post_init__(self) -> None:
         require_pattern(
-            self.about.name, self.apertures_px, self.blur_px, self.threshold, self.tolerance_px
+            self.about.name,
+            self.apertures_px,
+            self.blur_px,
+            self.threshold,
+            self.tolerance_px,
+            self.faulty_lines,
         )
 
     @classmethod
@@ -133,7 +143,12 @@ class MultipleCentroids(Extractor):
         frames = as_frames(observations)
         levels = frame_levels(frames, self.apertures_px, self.threshold)
         return find_pattern(
-            frames, levels, self.apertures_px, self.blur_px, self.tolerance_px
+            frames,
+            levels,
+            self.apertures_px,
+            self.blur_px,
+            self.tolerance_px,
+            self.faulty_lines,
         ).spots
 
 

@@ -1,0 +1,364 @@
+"""Which displacement of a mask a frame shows: what is lit and what is dark under each of several."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.compiled import compiled
+from algorithms.contract import Floats
+
+Indices = NDArray[np.int64]
+Partners = NDArray[np.int32]
+States = NDArray[np.int8]
+Flags = NDArray[np.bool_]
+
+#: What a frame shows of an aperture: less than half of its place, neither its spot nor darkness,
+#: its spot, darkness or a spot of another place.
+_OUT, _UNSURE, _SPOT, _DARK = 0, 1, 2, 3
+#: Share of lit pixels at an aperture's place below which it is dark: a hot one is no spot.
+_LIT = 0.25
+#: A spot with less than this share of the usual light may be a reflection.
+_DIM = 0.8
+#: Price of a line of apertures in the dark, and of one aperture of it at least and at most: one
+#: over those in view within these limits.
+_DARKNESS = (1.0, 0.2, 0.5)
+#: The same of lit ones that a displacement leaves unexplained: no reflection is as bright as they.
+_LIGHT = (2.0, 0.4, 0.75)
+#: By how much more than the faults allowed a rival must cost.
+_CLEAR = 0.2
+
+
+@compiled
+def _is_dark(frame: NDArray[Any], level: float, x: float, y: float, radius: float) -> bool:
+    """Whether few of the pixels within `radius` of (x, y) are above the level."""
+    height, width = frame.shape
+    lit = 0
+    pixels = 0
+    for i in range(max(math.ceil(y - radius), 0), min(math.floor(y + radius), height - 1) + 1):
+        side = math.sqrt(max(radius * radius - (i - y) * (i - y), 0.0))
+        for j in range(max(math.ceil(x - side), 0), min(math.floor(x + side), width - 1) + 1):
+            pixels += 1
+            lit += frame[i, j] > level
+    return lit < _LIT * pixels
+
+
+@compiled
+def _is_near(spots: Floats, x: float, y: float, radius: float) -> bool:
+    """Whether the middle of a whole spot is within `radius` of (x, y)."""
+    for s in range(spots.shape[0]):
+        dx = spots[s, 0] - x
+        dy = spots[s, 1] - y
+        if dx * dx + dy * dy < radius * radius:
+            return True
+    return False
+
+
+@compiled
+def _look(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    frame: NDArray[Any],
+    level: float,
+    apertures: Floats,
+    margin: float,
+    x: float,
+    y: float,
+    spots: Floats,
+    partner: Partners,
+    state: States,
+) -> tuple[int, int]:
+    """Write what the frame shows of each aperture; return how many spots, and whole places."""
+    height, width = frame.shape
+    found = 0
+    whole = 0
+    for a in range(apertures.shape[0]):
+        px = apertures[a, 0] + x
+        py = apertures[a, 1] + y
+        half = 0.5 * apertures[a, 2]
+        edge = half + margin
+        whole += edge <= px < width - 1 - edge and edge <= py < height - 1 - edge
+        if partner[a] >= 0:
+            state[a] = _SPOT
+            found += 1
+        elif not (1.0 <= px <= width - 2.0 and 1.0 <= py <= height - 2.0):
+            state[a] = _OUT
+        elif _is_dark(frame, level, px, py, max(half - 1.0, 1.0)) or _is_near(spots, px, py, half):
+            state[a] = _DARK
+        else:
+            state[a] = _UNSURE
+    return found, whole
+
+
+@compiled
+def _shown(state: States, lines: Indices, out: Indices) -> None:
+    """Write how many apertures of each line of columns and of rows (2, A) are in view."""
+    out[:] = 0
+    for a in range(state.size):
+        if state[a] != _OUT:
+            out[0, lines[0, a]] += 1
+            out[1, lines[1, a]] += 1
+
+
+@compiled
+def _price(
+    faults: Flags, lines: Indices, shown: Indices, prices: tuple[float, float, float], sums: Floats
+) -> float:
+    """Price of the faulty apertures: lines of columns, or of rows, whichever explain them cheaper.
+
+    A line has a highest price: what darkens or lights a whole one is one fault.
+    """
+    line, least, most = prices
+    best = math.inf
+    for axis in range(2):
+        sums[:] = 0.0
+        for a in range(faults.size):
+            if faults[a]:
+                one = line / max(shown[axis, lines[axis, a]], 1)
+                sums[lines[axis, a]] += min(max(one, least), most)
+        total = 0.0
+        for a in range(sums.size):
+            total += min(sums[a], line)
+        best = min(best, total)
+    return best
+
+
+@compiled
+def _dark_alone(
+    state: States, apertures: Floats, away_x: float, away_y: float, near: float, faults: Flags
+) -> bool:
+    """Mark the dark places of one displacement where the other, `away` from it, has no aperture."""
+    some = False
+    for a in range(state.size):
+        faults[a] = state[a] == _DARK
+        if not faults[a]:
+            continue
+        for b in range(state.size):
+            dx = apertures[a, 0] + away_x - apertures[b, 0]
+            dy = apertures[a, 1] + away_y - apertures[b, 1]
+            if dx * dx + dy * dy < near * near:
+                faults[a] = False
+                break
+        some |= faults[a]
+    return some
+
+
+@compiled
+def _lit_alone(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    partner: Partners,
+    cut: Partners,
+    other: Partners,
+    other_cut: Partners,
+    bright: Flags,
+    taken: Flags,
+    faults: Flags,
+) -> bool:
+    """Mark the apertures whose spots, whole or cut, only this displacement explains."""
+    taken[:] = False
+    for a in range(other.size):
+        if other[a] >= 0:
+            taken[other[a]] = True
+    some = False
+    for a in range(partner.size):
+        s = partner[a]
+        faults[a] = s >= 0 and not taken[s] and bright[s]
+        some |= faults[a]
+    for c in range(cut.size):
+        if cut[c] >= 0 and other_cut[c] < 0:
+            faults[cut[c]] = True
+            some = True
+    return some
+
+
+@compiled
+def _cut_partners(
+    cuts: Floats, apertures: Floats, x: float, y: float, margin: float, dim: float, out: Partners
+) -> None:
+    """Write the aperture that each spot cut by the edge lies on, -1 for none or a dim one."""
+    for c in range(out.size):
+        out[c] = -1
+        if cuts[c, 2] < dim:
+            continue
+        for a in range(apertures.shape[0]):
+            reach = 0.5 * apertures[a, 2] + margin
+            dx = cuts[c, 0] - apertures[a, 0] - x
+            dy = cuts[c, 1] - apertures[a, 1] - y
+            if dx * dx + dy * dy < reach * reach:
+                out[c] = a
+                break
+
+
+@compiled
+def _usual(spots: Floats, partner: Partners, bright: Flags) -> float:
+    """Mark the spots (S,) that are not much dimmer than those of the pattern; return the limit.
+
+    Compared is the light of a lit pixel, which does not depend on an aperture's size.
+    """
+    lights = np.empty(partner.size)
+    number = 0
+    for a in range(partner.size):
+        if partner[a] >= 0:
+            lights[number] = spots[partner[a], 3] / spots[partner[a], 2]
+            number += 1
+    least = _DIM * np.median(lights[:number])
+    for s in range(bright.size):
+        bright[s] = spots[s, 3] >= least * spots[s, 2]
+    return float(least)
+
+
+@compiled
+def _ahead(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    one: int,
+    other: int,
+    places: Floats,
+    partners: Partners,
+    cut_to: Partners,
+    state: States,
+    shown: Indices,
+    bright: Flags,
+    apertures: Floats,
+    lines: Indices,
+    near: float,
+    taken: Flags,
+    faults: Flags,
+    sums: Floats,
+) -> float:
+    """By how much more the frame speaks against the `other` displacement than against `one`."""
+    ahead = 0.0
+    for side in range(2):
+        a, b = (other, one) if side == 0 else (one, other)
+        price = 0.0
+        away_x = places[a, 0] - places[b, 0]
+        away_y = places[a, 1] - places[b, 1]
+        if _dark_alone(state[a], apertures, away_x, away_y, near, faults):
+            price += _price(faults, lines, shown[a], _DARKNESS, sums)
+        if _lit_alone(partners[b], cut_to[b], partners[a], cut_to[a], bright, taken, faults):
+            price += _price(faults, lines, shown[b], _LIGHT, sums)
+        ahead += price if side == 0 else -price
+    return ahead
+
+
+@compiled
+def decide(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    frames: NDArray[Any],
+    levels: Floats,
+    spots: Floats,
+    counts: Indices,
+    cuts: Floats,
+    cut_counts: Indices,
+    apertures: Floats,
+    lines: Indices,
+    margin: float,
+    near: float,
+    limits: tuple[float, float, float],
+    places: Floats,
+    partners: Partners,
+    kept: Indices,
+    displacement: Floats,
+    chosen: Indices,
+) -> None:
+    """Choose each frame's displacement by what it shows of every aperture, in view and cut.
+
+    Of two displacements, against one speak the places in view that are dark under it and under
+    the other belong to no aperture, and the spots that only the other explains; apertures out of
+    view speak for neither. A whole line of them, dark or lit, counts as one fault. The answer is
+    the displacement that every other one exceeds by more than the faults allowed; there is none
+    where two are nearer.
+
+    Parameters
+    ----------
+    levels
+        (N,) above which a pixel of the frames (N, H, W) is lit.
+    spots, counts, cuts, cut_counts
+        As `spots_kernel.segment` writes them.
+    apertures, lines
+        (A, 3) x, y, width; (2, A) in which column and row of the mask each is.
+    margin, near
+        Px that a spot reaches beyond its aperture; px within which two places are the same.
+    limits
+        Faults allowed: lines of apertures that may be dark or doubled; least share of the
+        spots that should be whole in the frame; px from the frame before's displacement within
+        which of several that a frame leaves open one is the answer all the same: 0 where frames
+        are no sequence.
+    places, partners, kept
+        As `aperture_grid_kernel.match` writes them.
+    displacement, chosen
+        (N, 2) and (N, A): receive the displacement, NaN where none is found, and the spot of
+        each aperture, -1 for none.
+    """
+    allowed, share, reach = limits
+    room = places.shape[1]
+    number = apertures.shape[0]
+    state = np.empty((room, number), dtype=np.int8)
+    shown = np.empty((room, 2, number), dtype=np.int64)
+    cut_to = np.empty((room, cuts.shape[1]), dtype=np.int32)
+    enough = np.empty(room, dtype=np.bool_)
+    faults = np.empty(number, dtype=np.bool_)
+    taken = np.empty(spots.shape[1], dtype=np.bool_)
+    bright = np.empty(spots.shape[1], dtype=np.bool_)
+    sums = np.empty(number)
+    last_x = np.nan
+    last_y = np.nan
+    for k in range(frames.shape[0]):
+        displacement[k] = np.nan
+        chosen[k] = -1
+        seen = spots[k, : max(counts[k], 0)]
+        cut = cuts[k, : cut_counts[k]]
+        dim = 0.0
+        if kept[k] > 0:
+            dim = _usual(seen, partners[k, 0], bright[: counts[k]])
+        for h in range(kept[k]):
+            x, y = places[k, h]
+            found, whole = _look(
+                frames[k], levels[k], apertures, margin, x, y, seen, partners[k, h], state[h]
+            )
+            enough[h] = found >= share * whole
+            _shown(state[h], lines, shown[h])
+            _cut_partners(cut, apertures, x, y, margin, dim, cut_to[h, : cut_counts[k]])
+        # First the one that no other beats, then those that it does not beat by enough.
+        best = 0
+        near_last = 0
+        answer = -1
+        others = 0
+        for turn in range(2):
+            for h in range(kept[k]):
+                ahead = 0.0
+                if h != best:
+                    ahead = _ahead(
+                        best,
+                        h,
+                        places[k],
+                        partners[k],
+                        cut_to[:, : cut_counts[k]],
+                        state,
+                        shown,
+                        bright,
+                        apertures,
+                        lines,
+                        near,
+                        taken,
+                        faults,
+                        sums,
+                    )
+                if turn == 0:
+                    if ahead < 0.0:
+                        best = h
+                elif ahead < allowed + _CLEAR:
+                    others += h != best
+                    away = math.hypot(places[k, h, 0] - last_x, places[k, h, 1] - last_y)
+                    if enough[h] and away <= reach:  # never where nothing is known of the last
+                        near_last += 1
+                        answer = h
+        if others == 0:
+            answer = best if kept[k] > 0 and enough[best] else -1
+        elif near_last != 1:
+            answer = -1
+        last_x = np.nan
+        last_y = np.nan
+        if answer >= 0:
+            displacement[k] = places[k, answer]
+            for a in range(number):
+                chosen[k, a] = partners[k, answer, a]
+            if reach > 0.0:
+                last_x, last_y = places[k, answer]
