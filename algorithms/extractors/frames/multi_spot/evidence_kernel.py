@@ -23,13 +23,12 @@ _OUT, _UNSURE, _SPOT, _DARK = 0, 1, 2, 3
 _LIT = 0.25
 #: A spot with less than this share of the usual light may be a reflection.
 _DIM = 0.8
-#: Price of a line of apertures in the dark, and of one aperture of it at least and at most: one
-#: over those in view within these limits.
-_DARKNESS = (1.0, 0.2, 0.5)
+#: Price of a line of apertures in the dark, and of one of it: one over those in view, within limits.
+_DARKNESS, _DARK_ONE = 1.0, (0.25, 0.34)
 #: The same of lit ones that a displacement leaves unexplained: no reflection is as bright as they.
-_LIGHT = (2.0, 0.4, 0.75)
-#: By how much more than the faults allowed a rival must cost.
-_CLEAR = 0.2
+_LIGHT, _LIGHT_ONE = 2.0, (0.8, 0.8)
+#: By how much more than the faults allowed a rival must cost: no more than a spot beside its place.
+_CLEAR = 0.04
 
 
 @compiled
@@ -103,13 +102,18 @@ def _shown(state: States, lines: Indices, out: Indices) -> None:
 
 @compiled
 def _price(
-    faults: Flags, lines: Indices, shown: Indices, prices: tuple[float, float, float], sums: Floats
+    faults: Flags,
+    lines: Indices,
+    shown: Indices,
+    line: float,
+    limits: tuple[float, float],
+    sums: Floats,
 ) -> float:
     """Price of the faulty apertures: lines of columns, or of rows, whichever explain them cheaper.
 
     A line has a highest price: what darkens or lights a whole one is one fault.
     """
-    line, least, most = prices
+    least, most = limits
     best = math.inf
     for axis in range(2):
         sums[:] = 0.0
@@ -232,9 +236,9 @@ def _ahead(  # noqa: PLR0917 - Numba takes no keyword-only ones
         away_x = places[a, 0] - places[b, 0]
         away_y = places[a, 1] - places[b, 1]
         if _dark_alone(state[a], apertures, away_x, away_y, near, faults):
-            price += _price(faults, lines, shown[a], _DARKNESS, sums)
+            price += _price(faults, lines, shown[a], _DARKNESS, _DARK_ONE, sums)
         if _lit_alone(partners[b], cut_to[b], partners[a], cut_to[a], bright, taken, faults):
-            price += _price(faults, lines, shown[b], _LIGHT, sums)
+            price += _price(faults, lines, shown[b], _LIGHT, _LIGHT_ONE, sums)
         ahead += price if side == 0 else -price
     return ahead
 
