@@ -1,0 +1,208 @@
+"""Beyond the survey: the centres of many spots by their common image, combined by weight."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, ClassVar, Literal, Self, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from algorithms.contract import (
+    AboutExtractor,
+    Extractor,
+    FeatureKind,
+    Floats,
+    Observation,
+    SensorGeometry,
+    UnsuitableDesignError,
+)
+from algorithms.extractors.frames.multi_spot.aperture_pattern import (
+    PATTERN_NEEDS,
+    Apertures,
+    Levels,
+    design_pattern,
+    find_pattern,
+    frame_levels,
+    lattice,
+    require_pattern,
+)
+from algorithms.inputs import as_frames
+
+Shape = Literal["round", "square"]
+
+
+@dataclass(frozen=True)
+class WeightedSpots(Extractor):
+    """Mean of the centres of all whole spots, each by the image that all of them share.
+
+    The pattern tells which aperture cast which spot. Light against distance from the middle is
+    averaged over all spots, and each is moved to where it fits this profile best; spots are
+    weighted by their variances, and those that disagree are left out. Because the fit is not
+    biased by where a spot falls on its pixels, N spots are sqrt(N) times as precise as one also
+    where all of them fall alike.
+
+    Parameters
+    ----------
+    apertures_px : tuple of (x, y, width)
+        The mask's apertures, px from its middle; one at least.
+    shape : {"round", "square"}
+        Of the apertures; a square's sides lie along the pixels. Round ones may cast ovals.
+    blur_px : float
+        Width of the Sun's image behind a hole, px, not negative: bounds the size of a spot.
+    threshold : float
+        The fraction, in (0, 1), of the spots' brightness that makes a spot when the pattern is
+        searched for.
+    tolerance_px : float
+        Largest distance of a spot from its aperture's place, px, in that search; below a quarter
+        of the least distance of two apertures.
+    faulty_lines : int
+        Lines of apertures (columns or rows) that may be dark or doubled at once without a wrong
+        answer, not negative: a displacement is an answer where every other one leaves more of
+        them unexplained.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
+    Notes
+    -----
+    Implements: nothing printed in the survey. With C the second moments of the light above the
+    threshold, of all spots, ``rho^2 = sqrt(det C) u^T C^-1 u`` makes them round (``rho = max(|u|,
+    |v|)`` squares). The profile p(rho) is a cubic spline through the pixels of all spots, each over
+    the spot's share of the light, less its background; a step d of a centre solves ``sum(g g^T
+    p'^2 / v) d = -sum(g p' (I - p) / v)``, g the slope of rho. A profile of rho is symmetric about
+    the middle, and so are the answers for every symmetric image, of whatever outline. The variance
+    v grows with the light by the factor that explains how lit pixels scatter. The background is
+    that beyond the spots' rims, with a slope where it shows one. Pixels six deviations off are
+    left out; so are spots of which the misfit or the place is far from the others' median. Where
+    places scatter more than noise explains, apertures are off: their variance is added to each.
+
+    Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers: the
+    spot of an aperture over the detector's middle, seen or not.
+
+    Failure: a NaN row where the pattern is not found, as for MCAM, and where no spot's centre can
+    be fitted. With less than four spots none can be told to be the wrong one.
+
+    Cost: as MCAM, and some 150 operations a pixel of the spots' surroundings.
+
+    References
+    ----------
+    None of the survey: ours.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> holes = ((-8, -6, 5), (8, -5, 5), (-7, 7, 5), (9, 6, 5))
+    >>> y, x = np.mgrid[:40, :46]
+    >>> away = [np.hypot(x - 23.4 - u, y - 18.8 - v) for u, v, _ in holes]
+    >>> frames = 200 * np.clip(3.0 - np.array(away), 0, 1).sum(axis=0)[None]
+    >>> WeightedSpots(holes).extract(frames).round(1)
+    array([[23.4, 18.8]])
+    """
+
+    about: ClassVar = AboutExtractor(
+        name="weighted-spots",
+        taxonomy="None",
+        origin="ours",
+        needs=PATTERN_NEEDS,
+        observation=Observation.FRAMES,
+        kind=FeatureKind.SPOT,
+    )
+
+    apertures_px: Apertures = field(repr=False)
+    shape: Shape = "round"
+    blur_px: float = 0.0
+    threshold: float = 0.3
+    tolerance_px: float = 0.75
+    faulty_lines: int = 1
+
+    def __post_init__(self) -> None:
+        require_pattern(
+            self.about.name,
+            self.apertures_px,
+            self.blur_px,
+            self.threshold,
+            self.tolerance_px,
+            self.faulty_lines,
+        )
+        if self.shape not in get_args(Shape):
+            raise ValueError(
+                f"{self.about.name}: shape must be one of {', '.join(get_args(Shape))}; "
+                f"got {self.shape!r}"
+            )
+
+    @classmethod
+    def for_sensor(cls, geometry: SensorGeometry) -> Self:
+        """Return the method with this sensor's mask.
+
+        UnsuitableDesignError where its light is no spots.
+        """
+        design = design_pattern(geometry, cls.about.name)
+        shape = geometry.aperture_shape
+        if shape is None:  # said above; for the type checker
+            raise UnsuitableDesignError(
+                f"{cls.about.name} needs the sensor geometry's aperture_shape"
+            )
+        return cls(shape=shape, **design)
+
+    def extract(self, observations: ArrayLike) -> Floats:
+        """Combined positions (N, 2) in frames (N, H, W); ValueError on wrong input."""
+        return self._combined(observations)[0]
+
+    def spots(self, observations: ArrayLike) -> Floats:
+        """Centres (N, A, 2) of each aperture's spot in frames (N, H, W), px.
+
+        NaN where a spot is missing, cut or disagrees with the others, and for the whole of a
+        frame in which the pattern is not found. ValueError on wrong input.
+        """
+        return self._combined(observations)[1]
+
+    def _combined(self, observations: ArrayLike) -> tuple[Floats, Floats]:
+        from algorithms.extractors.frames.multi_spot import combination_kernel  # noqa: PLC0415 - Numba, at first use
+
+        frames = as_frames(observations)
+        levels = frame_levels(frames, self.apertures_px, self.threshold)
+        pattern = find_pattern(
+            frames,
+            levels,
+            self.apertures_px,
+            self.blur_px,
+            self.tolerance_px,
+            self.faulty_lines,
+        )
+        centres, variances, misfits = self._centres(frames, levels, pattern.spots)
+        known = lattice(self.apertures_px).apertures
+        found, sure = np.empty((2, len(frames), 2))
+        used = np.empty((len(frames), len(known)), dtype=np.bool_)
+        combination_kernel.combine(centres, variances, misfits, known, found, sure, used)
+        centres[~used] = np.nan
+        return found, centres
+
+    def _centres(
+        self, frames: NDArray[Any], levels: Levels, starts: Floats
+    ) -> tuple[Floats, Floats, Floats]:
+        """Centres (N, A, 2) of spots, their variances and misfits (N, A), from rough ones.
+
+        Any estimator of single spots that gives these can stand here.
+        """
+        from algorithms.extractors.frames.multi_spot import shared_profile_kernel  # noqa: PLC0415 - Numba, at first use
+
+        known = lattice(self.apertures_px)
+        size = float(known.apertures[:, 2].max()) + self.blur_px
+        variances, misfits = np.empty((2, *starts.shape[:2]))
+        centres = np.empty_like(starts)
+        shared_profile_kernel.shared_profile(
+            frames,
+            levels.threshold,
+            levels.floor,
+            starts,
+            size + 2.0,
+            min(known.nearest_px, float(sum(frames.shape[1:]))) / 2.0,
+            self.shape == "square",
+            centres,
+            variances,
+            misfits,
+        )
+        return centres, variances, misfits
