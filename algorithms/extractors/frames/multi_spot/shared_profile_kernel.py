@@ -15,7 +15,10 @@ from algorithms.compiled import compiled
 from algorithms.contract import Floats
 
 #: Px between the knots of the profile, a cubic spline, and what keeps it smooth where no pixel is.
-_KNOTS, _SMOOTH = 0.5, 1e-3
+_KNOTS, _SMOOTH = 0.65, 3e-2
+#: Samples of the profile a px, and how many to each side its slopes are weighted by the mean of:
+#: sharp weights see the pixels' places.
+_FINE, _AROUND = 32, 22
 #: Reach of a spot's pixels beyond its rim: over its radius, and px; of these the outermost show
 #: the background.
 _WIDER, _MARGIN, _RING = 0.1, 3.0, 1.5
@@ -43,12 +46,11 @@ _BASIS = (
 
 @compiled
 def _shape(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    frame: NDArray[Any], level: float, spots: Floats, half: int, square: bool
+    frame: NDArray[Any], level: float, spots: Floats, half: int
 ) -> tuple[float, float, float, float]:
     """Metric (xx, xy, yy) of determinant one that makes the spots round, and their radius in it.
 
-    Of the light above the level within `half` pixels of each spot's middle; a square's metric has
-    no xy and its radius is half its side.
+    Of the light above the level within `half` pixels of each spot's middle.
     """
     height, width = frame.shape
     xx = 0.0
@@ -68,33 +70,19 @@ def _shape(  # noqa: PLR0917 - Numba takes no keyword-only ones
                     xx += u * (j - x) * (j - x)
                     xy += u * (j - x) * (i - y)
                     yy += u * (i - y) * (i - y)
-    xy = 0.0 if square else xy
     root = math.sqrt(max(xx * yy - xy * xy, 0.0))
     area = pixels / spots.shape[0]
     if not root > 1e-3 * (xx + yy):
         return 0.0, 0.0, 0.0, 0.0
-    radius = 0.5 * math.sqrt(area) if square else math.sqrt(area / math.pi)
-    return yy / root, -xy / root, xx / root, radius
+    return yy / root, -xy / root, xx / root, math.sqrt(area / math.pi)
 
 
 @compiled
-def _measure(
-    pixels: Floats, x: float, y: float, metric: tuple[float, float, float], square: bool
-) -> None:
+def _measure(pixels: Floats, x: float, y: float, metric: tuple[float, float, float]) -> None:
     """Write the distances of one spot's pixels (6, P) from its middle, and their slopes."""
     xx, xy, yy = metric
     across, along = pixels[_X], pixels[_Y]
     r, gx, gy = pixels[_R], pixels[_GX], pixels[_GY]
-    if square:
-        by_x, by_y = math.sqrt(xx), math.sqrt(yy)
-        for p in range(r.size):
-            u = (across[p] - x) * by_x
-            v = (along[p] - y) * by_y
-            if abs(u) > abs(v):
-                r[p], gx[p], gy[p] = abs(u), math.copysign(by_x, u), 0.0
-            else:
-                r[p], gx[p], gy[p] = abs(v), 0.0, math.copysign(by_y, v)
-        return
     for p in range(r.size):
         dx = across[p] - x
         dy = along[p] - y
@@ -114,24 +102,20 @@ def _gather(  # noqa: PLR0917 - Numba takes no keyword-only ones
     spots: Floats,
     metric: tuple[float, float, float],
     reach: float,
-    square: bool,
     pixels: Floats,
     ends: NDArray[np.int64],
 ) -> None:
     """List each spot's pixels as far as `reach`, their light above `floor`, and where they end."""
     height, width = frame.shape
-    xx, xy, yy = metric
-    wide, high = _box(metric, reach, square)
+    xx, xy, _ = metric
+    high = reach * math.sqrt(xx)
     end = 0
     for s in range(spots.shape[0]):
         x, y = spots[s, 0], spots[s, 1]
         for i in range(max(math.ceil(y - high), 0), min(math.floor(y + high), height - 1) + 1):
-            side = wide
-            shift = 0.0
-            if not square:  # where the row cuts the ellipse
-                dy = i - y
-                shift = -xy * dy / xx
-                side = math.sqrt(max((reach * reach - dy * dy / xx) / xx, 0.0))
+            dy = i - y  # where the row cuts the ellipse
+            shift = -xy * dy / xx
+            side = math.sqrt(max((reach * reach - dy * dy / xx) / xx, 0.0))
             first = max(math.ceil(x + shift - side), 0)
             last = min(math.floor(x + shift + side), width - 1)
             for j in range(first, last + 1):
@@ -140,15 +124,6 @@ def _gather(  # noqa: PLR0917 - Numba takes no keyword-only ones
                 pixels[_U, end] = frame[i, j] - floor
                 end += 1
         ends[s] = end
-
-
-@compiled
-def _box(metric: tuple[float, float, float], reach: float, square: bool) -> tuple[float, float]:
-    """Half the width and half the height, px, of what is within `reach` of a middle."""
-    xx, _, yy = metric
-    if square:
-        return reach / math.sqrt(xx), reach / math.sqrt(yy)
-    return reach * math.sqrt(yy), reach * math.sqrt(xx)
 
 
 @compiled
@@ -306,15 +281,26 @@ def _spline(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def _profile(table: Floats, r: float) -> tuple[float, float, float]:
-    """Profile and its slope at a distance, and the number of pixels it is from."""
-    t = r * (1.0 / _KNOTS)
-    m = min(np.uint32(t), np.uint32(table.shape[0] - 1))
-    t -= m
-    at = table[m]
-    value = at[0] + t * (at[1] + t * (at[2] + t * at[3]))
-    slope = (at[1] + t * (2.0 * at[2] + t * 3.0 * at[3])) * (1.0 / _KNOTS)
-    return value, slope, at[4]
+def _sample(table: Floats, fine: Floats) -> None:
+    """Write the profile, its slope, the mean of both around, and the pixels between knots.
+
+    Columns of `fine` (F, 5), `_FINE` rows a px. The middle repeats itself on its other side.
+    """
+    intervals = table.shape[0]
+    for f in range(fine.shape[0]):
+        t = f * (1.0 / (_FINE * _KNOTS))
+        m = min(int(t), intervals - 1)
+        t = min(t - m, 1.0)
+        at = table[m]
+        fine[f, 0] = at[0] + t * (at[1] + t * (at[2] + t * at[3]))
+        fine[f, 1] = (at[1] + t * (2.0 * at[2] + t * 3.0 * at[3])) * (1.0 / _KNOTS)
+        fine[f, 4] = at[4]
+    last = fine.shape[0] - 1
+    for f in range(fine.shape[0]):
+        near = abs(f - _AROUND)
+        far = min(f + _AROUND, last)
+        fine[f, 2] = (fine[far, 0] - fine[near, 0]) * (_FINE / (2.0 * _AROUND))
+        fine[f, 3] = 0.25 * (fine[near, 0] + fine[far, 0]) + 0.5 * fine[f, 0]
 
 
 @compiled
@@ -322,7 +308,7 @@ def _variances(  # noqa: PLR0917 - Numba takes no keyword-only ones
     pixels: Floats,
     ends: NDArray[np.int64],
     shares: Floats,
-    table: Floats,
+    fine: Floats,
     noise: float,
     kept: NDArray[np.bool_],
 ) -> tuple[float, bool]:
@@ -337,8 +323,10 @@ def _variances(  # noqa: PLR0917 - Numba takes no keyword-only ones
             for p in range(begin, ends[s] if shares[s] > 0.0 else begin):
                 if not kept[p]:
                     continue
-                value, _, _ = _profile(table, pixels[_R, p])
-                value *= shares[s]
+                t = pixels[_R, p] * _FINE
+                m = np.uint32(t)
+                t -= m
+                value = shares[s] * (fine[m, 0] + t * (fine[m + 1, 0] - fine[m, 0]))
                 e = pixels[_U, p] - value
                 value = max(value, 0.0)
                 if turn > 0 and e * e > _BAD * _BAD * (noise + gain * value):
@@ -357,7 +345,7 @@ def _step(  # noqa: PLR0917 - Numba takes no keyword-only ones
     own: Floats,
     kept: NDArray[np.bool_],
     share: float,
-    table: Floats,
+    fine: Floats,
     noise: float,
     gain: float,
     out: Floats,
@@ -373,19 +361,20 @@ def _step(  # noqa: PLR0917 - Numba takes no keyword-only ones
     for p in range(own.shape[1]):
         if not kept[p]:
             continue
-        value, slope, pixels = _profile(table, own[_R, p])
-        value *= share
-        slope *= share
-        e = own[_U, p] - value
-        variance = noise + gain * max(value, 0.0)
+        t = own[_R, p] * _FINE
+        m = np.uint32(t)
+        t -= m
+        e = own[_U, p] - share * (fine[m, 0] + t * (fine[m + 1, 0] - fine[m, 0]))
+        variance = noise + gain * max(share * fine[m, 3], 0.0)
         misfit += e * e / variance
         number += 1
         # Of the squared slope, what its own noise explains is no slope.
-        sure = slope * slope * max(pixels, 1.0)
+        slope = share * fine[m, 2]
+        sure = slope * slope * max(fine[m, 4], 1.0)
         if sure <= _UNSURE * variance:
             continue
-        slope *= 1.0 - _UNSURE * variance / sure
-        weight = slope / variance
+        weight = slope * (1.0 - _UNSURE * variance / sure) / variance
+        slope = share * fine[m, 1]
         gx, gy = own[_GX, p], own[_GY, p]
         b_x -= weight * gx * e
         b_y -= weight * gy * e
@@ -410,7 +399,6 @@ def shared_profile(  # noqa: PLR0917 - Numba takes no keyword-only ones
     starts: Floats,
     size: float,
     room: float,
-    square: bool,
     centres: Floats,
     variances: Floats,
     misfits: Floats,
@@ -425,8 +413,6 @@ def shared_profile(  # noqa: PLR0917 - Numba takes no keyword-only ones
         (N, A, 2) thresholded centroids, NaN for none.
     size, room
         Largest width of a spot, px; how far it may reach before it meets another.
-    square
-        Whether spots are squares along the pixels' rows, not ovals.
     centres, variances, misfits
         (N, A, 2), (N, A) and (N, A): receive the centres, NaN for none, the variance of one
         along an axis, px^2, and the mean squared departure of its pixels, in their variances.
@@ -443,9 +429,10 @@ def shared_profile(  # noqa: PLR0917 - Numba takes no keyword-only ones
     shares = np.empty(starts.shape[1])
     intervals = int((0.5 * side + 3.0) / _KNOTS) + 2
     table = np.empty((intervals, 6))
+    fine = np.empty((int((intervals + 1) * _KNOTS * _FINE), 5))
     moments = np.empty((intervals, 11))
     band = np.empty((intervals + 3, 5))
-    out = np.empty(4)
+    out = np.empty((starts.shape[1], 4))
     for k in range(frames.shape[0]):
         centres[k] = np.nan
         variances[k] = np.nan
@@ -458,18 +445,18 @@ def shared_profile(  # noqa: PLR0917 - Numba takes no keyword-only ones
                 number += 1
         if number == 0:
             continue
-        xx, xy, yy, radius = _shape(frames[k], levels[k], spots[:number], half, square)
+        xx, xy, yy, radius = _shape(frames[k], levels[k], spots[:number], half)
         if not 0.0 < radius <= size:
             continue
         metric = (xx, xy, yy)
-        wide, high = _box(metric, 1.0, square)
+        wide, high = math.sqrt(yy), math.sqrt(xx)
         reach = min((1.0 + _WIDER) * radius + _MARGIN, max(room, radius) / max(wide, high))
         if (2 * reach * wide + 1) * (2 * reach * high + 1) > side * side:
             continue
         _gather(
-            frames[k], floors[k], spots[:number], metric, reach, square, pixels, ends[:number]
+            frames[k], floors[k], spots[:number], metric, reach, pixels, ends[:number]
         )
-        _lay(pixels, ends[:number], spots, metric, square)
+        _lay(pixels, ends[:number], spots, metric)
         noise = _flatten(pixels, ends[:number], reach - _RING, shares[:number])
         mean = shares[:number].mean()
         for s in range(number):
@@ -478,33 +465,37 @@ def shared_profile(  # noqa: PLR0917 - Numba takes no keyword-only ones
         noise = max(noise, 1e-300)
         gain = 0.0
         of = table[: int(reach / _KNOTS) + 2]
-        for _ in range(_ROUNDS):
-            _spline(pixels, ends[:number], shares, kept, of, moments[: len(of)], band)
-            gain, changed = _variances(pixels, ends[:number], shares, of, noise, kept)
-            if not changed:
-                break
-        begin = 0
-        for s in range(number):
-            own = pixels[:, begin : ends[s]]
-            x, y = spots[s]
-            found = shares[s] > 0.0
-            for turn in range(_STEPS):
-                if turn > 0:
-                    _measure(own, x, y, metric, square)
-                found = found and _step(
-                    own, kept[begin : ends[s]], shares[s], of, noise, gain, out
-                )
-                found = found and max(abs(out[0]), abs(out[1])) < _ASTRAY * radius
-                if not found:
+        for turn in range(_STEPS):
+            if turn > 0:
+                _lay(pixels, ends[:number], spots, metric)
+            for _ in range(_ROUNDS):
+                _spline(pixels, ends[:number], shares, kept, of, moments[: len(of)], band)
+                _sample(of, fine)
+                gain, changed = _variances(pixels, ends[:number], shares, fine, noise, kept)
+                if not changed:
                     break
-                x += out[0]
-                y += out[1]
-            if found:
-                centres[k, which[s], 0] = x
-                centres[k, which[s], 1] = y
-                variances[k, which[s]] = out[2]
-                misfits[k, which[s]] = out[3]
-            begin = ends[s]
+            begin = 0
+            for s in range(number):
+                found = shares[s] > 0.0 and _step(
+                    pixels[:, begin : ends[s]],
+                    kept[begin : ends[s]],
+                    shares[s],
+                    fine,
+                    noise,
+                    gain,
+                    out[s],
+                )
+                if found and max(abs(out[s, 0]), abs(out[s, 1])) < _ASTRAY * radius:
+                    spots[s, 0] += out[s, 0]
+                    spots[s, 1] += out[s, 1]
+                else:
+                    shares[s] = 0.0
+                begin = ends[s]
+        for s in range(number):
+            if shares[s] > 0.0:
+                centres[k, which[s]] = spots[s]
+                variances[k, which[s]] = out[s, 2]
+                misfits[k, which[s]] = out[s, 3]
 
 
 @compiled
@@ -513,10 +504,9 @@ def _lay(
     ends: NDArray[np.int64],
     spots: Floats,
     metric: tuple[float, float, float],
-    square: bool,
 ) -> None:
     """Measure all spots' pixels from their middles."""
     begin = 0
     for s in range(ends.size):
-        _measure(pixels[:, begin : ends[s]], spots[s, 0], spots[s, 1], metric, square)
+        _measure(pixels[:, begin : ends[s]], spots[s, 0], spots[s, 1], metric)
         begin = ends[s]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, Literal, Self, get_args
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,7 +15,6 @@ from algorithms.contract import (
     Floats,
     Observation,
     SensorGeometry,
-    UnsuitableDesignError,
 )
 from algorithms.extractors.frames.multi_spot.aperture_pattern import (
     PATTERN_NEEDS,
@@ -28,8 +27,6 @@ from algorithms.extractors.frames.multi_spot.aperture_pattern import (
     require_pattern,
 )
 from algorithms.inputs import as_frames
-
-Shape = Literal["round", "square"]
 
 
 @dataclass(frozen=True)
@@ -46,8 +43,6 @@ class WeightedSpots(Extractor):
     ----------
     apertures_px : tuple of (x, y, width)
         The mask's apertures, px from its middle; one at least.
-    shape : {"round", "square"}
-        Of the apertures; a square's sides lie along the pixels. Round ones may cast ovals.
     blur_px : float
         Width of the Sun's image behind a hole, px, not negative: bounds the size of a spot.
     threshold : float
@@ -69,8 +64,7 @@ class WeightedSpots(Extractor):
     Notes
     -----
     Implements: nothing printed in the survey. With C the second moments of the light above the
-    threshold, of all spots, ``rho^2 = sqrt(det C) u^T C^-1 u`` makes them round (``rho = max(|u|,
-    |v|)`` squares). The profile p(rho) is a cubic spline through the pixels of all spots, each over
+    threshold, of all spots, ``rho^2 = sqrt(det C) u^T C^-1 u`` makes them round . The profile p(rho) is a cubic spline through the pixels of all spots, each over
     the spot's share of the light, less its background; a step d of a centre solves ``sum(g g^T
     p'^2 / v) d = -sum(g p' (I - p) / v)``, g the slope of rho. A profile of rho is symmetric about
     the middle, and so are the answers for every symmetric image, of whatever outline. The variance
@@ -112,7 +106,6 @@ class WeightedSpots(Extractor):
     )
 
     apertures_px: Apertures = field(repr=False)
-    shape: Shape = "round"
     blur_px: float = 0.0
     threshold: float = 0.3
     tolerance_px: float = 0.75
@@ -127,11 +120,6 @@ class WeightedSpots(Extractor):
             self.tolerance_px,
             self.faulty_lines,
         )
-        if self.shape not in get_args(Shape):
-            raise ValueError(
-                f"{self.about.name}: shape must be one of {', '.join(get_args(Shape))}; "
-                f"got {self.shape!r}"
-            )
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
@@ -139,13 +127,7 @@ class WeightedSpots(Extractor):
 
         UnsuitableDesignError where its light is no spots.
         """
-        design = design_pattern(geometry, cls.about.name)
-        shape = geometry.aperture_shape
-        if shape is None:  # said above; for the type checker
-            raise UnsuitableDesignError(
-                f"{cls.about.name} needs the sensor geometry's aperture_shape"
-            )
-        return cls(shape=shape, **design)
+        return cls(**design_pattern(geometry, cls.about.name))
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Combined positions (N, 2) in frames (N, H, W); ValueError on wrong input."""
@@ -200,7 +182,6 @@ class WeightedSpots(Extractor):
             starts,
             size + 2.0,
             min(known.nearest_px, float(sum(frames.shape[1:]))) / 2.0,
-            self.shape == "square",
             centres,
             variances,
             misfits,
