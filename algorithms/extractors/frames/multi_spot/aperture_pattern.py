@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -82,8 +82,7 @@ class Levels:
         return Levels(self.maxima[rows], self.floor[rows], self.peak[rows], self.threshold[rows])
 
 
-@dataclass(frozen=True, eq=False)
-class Pattern:
+class Pattern(NamedTuple):
     """What was found in frames (N, H, W) of a mask of A apertures.
 
     Attributes
@@ -309,22 +308,53 @@ def margin_px(blur_px: float) -> float:
     return blur_px / 2.0 + 1.0
 
 
-def without_gaps(
-    follow: Callable[[int, Floats, Floats], int], pattern: Callable[[int], Pattern], count: int
-) -> None:
-    """Follow spots through `count` frames, finding the pattern anew wherever they are lost.
+def followed(
+    follow: Callable[[int, int, Pattern], Floats], pattern: Pattern, nearest_px: float
+) -> Floats:
+    """Displacements (N, 2) of spots followed through a sequence, verified frame by frame.
 
-    ``pattern(k)`` finds it in frame k alone, with a first axis of one; ``follow(k, displacement,
-    spots)`` goes on from there and returns how many frames it did before it lost the spots.
+    Parameters
+    ----------
+    follow
+        ``follow(start, end, pattern)`` follows the spots from frame ``start``, whose pattern
+        alone it is given, and returns the displacements of the frames up to ``end - 1``, NaN
+        from where it lost them.
+    pattern
+        What `find_pattern` found in the sequence.
+    nearest_px
+        Least distance of two apertures.
+
+    Returns
+    -------
+    ndarray, shape (N, 2)
+        NaN where no pattern was found. Where the pattern moves by a quarter of `nearest_px` or
+        more, or what is followed is as far from it, the spots are taken anew from the pattern.
     """
-    k = 0
-    while k < count:
-        here = pattern(k)
-        if np.isnan(here.displacement).any():
-            k += 1
+    count = len(pattern.displacement)
+    found = np.full((count, 2), np.nan)
+    astray = nearest_px / 4.0
+    known = np.isfinite(pattern.displacement).all(axis=1)
+    start = 0
+    while start < count:
+        if not known[start]:
+            start += 1
             continue
-        # a frame in which the pattern is found but not followed is passed over
-        k += max(follow(k, here.displacement, here.spots), 1)
+        end = start + 1
+        while end < count and known[end]:
+            step = pattern.displacement[end] - pattern.displacement[end - 1]
+            if math.hypot(*step) >= astray:
+                break
+            end += 1
+        here = Pattern(
+            pattern.displacement[start : start + 1], pattern.spots[start : start + 1]
+        )
+        part = follow(start, end, here)
+        away = np.hypot(*(part - pattern.displacement[start:end]).T)
+        lost = np.flatnonzero(~(away < astray))
+        done = int(lost[0]) if len(lost) else end - start
+        found[start : start + done] = part[:done]
+        start += max(done, 1)  # a frame in which the pattern is not followed is passed over
+    return found
 
 
 def _floor_and_noise(frames: NDArray[Any]) -> tuple[Floats, Floats]:

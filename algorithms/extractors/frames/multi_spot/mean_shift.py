@@ -24,12 +24,12 @@ from algorithms.extractors.frames.multi_spot.aperture_pattern import (
     Pattern,
     design_pattern,
     find_pattern,
+    followed,
     frame_levels,
     lattice,
     margin_px,
     nearest_distance,
     require_pattern,
-    without_gaps,
 )
 from algorithms.inputs import as_frames, require_positive
 
@@ -193,25 +193,21 @@ class MeanShift(Extractor):
     def track(self, observations: ArrayLike) -> Floats:
         """Averaged positions (N, 2) in successive frames (N, H, W) of one sequence.
 
-        Every spot starts where it was in the frame before, so that no pattern is searched for
-        and the mask's code is read once; the Sun may move the spots by half the bandwidth less
-        half a spot from frame to frame. A frame in which the spots are lost is searched as by
-        `extract`, with its own goal. ValueError on wrong input.
+        Every spot starts where it was in the frame before, as published. The pattern is found in
+        each frame all the same, to verify them; where a frame alone does not tell it, it is the
+        one next to the frame before's. Where it moved by a quarter of the least distance of two
+        apertures or more, and where the spots are lost, the shift starts anew from it with a goal
+        of that frame. ValueError on wrong input.
         """
         frames = as_frames(observations)
         levels = frame_levels(frames, self.apertures_px, self.threshold)
-        found = np.full((len(frames), 2), np.nan)
 
-        def follow(k: int, start: Floats, seen: Floats) -> int:
-            done, part, _, _ = self._shift(frames[k:], levels.part(k), start, seen, sequence=True)
-            found[k : k + done] = part[:done]
-            return done
+        def follow(start: int, end: int, first: Pattern) -> Floats:
+            part = levels.part(start, end)
+            return self._shift(frames[start:end], part, *first, sequence=True)[0]
 
-        def pattern(k: int) -> Pattern:
-            return self._pattern(frames[k : k + 1], levels.part(k, k + 1))
-
-        without_gaps(follow, pattern, len(frames))
-        return found
+        pattern = self._pattern(frames, levels, sequence=True)
+        return followed(follow, pattern, lattice(self.apertures_px).nearest_px)
 
     def _pattern(
         self, frames: NDArray[Any], levels: Levels, *, sequence: bool = False
@@ -230,10 +226,7 @@ class MeanShift(Extractor):
         frames = as_frames(observations)
         levels = frame_levels(frames, self.apertures_px, self.threshold)
         pattern = self._pattern(frames, levels)
-        _, found, spots, weights = self._shift(
-            frames, levels, pattern.displacement, pattern.spots, sequence=False
-        )
-        return found, spots, weights
+        return self._shift(frames, levels, *pattern, sequence=False)
 
     def _shift(
         self,
@@ -243,16 +236,16 @@ class MeanShift(Extractor):
         seen: Floats,
         *,
         sequence: bool,
-    ) -> tuple[int, Floats, Floats, Floats]:
+    ) -> tuple[Floats, Floats, Floats]:
         from algorithms.extractors.frames.multi_spot import mean_shift_kernel  # noqa: PLC0415 - Numba, at first use
 
         known = lattice(self.apertures_px).apertures
-        found = np.empty((len(frames), 2))
+        found = np.full((len(frames), 2), np.nan)
         spots = np.empty((len(frames), len(known), 2))
         weights = np.empty((len(frames), len(known)))
         with np.errstate(invalid="ignore"):  # infinite levels: frames left out
             steps = (levels.peak - levels.threshold) / (self.bins - 2)
-        done = mean_shift_kernel.shift_spots(
+        mean_shift_kernel.shift_spots(
             frames,
             levels.threshold,
             steps,
@@ -268,4 +261,4 @@ class MeanShift(Extractor):
             spots,
             weights,
         )
-        return done, found, spots, weights
+        return found, spots, weights

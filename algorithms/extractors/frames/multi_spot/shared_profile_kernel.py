@@ -161,7 +161,15 @@ def _flatten(pixels: Floats, ends: NDArray[np.int64], ring: float, lights: Float
             if own[_R, p] > ring and abs(u - mean) <= spread:
                 x = own[_X, p] - pixels[_X, 0]
                 y = own[_Y, p] - pixels[_Y, 0]
-                sums += np.array([1.0, x, y, x * x, x * y, y * y, u, u * x, u * y])
+                sums[0] += 1.0
+                sums[1] += x
+                sums[2] += y
+                sums[3] += x * x
+                sums[4] += x * y
+                sums[5] += y * y
+                sums[6] += u
+                sums[7] += u * x
+                sums[8] += u * y
             own[_U, p] = u - mean
             light += u - mean
         lights[s] = light
