@@ -1,12 +1,8 @@
-"""Centres of spots that have one image in common, its profile taken from all of them together.
-
-Frames are (N, H, W) arrays from `algorithms.inputs.as_frames`; all sums are float64.
-"""
+"""Centres of spots that have one image in common, its profile taken from all of them together."""
 
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,15 +15,10 @@ _KNOTS, _SMOOTH = 0.65, 3e-2
 #: Samples of the profile a px, and how many to each side its slopes are weighted by the mean of:
 #: sharp weights see the pixels' places.
 _FINE, _AROUND = 32, 22
-#: Reach of a spot's pixels beyond its rim: over its radius, and px; of these the outermost show
-#: the background.
-_WIDER, _MARGIN, _RING = 0.1, 3.0, 1.5
 #: A pixel is left out that departs from the profile by so many deviations, in rounds.
 _BAD, _ROUNDS = 6.0, 3
-#: Deviations of the background's slope from which it is one.
-_SLOPE = 3.0
-#: Steps of a spot's centre; none leads further than this share of its radius.
-_STEPS, _ASTRAY = 2, 0.5
+#: Steps of a spot's centre; none leads further, px.
+_STEPS, _ASTRAY = 2, 0.7
 #: Least light of a spot over the mean.
 _LIGHT = 0.2
 #: Variance of the profile's slope, over that of a pixel and the number of them between knots.
@@ -42,39 +33,6 @@ _BASIS = (
     )
     / 6.0
 )
-
-
-@compiled
-def _shape(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    frame: NDArray[Any], level: float, spots: Floats, half: int
-) -> tuple[float, float, float, float]:
-    """Metric (xx, xy, yy) of determinant one that makes the spots round, and their radius in it.
-
-    Of the light above the level within `half` pixels of each spot's middle.
-    """
-    height, width = frame.shape
-    xx = 0.0
-    xy = 0.0
-    yy = 0.0
-    light = 0.0
-    pixels = 0
-    for s in range(spots.shape[0]):
-        x, y = spots[s, 0], spots[s, 1]
-        column, line = round(x), round(y)
-        for i in range(max(line - half, 0), min(line + half + 1, height)):
-            for j in range(max(column - half, 0), min(column + half + 1, width)):
-                u = frame[i, j] - level
-                if u > 0.0:
-                    pixels += 1
-                    light += u
-                    xx += u * (j - x) * (j - x)
-                    xy += u * (j - x) * (i - y)
-                    yy += u * (i - y) * (i - y)
-    root = math.sqrt(max(xx * yy - xy * xy, 0.0))
-    area = pixels / spots.shape[0]
-    if not root > 1e-3 * (xx + yy):
-        return 0.0, 0.0, 0.0, 0.0
-    return yy / root, -xy / root, xx / root, math.sqrt(area / math.pi)
 
 
 @compiled
@@ -96,113 +54,16 @@ def _measure(pixels: Floats, x: float, y: float, metric: tuple[float, float, flo
 
 
 @compiled
-def _gather(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    frame: NDArray[Any],
-    floor: float,
-    spots: Floats,
-    metric: tuple[float, float, float],
-    reach: float,
+def _lay(
     pixels: Floats,
     ends: NDArray[np.int64],
+    spots: Floats,
+    metric: tuple[float, float, float],
 ) -> None:
-    """List each spot's pixels as far as `reach`, their light above `floor`, and where they end."""
-    height, width = frame.shape
-    xx, xy, _ = metric
-    high = reach * math.sqrt(xx)
-    end = 0
-    for s in range(spots.shape[0]):
-        x, y = spots[s, 0], spots[s, 1]
-        for i in range(max(math.ceil(y - high), 0), min(math.floor(y + high), height - 1) + 1):
-            dy = i - y  # where the row cuts the ellipse
-            shift = -xy * dy / xx
-            side = math.sqrt(max((reach * reach - dy * dy / xx) / xx, 0.0))
-            first = max(math.ceil(x + shift - side), 0)
-            last = min(math.floor(x + shift + side), width - 1)
-            for j in range(first, last + 1):
-                pixels[_X, end] = j
-                pixels[_Y, end] = i
-                pixels[_U, end] = frame[i, j] - floor
-                end += 1
-        ends[s] = end
-
-
-@compiled
-def _flatten(pixels: Floats, ends: NDArray[np.int64], ring: float, lights: Floats) -> float:
-    """Take off each spot's background and the slope of all, seen beyond `ring`; write the light.
-
-    Pixels that stand out of a spot's ring by four deviations are not of its background. Returns
-    the variance of a background pixel.
-    """
-    sums = np.zeros(9)  # n, x, y, xx, xy, yy, u, ux, uy about the first pixel
-    squares = 0.0
+    """Measure all spots' pixels from their middles."""
     begin = 0
     for s in range(ends.size):
-        own = pixels[:, begin : ends[s]]
-        mean = 0.0
-        spread = math.inf
-        for _ in range(2):
-            n = 0
-            total = 0.0
-            square = 0.0
-            for p in range(own.shape[1]):
-                u = own[_U, p] - mean
-                if own[_R, p] > ring and abs(u) <= spread:
-                    n += 1
-                    total += u
-                    square += u * u
-            total /= max(n, 1)
-            mean += total
-            variance = max(square / max(n, 1) - total * total, 0.0)
-            spread = 4.0 * math.sqrt(variance)
-        squares += variance * n
-        light = 0.0
-        for p in range(own.shape[1]):
-            u = own[_U, p]
-            if own[_R, p] > ring and abs(u - mean) <= spread:
-                x = own[_X, p] - pixels[_X, 0]
-                y = own[_Y, p] - pixels[_Y, 0]
-                sums[0] += 1.0
-                sums[1] += x
-                sums[2] += y
-                sums[3] += x * x
-                sums[4] += x * y
-                sums[5] += y * y
-                sums[6] += u
-                sums[7] += u * x
-                sums[8] += u * y
-            own[_U, p] = u - mean
-            light += u - mean
-        lights[s] = light
-        begin = ends[s]
-    n = max(sums[0], 1.0)
-    noise = squares / n
-    xx = sums[3] - sums[1] * sums[1] / n
-    xy = sums[4] - sums[1] * sums[2] / n
-    yy = sums[5] - sums[2] * sums[2] / n
-    ux = sums[7] - sums[6] * sums[1] / n
-    uy = sums[8] - sums[6] * sums[2] / n
-    determinant = xx * yy - xy * xy
-    if determinant > 1e-9 * xx * yy:
-        slope_x = (yy * ux - xy * uy) / determinant
-        slope_y = (xx * uy - xy * ux) / determinant
-        # its chi square, of two degrees of freedom
-        if slope_x * ux + slope_y * uy > _SLOPE * _SLOPE * 2.0 * noise:
-            _tilt(pixels, ends, slope_x, slope_y, lights)
-    return noise
-
-
-@compiled
-def _tilt(
-    pixels: Floats, ends: NDArray[np.int64], slope_x: float, slope_y: float, lights: Floats
-) -> None:
-    """Take off a slope about the middle of each spot's pixels."""
-    begin = 0
-    for s in range(ends.size):
-        own = pixels[:, begin : ends[s]]
-        x = own[_X].mean()
-        y = own[_Y].mean()
-        for p in range(own.shape[1]):
-            own[_U, p] -= slope_x * (own[_X, p] - x) + slope_y * (own[_Y, p] - y)
+        _measure(pixels[:, begin : ends[s]], spots[s, 0], spots[s, 1], metric)
         begin = ends[s]
 
 
@@ -401,120 +262,63 @@ def _step(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 @compiled
 def shared_profile(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    frames: NDArray[Any],
-    levels: Floats,
-    floors: Floats,
-    starts: Floats,
-    size: float,
-    room: float,
-    centres: Floats,
+    pixels: Floats,
+    ends: NDArray[np.int64],
+    shares: Floats,
+    spots: Floats,
+    form: Floats,
     variances: Floats,
     misfits: Floats,
 ) -> None:
-    """Find the centres of each frame's spots by the profile that all of them have in common.
+    """Move the spots of a frame to where they fit the profile that all of them have in common.
 
     Parameters
     ----------
-    levels, floors
-        (N,) above which a pixel of the frames (N, H, W) is lit; their background.
-    starts
-        (N, A, 2) thresholded centroids, NaN for none.
-    size, room
-        Largest width of a spot, px; how far it may reach before it meets another.
-    centres, variances, misfits
-        (N, A, 2), (N, A) and (N, A): receive the centres, NaN for none, the variance of one
-        along an axis, px^2, and the mean squared departure of its pixels, in their variances.
+    pixels, ends, form
+        As `spot_pixels_kernel.spot_pixels` writes them.
+    shares
+        (S,) of the spots' light; used up.
+    spots
+        (S, 2) rough centres, moved to the found ones; NaN where none is.
+    variances, misfits
+        (S,): receive the variance of a centre along an axis, px^2, and the mean squared
+        departure of a spot's pixels, in their variances.
     """
-    height, width = frames.shape[1:]
-    half = max(min(math.ceil(0.5 * size) + 2, int(room)), 1)
-    side = 2 * math.ceil(2.0 * size + _MARGIN) + 3
-    capacity = starts.shape[1] * min(side * side, height * width)
-    pixels = np.empty((6, capacity))
-    kept = np.empty(capacity, dtype=np.bool_)
-    spots = np.empty((starts.shape[1], 2))
-    which = np.empty(starts.shape[1], dtype=np.int64)
-    ends = np.empty(starts.shape[1], dtype=np.int64)
-    shares = np.empty(starts.shape[1])
-    intervals = int((0.5 * side + 3.0) / _KNOTS) + 2
-    table = np.empty((intervals, 6))
-    fine = np.empty((int((intervals + 1) * _KNOTS * _FINE), 5))
+    number = ends.size
+    metric = (form[0], form[1], form[2])
+    radius, reach = form[3], form[4]
+    noise = max(form[5], 1e-300)
+    intervals = int(reach / _KNOTS) + 4  # what a step may move a pixel further out
+    table = np.empty((intervals, 5))
     moments = np.empty((intervals, 11))
     band = np.empty((intervals + 3, 5))
-    out = np.empty((starts.shape[1], 4))
-    for k in range(frames.shape[0]):
-        centres[k] = np.nan
-        variances[k] = np.nan
-        misfits[k] = np.nan
-        number = 0
-        for a in range(starts.shape[1]):
-            if starts[k, a, 0] >= 0.0:  # not where it is NaN
-                spots[number] = starts[k, a]
-                which[number] = a
-                number += 1
-        if number == 0:
-            continue
-        xx, xy, yy, radius = _shape(frames[k], levels[k], spots[:number], half)
-        if not 0.0 < radius <= size:
-            continue
-        metric = (xx, xy, yy)
-        wide, high = math.sqrt(yy), math.sqrt(xx)
-        reach = min((1.0 + _WIDER) * radius + _MARGIN, max(room, radius) / max(wide, high))
-        if (2 * reach * wide + 1) * (2 * reach * high + 1) > side * side:
-            continue
-        _gather(
-            frames[k], floors[k], spots[:number], metric, reach, pixels, ends[:number]
-        )
-        _lay(pixels, ends[:number], spots, metric)
-        noise = _flatten(pixels, ends[:number], reach - _RING, shares[:number])
-        mean = shares[:number].mean()
-        for s in range(number):
-            shares[s] = shares[s] / mean if shares[s] > _LIGHT * mean else 0.0
-        kept[: ends[number - 1]] = True
-        noise = max(noise, 1e-300)
+    fine = np.empty((int((intervals + 1) * _KNOTS * _FINE), 5))
+    kept = np.ones(ends[number - 1], dtype=np.bool_)
+    out = np.empty((number, 4))
+    mean = shares.mean()
+    for s in range(number):
+        shares[s] = shares[s] / mean if shares[s] > _LIGHT * mean else 0.0
+    for _ in range(_STEPS):
+        _lay(pixels, ends, spots, metric)
         gain = 0.0
-        of = table[: int(reach / _KNOTS) + 2]
-        for turn in range(_STEPS):
-            if turn > 0:
-                _lay(pixels, ends[:number], spots, metric)
-            for _ in range(_ROUNDS):
-                _spline(pixels, ends[:number], shares, kept, of, moments[: len(of)], band)
-                _sample(of, fine)
-                gain, changed = _variances(pixels, ends[:number], shares, fine, noise, kept)
-                if not changed:
-                    break
-            begin = 0
-            for s in range(number):
-                found = shares[s] > 0.0 and _step(
-                    pixels[:, begin : ends[s]],
-                    kept[begin : ends[s]],
-                    shares[s],
-                    fine,
-                    noise,
-                    gain,
-                    out[s],
-                )
-                if found and max(abs(out[s, 0]), abs(out[s, 1])) < _ASTRAY * radius:
-                    spots[s, 0] += out[s, 0]
-                    spots[s, 1] += out[s, 1]
-                else:
-                    shares[s] = 0.0
-                begin = ends[s]
+        for _ in range(_ROUNDS):
+            _spline(pixels, ends, shares, kept, table, moments, band)
+            _sample(table, fine)
+            gain, changed = _variances(pixels, ends, shares, fine, noise, kept)
+            if not changed:
+                break
+        begin = 0
         for s in range(number):
-            if shares[s] > 0.0:
-                centres[k, which[s]] = spots[s]
-                variances[k, which[s]] = out[s, 2]
-                misfits[k, which[s]] = out[s, 3]
-
-
-@compiled
-def _lay(
-    pixels: Floats,
-    ends: NDArray[np.int64],
-    spots: Floats,
-    metric: tuple[float, float, float],
-) -> None:
-    """Measure all spots' pixels from their middles."""
-    begin = 0
-    for s in range(ends.size):
-        _measure(pixels[:, begin : ends[s]], spots[s, 0], spots[s, 1], metric)
-        begin = ends[s]
+            own, used = pixels[:, begin : ends[s]], kept[begin : ends[s]]
+            found = shares[s] > 0.0 and _step(own, used, shares[s], fine, noise, gain, out[s])
+            if found and max(abs(out[s, 0]), abs(out[s, 1])) < _ASTRAY:
+                spots[s, 0] += out[s, 0]
+                spots[s, 1] += out[s, 1]
+            else:
+                shares[s] = 0.0
+            begin = ends[s]
+    for s in range(number):
+        variances[s] = out[s, 2]
+        misfits[s] = out[s, 3]
+        if not shares[s] > 0.0:
+            spots[s] = np.nan

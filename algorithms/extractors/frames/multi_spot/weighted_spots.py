@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Any, ClassVar, Self
 
@@ -27,6 +28,9 @@ from algorithms.extractors.frames.multi_spot.aperture_pattern import (
     require_pattern,
 )
 from algorithms.inputs import as_frames
+
+#: What diffraction and the rims of holes may add to a spot's width, px.
+_RIM_PX = 2.0
 
 
 @dataclass(frozen=True)
@@ -169,21 +173,39 @@ class WeightedSpots(Extractor):
 
         Any estimator of single spots that gives these can stand here.
         """
-        from algorithms.extractors.frames.multi_spot import shared_profile_kernel  # noqa: PLC0415 - Numba, at first use
-
-        known = lattice(self.apertures_px)
-        size = float(known.apertures[:, 2].max()) + self.blur_px
-        variances, misfits = np.empty((2, *starts.shape[:2]))
-        centres = np.empty_like(starts)
-        shared_profile_kernel.shared_profile(
-            frames,
-            levels.threshold,
-            levels.floor,
-            starts,
-            size + 2.0,
-            min(known.nearest_px, float(sum(frames.shape[1:]))) / 2.0,
-            centres,
-            variances,
-            misfits,
+        from algorithms.extractors.frames.multi_spot import (  # noqa: PLC0415 - Numba, at first use
+            shared_profile_kernel,
+            spot_pixels_kernel,
         )
+
+        height, width = frames.shape[1:]
+        known = lattice(self.apertures_px)
+        size = float(known.apertures[:, 2].max()) + self.blur_px + _RIM_PX
+        room = min(known.nearest_px, float(height + width)) / 2.0
+        # a spot's pixels and its surroundings', elongated as spots of great incidence are
+        most = min((math.ceil(2.0 * size) + 9) ** 2, height * width)
+        pixels = np.empty((6, starts.shape[1] * most))
+        form = np.empty(6)
+        centres = np.full_like(starts, np.nan)
+        variances, misfits = np.full((2, *starts.shape[:2]), np.nan)
+        for k, frame in enumerate(frames):
+            seen = np.flatnonzero(np.isfinite(starts[k, :, 0]))
+            if not len(seen):
+                continue
+            spots, ends, lights = starts[k, seen], np.empty_like(seen), np.empty(len(seen))
+            if spot_pixels_kernel.spot_pixels(
+                frame,
+                levels.threshold[k],
+                levels.floor[k],
+                spots,
+                size,
+                room,
+                pixels,
+                ends,
+                lights,
+                form,
+            ):
+                own, off = np.empty((2, len(seen)))
+                shared_profile_kernel.shared_profile(pixels, ends, lights, spots, form, own, off)
+                centres[k, seen], variances[k, seen], misfits[k, seen] = spots, own, off
         return centres, variances, misfits
