@@ -290,7 +290,7 @@ def find_pattern(
         known.apertures,
         known.lines,
         margin_px(blur_px),
-        2.0 * tolerance_px,
+        tolerance_px,
         (float(faulty_lines), SHARE, apart if sequence else 0.0),
         places,
         matches,

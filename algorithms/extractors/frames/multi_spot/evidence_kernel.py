@@ -212,9 +212,38 @@ def _usual(spots: Floats, partner: Partners, bright: Flags) -> float:
 
 
 @compiled
+def _closer(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    one: int,
+    other: int,
+    spots: Floats,
+    places: Floats,
+    partners: Partners,
+    apertures: Floats,
+    tolerance: float,
+    owner: Indices,
+) -> float:
+    """By how much spots that both explain lie nearer to their places under `one`: squares."""
+    owner[:] = -1
+    for a in range(partners.shape[1]):
+        if partners[one, a] >= 0:
+            owner[partners[one, a]] = a
+    closer = 0.0
+    for b in range(partners.shape[1]):
+        s = partners[other, b]
+        if s >= 0 and owner[s] >= 0:
+            a = owner[s]
+            closer += (spots[s, 0] - apertures[b, 0] - places[other, 0]) ** 2
+            closer += (spots[s, 1] - apertures[b, 1] - places[other, 1]) ** 2
+            closer -= (spots[s, 0] - apertures[a, 0] - places[one, 0]) ** 2
+            closer -= (spots[s, 1] - apertures[a, 1] - places[one, 1]) ** 2
+    return closer / (tolerance * tolerance)
+
+
+@compiled
 def _ahead(  # noqa: PLR0917 - Numba takes no keyword-only ones
     one: int,
     other: int,
+    spots: Floats,
     places: Floats,
     partners: Partners,
     cut_to: Partners,
@@ -223,19 +252,20 @@ def _ahead(  # noqa: PLR0917 - Numba takes no keyword-only ones
     bright: Flags,
     apertures: Floats,
     lines: Indices,
-    near: float,
+    tolerance: float,
+    owner: Indices,
     taken: Flags,
     faults: Flags,
     sums: Floats,
 ) -> float:
     """By how much more the frame speaks against the `other` displacement than against `one`."""
-    ahead = 0.0
+    ahead = _closer(one, other, spots, places, partners, apertures, tolerance, owner)
     for side in range(2):
         a, b = (other, one) if side == 0 else (one, other)
         price = 0.0
         away_x = places[a, 0] - places[b, 0]
         away_y = places[a, 1] - places[b, 1]
-        if _dark_alone(state[a], apertures, away_x, away_y, near, faults):
+        if _dark_alone(state[a], apertures, away_x, away_y, 2.0 * tolerance, faults):
             price += _price(faults, lines, shown[a], _DARKNESS, _DARK_ONE, sums)
         if _lit_alone(partners[b], cut_to[b], partners[a], cut_to[a], bright, taken, faults):
             price += _price(faults, lines, shown[b], _LIGHT, _LIGHT_ONE, sums)
@@ -254,7 +284,7 @@ def decide(  # noqa: PLR0917 - Numba takes no keyword-only ones
     apertures: Floats,
     lines: Indices,
     margin: float,
-    near: float,
+    tolerance: float,
     limits: tuple[float, float, float],
     places: Floats,
     partners: Partners,
@@ -265,8 +295,8 @@ def decide(  # noqa: PLR0917 - Numba takes no keyword-only ones
     """Choose each frame's displacement by what it shows of every aperture, in view and cut.
 
     Of two displacements, against one speak the places in view that are dark under it and under
-    the other belong to no aperture, and the spots that only the other explains; apertures out of
-    view speak for neither. A whole line of them, dark or lit, counts as one fault. The answer is
+    the other belong to no aperture, the spots that only the other explains, and those that lie
+    nearer to their places under the other; apertures out of view speak for neither. A whole line of them, dark or lit, counts as one fault. The answer is
     the displacement that every other one exceeds by more than the faults allowed; there is none
     where two are nearer.
 
@@ -278,8 +308,8 @@ def decide(  # noqa: PLR0917 - Numba takes no keyword-only ones
         As `spots_kernel.segment` writes them.
     apertures, lines
         (A, 3) x, y, width; (2, A) in which column and row of the mask each is.
-    margin, near
-        Px that a spot reaches beyond its aperture; px within which two places are the same.
+    margin, tolerance
+        Px that a spot reaches beyond its aperture; largest distance of a spot from its place.
     limits
         Faults allowed: lines of apertures that may be dark or doubled; least share of the
         spots that should be whole in the frame; px from the frame before's displacement within
@@ -300,6 +330,7 @@ def decide(  # noqa: PLR0917 - Numba takes no keyword-only ones
     enough = np.empty(room, dtype=np.bool_)
     faults = np.empty(number, dtype=np.bool_)
     taken = np.empty(spots.shape[1], dtype=np.bool_)
+    owner = np.empty(spots.shape[1], dtype=np.int64)
     bright = np.empty(spots.shape[1], dtype=np.bool_)
     sums = np.empty(number)
     last_x = np.nan
@@ -332,6 +363,7 @@ def decide(  # noqa: PLR0917 - Numba takes no keyword-only ones
                     ahead = _ahead(
                         best,
                         h,
+                        seen,
                         places[k],
                         partners[k],
                         cut_to[:, : cut_counts[k]],
@@ -340,7 +372,8 @@ def decide(  # noqa: PLR0917 - Numba takes no keyword-only ones
                         bright,
                         apertures,
                         lines,
-                        near,
+                        tolerance,
+                        owner,
                         taken,
                         faults,
                         sums,

@@ -298,10 +298,10 @@ def shared_profile(  # noqa: PLR0917 - Numba takes no keyword-only ones
     mean = shares.mean()
     for s in range(number):
         shares[s] = shares[s] / mean if shares[s] > _LIGHT * mean else 0.0
-    for _ in range(_STEPS):
+    for turn in range(_STEPS):
         _lay(pixels, ends, spots, metric)
         gain = 0.0
-        for _ in range(_ROUNDS):
+        for _ in range(_ROUNDS if turn == 0 else 1):
             _spline(pixels, ends, shares, kept, table, moments, band)
             _sample(table, fine)
             gain, changed = _variances(pixels, ends, shares, fine, noise, kept)
