@@ -14,6 +14,8 @@ from algorithms.contract import Floats
 _AWAY, _MISFIT = 5.0, 8.0
 #: Least number of spots of which one can be told to disagree.
 _VOTERS = 4
+#: Turns of finding what spots scatter more than noise, and weights from it.
+_TURNS = 3
 
 
 @compiled
@@ -48,32 +50,28 @@ def _weighted(values: Floats, variances: Floats, used: NDArray[np.bool_]) -> tup
     What they scatter more than their variances say, places of apertures are off: it is added to
     all of them alike.
     """
-    number = 0
-    weight = 0.0
-    squares = 0.0
-    total = 0.0
-    for a in range(values.size):
-        if used[a]:
-            w = 1.0 / variances[a]
-            number += 1
-            weight += w
-            squares += w * w
-            total += w * values[a]
-    mean = total / weight
-    spread = 0.0
-    for a in range(values.size):
-        if used[a]:
-            spread += (values[a] - mean) ** 2 / variances[a]
-    free = weight - squares / weight
-    common = max((spread - (number - 1)) / free, 0.0) if free > 1e-12 * weight else 0.0
-    weight = 0.0
-    total = 0.0
-    for a in range(values.size):
-        if used[a]:
-            w = 1.0 / (variances[a] + common)
-            weight += w
-            total += w * values[a]
-    return total / weight, 1.0 / weight
+    common = 0.0
+    for turn in range(_TURNS + 1):
+        weight = 0.0
+        squares = 0.0
+        total = 0.0
+        for a in range(values.size):
+            if used[a]:
+                w = 1.0 / (variances[a] + common)
+                weight += w
+                squares += w * w
+                total += w * values[a]
+        mean = total / weight
+        free = weight - squares / weight
+        if turn == _TURNS or not free > 1e-12 * weight:
+            break
+        spread = 0.0  # less what the variances alone explain, under these weights
+        for a in range(values.size):
+            if used[a]:
+                w = 1.0 / (variances[a] + common)
+                spread += w * (values[a] - mean) ** 2 - w * (1.0 - w / weight) * variances[a]
+        common = max(spread / free, 0.0)
+    return mean, 1.0 / weight
 
 
 @compiled

@@ -127,6 +127,7 @@ class ImageCorrelation(Extractor):
         studies=("Xing2008",),
         labels=("fe:feic", "alg:FEIC"),
         origin="survey",
+        version=2,
         needs=PATTERN_NEEDS,
         observation=Observation.FRAMES,
         kind=FeatureKind.SPOT,

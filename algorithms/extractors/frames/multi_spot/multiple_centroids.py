@@ -100,6 +100,7 @@ class MultipleCentroids(Extractor):
         studies=("Rufino2009b",),
         labels=("fe:mcam", "alg:MCAM"),
         origin="survey",
+        version=2,
         needs=PATTERN_NEEDS,
         observation=Observation.FRAMES,
         kind=FeatureKind.SPOT,
