@@ -97,7 +97,7 @@ def test_candidates_are_the_peaks_with_most_votes_around_them_a_third_of_the_mos
     assert votes[:4].tolist() == [9, 6, 4, 3]
 
 
-def matched(spots, shape, tolerance=1.0, faulty=0.0, share=0.3, margin=1.0):
+def matched(spots, shape, tolerance=1.0, share=0.3):
     """Displacement and partners of spots (x, y), each of them 3 x 3 lit pixels."""
     known = lattice(APERTURES)
     frame = np.zeros((1, *shape))
@@ -131,9 +131,9 @@ def matched(spots, shape, tolerance=1.0, faulty=0.0, share=0.3, margin=1.0):
         none,
         known.apertures,
         known.lines,
-        margin,
+        1.0,
         tolerance,
-        (faulty, share, 0.0),
+        (0.0, share, 0.0),
         places,
         matches,
         kept,

@@ -126,7 +126,7 @@ def test_missing_dirty_and_stray_spots_do_not_move_the_pattern(method):
         light = np.ones(25)
         light[rng.choice(25, 6, replace=False)] = 0.0, 0.0, 0.0, 0.5, 0.6, 0.7
         spots = [(*(place + a[:2]), s) for a, s in zip(apertures, light, strict=True)]
-        stray = place + (-48.0, 0.0) + rng.uniform(-3.0, 3.0, 2)
+        stray = place - np.array([48.0, 0.0]) + rng.uniform(-3.0, 3.0, 2)
         frames.append(draw(rng, (116, 118), [*spots, (*stray, 1.0)]))
     found = method(apertures, **own.get(method, {})).extract(np.array(frames))
     seen = np.isfinite(found[:, 0])

@@ -133,7 +133,7 @@ def design_pattern(geometry: SensorGeometry, by: str) -> dict[str, Any]:
     }
 
 
-def require_pattern(
+def require_pattern(  # noqa: PLR0917 - the parameters in their order
     by: str,
     apertures_px: Apertures,
     blur_px: float,
@@ -195,7 +195,7 @@ def lattice(apertures_px: Apertures) -> Lattice:
 
 
 def _lines(coordinates: Floats, apart: float) -> NDArray[np.int64]:
-    """Number the lines that coordinates (A,) fall on: a step of more than `apart` begins one."""
+    """Give the line that each coordinate (A,) is on: a step of more than `apart` begins one."""
     order = np.argsort(coordinates, kind="stable")
     lines = np.empty(len(coordinates), dtype=np.int64)
     lines[order] = np.concatenate([[0], np.cumsum(np.diff(coordinates[order]) > apart)])
@@ -227,7 +227,7 @@ def frame_levels(frames: NDArray[Any], apertures_px: Apertures, threshold: float
     return Levels(maxima, floor, peak, level)
 
 
-def find_pattern(
+def find_pattern(  # noqa: PLR0917 - the parameters in their order
     frames: NDArray[Any],
     levels: Levels,
     apertures_px: Apertures,
@@ -333,7 +333,7 @@ def followed(
     count = len(pattern.displacement)
     found = np.full((count, 2), np.nan)
     astray = nearest_px / 4.0
-    known = np.isfinite(pattern.displacement).all(axis=1)
+    known: NDArray[np.bool_] = np.isfinite(pattern.displacement[:, 0])
     start = 0
     while start < count:
         if not known[start]:
@@ -345,9 +345,7 @@ def followed(
             if math.hypot(*step) >= astray:
                 break
             end += 1
-        here = Pattern(
-            pattern.displacement[start : start + 1], pattern.spots[start : start + 1]
-        )
+        here = Pattern(pattern.displacement[start : start + 1], pattern.spots[start : start + 1])
         part = follow(start, end, here)
         away = np.hypot(*(part - pattern.displacement[start:end]).T)
         lost = np.flatnonzero(~(away < astray))

@@ -75,7 +75,7 @@ def _weighted(values: Floats, variances: Floats, used: NDArray[np.bool_]) -> tup
 
 
 @compiled
-def combine(
+def combine(  # noqa: PLR0917 - Numba takes no keyword-only ones
     centres: Floats,
     variances: Floats,
     misfits: Floats,

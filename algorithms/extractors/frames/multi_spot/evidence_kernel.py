@@ -1,4 +1,4 @@
-"""Which displacement of a mask a frame shows: what is lit and what is dark under each of several."""
+"""Which displacement of a mask a frame shows: what is lit and what is dark under each."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _OUT, _UNSURE, _SPOT, _DARK = 0, 1, 2, 3
 _LIT = 0.25
 #: A spot with less than this share of the usual light may be a reflection.
 _DIM = 0.8
-#: Price of a line of apertures in the dark, and of one of it: one over those in view, within limits.
+#: Price of a dark line of apertures, and of one of it: one over those in view, within limits.
 _DARKNESS, _DARK_ONE = 1.0, (0.25, 0.34)
 #: The same of lit ones that a displacement leaves unexplained: no reflection is as bright as they.
 _LIGHT, _LIGHT_ONE = 2.0, (0.8, 0.8)
@@ -101,7 +101,7 @@ def _shown(state: States, lines: Indices, out: Indices) -> None:
 
 
 @compiled
-def _price(
+def _price(  # noqa: PLR0917 - Numba takes no keyword-only ones
     faults: Flags,
     lines: Indices,
     shown: Indices,
@@ -129,7 +129,7 @@ def _price(
 
 
 @compiled
-def _dark_alone(
+def _dark_alone(  # noqa: PLR0917 - Numba takes no keyword-only ones
     state: States, apertures: Floats, away_x: float, away_y: float, near: float, faults: Flags
 ) -> bool:
     """Mark the dark places of one displacement where the other, `away` from it, has no aperture."""
@@ -176,7 +176,7 @@ def _lit_alone(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def _cut_partners(
+def _cut_partners(  # noqa: PLR0917 - Numba takes no keyword-only ones
     cuts: Floats, apertures: Floats, x: float, y: float, margin: float, dim: float, out: Partners
 ) -> None:
     """Write the aperture that each spot cut by the edge lies on, -1 for none or a dim one."""
@@ -274,6 +274,69 @@ def _ahead(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
+def _choose(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    spots: Floats,
+    places: Floats,
+    partners: Partners,
+    cut_to: Partners,
+    state: States,
+    shown: Indices,
+    bright: Flags,
+    enough: Flags,
+    apertures: Floats,
+    lines: Indices,
+    tolerance: float,
+    clear: float,
+    last: tuple[float, float, float],
+    work: tuple[Indices, Flags, Flags, Floats],
+) -> int:
+    """Return the displacement (of K) that every other exceeds by `clear`; -1 for none.
+
+    Or the one of those nearer that is within a reach of the last frame's: `last` is x, y, reach.
+    """
+    owner, taken, faults, sums = work
+    best = 0
+    # First the one that no other beats, then those that it does not beat by enough.
+    near_last = 0
+    answer = -1
+    others = 0
+    for turn in range(2):
+        for h in range(places.shape[0]):
+            ahead = 0.0
+            if h != best:
+                ahead = _ahead(
+                    best,
+                    h,
+                    spots,
+                    places,
+                    partners,
+                    cut_to,
+                    state,
+                    shown,
+                    bright,
+                    apertures,
+                    lines,
+                    tolerance,
+                    owner,
+                    taken,
+                    faults,
+                    sums,
+                )
+            if turn == 0:
+                if ahead < 0.0:
+                    best = h
+            elif ahead < clear:
+                others += h != best
+                away = math.hypot(places[h, 0] - last[0], places[h, 1] - last[1])
+                if enough[h] and away <= last[2]:  # never where nothing is known of the last
+                    near_last += 1
+                    answer = h
+    if others == 0:
+        return best if enough[best] else -1
+    return answer if near_last == 1 else -1
+
+
+@compiled
 def decide(  # noqa: PLR0917 - Numba takes no keyword-only ones
     frames: NDArray[Any],
     levels: Floats,
@@ -296,9 +359,9 @@ def decide(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
     Of two displacements, against one speak the places in view that are dark under it and under
     the other belong to no aperture, the spots that only the other explains, and those that lie
-    nearer to their places under the other; apertures out of view speak for neither. A whole line of them, dark or lit, counts as one fault. The answer is
-    the displacement that every other one exceeds by more than the faults allowed; there is none
-    where two are nearer.
+    nearer to their places under the other; apertures out of view speak for neither. A whole line
+    of them, dark or lit, counts as one fault. The answer is the displacement that every other one
+    exceeds by more than the faults allowed; there is none where two are nearer.
 
     Parameters
     ----------
@@ -328,74 +391,50 @@ def decide(  # noqa: PLR0917 - Numba takes no keyword-only ones
     shown = np.empty((room, 2, number), dtype=np.int64)
     cut_to = np.empty((room, cuts.shape[1]), dtype=np.int32)
     enough = np.empty(room, dtype=np.bool_)
-    faults = np.empty(number, dtype=np.bool_)
-    taken = np.empty(spots.shape[1], dtype=np.bool_)
-    owner = np.empty(spots.shape[1], dtype=np.int64)
     bright = np.empty(spots.shape[1], dtype=np.bool_)
-    sums = np.empty(number)
-    last_x = np.nan
-    last_y = np.nan
+    work = (
+        np.empty(spots.shape[1], dtype=np.int64),
+        np.empty(spots.shape[1], dtype=np.bool_),
+        np.empty(number, dtype=np.bool_),
+        np.empty(number),
+    )
+    last = (np.nan, np.nan, reach)
     for k in range(frames.shape[0]):
         displacement[k] = np.nan
         chosen[k] = -1
-        seen = spots[k, : max(counts[k], 0)]
-        cut = cuts[k, : cut_counts[k]]
-        dim = 0.0
-        if kept[k] > 0:
-            dim = _usual(seen, partners[k, 0], bright[: counts[k]])
-        for h in range(kept[k]):
-            x, y = places[k, h]
-            found, whole = _look(
-                frames[k], levels[k], apertures, margin, x, y, seen, partners[k, h], state[h]
-            )
-            enough[h] = found >= share * whole
-            _shown(state[h], lines, shown[h])
-            _cut_partners(cut, apertures, x, y, margin, dim, cut_to[h, : cut_counts[k]])
-        # First the one that no other beats, then those that it does not beat by enough.
-        best = 0
-        near_last = 0
         answer = -1
-        others = 0
-        for turn in range(2):
+        if kept[k] > 0:
+            seen = spots[k, : counts[k]]
+            cut = cuts[k, : cut_counts[k]]
+            dim = _usual(seen, partners[k, 0], bright[: counts[k]])
             for h in range(kept[k]):
-                ahead = 0.0
-                if h != best:
-                    ahead = _ahead(
-                        best,
-                        h,
-                        seen,
-                        places[k],
-                        partners[k],
-                        cut_to[:, : cut_counts[k]],
-                        state,
-                        shown,
-                        bright,
-                        apertures,
-                        lines,
-                        tolerance,
-                        owner,
-                        taken,
-                        faults,
-                        sums,
-                    )
-                if turn == 0:
-                    if ahead < 0.0:
-                        best = h
-                elif ahead < allowed + _CLEAR:
-                    others += h != best
-                    away = math.hypot(places[k, h, 0] - last_x, places[k, h, 1] - last_y)
-                    if enough[h] and away <= reach:  # never where nothing is known of the last
-                        near_last += 1
-                        answer = h
-        if others == 0:
-            answer = best if kept[k] > 0 and enough[best] else -1
-        elif near_last != 1:
-            answer = -1
-        last_x = np.nan
-        last_y = np.nan
+                x, y = places[k, h]
+                found, whole = _look(
+                    frames[k], levels[k], apertures, margin, x, y, seen, partners[k, h], state[h]
+                )
+                enough[h] = found >= share * whole
+                _shown(state[h], lines, shown[h])
+                _cut_partners(cut, apertures, x, y, margin, dim, cut_to[h, : cut_counts[k]])
+            answer = _choose(
+                seen,
+                places[k, : kept[k]],
+                partners[k],
+                cut_to[:, : cut_counts[k]],
+                state,
+                shown,
+                bright,
+                enough,
+                apertures,
+                lines,
+                tolerance,
+                allowed + _CLEAR,
+                last,
+                work,
+            )
+        last = (np.nan, np.nan, reach)
         if answer >= 0:
             displacement[k] = places[k, answer]
             for a in range(number):
                 chosen[k, a] = partners[k, answer, a]
             if reach > 0.0:
-                last_x, last_y = places[k, answer]
+                last = (places[k, answer, 0], places[k, answer, 1], reach)

@@ -215,9 +215,7 @@ class ImageCorrelation(Extractor):
         pattern = self._pattern(frames, levels, sequence=True)
         return followed(follow, pattern, lattice(self.apertures_px).nearest_px)
 
-    def _pattern(
-        self, frames: NDArray[Any], levels: Levels, *, sequence: bool = False
-    ) -> Pattern:
+    def _pattern(self, frames: NDArray[Any], levels: Levels, *, sequence: bool = False) -> Pattern:
         return find_pattern(
             frames,
             levels,

@@ -68,21 +68,14 @@ def _lay(
 
 
 @compiled
-def _spline(  # noqa: PLR0917 - Numba takes no keyword-only ones
+def _moments(
     pixels: Floats,
     ends: NDArray[np.int64],
     shares: Floats,
     kept: NDArray[np.bool_],
-    table: Floats,
     moments: Floats,
-    band: Floats,
 ) -> None:
-    """Fit the profile, light over a spot's share against distance, to all pixels kept.
-
-    `table` (M, 6) receives, interval by interval, the powers of what is past the knot in it, and
-    how many pixels there are.
-    """
-    intervals = table.shape[0]
+    """Sum, interval by interval, powers of what pixels are past the knot, and with their light."""
     moments[:] = 0.0
     begin = 0
     for s in range(ends.size):
@@ -109,8 +102,14 @@ def _spline(  # noqa: PLR0917 - Numba takes no keyword-only ones
             at[9] += u * t2
             at[10] += u * t3
         begin = ends[s]
+
+
+@compiled
+def _system(moments: Floats, band: Floats) -> None:
+    """Write the normal equations of the spline (M + 3, 5): diagonal, three below, right side."""
+    intervals = moments.shape[0]
     unknowns = intervals + 3
-    band[:] = 0.0  # (unknowns, 5): diagonal, three below it, right side
+    band[:] = 0.0
     for m in range(intervals):
         for a in range(4):
             for i in range(4):
@@ -126,7 +125,13 @@ def _spline(  # noqa: PLR0917 - Numba takes no keyword-only ones
         band[c + 1, 1] -= 2.0 * smooth
         band[c + 2, 1] -= 2.0 * smooth
         band[c + 2, 2] += smooth
-    for i in range(unknowns):  # Cholesky; the lower triangle takes the matrix's place
+
+
+@compiled
+def _solve(band: Floats) -> None:
+    """Solve the equations by Cholesky; the lower triangle and the solution take their place."""
+    unknowns = band.shape[0]
+    for i in range(unknowns):
         for d in range(min(i, 3), -1, -1):
             j = i - d
             total = band[i, d]
@@ -140,6 +145,27 @@ def _spline(  # noqa: PLR0917 - Numba takes no keyword-only ones
         for d in range(1, min(3, unknowns - 1 - i) + 1):
             band[i, 4] -= band[i + d, d] * band[i + d, 4]
         band[i, 4] /= band[i, 0]
+
+
+@compiled
+def _spline(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    pixels: Floats,
+    ends: NDArray[np.int64],
+    shares: Floats,
+    kept: NDArray[np.bool_],
+    table: Floats,
+    moments: Floats,
+    band: Floats,
+) -> None:
+    """Fit the profile, light over a spot's share against distance, to all pixels kept.
+
+    `table` (M, 5) receives, interval by interval, the powers of what is past the knot in it, and
+    how many pixels there are.
+    """
+    _moments(pixels, ends, shares, kept, moments)
+    _system(moments, band)
+    _solve(band)
+    intervals = table.shape[0]
     for m in range(intervals):
         for i in range(4):
             total = 0.0
@@ -286,7 +312,7 @@ def shared_profile(  # noqa: PLR0917 - Numba takes no keyword-only ones
     """
     number = ends.size
     metric = (form[0], form[1], form[2])
-    radius, reach = form[3], form[4]
+    reach = form[4]
     noise = max(form[5], 1e-300)
     intervals = int(reach / _KNOTS) + 4  # what a step may move a pixel further out
     table = np.empty((intervals, 5))

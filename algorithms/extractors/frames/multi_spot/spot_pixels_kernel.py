@@ -1,4 +1,4 @@
-"""The pixels of many spots of one frame, without the background, by their distance from the middle."""
+"""The pixels of many spots of one frame, without background, by distance from the middle."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _X, _Y, _U, _R = 0, 1, 2, 3
 
 
 @compiled
-def _shape(  # noqa: PLR0917 - Numba takes no keyword-only ones
+def _shape(
     frame: NDArray[Any], level: float, spots: Floats, half: int
 ) -> tuple[float, float, float, float]:
     """Metric (xx, xy, yy) of determinant one that makes the spots round, and their radius in it.
@@ -99,7 +99,9 @@ def _flatten(pixels: Floats, ends: NDArray[np.int64], ring: float, lights: Float
     for s in range(ends.size):
         own = pixels[:, begin : ends[s]]
         mean = 0.0
+        variance = 0.0
         spread = math.inf
+        n = 0
         for _ in range(2):
             n = 0
             total = 0.0
@@ -134,27 +136,32 @@ def _flatten(pixels: Floats, ends: NDArray[np.int64], ring: float, lights: Float
             light += u - mean
         lights[s] = light
         begin = ends[s]
+    noise = squares / max(float(sums[0]), 1.0)
+    slope_x, slope_y, sure = _slope(sums)
+    if sure > _SLOPE * _SLOPE * 2.0 * noise:  # its chi square, of two degrees of freedom
+        _tilt(pixels, ends, slope_x, slope_y)
+    return noise
+
+
+@compiled
+def _slope(sums: Floats) -> tuple[float, float, float]:
+    """Slope of u along x and y of the sums n, x, y, xx, xy, yy, u, ux, uy; squares it explains."""
     n = max(sums[0], 1.0)
-    noise = squares / n
     xx = sums[3] - sums[1] * sums[1] / n
     xy = sums[4] - sums[1] * sums[2] / n
     yy = sums[5] - sums[2] * sums[2] / n
     ux = sums[7] - sums[6] * sums[1] / n
     uy = sums[8] - sums[6] * sums[2] / n
     determinant = xx * yy - xy * xy
-    if determinant > 1e-9 * xx * yy:
-        slope_x = (yy * ux - xy * uy) / determinant
-        slope_y = (xx * uy - xy * ux) / determinant
-        # its chi square, of two degrees of freedom
-        if slope_x * ux + slope_y * uy > _SLOPE * _SLOPE * 2.0 * noise:
-            _tilt(pixels, ends, slope_x, slope_y, lights)
-    return noise
+    if not determinant > 1e-9 * xx * yy:
+        return 0.0, 0.0, 0.0
+    slope_x = (yy * ux - xy * uy) / determinant
+    slope_y = (xx * uy - xy * ux) / determinant
+    return slope_x, slope_y, slope_x * ux + slope_y * uy
 
 
 @compiled
-def _tilt(
-    pixels: Floats, ends: NDArray[np.int64], slope_x: float, slope_y: float, lights: Floats
-) -> None:
+def _tilt(pixels: Floats, ends: NDArray[np.int64], slope_x: float, slope_y: float) -> None:
     """Take off a slope about the middle of each spot's pixels."""
     begin = 0
     for s in range(ends.size):

@@ -128,8 +128,9 @@ def segment(  # noqa: PLR0917 - Numba takes no keyword-only ones
     are those of `least` to `most` pixels that do not touch the frame's edge: `spots` (N, S, 4)
     receives the mean x and y, weighted by the light above the level, the number of pixels and
     that light. `counts` (N,) is how many there are, -1 where more than S. `cuts` (N, C, 3) and
-    `cut_counts` (N,): the means, the light of a pixel and the number of those at the edge. `maxima` (N, H) are
-    the rows' largest values: rows that hold no pixel above the level are not read.
+    `cut_counts` (N,): the means, the light of a pixel and the number of those at the edge.
+    `maxima` (N, H) are the rows' largest values: rows that hold no pixel above the level are not
+    read.
     """
     count, height, width = frames.shape
     room = height * (width // 2 + 1)  # at most every other pixel starts a run

@@ -68,14 +68,19 @@ class WeightedSpots(Extractor):
     Notes
     -----
     Implements: nothing printed in the survey. With C the second moments of the light above the
-    threshold, of all spots, ``rho^2 = sqrt(det C) u^T C^-1 u`` makes them round . The profile p(rho) is a cubic spline through the pixels of all spots, each over
-    the spot's share of the light, less its background; a step d of a centre solves ``sum(g g^T
-    p'^2 / v) d = -sum(g p' (I - p) / v)``, g the slope of rho. A profile of rho is symmetric about
-    the middle, and so are the answers for every symmetric image, of whatever outline. The variance
-    v grows with the light by the factor that explains how lit pixels scatter. The background is
-    that beyond the spots' rims, with a slope where it shows one. Pixels six deviations off are
-    left out; so are spots of which the misfit or the place is far from the others' median. Where
-    places scatter more than noise explains, apertures are off: their variance is added to each.
+    threshold, of all spots, ``rho^2 = sqrt(det C) u^T C^-1 u`` makes them round. The profile p(rho)
+    is a smooth cubic spline through the pixels of all spots, each over the spot's share of the
+    light, less its background; a step d of a centre solves ``sum(h g g^T p' / v) d = -sum(h g (I -
+    p) / v)``, g the slope of rho, h that of p averaged over more than a pixel. A profile of rho is
+    symmetric about the middle, and so are the answers for every symmetric image, of whatever
+    outline. The variance v grows with the light by the factor that explains how lit pixels
+    scatter. The background is that beyond the spots' rims, with a slope where it shows one. Pixels
+    six deviations off are left out; so are spots of which the misfit or the place is far from the
+    others' median. Where places scatter more than noise explains, apertures are off: their
+    variance is added to each.
+
+    What a spline of 0.65 px misses of sharp rims or rings does not average where all spots fall
+    alike on the pixels: 0.0003 px of a disc seven pixels wide, 0.001 to 0.002 px of strong rings.
 
     Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers: the
     spot of an aperture over the detector's middle, seen or not.
@@ -134,7 +139,7 @@ class WeightedSpots(Extractor):
         return cls(**design_pattern(geometry, cls.about.name))
 
     def extract(self, observations: ArrayLike) -> Floats:
-        """Combined positions (N, 2) in frames (N, H, W); ValueError on wrong input."""
+        """Weighted positions (N, 2) in frames (N, H, W); ValueError on wrong input."""
         return self._combined(observations)[0]
 
     def spots(self, observations: ArrayLike) -> Floats:
