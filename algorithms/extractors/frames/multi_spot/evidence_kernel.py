@@ -245,20 +245,15 @@ def _ahead(  # noqa: PLR0917 - Numba takes no keyword-only ones
     other: int,
     spots: Floats,
     places: Floats,
-    partners: Partners,
-    cut_to: Partners,
-    state: States,
-    shown: Indices,
-    bright: Flags,
-    apertures: Floats,
-    lines: Indices,
+    view: tuple[Partners, Partners, States, Indices, Flags],
+    mask: tuple[Floats, Indices],
     tolerance: float,
-    owner: Indices,
-    taken: Flags,
-    faults: Flags,
-    sums: Floats,
+    work: tuple[Indices, Flags, Flags, Floats],
 ) -> float:
     """By how much more the frame speaks against the `other` displacement than against `one`."""
+    partners, cut_to, state, shown, bright = view
+    apertures, lines = mask
+    owner, taken, faults, sums = work
     ahead = _closer(one, other, spots, places, partners, apertures, tolerance, owner)
     for side in range(2):
         a, b = (other, one) if side == 0 else (one, other)
@@ -277,60 +272,35 @@ def _ahead(  # noqa: PLR0917 - Numba takes no keyword-only ones
 def _choose(  # noqa: PLR0917 - Numba takes no keyword-only ones
     spots: Floats,
     places: Floats,
-    partners: Partners,
-    cut_to: Partners,
-    state: States,
-    shown: Indices,
-    bright: Flags,
+    view: tuple[Partners, Partners, States, Indices, Flags],
+    mask: tuple[Floats, Indices],
     enough: Flags,
-    apertures: Floats,
-    lines: Indices,
-    tolerance: float,
-    clear: float,
+    limits: tuple[float, float],
     last: tuple[float, float, float],
     work: tuple[Indices, Flags, Flags, Floats],
 ) -> int:
-    """Return the displacement (of K) that every other exceeds by `clear`; -1 for none.
+    """Return the displacement that every other exceeds by enough, or -1.
 
-    Or the one of those nearer that is within a reach of the last frame's: `last` is x, y, reach.
+    `view` is what `decide` saw under each, `limits` the tolerance and what is enough; of those
+    nearer, the one within a reach of the last frame's is it too: `last` is x, y and reach.
     """
-    owner, taken, faults, sums = work
+    tolerance, clear = limits
     best = 0
-    # First the one that no other beats, then those that it does not beat by enough.
+    for h in range(1, places.shape[0]):
+        if _ahead(best, h, spots, places, view, mask, tolerance, work) < 0.0:
+            best = h
     near_last = 0
     answer = -1
     others = 0
-    for turn in range(2):
-        for h in range(places.shape[0]):
-            ahead = 0.0
-            if h != best:
-                ahead = _ahead(
-                    best,
-                    h,
-                    spots,
-                    places,
-                    partners,
-                    cut_to,
-                    state,
-                    shown,
-                    bright,
-                    apertures,
-                    lines,
-                    tolerance,
-                    owner,
-                    taken,
-                    faults,
-                    sums,
-                )
-            if turn == 0:
-                if ahead < 0.0:
-                    best = h
-            elif ahead < clear:
-                others += h != best
-                away = math.hypot(places[h, 0] - last[0], places[h, 1] - last[1])
-                if enough[h] and away <= last[2]:  # never where nothing is known of the last
-                    near_last += 1
-                    answer = h
+    for h in range(places.shape[0]):
+        if h != best:
+            if _ahead(best, h, spots, places, view, mask, tolerance, work) >= clear:
+                continue
+            others += 1
+        away = math.hypot(places[h, 0] - last[0], places[h, 1] - last[1])
+        if enough[h] and away <= last[2]:  # never where nothing is known of the last
+            near_last += 1
+            answer = h
     if others == 0:
         return best if enough[best] else -1
     return answer if near_last == 1 else -1
@@ -415,19 +385,14 @@ def decide(  # noqa: PLR0917 - Numba takes no keyword-only ones
                 enough[h] = found >= share * whole
                 _shown(state[h], lines, shown[h])
                 _cut_partners(cut, apertures, x, y, margin, dim, cut_to[h, : cut_counts[k]])
+            view = (partners[k], cut_to[:, : cut_counts[k]], state, shown, bright)
             answer = _choose(
                 seen,
                 places[k, : kept[k]],
-                partners[k],
-                cut_to[:, : cut_counts[k]],
-                state,
-                shown,
-                bright,
+                view,
+                (apertures, lines),
                 enough,
-                apertures,
-                lines,
-                tolerance,
-                allowed + _CLEAR,
+                (tolerance, allowed + _CLEAR),
                 last,
                 work,
             )
