@@ -109,10 +109,7 @@ def _price(  # noqa: PLR0917 - Numba takes no keyword-only ones
     limits: tuple[float, float],
     sums: Floats,
 ) -> float:
-    """Price of the faulty apertures: lines of columns, or of rows, whichever explain them cheaper.
-
-    A line has a highest price: what darkens or lights a whole one is one fault.
-    """
+    """Price of the faulty: in columns or in rows, whichever is cheaper; a line has a highest one."""
     least, most = limits
     best = math.inf
     for axis in range(2):
@@ -327,11 +324,9 @@ def decide(  # noqa: PLR0917 - Numba takes no keyword-only ones
 ) -> None:
     """Choose each frame's displacement by what it shows of every aperture, in view and cut.
 
-    Of two displacements, against one speak the places in view that are dark under it and under
-    the other belong to no aperture, the spots that only the other explains, and those that lie
-    nearer to their places under the other; apertures out of view speak for neither. A whole line
-    of them, dark or lit, counts as one fault. The answer is the displacement that every other one
-    exceeds by more than the faults allowed; there is none where two are nearer.
+    Against a displacement speak places in view that are dark where another one has no aperture,
+    spots that only the other explains or lie nearer to; a whole line of them is one fault, and
+    what is out of view speaks for neither. The answer is what every other exceeds by enough.
 
     Parameters
     ----------
@@ -346,8 +341,7 @@ def decide(  # noqa: PLR0917 - Numba takes no keyword-only ones
     limits
         Faults allowed: lines of apertures that may be dark or doubled; least share of the
         spots that should be whole in the frame; px from the frame before's displacement within
-        which of several that a frame leaves open one is the answer all the same: 0 where frames
-        are no sequence.
+        which one of several left open is the answer: 0 where frames are no sequence.
     places, partners, kept
         As `aperture_grid_kernel.match` writes them.
     displacement, chosen
