@@ -109,7 +109,7 @@ def _price(  # noqa: PLR0917 - Numba takes no keyword-only ones
     limits: tuple[float, float],
     sums: Floats,
 ) -> float:
-    """Price of the faulty: in columns or in rows, whichever is cheaper; a line has a highest one."""
+    """Price of the faulty, in columns or rows as is cheaper; that of a line has a limit."""
     least, most = limits
     best = math.inf
     for axis in range(2):

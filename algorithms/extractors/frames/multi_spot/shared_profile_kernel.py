@@ -17,6 +17,8 @@ _KNOTS, _SMOOTH = 0.65, 3e-2
 _FINE, _AROUND = 32, 22
 #: A pixel is left out that departs from the profile by so many deviations, in rounds.
 _BAD, _ROUNDS = 6.0, 3
+#: What a spline misses of a sharp rim, over the peak: pixels are not trusted to better than that.
+_FLOOR = 0.002
 #: Steps of a spot's centre; none leads further, px.
 _STEPS, _ASTRAY = 2, 0.7
 #: Least light of a spot over the mean.
@@ -313,7 +315,8 @@ def shared_profile(  # noqa: PLR0917 - Numba takes no keyword-only ones
     number = ends.size
     metric = (form[0], form[1], form[2])
     reach = form[4]
-    noise = max(form[5], 1e-300)
+    brightest = pixels[_U, : ends[number - 1]].max()
+    noise = max(form[5], (_FLOOR * brightest) ** 2, 1e-300)
     intervals = int(reach / _KNOTS) + 4  # what a step may move a pixel further out
     table = np.empty((intervals, 5))
     moments = np.empty((intervals, 11))
