@@ -116,6 +116,7 @@ def matched(spots, shape, tolerance=1.0, share=0.3):
         known.cell_px,
         shape,
         tolerance,
+        4.0,
         places,
         matches,
         kept,

@@ -188,6 +188,7 @@ def _explanations(  # noqa: PLR0917 - Numba takes no keyword-only ones
     corner: Floats,
     cell: float,
     tolerance: float,
+    slack: float,
     starts: Floats,
     votes: Indices,
     partner: Indices,
@@ -203,8 +204,9 @@ def _explanations(  # noqa: PLR0917 - Numba takes no keyword-only ones
     distance = np.empty(apertures.shape[0])
     score = np.empty(room)
     kept = 0
+    most = 0
     for c in range(votes.size):
-        if kept == room and votes[c] <= score[kept - 1]:
+        if votes[c] < most - slack or (kept == room and votes[c] <= score[kept - 1]):
             break  # no spot adds more than one
         x, y, quality, matched = _fit(
             spots,
@@ -218,6 +220,7 @@ def _explanations(  # noqa: PLR0917 - Numba takes no keyword-only ones
             partner,
             distance,
         )
+        most = max(most, matched)
         if matched == 0 or not _distinct(places, kept, x, y, tolerance):
             continue
         if kept == room and quality <= score[kept - 1]:
@@ -247,6 +250,7 @@ def match(  # noqa: PLR0917 - Numba takes no keyword-only ones
     cell: float,
     frame: tuple[int, int],
     tolerance: float,
+    slack: float,
     places: Floats,
     partners: Partners,
     kept: Indices,
@@ -265,6 +269,8 @@ def match(  # noqa: PLR0917 - Numba takes no keyword-only ones
         Height and width.
     tolerance
         Largest distance of a spot from its place, px.
+    slack
+        Spots that a displacement may match less than the best one: others are out of question.
     places, partners, kept
         (N, K, 2), (N, K, A) and (N,): receive the displacements, by falling quality of the match
         (see `_fit`), the spot of each aperture under it, -1 for none, and their number.
@@ -299,6 +305,7 @@ def match(  # noqa: PLR0917 - Numba takes no keyword-only ones
             corner,
             cell,
             tolerance,
+            slack,
             starts[:candidates],
             votes[:candidates],
             partner,

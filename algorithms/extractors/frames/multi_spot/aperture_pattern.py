@@ -273,6 +273,8 @@ def find_pattern(  # noqa: PLR0917 - the parameters in their order
         known.cell_px,
         (height, width),
         tolerance_px,
+        # a line of spots unexplained costs as much as two faults, and some are missing
+        (0.5 * faulty_lines + 1.0) * max(int(np.bincount(line).max()) for line in known.lines) + 4,
         places,
         matches,
         kept,
