@@ -30,7 +30,7 @@ PYRAMID = tuple(
 DIAL = {"code_bits": 5, "code_cell_mm": 0.15, "fine_period_mm": 0.3}
 LINE_PIXELS = 60
 HOLES = ((-0.08, -0.06, 0.05), (0.08, -0.05, 0.05), (-0.07, 0.07, 0.05), (0.09, 0.06, 0.05))
-MULTI_SPOT = {"mcam", "fmms", "feic"}
+MULTI_SPOT = {"mcam", "fmms", "feic", "weighted-spots"}
 #: Fields in which the sensor differs that one implementation is made for.
 OWN_DESIGN = {
     "linear-phase-frame": {"aperture_width_mm": 0.06, "focal_length_mm": 0.5},  # as its samples

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from algorithms.extractors.frames.multi_spot import aperture_grid_kernel as kernel
+from algorithms.extractors.frames.multi_spot import evidence_kernel as evidence
 from algorithms.extractors.frames.multi_spot.aperture_pattern import lattice
 
 #: Asymmetric, so that no turn, mirror or shift of it is itself.
@@ -26,9 +27,12 @@ TABLE = np.array(APERTURES)
     ],
 )
 def test_a_spot_is_expected_where_it_is_whole_in_the_frame(x, y, seen):
-    one = np.array([[0.0, 0.0, 6.0]])
-    assert kernel._expected(one, x, y, (40, 100), 1.5) == int(seen)
-    assert kernel._expected(one, y, x, (100, 40), 1.5) == int(seen)
+    one, none = np.array([[0.0, 0.0, 6.0]]), np.array([-1], dtype=np.int32)
+    state = np.empty(1, dtype=np.int8)
+    for shape, place in (((40, 100), (x, y)), ((100, 40), (y, x))):
+        dark = np.zeros(shape)
+        seen_here = evidence._look(dark, 1.0, one, 1.5, *place, np.empty((0, 4)), none, state)
+        assert seen_here == (0, int(seen))
 
 
 def test_the_nearest_aperture_is_that_of_all():
@@ -93,21 +97,47 @@ def test_candidates_are_the_peaks_with_most_votes_around_them_a_third_of_the_mos
     assert votes[:4].tolist() == [9, 6, 4, 3]
 
 
-def matched(spots, frame, tolerance=1.0, prices=(0.15, 0.5, 0.3), margin=1.0):
+def matched(spots, shape, tolerance=1.0, share=0.3):
+    """Displacement and partners of spots (x, y), each of them 3 x 3 lit pixels."""
     known = lattice(APERTURES)
-    displacement = np.empty((1, 2))
-    partners = np.empty((1, len(APERTURES)), dtype=np.int64)
+    frame = np.zeros((1, *shape))
+    listed = np.array([(x, y, 9.0, 9.0) for x, y, *_ in spots])[None]
+    for x, y, *_ in spots:
+        frame[0, round(y) - 1 : round(y) + 2, round(x) - 1 : round(x) + 2] = 2.0
+    count, none = np.array([len(spots)]), np.zeros(1, dtype=np.int64)
+    places, kept = np.empty((1, 24, 2)), np.empty(1, dtype=np.int64)
+    matches = np.empty((1, 24, len(APERTURES)), dtype=np.int32)
     kernel.match(
-        np.array(spots, dtype=float)[None],
-        np.array([len(spots)]),
+        listed,
+        count,
         known.apertures,
         known.table,
         known.corner,
         known.cell_px,
-        frame,
-        margin,
+        shape,
         tolerance,
-        prices,
+        4.0,
+        places,
+        matches,
+        kept,
+    )
+    displacement = np.empty((1, 2))
+    partners = np.empty((1, len(APERTURES)), dtype=np.int64)
+    evidence.decide(
+        frame,
+        np.ones(1),
+        listed,
+        count,
+        np.empty((1, 4, 3)),
+        none,
+        known.apertures,
+        known.lines,
+        1.0,
+        tolerance,
+        (0.0, share, 0.0),
+        places,
+        matches,
+        kept,
         displacement,
         partners,
     )
@@ -129,11 +159,11 @@ def test_what_lies_outside_a_frame_wider_than_high_is_not_missed():
     """Two of four apertures are off the frame to the right: those two are no gaps."""
     place = np.array([87.0, 15.0])
     spots = [(*(TABLE[a, :2] + place), 1.0) for a in (0, 1)]
-    displacement, partners = matched(spots, (32, 90), prices=(0.15, 0.5, 0.9))
+    displacement, partners = matched(spots, (32, 90), share=0.9)
     np.testing.assert_allclose(displacement, place, atol=1e-9)
     assert partners == [0, 1, -1, -1]
     # in a frame so wide that they would be seen, two of four are too few
-    displacement, partners = matched(spots, (32, 140), prices=(0.15, 0.5, 0.9))
+    displacement, partners = matched(spots, (32, 140), share=0.9)
     assert np.isnan(displacement).all()
     assert partners == [-1, -1, -1, -1]
 
@@ -148,7 +178,7 @@ def test_a_spot_as_far_as_the_tolerance_is_another():
         assert partners[:3] == [0, 1, 2]
 
 
-def test_no_spots_are_no_displacement():
-    displacement, partners = matched([(1.0, 1.0, 1.0)], (40, 100), prices=(0.15, 0.5, 1.1))
+def test_too_few_spots_are_no_displacement():
+    displacement, partners = matched([(50.0, 20.0)], (40, 100), share=1.1)
     assert np.isnan(displacement).all()
     assert partners == [-1] * 4

@@ -44,28 +44,38 @@ def test_spots_are_scipys_labels_of_touching_pixels(seed, density, height, width
     rng = np.random.default_rng(seed)
     frame = rng.integers(1, 100, (height, width)) * (rng.random((height, width)) < density)
     frame = frame.astype(np.uint16)
-    spots, counts = np.full((1, 900, 3), np.nan), np.zeros(1, dtype=np.int64)
-    segment(frame[None], frame.max(axis=1)[None], np.array([9.0]), 2.0, 40.0, spots, counts)
+    spots, cuts = np.full((1, 900, 4), np.nan), np.full((1, 900, 3), np.nan)
+    counts, cut_counts = np.zeros((2, 1), dtype=np.int64)
+    maxima, level = frame.max(axis=1)[None], np.array([9.0])
+    segment(frame[None], maxima, level, 2.0, 40.0, spots, counts, cuts, cut_counts)
 
     above = np.maximum(frame - 9.0, 0.0)
     labels, number = ndimage.label(above > 0, structure=np.ones((3, 3)))
-    expected = []
+    expected, at_edge = [], []
     for label in range(1, number + 1):
         rows, columns = np.nonzero(labels == label)
         whole = rows.min() > 0 and columns.min() > 0
         whole &= rows.max() < height - 1 and columns.max() < width - 1
+        y, x = ndimage.center_of_mass(above, labels, label)
+        light = above[labels == label].sum()
         if whole and 2 <= len(rows) <= 40:
-            y, x = ndimage.center_of_mass(above, labels, label)
-            expected.append((x, y, len(rows)))
-    assert counts[0] == len(expected)
-    np.testing.assert_allclose(spots[0, : counts[0]], np.array(expected).reshape(-1, 3), rtol=1e-12)
+            expected.append((x, y, len(rows), light))
+        elif not whole and 4 <= len(rows) <= 40:
+            at_edge.append((x, y, light / len(rows)))
+    assert (counts[0], cut_counts[0]) == (len(expected), len(at_edge))
+    np.testing.assert_allclose(spots[0, : counts[0]], np.array(expected).reshape(-1, 4), rtol=1e-12)
+    np.testing.assert_allclose(
+        cuts[0, : cut_counts[0]], np.array(at_edge).reshape(-1, 3), rtol=1e-12
+    )
 
 
 def test_more_spots_than_there_is_room_for_are_said_so():
     frame = np.zeros((1, 40, 40), dtype=np.uint8)
     frame[:, 1:-1:2, 1:-1:2] = 9
-    spots, counts = np.empty((1, 5, 3)), np.zeros(1, dtype=np.int64)
-    segment(frame, frame.max(axis=2), np.array([1.0]), 1.0, 4.0, spots, counts)
+    spots, cuts = np.empty((1, 5, 4)), np.empty((1, 5, 3))
+    counts, cut_counts = np.zeros((2, 1), dtype=np.int64)
+    maxima, level = frame.max(axis=2), np.array([1.0])
+    segment(frame, maxima, level, 1.0, 4.0, spots, counts, cuts, cut_counts)
     assert counts[0] == -1
 
 

@@ -1,4 +1,4 @@
-"""Match spots to the apertures that cast them: the displacement that explains most of them."""
+"""Match spots to the apertures that cast them: the displacements that explain most of them."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from algorithms.contract import Floats
 
 Indices = NDArray[np.int64]
 Votes = NDArray[np.int32]
+Partners = NDArray[np.int32]
 
 #: Displacements tried, those that most pairs of a spot and an aperture vote for.
 _CANDIDATES = 64
@@ -45,19 +46,6 @@ def _nearest(  # noqa: PLR0917 - Numba takes no keyword-only ones
                     least = distance
                     best = a
     return best, least
-
-
-@compiled
-def _expected(apertures: Floats, x: float, y: float, frame: tuple[int, int], margin: float) -> int:
-    """How many apertures cast a spot that is whole in the frame (height, width)."""
-    found = 0
-    for a in range(apertures.shape[0]):
-        half = 0.5 * apertures[a, 2] + margin
-        px = apertures[a, 0] + x
-        py = apertures[a, 1] + y
-        if half <= px < frame[1] - 1 - half and half <= py < frame[0] - 1 - half:
-            found += 1
-    return found
 
 
 @compiled
@@ -184,64 +172,72 @@ def _fit(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def _explain(  # noqa: PLR0917 - Numba takes no keyword-only ones
+def _distinct(places: Floats, number: int, x: float, y: float, tolerance: float) -> bool:
+    """Whether none of the first `number` places is the same as (x, y)."""
+    for c in range(number):
+        if abs(places[c, 0] - x) < tolerance and abs(places[c, 1] - y) < tolerance:
+            return False
+    return True
+
+
+@compiled
+def _explanations(  # noqa: PLR0917 - Numba takes no keyword-only ones
     spots: Floats,
     apertures: Floats,
     table: Indices,
     corner: Floats,
     cell: float,
-    frame: tuple[int, int],
-    margin: float,
     tolerance: float,
-    prices: tuple[float, float, float],
-    places: Floats,
+    slack: float,
+    starts: Floats,
     votes: Indices,
     partner: Indices,
-    partners: Indices,
-) -> tuple[float, float]:
-    """Best displacement near one of `places` (C, 2), and the spot of each aperture under it.
+    places: Floats,
+    partners: Partners,
+) -> int:
+    """Write the displacements near `starts` (C, 2) that match most spots; return how many.
 
-    NaN where none is clear. `votes` (C,) are the most spots that a place can explain.
+    `votes` (C,), in falling order, are the most spots that a start can match; `places` (K, 2) and
+    `partners` (K, A) receive displacements and matches, best first.
     """
-    absent, clear, share = prices
+    room = places.shape[0]
     distance = np.empty(apertures.shape[0])
-    first = -np.inf
-    first_x = np.nan
-    first_y = np.nan
-    second = -np.inf
-    enough = False
+    score = np.empty(room)
+    kept = 0
+    most = 0
     for c in range(votes.size):
-        # No spot adds more than one: this one can neither win nor be near to it.
-        price = absent * _expected(apertures, places[c, 0], places[c, 1], frame, margin)
-        if votes[c] - price < first - 2.0 * clear:
-            continue
+        if votes[c] < most - slack or (kept == room and votes[c] <= score[kept - 1]):
+            break  # no spot adds more than one
         x, y, quality, matched = _fit(
             spots,
             apertures,
             table,
             corner,
             cell,
-            places[c, 0],
-            places[c, 1],
+            starts[c, 0],
+            starts[c, 1],
             tolerance,
             partner,
             distance,
         )
-        expected = _expected(apertures, x, y, frame, margin)
-        score = quality - absent * expected
-        same = abs(x - first_x) < tolerance and abs(y - first_y) < tolerance
-        if score > first:
-            if not same:
-                second = first
-            first, first_x, first_y = score, x, y
-            enough = matched >= share * expected
-            partners[:] = partner
-        elif not same:
-            second = max(second, score)
-    if enough and first - second >= clear:
-        return first_x, first_y
-    partners[:] = -1
-    return np.nan, np.nan
+        most = max(most, matched)
+        if matched == 0 or not _distinct(places, kept, x, y, tolerance):
+            continue
+        if kept == room and quality <= score[kept - 1]:
+            continue
+        at = kept - 1 if kept == room else kept
+        while at > 0 and score[at - 1] < quality:
+            score[at] = score[at - 1]
+            places[at] = places[at - 1]
+            partners[at] = partners[at - 1]
+            at -= 1
+        score[at] = quality
+        places[at, 0] = x
+        places[at, 1] = y
+        for a in range(partner.size):
+            partners[at, a] = partner[a]
+        kept = min(kept + 1, room)
+    return kept
 
 
 @compiled
@@ -253,33 +249,31 @@ def match(  # noqa: PLR0917 - Numba takes no keyword-only ones
     corner: Floats,
     cell: float,
     frame: tuple[int, int],
-    margin: float,
     tolerance: float,
-    prices: tuple[float, float, float],
-    displacement: Floats,
-    partners: Indices,
+    slack: float,
+    places: Floats,
+    partners: Partners,
+    kept: Indices,
 ) -> None:
-    """Find the displacement (x, y) of the apertures that explains each frame's spots.
+    """Find the displacements (x, y) of the apertures that match most of each frame's spots.
 
-    A displacement scores by its quality (see `_fit`), less a price for each aperture whose spot
-    would be whole in the frame: so a grid is not taken for the one shifted by a hole.
+    Which of them it is, `evidence_kernel.decide` tells.
 
     Parameters
     ----------
     spots, counts
-        (N, S, 3) and (N,) as `spots.segment` writes them.
+        (N, S, 4) and (N,) as `spots_kernel.segment` writes them.
     apertures, table, corner, cell
         (A, 3) x, y, width; the lattice of `_nearest`.
-    frame, margin
-        Height and width; px that a spot reaches beyond its aperture.
+    frame
+        Height and width.
     tolerance
         Largest distance of a spot from its place, px.
-    prices
-        The price ``absent``; by how much the best displacement must beat every other; the least
-        share of the expected spots that must be there.
-    displacement, partners
-        (N, 2) and (N, A): receive the displacement, NaN where none is found, and the spot of
-        each aperture, -1 for none.
+    slack
+        Spots that a displacement may match less than the best one: others are out of question.
+    places, partners, kept
+        (N, K, 2), (N, K, A) and (N,): receive the displacements, by falling quality of the match
+        (see `_fit`), the spot of each aperture under it, -1 for none, and their number.
     """
     height, width = frame
     low_x = apertures[:, 0].max()
@@ -290,11 +284,10 @@ def match(  # noqa: PLR0917 - Numba takes no keyword-only ones
     touched = np.empty(max(counts.max(), 1) * apertures.shape[0], dtype=np.int64)
     best = np.empty(_CANDIDATES, dtype=np.int64)
     votes = np.empty(_CANDIDATES, dtype=np.int64)
-    places = np.empty((_CANDIDATES, 2))
+    starts = np.empty((_CANDIDATES, 2))
     partner = np.empty(apertures.shape[0], dtype=np.int64)
     for k in range(spots.shape[0]):
-        displacement[k] = np.nan
-        partners[k] = -1
+        kept[k] = 0
         if counts[k] < 1:
             continue
         seen = spots[k, : counts[k]]
@@ -303,22 +296,19 @@ def match(  # noqa: PLR0917 - Numba takes no keyword-only ones
         for at in touched[:cells]:
             ballot.ravel()[at] = 0
         for c in range(candidates):
-            places[c, 0] = (best[c] % ballot.shape[1] - 0.5) * tolerance - low_x
-            places[c, 1] = (best[c] // ballot.shape[1] - 0.5) * tolerance - low_y
-        x, y = _explain(
+            starts[c, 0] = (best[c] % ballot.shape[1] - 0.5) * tolerance - low_x
+            starts[c, 1] = (best[c] // ballot.shape[1] - 0.5) * tolerance - low_y
+        kept[k] = _explanations(
             seen,
             apertures,
             table,
             corner,
             cell,
-            frame,
-            margin,
             tolerance,
-            prices,
-            places,
+            slack,
+            starts[:candidates],
             votes[:candidates],
             partner,
+            places[k],
             partners[k],
         )
-        displacement[k, 0] = x
-        displacement[k, 1] = y

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,10 +30,10 @@ _WAVELENGTH_MM = 550e-6
 _AREAS = (0.4, 6.0)
 #: Least pixels of a spot: fewer are hot pixels.
 _LEAST_PIXELS = 4.0
-#: Price of an aperture that should be seen and is not, in spots found.
-_ABSENT = 0.15
-#: Spots by which the best displacement must be ahead of every other.
-_CLEAR = 0.5
+#: Displacements compared by what the frame shows of every aperture, those that match most spots.
+_COMPARED = 24
+#: Spots kept of a frame that its edge cuts.
+_CUTS = 64
 #: Least share of the expected spots.
 SHARE = 0.3
 #: Pixels of a frame whose median is its background.
@@ -53,6 +53,8 @@ class Lattice:
     table: NDArray[np.int64]  # (R, C) the aperture in a cell, -1 for none
     corner: Floats  # (2,) of the table's first cell
     cell_px: float
+    nearest_px: float  # least distance of two apertures, infinite for one
+    lines: NDArray[np.int64]  # (2, A) in which column and row each is
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,8 +82,7 @@ class Levels:
         return Levels(self.maxima[rows], self.floor[rows], self.peak[rows], self.threshold[rows])
 
 
-@dataclass(frozen=True, eq=False)
-class Pattern:
+class Pattern(NamedTuple):
     """What was found in frames (N, H, W) of a mask of A apertures.
 
     Attributes
@@ -132,8 +133,13 @@ def design_pattern(geometry: SensorGeometry, by: str) -> dict[str, Any]:
     }
 
 
-def require_pattern(
-    by: str, apertures_px: Apertures, blur_px: float, threshold: float, tolerance_px: float
+def require_pattern(  # noqa: PLR0917 - the parameters in their order
+    by: str,
+    apertures_px: Apertures,
+    blur_px: float,
+    threshold: float,
+    tolerance_px: float,
+    faulty_lines: int,
 ) -> None:
     """Raise ValueError naming the first parameter of a pattern that is out of range."""
     rows = np.array(apertures_px, dtype=np.float64) if apertures_px else np.empty((0, 3))
@@ -146,6 +152,8 @@ def require_pattern(
     if not 0.0 < threshold < 1.0:
         raise ValueError(f"{by}: threshold must be in (0, 1); got {threshold!r}")
     require_positive(by, tolerance_px=tolerance_px)
+    if faulty_lines < 0:
+        raise ValueError(f"{by}: faulty_lines must not be negative; got {faulty_lines!r}")
     nearest = nearest_distance(rows)
     if not tolerance_px < nearest / 4.0:
         raise ValueError(
@@ -179,9 +187,19 @@ def lattice(apertures_px: Apertures) -> Lattice:
     j, i = np.floor((apertures[:, :2] - corner) / cell).astype(np.int64).T
     table = np.full((i.max() + 1, j.max() + 1), -1, dtype=np.int64)
     table[i, j] = np.arange(len(apertures))
-    for array in (apertures, table, corner):
+    nearest = nearest_distance(apertures)
+    lines = np.stack([_lines(apertures[:, axis], nearest / 4.0) for axis in (0, 1)])
+    for array in (apertures, table, corner, lines):
         array.flags.writeable = False
-    return Lattice(apertures, table, corner, cell)
+    return Lattice(apertures, table, corner, cell, nearest, lines)
+
+
+def _lines(coordinates: Floats, apart: float) -> NDArray[np.int64]:
+    """Give the line that each coordinate (A,) is on: a step of more than `apart` begins one."""
+    order = np.argsort(coordinates, kind="stable")
+    lines = np.empty(len(coordinates), dtype=np.int64)
+    lines[order] = np.concatenate([[0], np.cumsum(np.diff(coordinates[order]) > apart)])
+    return lines
 
 
 def frame_levels(frames: NDArray[Any], apertures_px: Apertures, threshold: float) -> Levels:
@@ -209,19 +227,25 @@ def frame_levels(frames: NDArray[Any], apertures_px: Apertures, threshold: float
     return Levels(maxima, floor, peak, level)
 
 
-def find_pattern(
+def find_pattern(  # noqa: PLR0917 - the parameters in their order
     frames: NDArray[Any],
     levels: Levels,
     apertures_px: Apertures,
     blur_px: float,
     tolerance_px: float,
+    faulty_lines: int,
+    *,
+    sequence: bool = False,
 ) -> Pattern:
-    """Find the pattern in each of the frames (N, H, W) of `as_frames`, by itself.
+    """Find the pattern in each of the frames (N, H, W) of `as_frames`.
 
-    The spots are centroids of the light above the threshold.
+    The spots are centroids of the light above the threshold. Each frame is read by itself; in a
+    `sequence`, one that leaves several displacements open has that which is within a quarter of
+    the least distance of two apertures from the frame before's.
     """
     from algorithms.extractors.frames.multi_spot import (  # noqa: PLC0415 - Numba on first use
         aperture_grid_kernel,
+        evidence_kernel,
         spots_kernel,
     )
 
@@ -231,12 +255,15 @@ def find_pattern(
     least = max(_AREAS[0] * math.pi / 4.0 * float(widths.min()) ** 2, _LEAST_PIXELS)
     most = max(_AREAS[1] * (float(widths.max()) + blur_px) ** 2, 2.0 * least)
     room = min(_SPOTS_PER_APERTURE * len(widths) + 16, int(height * width / least) + 1)
-    seen = np.empty((count, room, 3))
-    counts = np.empty(count, dtype=np.int64)
-    spots_kernel.segment(frames, levels.maxima, levels.threshold, least, most, seen, counts)
+    seen, cuts = np.empty((count, room, 4)), np.empty((count, _CUTS, 3))
+    counts, cut_counts = np.empty((2, count), dtype=np.int64)
+    spots_kernel.segment(
+        frames, levels.maxima, levels.threshold, least, most, seen, counts, cuts, cut_counts
+    )
 
-    displacement = np.empty((count, 2))
-    partners = np.empty((count, len(widths)), dtype=np.int64)
+    places = np.empty((count, _COMPARED, 2))
+    matches = np.empty((count, _COMPARED, len(widths)), dtype=np.int32)
+    kept = np.empty(count, dtype=np.int64)
     aperture_grid_kernel.match(
         seen,
         counts,
@@ -245,9 +272,31 @@ def find_pattern(
         known.corner,
         known.cell_px,
         (height, width),
+        tolerance_px,
+        # a line of spots unexplained costs as much as two faults, and some are missing
+        (0.5 * faulty_lines + 1.0) * max(int(np.bincount(line).max()) for line in known.lines) + 4,
+        places,
+        matches,
+        kept,
+    )
+    displacement = np.empty((count, 2))
+    partners = np.empty((count, len(widths)), dtype=np.int64)
+    apart = min(known.nearest_px, float(height + width)) / 4.0
+    evidence_kernel.decide(
+        frames,
+        levels.threshold,
+        seen,
+        counts,
+        cuts,
+        cut_counts,
+        known.apertures,
+        known.lines,
         margin_px(blur_px),
         tolerance_px,
-        (_ABSENT, _CLEAR, SHARE),
+        (float(faulty_lines), SHARE, apart if sequence else 0.0),
+        places,
+        matches,
+        kept,
         displacement,
         partners,
     )
@@ -261,22 +310,51 @@ def margin_px(blur_px: float) -> float:
     return blur_px / 2.0 + 1.0
 
 
-def without_gaps(
-    follow: Callable[[int, Floats, Floats], int], pattern: Callable[[int], Pattern], count: int
-) -> None:
-    """Follow spots through `count` frames, finding the pattern anew wherever they are lost.
+def followed(
+    follow: Callable[[int, int, Pattern], Floats], pattern: Pattern, nearest_px: float
+) -> Floats:
+    """Displacements (N, 2) of spots followed through a sequence, verified frame by frame.
 
-    ``pattern(k)`` finds it in frame k alone, with a first axis of one; ``follow(k, displacement,
-    spots)`` goes on from there and returns how many frames it did before it lost the spots.
+    Parameters
+    ----------
+    follow
+        ``follow(start, end, pattern)`` follows the spots from frame ``start``, whose pattern
+        alone it is given, and returns the displacements of the frames up to ``end - 1``, NaN
+        from where it lost them.
+    pattern
+        What `find_pattern` found in the sequence.
+    nearest_px
+        Least distance of two apertures.
+
+    Returns
+    -------
+    ndarray, shape (N, 2)
+        NaN where no pattern was found. Where the pattern moves by a quarter of `nearest_px` or
+        more, or what is followed is as far from it, the spots are taken anew from the pattern.
     """
-    k = 0
-    while k < count:
-        here = pattern(k)
-        if np.isnan(here.displacement).any():
-            k += 1
+    count = len(pattern.displacement)
+    found = np.full((count, 2), np.nan)
+    astray = nearest_px / 4.0
+    known: NDArray[np.bool_] = np.isfinite(pattern.displacement[:, 0])
+    start = 0
+    while start < count:
+        if not known[start]:
+            start += 1
             continue
-        # a frame in which the pattern is found but not followed is passed over
-        k += max(follow(k, here.displacement, here.spots), 1)
+        end = start + 1
+        while end < count and known[end]:
+            step = pattern.displacement[end] - pattern.displacement[end - 1]
+            if math.hypot(*step) >= astray:
+                break
+            end += 1
+        here = Pattern(pattern.displacement[start : start + 1], pattern.spots[start : start + 1])
+        part = follow(start, end, here)
+        away = np.hypot(*(part - pattern.displacement[start:end]).T)
+        lost = np.flatnonzero(~(away < astray))
+        done = int(lost[0]) if len(lost) else end - start
+        found[start : start + done] = part[:done]
+        start += max(done, 1)  # a frame in which the pattern is not followed is passed over
+    return found
 
 
 def _floor_and_noise(frames: NDArray[Any]) -> tuple[Floats, Floats]:

@@ -27,12 +27,12 @@ from algorithms.extractors.frames.multi_spot.aperture_pattern import (
     Pattern,
     design_pattern,
     find_pattern,
+    followed,
     frame_levels,
     lattice,
     margin_px,
     nearest_distance,
     require_pattern,
-    without_gaps,
 )
 from algorithms.inputs import as_frames
 
@@ -71,6 +71,10 @@ class ImageCorrelation(Extractor):
     tolerance_px : float
         Largest distance of a spot from its aperture's place, px, in that search; below a quarter
         of the least distance of two apertures.
+    faulty_lines : int
+        Lines of apertures (columns or rows) that may be dark or doubled at once without a wrong
+        answer, not negative: a displacement is an answer where every other one leaves more of
+        them unexplained.
 
     Raises
     ------
@@ -123,6 +127,7 @@ class ImageCorrelation(Extractor):
         studies=("Xing2008",),
         labels=("fe:feic", "alg:FEIC"),
         origin="survey",
+        version=2,
         needs=PATTERN_NEEDS,
         observation=Observation.FRAMES,
         kind=FeatureKind.SPOT,
@@ -135,10 +140,16 @@ class ImageCorrelation(Extractor):
     presence: float = 0.3
     threshold: float = 0.3
     tolerance_px: float = 0.75
+    faulty_lines: int = 1
 
     def __post_init__(self) -> None:
         require_pattern(
-            self.about.name, self.apertures_px, self.blur_px, self.threshold, self.tolerance_px
+            self.about.name,
+            self.apertures_px,
+            self.blur_px,
+            self.threshold,
+            self.tolerance_px,
+            self.faulty_lines,
         )
         if self.shape not in get_args(Shape):
             raise ValueError(
@@ -188,47 +199,50 @@ class ImageCorrelation(Extractor):
     def track(self, observations: ArrayLike) -> Floats:
         """Positions (N, 2) in successive frames (N, H, W) of one sequence.
 
-        The windows stand where the spots of the frame before were, as published, so that no
-        pattern is searched for and the mask's code is read once; the Sun may move the spots by
-        half of N_c px from frame to frame. A frame in which the spots are lost is searched as by
-        `extract`. ValueError on wrong input.
+        The windows stand where the spots of the frame before were, as published. The pattern is
+        found in each frame all the same, to verify them; where a frame alone does not tell it, it
+        is the one next to the frame before's. Where it moved by a quarter of the least distance
+        of two apertures or more, and where the spots are lost, the windows start anew from it.
+        ValueError on wrong input.
         """
         frames = as_frames(observations)
         levels = frame_levels(frames, self.apertures_px, self.threshold)
-        found = np.full((len(frames), 2), np.nan)
 
-        def follow(k: int, start: Floats, seen: Floats) -> int:  # noqa: ARG001 - the caller's
-            done, part, _ = self._correlate(frames[k:], levels.part(k), start, sequence=True)
-            found[k : k + done] = part[:done]
-            return done
+        def follow(start: int, end: int, first: Pattern) -> Floats:
+            part = levels.part(start, end)
+            return self._correlate(frames[start:end], part, first.displacement, sequence=True)[0]
 
-        def pattern(k: int) -> Pattern:
-            return self._pattern(frames[k : k + 1], levels.part(k, k + 1))
+        pattern = self._pattern(frames, levels, sequence=True)
+        return followed(follow, pattern, lattice(self.apertures_px).nearest_px)
 
-        without_gaps(follow, pattern, len(frames))
-        return found
-
-    def _pattern(self, frames: NDArray[Any], levels: Levels) -> Pattern:
-        return find_pattern(frames, levels, self.apertures_px, self.blur_px, self.tolerance_px)
+    def _pattern(self, frames: NDArray[Any], levels: Levels, *, sequence: bool = False) -> Pattern:
+        return find_pattern(
+            frames,
+            levels,
+            self.apertures_px,
+            self.blur_px,
+            self.tolerance_px,
+            self.faulty_lines,
+            sequence=sequence,
+        )
 
     def _correlated(self, observations: ArrayLike) -> tuple[Floats, Floats]:
         frames = as_frames(observations)
         levels = frame_levels(frames, self.apertures_px, self.threshold)
         starts = self._pattern(frames, levels).displacement
-        _, found, spots = self._correlate(frames, levels, starts, sequence=False)
-        return found, spots
+        return self._correlate(frames, levels, starts, sequence=False)
 
     def _correlate(
         self, frames: NDArray[Any], levels: Levels, starts: Floats, *, sequence: bool
-    ) -> tuple[int, Floats, Floats]:
+    ) -> tuple[Floats, Floats]:
         from algorithms.extractors.frames.multi_spot import correlation_kernel  # noqa: PLC0415 - Numba, at first use
 
         known = lattice(self.apertures_px).apertures
         widths, kinds = np.unique(known[:, 2], return_inverse=True)
-        found = np.empty((len(frames), 2))
+        found = np.full((len(frames), 2), np.nan)
         spots = np.empty((len(frames), len(known), 2))
         floors = np.where(np.isfinite(levels.threshold), levels.floor, np.nan)
-        done = correlation_kernel.correlate_spots(
+        correlation_kernel.correlate_spots(
             frames,
             floors,
             starts,
@@ -242,7 +256,7 @@ class ImageCorrelation(Extractor):
             found,
             spots,
         )
-        return done, found, spots
+        return found, spots
 
 
 @lru_cache(maxsize=8)

@@ -24,12 +24,12 @@ from algorithms.extractors.frames.multi_spot.aperture_pattern import (
     Pattern,
     design_pattern,
     find_pattern,
+    followed,
     frame_levels,
     lattice,
     margin_px,
     nearest_distance,
     require_pattern,
-    without_gaps,
 )
 from algorithms.inputs import as_frames, require_positive
 
@@ -66,6 +66,10 @@ class MeanShift(Extractor):
     tolerance_px : float
         Largest distance of a spot from its aperture's place, px; below a quarter of the least
         distance of two apertures.
+    faulty_lines : int
+        Lines of apertures (columns or rows) that may be dark or doubled at once without a wrong
+        answer, not negative: a displacement is an answer where every other one leaves more of
+        them unexplained.
 
     Raises
     ------
@@ -121,6 +125,7 @@ class MeanShift(Extractor):
         studies=("You2011",),
         labels=("fe:fmms", "alg:FMMS1", "alg:FMMS2"),
         origin="survey",
+        version=2,
         needs=PATTERN_NEEDS,
         observation=Observation.FRAMES,
         kind=FeatureKind.SPOT,
@@ -134,10 +139,16 @@ class MeanShift(Extractor):
     convergence_px: float = 0.01
     similarity: float = 0.5
     tolerance_px: float = 0.75
+    faulty_lines: int = 1
 
     def __post_init__(self) -> None:
         require_pattern(
-            self.about.name, self.apertures_px, self.blur_px, self.threshold, self.tolerance_px
+            self.about.name,
+            self.apertures_px,
+            self.blur_px,
+            self.threshold,
+            self.tolerance_px,
+            self.faulty_lines,
         )
         require_positive(
             self.about.name, bandwidth_px=self.bandwidth_px, convergence_px=self.convergence_px
@@ -183,37 +194,38 @@ class MeanShift(Extractor):
     def track(self, observations: ArrayLike) -> Floats:
         """Averaged positions (N, 2) in successive frames (N, H, W) of one sequence.
 
-        Every spot starts where it was in the frame before, so that no pattern is searched for
-        and the mask's code is read once; the Sun may move the spots by half the bandwidth less
-        half a spot from frame to frame. A frame in which the spots are lost is searched as by
-        `extract`, with its own goal. ValueError on wrong input.
+        Every spot starts where it was in the frame before, as published. The pattern is found in
+        each frame all the same, to verify them; where a frame alone does not tell it, it is the
+        one next to the frame before's. Where it moved by a quarter of the least distance of two
+        apertures or more, and where the spots are lost, the shift starts anew from it with a goal
+        of that frame. ValueError on wrong input.
         """
         frames = as_frames(observations)
         levels = frame_levels(frames, self.apertures_px, self.threshold)
-        found = np.full((len(frames), 2), np.nan)
 
-        def follow(k: int, start: Floats, seen: Floats) -> int:
-            done, part, _, _ = self._shift(frames[k:], levels.part(k), start, seen, sequence=True)
-            found[k : k + done] = part[:done]
-            return done
+        def follow(start: int, end: int, first: Pattern) -> Floats:
+            part = levels.part(start, end)
+            return self._shift(frames[start:end], part, *first, sequence=True)[0]
 
-        def pattern(k: int) -> Pattern:
-            return self._pattern(frames[k : k + 1], levels.part(k, k + 1))
+        pattern = self._pattern(frames, levels, sequence=True)
+        return followed(follow, pattern, lattice(self.apertures_px).nearest_px)
 
-        without_gaps(follow, pattern, len(frames))
-        return found
-
-    def _pattern(self, frames: NDArray[Any], levels: Levels) -> Pattern:
-        return find_pattern(frames, levels, self.apertures_px, self.blur_px, self.tolerance_px)
+    def _pattern(self, frames: NDArray[Any], levels: Levels, *, sequence: bool = False) -> Pattern:
+        return find_pattern(
+            frames,
+            levels,
+            self.apertures_px,
+            self.blur_px,
+            self.tolerance_px,
+            self.faulty_lines,
+            sequence=sequence,
+        )
 
     def _shifted(self, observations: ArrayLike) -> tuple[Floats, Floats, Floats]:
         frames = as_frames(observations)
         levels = frame_levels(frames, self.apertures_px, self.threshold)
         pattern = self._pattern(frames, levels)
-        _, found, spots, weights = self._shift(
-            frames, levels, pattern.displacement, pattern.spots, sequence=False
-        )
-        return found, spots, weights
+        return self._shift(frames, levels, *pattern, sequence=False)
 
     def _shift(
         self,
@@ -223,16 +235,16 @@ class MeanShift(Extractor):
         seen: Floats,
         *,
         sequence: bool,
-    ) -> tuple[int, Floats, Floats, Floats]:
+    ) -> tuple[Floats, Floats, Floats]:
         from algorithms.extractors.frames.multi_spot import mean_shift_kernel  # noqa: PLC0415 - Numba, at first use
 
         known = lattice(self.apertures_px).apertures
-        found = np.empty((len(frames), 2))
+        found = np.full((len(frames), 2), np.nan)
         spots = np.empty((len(frames), len(known), 2))
         weights = np.empty((len(frames), len(known)))
         with np.errstate(invalid="ignore"):  # infinite levels: frames left out
             steps = (levels.peak - levels.threshold) / (self.bins - 2)
-        done = mean_shift_kernel.shift_spots(
+        mean_shift_kernel.shift_spots(
             frames,
             levels.threshold,
             steps,
@@ -248,4 +260,4 @@ class MeanShift(Extractor):
             spots,
             weights,
         )
-        return done, found, spots, weights
+        return found, spots, weights

@@ -48,6 +48,10 @@ class MultipleCentroids(Extractor):
     tolerance_px : float
         Largest distance of a spot from its aperture's place, px; below a quarter of the least
         distance of two apertures.
+    faulty_lines : int
+        Lines of apertures (columns or rows) that may be dark or doubled at once without a wrong
+        answer, not negative: a displacement is an answer where every other one leaves more of
+        them unexplained.
 
     Raises
     ------
@@ -62,8 +66,8 @@ class MultipleCentroids(Extractor):
     pixels, and I_max is a brightness that rows of half a spot reach, so that hot pixels do not
     set it: ours. Printed are segments of known number; here they are sets of touching pixels.
     Those at the edge, and those of less than 0.4 of an aperture's area or far more than it with
-    the Sun's image, are left out. The displacement that most pairs of spot and aperture agree on
-    is the mask's; ties go to the one that leaves the fewest apertures unseen.
+    the Sun's image, are left out. Displacements that most pairs of spot and aperture agree on are
+    compared by what the frame shows of every aperture: dark places, unexplained spots.
 
     Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers: the
     spot of an aperture over the detector's middle, seen or not.
@@ -71,7 +75,10 @@ class MultipleCentroids(Extractor):
     Failure: a NaN row for a frame that is dark, without contrast, holds a NaN or infinity, or
     whose spots rise less than five times its noise; where fewer than 0.3 of the apertures that
     should be seen are; and where two displacements explain the frame alike (two suns, part of a
-    code that several sub-fields share, a window of a grid that has no end in view).
+    code that several sub-fields share, a grid that has not all its ends in view), or one of them
+    with no more than `faulty_lines` faults. A line doubled by spots as bright as its own, at the
+    pitch, misleads by a pitch where the other end is out of view and `faulty_lines` is 1. Spots
+    that all fall alike on the pixels share the threshold's bias, and averaging gains nothing.
 
     Cost: 2 operations a pixel, 8 in rows with spots, and 20 a pair of spot and aperture.
 
@@ -96,6 +103,7 @@ class MultipleCentroids(Extractor):
         studies=("Rufino2009b",),
         labels=("fe:mcam", "alg:MCAM"),
         origin="survey",
+        version=2,
         needs=PATTERN_NEEDS,
         observation=Observation.FRAMES,
         kind=FeatureKind.SPOT,
@@ -105,10 +113,16 @@ class MultipleCentroids(Extractor):
     blur_px: float = 0.0
     threshold: float = 0.3
     tolerance_px: float = 0.75
+    faulty_lines: int = 1
 
     def __post_init__(self) -> None:
         require_pattern(
-            self.about.name, self.apertures_px, self.blur_px, self.threshold, self.tolerance_px
+            self.about.name,
+            self.apertures_px,
+            self.blur_px,
+            self.threshold,
+            self.tolerance_px,
+            self.faulty_lines,
         )
 
     @classmethod
@@ -133,7 +147,12 @@ class MultipleCentroids(Extractor):
         frames = as_frames(observations)
         levels = frame_levels(frames, self.apertures_px, self.threshold)
         return find_pattern(
-            frames, levels, self.apertures_px, self.blur_px, self.tolerance_px
+            frames,
+            levels,
+            self.apertures_px,
+            self.blur_px,
+            self.tolerance_px,
+            self.faulty_lines,
         ).spots
 
 

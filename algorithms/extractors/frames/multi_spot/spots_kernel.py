@@ -14,6 +14,9 @@ Runs = NDArray[np.int32]
 """(R, 5) lit pixels side by side: a run of the same spot before it or itself, first column, past
 the last, number of pixels, whether the frame's edge cuts it."""
 
+#: Least pixels of a spot that the edge cuts: fewer are hot pixels.
+_CUT_PIXELS = 4
+
 
 @compiled
 def _root(runs: Runs, run: int) -> int:
@@ -71,9 +74,12 @@ def _join(runs: Runs, above: int, here: int, end: int) -> None:
 
 @compiled
 def _keep(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    runs: Runs, light: Floats, end: int, least: float, most: float, spots: Floats
-) -> int:
-    """Sum the runs of each spot and write the whole ones of right size; return how many."""
+    runs: Runs, light: Floats, end: int, least: float, most: float, spots: Floats, cuts: Floats
+) -> tuple[int, int]:
+    """Sum the runs of each spot and write those of right size, whole and cut; return how many.
+
+    Of cut ones the first that there is room for; -1 whole ones where there is no room for all.
+    """
     for run in range(end - 1, -1, -1):  # a root comes before all of its runs
         root = _root(runs, run)
         if root != run:
@@ -81,16 +87,27 @@ def _keep(  # noqa: PLR0917 - Numba takes no keyword-only ones
             runs[root, 4] |= runs[run, 4]
             light[root] += light[run]
     found = 0
+    cut = 0
     for run in range(end):
-        if runs[run, 0] != run or runs[run, 4] or not least <= runs[run, 3] <= most:
+        if runs[run, 0] != run or runs[run, 3] > most:
             continue
-        if found == spots.shape[0]:
-            return -1
-        spots[found, 0] = light[run, 1] / light[run, 0]
-        spots[found, 1] = light[run, 2] / light[run, 0]
-        spots[found, 2] = runs[run, 3]
-        found += 1
-    return found
+        x = light[run, 1] / light[run, 0]
+        y = light[run, 2] / light[run, 0]
+        if runs[run, 4]:
+            if runs[run, 3] >= _CUT_PIXELS and cut < cuts.shape[0]:
+                cuts[cut, 0] = x
+                cuts[cut, 1] = y
+                cuts[cut, 2] = light[run, 0] / runs[run, 3]
+                cut += 1
+        elif runs[run, 3] >= least:
+            if found == spots.shape[0]:
+                return -1, cut
+            spots[found, 0] = x
+            spots[found, 1] = y
+            spots[found, 2] = runs[run, 3]
+            spots[found, 3] = light[run, 0]
+            found += 1
+    return found, cut
 
 
 @compiled
@@ -102,14 +119,18 @@ def segment(  # noqa: PLR0917 - Numba takes no keyword-only ones
     most: float,
     spots: Floats,
     counts: NDArray[np.int64],
+    cuts: Floats,
+    cut_counts: NDArray[np.int64],
 ) -> None:
-    """Write the whole spots of each frame, in the order their first pixels are read.
+    """Write the spots of each frame, in the order their first pixels are read.
 
-    A spot is a set of pixels above the frame's level (N,) that touch at sides or corners. Kept
-    are those of `least` to `most` pixels that do not touch the frame's edge: `spots` (N, S, 3)
-    receives the mean x and y, weighted by the light above the level, and the number of pixels.
-    `counts` (N,) is how many there are, -1 where more than S. `maxima` (N, H) are the rows'
-    largest values: rows that hold no pixel above the level are not read.
+    A spot is a set of pixels above the frame's level (N,) that touch at sides or corners. Whole
+    are those of `least` to `most` pixels that do not touch the frame's edge: `spots` (N, S, 4)
+    receives the mean x and y, weighted by the light above the level, the number of pixels and
+    that light. `counts` (N,) is how many there are, -1 where more than S. `cuts` (N, C, 3) and
+    `cut_counts` (N,): the means, the light of a pixel and the number of those at the edge.
+    `maxima` (N, H) are the rows' largest values: rows that hold no pixel above the level are not
+    read.
     """
     count, height, width = frames.shape
     room = height * (width // 2 + 1)  # at most every other pixel starts a run
@@ -125,4 +146,4 @@ def segment(  # noqa: PLR0917 - Numba takes no keyword-only ones
                 outermost = i == 0 or i == height - 1
                 end = _add_runs(frames[k, i], levels[k], i, outermost, runs, light, end)
                 _join(runs, above, here, end)
-        counts[k] = _keep(runs, light, end, least, most, spots[k])
+        counts[k], cut_counts[k] = _keep(runs, light, end, least, most, spots[k], cuts[k])

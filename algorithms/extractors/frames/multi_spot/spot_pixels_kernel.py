@@ -1,0 +1,217 @@
+"""The pixels of many spots of one frame, without background, by distance from the middle."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.compiled import compiled
+from algorithms.contract import Floats
+
+#: Reach of a spot's pixels beyond its rim: over its radius, and px; of these the outermost show
+#: the background.
+_WIDER, _MARGIN, _RING = 0.1, 3.0, 1.5
+#: Deviations of the background's slope from which it is one.
+_SLOPE = 3.0
+#: Rows of a pixel's numbers: column, row, light, distance from its spot's middle.
+_X, _Y, _U, _R = 0, 1, 2, 3
+
+
+@compiled
+def _shape(
+    frame: NDArray[Any], level: float, spots: Floats, half: int
+) -> tuple[float, float, float, float]:
+    """Metric (xx, xy, yy) of determinant one that makes the spots round, and their radius in it.
+
+    Of the light above the level within `half` pixels of each spot's middle.
+    """
+    height, width = frame.shape
+    xx = 0.0
+    xy = 0.0
+    yy = 0.0
+    light = 0.0
+    pixels = 0
+    for s in range(spots.shape[0]):
+        x, y = spots[s, 0], spots[s, 1]
+        column, line = round(x), round(y)
+        for i in range(max(line - half, 0), min(line + half + 1, height)):
+            for j in range(max(column - half, 0), min(column + half + 1, width)):
+                u = frame[i, j] - level
+                if u > 0.0:
+                    pixels += 1
+                    light += u
+                    xx += u * (j - x) * (j - x)
+                    xy += u * (j - x) * (i - y)
+                    yy += u * (i - y) * (i - y)
+    root = math.sqrt(max(xx * yy - xy * xy, 0.0))
+    area = pixels / spots.shape[0]
+    if not root > 1e-3 * (xx + yy):
+        return 0.0, 0.0, 0.0, 0.0
+    return yy / root, -xy / root, xx / root, math.sqrt(area / math.pi)
+
+
+@compiled
+def _gather(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    frame: NDArray[Any],
+    floor: float,
+    spots: Floats,
+    metric: tuple[float, float, float],
+    reach: float,
+    pixels: Floats,
+    ends: NDArray[np.int64],
+) -> None:
+    """List each spot's pixels as far as `reach`, their light above `floor`, and where they end."""
+    height, width = frame.shape
+    xx, xy, yy = metric
+    high = reach * math.sqrt(xx)
+    end = 0
+    for s in range(spots.shape[0]):
+        x, y = spots[s, 0], spots[s, 1]
+        for i in range(max(math.ceil(y - high), 0), min(math.floor(y + high), height - 1) + 1):
+            dy = i - y  # where the row cuts the ellipse
+            shift = -xy * dy / xx
+            side = math.sqrt(max((reach * reach - dy * dy / xx) / xx, 0.0))
+            first = max(math.ceil(x + shift - side), 0)
+            last = min(math.floor(x + shift + side), width - 1)
+            for j in range(first, last + 1):
+                pixels[_X, end] = j
+                pixels[_Y, end] = i
+                dx = j - x
+                pixels[_U, end] = frame[i, j] - floor
+                pixels[_R, end] = math.sqrt(max((xx * dx + 2.0 * xy * dy) * dx + yy * dy * dy, 0.0))
+                end += 1
+        ends[s] = end
+
+
+@compiled
+def _flatten(pixels: Floats, ends: NDArray[np.int64], ring: float, lights: Floats) -> float:
+    """Take off each spot's background and the slope of all, seen beyond `ring`; write the light.
+
+    Pixels that stand out of a spot's ring by four deviations are not of its background. Returns
+    the variance of a background pixel.
+    """
+    sums = np.zeros(9)  # n, x, y, xx, xy, yy, u, ux, uy about the first pixel
+    squares = 0.0
+    begin = 0
+    for s in range(ends.size):
+        own = pixels[:, begin : ends[s]]
+        mean = 0.0
+        variance = 0.0
+        spread = math.inf
+        n = 0
+        for _ in range(2):
+            n = 0
+            total = 0.0
+            square = 0.0
+            for p in range(own.shape[1]):
+                u = own[_U, p] - mean
+                if own[_R, p] > ring and abs(u) <= spread:
+                    n += 1
+                    total += u
+                    square += u * u
+            total /= max(n, 1)
+            mean += total
+            variance = max(square / max(n, 1) - total * total, 0.0)
+            spread = 4.0 * math.sqrt(variance)
+        squares += variance * n
+        light = 0.0
+        for p in range(own.shape[1]):
+            u = own[_U, p]
+            if own[_R, p] > ring and abs(u - mean) <= spread:
+                x = own[_X, p] - pixels[_X, 0]
+                y = own[_Y, p] - pixels[_Y, 0]
+                sums[0] += 1.0
+                sums[1] += x
+                sums[2] += y
+                sums[3] += x * x
+                sums[4] += x * y
+                sums[5] += y * y
+                sums[6] += u
+                sums[7] += u * x
+                sums[8] += u * y
+            own[_U, p] = u - mean
+            light += u - mean
+        lights[s] = light
+        begin = ends[s]
+    noise = squares / max(float(sums[0]), 1.0)
+    slope_x, slope_y, sure = _slope(sums)
+    if sure > _SLOPE * _SLOPE * 2.0 * noise:  # its chi square, of two degrees of freedom
+        _tilt(pixels, ends, slope_x, slope_y)
+    return noise
+
+
+@compiled
+def _slope(sums: Floats) -> tuple[float, float, float]:
+    """Slope of u along x and y of the sums n, x, y, xx, xy, yy, u, ux, uy; squares it explains."""
+    n = max(sums[0], 1.0)
+    xx = sums[3] - sums[1] * sums[1] / n
+    xy = sums[4] - sums[1] * sums[2] / n
+    yy = sums[5] - sums[2] * sums[2] / n
+    ux = sums[7] - sums[6] * sums[1] / n
+    uy = sums[8] - sums[6] * sums[2] / n
+    determinant = xx * yy - xy * xy
+    if not determinant > 1e-9 * xx * yy:
+        return 0.0, 0.0, 0.0
+    slope_x = (yy * ux - xy * uy) / determinant
+    slope_y = (xx * uy - xy * ux) / determinant
+    return slope_x, slope_y, slope_x * ux + slope_y * uy
+
+
+@compiled
+def _tilt(pixels: Floats, ends: NDArray[np.int64], slope_x: float, slope_y: float) -> None:
+    """Take off a slope about the middle of each spot's pixels."""
+    begin = 0
+    for s in range(ends.size):
+        own = pixels[:, begin : ends[s]]
+        x = own[_X].mean()
+        y = own[_Y].mean()
+        for p in range(own.shape[1]):
+            own[_U, p] -= slope_x * (own[_X, p] - x) + slope_y * (own[_Y, p] - y)
+        begin = ends[s]
+
+
+@compiled
+def spot_pixels(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    frame: NDArray[Any],
+    level: float,
+    floor: float,
+    spots: Floats,
+    size: float,
+    room: float,
+    pixels: Floats,
+    ends: NDArray[np.int64],
+    lights: Floats,
+    form: Floats,
+) -> bool:
+    """List the pixels of each spot and its surroundings; False where they have no common shape.
+
+    Parameters
+    ----------
+    level, floor
+        Above which a pixel of the frame (H, W) is lit; its background.
+    spots
+        (S, 2) thresholded centroids.
+    size, room
+        Largest width of a spot, px; how far it may reach before it meets another.
+    pixels, ends, lights
+        (6, P), of which the first four rows receive column, row, light and distance from the
+        spot's middle; (S,) where each spot's end; (S,) its light.
+    form
+        (6,) receives xx, xy, yy of the metric of that distance, of determinant one, in which
+        spots are round; their radius and reach in it; the variance of a background pixel.
+    """
+    half = max(min(math.ceil(0.5 * size) + 2, int(room)), 1)
+    xx, xy, yy, radius = _shape(frame, level, spots, half)
+    if not 0.0 < radius <= size:
+        return False
+    wide, high = math.sqrt(yy), math.sqrt(xx)
+    reach = min((1.0 + _WIDER) * radius + _MARGIN, max(room, radius) / max(wide, high))
+    if (2.0 * reach * wide + 1.0) * (2.0 * reach * high + 1.0) * ends.size > pixels.shape[1]:
+        return False
+    _gather(frame, floor, spots, (xx, xy, yy), reach, pixels, ends)
+    noise = _flatten(pixels, ends, reach - _RING, lights)
+    form[:] = np.array([xx, xy, yy, radius, reach, noise])
+    return True
