@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import ClassVar, Self
 
@@ -16,8 +17,13 @@ from algorithms.contract import (
     SensorGeometry,
 )
 from algorithms.extractors.frames.matched import require_one_spot
-from algorithms.inputs import as_frames
+from algorithms.inputs import as_frames, require_positive
 from algorithms.measurement import Measurement
+
+#: The middle of silicon's sunlight; the steepest rays' tangent that spots are expected of.
+_MIDDLE_MM, _STEEPEST = 6e-4, 2.5
+#: Half axes that are allowed over those of the design.
+_ROOM = 1.15
 
 
 @dataclass(frozen=True)
@@ -27,6 +33,17 @@ class MirrorRegistration(Extractor):
     Discs, ellipses, squares, Gaussians, Airy patterns and whatever shears them have such a centre;
     no shape is assumed beyond that. Hot and dead pixels and a background that slopes or bends are
     found and left out; two lights, a spot cut by the edge or one without symmetry are no answer.
+
+    Parameters
+    ----------
+    longest_px : float or None
+        Longest half axis that the outline of one spot has, px, positive: a longer one is of
+        several lights. None where no design tells: outlines then tell by their shape.
+
+    Raises
+    ------
+    ValueError
+        If `longest_px` is not positive.
 
     Notes
     -----
@@ -48,7 +65,8 @@ class MirrorRegistration(Extractor):
 
     `measure` gives the covariance of that fit, with what the background's slopes are uncertain by,
     times the mean square of the departures over what was expected. Outlines of one spot are alike
-    at all heights; those of two that overlap are not, or have a waist.
+    at all heights; those of two that overlap are not, or have a waist. A hole's fringes make such
+    outlines, too: what is longer than the design's shadow and its diffraction allow counts then.
 
     Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers.
 
@@ -87,17 +105,23 @@ class MirrorRegistration(Extractor):
         kind=FeatureKind.SPOT,
     )
 
+    longest_px: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.longest_px is not None:
+            require_positive(self.about.name, longest_px=self.longest_px)
+
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
         """Return the estimator; UnsuitableDesignError for designs without a single spot."""
         require_one_spot(geometry, cls.about.name)
-        return cls()
+        return cls(_longest_px(geometry))
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Centres (N, 2) in frames (N, H, W); ValueError on wrong input."""
         from algorithms.extractors.frames.registration import register  # noqa: PLC0415 - Numba
 
-        return register(as_frames(observations)).features
+        return register(as_frames(observations), None, self.longest_px).features
 
     def measure(self, observations: ArrayLike, bad: ArrayLike | None = None) -> Measurement:
         """Centres, covariances and doubts of frames (N, H, W) or of one; bad pixels are left out.
@@ -106,4 +130,25 @@ class MirrorRegistration(Extractor):
         """
         from algorithms.extractors.frames.registration import register  # noqa: PLC0415 - Numba
 
-        return register(observations, bad)
+        return register(observations, bad, self.longest_px)
+
+
+def _longest_px(geometry: SensorGeometry) -> float | None:
+    """Longest half axis of a spot in the field's corner; None where the design does not tell.
+
+    Of the shadow's second moments, or the far pattern's where that is larger, a seventh more.
+    """
+    width, height, pitch = (
+        geometry.aperture_width_mm,
+        geometry.focal_length_mm,
+        geometry.pixel_pitch_mm,
+    )
+    field, shape = geometry.half_fov_deg, geometry.aperture_shape
+    if width is None or height is None or pitch is None or field is None or shape is None:
+        return None
+    shadow = width / (2.0 if shape == "round" else math.sqrt(3.0))
+    # where a square field's corner lands, and how its spots are drawn out there
+    corner = min(math.sqrt(2.0) * math.tan(math.radians(field)), _STEEPEST)
+    drawn_out = height * (1.0 + corner**2) ** 1.5
+    far = 0.64 * _MIDDLE_MM * drawn_out / width
+    return float(_ROOM * (shadow**4 + far**4) ** 0.25 / pitch + 0.5)

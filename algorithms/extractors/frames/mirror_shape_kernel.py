@@ -195,13 +195,14 @@ def shapes(  # noqa: PLR0917 - Numba takes no keyword-only ones
     states: Floats,
     out: Floats,
 ) -> None:
-    """Write the shape of the windows `todo` to `out` (N, 12).
+    """Write the shape of the windows `todo` to `out` (N, 13).
 
     Columns: light of departing clusters over all; what neighbours miss alike; larger and smaller
     ratio of the squared extents of the high outline to the low one's; smaller squared extent of
     the low outline; area of the high outline, that of an ellipse with its moments over it; mean
     square of the departures over what is expected; the two ratios for the sharp high outline; area
-    of the low outline; the mean square once more, with allowance for sharp rims.
+    of the low outline; the mean square once more, with allowance for sharp rims; larger squared
+    extent of the low outline.
     """
     sums = np.empty((3, 4))
     own, line, lanes = space[0], space[1], space[2, :_LANES]
@@ -224,7 +225,8 @@ def shapes(  # noqa: PLR0917 - Numba takes no keyword-only ones
         out[k, 2], out[k, 3] = _axes(low, high)
         out[k, 8], out[k, 9] = _axes(low, sharp)
         half_trace, det = 0.5 * (low[0] + low[1]), low[0] * low[1] - low[2] * low[2]
-        out[k, 4] = half_trace - math.sqrt(max(half_trace * half_trace - det, 0.0))
+        root = math.sqrt(max(half_trace * half_trace - det, 0.0))
+        out[k, 4], out[k, 12] = half_trace - root, half_trace + root
         out[k, 10] = 2.0 * sums[0, 0]
         area = 2.0 * sums[2, 0]
         out[k, 5] = area

@@ -57,11 +57,13 @@ _UNSURE = 0.5
 #: From the lit light's centroid, in half extents and px, no registration leads further.
 _ASTRAY, _ASTRAY_PX = 0.25, 0.75
 #: Columns that `mirror_shape_kernel.shapes` writes.
-_SHAPE = 12
+_SHAPE = 13
 _KEPT = threading.local()
 
 
-def register(observations: ArrayLike, bad: ArrayLike | None = None) -> Measurement:
+def register(
+    observations: ArrayLike, bad: ArrayLike | None = None, longest_px: float | None = None
+) -> Measurement:
     """Register each frame's or window's spot against its own mirror image.
 
     Parameters
@@ -70,6 +72,9 @@ def register(observations: ArrayLike, bad: ArrayLike | None = None) -> Measureme
         Frames, or windows of frames, that hold one spot each and some background around it.
     bad : array_like of bool, shape (H, W), optional
         Pixels to leave out, the same in all frames.
+    longest_px : float, optional
+        Longest half axis that one spot's outline has, where a design tells; a longer one is of
+        several. Without it outlines tell by their shape, which fringes of one spot resemble.
 
     Returns
     -------
@@ -119,15 +124,16 @@ def register(observations: ArrayLike, bad: ArrayLike | None = None) -> Measureme
     found.doubts[why == search.EDGE] = int(Doubt.CUT)
     seen = np.flatnonzero(why == 0.0)
     if len(seen):
-        _register_seen(frames, seen, lights[seen], mask, found)
+        _register_seen(frames, seen, lights[seen], mask, longest_px, found)
     return found
 
 
-def _register_seen(
+def _register_seen(  # noqa: PLR0917 - what is known of the frames
     frames: Frames,
     seen: NDArray[np.int64],
     lights: Floats,
     mask: NDArray[np.bool_],
+    longest_px: float | None,
     found: Measurement,
 ) -> None:
     """Write centres, covariances and doubts of the frames `seen`, a chunk after the other."""
@@ -148,6 +154,9 @@ def _register_seen(
     centres = 0.5 * (middles + states[:, 2:4])
     saturated = _saturated(frames, seen, lights)
     doubts = _doubts(lights, boxes, states, shapes, centres, saturated)
+    noise = np.sqrt(states[:, 0])
+    several = _long(shapes, longest_px) if longest_px else _unlike(shapes, noise)
+    doubts[several & np.isfinite(states[:, 4])] |= int(Doubt.SEVERAL_SPOTS)
     refused = (doubts & ~int(Doubt.SATURATED | Doubt.GHOST)) != 0
     scatter = shapes[:, 7]
     covariance = states[:, [4, 6, 6, 5]] * scatter[:, None]
@@ -258,14 +267,24 @@ def _doubts(  # noqa: PLR0917 - what is known of each
     lost = ~np.isfinite(states[:, 4])
     doubts[lost] |= int(Doubt.NO_SPOT)
     doubts[boxes[:, 3] == 0] |= int(Doubt.CUT)
-    clusters, alike, wide, narrow, minor, area, waist, scatter = shapes.T[:8]
-    sharp_wide, sharp_narrow, base, departing = shapes.T[8:]
-    noise = np.sqrt(states[:, 0])
+    clusters, alike, area, scatter, departing = shapes.T[[0, 1, 5, 7, 11]]
     far = np.abs(centres - lights[:, :2]) > _ASTRAY * lights[:, 2:4] + _ASTRAY_PX
     with np.errstate(invalid="ignore", divide="ignore"):
         ghost = departing > _SCATTER_GHOST + _GHOST_FEW / area
         crooked = far.any(axis=1) | (clusters > _CLUSTERS) | (alike > _ALIKE)
         crooked |= ~saturated & (departing > _SCATTER + _SCATTER_FEW / area)
+        doubts[crooked & ~lost] |= int(Doubt.NOT_SYMMETRIC)
+        doubts[ghost & ~lost & ~saturated] |= int(Doubt.GHOST)
+        unsure = np.maximum(states[:, 4], states[:, 5]) * scatter > _UNSURE**2
+        doubts[unsure & ~lost] |= int(Doubt.NO_SPOT)
+    return doubts
+
+
+def _unlike(shapes: Floats, noise: Floats) -> NDArray[np.bool_]:
+    """Whether outlines are not those of one spot: they have a waist, or differ with height."""
+    wide, narrow, minor, area, waist = shapes.T[2:7]
+    sharp_wide, sharp_narrow, base = shapes.T[8:11]
+    with np.errstate(invalid="ignore", divide="ignore"):
         several = waist > _WAIST + _WAIST_FEW / area + _WAIST_NOISE * noise
         for one, other, tells in (
             (wide, narrow, area > 0.0),
@@ -274,12 +293,12 @@ def _doubts(  # noqa: PLR0917 - what is known of each
             unlike = one > (_UNLIKE + _UNLIKE_FEW / area + _UNLIKE_NOISE * noise) * other
             apart = 2.0 * np.sqrt(minor) * (np.sqrt(one) - np.sqrt(other))
             several |= tells & unlike & (apart > _UNLIKE_PX + _UNLIKE_NOISE_PX * noise)
-        doubts[crooked & ~lost] |= int(Doubt.NOT_SYMMETRIC)
-        doubts[several & ~lost] |= int(Doubt.SEVERAL_SPOTS)
-        doubts[ghost & ~lost & ~saturated] |= int(Doubt.GHOST)
-        unsure = np.maximum(states[:, 4], states[:, 5]) * scatter > _UNSURE**2
-        doubts[unsure & ~lost] |= int(Doubt.NO_SPOT)
-    return doubts
+    return np.asarray(several)
+
+
+def _long(shapes: Floats, longest_px: float) -> NDArray[np.bool_]:
+    """Whether outlines are longer than one spot's: by their half axis, of second moments."""
+    return np.asarray(2.0 * np.sqrt(shapes[:, 12]) > longest_px)
 
 
 def _saturated(frames: Frames, seen: NDArray[np.int64], lights: Floats) -> NDArray[np.bool_]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from scipy.special import j1, ndtr
@@ -273,3 +275,38 @@ def test_frames_too_small_for_a_spot_are_no_answer():
 def test_designs_with_several_spots_are_refused():
     with pytest.raises(UnsuitableDesignError, match="apertures"):
         MirrorRegistration.for_sensor(SensorGeometry(apertures=((0.0, 0.0, 0.1), (1.0, 0.0, 0.1))))
+
+
+def designed(**fields):
+    """A hole of 16 px, 2 mm above pixels of 5 um, out to 20 deg."""
+    given = {"focal_length_mm": 2.0, "pixel_pitch_mm": 0.005, "half_fov_deg": 20.0}
+    hole = {"aperture_width_mm": 0.08, "aperture_shape": "round"}
+    return MirrorRegistration.for_sensor(SensorGeometry(**{**given, **hole, **fields}))
+
+
+def fringed(x, y):
+    """A shadow of radius 8 with two bright fringes side by side, as oblique light has."""
+    return disc(x, y) * (0.55 + 0.45 * np.tanh(0.3 * np.abs(x)))
+
+
+def test_a_design_tells_fringes_of_one_spot_from_two_lights():
+    frames, centres, _ = spots(fringed, 60, 301)
+    assert np.isnan(MirrorRegistration().extract(frames)[:, 0]).mean() > 0.9
+    found = designed().extract(frames)
+    assert np.isfinite(found).all()
+    assert rms(found, centres) < 0.05
+    two = np.concatenate([lights(1.0, apart, 302) for apart in (11.0, 14.0, 17.0, 20.0)])
+    assert np.isnan(designed().extract(two)).all()
+
+
+def test_the_longest_spot_of_a_design_follows_its_shadow_or_its_diffraction():
+    assert designed().longest_px == pytest.approx(1.15 * 8.0 + 0.5, rel=0.02)
+    square_one = designed(aperture_shape="square")
+    assert square_one.longest_px == pytest.approx(1.15 * 16.0 / math.sqrt(3.0) + 0.5, rel=0.02)
+    # a hole of 10 um: its far pattern, in the field's corner
+    corner = math.sqrt(2.0) * math.tan(math.radians(20.0))
+    far = 0.64 * 6e-4 * 2.0 * (1.0 + corner**2) ** 1.5 / 0.01 / 0.005
+    assert designed(aperture_width_mm=0.01).longest_px == pytest.approx(1.15 * far + 0.5, rel=0.01)
+    assert MirrorRegistration.for_sensor(SensorGeometry(focal_length_mm=2.0)).longest_px is None
+    with pytest.raises(ValueError, match="longest_px must be positive and finite; got 0"):
+        MirrorRegistration(longest_px=0.0)
