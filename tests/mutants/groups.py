@@ -78,6 +78,7 @@ GROUPS: Mapping[str, Group] = {
             ),
             "benchmark/metrics/rings.py": _in(_METRICS, "rings"),
             "benchmark/metrics/whitening.py": _in(_METRICS, "common_noise"),
+            "benchmark/metrics/grouped_kernel.py": _in(_METRICS, "common_noise"),
             "benchmark/metrics/bounds.py": _in(_METRICS, "bounds_closed_form", "bounds"),
         },
     ),

@@ -41,7 +41,7 @@ def reading_variance(mean: Floats, deviation: Floats, lowest: float, highest: fl
     Returns
     -------
     Floats
-        Within 3e-4 of the sum above, and 3e-3 where an end of the scale takes part of it; inf
+        Within 1e-3 of the sum above, and 3e-3 where an end of the scale takes part of it; inf
         where the reading cannot change, as beyond the scale or in the middle of a code with
         hardly any noise.
 

@@ -26,14 +26,14 @@ def pinned(tmp_path_factory, client_of):
             "nominal",
             "test",
             datasets.get(NAME).version,
-            1000,
+            400,
             "a" * 32,
             "c" * 32,
-            1000,
+            400,
             0.25,
             0.25,
         ),
-        Pin(NAME, "hot", "test", 99, 1000, "b" * 32, "c" * 32, 1000, 0.5, 0.5),
+        Pin(NAME, "hot", "test", 99, 400, "b" * 32, "c" * 32, 1000, 0.5, 0.5),
     ]
     Store(directory).write({}, pins, [], Components())
     return client_of(create_app(Knowledge(Measurements(directory))))
@@ -81,7 +81,7 @@ def test_pins_of_the_version_there_is_give_hash_and_bound(pinned):
     assert rows["nominal", "test"] == {
         "condition": "nominal",
         "split": "test",
-        "samples": 1000,
+        "samples": 400,
         "data_hash": "a" * 32,
         "bound_deg": 0.25,
     }
