@@ -1,0 +1,42 @@
+"""The first example of docs/algorithms.md, run on an image file of the reader's own."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from algorithms.measurement import Doubt
+
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "algorithms.md"
+
+
+def first_example() -> str:
+    found = re.search(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
+    assert found is not None
+    return found[1]
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
+def test_an_image_of_ones_own_takes_three_lines(
+    dtype: type, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    lines = [line for line in first_example().splitlines() if line]
+    assert len(lines) == 3
+    monkeypatch.chdir(tmp_path)
+    y, x = np.mgrid[:60, :80]
+    disc = 180.0 / (1.0 + np.exp(2.0 * (np.hypot(x - 41.3, y - 25.8) - 9.0)))
+    image = np.random.default_rng(5).normal(20.0 + disc, 3.0).round().astype(dtype)
+    assert cv2.imwrite("sun.png", image)
+    names: dict[str, object] = {}
+    exec("\n".join(lines), names)
+    found = names["found"]
+    assert found.features == pytest.approx(np.array([[41.3, 25.8]]), abs=0.1)  # type: ignore[attr-defined]
+    assert (found.deviations < 0.05).all()  # type: ignore[attr-defined]
+    assert Doubt(found.doubts[0]) == Doubt(0)  # type: ignore[attr-defined]
+    assert cv2.imwrite("sun.png", np.full((60, 80), 20, dtype=dtype))
+    exec("\n".join(lines), names)
+    assert Doubt(names["found"].doubts[0]) == Doubt.NO_SPOT  # type: ignore[attr-defined]
