@@ -148,6 +148,8 @@ def document(assessed: Iterable[Assessed]) -> dict[str, Any]:
                 "source": definition.source,
                 "measure": definition.measure,
                 "limits": definition.limits(),
+                "judged": definition.judged,
+                "why": definition.why,
             }
             for definition in DEFINITIONS.values()
         ],
@@ -236,6 +238,9 @@ def _best(
         return (math.inf if math.isnan(value) else sign * value, name, where)
 
     quantity, name = min(found, key=order)
+    if math.isnan(quantity.value) and len(found) > 1:  # none is the best: say what each lacks
+        why = "; ".join(f"{name} on {where}: {why}" for (_, where, why), name in found)
+        quantity = quantity._replace(why=why)
     return quantity, name, ""
 
 
