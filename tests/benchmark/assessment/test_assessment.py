@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 
 import pytest
 
 from algorithms.discovery import discover_extractors
 from benchmark.assessment import assess as assessment
+from benchmark.assessment import former
 from benchmark.assessment.assess import assess
 from benchmark.assessment.definitions import DEFINITIONS
 from benchmark.assessment.measures import SCORED, SWEPT, Unmeasured
@@ -257,3 +259,29 @@ def test_verdicts_compare_with_the_survey_and_costs_are_medians(tmp_path):
     (light,) = (v for v in untimed.verdicts if v.name == "Computationally light")
     assert light.measured is None
     assert "sunatlas leaderboard times" in light.reason
+
+
+def test_what_is_not_judged_keeps_its_number_and_says_why(tmp_path):
+    known = {"bctm": discover_extractors()["bctm"]}
+    swept = [row("location", "middle"), row("location", "anywhere", over_bound=2.2)]
+    swept += [row("noise", "50", 50.0, over_bound=9.0)]
+    Store(tmp_path).write({}, [], [{**one, "unit": "px"} for one in swept], components_of(known))
+    bctm = next(one for one in assess(tmp_path, known) if one.method == "BCTM")
+    found = {verdict.name: verdict for verdict in bctm.verdicts}
+    anywhere = found["Feature location agnostic"]
+    assert (anywhere.measured, anywhere.value, anywhere.agreement) == (None, 1.1, "not judged")
+    assert "look alike wherever they fall" in anywhere.reason
+    robust = found["Robust to noise"]
+    assert (robust.measured, robust.value) == (0, None)
+    assert robust.reason == "9 times the bound at peak SNR 50 already"
+
+
+def test_the_first_version_s_outcomes_are_of_every_cell_and_stay_as_they_were():
+    scores = former.scores()
+    table = load().feature_assessment
+    cells = list(zip(table["extractor"], table["property"], table["score"], strict=True))
+    assert set(scores) == {(method, name) for method, name, _ in cells}
+    verdicts = Counter(former.agreement(*cell) for cell in cells)
+    assert verdicts == {"agrees": 177, "near": 35, "opposed": 105, "not measured": 82}
+    with pytest.raises(KeyError):
+        former.agreement("BCTM", "Beauty", 2)
