@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache, partial
 from typing import Any
 
 from benchmark.assessment import assess as assessment
+from benchmark.assessment import former
 from benchmark.assessment.definitions import DEFINITIONS
 from benchmark.results.store import Store
 from benchmark.results.tables import Row
@@ -14,33 +16,71 @@ from benchmark.sweeps import pictures as sweep_pictures
 from benchmark.sweeps import tables as sweep_tables
 from benchmark.sweeps.plan import SERIES
 
-_MARKS = {"agrees": "=", "near": "~", "opposed": "x", "not measured": ""}
+_MARKS = {"agrees": "=", "near": "~", "opposed": "x", "not judged": " ·", "not measured": " –"}
 
 
 def definitions() -> str:
     """List every property with its experiment and limits."""
     rows = [
-        (str(number), d.name, d.measure, d.limits() or "not measured")
+        (str(number), d.name, d.measure, d.limits() or "not judged", d.why)
         for number, d in enumerate(DEFINITIONS.values(), start=1)
     ]
-    return _table(("", "property", "measured as (or why not)", "score"), rows)
+    header = ("", "property", "measured as (or why not)", "score", "why it is not judged elsewhere")
+    return _table(header, rows)
 
 
 def outcomes() -> str:
     """Put survey and measurement side by side, a row a method."""
     document = _document()
-    numbers = [str(number) for number in range(1, len(DEFINITIONS) + 1)]
-    counted = ("agrees", "near", "opposed", "not measured")
     rows = [
         (
             method["method"],
-            *(_cell(verdict) for verdict in method["properties"]),
-            *(str(method["counts"][name]) for name in counted),
+            *(_cell(v["survey"], v["agreement"], v["measured"]) for v in method["properties"]),
+            *(str(method["counts"][name]) for name in assessment.VERDICTS),
         )
         for method in document["methods"]
     ]
     totals = "; ".join(f"{name} {count}" for name, count in document["totals"].items())
-    return f"{totals}.\n\n" + _table(("method", *numbers, *counted), rows)
+    return f"{totals}.\n\n" + _table(("method", *_numbers(), *assessment.VERDICTS), rows)
+
+
+def versions() -> str:
+    """Count the verdicts of both versions of the definitions, a row a property."""
+    pairs = {
+        name: [
+            (former.agreement(method["method"], name, verdict["survey"]), verdict["agreement"])
+            for method in _document()["methods"]
+            for verdict in method["properties"]
+            if verdict["property"] == name
+        ]
+        for name in DEFINITIONS
+    }
+    counts = {name: tuple(map(Counter, zip(*both, strict=True))) for name, both in pairs.items()}
+    everything = [pair for both in pairs.values() for pair in both]
+    counts["all"] = tuple(map(Counter, zip(*everything, strict=True)))
+    rows = [
+        (name, *(f"{first[verdict]} → {second[verdict]}" for verdict in assessment.VERDICTS))
+        for name, (first, second) in counts.items()
+    ]
+    return _table(("property", *assessment.VERDICTS), rows)
+
+
+def first_outcomes() -> str:
+    """Put survey and the first version's outcome side by side, a row a method."""
+    scores = former.scores()
+    rows = []
+    for method in _document()["methods"]:
+        name = method["method"]
+        cells = [
+            _cell(
+                verdict["survey"],
+                former.agreement(name, verdict["property"], verdict["survey"]),
+                scores[name, verdict["property"]],
+            )
+            for verdict in method["properties"]
+        ]
+        rows.append((name, *cells))
+    return _table(("method", *_numbers()), rows)
 
 
 def values() -> str:
@@ -55,7 +95,7 @@ def values() -> str:
                 str(verdict["survey"]),
                 _score(verdict),
                 verdict["agreement"],
-                _value(verdict, definition.source),
+                _value(verdict),
                 " on ".join(filter(None, (verdict["extractor"], verdict["measured_on"]))),
             )
             for method in _document()["methods"]
@@ -125,22 +165,23 @@ def _document() -> dict[str, Any]:
     return assessment.document(assessment.assess())
 
 
-def _cell(verdict: Mapping[str, Any]) -> str:
-    if verdict["measured"] is None:
-        return f"{verdict['survey']} –"
-    return f"{verdict['survey']}{_MARKS[verdict['agreement']]}{verdict['measured']}"
+def _numbers() -> list[str]:
+    return [str(number) for number in range(1, len(DEFINITIONS) + 1)]
+
+
+def _cell(survey: int, agreement: str, measured: int | None) -> str:
+    return f"{survey}{_MARKS[agreement]}{'' if measured is None else measured}"
 
 
 def _score(verdict: Mapping[str, Any]) -> str:
     return "–" if verdict["measured"] is None else str(verdict["measured"])
 
 
-def _value(verdict: Mapping[str, Any], source: str) -> str:
-    if verdict["measured"] is None:
-        return str(verdict["reason"])
-    if verdict["value"] is None:
-        return "too few found" if source == "sweeps" else "reads none of them"
-    return f"{verdict['value']:.3g}"
+def _value(verdict: Mapping[str, Any]) -> str:
+    if verdict["value"] is not None:
+        return f"{verdict['value']:.3g}"
+    # why a column is not judged stands once, in the definitions
+    return "" if verdict["agreement"] == assessment.NOT_JUDGED else str(verdict["reason"])
 
 
 def _table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:

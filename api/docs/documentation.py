@@ -42,6 +42,8 @@ PAGES: Mapping[str, Mapping[str, Make]] = {
     "assessment.md": {
         "definitions": assessment.definitions,
         "outcomes": assessment.outcomes,
+        "versions": assessment.versions,
+        "first-outcomes": assessment.first_outcomes,
         "values": assessment.values,
     },
     "survey.md": {"findings": findings, "resolutions": resolutions},

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 from algorithms.contract import Extractor
 from algorithms.discovery import discover_extractors
 from benchmark.assessment.definitions import DEFINITIONS, Definition
-from benchmark.assessment.measures import SCORED, SWEPT, Unmeasured
+from benchmark.assessment.measures import SCORED, SWEPT, Quantity, Unmeasured, Values
 from benchmark.metrics.score import stored
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.results.tables import Row
@@ -30,7 +30,12 @@ if TYPE_CHECKING:
 
 #: How far survey and measurement are apart, from the difference of their scores.
 AGREEMENTS = ("agrees", "near", "opposed")
+#: What is measured cannot contradict the survey's score, whatever it says.
+NOT_JUDGED = "not judged"
+#: It could, but there is no measurement.
 NOT_MEASURED = "not measured"
+#: Every verdict there is, in the order of the tables.
+VERDICTS = (*AGREEMENTS, NOT_JUDGED, NOT_MEASURED)
 
 
 @dataclass(frozen=True)
@@ -44,13 +49,16 @@ class Verdict:
     survey
         2, 1 or 0, as the survey scores it.
     measured
-        2, 1 or 0 by the definition; None where it is not measured.
+        2, 1 or 0 by the definition; None where it is not judged or not measured.
     value
         The measured quantity; None where it is not measured or nothing was found.
     extractor, series
         Implementation and reference series or dataset the value comes from.
     reason
-        Why there is no measurement; empty where there is one.
+        Why it is not judged or not measured, or why nothing was found; empty where there is a
+        number that is judged.
+    judged
+        Whether the definition lets this survey's score be contradicted.
     """
 
     name: str
@@ -60,10 +68,13 @@ class Verdict:
     extractor: str
     series: str
     reason: str
+    judged: bool = True
 
     @property
     def agreement(self) -> str:
-        """`agrees`, `near` (one apart), `opposed` (two apart) or `not measured`."""
+        """`agrees`, `near` (one apart), `opposed` (two apart), `not judged`, `not measured`."""
+        if not self.judged:
+            return NOT_JUDGED
         if self.measured is None:
             return NOT_MEASURED
         return AGREEMENTS[abs(self.survey - self.measured)]
@@ -83,7 +94,7 @@ class Assessed:
     def counts(self) -> Mapping[str, int]:
         """Number of properties by agreement."""
         found = Counter(verdict.agreement for verdict in self.verdicts)
-        return {name: found[name] for name in (*AGREEMENTS, NOT_MEASURED)}
+        return {name: found[name] for name in VERDICTS}
 
 
 def assess(
@@ -137,6 +148,8 @@ def document(assessed: Iterable[Assessed]) -> dict[str, Any]:
                 "source": definition.source,
                 "measure": definition.measure,
                 "limits": definition.limits(),
+                "judged": definition.judged,
+                "why": definition.why,
             }
             for definition in DEFINITIONS.values()
         ],
@@ -174,7 +187,7 @@ def totals_of(assessed: Iterable[Assessed]) -> dict[str, int]:
     found: Counter[str] = Counter()
     for one in assessed:
         found.update(one.counts)
-    return {name: found[name] for name in (*AGREEMENTS, NOT_MEASURED)}
+    return {name: found[name] for name in VERDICTS}
 
 
 @dataclass(frozen=True)
@@ -188,34 +201,51 @@ def _verdict(
     definition: Definition, survey: int, names: Sequence[str], evidence: _Evidence
 ) -> Verdict:
     """Take the best of a method's implementations, of all series each is measured on."""
-    if not definition.measured:
-        return Verdict(definition.name, survey, None, None, "", "", definition.measure)
-    if not names:
-        return Verdict(definition.name, survey, None, None, "", "", "not implemented")
-    found: list[tuple[float, str, str]] = []
+    best, name, missing = _best(definition, names, evidence)
+    measured = definition.score(best.value) if best else None
+    undecided = definition.undecided(survey, measured)
+    return Verdict(
+        definition.name,
+        survey,
+        None if undecided else measured,
+        stored(best.value) if best else None,
+        name,
+        best.where if best else "",
+        undecided or (best.why if best else missing),
+        judged=not undecided,
+    )
+
+
+def _best(
+    definition: Definition, names: Sequence[str], evidence: _Evidence
+) -> tuple[Quantity | None, str, str]:
+    """Return the best quantity and whose it is, or None and why there is none."""
+    if not definition.measured or not names:
+        return None, "", "not implemented"
+    found: list[tuple[Quantity, str]] = []
     reasons = []
     for name in names:
         try:
-            found += [
-                (value, name, series) for value, series in _values(definition, name, evidence)
-            ]
+            found += [(quantity, name) for quantity in _values(definition, name, evidence)]
         except Unmeasured as reason:
             reasons.append(str(reason))
     if not found:
-        return Verdict(
-            definition.name, survey, None, None, "", "", "; ".join(dict.fromkeys(reasons))
-        )
+        return None, "", "; ".join(dict.fromkeys(reasons))
     sign = -1.0 if definition.larger_is_better else 1.0
-    value, name, series = min(
-        found, key=lambda one: (math.inf if math.isnan(one[0]) else sign * one[0], *one[1:])
-    )
-    return Verdict(
-        definition.name, survey, definition.score(value), stored(value), name, series, ""
-    )
+
+    def order(one: tuple[Quantity, str]) -> tuple[float, str, str]:
+        (value, where, _), name = one
+        return (math.inf if math.isnan(value) else sign * value, name, where)
+
+    quantity, name = min(found, key=order)
+    if math.isnan(quantity.value) and len(found) > 1:  # none is the best: say what each lacks
+        why = "; ".join(f"{name} on {where}: {why}" for (_, where, why), name in found)
+        quantity = quantity._replace(why=why)
+    return quantity, name, ""
 
 
-def _values(definition: Definition, name: str, evidence: _Evidence) -> list[tuple[float, str]]:
-    """Return (value, where) of an implementation; NaN where it does not do it at all."""
+def _values(definition: Definition, name: str, evidence: _Evidence) -> Values:
+    """Return the quantities of an implementation; NaN where it does not do it at all."""
     if definition.source == "sweeps":
         rows = [row for row in evidence.swept if row["extractor"] == name]
         return SWEPT[definition.name](rows)
@@ -225,12 +255,12 @@ def _values(definition: Definition, name: str, evidence: _Evidence) -> list[tupl
     return _cost([time for time in evidence.times if time.extractor == name])
 
 
-def _cost(times: Sequence[Time]) -> list[tuple[float, str]]:
+def _cost(times: Sequence[Time]) -> Values:
     """Return the median ratio of extraction to the reference over the data sets with a time."""
     ratios = {time.dataset: time.extract_ratio for time in times if time.extract_ratio is not None}
     if not ratios:
         raise Unmeasured("no times of this machine: `sunatlas leaderboard times`")
-    return [(median(ratios.values()), f"{len(ratios)} data sets")]
+    return [Quantity(median(ratios.values()), f"{len(ratios)} data sets")]
 
 
 def _taxonomy(method: str, aliases: pd.DataFrame) -> str:

@@ -1,8 +1,8 @@
 """The quantities of the assessment's definitions, computed from stored rows.
 
-Each function takes the rows of one implementation and returns (value, where measured) for every
-series that has the sweep; NaN where the method does not do it at all, which scores 0. Where there
-is nothing to compute from, `Unmeasured` says why.
+Each function takes the rows of one implementation and returns a quantity for every series that has
+the sweep; NaN, with the reason, where the method was run and does not do it, which scores 0. Where
+there is nothing to compute from, `Unmeasured` says why.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -23,12 +23,32 @@ from benchmark.assessment.definitions import (
 )
 
 Row = Mapping[str, Any]
-Values = list[tuple[float, str]]
 #: Rows of one sweep of one series by point.
 Points = Mapping[str, Row]
 
 _NOISE_TIMES_BOUND = 3.0
 _LEVELS = (10.0, 200.0)
+
+
+class Quantity(NamedTuple):
+    """A measured number; NaN where the method was run and does not do it.
+
+    Attributes
+    ----------
+    value
+        In the unit of its definition.
+    where
+        Series or dataset it comes from.
+    why
+        What a NaN stands for; empty where there is a number.
+    """
+
+    value: float
+    where: str
+    why: str = ""
+
+
+Values = list[Quantity]
 
 
 class Unmeasured(ValueError):  # noqa: N818 - a state, not a mistake
@@ -49,154 +69,181 @@ def _series(rows: Sequence[Row], sweep: str) -> Iterator[tuple[str, Points]]:
     yield from found.items()
 
 
-def _good(row: Row | None) -> bool:
-    """Say whether enough was found for an error to mean something."""
-    return row is not None and row["rms"] is not None and row["found_fraction"] >= FOUND
-
-
-def _ratio(sweep: str, changed: str, plain: str, rows: Sequence[Row]) -> Values:
-    """Return the rms error at one point over that at another."""
-    return [
-        (
-            points[changed]["rms"] / points[plain]["rms"]
-            if _good(points.get(changed)) and _good(points.get(plain))
-            else math.nan,
-            series,
-        )
-        for series, points in _series(rows, sweep)
-    ]
-
-
-def _profile(rows: Sequence[Row]) -> Values:
+def _each(sweep: str, of: Callable[[str, Points], Quantity], rows: Sequence[Row]) -> Values:
+    """Return the quantity of each series that has it; Unmeasured where none has."""
     found: Values = []
-    for series, points in _series(rows, "profile"):
-        if all(_good(points.get(name)) for name in ("flat", "gaussian")):
-            ratio = points["flat"]["over_bound"] / points["gaussian"]["over_bound"]
-            found.append((max(ratio, 1.0 / ratio), series))
-        else:
-            found.append((math.nan, series))
+    reasons = []
+    for series, points in _series(rows, sweep):
+        try:
+            found.append(of(series, points))
+        except Unmeasured as reason:
+            reasons.append(f"{series}: {reason}")
+    if not found:
+        raise Unmeasured("; ".join(reasons))
     return found
+
+
+def _lacking(row: Row) -> str:
+    """Say why a row's error means nothing, or empty."""
+    at = f"{row['sweep']} `{row['point']}`"
+    if row["status"] != "ok":
+        return f"{row['status']} at {at}: {row['reason']}"
+    if row["rms"] is None or row["found_fraction"] < FOUND:
+        return f"{row['found_fraction'] or 0.0:.0%} found at {at}"
+    return ""
+
+
+def _quantity(
+    series: str, points: Points, names: Sequence[str], compute: Callable[..., float]
+) -> Quantity:
+    """Compute from the rows of named points; NaN where one of them has no error to speak of."""
+    if absent := [name for name in names if name not in points]:
+        raise Unmeasured(f"its design is refused at {', '.join(f'`{name}`' for name in absent)}")
+    rows = [points[name] for name in names]
+    if why := next(filter(None, map(_lacking, rows)), ""):
+        return Quantity(math.nan, series, why)
+    return Quantity(compute(*rows), series)
+
+
+def _error(row: Row, key: str) -> float:
+    if row[key] is None:
+        raise Unmeasured(f"no bound at {row['sweep']} `{row['point']}`")
+    return float(row[key])
+
+
+def _growth(key: str, plain: str, changed: str, series: str, points: Points) -> Quantity:
+    """Return an error (`rms` or `over_bound`) at one point over that at another."""
+    return _quantity(series, points, (plain, changed), lambda p, c: _error(c, key) / _error(p, key))
+
+
+def _spread(key: str, names: Sequence[str], series: str, points: Points) -> Quantity:
+    """Return the largest over the smallest error at the named points."""
+
+    def spread(*rows: Row) -> float:
+        errors = [_error(row, key) for row in rows]
+        return max(errors) / min(errors)
+
+    return _quantity(series, points, names, spread)
+
+
+def _noise_levels(series: str, points: Points) -> Quantity:
+    names = [name for name, r in points.items() if _LEVELS[0] <= r["value"] <= _LEVELS[1]]
+    if len(names) < 2:
+        raise Unmeasured("fewer than two noise levels to compare")
+    return _spread("rms", names, series, points)
 
 
 def _features(rows: Sequence[Row]) -> Values:
     if rows and not any(row["sweep"] == "features" for row in rows):
-        refused = any(
-            row["series"] in ("grid", "slits") and row["status"] == "refused" for row in rows
+        refused = next(
+            (r for r in rows if r["series"] in ("grid", "slits") and r["status"] == "refused"), None
         )
         if refused:
-            return [(0.0, "refuses several features")]
+            return [Quantity(0.0, "refuses several features", refused["reason"])]
     found: Values = []
     for series, points in _series(rows, "features"):
         ordered = sorted(points.values(), key=lambda row: row["value"])
         one, most = ordered[0], ordered[-1]
         if one["value"] != 1.0:
             continue  # does not read a single feature: no gain to speak of
-        if len(ordered) > 1 and one["rms"] and _good(most):
-            ideal = math.sqrt(most["value"] / one["value"])
-            found.append((one["rms"] / most["rms"] / ideal, series))
-        else:
-            found.append((math.nan, series))
+        why = "refuses more than one feature" if one is most else _lacking(most)
+        if why or not one["rms"]:
+            found.append(Quantity(math.nan, series, why or _lacking(one)))
+            continue
+        # the gain over independent features, of which n are root of n times as precise as one
+        ideal = math.sqrt(most["value"] / one["value"])
+        found.append(Quantity(one["rms"] / most["rms"] / ideal, series))
     if not found:
         raise Unmeasured("does not read a single feature, so that no gain can be told")
     return found
 
 
-def _tracking(rows: Sequence[Row]) -> Values:
-    return [
-        (row["kept_fraction"] if row["kept_fraction"] is not None else math.nan, series)
-        for series, points in _series(rows, "tracking")
-        for row in points.values()
-    ]
+def _tracking(series: str, points: Points) -> Quantity:
+    (row,) = points.values()
+    if row["kept_fraction"] is None:
+        return Quantity(math.nan, series, _lacking(row) or "no position to compare")
+    return Quantity(row["kept_fraction"], series)
 
 
-def _resolution(rows: Sequence[Row]) -> Values:
-    found: Values = []
-    for series, points in _series(rows, "size"):
-        if all(_good(row) for row in points.values()):
-            size = np.array([row["value"] for row in points.values()])
-            error = np.array([row["rms"] for row in points.values()])
-            slope = np.polyfit(np.log(size), np.log(error / size), 1)[0]
-            found.append((float(slope), series))
-        else:
-            found.append((math.nan, series))
-    return found
+def _resolution(series: str, points: Points) -> Quantity:
+    def slope(*rows: Row) -> float:
+        size = np.array([row["value"] for row in rows])
+        error = np.array([row["rms"] for row in rows])
+        return float(np.polyfit(np.log(size), np.log(error / size), 1)[0])
+
+    return _quantity(series, points, list(points), slope)
 
 
-def _sub_pixel(rows: Sequence[Row]) -> Values:
-    return [
-        (
-            math.sqrt(np.mean([row["rms"] ** 2 for row in points.values()]))
-            if all(_good(row) for row in points.values())
-            else math.nan,
-            series,
-        )
-        for series, points in _series(rows, "phase")
-    ]
+def _sub_pixel(series: str, points: Points) -> Quantity:
+    return _quantity(
+        series,
+        points,
+        list(points),
+        lambda *rows: math.sqrt(np.mean([row["rms"] ** 2 for row in rows])),
+    )
 
 
-def _precision(rows: Sequence[Row]) -> Values:
-    found: Values = []
-    for series, points in _series(rows, "reference"):
-        row = points.get(series)  # the disc's other reference set is the profile's business
-        found.append((row["over_bound"] if row and _good(row) else math.nan, series))
-    return found
+def _precision(series: str, points: Points) -> Quantity:
+    # the point of the series' own name: the disc's other reference set is the profile's business
+    return _quantity(series, points, (series,), lambda row: float(row["over_bound"]))
 
 
-def _robust(rows: Sequence[Row]) -> Values:
-    found: Values = []
-    for series, points in _series(rows, "noise"):
-        lowest = math.nan
-        start = 50.0 if series != "disc" else 43.4  # the reference setting's own
-        for row in sorted(points.values(), key=lambda one: -one["value"]):
-            if row["value"] > start * 1.2:
-                continue
-            if not (_good(row) and row["over_bound"] <= _NOISE_TIMES_BOUND):
-                break
-            lowest = row["value"]
-        found.append((lowest, series))
-    return found
-
-
-def _level(rows: Sequence[Row]) -> Values:
-    found: Values = []
-    for series, points in _series(rows, "noise"):
-        chosen = [r for r in points.values() if _LEVELS[0] <= r["value"] <= _LEVELS[1]]
-        ratios = [row["over_bound"] for row in chosen if _good(row)]
-        complete = len(ratios) == len(chosen) > 1
-        found.append((max(ratios) / min(ratios) if complete else math.nan, series))
-    return found
+def _robust(series: str, points: Points) -> Quantity:
+    start = 50.0 if series != "disc" else 43.4  # the reference setting's own
+    lowest, why = math.nan, "no level at or below the reference setting"
+    for row in sorted(points.values(), key=lambda one: -one["value"]):
+        if row["value"] > start * 1.2:
+            continue
+        if failure := _lacking(row):
+            why = failure
+            break
+        if row["over_bound"] > _NOISE_TIMES_BOUND:
+            why = f"{row['over_bound']:.3g} times the bound at peak SNR {row['value']:g} already"
+            break
+        lowest = row["value"]
+    return Quantity(lowest, series, why if math.isnan(lowest) else "")
 
 
 SWEPT: Mapping[str, Callable[[Sequence[Row]], Values]] = {
-    "No pre-processing": partial(_ratio, "pedestal", "0.5", "0"),
-    "Feature profile agnostic": _profile,
+    "Feature profile agnostic": partial(
+        _each, "profile", partial(_spread, "over_bound", ("flat", "gaussian"))
+    ),
     "Multi-feature": _features,
-    "Feature tracking": _tracking,
-    "Resolution scaling": _resolution,
-    "Sub-pixel resolution": _sub_pixel,
-    "High precision": _precision,
-    "Feature location agnostic": partial(_ratio, "location", "anywhere", "middle"),
-    "Robust to noise": _robust,
-    "Noise level agnostic": _level,
-    "Robust to missing features": partial(_ratio, "missing", "0.2", "0"),
+    "Feature tracking": partial(_each, "tracking", _tracking),
+    "Resolution scaling": partial(_each, "size", _resolution),
+    "Sub-pixel resolution": partial(_each, "phase", _sub_pixel),
+    "High precision": partial(_each, "reference", _precision),
+    "Feature location agnostic": partial(
+        _each, "location", partial(_growth, "over_bound", "middle", "anywhere")
+    ),
+    "Robust to noise": partial(_each, "noise", _robust),
+    "Noise level agnostic": partial(_each, "noise", _noise_levels),
+    "Robust to missing features": partial(_each, "missing", partial(_growth, "rms", "0", "0.2")),
 }
 
 
 def _applies(wanted: Callable[[str, str, str], bool], rows: Sequence[Row]) -> Values:
-    """Return the smallest rms error over datasets; NaN where the method reads none of them."""
+    """Return the smallest rms error over datasets; NaN where the method answers too seldom."""
     if not rows:
         raise Unmeasured("no published score")
-    good = [
-        (row["rms_deg"], f"{row['dataset']} with {row['model']}")
+    tried = [
+        row
         for row in rows
-        if row["condition"] == CONDITION
-        and row["status"] == "ok"
-        and row["rms_deg"] is not None
-        and row["availability"] is not None
-        and row["availability"] >= FOUND
-        and wanted(row["dataset"], row["mask"], row["detector"])
+        if row["condition"] == CONDITION and wanted(row["dataset"], row["mask"], row["detector"])
     ]
-    return [min(good)] if good else [(math.nan, "")]
+    if not tried:
+        raise Unmeasured("no data set of this kind is one the method reads")
+    answered = [row for row in tried if row["status"] == "ok" and row["availability"] is not None]
+    if not answered:
+        row = tried[0]
+        raise Unmeasured(f"{row['dataset']} with {row['model']}: {row['status']}, {row['reason']}")
+    good = [row for row in answered if row["rms_deg"] is not None and row["availability"] >= FOUND]
+    if good:
+        best = min(good, key=lambda row: (row["rms_deg"], row["dataset"], row["model"]))
+        return [Quantity(best["rms_deg"], f"{best['dataset']} with {best['model']}")]
+    most = max(answered, key=lambda row: float(row["availability"]))
+    where = f"{most['dataset']} with {most['model']}"
+    return [Quantity(math.nan, where, f"answers {most['availability']:.0%} of the Suns at most")]
 
 
 def _mask(group: str) -> Callable[[Sequence[Row]], Values]:

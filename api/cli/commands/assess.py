@@ -21,7 +21,7 @@ COLUMNS = (
     *("method", "taxonomy", "case_study", "property", "survey", "measured", "agreement"),
     *("value", "unit", "extractor", "measured_on", "reason"),
 )
-_MARKS = {"agrees": "=", "near": "~", "opposed": "x", "not measured": "-"}
+_MARKS = {"agrees": "=", "near": "~", "opposed": "x", "not judged": ".", "not measured": "-"}
 
 
 @app.command()
@@ -36,9 +36,10 @@ def assess(
     """Show the survey's scores of extractors beside measured ones.
 
     19 methods in 21 properties, scored 2 (provides), 1 (partly) or 0 (does not). A cell shows the
-    survey's score, a mark and the measured one: = agrees, ~ one apart, x opposed; a dash where it
-    is not measured. Read from the published results, nothing is measured now; definitions and
-    limits stand in docs/assessment.md. CSV has a row a method and property.
+    survey's score, a mark and the measured one: = agrees, ~ one apart, x opposed; a dot where
+    nothing measured can contradict the survey, a dash where it is not measured. Read from the
+    published results, nothing is measured now; definitions and limits stand in docs/assessment.md.
+    CSV has a row a method and property.
     """
     answer = ask(assessment, {"method": method})
     document = answer.document
@@ -72,5 +73,5 @@ def assess(
 def _cell(verdict: Mapping[str, Any]) -> str:
     measured = verdict["measured"]
     if measured is None:
-        return f"{verdict['survey']} -"
+        return f"{verdict['survey']} {_MARKS[verdict['agreement']]}"
     return f"{verdict['survey']}{_MARKS[verdict['agreement']]}{measured}"

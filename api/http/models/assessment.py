@@ -10,7 +10,7 @@ from api.http.models.base import Listing, OpenShape, Question, Shape
 from api.http.models.parameters import DEFAULT_PAGE, Cursor, Limit, Several, several
 from api.http.models.words import ExtractorName, MethodName, Series, SweepName
 
-Agreement = Literal["agrees", "near", "opposed", "not measured"]
+Agreement = Literal["agrees", "near", "opposed", "not judged", "not measured"]
 
 
 class SweepsQuery(Question):
@@ -74,13 +74,17 @@ class Verdict(Shape):
 
     property: str
     survey: int
-    measured: int | None
-    agreement: Agreement
+    measured: int | None = Field(description="Null where it is not judged or not measured.")
+    agreement: Agreement = Field(
+        description="Not judged: what is measured cannot contradict the survey's score."
+    )
     value: float | None = Field(description="The measured quantity.")
     unit: str
     extractor: str
     measured_on: str
-    reason: str = Field(description="Why it is not measured; empty where it is.")
+    reason: str = Field(
+        description="Why it is not judged or not measured, or why nothing was found."
+    )
 
 
 class Method(Shape):
@@ -101,6 +105,11 @@ class PropertyDefinition(Shape):
     source: str
     measure: str
     limits: str
+    judged: Literal["always", "claimed", "failed", "never"] = Field(
+        description="Where an outcome can contradict the survey: its score is 1 or 2 (claimed), "
+        "less than 2 is measured (failed)."
+    )
+    why: str = Field(description="Why it cannot elsewhere.")
 
 
 class Assessment(Shape):

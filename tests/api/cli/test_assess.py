@@ -50,7 +50,7 @@ def test_the_table_has_nineteen_rows_with_both_scores_and_counts():
     lines = shown.stdout.splitlines()
     for method in methods:
         (line,) = [text for text in lines if text.startswith(f" {method}  ")]
-        counts = [int(n) for n in line.split()[-4:]]
+        counts = [int(n) for n in line.split()[-5:]]
         assert sum(counts) == 21
     assert all(name in shown.stdout for name in PROPERTIES)
     assert "agrees:" in shown.stderr
@@ -121,6 +121,13 @@ def test_the_page_prints_the_definitions_and_outcomes(published, monkeypatch):
         assert definition.name in definitions
         assert definition.limits() in definitions
     assert len(pages.outcomes().splitlines()) == 2 + 2 + 19
+    first = pages.first_outcomes().splitlines()
+    assert len(first) == 2 + 19
+    assert first[2].startswith("| Voltage Balance | 2 – | 2x0 |")
+    *columns, whole = pages.versions().splitlines()[2:]
+    assert len(columns) == len(PROPERTIES)
+    counted = [[int(n) for n in cell.split("→")] for cell in whole.split("|")[2:-1]]
+    assert [sum(version) for version in zip(*counted, strict=True)] == [19 * 21, 19 * 21]
     assert pages.values().count("### ") == sum(d.measured for d in DEFINITIONS.values())
     assert "quadrants, noise: peak SNR" in pages.accuracy()
     assert all(make().startswith("<svg") for make in pages.PICTURES.values())

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 
 import pytest
 
 from algorithms.discovery import discover_extractors
 from benchmark.assessment import assess as assessment
+from benchmark.assessment import former
 from benchmark.assessment.assess import assess
 from benchmark.assessment.definitions import DEFINITIONS
 from benchmark.assessment.measures import SCORED, SWEPT, Unmeasured
@@ -38,10 +40,30 @@ def test_definitions_are_of_the_survey_s_properties_in_its_order():
     assert list(DEFINITIONS) == list(dict.fromkeys(table["property"]))
     measured = {name for name, d in DEFINITIONS.items() if d.measured}
     assert measured == {*SWEPT, *SCORED, "Computationally light"}
-    assert set(DEFINITIONS) - measured == {"Algorithmically simple", "Feature pattern agnostic"}
+    assert set(DEFINITIONS) - measured == {
+        "No pre-processing", "Algorithmically simple", "Feature pattern agnostic",
+    }  # fmt: skip
     for definition in DEFINITIONS.values():
         assert definition.measure
-        assert bool(definition.limits()) == definition.measured
+        assert bool(definition.limits()) == definition.measured == (definition.judged != "never")
+        assert bool(definition.why) == (definition.judged in ("claimed", "failed"))
+
+
+def test_what_a_table_does_not_claim_no_outcome_opposes():
+    def judged(name):
+        """(survey, measured) that the definition lets be compared."""
+        pairs = [(survey, measured) for survey in (0, 1, 2) for measured in (0, 1, 2)]
+        return {pair for pair in pairs if not DEFINITIONS[name].undecided(*pair)}
+
+    everything = {(survey, measured) for survey in (0, 1, 2) for measured in (0, 1, 2)}
+    assert judged("High precision") == judged("Noise level agnostic") == everything
+    # the case study used another mask: not that the method cannot
+    claims = {pair for pair in everything if pair[0] > 0}
+    assert judged("Slit Mask") == judged("Other Detector") == judged("Blooming features") == claims
+    # a scene that looks alike everywhere is passed by whoever depends on the place, too
+    failures = {pair for pair in everything if pair[1] < 2}
+    assert judged("Feature location agnostic") == failures
+    assert judged("No pre-processing") == judged("Algorithmically simple") == set()
 
 
 @pytest.mark.parametrize(
@@ -65,34 +87,52 @@ def test_limits_hold_where_they_are(name, value, expected):
     assert DEFINITIONS[name].score(value) == expected
 
 
-def test_ratios_are_of_the_named_points_and_nan_where_too_little_is_found():
-    rows = [row("pedestal", "0", rms=0.01), row("pedestal", "0.5", rms=0.04)]
-    assert SWEPT["No pre-processing"](rows) == [(4.0, "disc")]
+def only(values):
+    """(value, why) of the one series there is."""
+    ((value, _, why),) = values
+    return value, why
+
+
+def test_ratios_are_of_the_named_points_and_nan_says_why():
+    missing = SWEPT["Robust to missing features"]
+    rows = [row("missing", "0", rms=0.01), row("missing", "0.2", rms=0.04)]
+    assert missing(rows) == [(4.0, "disc", "")]
     rows[1]["found_fraction"] = 0.5
-    ((value, _),) = SWEPT["No pre-processing"](rows)
+    value, why = only(missing(rows))
     assert math.isnan(value)
-    rows = [row("location", "middle", rms=0.01), row("location", "anywhere", rms=0.02)]
-    assert SWEPT["Feature location agnostic"](rows) == [(2.0, "disc")]
+    assert why == "50% found at missing `0.2`"
+    rows[1] |= {"status": "refused", "reason": "nothing there", "rms": None}
+    assert only(missing(rows))[1] == "refused at missing `0.2`: nothing there"
+    # the place is held against the bound there: a sensor's own loss is not the method's
+    rows = [row("location", "middle", over_bound=1.0), row("location", "anywhere", over_bound=2.0)]
+    assert SWEPT["Feature location agnostic"](rows) == [(2.0, "disc", "")]
     rows = [row("profile", "flat", over_bound=2.0), row("profile", "gaussian", over_bound=5.0)]
-    assert SWEPT["Feature profile agnostic"](rows) == [(2.5, "disc")]
+    assert SWEPT["Feature profile agnostic"](rows) == [(2.5, "disc", "")]
+
+
+def test_a_series_without_a_bound_is_no_outcome():
+    rows = [row("location", "middle", over_bound=None), row("location", "anywhere")]
+    with pytest.raises(Unmeasured, match="disc: no bound at location `middle`"):
+        SWEPT["Feature location agnostic"](rows)
 
 
 def test_precision_scaling_and_phase_follow_their_formulas():
     # an error that is a fixed share of a pixel: relative to the feature it falls as 1 / size
     rows = [row("size", str(r), float(r), rms=0.05) for r in (2, 4, 8)]
-    ((slope, _),) = SWEPT["Resolution scaling"](rows)
+    slope, _ = only(SWEPT["Resolution scaling"](rows))
     assert slope == pytest.approx(-1.0)
     rows = [row("phase", "0", 0.0, rms=0.3), row("phase", "0.5", 0.5, rms=0.4)]
-    ((rms, _),) = SWEPT["Sub-pixel resolution"](rows)
+    rms, _ = only(SWEPT["Sub-pixel resolution"](rows))
     assert rms == pytest.approx(math.sqrt((0.09 + 0.16) / 2))
-    assert SWEPT["High precision"]([row("reference", "disc", over_bound=1.7)]) == [(1.7, "disc")]
+    rows = [row("reference", "disc", over_bound=1.7), row("reference", "gaussian", over_bound=9.0)]
+    assert SWEPT["High precision"](rows) == [(1.7, "disc", "")]
     rows = [row("tracking", "glint", kept_fraction=0.6)]
-    assert SWEPT["Feature tracking"](rows) == [(0.6, "disc")]
+    assert SWEPT["Feature tracking"](rows) == [(0.6, "disc", "")]
 
 
 def test_gain_is_told_over_that_of_independent_features():
     rows = [row("features", "1", 1.0, rms=0.1), row("features", "25", 25.0, rms=0.025)]
-    ((gain, _),) = SWEPT["Multi-feature"](rows)
+    gain, _ = only(SWEPT["Multi-feature"](rows))
     assert gain == pytest.approx(4.0 / 5.0)
     refused = {**row("", ""), "series": "grid", "status": "refused", "n": 0, "rms": None}
     assert SWEPT["Multi-feature"]([row("noise", "5", 5.0), refused])[0][0] == 0.0
@@ -103,11 +143,26 @@ def test_gain_is_told_over_that_of_independent_features():
 def test_robust_to_noise_ends_at_the_first_level_that_fails():
     levels = {5.0: 2.0, 10.0: 3.5, 20.0: 2.9, 50.0: 2.0, 200.0: 99.0}
     rows = [row("noise", f"{s:g}", s, over_bound=ratio) for s, ratio in levels.items()]
-    assert SWEPT["Robust to noise"](rows) == [(20.0, "disc")]
-    ((ratio, _),) = SWEPT["Noise level agnostic"](rows)
-    assert ratio == pytest.approx(99.0 / 2.0)
-    ((none, _),) = SWEPT["Robust to noise"]([row("noise", "50", 50.0, over_bound=9.0)])
+    assert SWEPT["Robust to noise"](rows) == [(20.0, "disc", "")]
+    none, why = only(SWEPT["Robust to noise"]([row("noise", "50", 50.0, over_bound=9.0)]))
     assert math.isnan(none)
+    # everything is found: what fails is the size of the error, and that is what is said
+    assert why == "9 times the bound at peak SNR 50 already"
+
+
+def test_a_level_error_is_agnostic_of_the_noise_and_one_at_the_bound_is_not():
+    snrs = (5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0)
+    level = DEFINITIONS["Noise level agnostic"]
+    at_bound = [row("noise", f"{s:g}", s, rms=1.0 / s, over_bound=1.0) for s in snrs]
+    ratio, _ = only(SWEPT[level.name](at_bound))
+    assert ratio == pytest.approx(20.0)
+    assert level.score(ratio) == 0
+    floor = [row("noise", f"{s:g}", s, rms=0.29, over_bound=s) for s in snrs]
+    ratio, _ = only(SWEPT[level.name](floor))
+    assert ratio == 1.0
+    assert level.score(ratio) == 2
+    floor[1]["found_fraction"] = 0.5
+    assert only(SWEPT[level.name](floor))[1] == "50% found at noise `10`"
 
 
 def test_a_design_that_was_refused_is_no_outcome():
@@ -118,6 +173,9 @@ def test_a_design_that_was_refused_is_no_outcome():
         SWEPT["Feature tracking"](rows)
     with pytest.raises(Unmeasured, match="nothing is stored of the sweep `noise`"):
         SWEPT["Robust to noise"]([])
+    rows = [row("missing", "0.2"), {**refused, "sweep": "missing", "point": "0"}]
+    with pytest.raises(Unmeasured, match="disc: its design is refused at `0`"):
+        SWEPT["Robust to missing features"](rows)
 
 
 def test_applicability_takes_the_best_of_its_group_in_the_nominal_condition():
@@ -130,12 +188,24 @@ def test_applicability_takes_the_best_of_its_group_in_the_nominal_condition():
         score(rms_deg=0.1, mask="Lens", detector="CCD", dataset="ccd-lens"),
     ]
     best = {name: measure(rows)[0] for name, measure in SCORED.items()}
-    assert best["Pinhole Mask"] == (0.2, "e with m")
-    assert best["Slit Mask"][0] == 3.0 == best["Other Detector"][0]
-    assert best["Other Mask"][0] == 0.1 == best["CCD Detector"][0] == best["Blooming features"][0]
-    assert math.isnan(SCORED["CCD Detector"](rows[:2])[0][0])
+    assert best["Pinhole Mask"] == (0.2, "e with m", "")
+    assert best["Slit Mask"].value == 3.0 == best["Other Detector"].value
+    assert best["Other Mask"].value == 0.1 == best["CCD Detector"].value
+    assert best["Blooming features"].value == 0.1
     with pytest.raises(Unmeasured, match="no published score"):
         SCORED["CCD Detector"]([])
+
+
+def test_a_mask_that_a_method_was_never_given_is_no_outcome_and_silence_is_one():
+    seldom = score(availability=0.4, rms_deg=0.01)
+    value, why = only(SCORED["CMOS Detector"]([seldom]))
+    assert math.isnan(value)
+    assert why == "answers 40% of the Suns at most"
+    with pytest.raises(Unmeasured, match="no data set of this kind"):
+        SCORED["CCD Detector"]([seldom])
+    refused = score(status="refused", availability=None, rms_deg=None, reason="too few lights")
+    with pytest.raises(Unmeasured, match="d with m: refused, too few lights"):
+        SCORED["CMOS Detector"]([refused])
 
 
 def test_without_results_nothing_is_measured_and_every_reason_is_given(tmp_path):
@@ -143,11 +213,16 @@ def test_without_results_nothing_is_measured_and_every_reason_is_given(tmp_path)
     assert len(assessed) == 19
     verdicts = [verdict for one in assessed for verdict in one.verdicts]
     assert len(verdicts) == 19 * 21
-    assert {v.agreement for v in verdicts} == {"not measured"}
+    assert {v.agreement for v in verdicts} == {"not judged", "not measured"}
+    for v in verdicts:
+        never = not DEFINITIONS[v.name].measured
+        unclaimed = DEFINITIONS[v.name].judged == "claimed" and v.survey == 0
+        assert (v.agreement == "not judged") == (never or unclaimed)
     assert all(v.reason and v.measured is None and v.value is None for v in verdicts)
     survey = load().feature_assessment["score"].tolist()
     assert [v.survey for v in verdicts] == survey
-    assert assessment.totals_of(assessed)["not measured"] == 399
+    totals = assessment.totals_of(assessed)
+    assert totals["not judged"] + totals["not measured"] == 399 == sum(totals.values())
 
 
 def test_hough_transforms_are_told_apart_by_their_study(tmp_path):
@@ -179,7 +254,34 @@ def test_verdicts_compare_with_the_survey_and_costs_are_medians(tmp_path):
         1, 20.0, "3 data sets", "agrees",
     )  # fmt: skip
     assert sum(bctm.counts.values()) == 21
+    assert tuple(bctm.counts) == assessment.VERDICTS
     untimed = next(one for one in assess(tmp_path, known) if one.method == "BCTM")
     (light,) = (v for v in untimed.verdicts if v.name == "Computationally light")
     assert light.measured is None
     assert "sunatlas leaderboard times" in light.reason
+
+
+def test_what_is_not_judged_keeps_its_number_and_says_why(tmp_path):
+    known = {"bctm": discover_extractors()["bctm"]}
+    swept = [row("location", "middle"), row("location", "anywhere", over_bound=2.2)]
+    swept += [row("noise", "50", 50.0, over_bound=9.0)]
+    Store(tmp_path).write({}, [], [{**one, "unit": "px"} for one in swept], components_of(known))
+    bctm = next(one for one in assess(tmp_path, known) if one.method == "BCTM")
+    found = {verdict.name: verdict for verdict in bctm.verdicts}
+    anywhere = found["Feature location agnostic"]
+    assert (anywhere.measured, anywhere.value, anywhere.agreement) == (None, 1.1, "not judged")
+    assert "look alike wherever they fall" in anywhere.reason
+    robust = found["Robust to noise"]
+    assert (robust.measured, robust.value) == (0, None)
+    assert robust.reason == "9 times the bound at peak SNR 50 already"
+
+
+def test_the_first_version_s_outcomes_are_of_every_cell_and_stay_as_they_were():
+    scores = former.scores()
+    table = load().feature_assessment
+    cells = list(zip(table["extractor"], table["property"], table["score"], strict=True))
+    assert set(scores) == {(method, name) for method, name, _ in cells}
+    verdicts = Counter(former.agreement(*cell) for cell in cells)
+    assert verdicts == {"agrees": 177, "near": 35, "opposed": 105, "not measured": 82}
+    with pytest.raises(KeyError):
+        former.agreement("BCTM", "Beauty", 2)
