@@ -198,9 +198,11 @@ def scipy_ellipse(frames: NDArray[Any], reach: int = REACH) -> Floats:
             *(1.0, peak - dark, dark),
         )
         try:
-            fitted, _ = curve_fit(
-                model, columns, part.ravel().astype(np.float64), start, maxfev=_EVALUATIONS
-            )
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # of covariances that cannot be told
+                fitted, _ = curve_fit(
+                    model, columns, part.ravel().astype(np.float64), start, maxfev=_EVALUATIONS
+                )
         except RuntimeError:  # SciPy: no convergence
             continue
         found[k] = fitted[0] + left, fitted[1] + top

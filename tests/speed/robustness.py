@@ -38,9 +38,9 @@ _FRAMES, _MORE = 1000, 2
 _FEWER = {64: 1.0, 256: 0.25, 512: 0.06}
 _GRID_SHARE = 0.3
 #: Seconds that a method may take for a set, and frames that it is given whatever it takes.
-_SECONDS, _LEAST = 0.3, 8
+_SECONDS, _LEAST = 0.25, 8
 #: Frames and turns from which the time is told; a run that takes longer is not repeated.
-_TIMED_FRAMES, _TURNS, _LONG_S = 100, 5, 0.1
+_TIMED_FRAMES, _TURNS, _LONG_S = 100, 5, 0.05
 #: An answer further off is wrong.
 WRONG_PX = 1.0
 #: Cut-outs for fits hold this many times the spot's longest axis.
@@ -113,9 +113,9 @@ def measure(
         for name, method in todo.items():
             if only is not None and name not in only:
                 continue
-            found = _answers(method, scenes.frames)
+            found, seconds = _answers(method, scenes.frames)
             error, wrong, missing = judged(found, scenes)
-            us, over_opencv = _times(method, scenes.frames[: min(len(found), _TIMED_FRAMES)])
+            us, over_opencv = _times(method, scenes.frames, seconds)
             rows.append(
                 Measured(
                     group=chosen.group,
@@ -149,24 +149,28 @@ def judged(found: Floats, scenes: Scenes) -> tuple[float, float, float]:
     return error, float(wrong.sum() / len(found)), float(1.0 - answered.mean())
 
 
-def _answers(method: Method, frames: NDArray[Any]) -> Floats:
-    """Answers (n, 2) to as many of the frames as the time allows."""
-    method(frames[:2])  # compiled, and warm
+def _answers(method: Method, frames: NDArray[Any]) -> tuple[Floats, float]:
+    """Answers (n, 2) to as many of the frames as the time allows, and seconds a frame."""
+    method(frames[:1])  # compiled, and warm
     seconds, found = _timed(method, frames[:_LEAST])
-    number = int(min(len(frames), max(_LEAST, _LEAST * _SECONDS / seconds)))
-    return found[:number] if number <= _LEAST else _timed(method, frames[:number])[1]
+    number = int(min(len(frames), _LEAST * _SECONDS / seconds))
+    if number > _LEAST:
+        seconds, found = _timed(method, frames[:number])
+    return found, seconds / len(found)
 
 
-def _times(method: Method, frames: NDArray[Any]) -> tuple[float, float]:
-    """Best time a frame, us, and over that of OpenCV's loop in turns with it."""
-    best = reference = math.inf
+def _times(method: Method, frames: NDArray[Any], seconds: float) -> tuple[float, float]:
+    """Best time a frame, us, and over that of OpenCV's loop in turns with it.
+
+    Of a method so slow that a run is not repeated, `seconds` a frame are its time.
+    """
+    frames = frames[:_TIMED_FRAMES]
+    best, reference = seconds, math.inf
     for _ in range(_TURNS):
-        reference = min(reference, _timed(opencv_loop, frames)[0])
-        seconds, _found = _timed(method, frames)
-        best = min(best, seconds)
-        if seconds > _LONG_S:
-            break
-    return 1e6 * best / len(frames), best / reference
+        reference = min(reference, _timed(opencv_loop, frames)[0] / len(frames))
+        if seconds * len(frames) < _LONG_S:
+            best = min(best, _timed(method, frames)[0] / len(frames))
+    return 1e6 * best, best / reference
 
 
 def _timed(method: Method, frames: NDArray[Any]) -> tuple[float, Floats]:
@@ -243,9 +247,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Measure, print, and return the exit status."""
     groups = list(dict.fromkeys(chosen.group for chosen in (*FRAME_SETS, *GRID_SETS)))
     parser = argparse.ArgumentParser(prog="python -m tests.speed.robustness")
-    parser.add_argument("--seed", type=int, help="draw the frames of this seed (default: a new one)")
+    parser.add_argument("--seed", type=int, help="of the frames (default: a new one)")
     parser.add_argument("--groups", nargs="+", choices=groups, default=groups, metavar="GROUP")
-    parser.add_argument("--sets", nargs="+", metavar="SET", help="only these of them (default: all)")
+    parser.add_argument("--sets", nargs="+", metavar="SET", help="only these (default: all)")
     parser.add_argument("--methods", nargs="+", metavar="METHOD", help="only these (default: all)")
     parser.add_argument(
         "--frames", type=int, default=_FRAMES, help=f"frames of a set (default {_FRAMES})"

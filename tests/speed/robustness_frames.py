@@ -72,9 +72,7 @@ def _within(rng: np.random.Generator, count: int, chosen: FrameSet) -> Floats:
     return rng.uniform(margin, last - margin, (count, 2))
 
 
-def alone(
-    rng: np.random.Generator, count: int, chosen: FrameSet
-) -> tuple[Floats, Floats]:
+def alone(rng: np.random.Generator, count: int, chosen: FrameSet) -> tuple[Floats, Floats]:
     """One spot anywhere, and no other light."""
     return _within(rng, count, chosen), np.zeros(1)
 
@@ -181,9 +179,7 @@ def _glare(rng: np.random.Generator, count: int, chosen: FrameSet) -> tuple[Floa
 def _second(share: float, least: float, most: float) -> Scenery:
     """Another spot of the same shape with a share of the light, this far off in any direction."""
 
-    def scenery(
-        rng: np.random.Generator, count: int, chosen: FrameSet
-    ) -> tuple[Floats, Floats]:
+    def scenery(rng: np.random.Generator, count: int, chosen: FrameSet) -> tuple[Floats, Floats]:
         middle = (chosen.size_px - 1) / 2.0 + rng.uniform(-5.0, 5.0, (count, 2))
         half = rng.uniform(least, most, (count, 1)) / 2.0 * _directions(rng, count)
         other = rendered(chosen.shape, middle - half, np.zeros(count), chosen.size_px)
@@ -192,9 +188,7 @@ def _second(share: float, least: float, most: float) -> Scenery:
     return scenery
 
 
-def _over_the_edge(
-    rng: np.random.Generator, count: int, chosen: FrameSet
-) -> tuple[Floats, Floats]:
+def _over_the_edge(rng: np.random.Generator, count: int, chosen: FrameSet) -> tuple[Floats, Floats]:
     """Spots of which an edge takes a part: the centre from half a radius out to 0.9 in."""
     centres = _within(rng, count, chosen)
     depth = chosen.shape.half_px * rng.uniform(-0.5, 0.9, count) - 0.5

@@ -10,8 +10,8 @@ from tests.speed.verdicts import Verdict
 #: The estimator for every point-symmetric spot, as made without a design; that for many spots.
 ESTIMATOR, MANY = "mirror", "weighted-spots"
 
-#: Largest error over the bound by kind of set, largest share of wrong answers on sets of faults, and
-#: time over that of OpenCV's loop.
+#: Largest error over the bound by kind of set, share of wrong answers on sets of faults, and time
+#: over that of OpenCV's loop.
 OVER_BOUND = {"symmetric": 1.15, "stray": 2.5}
 WRONG = 0.001
 OVER_OPENCV = 1.0
