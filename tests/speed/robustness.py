@@ -47,11 +47,6 @@ WRONG_PX = 1.0
 _CUT_OUT = 1.6
 
 
-def new_seed() -> int:
-    """Return a seed of six digits that nobody chose."""
-    return secrets.randbelow(10**6)
-
-
 def methods(chosen: FrameSet) -> dict[str, Method]:
     """Return the methods for one spot, and peers, by name.
 
@@ -258,7 +253,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     given = parser.parse_args(arguments)
     if given.frames < 1:
         parser.error(f"--frames must be at least 1; got {given.frames}")
-    seed = new_seed() if given.seed is None else given.seed
+    seed = secrets.randbelow(10**6) if given.seed is None else given.seed
     chosen = [
         one
         for one in (*FRAME_SETS, *GRID_SETS)
