@@ -83,10 +83,11 @@ def test_ctrl_c_is_not_a_broken_limit():
 
 def test_every_module_that_measures_is_run():
     """Whatever can be called alone belongs to `make bench`."""
+    run = re.compile(r"^def run\((seed: int)?\) -> list\[Verdict\]:", re.MULTILINE)
     modules = {
         path.stem
         for path in Path(driver.__file__).parent.glob("*.py")
-        if re.search(r"^def run\((seed: int)?\) -> list\[Verdict\]:", path.read_text("utf-8"), re.M)
+        if run.search(path.read_text(encoding="utf-8"))
     }
     assert modules == set(driver.NAMES) == set(driver.harnesses(1))
     assert set(driver.NAMES) >= driver.SEEDED
