@@ -156,7 +156,9 @@ def scipy_gaussian(frames: NDArray[Any], reach: int = REACH) -> Floats:
         [(x, y)] = opencv_loop(part[None])
         start = (peak - dark, float(x), float(y), 4.0, 4.0, dark)
         try:
-            fitted, _ = curve_fit(model, columns, part.ravel().astype(np.float64), start)
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # of covariances that cannot be told
+                fitted, _ = curve_fit(model, columns, part.ravel().astype(np.float64), start)
         except RuntimeError:  # SciPy: no convergence
             found[k] = np.nan
         else:

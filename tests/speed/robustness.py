@@ -2,7 +2,8 @@
 
 Error as a multiple of the Cramer-Rao bound and the share of confident wrong answers, on frames of
 other shapes and sizes, in stray light, with broken pixels, two lights or no Sun, and of many spots.
-A seed is drawn and printed; ``--seed`` repeats its frames. Exit status 1 when a limit is broken.
+A seed is drawn and printed; ``--seed`` repeats its frames, of which slow methods see as many as the
+time allows. Peers are as their users call them, with defaults. Exit status 1 when a limit is broken.
 """
 
 from __future__ import annotations
@@ -234,7 +235,7 @@ def _reported(rows: Sequence[Measured]) -> list[Verdict]:
     found = verdicts(rows, ours())
     for verdict in found:
         word = "kept" if verdict.holds else "BROKEN"
-        print(f"{verdict.what} {verdict.value:.4g}, limit {verdict.most:g}: {word}")
+        print(f"{verdict.what}: {verdict.value:.4g}, limit {verdict.most:g}: {word}")
     return found
 
 

@@ -59,7 +59,8 @@ class Measured:
 def verdicts(rows: Sequence[Measured], ours: Collection[str]) -> list[Verdict]:
     """Return a verdict for each limit whose set and method were measured.
 
-    `ours` names the methods that are not the survey's.
+    `ours` names the methods that are not the survey's. Each says of how many frames it is: an error
+    of N frames scatters by ``1 / sqrt(4 N)`` of itself.
     """
     found = []
     for row in rows:
@@ -68,11 +69,13 @@ def verdicts(rows: Sequence[Measured], ours: Collection[str]) -> list[Verdict]:
             what = f"{what}, {row.group}"
         if row.method == ESTIMATOR and row.kind in OVER_BOUND:
             most = OVER_BOUND[row.kind]
-            found.append(Verdict(f"{what}: error over the bound", row.over_bound, most))
+            said = f"{what}: error over the bound, {row.frames} frames"
+            found.append(Verdict(said, row.over_bound, most))
         if row.method == ESTIMATOR and row.timed:
             found.append(Verdict(f"{what}: time over OpenCV's", row.over_opencv, OVER_OPENCV))
         if row.kind == "fault" and row.method.partition(" ")[0] in ours:
-            found.append(Verdict(f"{what}: share confidently wrong", row.wrong, WRONG))
+            said = f"{what}: share confidently wrong of {row.frames} frames"
+            found.append(Verdict(said, row.wrong, WRONG))
     return found + _averaging(rows)
 
 

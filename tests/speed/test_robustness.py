@@ -35,10 +35,10 @@ SMALL = [chosen for chosen in FRAME_SETS if chosen.size_px == 64]
     [
         (disc(8.0), math.pi * (8.0**2 + EDGE_PX**2)),
         (gaussian(3.0), 2.0 * math.pi * 3.0**2),
-        # a rim of another mean curvature adds a hundredth of a per cent of a pixel's area
         (stretched(8.0, 60.0), 2.0 * math.pi * 8.0**2),
         (square(8.0), 16.0**2),
-        (limb_darkened(8.0), (1.0 - 0.6 / 3.0) * math.pi * 8.0**2),
+        # a wide one: its law is steep where the rim is
+        (limb_darkened(24.0), (1.0 - 0.6 / 3.0) * math.pi * 24.0**2),
     ],
 )
 def test_shapes_hold_the_light_of_their_area(shape, light):
@@ -60,7 +60,7 @@ def test_symmetric_spots_have_their_centroid_at_the_centre(chosen):
     np.testing.assert_allclose(np.column_stack([x, y]), centres, atol=far)
 
 
-@pytest.mark.parametrize("chosen", [SETS["glare"], SETS["5 dead"], GRID_SETS[3]])
+@pytest.mark.parametrize("chosen", [SETS["glare"], SETS["5 dead"], GRID_SETS[0]])
 def test_a_seed_settles_the_frames_and_their_number_does_not(chosen):
     first = chosen.draw(7, 3)
     again = chosen.draw(7, 30)
@@ -117,6 +117,7 @@ def test_spots_over_the_edge_are_cut_there():
     assert (inside < 0).any()
 
 
+@pytest.mark.slow
 def test_spoilt_grids_are_spoilt_as_their_names_say():
     made = {chosen.spoilt: chosen for chosen in GRID_SETS if chosen.side == 5}
     light = {}
@@ -219,6 +220,7 @@ def test_a_cell_says_what_is_wrong_and_what_is_missing_where_anything_is():
     assert robustness.cell(row(over_bound=math.nan, wrong=0.001, missing=0.999)) == "- !0.1 ?99.9"
 
 
+@pytest.mark.slow
 def test_every_kind_of_frame_and_every_extractor_of_one_spot_is_there():
     kinds = {chosen.kind for chosen in FRAME_SETS}
     assert kinds == {"symmetric", "stray", "fault"}
@@ -261,7 +263,10 @@ def test_the_table_names_the_seed_and_a_broken_limit_is_the_status(monkeypatch, 
     bad = verdicts([row(over_bound=2.0)], ())
     monkeypatch.setattr(robustness, "verdicts", lambda rows, ours: bad)
     assert robustness.main(["--sets", "disc", "--methods", "pm", "--frames", "8"]) == 1
-    assert "mirror on s: error over the bound 2, limit 1.15: BROKEN" in capsys.readouterr().out
+    assert (
+        "mirror on s: error over the bound, 300 frames: 2, limit 1.15: BROKEN"
+        in capsys.readouterr().out
+    )
 
 
 @pytest.mark.parametrize(
