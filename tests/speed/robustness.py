@@ -2,9 +2,9 @@
 
 Error as a multiple of the Cramer-Rao bound and the share of confident wrong answers, on frames of
 other shapes and sizes, in stray light, with broken pixels, two lights or no Sun, and of many spots.
-A seed is drawn and printed; ``--seed`` repeats its frames, of which slow methods that
-no limit is for see as many as the time allows. Peers are called with their defaults. Exit status 1
-when a limit is broken.
+A seed is drawn and printed; ``--seed`` repeats its frames, of which slow methods that no limit is
+for see as many as the time allows. Peers are called with their defaults. Exit status 1 when a limit
+is broken.
 """
 
 from __future__ import annotations

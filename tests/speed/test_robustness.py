@@ -281,3 +281,14 @@ def test_what_is_not_there_is_refused(capsys, given, said):
     with pytest.raises(SystemExit):
         robustness.main(given)
     assert said in capsys.readouterr().err
+
+
+def test_what_is_held_to_limits_sees_every_frame_however_slow(monkeypatch):
+    def middle(frames):
+        return np.full((len(frames), 2), 31.5)
+
+    monkeypatch.setattr(robustness, "_SECONDS", 0.0)
+    monkeypatch.setattr(robustness, "methods", lambda _: {"mirror": middle, "bcm": middle})
+    ours, other = robustness.measure(SETS["no Sun"], 1, 20)
+    assert (ours.frames, other.frames) == (40, 8)
+    assert (ours.wrong, other.wrong) == (1.0, 1.0)
