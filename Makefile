@@ -70,8 +70,8 @@ lint: $(DEVELOPING) ## ruff, mypy (strict), the floors
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-bench: $(PEERS) ## every speed and accuracy limit, as ratios measured in the same run; lists the broken ones
-	$(BIN)/python -m tests.speed
+bench: $(PEERS) ## every speed and accuracy limit, as ratios measured in the same run; lists the broken ones (SEED=N repeats its frames)
+	$(BIN)/python -m tests.speed $(if $(SEED),--seed $(SEED))
 
 mutants: $(MUTANTS) ## put small faults into the code, one at a time; list those that no test notices
 	mkdir -p out

@@ -1,11 +1,14 @@
-"""Every limit that is measured, one harness after another: ``python -m tests.speed``.
+"""Every limit that is measured, one harness after another: ``python -m tests.speed [--seed N]``.
 
-Each harness prints what it measures as it goes. None hides another: at the end stand all limits
+Frames of one harness are drawn afresh each time: the seed is printed first, and repeats them. Each
+harness prints what it measures as it goes. None hides another: at the end stand all limits
 that broke, and the harnesses that did not come to their end, and the exit status is 1 for any.
 """
 
 from __future__ import annotations
 
+import argparse
+import secrets
 import sys
 import traceback
 from collections.abc import Callable, Mapping, Sequence
@@ -15,18 +18,26 @@ from tests.speed.verdicts import Verdict
 
 #: Modules of this package, each with `run() -> list[Verdict]`, imported when their turn comes: what
 #: one cannot import is no reason to leave out the next.
-NAMES = ("simulator", "extractors", "recommendations", "startup", "service")
+NAMES = ("simulator", "extractors", "robustness", "recommendations", "startup", "service")
+#: Those of them that draw what they measure on: `run(seed)`.
+SEEDED = frozenset({"robustness"})
 
 Harness = Callable[[], Sequence[Verdict]]
 
 
-def harnesses() -> dict[str, Harness]:
+def harnesses(seed: int) -> dict[str, Harness]:
     """Return the harnesses by name, in their order; nothing is imported yet."""
 
     def harness(name: str) -> Harness:
-        return lambda: import_module(f"tests.speed.{name}").run()
+        given = (seed,) if name in SEEDED else ()
+        return lambda: import_module(f"tests.speed.{name}").run(*given)
 
     return {name: harness(name) for name in NAMES}
+
+
+def new_seed() -> int:
+    """Return a seed of six digits that nobody chose."""
+    return secrets.randbelow(10**6)
 
 
 def bench(found: Mapping[str, Harness]) -> int:
@@ -58,5 +69,15 @@ def _line(verdict: Verdict) -> str:
     return f"{verdict.what}: {verdict.value:.4g}, limit {verdict.most:.4g}"
 
 
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Print the seed and run everything; the exit status."""
+    parser = argparse.ArgumentParser(prog="python -m tests.speed")
+    parser.add_argument("--seed", type=int, help="of frames drawn afresh (default: a new one)")
+    given = parser.parse_args(arguments).seed
+    seed = new_seed() if given is None else given
+    print(f"seed {seed}\n")
+    return bench(harnesses(seed))
+
+
 if __name__ == "__main__":
-    sys.exit(bench(harnesses()))
+    sys.exit(main())

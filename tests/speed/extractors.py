@@ -89,12 +89,20 @@ def methods(chosen: ReferenceSet) -> dict[str, Method]:
     Each is made for a sensor whose round aperture is as wide as the spot at half its light.
     """
     half = chosen.scale_px * (np.sqrt(2 * np.log(2)) if chosen.shape == "gaussian" else 1.0)
-    middle = (chosen.size_px - 1) / 2.0
+    return {name: made.extract for name, made in single_spot(half, chosen.size_px).items()}
+
+
+def single_spot(half_px: float, size_px: int) -> dict[str, Extractor]:
+    """Return the extractors of single spots, and their options of interest, by name.
+
+    Made for a sensor with frames of this side and a round aperture of this half width.
+    """
+    middle = (size_px - 1) / 2.0
     sensor = SensorGeometry(
         focal_length_mm=1.0,
         pixel_pitch_mm=_PITCH_MM,
         centre_px=(middle, middle),
-        aperture_width_mm=float(2 * half * _PITCH_MM),
+        aperture_width_mm=float(2 * half_px * _PITCH_MM),
         aperture_shape="round",
         half_fov_deg=30.0,
     )
@@ -112,10 +120,10 @@ def methods(chosen: ReferenceSet) -> dict[str, Method]:
         "bcm background=border": BasicCentroid(background="border"),
         "ifm background=border": FilteredCentroid(background="border"),
         "mt-acm crossing=linear": MultipleThresholdCentroid(crossing="linear"),
-        "tm binarise=no": TemplateMatch(width_px=float(2 * half), binarise=False),
+        "tm binarise=no": TemplateMatch(width_px=float(2 * half_px), binarise=False),
         "matched-profile steps=2": MatchedProfile(steps=2),
     }
-    return {name: found[name].extract for name in sorted(found)}
+    return {name: found[name] for name in sorted(found)}
 
 
 def measure(

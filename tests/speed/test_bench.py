@@ -1,7 +1,9 @@
 """`make bench` runs every harness to its end and lists what broke: with harnesses of nothing."""
 
+import re
 import subprocess
 import sys
+import types
 from pathlib import Path
 
 import pytest
@@ -81,17 +83,19 @@ def test_ctrl_c_is_not_a_broken_limit():
 
 def test_every_module_that_measures_is_run():
     """Whatever can be called alone belongs to `make bench`."""
+    run = re.compile(r"^def run\((seed: int)?\) -> list\[Verdict\]:", re.MULTILINE)
     modules = {
         path.stem
         for path in Path(driver.__file__).parent.glob("*.py")
-        if "\ndef run() -> list[Verdict]:" in path.read_text(encoding="utf-8")
+        if run.search(path.read_text(encoding="utf-8"))
     }
-    assert modules == set(driver.NAMES) == set(driver.harnesses())
+    assert modules == set(driver.NAMES) == set(driver.harnesses(1))
+    assert set(driver.NAMES) >= driver.SEEDED
 
 
 def test_what_a_harness_cannot_import_is_no_reason_to_leave_out_the_next(monkeypatch, capsys):
     monkeypatch.setattr(driver, "NAMES", ("no_such_harness",))
-    assert driver.bench({**driver.harnesses(), "two": harness(KEPT)}) == 1
+    assert driver.bench({**driver.harnesses(1), "two": harness(KEPT)}) == 1
     out = capsys.readouterr().out
     assert "no_such_harness: did not come to its end (ModuleNotFoundError" in out
     assert "table of 1" in out
@@ -107,7 +111,7 @@ def test_the_exit_status_of_the_command_is_that_of_the_bench():
         "    if not name.startswith('tests.speed.'):\n"
         "        return real(name, *rest)\n"
         "    value = 2.0 if name.endswith('service') else 0.5\n"
-        "    return types.SimpleNamespace(run=lambda: [Verdict(name, value, 1.0)])\n"
+        "    return types.SimpleNamespace(run=lambda *seed: [Verdict(name, value, 1.0)])\n"
         "importlib.import_module = fake\n"
         "runpy.run_module('tests.speed', run_name='__main__')\n"
     )
@@ -117,3 +121,22 @@ def test_the_exit_status_of_the_command_is_that_of_the_bench():
     assert done.returncode == 1, done.stderr
     assert f"{len(driver.NAMES) - 1} kept, 1 broken:" in done.stdout
     assert "BROKEN service: tests.speed.service: 2, limit 1" in done.stdout
+
+
+def test_the_seed_is_drawn_said_first_and_handed_to_whoever_draws(monkeypatch, capsys):
+    given = {}
+
+    def imported(name):
+        def run(*seed):
+            given[name.rpartition(".")[2]] = seed
+            return [KEPT]
+
+        return types.SimpleNamespace(run=run)
+
+    monkeypatch.setattr(driver, "import_module", imported)
+    monkeypatch.setattr(driver, "new_seed", lambda: 123456)
+    for arguments, seed in (([], 123456), (["--seed", "7"], 7)):
+        assert driver.main(arguments) == 0
+        assert capsys.readouterr().out.startswith(f"seed {seed}\n")
+        seeded = {name: (seed,) if name in driver.SEEDED else () for name in driver.NAMES}
+        assert given == seeded

@@ -68,7 +68,11 @@ def test_a_library_that_is_not_installed_is_named(monkeypatch, capsys):
     monkeypatch.setattr(speed_extractors_peers.importlib, "import_module", without)
     found, missing = speed_extractors_peers.peers()
     assert missing == ["photutils", "sep", "scikit-image"]
-    assert set(found) == {"scipy center_of_mass", "scipy curve_fit gaussian"}
+    assert set(found) == {
+        "scipy center_of_mass",
+        "scipy curve_fit gaussian",
+        "scipy curve_fit ellipse",
+    }
     given = ["--sets", "gaussian", "--methods", "pm", "--frames", "20", "--repeats", "1"]
     speed_extractors.main(given)
     assert "scikit-image: not installed" in capsys.readouterr().out
