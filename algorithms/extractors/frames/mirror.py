@@ -37,8 +37,8 @@ class MirrorRegistration(Extractor):
     Parameters
     ----------
     longest_px : float or None
-        Longest half axis that the outline of one spot has, px, positive: a longer one is of
-        several lights. None where no design tells: outlines then tell by their shape.
+        Longest half axis that the outline of one spot has, px, positive: outlines up to it are of
+        one spot, whatever their shape. None where no design tells.
 
     Raises
     ------
@@ -66,7 +66,7 @@ class MirrorRegistration(Extractor):
     `measure` gives the covariance of that fit, with what the background's slopes are uncertain by,
     times the mean square of the departures over what was expected. Outlines of one spot are alike
     at all heights; those of two that overlap are not, or have a waist. A hole's fringes make such
-    outlines, too: what is longer than the design's shadow and its diffraction allow counts then.
+    outlines, too: they count where they are longer than the design's shadow and its diffraction.
 
     Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers.
 

@@ -73,8 +73,8 @@ def register(
     bad : array_like of bool, shape (H, W), optional
         Pixels to leave out, the same in all frames.
     longest_px : float, optional
-        Longest half axis that one spot's outline has, where a design tells; a longer one is of
-        several. Without it outlines tell by their shape, which fringes of one spot resemble.
+        Longest half axis that one spot's outline has, where a design tells: outlines up to it are
+        of one spot, whatever their shape, which fringes make resemble that of two.
 
     Returns
     -------
@@ -155,7 +155,9 @@ def _register_seen(  # noqa: PLR0917 - what is known of the frames
     saturated = _saturated(frames, seen, lights)
     doubts = _doubts(lights, boxes, states, shapes, centres, saturated)
     noise = np.sqrt(states[:, 0])
-    several = _long(shapes, longest_px) if longest_px else _unlike(shapes, noise)
+    several = _unlike(shapes, noise)
+    if longest_px is not None:  # what no longer than one spot is has fringes
+        several &= _long(shapes, longest_px)
     doubts[several & np.isfinite(states[:, 4])] |= int(Doubt.SEVERAL_SPOTS)
     refused = (doubts & ~int(Doubt.SATURATED | Doubt.GHOST)) != 0
     scatter = shapes[:, 7]
