@@ -241,6 +241,7 @@ def test_scipys_elliptical_profile_follows_an_ellipse():
     np.testing.assert_allclose(scipy_ellipse(frames), centres, atol=0.02)
 
 
+@pytest.mark.slow
 def test_the_same_seed_prints_the_same_errors(capsys):
     given = ["--sets", "disc", "no Sun", "--methods", "pm", "bctm", "--frames", "20"]
     tables = []

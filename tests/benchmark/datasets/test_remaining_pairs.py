@@ -235,6 +235,7 @@ def test_all_light_falls_on_the_pixels_read_out_and_saturates_none(name: str) ->
         assert np.mean(frames == 0) < 1e-3, condition
 
 
+@pytest.mark.slow
 def test_both_slits_of_the_l_weigh_alike() -> None:
     bound = few("cmos-l-slit").bound("nominal", "calibration")
     assert bound.alpha_deg[4] == pytest.approx(bound.beta_deg[4], rel=0.1)

@@ -39,6 +39,7 @@ def test_passes_differ_in_noise_alone(name: str) -> None:
     ).any()
 
 
+@pytest.mark.slow
 def test_the_spread_of_repeats_is_the_noise_the_sensor_states() -> None:
     """Over 200 passes the variance of every pixel is the shot, read and rounding noise."""
     preset = replace(PRESETS["cmos-single-aperture"], repeats=Repeats(poses=3, passes=200))

@@ -102,6 +102,7 @@ def test_a_spot_of_whole_pixels_is_inverted_exactly() -> None:
     assert np.degrees(np.linalg.norm(np.cross(vectors, sun), axis=1)).max() < 1e-6
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_events_are_the_first_pixels_in_the_order_of_their_times(name: str) -> None:
     preset = datasets.get(name)

@@ -112,6 +112,7 @@ def test_drift_is_zero_at_the_reference_when_new() -> None:
     assert (ccd.drift.moved(at, new + 1) != 0.0).all()
 
 
+@pytest.mark.slow
 def test_the_flying_unit_is_the_one_on_the_ground_at_the_reference() -> None:
     """The drifting sensors reduce to the plain ones, element by element."""
     sun = from_angles(np.array([10.0, -30.0]), np.array([25.0, 5.0]))

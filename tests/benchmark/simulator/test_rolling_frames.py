@@ -79,6 +79,7 @@ def rest(sensor: RollingFrameSensor) -> dict:
     return {f.name: getattr(sensor, f.name) for f in fields(sensor.still)}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("plain", [False, True])
 @pytest.mark.parametrize("rate", [None, (0.0, 0.0, 0.0)])
 def test_a_sensor_that_does_not_turn_sees_what_one_at_rest_sees(plain: bool, rate) -> None:
@@ -237,6 +238,7 @@ def test_directions_turn_against_the_sensor_and_stay_unit_vectors() -> None:
     assert np.linalg.norm(other, axis=1) == pytest.approx(1.0, abs=1e-14)
 
 
+@pytest.mark.slow
 def test_light_at_rest_is_kept_as_that_of_the_sensor_at_rest_and_no_other() -> None:
     still = standard()
     sensor = turning(still, row_time_s=ROW_S)

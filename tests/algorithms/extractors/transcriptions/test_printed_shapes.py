@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import pytest
 
 from algorithms.extractors.frames.cameras.hough import HoughCircle, HoughLines
 from algorithms.extractors.frames.template import TemplateMatch
@@ -132,6 +133,7 @@ def cht_as_printed(image, edge=0.25):
     return a, b
 
 
+@pytest.mark.slow
 def test_cht():
     frames, places = discs(3, 4)
     found = HoughCircle().extract(frames)
