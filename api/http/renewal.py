@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import contextlib
+import signal
 import subprocess
 import threading
 from collections.abc import Callable, Iterator, Sequence
+from types import FrameType
 
 from starlette.types import ASGIApp, Receive, Scope, Send
 
@@ -58,7 +60,28 @@ def renewed_after(
     waiting = threading.Thread(target=wait, name="renewal", daemon=True)
     waiting.start()
     try:
-        yield waiting
+        with _ended_by_exception():
+            yield waiting
     finally:
         process.terminate()
         waiting.join()
+
+
+@contextlib.contextmanager
+def _ended_by_exception() -> Iterator[None]:
+    """Let a request to terminate unwind what is open; by itself it would leave the command behind.
+
+    Servers that shut down at the signal raise it again when they are done.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield  # signals are the main thread's
+        return
+
+    def end(number: int, _: FrameType | None) -> None:
+        raise SystemExit(128 + number)
+
+    before = signal.signal(signal.SIGTERM, end)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)

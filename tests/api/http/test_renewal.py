@@ -1,8 +1,11 @@
 """A running service takes on what a command beside it has found out."""
 
+import os
+import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pytest
 from fastapi import FastAPI
@@ -50,3 +53,29 @@ def test_a_command_that_cannot_start_is_an_error():
         renewed_after(["no-such-command"], Renewed(saying("first")), subprocess.run),
     ):
         pass
+
+
+SERVICE = """
+import sys, time
+from api.http.renewal import Renewed, renewed_after
+writing = "import os, time; open('pid', 'w').write(str(os.getpid())); time.sleep(600)"
+command = sys.executable, "-c", writing
+with renewed_after(command, Renewed(None), lambda: None):
+    time.sleep(600)
+"""
+
+
+@pytest.mark.skipif(not Path("/proc").exists(), reason="asks /proc whether a process lives")
+def test_a_service_that_is_told_to_terminate_takes_its_command_along(tmp_path):
+    service = subprocess.Popen([sys.executable, "-c", SERVICE], cwd=tmp_path, env=_with_path())
+    found = tmp_path / "pid"
+    while not (found.exists() and found.read_text()):
+        assert service.poll() is None
+        time.sleep(0.05)
+    service.send_signal(signal.SIGTERM)
+    assert service.wait() == 128 + signal.SIGTERM
+    assert not Path("/proc", found.read_text()).exists()
+
+
+def _with_path():
+    return {**os.environ, "PYTHONPATH": str(Path(__file__).resolve().parents[3])}
