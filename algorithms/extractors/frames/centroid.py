@@ -125,7 +125,7 @@ class ThresholdedCentroid(Extractor):
     sum(I')``, ``y_c = sum(y I') / sum(I')``. Survey prints x over rows; corrected because x runs
     along columns here. With a background b the threshold is ``b + mu (I_max - b)``. Without a
     fraction it is ``mu I_max = m + 6 s``, m and s the mean and the standard deviation of one of
-    the frame's sides: that of the four with the second lowest sum, as light or hot pixels may
+    the frame's sides: the second lowest of the four, as light or hot pixels may
     lie on the others.
 
     Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers.
