@@ -11,7 +11,8 @@ from typing import Any
 
 from benchmark.contract import Cell
 from benchmark.datasets.realism import standing
-from benchmark.leaderboard.ranking import UNITS, order, ranks, spreads
+from benchmark.leaderboard.ranking import order, ranks, spreads
+from benchmark.leaderboard.scope import UNITS
 from benchmark.metrics.rings import EDGES_DEG, field_error, widest_field
 from benchmark.metrics.score import METRIC_VERSION, is_available
 from benchmark.results.components import SCHEMA_VERSION

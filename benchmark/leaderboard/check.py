@@ -16,13 +16,12 @@ from pathlib import Path
 from typing import Any
 
 from benchmark.contract import Cell
-from benchmark.leaderboard import ranking
+from benchmark.leaderboard import scope
 from benchmark.leaderboard.board import board_of
 from benchmark.leaderboard.pages import PAGE, page
 from benchmark.leaderboard.update import update
 from benchmark.metrics.rings import RINGS
 from benchmark.metrics.score import METRICS, RING_DIGITS, SIGNIFICANT_DIGITS
-from benchmark.plan.combinations import cells
 from benchmark.plan.parts import Parts, installed
 from benchmark.progress import ProgressCallback
 from benchmark.results.components import current
@@ -242,9 +241,7 @@ def _outdated(store: Store, parts: Parts) -> Iterator[Difference]:
                 "another: code or parameters have changed" if other else "not installed",
             )
     scores = store.scores()
-    planned = cells(parts=parts)
-    held = {cell: scores[cell] for cell in planned if cell in scores}
-    wanted = {*planned, *ranking.leading(held, ranking.compared(parts))}
+    wanted = scope.wanted(scores, parts)
     yield from _unlike("scores", {str(c) for c in scores}, {str(c) for c in wanted}, "planned")
     pinned = {"/".join(place) for place in store.pins()}
     there = {"/".join(place) for place in pinning.places(parts)}

@@ -11,7 +11,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
-from benchmark.leaderboard.ranking import LEADING, UNITS
+from benchmark.leaderboard.scope import LEADING, UNITS
 from benchmark.results.tables import spelt, text_of
 from benchmark.sweeps import tables as sweep_tables
 from survey_data.whole_files import replace_file

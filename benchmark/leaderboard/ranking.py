@@ -14,14 +14,8 @@ from typing import Any
 
 from benchmark.contract import Cell
 from benchmark.metrics.score import is_available
-from benchmark.plan.parts import Parts
 
 Row = Mapping[str, Any]
-
-#: Units that leading pipelines are scored on, the standard one among them.
-UNITS = 5
-#: Pipelines of a board that are.
-LEADING = 5
 
 
 @dataclass(frozen=True)
@@ -59,36 +53,6 @@ def order(numbers: Row, identity: object) -> tuple[Any, ...]:
     """
     error = numbers["rms_deg"]
     return (error is None, not is_available(numbers), error or 0.0, identity)
-
-
-def leading(scores: Mapping[Cell, Row], conditions: Mapping[str, str]) -> list[Cell]:
-    """List what to measure beside stored scores: each board's first pipelines on other units.
-
-    Pipelines without an error do not lead.
-
-    Parameters
-    ----------
-    scores
-        Numbers by cell; those of other units are not looked at.
-    conditions
-        By data set, the condition whose board is scored on several units.
-    """
-    boards: dict[tuple[str, str], list[Cell]] = {}
-    for cell, numbers in scores.items():
-        first = cell.unit == 0 and conditions.get(cell.dataset) == cell.condition
-        if first and numbers["rms_deg"] is not None:
-            boards.setdefault((cell.dataset, cell.condition), []).append(cell)
-    return [
-        Cell(cell.dataset, cell.condition, cell.extractor, cell.model, unit)
-        for cells in boards.values()
-        for cell in sorted(cells, key=lambda one: order(scores[one], one))[:LEADING]
-        for unit in range(1, UNITS)
-    ]
-
-
-def compared(parts: Parts) -> dict[str, str]:
-    """Return the first condition of each data set: the one that is scored on several units."""
-    return {name: preset.conditions[0] for name, preset in parts.presets.items()}
 
 
 def spreads(rows: Iterable[Row]) -> dict[Cell, Spread]:

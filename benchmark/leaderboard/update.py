@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping
+from functools import partial
+from itertools import groupby
 from pathlib import Path
 
 from benchmark.contract import Cell
-from benchmark.leaderboard import ranking
+from benchmark.leaderboard import scope
 from benchmark.leaderboard.board import board_of
 from benchmark.leaderboard.pages import PAGE, page
-from benchmark.plan.combinations import cells
 from benchmark.plan.parts import Parts, installed
 from benchmark.progress import ProgressCallback
 from benchmark.results.components import Components, current
 from benchmark.results.record import opened
 from benchmark.results.store import PUBLISHED, Store
+from benchmark.results.tables import Row
 from benchmark.running import pinning
+from benchmark.running.planned import FollowUp
 from benchmark.running.run import Summary, failures, measure_missing
 from benchmark.sweeps import run as sweeps
 from survey_data.whole_files import replace_file
@@ -32,10 +35,9 @@ def update(
 ) -> Summary:
     """Measure what is missing or out of date, drop what is no longer planned, write the record.
 
-    Every planned pipeline is scored on the standard unit of every dataset, then the leading ones
-    of each dataset's first condition on other units; every dataset's data are pinned, whether
-    anything can be measured on them or not; every extractor is measured on the reference features
-    (`benchmark.sweeps`).
+    Pipelines are scored by the rule of `benchmark.leaderboard.scope`; every dataset's data are
+    pinned, whether anything can be measured on them or not; every extractor is measured on the
+    reference features (`benchmark.sweeps`).
 
     Parameters
     ----------
@@ -59,13 +61,16 @@ def update(
     started = time.perf_counter()
     known = parts or installed()
     components = current(known, sweeps.series_digests())
-    planned = cells(parts=known)
+    first, studied = scope.first(known), scope.studied_pipelines()
+    choose = partial(scope.followers, studied=studied)
     store = Store(directory)
     with opened(store) as record:
         pinned = store.pins()
         _require_heads(store, known, components)
 
-        def measured(wanted: Iterable[Cell]) -> int:
+        def measured(
+            wanted: Iterable[Cell], follow_ups: Mapping[str, FollowUp] | None = None
+        ) -> int:
             return measure_missing(
                 wanted,
                 record,
@@ -74,19 +79,18 @@ def update(
                 workers=workers,
                 progress=progress,
                 scheduler=scheduler,
+                follow_ups=follow_ups,
             )
 
-        computed = measured(planned)
+        computed = measured(first, _follow_ups(first, known, choose))
+        followers = choose(record.scores, known)
+        computed += measured(followers)
         pins = pinning.pin_missing(record, components, known, workers=workers, progress=progress)
         pinning.require_versions(pinned, record.pins.values())
-        others = ranking.leading(
-            {cell: record.scores[cell] for cell in planned}, ranking.compared(known)
-        )
-        computed += measured(others)
         swept = sweeps.sweep_missing(
             record, components, known.extractors, workers=workers, progress=progress
         )
-        wanted = frozenset((*planned, *others))
+        wanted = frozenset((*first, *followers))
         record.drop(scores=wanted.__contains__, pins=frozenset(pinning.places(known)).__contains__)
         record.write(components, sweeps.ordered)
         failed = failures(sorted(wanted), record)
@@ -103,6 +107,20 @@ def update(
         ),
         seconds=time.perf_counter() - started,
     )
+
+
+def _follow_ups(
+    first: Iterable[Cell], parts: Parts, choose: Callable[[Mapping[Cell, Row], Parts], list[Cell]]
+) -> dict[str, FollowUp]:
+    """Say by data set what a worker that has measured its first cells goes on with."""
+    return {
+        name: FollowUp(
+            Parts({name: parts.presets[name]}, parts.extractors, parts.models),
+            frozenset(cells),
+            choose,
+        )
+        for name, cells in groupby(first, key=lambda cell: cell.dataset)
+    }
 
 
 def _require_heads(store: Store, parts: Parts, components: Components) -> None:

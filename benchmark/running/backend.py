@@ -7,14 +7,16 @@ import platform
 import threading
 import time
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
+from types import MappingProxyType
 
 from joblib import Parallel, delayed, parallel_config
 
+from benchmark.running.planned import FollowUp
 from benchmark.running.task import Task, TaskResult, measure
 
 #: Tasks a worker takes at once when there is too little to give each a whole dataset.
@@ -28,7 +30,10 @@ class DaskMissingError(ImportError):
 
 
 def outcomes(
-    tasks: Sequence[Task], workers: int, scheduler: str | None = None
+    tasks: Sequence[Task],
+    workers: int,
+    scheduler: str | None = None,
+    follow_ups: Mapping[str, FollowUp] = MappingProxyType({}),
 ) -> Iterator[TaskResult]:
     """Measure tasks and give each result as soon as it is there, in any order.
 
@@ -40,14 +45,19 @@ def outcomes(
         Processes to use; with 1 everything happens in this one.
     scheduler
         Address of a Dask scheduler, e.g. ``tcp://127.0.0.1:8786``; `workers` is not read then.
+    follow_ups
+        By data set, what is measured besides where one bundle is all of the data set's tasks.
 
     Raises
     ------
     DaskMissingError
         When `scheduler` is given without the ``distributed`` package.
     """
+    bundled = bundles(tasks, workers)
+    following = [follow_ups.get(bundle[0].preset.name) for bundle in bundled]
     if scheduler is None and (workers == 1 or len(tasks) == 1):
-        yield from map(measure, tasks)
+        for bundle, follow_up in zip(bundled, following, strict=True):
+            yield from _measured(bundle, follow_up)
         return
     with ExitStack() as stack:
         if scheduler is None:
@@ -57,7 +67,8 @@ def outcomes(
         coordinator = (platform.node(), os.getpid())
         parallel = Parallel(return_as="generator_unordered", batch_size=1, pre_dispatch="2*n_jobs")
         measured = parallel(
-            delayed(_measure_for)(coordinator, bundle) for bundle in bundles(tasks, workers)
+            delayed(_measure_for)(coordinator, bundle, follow_up)
+            for bundle, follow_up in zip(bundled, following, strict=True)
         )
         try:
             for results in measured:
@@ -96,12 +107,23 @@ def _place(task: Task) -> tuple[int, str]:
     return task.unit, task.condition
 
 
-def _measure_for(coordinator: tuple[str, int], bundle: Sequence[Task]) -> list[TaskResult]:
+def _measured(bundle: Sequence[Task], follow_up: FollowUp | None) -> Iterator[TaskResult]:
+    """Measure a bundle, then what follows from it."""
+    first = []
+    for task in bundle:
+        first.append(measure(task))
+        yield first[-1]
+    yield from map(measure, follow_up.tasks(first) if follow_up else ())
+
+
+def _measure_for(
+    coordinator: tuple[str, int], bundle: Sequence[Task], follow_up: FollowUp | None
+) -> list[TaskResult]:
     """Measure in a worker process, which ends when the coordinator does, even by a kill."""
     host, process = coordinator
     if (host, os.getppid()) == (platform.node(), process):
         _end_with(process)
-    return [measure(task) for task in bundle]
+    return list(_measured(bundle, follow_up))
 
 
 @cache

@@ -1,30 +1,28 @@
 """Measure cells into a store: in parallel, resumable, never twice what is already there.
 
-A task is one (dataset, condition, unit, extractor); a worker takes a few that share samples. Only
-this process writes, and what a worker hands back is on disk before the next is awaited, so a
-killed run loses what was in flight and nothing else. Numbers do not depend on the number of
+A task is one (dataset, condition, unit, extractor); a worker takes those that share samples or
+light. Only this process writes, and what a worker hands back is on disk before the next is awaited,
+so a killed run loses what was in flight and nothing else. Numbers do not depend on the number of
 workers.
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from contextlib import nullcontext
 from dataclasses import dataclass
-from itertools import groupby
 from pathlib import Path
 
 from benchmark.contract import Cell
-from benchmark.metrics.score import METRICS
 from benchmark.plan.parts import Parts, installed
 from benchmark.progress import ProgressCallback, terminal_progress
 from benchmark.results.components import Components, current
 from benchmark.results.record import Record, opened
 from benchmark.results.store import Store
-from benchmark.results.tables import Row
 from benchmark.running.backend import outcomes
-from benchmark.running.task import Outcome, Task, TaskResult
+from benchmark.running.planned import FollowUp, cells_of, numbers_of, tasks_of
+from benchmark.running.task import TaskResult
 
 
 @dataclass(frozen=True)
@@ -124,22 +122,31 @@ def measure_missing(
     workers: int,
     progress: ProgressCallback | None = None,
     scheduler: str | None = None,
+    follow_ups: Mapping[str, FollowUp] | None = None,
 ) -> int:
     """Measure the cells that a record does not hold of these components; returns how many.
 
-    Parameters and errors as `run`.
+    With what followed from them. Parameters and errors as `run`.
+
+    Parameters
+    ----------
+    follow_ups
+        By data set, what a worker that measured all its first cells goes on with at once.
     """
     missing = [cell for cell in sorted(wanted) if not record.is_scored(cell, components)]
     # the standard units first: what they tell of the directions that can be observed saves every
     # other unit a bound
     stages = [[c for c in missing if c.unit == 0], [c for c in missing if c.unit != 0]]
+    done = 0
     if missing:
         with terminal_progress() if progress is None else nullcontext(progress) as report:
             counted = _Count(report, len(missing))
             for stage in filter(None, stages):
-                results = outcomes(_tasks(stage, record, parts), workers, scheduler)
+                tasks = tasks_of(stage, parts, record.pins)
+                results = outcomes(tasks, workers, scheduler, follow_ups or {})
                 _keep_all(results, record, components, counted)
-    return len(missing)
+            done = counted.done
+    return done
 
 
 def failures(cells: Iterable[Cell], record: Record) -> tuple[tuple[Cell, str], ...]:
@@ -175,32 +182,6 @@ def _known(cells: Iterable[Cell], parts: Parts) -> list[Cell]:
     return wanted
 
 
-def _tasks(cells: list[Cell], record: Record, parts: Parts) -> list[Task]:
-    """Cells in tasks, those of one dataset, unit and condition in a row: they share samples."""
-    return [
-        Task(
-            parts.preset(dataset),
-            condition,
-            parts.extractor(extractor),
-            tuple(parts.model(cell.model) for cell in group),
-            unit,
-            _all_observable(record, dataset, condition),
-        )
-        for (dataset, unit, condition, extractor), group in groupby(
-            sorted(cells, key=_order), key=lambda cell: _order(cell)[:4]
-        )
-    ]
-
-
-def _order(cell: Cell) -> tuple[str, int, str, str, str]:
-    return cell.dataset, cell.unit, cell.condition, cell.extractor, cell.model
-
-
-def _all_observable(record: Record, dataset: str, condition: str) -> bool:
-    pin = record.pins.get((dataset, condition, "test"))
-    return pin is not None and pin.observable == pin.n
-
-
 @dataclass
 class _Count:
     """How far measuring has come, for who is told."""
@@ -214,6 +195,7 @@ class _Count:
 
     def add(self, cells: int, what: str) -> None:
         self.done += cells
+        self.total = max(self.total, self.done)  # what followed was not counted before
         self.report(self.done, self.total, what)
 
 
@@ -224,7 +206,7 @@ def _keep_all(
     try:
         for result in results:
             task = result.task
-            scores = {_cell(task, outcome): _numbers(outcome) for outcome in result.outcomes}
+            scores = dict(zip(cells_of(result), numbers_of(result), strict=True))
             new = [pin for pin in result.pins if not record.is_pinned(pin.place, components)]
             record.keep(components, pins=new, scores=scores)
             what = f"{task.preset.name} {task.condition} {task.extractor.about.name}"
@@ -234,16 +216,3 @@ def _keep_all(
             f"interrupted with {counted.done} of {counted.total} cells measured; they are kept in "
             f"{record.journal} and not measured again by the next run"
         ) from error
-
-
-def _cell(task: Task, outcome: Outcome) -> Cell:
-    return Cell(
-        task.preset.name, task.condition, task.extractor.about.name, outcome.model, task.unit
-    )
-
-
-def _numbers(outcome: Outcome) -> Row:
-    """Make the stored numbers of an outcome: depends on code and data only."""
-    status = "ok" if outcome.score else "refused" if outcome.refused else "failed"
-    metrics = outcome.score.row() if outcome.score else dict.fromkeys(METRICS)
-    return {"status": status, **metrics, "reason": outcome.reason}

@@ -6,10 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from benchmark.contract import Cell
-from benchmark.leaderboard import ranking
 from benchmark.leaderboard.board import at_field, build, within_error
-from benchmark.leaderboard.ranking import LEADING, UNITS, Spread
+from benchmark.leaderboard.ranking import Spread
 from benchmark.metrics.rings import RINGS
 from benchmark.metrics.score import METRICS
 
@@ -198,25 +196,6 @@ def test_ranks_never_fall_and_say_how_many_are_before_the_group(errors):
         assert rank == 1 + sum(other < rank for other in numbers)
         assert rank <= place + 1
         assert tied == (numbers.count(rank) > 1)
-
-
-def test_the_leading_of_each_first_condition_are_measured_on_other_units():
-    scores = {
-        Cell("d", condition, "e", f"m{number}"): row(f"m{number}", 1.0 + number)
-        for condition in ("first", "second")
-        for number in range(LEADING + 2)
-    }
-    scores[Cell("d", "first", "e", "silent")] = row("silent", 0.1, availability=0.5)
-    scores[Cell("d", "first", "e", "failed")] = row("failed", None)
-    scores[Cell("d", "first", "e", "m0", 3)] = row("m0", 0.001, unit=3)
-    found = ranking.leading(scores, {"d": "first"})
-    assert len(found) == len(set(found)) == LEADING * (UNITS - 1)
-    assert set(found) == {
-        Cell("d", "first", "e", f"m{number}", unit)
-        for number in range(LEADING)
-        for unit in range(1, UNITS)
-    }
-    assert ranking.leading(scores, {}) == []
 
 
 def by_rings(model, *errors, **more):

@@ -79,7 +79,7 @@ def test_a_worker_ends_with_its_coordinator_where_that_is_its_parent(
     where = platform.node() if host == "same" else f"not {platform.node()}"
     process = os.getppid() + parent
     some = tasks(2)
-    assert backend._measure_for((where, process), some) == some
+    assert backend._measure_for((where, process), some, None) == some
     assert ended == ([process] if ends else [])
 
 

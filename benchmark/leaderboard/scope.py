@@ -1,0 +1,115 @@
+"""What the published leaderboard holds: which pipelines are scored where, by one rule.
+
+1. Under the first condition of a data set, every pipeline that fits it, on the standard unit.
+2. Under each other condition, of those: every extractor with the model that ranks first behind
+   it, or with all of them where none gives an error (a method of blooming waits for light that
+   blooms); the `LEADING` first pipelines; every pipeline that a mapped study used on such a sensor.
+3. The `LEADING` first pipelines under the first condition on `UNITS` units.
+
+What another condition does to a pipeline far behind under the first one helps nobody choose;
+`sunatlas benchmark` measures it for whoever asks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping
+from itertools import groupby
+from typing import Any
+
+from benchmark.contract import Cell
+from benchmark.leaderboard.ranking import order
+from benchmark.plan.combinations import cells
+from benchmark.plan.parts import Parts
+from registry.resolution import resolve_all
+
+Row = Mapping[str, Any]
+
+#: Units that leading pipelines are scored on, the standard one among them.
+UNITS = 5
+#: Pipelines of a board that are.
+LEADING = 5
+
+
+def compared(parts: Parts) -> dict[str, str]:
+    """Return the first condition of each data set: the one on which everything is scored."""
+    return {name: preset.conditions[0] for name, preset in parts.presets.items()}
+
+
+def first(parts: Parts) -> list[Cell]:
+    """List what is scored before anything is known: point 1 of the rule, in order."""
+    condition = compared(parts)
+    return [cell for cell in cells(parts=parts) if cell.condition == condition[cell.dataset]]
+
+
+def followers(
+    scores: Mapping[Cell, Row],
+    parts: Parts,
+    studied: Collection[tuple[str, str, str, str]] | None = None,
+) -> list[Cell]:
+    """List what follows from the first scores: points 2 and 3 of the rule, in order.
+
+    Pipelines without an error neither rank nor lead.
+
+    Parameters
+    ----------
+    scores
+        Numbers by cell; only those of `first` are looked at.
+    parts
+        Data sets and implementations.
+    studied
+        Detector, mask, extractor and model of pipelines that studies used; those of the registry
+        by default.
+    """
+    used = studied_pipelines() if studied is None else frozenset(studied)
+    found: list[Cell] = []
+    known = [cell for cell in first(parts) if cell in scores]
+    for dataset, group in groupby(known, key=lambda cell: cell.dataset):
+        preset = parts.presets[dataset]
+        board = list(group)
+        ranked = sorted(
+            (cell for cell in board if scores[cell]["rms_deg"] is not None),
+            key=lambda cell: order(scores[cell], cell),
+        )
+        leading = ranked[:LEADING]
+        kept = {*leading, *_best_of_each(ranked)}
+        answering = {cell.extractor for cell in ranked}
+        kept |= {
+            cell
+            for cell in board
+            if cell.extractor not in answering
+            or (preset.detector, preset.mask, cell.extractor, cell.model) in used
+        }
+        found += [
+            Cell(dataset, condition, cell.extractor, cell.model)
+            for condition in preset.conditions[1:]
+            for cell in kept
+        ]
+        found += [
+            Cell(dataset, cell.condition, cell.extractor, cell.model, unit)
+            for cell in leading
+            for unit in range(1, UNITS)
+        ]
+    return sorted(found)
+
+
+def wanted(scores: Mapping[Cell, Row], parts: Parts) -> frozenset[Cell]:
+    """Return everything that the published leaderboard holds, given the scores it has."""
+    return frozenset((*first(parts), *followers(scores, parts)))
+
+
+def _best_of_each(ranked: list[Cell]) -> Iterator[Cell]:
+    """Give of each extractor the pipeline that ranks first."""
+    seen = set()
+    for cell in ranked:
+        if cell.extractor not in seen:
+            seen.add(cell.extractor)
+            yield cell
+
+
+def studied_pipelines() -> frozenset[tuple[str, str, str, str]]:
+    """Return detector, mask, extractor and model of every pipeline that a mapped study used."""
+    return frozenset(
+        (pipeline.detector, pipeline.mask, pipeline.extractor, pipeline.model)
+        for resolution in resolve_all().values()
+        for pipeline in resolution.pipelines
+    )

@@ -1,0 +1,109 @@
+"""From cells to tasks and back, and what a worker goes on with when it has done a data set's first.
+
+Which pipelines are worth measuring under other conditions may depend on how they did under the
+first. Whoever measured that still holds the light that the others look at too: it is asked to go
+on, rather than another worker to render the light again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+
+from benchmark.contract import Cell
+from benchmark.datasets.pins import Pin, Place
+from benchmark.metrics.score import METRICS
+from benchmark.plan.parts import Parts
+from benchmark.results.tables import Row
+from benchmark.running.task import Task, TaskResult
+
+
+@dataclass(frozen=True)
+class FollowUp:
+    """What to measure of a data set once its first cells are.
+
+    Attributes
+    ----------
+    parts
+        The data set, and the implementations.
+    first
+        Its first cells: nothing follows from a part of them.
+    choose
+        From the numbers of the first cells and `parts` to the cells that follow.
+    """
+
+    parts: Parts
+    first: frozenset[Cell]
+    choose: Callable[[Mapping[Cell, Row], Parts], Sequence[Cell]]
+
+    def tasks(self, results: Sequence[TaskResult]) -> list[Task]:
+        """List the tasks that follow, other units last; none where first cells are missing."""
+        scores = {
+            cell: numbers
+            for result in results
+            for cell, numbers in zip(cells_of(result), numbers_of(result), strict=True)
+        }
+        if not self.first <= scores.keys():
+            return []
+        following = [cell for cell in self.choose(scores, self.parts) if cell not in scores]
+        pins = {pin.place: pin for result in results for pin in result.pins}
+        return tasks_of(following, self.parts, pins)
+
+
+def tasks_of(cells: Iterable[Cell], parts: Parts, pins: Mapping[Place, Pin]) -> list[Task]:
+    """Put cells into tasks, those of one dataset, unit and condition in a row: they share samples.
+
+    Parameters
+    ----------
+    cells
+        To measure.
+    parts
+        Data sets and implementations.
+    pins
+        What is known of the data already, by place.
+    """
+    return [
+        Task(
+            parts.preset(dataset),
+            condition,
+            parts.extractor(extractor),
+            tuple(parts.model(cell.model) for cell in group),
+            unit,
+            _all_observable(pins, dataset, condition),
+        )
+        for (dataset, unit, condition, extractor), group in groupby(
+            sorted(cells, key=_order), key=lambda cell: _order(cell)[:4]
+        )
+    ]
+
+
+def _order(cell: Cell) -> tuple[str, int, str, str, str]:
+    return cell.dataset, cell.unit, cell.condition, cell.extractor, cell.model
+
+
+def _all_observable(pins: Mapping[Place, Pin], dataset: str, condition: str) -> bool:
+    pin = pins.get((dataset, condition, "test"))
+    return pin is not None and pin.observable == pin.n
+
+
+def cells_of(result: TaskResult) -> list[Cell]:
+    """List the cells that a result is of, in the order of its outcomes."""
+    task = result.task
+    extractor = task.extractor.about.name
+    return [
+        Cell(task.preset.name, task.condition, extractor, outcome.model, task.unit)
+        for outcome in result.outcomes
+    ]
+
+
+def numbers_of(result: TaskResult) -> list[Row]:
+    """Make the stored numbers of the outcomes, in order: they depend on code and data only."""
+    return [
+        {
+            "status": "ok" if outcome.score else "refused" if outcome.refused else "failed",
+            **(outcome.score.row() if outcome.score else dict.fromkeys(METRICS)),
+            "reason": outcome.reason,
+        }
+        for outcome in result.outcomes
+    ]

@@ -1,0 +1,128 @@
+"""The rule of what the published leaderboard holds, and that workers who follow it at once obey."""
+
+import dataclasses
+import math
+
+import fake_plan
+import pytest
+from fake_atlas import Currents, Diodes, LeastSquares
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from benchmark.contract import Cell
+from benchmark.leaderboard import scope
+from benchmark.leaderboard.scope import LEADING, UNITS
+from benchmark.leaderboard.update import update
+from benchmark.plan.combinations import cells
+from benchmark.plan.parts import installed
+from benchmark.progress import silent
+from benchmark.results.store import PUBLISHED, Store
+from benchmark.running import backend, generated
+
+NAMES = ("a", "b", "c")
+MODELS = [
+    type(name, (LeastSquares,), {"about": dataclasses.replace(LeastSquares.about, name=name)})
+    for name in NAMES
+]
+EXTRACTORS = {
+    name: type(name, (Currents,), {"about": dataclasses.replace(Currents.about, name=name)})
+    for name in ("x", "y", "z")
+}
+PARTS = dataclasses.replace(
+    fake_plan.parts(*MODELS, presets=(Diodes(conditions=("first", "second", "third")),)),
+    extractors=EXTRACTORS,
+)
+PRESET = PARTS.presets["fake-diodes"]
+PAIRS = [(extractor, model) for extractor in EXTRACTORS for model in NAMES]
+NUMBERS = st.one_of(
+    st.none(), st.tuples(st.sampled_from([0.1, 0.2, 0.5, 3.0]), st.sampled_from([0.5, 0.96, 1.0]))
+)
+
+
+def numbers(given):
+    error, availability = given or (None, None)
+    return {"rms_deg": error, "availability": availability}
+
+
+@settings(deadline=None, derandomize=True)
+@given(st.lists(NUMBERS, min_size=9, max_size=9), st.sets(st.sampled_from(PAIRS), max_size=3))
+def test_followers_are_the_leading_the_best_of_each_extractor_and_what_was_studied(given, used):
+    scored = {
+        Cell("fake-diodes", "first", *pair): numbers(one)
+        for pair, one in zip(PAIRS, given, strict=True)
+    }
+    studied = {(PRESET.detector, PRESET.mask, *pair) for pair in used}
+    found = scope.followers(scored, PARTS, studied)
+    assert found == sorted(set(found))
+
+    # by counting who is before whom, rather than by sorting
+    def place(pair):
+        one = given[PAIRS.index(pair)]
+        return (one[1] < 0.95, one[0], pair) if one else (math.inf,)
+
+    answering = [pair for pair in PAIRS if given[PAIRS.index(pair)]]
+    before = {pair: [other for other in answering if place(other) < place(pair)] for pair in PAIRS}
+    leading = {pair for pair in answering if len(before[pair]) < LEADING}
+    best = {pair for pair in answering if not any(other[0] == pair[0] for other in before[pair])}
+    assert {(c.extractor, c.model, c.unit) for c in found if c.unit} == {
+        (*pair, unit) for pair in leading for unit in range(1, UNITS)
+    }
+    assert {c.condition for c in found if c.unit} <= {"first"}
+    silent_ones = {pair for pair in PAIRS if all(other[0] != pair[0] for other in answering)}
+    for condition in ("second", "third"):
+        of_it = {(c.extractor, c.model) for c in found if c.condition == condition}
+        assert of_it == leading | best | used | silent_ones
+
+
+def test_studies_of_another_architecture_do_not_count():
+    scored = {Cell("fake-diodes", "first", *pair): numbers((0.1, 1.0)) for pair in PAIRS}
+    bare = scope.followers(scored, PARTS, set())
+    elsewhere = {(PRESET.detector, "another mask", *pair) for pair in PAIRS}
+    assert scope.followers(scored, PARTS, elsewhere) == bare
+    assert len(bare) < len(
+        scope.followers(scored, PARTS, {(PRESET.detector, PRESET.mask, *PAIRS[-1])})
+    )
+
+
+def test_nothing_is_scored_twice_nor_outside_the_plan():
+    scores, parts = Store(PUBLISHED).scores(), installed()
+    first, found = scope.first(parts), scope.followers(scores, parts)
+    assert not set(first) & set(found)
+    assert {cell for cell in (*first, *found) if not cell.unit} <= set(cells(parts=parts))
+    pairs = {(cell.dataset, cell.extractor, cell.model) for cell in first}
+    assert pairs == {(cell.dataset, cell.extractor, cell.model) for cell in cells(parts=parts)}
+
+
+def test_each_extractor_is_seen_under_every_condition():
+    scores, parts = Store(PUBLISHED).scores(), installed()
+    planned = {(cell.dataset, cell.extractor) for cell in scope.first(parts)}
+    found = {(c.dataset, c.condition, c.extractor) for c in scope.wanted(scores, parts)}
+    for dataset, extractor in planned:
+        assert {(dataset, c, extractor) for c in parts.presets[dataset].conditions} <= found
+
+
+@pytest.mark.usefixtures("readings_only")
+def test_a_worker_that_goes_on_at_once_measures_what_would_be_asked_for_later(
+    tmp_path, monkeypatch, log
+):
+    parts = fake_plan.parts(presets=[Diodes(name=f"fake-{number}") for number in range(4)])
+
+    def recorded(name):
+        generated.forget()
+        start = len(log())
+        update(tmp_path / name, progress=silent, parts=parts)
+        seen = [line.split()[1:3] for line in log()[start:] if line.startswith("generate")]
+        files = {
+            str(path.relative_to(tmp_path / name)): path.read_bytes()
+            for path in (tmp_path / name).rglob("*.*")
+            if path.is_file() and path.parent.name != ".sunatlas"
+        }
+        return files, list(dict.fromkeys(map(tuple, seen)))
+
+    at_once, order = recorded("at once")
+    monkeypatch.setattr(backend, "_measured", lambda bundle, _: map(backend.measure, bundle))
+    later, staged = recorded("later")
+    assert at_once == later
+    assert sorted(order) == sorted(staged)
+    assert [name for name, _ in order] == sorted(name for name, _ in order)
+    assert [name for name, _ in staged] != sorted(name for name, _ in staged)
