@@ -27,7 +27,10 @@ from benchmark.results.store import PUBLISHED, Store
 FEW = 5
 PINS = Store(PUBLISHED).pins()
 #: One of each kind of observation, with windows, several arrays, context, elements without frames.
-KINDS = ("cmos-single-aperture", "ccd-periodic", "qpd-single-aperture", "event-l-slit", "pd-orbit")
+KINDS = (
+    pytest.param("cmos-single-aperture", marks=pytest.mark.slow),
+    *("ccd-periodic", "qpd-single-aperture", "event-l-slit", "pd-orbit"),
+)
 
 
 def exported(name, out, **options):

@@ -32,10 +32,13 @@ SPLITS = ("calibration", "test")
 COSTLY = {
     "ccd-multi-aperture",
     "ccd-orbit",
+    "ccd-single-aperture",
     "cmos-compound-eye",
+    "cmos-encoded",
     "cmos-l-slit",
     "cmos-multi-aperture",
     "cmos-single-aperture",
+    "cmos-slit",
     "event-single-aperture",
 }
 #: Samples of a split that stand for all of them; that all are as pinned, runs and pins check.

@@ -83,8 +83,9 @@ def test_it_is_small_and_holds_nothing_that_can_be_derived():
 
 #: Of which four samples take seconds: light from the Earth, motion, tables of holes, megapixels.
 COSTLY = {
-    "ccd-multi-aperture", "ccd-orbit", "ccd-periodic", "cmos-compound-eye", "cmos-encoded",
-    "cmos-l-slit", "cmos-multi-aperture", "cmos-single-aperture", "cmos-slit",
+    "ccd-lens", "ccd-multi-aperture", "ccd-orbit", "ccd-periodic", "ccd-single-aperture",
+    "cmos-compound-eye", "cmos-encoded", "cmos-l-slit", "cmos-lens", "cmos-multi-aperture",
+    "cmos-single-aperture", "cmos-single-aperture-pinhole", "cmos-slit", "event-l-slit",
     "event-single-aperture", "ltf-maskless-cube", "pd-maskless-cube", "pd-maskless-pyramid",
     "pd-orbit", "pva-maskless-panels", "pva-maskless-sphere",
 }  # fmt: skip

@@ -148,6 +148,7 @@ def test_no_pixel_that_is_not_read_out_was_earlier() -> None:
         assert times[left].min() >= last - 0.05
 
 
+@pytest.mark.slow
 def test_jitter_has_the_stated_spread_and_the_mean_its_time() -> None:
     sensor = sensor_of("event-single-aperture", "high-noise")
     detector = replace(sensor.detector, events=4096, timeout_us=1e9, service_us=0.0)

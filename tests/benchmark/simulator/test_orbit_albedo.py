@@ -115,6 +115,7 @@ def test_albedo_moves_the_cubes_estimate_by_up_to_some_tens_of_degrees() -> None
     assert influence.rms_over_bound > 10
 
 
+@pytest.mark.slow
 def test_albedo_hardly_moves_a_thresholded_centroid() -> None:
     """Not at all above 30 % of the peak; above the dark level, in 3 of 100 frames by a little."""
     above_peaks = on_aperture(samples=100, extractor=ThresholdedCentroid(threshold=0.3))
@@ -133,6 +134,7 @@ def test_albedo_moves_a_plain_centroid_by_about_the_bound_where_earth_is_in_the_
     assert influence.share_above_a_tenth < 0.2
 
 
+@pytest.mark.slow
 def test_albedo_moves_the_balance_of_a_quadrant_sensor_by_many_times_its_bound() -> None:
     result = influence("qpd-single-aperture", 200)
     assert 0.4 < result.rms_deg < 1.0

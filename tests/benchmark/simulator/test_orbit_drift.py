@@ -177,6 +177,7 @@ def snell_spot_mm(sun: np.ndarray, assembly: Assembly, focal_mm: float) -> np.nd
     return run * head[:2] / sine + [assembly.offset_x_mm, assembly.offset_y_mm]
 
 
+@pytest.mark.slow
 def test_drift_moves_the_rendered_light_as_far_as_snell_says() -> None:
     """Through what a data set renders: its own scene, centroids of `lit`, with and without drift.
 

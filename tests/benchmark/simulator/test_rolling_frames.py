@@ -89,6 +89,7 @@ def test_a_sensor_that_does_not_turn_sees_what_one_at_rest_sees(plain: bool, rat
     assert sensor.lit(scene).tobytes() == still.lit(scene).tobytes()
 
 
+@pytest.mark.slow
 def test_samples_that_turn_and_samples_at_rest_do_not_touch_each_other() -> None:
     sensor = turning(standard(), row_time_s=ROW_S)
     scene = scene_of(sensor, [(21.0, -13.0), (-5.0, 40.0), (0.0, 3.0)], (20.0, -30.0, 9.0))
@@ -150,6 +151,7 @@ def test_turning_about_a_column_shears_the_spot() -> None:
     assert places == pytest.approx(expected, abs=0.01 * np.ptp(expected))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("direction", [1.0, -1.0])
 def test_turning_along_the_read_out_stretches_or_squeezes_the_spot(direction: float) -> None:
     """Light that moves v pixels a row as the shutter passes is seen 1 / (1 - v) as long."""
