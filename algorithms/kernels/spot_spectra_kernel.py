@@ -156,14 +156,20 @@ def phase_slopes(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def frequency_correlations(spectra: NDArray[np.complex128], out: NDArray[np.complex128]) -> None:
-    """Write the Toeplitz matrices of spectra (R, G, K)'s own correlation to `out` (R, G, K, K).
+def frequency_correlations(spectra: NDArray[np.complex128], out: Floats) -> None:
+    """Write the matrices of spectra (R, G, K)'s own correlation to `out` (R, G, K, K), as real.
 
     A spectrum of real light is continued to the frequencies ``1 - K .. K - 1`` by its conjugate;
-    entry (i, j) is its correlation at the lag i - j. Zero where a spectrum is not finite.
+    entry (i, j) of the matrix T is its correlation at the lag i - j. T is Hermitian and Toeplitz,
+    so that reversing an eigenvector conjugates it: vectors ``(t, r, reversed conjugate of t)`` with
+    ``t = (p + j q) / sqrt(2)`` are as many as real ones (p, r, q), on which T acts as a symmetric
+    real matrix of the same eigenvalues (Cantoni and Butler 1976), which costs a quarter. Zero
+    where a spectrum is not finite.
     """
     rows, kinds, frequencies = spectra.shape
+    half, odd = frequencies // 2, frequencies % 2
     series = np.empty(2 * frequencies - 1, dtype=np.complex128)
+    lags = np.empty(frequencies, dtype=np.complex128)
     for r in range(rows):
         for g in range(kinds):
             out[r, g] = 0.0
@@ -177,9 +183,36 @@ def frequency_correlations(spectra: NDArray[np.complex128], out: NDArray[np.comp
                 total = complex(0.0, 0.0)
                 for k in range(series.size - lag):
                     total += series[k + lag] * series[k].conjugate()
-                for i in range(lag, frequencies):
-                    out[r, g, i, i - lag] = total
-                    out[r, g, i - lag, i] = total.conjugate()
+                lags[lag] = total
+            for i in range(half):
+                for j in range(half):
+                    near = lags[i - j] if i >= j else lags[j - i].conjugate()
+                    far = lags[frequencies - 1 - j - i].conjugate()
+                    out[r, g, i, j] = (near + far).real
+                    out[r, g, i, half + odd + j] = -(near - far).imag
+                    out[r, g, half + odd + i, j] = (near + far).imag
+                    out[r, g, half + odd + i, half + odd + j] = (near - far).real
+                if odd:
+                    middle = math.sqrt(2.0) * lags[half - i].conjugate()
+                    out[r, g, i, half] = out[r, g, half, i] = middle.real
+                    out[r, g, half + 1 + i, half] = out[r, g, half, half + 1 + i] = middle.imag
+            if odd:
+                out[r, g, half, half] = lags[0].real
+
+
+@compiled
+def as_series(vectors: Floats, out: NDArray[np.complex128]) -> None:
+    """Write the complex vectors that (R, G, K) real ones of `frequency_correlations` stand for."""
+    rows, kinds, frequencies = vectors.shape
+    half, odd = frequencies // 2, frequencies % 2
+    for r in range(rows):
+        for g in range(kinds):
+            for i in range(half):
+                value = complex(vectors[r, g, i], vectors[r, g, half + odd + i]) / math.sqrt(2.0)
+                out[r, g, i] = value
+                out[r, g, frequencies - 1 - i] = value.conjugate()
+            if odd:
+                out[r, g, half] = vectors[r, g, half]
 
 
 @compiled

@@ -131,10 +131,12 @@ class EigenAnalysis(SlitLines):
         for size, group in itertools.product(np.unique(last) + 1, range(last.shape[1])):
             rows = np.flatnonzero(last[:, group] + 1 == size)
             part = np.ascontiguousarray(cross[rows, group : group + 1, :size])
-            covariance = np.empty((*part.shape, size), dtype=np.complex128)
+            covariance = np.empty((*part.shape, size))
             spot_spectra_kernel.frequency_correlations(part, covariance)
             # LAPACK takes one matrix at a time, so each profile's result is its own.
-            strongest = np.ascontiguousarray(np.linalg.eigh(covariance)[1][..., -1])
+            vectors = np.ascontiguousarray(np.linalg.eigh(covariance)[1][..., -1])
+            strongest = np.empty(part.shape, dtype=np.complex128)
+            spot_spectra_kernel.as_series(vectors, strongest)
             found = np.empty((len(rows), 1))
             powers = np.ascontiguousarray(spectra.powers[group, :size])
             spot_spectra_kernel.least_projections(strongest, powers, spectra.period, reach, found)
