@@ -156,6 +156,27 @@ def phase_slopes(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
+def _real_form(lags: NDArray[np.complex128], out: Floats) -> None:
+    """Write the real matrix (K, K) of the Hermitian Toeplitz matrix of first column `lags`."""
+    frequencies = lags.size
+    half, odd = frequencies // 2, frequencies % 2
+    for i in range(half):
+        for j in range(half):
+            near = lags[i - j] if i >= j else lags[j - i].conjugate()
+            far = lags[frequencies - 1 - j - i].conjugate()
+            out[i, j] = (near + far).real
+            out[i, half + odd + j] = -(near - far).imag
+            out[half + odd + i, j] = (near + far).imag
+            out[half + odd + i, half + odd + j] = (near - far).real
+        if odd:
+            middle = math.sqrt(2.0) * lags[half - i].conjugate()
+            out[i, half] = out[half, i] = middle.real
+            out[half + 1 + i, half] = out[half, half + 1 + i] = middle.imag
+    if odd:
+        out[half, half] = lags[0].real
+
+
+@compiled
 def frequency_correlations(spectra: NDArray[np.complex128], out: Floats) -> None:
     """Write the matrices of spectra (R, G, K)'s own correlation to `out` (R, G, K, K), as real.
 
@@ -163,41 +184,27 @@ def frequency_correlations(spectra: NDArray[np.complex128], out: Floats) -> None
     entry (i, j) of the matrix T is its correlation at the lag i - j. T is Hermitian and Toeplitz,
     so that reversing an eigenvector conjugates it: vectors ``(t, r, reversed conjugate of t)`` with
     ``t = (p + j q) / sqrt(2)`` are as many as real ones (p, r, q), on which T acts as a symmetric
-    real matrix of the same eigenvalues (Cantoni and Butler 1976), which costs a quarter. Zero
+    real matrix of the same eigenvalues (Cantoni and Butler 1976), which costs half as much. Zero
     where a spectrum is not finite.
     """
     rows, kinds, frequencies = spectra.shape
-    half, odd = frequencies // 2, frequencies % 2
     series = np.empty(2 * frequencies - 1, dtype=np.complex128)
     lags = np.empty(frequencies, dtype=np.complex128)
     for r in range(rows):
         for g in range(kinds):
-            out[r, g] = 0.0
             for k in range(frequencies):
                 value = spectra[r, g, k]
                 series[frequencies - 1 + k] = value
                 series[frequencies - 1 - k] = value.conjugate()
             if not np.isfinite(series).all():
+                out[r, g] = 0.0
                 continue
             for lag in range(frequencies):
                 total = complex(0.0, 0.0)
                 for k in range(series.size - lag):
                     total += series[k + lag] * series[k].conjugate()
                 lags[lag] = total
-            for i in range(half):
-                for j in range(half):
-                    near = lags[i - j] if i >= j else lags[j - i].conjugate()
-                    far = lags[frequencies - 1 - j - i].conjugate()
-                    out[r, g, i, j] = (near + far).real
-                    out[r, g, i, half + odd + j] = -(near - far).imag
-                    out[r, g, half + odd + i, j] = (near + far).imag
-                    out[r, g, half + odd + i, half + odd + j] = (near - far).real
-                if odd:
-                    middle = math.sqrt(2.0) * lags[half - i].conjugate()
-                    out[r, g, i, half] = out[r, g, half, i] = middle.real
-                    out[r, g, half + 1 + i, half] = out[r, g, half, half + 1 + i] = middle.imag
-            if odd:
-                out[r, g, half, half] = lags[0].real
+            _real_form(lags, out[r, g])
 
 
 @compiled
