@@ -95,17 +95,20 @@ def _is_peak(ballot: Votes, at: int) -> bool:
 
 
 @compiled
-def _rank(ballot: Votes, touched: Indices, best: Indices, votes: Indices) -> int:
+def _rank(ballot: Votes, touched: Indices, arounds: Votes, best: Indices, votes: Indices) -> int:
     """Write the peaks of the ballot with most votes around them to `best`; return how many.
 
-    Those with less than a third of the most are chance pairs.
+    Those with less than a third of the most are chance pairs. `arounds` is room for the votes
+    around each cell touched: the ballot is larger than a cache.
     """
     most = 0
-    for at in touched:
-        most = max(most, _around(ballot, at))
+    for place in range(touched.size):
+        arounds[place] = _around(ballot, touched[place])
+        most = max(most, arounds[place])
     kept = 0
-    for at in touched:
-        around = _around(ballot, at)
+    for number in range(touched.size):
+        at = touched[number]
+        around = arounds[number]
         full = kept == best.size
         if around < max(most // 3, 1) or (full and around <= votes[kept - 1]):
             continue
@@ -166,8 +169,11 @@ def _fit(  # noqa: PLR0917 - Numba takes no keyword-only ones
         if matched == 0:
             break
         if turn < _ROUNDS - 1:
+            before_x, before_y = x, y
             x = sum_x / matched
             y = sum_y / matched
+            if turn > 0 and x == before_x and y == before_y:
+                break  # another round would find the same
     return x, y, quality, matched
 
 
@@ -282,6 +288,7 @@ def match(  # noqa: PLR0917 - Numba takes no keyword-only ones
     high = height + low_y - apertures[:, 1].min()
     ballot = np.zeros((int(high / tolerance) + 4, int(wide / tolerance) + 4), dtype=np.int32)
     touched = np.empty(max(counts.max(), 1) * apertures.shape[0], dtype=np.int64)
+    arounds = np.empty(touched.size, dtype=np.int32)
     best = np.empty(_CANDIDATES, dtype=np.int64)
     votes = np.empty(_CANDIDATES, dtype=np.int64)
     starts = np.empty((_CANDIDATES, 2))
@@ -292,7 +299,7 @@ def match(  # noqa: PLR0917 - Numba takes no keyword-only ones
             continue
         seen = spots[k, : counts[k]]
         cells = _cast(seen, apertures, tolerance, ballot, touched)
-        candidates = _rank(ballot, touched[:cells], best, votes)
+        candidates = _rank(ballot, touched[:cells], arounds, best, votes)
         for at in touched[:cells]:
             ballot.ravel()[at] = 0
         for c in range(candidates):
