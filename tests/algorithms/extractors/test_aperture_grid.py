@@ -88,12 +88,13 @@ def test_candidates_are_the_peaks_with_most_votes_around_them_a_third_of_the_mos
     for place, votes in peaks.items():
         ballot[place] = votes
     touched = np.array([i * 41 + j for i, j in peaks], dtype=np.int64)
+    room = np.empty(touched.size, dtype=np.int32)
     best, votes = np.empty(3, dtype=np.int64), np.empty(3, dtype=np.int64)
-    assert kernel._rank(ballot, touched, best, votes) == 3
+    assert kernel._rank(ballot, touched, room, best, votes) == 3
     assert votes.tolist() == [9, 6, 4]
     assert best.tolist() == [5 * 41 + 5, 12 * 41 + 33, 24 * 41 + 24]
     best, votes = np.empty(9, dtype=np.int64), np.empty(9, dtype=np.int64)
-    assert kernel._rank(ballot, touched, best, votes) == 4  # 3 is a third of 9, 2 is less
+    assert kernel._rank(ballot, touched, room, best, votes) == 4  # 3 is a third of 9, 2 is less
     assert votes[:4].tolist() == [9, 6, 4, 3]
 
 
