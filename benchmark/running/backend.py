@@ -16,6 +16,7 @@ from types import MappingProxyType
 
 from joblib import Parallel, delayed, parallel_config
 
+from algorithms.extractors.frames.multi_spot.pattern_memory import shared_patterns
 from benchmark.running.planned import FollowUp
 from benchmark.running.task import Task, TaskResult, measure
 
@@ -110,10 +111,11 @@ def _place(task: Task) -> tuple[int, str]:
 def _measured(bundle: Sequence[Task], follow_up: FollowUp | None) -> Iterator[TaskResult]:
     """Measure a bundle, then what follows from it."""
     first = []
-    for task in bundle:
-        first.append(measure(task))
-        yield first[-1]
-    yield from map(measure, follow_up.tasks(first) if follow_up else ())
+    with shared_patterns():
+        for task in bundle:
+            first.append(measure(task))
+            yield first[-1]
+        yield from map(measure, follow_up.tasks(first) if follow_up else ())
 
 
 def _measure_for(

@@ -81,6 +81,8 @@ def generated(
         seen_by = preset.as_unit(unit) if unit else preset
         wanted = SPLITS if not unit else ("calibration", "test")
         splits = {split: seen_by.generate(condition, split) for split in wanted}
+        for samples in splits.values():  # methods share them, and what they find in them
+            np.asarray(samples.observations).flags.writeable = False
         if unit:
             _kept[place] = _of_another_unit(preset, condition, splits, all_observable)
         else:  # its bound, which scores need, tells what is observable

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.contract import Floats, SensorGeometry, UnsuitableDesignError
+from algorithms.extractors.frames.multi_spot.pattern_memory import found_once
 from algorithms.inputs import require_positive
 from algorithms.row_arithmetic import medians
 
@@ -241,14 +242,31 @@ def find_pattern(  # noqa: PLR0917 - the parameters in their order
 
     The spots are centroids of the light above the threshold. Each frame is read by itself; in a
     `sequence`, one that leaves several displacements open has that which is within a quarter of
-    the least distance of two apertures from the frame before's.
+    the least distance of two apertures from the frame before's. Not to be written to: it may be
+    another method's too (`pattern_memory.shared_patterns`).
     """
+    limits = blur_px, tolerance_px, faulty_lines, sequence
+    return found_once(
+        frames,
+        (apertures_px, limits, levels.threshold.tobytes()),
+        lambda: _find_pattern(frames, levels, apertures_px, limits),
+    )
+
+
+def _find_pattern(
+    frames: NDArray[Any],
+    levels: Levels,
+    apertures_px: Apertures,
+    limits: tuple[float, float, int, bool],
+) -> Pattern:
+    """`find_pattern` without remembering; `limits` are its parameters from `blur_px` on."""
     from algorithms.extractors.frames.multi_spot import (  # noqa: PLC0415 - Numba on first use
         aperture_grid_kernel,
         evidence_kernel,
         spots_kernel,
     )
 
+    blur_px, tolerance_px, faulty_lines, sequence = limits
     count, height, width = frames.shape
     known = lattice(apertures_px)
     widths = known.apertures[:, 2]
