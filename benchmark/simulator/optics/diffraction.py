@@ -63,6 +63,10 @@ SUNLIT_SILICON = Spectrum(
 )
 
 
+#: Places, half heights, weights and fields of what `strips` cuts an opening into.
+Strips = tuple[Floats, Floats, Floats, NDArray[np.complex128]]
+
+
 def propagation(mask: Mask, height_mm: float, spectrum: Spectrum) -> dict[str, Any]:
     """How light gets from a mask to a detector `height_mm` below, for a dataset's ``regime``.
 
@@ -100,6 +104,7 @@ def round_intensity(
     points: int | None = None,
     apart: float = 0.0,
     blur: float = 0.0,
+    known: Strips | None = None,
 ) -> Floats:
     """Intensity behind a round aperture, (R, T), in units of the open light.
 
@@ -127,6 +132,8 @@ def round_intensity(
         Distance of the two rims' centres in units of the radius; from 2 on it is dark.
     blur
         ``sqrt(lambda t / 2)`` in units of the radius, t the way of the light through the foil.
+    known
+        `strips` of the same arguments, where they are known.
     """
     out = np.zeros((len(radial), len(tangential)))
     if apart >= 2.0:
@@ -135,7 +142,8 @@ def round_intensity(
         squared_sums,
     )
 
-    places, _, _, field = _strips((radial, tangential), numbers, points, (apart, blur))
+    found = known or strips((radial, tangential), numbers, points, (apart, blur))
+    places, _, _, field = found
     parts = np.stack([field.real, field.imag])
     squared_sums(out, np.ascontiguousarray(radial), places, numbers[0], parts)
     return out
@@ -149,12 +157,13 @@ def round_skew(
     *,
     apart: float = 0.0,
     blur: float = 0.0,
+    known: Strips | None = None,
 ) -> Floats:
     """Return how `round_intensity` changes to first order, (R, T), odd along `radial`.
 
     Parameters
     ----------
-    radial, tangential, numbers, apart, blur
+    radial, tangential, numbers, apart, blur, known
         As of `round_intensity`.
     changes
         Of the phase's cubic term ``-pi (N_r A rho_r^3 + N_t B rho_r rho_t^2)``, distances in
@@ -170,7 +179,8 @@ def round_skew(
     if apart >= 2.0:
         return out
     along, across = numbers
-    places, heights, weights, field = _strips((radial, tangential), numbers, None, (apart, blur))
+    found = known or strips((radial, tangential), numbers, None, (apart, blur))
+    places, heights, weights, field = found
     # with the strip over the middle, where one side's depth ends and the other's begins
     root, unit = math.sqrt(2.0 * across), math.sqrt(along / 2.0)
     heights = np.append(heights, math.sqrt(1.0 - apart * apart / 4.0))[:, None]
@@ -190,13 +200,25 @@ def round_skew(
     return out
 
 
-def _strips(
+def strips(
     places: tuple[Floats, Floats],
     numbers: tuple[float, float],
     points: int | None,
     rims: tuple[float, float],
-) -> tuple[Floats, Floats, Floats, NDArray[np.complex128]]:
-    """Return places, half heights and weights (J,) of strips and their fields (J, T)."""
+) -> Strips:
+    """Cut a round opening into strips across the plane of incidence, each with its field.
+
+    Parameters
+    ----------
+    places, numbers, points
+        As of `round_intensity`: (R,) and (T,) positions, Fresnel numbers, points of the sum.
+    rims
+        `apart` and `blur` of `round_intensity`; apart below 2.
+
+    Returns
+    -------
+    (J,) places, half heights and weights of the strips, and (J, T) their fields.
+    """
     radial, tangential = places
     along, across = numbers
     apart, blur = rims

@@ -18,6 +18,7 @@ from benchmark.simulator.optics.diffraction import (
     fresnel,
     round_intensity,
     round_skew,
+    strips,
 )
 from benchmark.simulator.optics.plates import CoverGlass
 from benchmark.simulator.optics.table_grids import both_sides, slopes, spread, turned_cell
@@ -217,7 +218,7 @@ class RoundPattern:
 
     def _table(self, sine: float, reach: int) -> Floats:
         shifts, weights, margin = self._sun_on_table(sine)
-        light = self._quadrant(sine, reach + margin + 1, self._light)
+        light, _ = self._quadrants(sine, reach + margin + 1, skewed=False)
         return spread(both_sides(light), shifts, weights, margin)
 
     def filled(self, reach: int) -> Floats:
@@ -230,17 +231,17 @@ class RoundPattern:
         sines = [math.sin(math.radians(self.widest_deg) * node / last) for node in range(last + 1)]
         suns = [self._sun_on_table(sine) for sine in sines]
         size = reach + max(margin for _, _, margin in suns) + 1
-        lights = np.array([self._quadrant(sine, size, self._light) for sine in sines])
+        lights, skews = np.array([self._quadrants(sine, size) for sine in sines]).swapaxes(0, 1)
         nodes = slopes(lights, 0)
         out = np.empty((last + 1, 2 * reach + 1, reach + 1))
         for node, (shifts, weights, margin) in enumerate(suns):
             part = reach + margin + 1
-            rest = self._rest(sines[node], lights[node], nodes[node])
+            rest = self._rest(sines[node], lights[node], nodes[node], skews[node])
             both = both_sides(lights[node, :part, :part], rest[:part, :part])
             out[node] = spread(both, shifts, weights, margin)
         return out
 
-    def _rest(self, sine: float, light: Floats, change: Floats) -> Floats:
+    def _rest(self, sine: float, light: Floats, change: Floats, whole: Floats) -> Floats:
         """(S, S) what is left of first order, of light and its change a node; odd along."""
         if sine == 0.0:
             return np.zeros(light.shape)
@@ -256,26 +257,10 @@ class RoundPattern:
         place = x / self.radius_mm
         waves = number * place * place / fading(number)
         turned = math.pi * number * self._changes(sine)[0] * place**3 / _TURNED
-        whole = self._quadrant(sine, len(light), self._skew)
         rest = np.exp(-turned * turned) * (whole - np.exp(-waves * waves) * done)
         # odd: the finite differences of `slopes` leave a little in the middle
         rest[0] = 0.0
         return np.asarray(rest)
-
-    def _light(
-        self, places: Pair, numbers: tuple[float, float], rims: tuple[float, float], _: float
-    ) -> Floats:
-        return round_intensity(*places, numbers, apart=rims[0], blur=rims[1])
-
-    def _skew(
-        self, places: Pair, numbers: tuple[float, float], rims: tuple[float, float], sine: float
-    ) -> Floats:
-        third, beside, more, other = self._changes(sine)
-        grown = 1.0 + self.growth
-        # rims that lie upon each other cut alike
-        part = 1.0 - 1.0 / (1.0 + math.pi * rims[0] / rims[1]) if rims[1] > 0.0 else 0.0
-        changes = third * grown, beside * grown, part * more, part * other
-        return round_skew(*places, numbers, changes, apart=rims[0], blur=rims[1])
 
     def _changes(self, sine: float) -> tuple[float, float, float, float]:
         """Return A and B of `seen`, and by how much J differs at the lens' arcs."""
@@ -293,25 +278,41 @@ class RoundPattern:
             -foil[2] / across,
         )
 
-    def _quadrant(self, sine: float, size: int, light: Pattern) -> Floats:
-        """(S, S) light of a point, of all wavelengths, in the tables' unit and steps."""
+    def _quadrants(self, sine: float, size: int, *, skewed: bool = True) -> tuple[Floats, Floats]:
+        """(S, S) light of a point, of all wavelengths, in the tables' unit and steps, and its skew.
+
+        The skew is what the phase's cubic term and the rims' own depths change, to first order; 0
+        where it is not asked for, and at normal incidence.
+        """
         steps, unit = self.scales(np.array([sine]))
         grid = np.arange(size) * steps.T
-        quadrant = np.zeros((size, size))
-        radius = self.radius_mm * (1.0 + self.growth)
+        light, skew = np.zeros((2, size, size))
+        grown = 1.0 + self.growth
+        radius = self.radius_mm * grown
         through = self.thickness_mm / math.sqrt(1.0 - sine * sine)
         apart = through * sine / radius
+        if apart >= 2.0:
+            return light, skew
+        third, beside, more, other = self._changes(sine)
         for wavelength, weight in zip(
             self.spectrum.wavelengths_nm, self.spectrum.weights, strict=True
         ):
             # positions in units of the radius: cosines times J over a
             wave = wavelength * 1e-6
-            along, across = self.numbers(np.array([sine]), wave)[0] * (1.0 + self.growth) ** 2
+            along, across = self.numbers(np.array([sine]), wave)[0] * grown**2
             turn = radius / wave
             places = grid[0] * turn / along, grid[1] * turn / across
             blur = math.sqrt(wave * through / 2.0) / radius
-            quadrant += weight * light(places, (along, across), (apart, blur), sine)
-        return np.asarray(quadrant / unit[0])
+            numbers, known = (along, across), strips(places, (along, across), None, (apart, blur))
+            light += weight * round_intensity(*places, numbers, apart=apart, blur=blur, known=known)
+            if skewed and sine > 0.0:
+                # rims that lie upon each other cut alike
+                part = 1.0 - 1.0 / (1.0 + math.pi * apart / blur) if blur > 0.0 else 0.0
+                changes = third * grown, beside * grown, part * more, part * other
+                skew += weight * round_skew(
+                    *places, numbers, changes, apart=apart, blur=blur, known=known
+                )
+        return light / unit[0], skew / unit[0]
 
     def _sun_on_table(self, sine: float) -> tuple[Floats, Floats, int]:
         """Return `_spread` in steps of the table, and by how many it reaches beyond."""
