@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import ClassVar, Self
 
@@ -17,13 +16,9 @@ from algorithms.contract import (
     SensorGeometry,
 )
 from algorithms.extractors.frames.matched import require_one_spot
+from algorithms.extractors.frames.one_light import longest_px_of
 from algorithms.inputs import as_frames, require_positive
 from algorithms.measurement import Measurement
-
-#: The middle of silicon's sunlight; the steepest rays' tangent that spots are expected of.
-_MIDDLE_MM, _STEEPEST = 6e-4, 2.5
-#: Half axes that are allowed over those of the design.
-_ROOM = 1.15
 
 
 @dataclass(frozen=True)
@@ -115,7 +110,7 @@ class MirrorRegistration(Extractor):
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
         """Return the estimator; UnsuitableDesignError for designs without a single spot."""
         require_one_spot(geometry, cls.about.name)
-        return cls(_longest_px(geometry))
+        return cls(longest_px_of(geometry))
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Centres (N, 2) in frames (N, H, W); ValueError on wrong input."""
@@ -131,24 +126,3 @@ class MirrorRegistration(Extractor):
         from algorithms.extractors.frames.registration import register  # noqa: PLC0415 - Numba
 
         return register(observations, bad, self.longest_px)
-
-
-def _longest_px(geometry: SensorGeometry) -> float | None:
-    """Longest half axis of a spot in the field's corner; None where the design does not tell.
-
-    Of the shadow's second moments, or the far pattern's where that is larger, a seventh more.
-    """
-    width, height, pitch = (
-        geometry.aperture_width_mm,
-        geometry.focal_length_mm,
-        geometry.pixel_pitch_mm,
-    )
-    field, shape = geometry.half_fov_deg, geometry.aperture_shape
-    if width is None or height is None or pitch is None or field is None or shape is None:
-        return None
-    shadow = width / (2.0 if shape == "round" else math.sqrt(3.0))
-    # where a square field's corner lands, and how its spots are drawn out there
-    corner = min(math.sqrt(2.0) * math.tan(math.radians(field)), _STEEPEST)
-    drawn_out = height * (1.0 + corner**2) ** 1.5
-    far = 0.64 * _MIDDLE_MM * drawn_out / width
-    return float(_ROOM * (shadow**4 + far**4) ** 0.25 / pitch + 0.5)

@@ -26,6 +26,7 @@ from __future__ import annotations
 
 import threading
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -45,8 +46,10 @@ _CLUSTERS, _ALIKE = 0.02, 0.0004
 #: the spot is not symmetric; more, over the high outline's area, where few pixels tell.
 _SCATTER_GHOST, _SCATTER, _GHOST_FEW, _SCATTER_FEW = 1.8, 3.5, 100.0, 150.0
 #: The outlines of one spot are alike at all heights: largest ratio of the squared ratios of their
-#: extents, more by 1 over the area and by the noise; px by which the extents may differ.
-_UNLIKE, _UNLIKE_FEW, _UNLIKE_NOISE, _UNLIKE_PX, _UNLIKE_NOISE_PX = 1.26, 5.0, 1.5, 0.42, 3.0
+#: extents, more by 1 over the area, by the cube of that, as few pixels have the outline of their
+#: grid, and by the noise; px by which the extents may differ.
+_UNLIKE, _UNLIKE_FEW, _UNLIKE_GRID, _UNLIKE_NOISE = 1.26, 5.0, 300.0, 1.5
+_UNLIKE_PX, _UNLIKE_NOISE_PX = 0.42, 3.0
 #: Area of an ellipse with an outline's second moments over its own: 1.05 for a square.
 _WAIST, _WAIST_FEW, _WAIST_NOISE = 1.065, 2.0, 0.8
 #: Pixels of a sharp high outline that tell its shape; over the low one's, of what is but a top
@@ -59,6 +62,22 @@ _ASTRAY, _ASTRAY_PX = 0.25, 0.75
 #: Columns that `mirror_shape_kernel.shapes` writes.
 _SHAPE = 13
 _KEPT = threading.local()
+
+
+class Registered(NamedTuple):
+    """What is found of frames (N, H, W), and how their pixels scatter.
+
+    Attributes
+    ----------
+    found
+        Centres, covariances and doubts.
+    noise
+        (N, 2) variance of a dark pixel, and what a unit of light adds to it; NaN where nothing was
+        found to tell it by.
+    """
+
+    found: Measurement
+    noise: Floats
 
 
 def register(
@@ -98,6 +117,13 @@ def register(
     >>> found.features.round(1), found.deviations.round(3), found.doubts
     (array([[21.3, 18.8]]), array([[0.003, 0.003]]), array([0]))
     """
+    return registered(observations, bad, longest_px).found
+
+
+def registered(
+    observations: ArrayLike, bad: ArrayLike | None = None, longest_px: float | None = None
+) -> Registered:
+    """Register as `register` does, and tell the noise of each frame too."""
     from algorithms.extractors.frames import mirror_search_kernel as search  # noqa: PLC0415 - Numba
     from algorithms.kernels import moments  # noqa: PLC0415 - Numba, at first use
 
@@ -113,8 +139,9 @@ def register(
         np.full((count, 2, 2), np.nan),
         np.full(count, int(Doubt.NO_SPOT), dtype=np.int64),
     )
+    result = Registered(found, np.full((count, 2), np.nan))
     if min(height, width) < 5:
-        return found
+        return result
     lights = np.empty((count, search.FOUND))
     unusable = np.empty(count, dtype=np.bool_)
     moments.unusable(frames, frames.dtype.kind == "f", unusable)
@@ -124,8 +151,8 @@ def register(
     found.doubts[why == search.EDGE] = int(Doubt.CUT)
     seen = np.flatnonzero(why == 0.0)
     if len(seen):
-        _register_seen(frames, seen, lights[seen], mask, longest_px, found)
-    return found
+        _register_seen(frames, seen, lights[seen], mask, longest_px, result)
+    return result
 
 
 def _register_seen(  # noqa: PLR0917 - what is known of the frames
@@ -134,9 +161,9 @@ def _register_seen(  # noqa: PLR0917 - what is known of the frames
     lights: Floats,
     mask: NDArray[np.bool_],
     longest_px: float | None,
-    found: Measurement,
+    result: Registered,
 ) -> None:
-    """Write centres, covariances and doubts of the frames `seen`, a chunk after the other."""
+    """Write centres, covariances, doubts and noise of the frames `seen`, chunk by chunk."""
     n = len(seen)
     lengths = _lengths(lights, *frames.shape[1:])
     step = max(1, min(n, int(_CHUNK / np.median(lengths))))
@@ -163,6 +190,9 @@ def _register_seen(  # noqa: PLR0917 - what is known of the frames
     scatter = shapes[:, 7]
     covariance = states[:, [4, 6, 6, 5]] * scatter[:, None]
     centres[refused], covariance[refused] = np.nan, np.nan
+    found = result.found
+    peak = lights[:, 6]
+    result.noise[seen] = np.column_stack([states[:, 0] * peak**2, states[:, 1] * peak])
     found.features[seen] = centres
     found.covariance[seen] = covariance.reshape(n, 2, 2)
     found.doubts[seen] = doubts
@@ -292,7 +322,8 @@ def _unlike(shapes: Floats, noise: Floats) -> NDArray[np.bool_]:
             (wide, narrow, area > 0.0),
             (sharp_wide, sharp_narrow, (area >= _SHARP) & (area < _TOP * base)),
         ):
-            unlike = one > (_UNLIKE + _UNLIKE_FEW / area + _UNLIKE_NOISE * noise) * other
+            most = _UNLIKE + _UNLIKE_FEW / area + _UNLIKE_GRID / area**3 + _UNLIKE_NOISE * noise
+            unlike = one > most * other
             apart = 2.0 * np.sqrt(minor) * (np.sqrt(one) - np.sqrt(other))
             several |= tells & unlike & (apart > _UNLIKE_PX + _UNLIKE_NOISE_PX * noise)
     return np.asarray(several)

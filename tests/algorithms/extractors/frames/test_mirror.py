@@ -94,7 +94,10 @@ def test_every_point_symmetric_spot_is_found_at_its_bound(shape):
 def test_an_ellipse_is_found_where_a_round_template_fails():
     frames, centres, _ = spots(ellipse, 30, 32, margin=28.0)
     assert rms(MirrorRegistration().extract(frames), centres) < 0.01
-    assert rms(MatchedProfile().extract(frames), centres) > 0.1
+    round_one = MatchedProfile().extract(frames)
+    answered = np.isfinite(round_one[:, 0])  # half a pixel off is no answer
+    assert answered.sum() > 10
+    assert rms(round_one[answered], centres[answered]) > 0.1
 
 
 @pytest.mark.parametrize("shape", [disc, ellipse, square, gaussian])
