@@ -18,6 +18,7 @@ from algorithms.contract import (
     UnsuitableDesignError,
 )
 from algorithms.extractors.frames.one_light import (
+    Judged,
     Light,
     frames_to_measure,
     judge,
@@ -249,7 +250,7 @@ class GaussianFit(Extractor):
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Centres (N, 2) in frames (N, H, W); ValueError on wrong input."""
-        return self.measure(as_frames(observations)).features
+        return self._answers(as_frames(observations))[0]
 
     def measure(self, observations: ArrayLike, bad: ArrayLike | None = None) -> Measurement:
         """Centres, covariances and doubts of frames (N, H, W) or of one.
@@ -260,18 +261,27 @@ class GaussianFit(Extractor):
         from algorithms.extractors.frames import gaussian_kernel  # noqa: PLC0415 - Numba, at first use
 
         frames = frames_to_measure(observations, bad, self.about.name)
+        centres, fitted, judged = self._answers(frames, bad)
+        covariance = np.empty((len(frames), 2, 2))
+        nothing = np.isnan(centres[:, :1])
+        gaussian_kernel.covariances(
+            fitted, np.where(nothing, np.nan, judged.noise), *frames.shape[1:], covariance
+        )
+        return Measurement(centres, covariance, judged.doubts)
+
+    def _answers(
+        self, frames: Frames, bad: ArrayLike | None = None
+    ) -> tuple[Floats, Floats, Judged]:
+        """Centres (N, 2), NaN for none, the fits (N, 6), and what is to be said of them."""
         fitted = self._fitted(frames)
-        count, height, width = frames.shape
+        _, height, width = frames.shape
         light, x, y, s_x, s_y, _ = fitted.T
         found = (light > 0) & (s_x < width) & (s_y < height)
         found &= (x > -0.5) & (x < width - 0.5) & (y > -0.5) & (y < height - 0.5)
         centres = np.where(found[:, None], fitted[:, 1:3], np.nan)
-        doubts, noise = judge(frames, centres, self.light, self.longest_px, bad)
-        nothing = refused(doubts)
-        centres[nothing], noise[nothing] = np.nan, np.nan
-        covariance = np.empty((count, 2, 2))
-        gaussian_kernel.covariances(fitted, noise, height, width, covariance)
-        return Measurement(centres, covariance, doubts)
+        judged = judge(frames, centres, self.light, self.longest_px, bad)
+        centres[refused(judged.doubts)] = np.nan
+        return centres, fitted, judged
 
     def _fitted(self, frames: Frames) -> Floats:
         """Parameters (N, 6) of the Gaussians; NaN rows where there is none."""

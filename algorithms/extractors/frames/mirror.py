@@ -52,7 +52,8 @@ class MirrorRegistration(Extractor):
     is orthogonal to both: nothing of the Cramer-Rao bound is lost.
 
     The weights are one over the variance, of the border's pixels and of what neighbouring
-    departures differ by where there is light. The slopes that weigh are smoothed as long as this
+    departures differ by where there is light, by the mean light around: weights as sharp as a rim
+    would turn what slopes miss of it into a share of d. The slopes that weigh are smoothed as long as this
     lowers the variance, and the products with those that predict are freed of the noise both have
     in common. The background's odd part, linear and where it shows cubic, is fitted around the
     spot. Pairs that depart by 4.5 deviations are left out, and the worse pixel of the two becomes
@@ -96,6 +97,7 @@ class MirrorRegistration(Extractor):
         name="mirror",
         taxonomy="None",
         origin="ours",
+        version=2,
         observation=Observation.FRAMES,
         kind=FeatureKind.SPOT,
     )
