@@ -137,8 +137,8 @@ class MatchedProfile(Extractor):
     def measure(self, observations: ArrayLike, bad: ArrayLike | None = None) -> Measurement:
         """Centres, covariances and doubts of frames (N, H, W) or of one.
 
-        The covariance is that of the step, with the variances that the rings show. Bad pixels are
-        replaced by their neighbours.
+        The covariance is that of the step, with the squares of what pixels depart from the profile
+        by for their variances. Bad pixels are replaced by their neighbours.
         """
         from algorithms.extractors.frames import radial_kernel  # noqa: PLC0415 - Numba, at first use
         from algorithms.kernels import moments  # noqa: PLC0415 - Numba, at first use
@@ -264,9 +264,9 @@ class GaussianFit(Extractor):
         centres, fitted, judged = self._answers(frames, bad)
         covariance = np.empty((len(frames), 2, 2))
         nothing = np.isnan(centres[:, :1])
-        gaussian_kernel.covariances(
-            fitted, np.where(nothing, np.nan, judged.noise), *frames.shape[1:], covariance
-        )
+        noise = np.where(nothing, np.nan, judged.noise)
+        _, height, width = frames.shape
+        gaussian_kernel.covariances(fitted, noise, height, width, covariance)
         return Measurement(centres, covariance, judged.doubts)
 
     def _answers(

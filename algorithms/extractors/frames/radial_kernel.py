@@ -186,28 +186,9 @@ def _running_sums(sums: Floats, rings: int, running: Floats) -> None:
 
 
 @compiled
-def _share(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    sums: Floats,
-    rings: int,
-    weights: Floats,
-    slopes: Floats,
-    levels: Floats,
-    noise: float,
-    gain: float,
-) -> float:
-    """Variance of the weighted sum of departures over what their slopes say of it."""
-    scatter, slant = 0.0, 0.0
-    for q in range(rings):
-        w = sums[q, 0] * weights[q]
-        scatter += w * weights[q] * (noise + gain * max(levels[q], 0.0))
-        slant += w * slopes[_NEAR + q]
-    return float(scatter / max(slant, 1e-300))
-
-
-@compiled
 def _profile(  # noqa: PLR0917 - the formulas in their order
     sums: Floats, running: Floats, rings: int, ring: float, noise: float, lines: Floats, out: Floats
-) -> tuple[float, float]:
+) -> float:
     """Light against distance, ring by ring, and what a pixel's departure from it counts.
 
     `noise` is the variance of a dark pixel; a lit one has more in proportion to its light, by
@@ -215,8 +196,7 @@ def _profile(  # noqa: PLR0917 - the formulas in their order
     space. A row of `out` holds ``p_0, p_1, p_2`` of the light ``p_0 + p_1 r + p_2 r^2``, the
     weight of a pixel's departure, weight times slope, and the mean c and s of the pixels near.
 
-    Return the square of what light within a ring scatters by, over the brightest ring's, and the
-    variance of the weighted sum of departures over what their slopes say of it.
+    Return the square of what light within a ring scatters by, over the brightest ring's.
     """
     wide = 2 * _NEAR + 1
     slopes, means, levels, spreads, shares = lines[0], lines[1], lines[2], lines[3], lines[6]
@@ -274,8 +254,7 @@ def _profile(  # noqa: PLR0917 - the formulas in their order
         at[4] = weights[q] * slope
         at[5] = (c_[wide + q] - c_[q]) * inverse
         at[6] = (s_[wide + q] - s_[q]) * inverse
-    share = _share(sums, rings, weights, slopes, levels, noise, gain)
-    return gain / max(brightest, 1e-300), share
+    return gain / max(brightest, 1e-300)
 
 
 @compiled
@@ -284,7 +263,7 @@ def _step(
 ) -> tuple[float, float, bool]:
     """One Gauss-Newton step of the centre to where the profile fits, and whether there is one.
 
-    The inverse of the normal matrix goes to `sure`: xx, yy, xy.
+    Its covariance goes to `sure`: xx, yy, xy.
     """
     c_ = pixels[0, :count]
     s_ = pixels[1, :count]
@@ -295,12 +274,17 @@ def _step(
     a_yy = 0.0
     b_x = 0.0
     b_y = 0.0
+    v_xx, v_xy, v_yy = 0.0, 0.0, 0.0
     for p in range(count):
         c, s, r = c_[p], s_[p], r_[p]
         at = profile[np.uint32(r * scale)]
         departure = at[3] * (u_[p] - at[0] - (at[1] + at[2] * r) * r)
         b_x -= departure * c
         b_y -= departure * s
+        square = departure * departure
+        v_xx += square * c * c
+        v_xy += square * c * s
+        v_yy += square * s * s
         # The profile takes up what the pixels near have in common.
         a_xx += at[4] * c * (c - at[5])
         a_xy += at[4] * (c * s - 0.5 * (c * at[6] + s * at[5]))
@@ -308,7 +292,10 @@ def _step(
     determinant = a_xx * a_yy - a_xy * a_xy
     if not determinant > 1e-12 * a_xx * a_yy:
         return 0.0, 0.0, False
-    sure[0], sure[1], sure[2] = a_yy / determinant, a_xx / determinant, -a_xy / determinant
+    a, b, d = a_yy / determinant, -a_xy / determinant, a_xx / determinant
+    sure[0] = a * a * v_xx + 2.0 * a * b * v_xy + b * b * v_yy
+    sure[1] = b * b * v_xx + 2.0 * b * d * v_xy + d * d * v_yy
+    sure[2] = a * b * v_xx + (a * d + b * b) * v_xy + b * d * v_yy
     return (
         (a_yy * b_x - a_xy * b_y) / determinant,
         (a_xx * b_y - a_xy * b_x) / determinant,
@@ -362,13 +349,13 @@ def matched_centres(  # noqa: PLR0917 - Numba takes no keyword-only ones
         scale = 1.0 / ring
         rings = int(reach * scale) + 2
         found = True
-        uneven, share = np.inf, 1.0
+        uneven = np.inf
         for _ in range(steps):
             sums[:rings] = 0.0
             near = _pixels_near(frame, x, y, base, reach, pixels)
             _ring_sums(pixels, near, scale, sums)
             _running_sums(sums, rings, running)
-            uneven, share = _profile(sums, running, rings, ring, noise, lines, profile)
+            uneven = _profile(sums, running, rings, ring, noise, lines, profile)
             move_x, move_y, found = _step(pixels, near, scale, profile, sure)
             found = found and abs(move_x) <= radius and abs(move_y) <= radius
             if not found:
@@ -378,6 +365,5 @@ def matched_centres(  # noqa: PLR0917 - Numba takes no keyword-only ones
         if found:
             out[k, 0] = x
             out[k, 1] = y
-            for m in range(3):
-                out[k, 2 + m] = share * sure[m]
+            out[k, 2:5] = sure
             out[k, 5] = uneven if math.pi * radius * radius >= _ENOUGH else np.inf

@@ -126,3 +126,14 @@ def test_parameters_that_are_none_are_refused():
         GaussianFit(light="all")
     with pytest.raises(ValueError, match="matched-profile: longest_px must be positive"):
         MatchedProfile(longest_px=-1.0)
+
+
+@pytest.mark.parametrize("name", ["gaussian-fit", "matched-profile", "mirror"])
+def test_the_covariance_is_about_that_of_the_errors(name):
+    """Of 300 frames, two coordinates' normalised errors squared average 2 within a third."""
+    frames, centres = scenes("one", 300, np.random.default_rng(775))
+    found = METHODS[name].measure(frames)
+    errors = found.features - centres
+    squares = np.einsum("ni,nij,nj->n", errors, np.linalg.inv(found.covariance), errors)
+    assert 1.4 < squares.mean() < 2.7
+    np.testing.assert_array_equal(found.features, METHODS[name].extract(frames))
