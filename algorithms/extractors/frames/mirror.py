@@ -56,8 +56,8 @@ class MirrorRegistration(Extractor):
     would turn what slopes miss of it into a share of d. The slopes that weigh are smoothed as long
     as this lowers the variance, and the products with those that predict are freed of the noise
     both have in common. The background's odd part, linear and where it shows cubic, is fitted
-    around the spot. Pairs that depart by 4.5 deviations are left out, and the worse pixel of the two
-    becomes the other one.
+    around the spot. Pairs that depart by 4.5 deviations are left out, and the worse pixel of the
+    two becomes the other one.
 
     `measure` gives the covariance of that fit, with what the background's slopes are uncertain by,
     times the mean square of the departures over what was expected. Outlines of one spot are alike
