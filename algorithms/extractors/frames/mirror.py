@@ -61,8 +61,10 @@ class MirrorRegistration(Extractor):
 
     `measure` gives the covariance of that fit, with what the background's slopes are uncertain by,
     times the mean square of the departures over what was expected. Outlines of one spot are alike
-    at all heights; those of two that overlap are not, or have a waist. A hole's fringes make such
-    outlines, too: they count where they are longer than the design's shadow and its diffraction.
+    at all heights; those of two that overlap are not, or have a waist. A weaker light beside a spot
+    makes it skew: cubic odd shapes are fitted to what the slopes leave. A hole's fringes make such
+    outlines, and oblique light such skewness: they count where the spot is longer than the design's
+    shadow and its diffraction, or where no design tells.
 
     Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers.
 
@@ -70,9 +72,12 @@ class MirrorRegistration(Extractor):
     are five standard deviations above the border (`measure`: NO_SPOT); where a second light has
     over 15 % of the first one's, both lie apart as one loose region, or outlines are not those of
     one spot (SEVERAL_SPOTS); where the spot reaches the frame's edge (CUT); and where departures
-    are alike, in clusters or too large (NOT_SYMMETRIC). GHOST and SATURATED stand beside answers
-    too. Two Gaussians closer than two of their widths, or one and a ghost closer than that, look
-    like one wider spot, and so do two squares side by side. Ellipses a few pixels wide and over 2.2
+    are alike, in clusters, too large or skew (NOT_SYMMETRIC). GHOST and SATURATED stand beside
+    answers too. Two equal lights are point-symmetric about their middle: two Gaussians closer than
+    two of their widths have one maximum and the outlines of a longer spot, two squares side by side
+    those of a rectangle, and only a design could tell. So could it alone where a ghost is closer to
+    a Gaussian than about its width: of skewness, which goes with the cube of the distance, noise
+    leaves nothing. Ellipses a few pixels wide and over 2.2
     times as long may be taken for two lights. Rims sharper than a pixel resolves are found to some
     thousandths of a pixel, those along rows or columns to hundredths.
 

@@ -6,7 +6,7 @@ at once as the processor's cache holds: the light is found (`mirror_search_kerne
 about its middle are paired (`mirror_pairs_kernel`); then, by turns, the displacement is fitted
 (`mirror_fit_kernel`) and pairs that depart are left out (`mirror_outlier_kernel`). After the first
 turn the background's slope is taken off (`mirror_ring_kernel`); shapes are looked at in the end
-(`mirror_shape_kernel`).
+(`mirror_shape_kernel`, `mirror_ghost_kernel`).
 
 The stages share these arrays, a row a frame. Lengths are in pixels, light is over the peak's.
 
@@ -41,7 +41,7 @@ _TURNS, _CENTRES, _FAR = 6, 3, 0.75
 _CHUNK = 2**16
 #: Light that departs in clusters of pairs, over the spot's, and the square of what neighbours miss
 #: alike, over that of the light: above either, the spot is not symmetric.
-_CLUSTERS, _ALIKE = 0.02, 0.0004
+_CLUSTERS, _ALIKE = 0.02, 0.0006
 #: Mean square of the departures, over what is expected, from which there is a ghost, and from which
 #: the spot is not symmetric; more, over the high outline's area, where few pixels tell.
 _SCATTER_GHOST, _SCATTER, _GHOST_FEW, _SCATTER_FEW = 1.8, 3.5, 100.0, 150.0
@@ -59,8 +59,11 @@ _SHARP, _TOP = 12.0, 0.15
 _UNSURE = 0.5
 #: From the lit light's centroid, in half extents and px, no registration leads further.
 _ASTRAY, _ASTRAY_PX = 0.25, 0.75
-#: Columns that `mirror_shape_kernel.shapes` writes.
-_SHAPE = 13
+#: Chi squared of what is skew, over the scatter, and its share of the light, squared, from both of
+#: which on there is a second light upon the spot.
+_SKEW, _SKEW_LIGHT = 20.0, 0.0004
+#: Columns that `mirror_shape_kernel.shapes` and `mirror_ghost_kernel.skewness` write.
+_SHAPE = 15
 _KEPT = threading.local()
 
 
@@ -93,7 +96,8 @@ def register(
         Pixels to leave out, the same in all frames.
     longest_px : float, optional
         Longest half axis that one spot's outline has, where a design tells: outlines up to it are
-        of one spot, whatever their shape, which fringes make resemble that of two.
+        of one spot, whatever their shape, which fringes make resemble that of two, and skew where
+        light is oblique.
 
     Returns
     -------
@@ -182,10 +186,13 @@ def _register_seen(  # noqa: PLR0917 - what is known of the frames
     saturated = _saturated(frames, seen, lights)
     doubts = _doubts(lights, boxes, states, shapes, centres, saturated)
     noise = np.sqrt(states[:, 0])
-    several = _unlike(shapes, noise)
-    if longest_px is not None:  # what no longer than one spot is has fringes
+    several, skew = _unlike(shapes, noise), _skew(shapes) & ~saturated
+    if longest_px is not None:  # what no longer than one spot is has fringes, oblique ones too
         several &= _long(shapes, longest_px)
-    doubts[several & np.isfinite(states[:, 4])] |= int(Doubt.SEVERAL_SPOTS)
+        skew &= _long(shapes, longest_px)
+    settled = np.isfinite(states[:, 4])
+    doubts[several & settled] |= int(Doubt.SEVERAL_SPOTS)
+    doubts[skew & settled] |= int(Doubt.NOT_SYMMETRIC)
     refused = (doubts & ~int(Doubt.SATURATED | Doubt.GHOST)) != 0
     scatter = shapes[:, 7]
     covariance = states[:, [4, 6, 6, 5]] * scatter[:, None]
@@ -239,6 +246,7 @@ def _chunk(  # noqa: PLR0917 - the stages' arrays, in their order
     """Run the stages on the frames `which`."""
     from algorithms.extractors.frames import (  # noqa: PLC0415 - Numba, at first use
         mirror_fit_kernel,
+        mirror_ghost_kernel,
         mirror_outlier_kernel,
         mirror_pairs_kernel,
         mirror_ring_kernel,
@@ -283,7 +291,8 @@ def _chunk(  # noqa: PLR0917 - the stages' arrays, in their order
         if left == 0:
             break
     todo = np.arange(n)
-    mirror_shape_kernel.shapes(todo, boxes, s, keep, e, slack, work, states, shapes)
+    mirror_shape_kernel.shapes(todo, boxes, s, keep, e, slack, work, states, shapes[:, :13])
+    mirror_ghost_kernel.skewness(boxes, s, keep, e, states, shapes[:, 13:])
 
 
 def _doubts(  # noqa: PLR0917 - what is known of each
@@ -327,6 +336,13 @@ def _unlike(shapes: Floats, noise: Floats) -> NDArray[np.bool_]:
             apart = 2.0 * np.sqrt(minor) * (np.sqrt(one) - np.sqrt(other))
             several |= tells & unlike & (apart > _UNLIKE_PX + _UNLIKE_NOISE_PX * noise)
     return np.asarray(several)
+
+
+def _skew(shapes: Floats) -> NDArray[np.bool_]:
+    """Whether there is odd light in the spot, surely and by much: that of another one upon it."""
+    scatter, skew, share = shapes.T[[7, 13, 14]]
+    with np.errstate(invalid="ignore"):
+        return np.asarray((skew > _SKEW * scatter) & (share > _SKEW_LIGHT))
 
 
 def _long(shapes: Floats, longest_px: float) -> NDArray[np.bool_]:
