@@ -274,17 +274,14 @@ def _step(
     a_yy = 0.0
     b_x = 0.0
     b_y = 0.0
-    v_xx, v_xy, v_yy = 0.0, 0.0, 0.0
+    squares = 0.0
     for p in range(count):
         c, s, r = c_[p], s_[p], r_[p]
         at = profile[np.uint32(r * scale)]
         departure = at[3] * (u_[p] - at[0] - (at[1] + at[2] * r) * r)
         b_x -= departure * c
         b_y -= departure * s
-        square = departure * departure
-        v_xx += square * c * c
-        v_xy += square * c * s
-        v_yy += square * s * s
+        squares += departure * departure
         # The profile takes up what the pixels near have in common.
         a_xx += at[4] * c * (c - at[5])
         a_xy += at[4] * (c * s - 0.5 * (c * at[6] + s * at[5]))
@@ -293,9 +290,9 @@ def _step(
     if not determinant > 1e-12 * a_xx * a_yy:
         return 0.0, 0.0, False
     a, b, d = a_yy / determinant, -a_xy / determinant, a_xx / determinant
-    sure[0] = a * a * v_xx + 2.0 * a * b * v_xy + b * b * v_yy
-    sure[1] = b * b * v_xx + 2.0 * b * d * v_xy + d * d * v_yy
-    sure[2] = a * b * v_xx + (a * d + b * b) * v_xy + b * d * v_yy
+    half = 0.5 * squares  # all around the spot, half of them is along either axis
+    sure[0], sure[1] = half * (a * a + b * b), half * (b * b + d * d)
+    sure[2] = half * b * (a + d)
     return (
         (a_yy * b_x - a_xy * b_y) / determinant,
         (a_xx * b_y - a_xy * b_x) / determinant,
