@@ -17,6 +17,13 @@ from algorithms.contract import (
     Observation,
     SensorGeometry,
 )
+from algorithms.extractors.frames.one_light import (
+    Light,
+    agreed,
+    light_of,
+    longest_px_of,
+    require_light,
+)
 from algorithms.extractors.profiles.single_spot import require_one_spot
 from algorithms.inputs import as_frames, require_positive
 
@@ -46,6 +53,12 @@ class AdaptiveEnergyFilter(Extractor):
         Part of the largest energy, in [0, 1), that it must have as well.
     memory : int
         Most frames, at least 1, that count: later ones replace earlier ones at this rate.
+    light : {"spot", "any"}
+        What the light looks like: one whole, compact and symmetric spot, anything else being no
+        answer; or streaks, rings and stars too, as lenses and slits make them.
+    longest_px : float or None
+        Longest half axis that the outline of one spot has, px, positive; None where no design
+        tells. See `algorithms.extractors.frames.mirror`.
 
     Raises
     ------
@@ -66,11 +79,15 @@ class AdaptiveEnergyFilter(Extractor):
     Failure: a NaN row for a frame that is dark, without contrast (all dark or all saturated) or
     holds a NaN or infinity, and where the pixels above the threshold are fewer than two, not one
     spot (two of them, scattered light) or touch the edge (a spot cut by it); noise alone gives NaN.
+    `extract` gives none either where registration (`algorithms.extractors.frames.mirror`) does not
+    find one whole symmetric light within half a pixel; `extract_sequence`, whose frames may be too
+    noisy for that one by one, takes two lights that overlap for one.
     In a sequence a frame that holds a NaN is passed over, and one without a spot ends the mean. A
     drift that hides in the noise leaves a lag, at most about a frame's own error; frames of a
     Sun that moves by some six such errors a frame are better taken alone.
 
-    Cost: 6 operations a pixel; in a sequence 3 more, and 12 a pixel of the spot.
+    Cost: 6 operations a pixel, and that of registration; in a sequence 3 more, and 12 a pixel of
+    the spot.
 
     References
     ----------
@@ -92,7 +109,7 @@ class AdaptiveEnergyFilter(Extractor):
         taxonomy="None",
         studies=("Bao2022",),
         origin="ours",
-        version=2,
+        version=3,
         observation=Observation.FRAMES,
         kind=FeatureKind.SPOT,
     )
@@ -100,6 +117,8 @@ class AdaptiveEnergyFilter(Extractor):
     significance: float = 5.0
     fraction: float = 0.1
     memory: int = 100
+    light: Light = "spot"
+    longest_px: float | None = None
 
     def __post_init__(self) -> None:
         require_positive(self.about.name, significance=self.significance)
@@ -109,16 +128,18 @@ class AdaptiveEnergyFilter(Extractor):
             )
         if self.memory < 1:
             raise ValueError(f"{self.about.name}: memory must be at least 1; got {self.memory!r}")
+        require_light(self.about.name, self.light, self.longest_px)
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
         """Return the filter; UnsuitableDesignError where the mask has many apertures or slits."""
         require_one_spot(geometry, cls.about.name)
-        return cls()
+        return cls(light=light_of(geometry), longest_px=longest_px_of(geometry))
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Centroids (N, 2) of frames (N, H, W), each by itself; ValueError on wrong input."""
-        return self._filtered(observations, 1)[0]
+        frames = as_frames(observations)
+        return agreed(frames, self._filtered(frames, 1)[0], self.light, self.longest_px)
 
     def extract_sequence(self, observations: ArrayLike) -> tuple[Floats, NDArray[np.int64]]:
         """Centroids (N, 2) of frames (N, H, W) in the order of time, and of how many frames each.

@@ -210,3 +210,48 @@ def fit_gaussians(  # noqa: C901 - one loop, its kernel's steps in order
                 _normal_matrix(p, x, y, matrix)
             else:
                 damping *= 10
+
+
+@compiled
+def covariances(fits: Floats, noise: Floats, height: int, width: int, out: Floats) -> None:
+    """Write the covariance of the centres of `fits` (N, 6) to `out` (N, 2, 2).
+
+    With N the normal matrix, g a pixel's derivatives and v its variance, ``N^-1 (sum v g g^T)
+    N^-1``: pixels count alike in the fit, whatever their noise. `noise` (N, 2) is the variance of a
+    dark pixel, and what a unit of the fitted light adds to it; NaN for those that are passed over.
+    """
+    x, y = np.empty((3, width)), np.empty((3, height))
+    right = np.zeros(_PARAMETERS)
+    matrix = np.empty((_PARAMETERS, _PARAMETERS))
+    moves = np.empty((2, _PARAMETERS))
+    for k in range(len(fits)):
+        out[k] = np.nan
+        p, dark, gain = fits[k], noise[k, 0], noise[k, 1]
+        if not (np.isfinite(dark) and np.isfinite(p[0])):
+            continue
+        _factors(p, 0, x)
+        _factors(p, 1, y)
+        _normal_matrix(p, x, y, matrix)
+        good = True
+        for axis in range(2):
+            right[:] = 0.0
+            right[1 + axis] = 1.0
+            good = good and _solved(matrix, right, 0.0, moves[axis])
+        if not good:
+            continue
+        a, b = moves[0], moves[1]
+        xx, yy, xy = 0.0, 0.0, 0.0
+        for i in range(height):
+            g, g_1, g_2 = y[0, i], p[0] * y[1, i], p[0] * y[2, i]
+            for j in range(width):
+                light = x[0, j] * g
+                d_1, d_3 = p[0] * x[1, j] * g, p[0] * x[2, j] * g
+                d_2, d_4 = x[0, j] * g_1, x[0, j] * g_2
+                u = a[0] * light + a[1] * d_1 + a[2] * d_2 + a[3] * d_3 + a[4] * d_4 + a[5]
+                v = b[0] * light + b[1] * d_1 + b[2] * d_2 + b[3] * d_3 + b[4] * d_4 + b[5]
+                variance = dark + gain * p[0] * light
+                xx += variance * u * u
+                yy += variance * v * v
+                xy += variance * u * v
+        out[k, 0, 0], out[k, 1, 1] = xx, yy
+        out[k, 0, 1], out[k, 1, 0] = xy, xy

@@ -17,10 +17,24 @@ from algorithms.contract import (
     SensorGeometry,
     UnsuitableDesignError,
 )
-from algorithms.inputs import as_frames, require_positive
+from algorithms.extractors.frames.one_light import (
+    Judged,
+    Light,
+    frames_to_measure,
+    judge,
+    light_of,
+    longest_px_of,
+    refused,
+    require_light,
+)
+from algorithms.inputs import Frames, as_frames, require_positive
+from algorithms.measurement import Doubt, Measurement
 
 #: Mean squared distance of the lit pixels, over that of a disc, above which they are not one spot.
 _SPREAD = 3.0
+#: Square of what light within rings scatters by, over the brightest ring's, up to which there is
+#: one round light: another one that moves the centre by a pixel leaves more.
+_EVEN = 0.01
 
 
 @dataclass(frozen=True)
@@ -38,6 +52,12 @@ class MatchedProfile(Extractor):
         Fraction of the peak above the background, in (0, 1), for the start.
     steps : int
         Gauss-Newton steps, at least 1, each with the profile about the last centre.
+    light : {"spot", "any"}
+        What the light looks like: one whole, compact and symmetric spot, anything else being no
+        answer; or streaks, rings and stars too, as lenses and slits make them.
+    longest_px : float or None
+        Longest half axis that the outline of one spot has, px, positive; None where no design
+        tells. See `algorithms.extractors.frames.mirror`.
 
     Raises
     ------
@@ -58,10 +78,14 @@ class MatchedProfile(Extractor):
 
     Failure: a NaN row for a frame that is dark (maximum not above the border), without contrast
     (all dark or all saturated) or holds a NaN or infinity, and where the lit pixels are not one
-    compact spot (two spots, a line, noise) or touch the edge (a spot cut by it). A spot that is
-    not round is found without bias where it is symmetric, above the bound.
+    compact spot (two spots, a line, noise) or touch the edge (a spot cut by it). Where rings are
+    uneven by more than a tenth, or the spot is of a few pixels, also where registration
+    (`algorithms.extractors.frames.mirror`) does not find one whole symmetric light within half a
+    pixel of the answer. A spot that is not round is found without bias where it is symmetric, above
+    the bound.
 
-    Cost: 2 operations a pixel, 45 a pixel of the spot's surroundings and step.
+    Cost: 2 operations a pixel, 45 a pixel of the spot's surroundings and step; that of registration
+    for spots that are not round.
 
     References
     ----------
@@ -81,13 +105,15 @@ class MatchedProfile(Extractor):
         name="matched-profile",
         taxonomy="None",
         origin="ours",
-        version=3,
+        version=4,
         observation=Observation.FRAMES,
         kind=FeatureKind.SPOT,
     )
 
     threshold: float = 0.3
     steps: int = 1
+    light: Light = "spot"
+    longest_px: float | None = None
 
     def __post_init__(self) -> None:
         if not 0.0 < self.threshold < 1.0:
@@ -96,28 +122,46 @@ class MatchedProfile(Extractor):
             )
         if self.steps < 1:
             raise ValueError(f"{self.about.name}: steps must be at least 1; got {self.steps!r}")
+        require_light(self.about.name, self.light, self.longest_px)
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
         """Return the estimator; UnsuitableDesignError for designs without a single spot."""
         require_one_spot(geometry, cls.about.name)
-        return cls()
+        return cls(light=light_of(geometry), longest_px=longest_px_of(geometry))
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Centres (N, 2) in frames (N, H, W); ValueError on wrong input."""
+        return self.measure(as_frames(observations)).features
+
+    def measure(self, observations: ArrayLike, bad: ArrayLike | None = None) -> Measurement:
+        """Centres, covariances and doubts of frames (N, H, W) or of one.
+
+        The covariance is that of the step, with the squares of what pixels depart from the profile
+        by for their variances. Bad pixels are replaced by their neighbours.
+        """
         from algorithms.extractors.frames import radial_kernel  # noqa: PLC0415 - Numba, at first use
         from algorithms.kernels import moments  # noqa: PLC0415 - Numba, at first use
 
-        frames = as_frames(observations)
+        frames = frames_to_measure(observations, bad, self.about.name)
         maxima = np.empty(frames.shape[:2], dtype=frames.dtype)
         moments.row_maxima(frames, maxima)
         unusable = np.empty(len(frames), dtype=np.bool_)
         moments.unusable(frames, frames.dtype.kind == "f", unusable)
         maxima[unusable] = 0
-        found = np.empty((len(frames), 2))
+        found = np.empty((len(frames), radial_kernel.MATCHED))
         radial_kernel.matched_centres(frames, maxima, self.threshold, _SPREAD, self.steps, found)
         found[unusable] = np.nan
-        return found
+        centres, covariance = found[:, :2], found[:, [2, 4, 4, 3]]
+        doubts = np.where(np.isnan(centres[:, 0]), int(Doubt.NO_SPOT), 0).astype(np.int64)
+        uneven = np.flatnonzero(found[:, 5] > _EVEN)
+        if len(uneven):
+            doubts[uneven] = judge(
+                frames[uneven], centres[uneven], self.light, self.longest_px, bad
+            ).doubts
+        nothing = refused(doubts)
+        centres[nothing], covariance[nothing] = np.nan, np.nan
+        return Measurement(centres, covariance.reshape(-1, 2, 2), doubts)
 
 
 @dataclass(frozen=True)
@@ -134,6 +178,12 @@ class GaussianFit(Extractor):
         The fit ends when a step moves centre and widths by less.
     iterations : int
         Steps, at least 1, after which the fit is given up.
+    light : {"spot", "any"}
+        What the light looks like: one whole, compact and symmetric spot, anything else being no
+        answer; or streaks, rings and stars too, as lenses and slits make them.
+    longest_px : float or None
+        Longest half axis that the outline of one spot has, px, positive; None where no design
+        tells. See `algorithms.extractors.frames.mirror`.
 
     Raises
     ------
@@ -150,10 +200,12 @@ class GaussianFit(Extractor):
 
     Failure: a NaN row for a frame that is dark (maximum not above the border), without contrast
     (all dark or all saturated) or holds a NaN or infinity, where the fit does not converge, to a
-    light above the background, to a centre inside the frame and to widths below its sides. A
-    second spot draws it unseen; one cut by the edge is fitted as such.
+    light above the background, to a centre inside the frame and to widths below its sides; and
+    where registration (`algorithms.extractors.frames.mirror`) does not find one whole symmetric
+    light within half a pixel of the centre. Where `light` is "any", only hot pixels and noise are
+    refused: a second light draws the fit unseen, one cut by the edge is fitted as such.
 
-    Cost: 10 operations a pixel and step, some 8 steps.
+    Cost: 10 operations a pixel and step, some 8 steps, and that of registration.
 
     References
     ----------
@@ -172,12 +224,15 @@ class GaussianFit(Extractor):
         name="gaussian-fit",
         taxonomy="None",
         origin="ours",
+        version=2,
         observation=Observation.FRAMES,
         kind=FeatureKind.SPOT,
     )
 
     tolerance_px: float = 1e-6
     iterations: int = 50
+    light: Light = "spot"
+    longest_px: float | None = None
 
     def __post_init__(self) -> None:
         require_positive(self.about.name, tolerance_px=self.tolerance_px)
@@ -185,20 +240,54 @@ class GaussianFit(Extractor):
             raise ValueError(
                 f"{self.about.name}: iterations must be at least 1; got {self.iterations!r}"
             )
+        require_light(self.about.name, self.light, self.longest_px)
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
         """Return the fit; UnsuitableDesignError for designs without a single spot."""
         require_one_spot(geometry, cls.about.name)
-        return cls()
+        return cls(light=light_of(geometry), longest_px=longest_px_of(geometry))
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Centres (N, 2) in frames (N, H, W); ValueError on wrong input."""
+        return self._answers(as_frames(observations))[0]
+
+    def measure(self, observations: ArrayLike, bad: ArrayLike | None = None) -> Measurement:
+        """Centres, covariances and doubts of frames (N, H, W) or of one.
+
+        The covariance is that of the linearised fit, with the variance of pixels that registration
+        shows: NaN where `light` is "any". Bad pixels are replaced by their neighbours.
+        """
+        from algorithms.extractors.frames import gaussian_kernel  # noqa: PLC0415 - Numba, at first use
+
+        frames = frames_to_measure(observations, bad, self.about.name)
+        centres, fitted, judged = self._answers(frames, bad)
+        covariance = np.empty((len(frames), 2, 2))
+        nothing = np.isnan(centres[:, :1])
+        noise = np.where(nothing, np.nan, judged.noise)
+        _, height, width = frames.shape
+        gaussian_kernel.covariances(fitted, noise, height, width, covariance)
+        return Measurement(centres, covariance, judged.doubts)
+
+    def _answers(
+        self, frames: Frames, bad: ArrayLike | None = None
+    ) -> tuple[Floats, Floats, Judged]:
+        """Centres (N, 2), NaN for none, the fits (N, 6), and what is to be said of them."""
+        fitted = self._fitted(frames)
+        _, height, width = frames.shape
+        light, x, y, s_x, s_y, _ = fitted.T
+        found = (light > 0) & (s_x < width) & (s_y < height)
+        found &= (x > -0.5) & (x < width - 0.5) & (y > -0.5) & (y < height - 0.5)
+        centres = np.where(found[:, None], fitted[:, 1:3], np.nan)
+        judged = judge(frames, centres, self.light, self.longest_px, bad)
+        centres[refused(judged.doubts)] = np.nan
+        return centres, fitted, judged
+
+    def _fitted(self, frames: Frames) -> Floats:
+        """Parameters (N, 6) of the Gaussians; NaN rows where there is none."""
         from algorithms.extractors.frames import gaussian_kernel  # noqa: PLC0415 - Numba, at first use
         from algorithms.kernels import moments  # noqa: PLC0415 - Numba, at first use
 
-        frames = as_frames(observations)
-        _, height, width = frames.shape
         unusable = np.empty(len(frames), dtype=np.bool_)
         moments.unusable(frames, frames.dtype.kind == "f", unusable)
         fitted = np.full((len(frames), 6), np.nan)
@@ -208,10 +297,7 @@ class GaussianFit(Extractor):
             usable.flags.writeable = False
             gaussian_kernel.fit_gaussians(usable, self.tolerance_px, self.iterations, fits)
         fitted[~unusable] = fits
-        light, x, y, s_x, s_y, _ = fitted.T
-        found = (light > 0) & (s_x < width) & (s_y < height)
-        found &= (x > -0.5) & (x < width - 0.5) & (y > -0.5) & (y < height - 0.5)
-        return np.where(found[:, None], fitted[:, 1:3], np.nan)
+        return fitted
 
 
 def require_one_spot(geometry: SensorGeometry, by: str) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import ClassVar, Self
 
@@ -17,13 +16,9 @@ from algorithms.contract import (
     SensorGeometry,
 )
 from algorithms.extractors.frames.matched import require_one_spot
+from algorithms.extractors.frames.one_light import longest_px_of
 from algorithms.inputs import as_frames, require_positive
 from algorithms.measurement import Measurement
-
-#: The middle of silicon's sunlight; the steepest rays' tangent that spots are expected of.
-_MIDDLE_MM, _STEEPEST = 6e-4, 2.5
-#: Half axes that are allowed over those of the design.
-_ROOM = 1.15
 
 
 @dataclass(frozen=True)
@@ -57,16 +52,19 @@ class MirrorRegistration(Extractor):
     is orthogonal to both: nothing of the Cramer-Rao bound is lost.
 
     The weights are one over the variance, of the border's pixels and of what neighbouring
-    departures differ by where there is light. The slopes that weigh are smoothed as long as this
-    lowers the variance, and the products with those that predict are freed of the noise both have
-    in common. The background's odd part, linear and where it shows cubic, is fitted around the
-    spot. Pairs that depart by 4.5 deviations are left out, and the worse pixel of the two becomes
-    the other one.
+    departures differ by where there is light, by the mean light around: weights as sharp as a rim
+    would turn what slopes miss of it into a share of d. The slopes that weigh are smoothed as long
+    as this lowers the variance, and the products with those that predict are freed of the noise
+    both have in common. The background's odd part, linear and where it shows cubic, is fitted
+    around the spot. Pairs that depart by 4.5 deviations are left out, and the worse pixel of the
+    two becomes the other one.
 
     `measure` gives the covariance of that fit, with what the background's slopes are uncertain by,
     times the mean square of the departures over what was expected. Outlines of one spot are alike
-    at all heights; those of two that overlap are not, or have a waist. A hole's fringes make such
-    outlines, too: they count where they are longer than the design's shadow and its diffraction.
+    at all heights; those of two that overlap are not, or have a waist. A weaker light beside a spot
+    makes it skew: cubic odd shapes are fitted to what the slopes leave. A hole's fringes make such
+    outlines, and oblique light such skewness: they count where the spot is longer than the design's
+    shadow and its diffraction, or where no design tells.
 
     Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers.
 
@@ -74,9 +72,12 @@ class MirrorRegistration(Extractor):
     are five standard deviations above the border (`measure`: NO_SPOT); where a second light has
     over 15 % of the first one's, both lie apart as one loose region, or outlines are not those of
     one spot (SEVERAL_SPOTS); where the spot reaches the frame's edge (CUT); and where departures
-    are alike, in clusters or too large (NOT_SYMMETRIC). GHOST and SATURATED stand beside answers
-    too. Two Gaussians closer than two of their widths, or one and a ghost closer than that, look
-    like one wider spot, and so do two squares side by side. Ellipses a few pixels wide and over 2.2
+    are alike, in clusters, too large or skew (NOT_SYMMETRIC). GHOST and SATURATED stand beside
+    answers too. Two equal lights are point-symmetric about their middle: two Gaussians closer than
+    two of their widths have one maximum and the outlines of a longer spot, two squares side by side
+    those of a rectangle, and only a design could tell. So could it alone where a ghost is closer to
+    a Gaussian than about its width: of skewness, which goes with the cube of the distance, noise
+    leaves nothing. Ellipses a few pixels wide and over 2.2
     times as long may be taken for two lights. Rims sharper than a pixel resolves are found to some
     thousandths of a pixel, those along rows or columns to hundredths.
 
@@ -101,6 +102,7 @@ class MirrorRegistration(Extractor):
         name="mirror",
         taxonomy="None",
         origin="ours",
+        version=2,
         observation=Observation.FRAMES,
         kind=FeatureKind.SPOT,
     )
@@ -115,7 +117,7 @@ class MirrorRegistration(Extractor):
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
         """Return the estimator; UnsuitableDesignError for designs without a single spot."""
         require_one_spot(geometry, cls.about.name)
-        return cls(_longest_px(geometry))
+        return cls(longest_px_of(geometry))
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Centres (N, 2) in frames (N, H, W); ValueError on wrong input."""
@@ -131,24 +133,3 @@ class MirrorRegistration(Extractor):
         from algorithms.extractors.frames.registration import register  # noqa: PLC0415 - Numba
 
         return register(observations, bad, self.longest_px)
-
-
-def _longest_px(geometry: SensorGeometry) -> float | None:
-    """Longest half axis of a spot in the field's corner; None where the design does not tell.
-
-    Of the shadow's second moments, or the far pattern's where that is larger, a seventh more.
-    """
-    width, height, pitch = (
-        geometry.aperture_width_mm,
-        geometry.focal_length_mm,
-        geometry.pixel_pitch_mm,
-    )
-    field, shape = geometry.half_fov_deg, geometry.aperture_shape
-    if width is None or height is None or pitch is None or field is None or shape is None:
-        return None
-    shadow = width / (2.0 if shape == "round" else math.sqrt(3.0))
-    # where a square field's corner lands, and how its spots are drawn out there
-    corner = min(math.sqrt(2.0) * math.tan(math.radians(field)), _STEEPEST)
-    drawn_out = height * (1.0 + corner**2) ** 1.5
-    far = 0.64 * _MIDDLE_MM * drawn_out / width
-    return float(_ROOM * (shadow**4 + far**4) ** 0.25 / pitch + 0.5)

@@ -13,60 +13,26 @@ from numpy.typing import NDArray
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
+from algorithms.extractors.frames import mirror_taps
 
 Line = NDArray[np.float32]
 
-#: Taps n = 1 .. 6 of ``sum t_n (S(u + n) - S(u - n))``, as ``t = sum TAPS[q] d^(2 q)``: of all such
-#: filters exact to third order, the one that is nearest to ``2 tan(pi k d) / d`` for edges as
-#: soft as half a pixel.
-TAPS = np.array(
-    [
-        [0.9246398, -0.3624963, 0.1562918, -0.0589719, 0.0162817, -0.0023405],
-        [0.2622294, -0.2387220, 0.1137634, -0.0443487, 0.0124225, -0.0017989],
-        [0.1112456, -0.1298026, 0.0820968, -0.0349416, 0.0101683, -0.0015010],
-        [0.0518314, -0.0676519, 0.0497708, -0.0240701, 0.0074510, -0.0011357],
-    ]
-)
 #: The sharpest weighting: slope along one axis by four pixels, mean along the other by three.
-_SLOPE_1, _SLOPE_2 = np.float32(2.0 / 3.0), np.float32(-1.0 / 12.0)
-_BESIDE, _MIDDLE = np.float32(1.0 / 6.0), np.float32(2.0 / 3.0)
+_SLOPE_1, _SLOPE_2 = np.float32(mirror_taps.SLOPE_1), np.float32(mirror_taps.SLOPE_2)
+_BESIDE, _MIDDLE = np.float32(mirror_taps.BESIDE), np.float32(mirror_taps.MIDDLE)
+TAPS, _LEVELS = mirror_taps.TAPS, mirror_taps.LEVELS
+_SQUARES, _PRODUCTS = mirror_taps.noise_of_levels()
 _ZERO, _ONE, _HALF, _QUARTER = np.float32(0.0), np.float32(1.0), np.float32(0.5), np.float32(0.25)
 #: Rows around the core that its slopes reach; lanes of the sums.
 _REACH, _LANES = 7, 64
-#: d, px, from which another middle is nearer.
-_AWAY = 0.75
-#: Levels of smoothing of the weighting, by binomials 2, 4 ... px apart.
-_LEVELS = 5
-#: Share of noise in the weighting from which a smoother one is tried.
-_NOISY = 0.05
+#: d, px, from which another middle is nearer; noise's share from which weights are smoothed.
+_AWAY, _NOISY = 0.75, 0.05
 #: What the slopes miss, over the peak: pixels are not trusted to better than that.
-_FLOOR = 0.0015
+_FLOOR = 0.0005
 #: Where the slope, over the peak, is above one over the root of this, little of noise is told.
 _STEEP = np.float32(100.0)
 #: A pixel counts as lit above this fraction of the peak.
 _CUT = np.float32(0.3)
-
-
-def _noise_of_levels() -> tuple[Floats, Floats]:
-    """Of each level's weighting along x: sum of squared taps, and products with `TAPS[0]`."""
-    squares, products = np.empty(_LEVELS), np.empty(_LEVELS)
-    smooth = np.array([1.0])
-    for level in range(_LEVELS):
-        if level > 0:
-            binomial = np.zeros(2 ** (level + 1) + 1)
-            binomial[[0, 2**level, -1]] = 0.25, 0.5, 0.25
-            smooth = np.convolve(smooth, binomial)
-        slope = np.convolve(smooth, [-_SLOPE_2, -_SLOPE_1, 0.0, _SLOPE_1, _SLOPE_2])
-        mean = np.convolve(smooth, [_BESIDE, _MIDDLE, _BESIDE])
-        squares[level] = np.sum(slope**2) * np.sum(mean**2)
-        middle = len(slope) // 2
-        reach = min(TAPS.shape[1], middle)
-        taps = slope[middle + 1 : middle + 1 + reach]
-        products[level] = 2.0 * np.sum(taps * TAPS[0, :reach]) * mean[len(mean) // 2]
-    return squares, products
-
-
-_SQUARES, _PRODUCTS = _noise_of_levels()
 
 
 @compiled
@@ -175,13 +141,22 @@ def _slopes(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 @compiled
 def _normal(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    h_x: Line, h_y: Line, g_x: Line, g_y: Line, d: Line, w: Line, lanes: Line, sums: Floats
+    h_x: Line,
+    h_y: Line,
+    g_x: Line,
+    g_y: Line,
+    d: Line,
+    w: Line,
+    share: Line,
+    lanes: Line,
+    sums: Floats,
 ) -> None:
-    """Write the nine weighted sums of products that the fit needs."""
+    """Write the nine weighted sums of products that the fit needs; the last three of variances."""
     lanes[:] = _ZERO
     for k in range(0, w.size, _LANES):
         a, b, wk = h_x[k : k + _LANES], h_y[k : k + _LANES], w[k : k + _LANES]
         e, f, dk = g_x[k : k + _LANES], g_y[k : k + _LANES], d[k : k + _LANES]
+        part = share[k : k + _LANES]
         for j in range(_LANES):
             x, y = wk[j] * a[j], wk[j] * b[j]
             lanes[j] += x * e[j]
@@ -190,8 +165,9 @@ def _normal(  # noqa: PLR0917 - Numba takes no keyword-only ones
             lanes[j + 3 * _LANES] += y * e[j]
             lanes[j + 4 * _LANES] += x * dk[j]
             lanes[j + 5 * _LANES] += y * dk[j]
+            x *= part[j]
             lanes[j + 6 * _LANES] += x * a[j]
-            lanes[j + 7 * _LANES] += y * b[j]
+            lanes[j + 7 * _LANES] += y * b[j] * part[j]
             lanes[j + 8 * _LANES] += x * b[j]
     for q in range(9):
         sums[q] = _fold(lanes[q * _LANES : (q + 1) * _LANES])
@@ -215,25 +191,45 @@ def _smoothed(s: Line, apart: int, stride: int, line: Line, out: Line) -> None:
 
 
 @compiled
-def _weights(mean: Line, keep: Line, noise: float, gain: float, w: Line) -> None:
-    """One over the variance of a pixel, zero where a pair is left out."""
-    least, more = np.float32(noise + _FLOOR * _FLOOR), np.float32(gain)
-    for q in range(w.size):
-        lit, kept = mean[q], keep[q]
-        lit = max(_ZERO, lit)
-        kept = max(_ZERO, kept)
+def _weights(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    s: Line, p: int, stride: int, keep: Line, state: Floats, line: Line, w: Line, share: Line
+) -> None:
+    """One over the variance of a pixel, by the light around it; zero where a pair is left out.
+
+    Weights as sharp as a rim would turn what slopes miss of it into a share of d. What the variance
+    by a pixel's own light is over that goes to `share`.
+    """
+    dark, more = np.float32(state[0]), np.float32(state[1])
+    least = dark + np.float32(_FLOOR * _FLOOR)
+    n = w.size
+    a, b, c = s[p - 1 - stride :], s[p - 1 :], s[p - 1 + stride :]
+    for q in range(n + 2):
+        line[q] = _QUARTER * (a[q] + c[q]) + _HALF * b[q]
+    for q in range(n):
+        lit = _QUARTER * (line[q] + line[q + 2]) + _HALF * line[q + 1]
+        lit, kept = max(_ZERO, lit), max(_ZERO, keep[q])
         # Numba's own division would look for zeros, one by one.
         w[q] = np.divide(kept, least + more * lit)
+    for q in range(n):
+        share[q] = w[q] * (dark + more * max(_ZERO, b[q + 1]))
 
 
 @compiled
-def _solve(sums: Floats, product: float, square: float, state: Floats) -> bool:
+def _in_common(level: int, d: float) -> float:
+    """Product of the weighting's taps with those of the slopes at d: noise that both have."""
+    d2 = d * d
+    p = _PRODUCTS[level]
+    return float(p[0] + d2 * (p[1] + d2 * (p[2] + d2 * p[3])))
+
+
+@compiled
+def _solve(sums: Floats, product_x: float, product_y: float, square: float, state: Floats) -> bool:
     """Solve ``sum w h (d + d_x g_x + d_y g_y) = 0``; what noise adds to the products is taken off.
 
     To `state` go d_x, d_y, the covariance xx, yy, xy of the centre, noise's share in h, and how
     much a unit of the sums on the right moves the centre (4).
     """
-    xx, yy, xy, yx = sums[0] - product, sums[1] - product, sums[2], sums[3]
+    xx, yy, xy, yx = sums[0] - product_x, sums[1] - product_y, sums[2], sums[3]
     determinant = xx * yy - xy * yx
     state[7] = square / max(min(sums[6], sums[7]), 1e-300)
     if not (xx > 0.0 and yy > 0.0 and determinant > 1e-6 * xx * yy):
@@ -309,7 +305,7 @@ def _background(  # noqa: PLR0917 - Numba takes no keyword-only ones
                 rho = (x[q] * x[q] + y[q] * y[q]) * scale
                 x[q] *= rho
                 y[q] *= rho
-        _normal(h_x, h_y, x, y, x, w, lanes, sums)
+        _normal(h_x, h_y, x, y, x, w, w, lanes, sums)
         for axis in range(2):
             right_x, right_y = (sums[0], sums[3]) if axis == 0 else (sums[2], sums[1])
             moved_x = state[8] * right_x + state[9] * right_y
@@ -340,7 +336,7 @@ def fit(  # noqa: PLR0915, PLR0917 - the method's steps in order
     found, and such windows are passed over. Return how many another middle is nearer to.
     """
     away = 0
-    work, wide = space[:11], space[11:15]
+    work, wide = space[:11], space[11:16]
     lanes = np.empty(9 * _LANES, dtype=np.float32)
     sums, other_sums, other = np.empty(9), np.empty(9), np.empty(states.shape[1])
     for k in todo:
@@ -354,18 +350,22 @@ def fit(  # noqa: PLR0915, PLR0917 - the method's steps in order
         mean, kept, left = s[k, p : p + n], keep[k, :n], e[k, :n]
         differences = d[k, from_row : from_row + n]
         w, h_x, h_y, g_x, g_y = work[0, :n], work[1, :n], work[2, :n], work[3, :n], work[4, :n]
+        share = wide[4, :n]
         _weighting(s[k], p, stride, work[5], h_x, h_y)
-        _weights(mean, kept, state[0], state[1], w)
+        _weights(s[k], p, stride, kept, state, work[5], w, share)
+        d_x, d_y = 0.0, 0.0
         if first:
             g_x, g_y = h_x, h_y
         else:
             d_x, d_y = min(max(state[2], -1.0), 1.0), min(max(state[3], -1.0), 1.0)
             state[16], state[17] = d_x, d_y
             _slopes(s[k], p, stride, d_x, d_y, wide[3], g_x, g_y)
-        _normal(h_x, h_y, g_x, g_y, differences, w, lanes, sums)
-        number = _total(kept, lanes[:_LANES])
-        products = _SQUARES if first else _PRODUCTS
-        if not _solve(sums, 0.5 * number * products[0], 0.5 * number * _SQUARES[0], state):
+        _normal(h_x, h_y, g_x, g_y, differences, w, share, lanes, sums)
+        half = 0.5 * _total(share, lanes[:_LANES])  # the mean of two pixels has half the variance
+        square = half * _SQUARES[0]
+        product_x = square if first else half * _in_common(0, d_x)
+        product_y = square if first else half * _in_common(0, d_y)
+        if not _solve(sums, product_x, product_y, square, state):
             continue
         away += max(abs(state[2]), abs(state[3])) > _AWAY
         level, old = 0, s[k]
@@ -376,10 +376,11 @@ def fit(  # noqa: PLR0915, PLR0917 - the method's steps in order
             wide[level % 2, end:] = _ZERO
             a, b = work[6, :n], work[7, :n]
             _weighting(wide[level % 2], p, stride, work[5], a, b)
-            _normal(a, b, g_x, g_y, differences, w, lanes, other_sums)
-            product, square = _PRODUCTS[level + 1], _SQUARES[level + 1]
+            _normal(a, b, g_x, g_y, differences, w, share, lanes, other_sums)
+            product_x = half * _in_common(level + 1, d_x)
+            product_y = half * _in_common(level + 1, d_y)
             other[:] = state
-            _solve(other_sums, 0.5 * number * product, 0.5 * number * square, other)
+            _solve(other_sums, product_x, product_y, half * _SQUARES[level + 1], other)
             if not max(other[4], other[5]) < max(state[4], state[5]):
                 break
             level += 1
@@ -389,7 +390,6 @@ def fit(  # noqa: PLR0915, PLR0917 - the method's steps in order
         n_x, n_y, steep = np.float32(state[2]), np.float32(state[3]), slack[k, :n]
         for q in range(n):
             left[q] = differences[q] + n_x * g_x[q] + n_y * g_y[q]
-        for q in range(n):
             steep[q] = abs(g_x[q]) + abs(g_y[q])
         variance, light = _noise(mean, kept, steep, left, work[8, :n], work[9, :n], lanes[:_LANES])
         state[12] = max(variance - state[0], 0.0) / light

@@ -18,12 +18,15 @@ Line = NDArray[np.float32]
 
 _REACH, _LANES = 7, 64
 _ZERO, _HALF, _ONE = np.float32(0.0), np.float32(0.5), np.float32(1.0)
-#: What the slopes miss, over the peak, as the fit has it.
-_FLOOR = 0.0015
+#: What the slopes miss, over the peak, as the fit has it; and what a spot may depart by, squared.
+_FLOOR, _LENIENT = 0.0005, np.float32(2.0 * 0.0015**2)
 #: The square of the share of the slope by which sharp rims depart.
 _SHARP = np.float32(0.03**2)
 #: Pairs that are taken to depart as expected, beside those that are seen.
 _EXPECTED = 5.0
+#: The square of the share of the slope by which all rims depart, without moving the centre: left
+#: out of what scatters, where so many pairs tell it from noise.
+_RIMS, _TELLS = np.float32(0.005**2), 40.0
 #: A pixel counts as lit above this fraction of the peak.
 _CUT = np.float32(0.3)
 #: Heights, over the peak, whose outlines are compared, and half of what they are blurred by.
@@ -168,17 +171,18 @@ def _scatter(  # noqa: PLR0917 - Numba takes no keyword-only ones
     for j in range(e.size):
         lit = mean[j]
         lit = max(_ZERO, lit)
-        variance = noise + gain * lit
-        z[j] = np.divide(e[j] * e[j], variance)
-        q[j] = np.divide(keep[j] * slack[j] * slack[j], variance)
-    lanes[:] = _ZERO
+        q[j] = np.divide(keep[j] * slack[j] * slack[j], noise + gain * lit)
     total, squares = _products(q, keep, lanes), _products(q, q, lanes)
     number = total * total / max(squares, 1e-30)
+    rims = _RIMS if number >= _TELLS else _ZERO
+    for j in range(e.size):
+        variance = noise + gain * max(_ZERO, mean[j]) + rims * slack[j] * slack[j]
+        z[j] = np.divide(e[j] * e[j], variance)
     departing = _products(q, z, lanes) / max(total, 1e-30)
     all_of_it = (number * departing + _EXPECTED) / (max(number - 2.0, 0.0) + _EXPECTED)
     for j in range(e.size):
-        variance = noise + gain * max(_ZERO, mean[j])
-        z[j] *= np.divide(variance, variance + _SHARP * slack[j] * slack[j])
+        variance = noise + gain * max(_ZERO, mean[j]) + _LENIENT + _SHARP * slack[j] * slack[j]
+        z[j] = np.divide(e[j] * e[j], variance)
     departing = _products(q, z, lanes) / max(total, 1e-30)
     return all_of_it, (number * departing + _EXPECTED) / (max(number - 2.0, 0.0) + _EXPECTED)
 

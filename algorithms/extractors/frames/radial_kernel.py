@@ -20,6 +20,10 @@ _WIDTH, _FINEST, _COARSEST = 1.05, 0.15, 0.5
 _NEAR = 3
 #: Columns of the sums of a ring, of the running sums and of the profile: see where they are made.
 _SUMS, _RUNNING, _PROFILE = 6, 7, 7
+#: Pixels of a lit region below which its rings do not tell whether they are even.
+_ENOUGH = 12.0
+#: Columns that `matched_centres` writes.
+MATCHED = 6
 
 
 @compiled
@@ -184,13 +188,15 @@ def _running_sums(sums: Floats, rings: int, running: Floats) -> None:
 @compiled
 def _profile(  # noqa: PLR0917 - the formulas in their order
     sums: Floats, running: Floats, rings: int, ring: float, noise: float, lines: Floats, out: Floats
-) -> None:
+) -> float:
     """Light against distance, ring by ring, and what a pixel's departure from it counts.
 
     `noise` is the variance of a dark pixel; a lit one has more in proportion to its light, by
     the factor that explains the scatter within the rings. `lines` (7, >= rings + 2 near) is work
     space. A row of `out` holds ``p_0, p_1, p_2`` of the light ``p_0 + p_1 r + p_2 r^2``, the
     weight of a pixel's departure, weight times slope, and the mean c and s of the pixels near.
+
+    Return the square of what light within a ring scatters by, over the brightest ring's.
     """
     wide = 2 * _NEAR + 1
     slopes, means, levels, spreads, shares = lines[0], lines[1], lines[2], lines[3], lines[6]
@@ -248,11 +254,17 @@ def _profile(  # noqa: PLR0917 - the formulas in their order
         at[4] = weights[q] * slope
         at[5] = (c_[wide + q] - c_[q]) * inverse
         at[6] = (s_[wide + q] - s_[q]) * inverse
+    return gain / max(brightest, 1e-300)
 
 
 @compiled
-def _step(pixels: Floats, count: int, scale: float, profile: Floats) -> tuple[float, float, bool]:
-    """One Gauss-Newton step of the centre to where the profile fits, and whether there is one."""
+def _step(
+    pixels: Floats, count: int, scale: float, profile: Floats, sure: Floats
+) -> tuple[float, float, bool]:
+    """One Gauss-Newton step of the centre to where the profile fits, and whether there is one.
+
+    Its covariance goes to `sure`: xx, yy, xy.
+    """
     c_ = pixels[0, :count]
     s_ = pixels[1, :count]
     r_ = pixels[2, :count]
@@ -262,12 +274,14 @@ def _step(pixels: Floats, count: int, scale: float, profile: Floats) -> tuple[fl
     a_yy = 0.0
     b_x = 0.0
     b_y = 0.0
+    squares = 0.0
     for p in range(count):
         c, s, r = c_[p], s_[p], r_[p]
         at = profile[np.uint32(r * scale)]
         departure = at[3] * (u_[p] - at[0] - (at[1] + at[2] * r) * r)
         b_x -= departure * c
         b_y -= departure * s
+        squares += departure * departure
         # The profile takes up what the pixels near have in common.
         a_xx += at[4] * c * (c - at[5])
         a_xy += at[4] * (c * s - 0.5 * (c * at[6] + s * at[5]))
@@ -275,6 +289,10 @@ def _step(pixels: Floats, count: int, scale: float, profile: Floats) -> tuple[fl
     determinant = a_xx * a_yy - a_xy * a_xy
     if not determinant > 1e-12 * a_xx * a_yy:
         return 0.0, 0.0, False
+    a, b, d = a_yy / determinant, -a_xy / determinant, a_xx / determinant
+    half = 0.5 * squares  # all around the spot, half of them is along either axis
+    sure[0], sure[1] = half * (a * a + b * b), half * (b * b + d * d)
+    sure[2] = half * b * (a + d)
     return (
         (a_yy * b_x - a_xy * b_y) / determinant,
         (a_xx * b_y - a_xy * b_x) / determinant,
@@ -291,7 +309,11 @@ def matched_centres(  # noqa: PLR0917 - Numba takes no keyword-only ones
     steps: int,
     out: Floats,
 ) -> None:
-    """Write the centre (x, y) of each frame's spot to `out` (N, 2); NaN where there is not one.
+    """Write the centre of each frame's spot to `out` (N, 6); NaN where there is not one.
+
+    Columns: x, y; their covariance xx, yy, xy; and the square of what the light within a ring
+    scatters by beyond the dark pixels' noise, over the brightest ring's: infinite where a spot of a
+    few pixels does not tell.
 
     `maxima` (N, H) are the rows' largest values, `threshold` the fraction of the peak above which
     pixels start the search, `spread` the limit of `_lit_spot`.
@@ -304,10 +326,10 @@ def matched_centres(  # noqa: PLR0917 - Numba takes no keyword-only ones
     profile = np.empty((most, _PROFILE))
     running = np.empty((_RUNNING, most + 2 * _NEAR + 1))
     lines = np.empty((7, most + 2 * _NEAR))
+    sure = np.empty(3)
     for k in range(count):
         frame = frames[k]
-        out[k, 0] = np.nan
-        out[k, 1] = np.nan
+        out[k] = np.nan
         base, noise = _border(frame)
         peak = float(maxima[k].max())
         if not peak > base:
@@ -324,13 +346,14 @@ def matched_centres(  # noqa: PLR0917 - Numba takes no keyword-only ones
         scale = 1.0 / ring
         rings = int(reach * scale) + 2
         found = True
+        uneven = np.inf
         for _ in range(steps):
             sums[:rings] = 0.0
             near = _pixels_near(frame, x, y, base, reach, pixels)
             _ring_sums(pixels, near, scale, sums)
             _running_sums(sums, rings, running)
-            _profile(sums, running, rings, ring, noise, lines, profile)
-            move_x, move_y, found = _step(pixels, near, scale, profile)
+            uneven = _profile(sums, running, rings, ring, noise, lines, profile)
+            move_x, move_y, found = _step(pixels, near, scale, profile, sure)
             found = found and abs(move_x) <= radius and abs(move_y) <= radius
             if not found:
                 break
@@ -339,3 +362,5 @@ def matched_centres(  # noqa: PLR0917 - Numba takes no keyword-only ones
         if found:
             out[k, 0] = x
             out[k, 1] = y
+            out[k, 2:5] = sure
+            out[k, 5] = uneven if math.pi * radius * radius >= _ENOUGH else np.inf

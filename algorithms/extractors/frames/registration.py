@@ -6,7 +6,7 @@ at once as the processor's cache holds: the light is found (`mirror_search_kerne
 about its middle are paired (`mirror_pairs_kernel`); then, by turns, the displacement is fitted
 (`mirror_fit_kernel`) and pairs that depart are left out (`mirror_outlier_kernel`). After the first
 turn the background's slope is taken off (`mirror_ring_kernel`); shapes are looked at in the end
-(`mirror_shape_kernel`).
+(`mirror_shape_kernel`, `mirror_ghost_kernel`).
 
 The stages share these arrays, a row a frame. Lengths are in pixels, light is over the peak's.
 
@@ -26,6 +26,7 @@ from __future__ import annotations
 
 import threading
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -40,13 +41,15 @@ _TURNS, _CENTRES, _FAR = 6, 3, 0.75
 _CHUNK = 2**16
 #: Light that departs in clusters of pairs, over the spot's, and the square of what neighbours miss
 #: alike, over that of the light: above either, the spot is not symmetric.
-_CLUSTERS, _ALIKE = 0.02, 0.0004
+_CLUSTERS, _ALIKE = 0.02, 0.0006
 #: Mean square of the departures, over what is expected, from which there is a ghost, and from which
 #: the spot is not symmetric; more, over the high outline's area, where few pixels tell.
 _SCATTER_GHOST, _SCATTER, _GHOST_FEW, _SCATTER_FEW = 1.8, 3.5, 100.0, 150.0
 #: The outlines of one spot are alike at all heights: largest ratio of the squared ratios of their
-#: extents, more by 1 over the area and by the noise; px by which the extents may differ.
-_UNLIKE, _UNLIKE_FEW, _UNLIKE_NOISE, _UNLIKE_PX, _UNLIKE_NOISE_PX = 1.26, 5.0, 1.5, 0.42, 3.0
+#: extents, more by 1 over the area, by the cube of that, as few pixels have the outline of their
+#: grid, and by the noise; px by which the extents may differ.
+_UNLIKE, _UNLIKE_FEW, _UNLIKE_GRID, _UNLIKE_NOISE = 1.26, 5.0, 300.0, 1.5
+_UNLIKE_PX, _UNLIKE_NOISE_PX = 0.42, 3.0
 #: Area of an ellipse with an outline's second moments over its own: 1.05 for a square.
 _WAIST, _WAIST_FEW, _WAIST_NOISE = 1.065, 2.0, 0.8
 #: Pixels of a sharp high outline that tell its shape; over the low one's, of what is but a top
@@ -56,9 +59,28 @@ _SHARP, _TOP = 12.0, 0.15
 _UNSURE = 0.5
 #: From the lit light's centroid, in half extents and px, no registration leads further.
 _ASTRAY, _ASTRAY_PX = 0.25, 0.75
-#: Columns that `mirror_shape_kernel.shapes` writes.
-_SHAPE = 13
+#: Chi squared of what is skew, over the scatter, and its share of the light, squared, from both of
+#: which on there is a second light upon the spot.
+_SKEW, _SKEW_LIGHT = 20.0, 0.0004
+#: Columns that `mirror_shape_kernel.shapes` and `mirror_ghost_kernel.skewness` write.
+_SHAPE = 15
 _KEPT = threading.local()
+
+
+class Registered(NamedTuple):
+    """What is found of frames (N, H, W), and how their pixels scatter.
+
+    Attributes
+    ----------
+    found
+        Centres, covariances and doubts.
+    noise
+        (N, 2) variance of a dark pixel, and what a unit of light adds to it; NaN where nothing was
+        found to tell it by.
+    """
+
+    found: Measurement
+    noise: Floats
 
 
 def register(
@@ -74,7 +96,8 @@ def register(
         Pixels to leave out, the same in all frames.
     longest_px : float, optional
         Longest half axis that one spot's outline has, where a design tells: outlines up to it are
-        of one spot, whatever their shape, which fringes make resemble that of two.
+        of one spot, whatever their shape, which fringes make resemble that of two, and skew where
+        light is oblique.
 
     Returns
     -------
@@ -98,6 +121,13 @@ def register(
     >>> found.features.round(1), found.deviations.round(3), found.doubts
     (array([[21.3, 18.8]]), array([[0.003, 0.003]]), array([0]))
     """
+    return registered(observations, bad, longest_px).found
+
+
+def registered(
+    observations: ArrayLike, bad: ArrayLike | None = None, longest_px: float | None = None
+) -> Registered:
+    """Register as `register` does, and tell the noise of each frame too."""
     from algorithms.extractors.frames import mirror_search_kernel as search  # noqa: PLC0415 - Numba
     from algorithms.kernels import moments  # noqa: PLC0415 - Numba, at first use
 
@@ -113,8 +143,9 @@ def register(
         np.full((count, 2, 2), np.nan),
         np.full(count, int(Doubt.NO_SPOT), dtype=np.int64),
     )
+    result = Registered(found, np.full((count, 2), np.nan))
     if min(height, width) < 5:
-        return found
+        return result
     lights = np.empty((count, search.FOUND))
     unusable = np.empty(count, dtype=np.bool_)
     moments.unusable(frames, frames.dtype.kind == "f", unusable)
@@ -124,8 +155,8 @@ def register(
     found.doubts[why == search.EDGE] = int(Doubt.CUT)
     seen = np.flatnonzero(why == 0.0)
     if len(seen):
-        _register_seen(frames, seen, lights[seen], mask, longest_px, found)
-    return found
+        _register_seen(frames, seen, lights[seen], mask, longest_px, result)
+    return result
 
 
 def _register_seen(  # noqa: PLR0917 - what is known of the frames
@@ -134,9 +165,9 @@ def _register_seen(  # noqa: PLR0917 - what is known of the frames
     lights: Floats,
     mask: NDArray[np.bool_],
     longest_px: float | None,
-    found: Measurement,
+    result: Registered,
 ) -> None:
-    """Write centres, covariances and doubts of the frames `seen`, a chunk after the other."""
+    """Write centres, covariances, doubts and noise of the frames `seen`, chunk by chunk."""
     n = len(seen)
     lengths = _lengths(lights, *frames.shape[1:])
     step = max(1, min(n, int(_CHUNK / np.median(lengths))))
@@ -155,14 +186,20 @@ def _register_seen(  # noqa: PLR0917 - what is known of the frames
     saturated = _saturated(frames, seen, lights)
     doubts = _doubts(lights, boxes, states, shapes, centres, saturated)
     noise = np.sqrt(states[:, 0])
-    several = _unlike(shapes, noise)
-    if longest_px is not None:  # what no longer than one spot is has fringes
+    several, skew = _unlike(shapes, noise), _skew(shapes) & ~saturated
+    if longest_px is not None:  # what no longer than one spot is has fringes, oblique ones too
         several &= _long(shapes, longest_px)
-    doubts[several & np.isfinite(states[:, 4])] |= int(Doubt.SEVERAL_SPOTS)
+        skew &= _long(shapes, longest_px)
+    settled = np.isfinite(states[:, 4])
+    doubts[several & settled] |= int(Doubt.SEVERAL_SPOTS)
+    doubts[skew & settled] |= int(Doubt.NOT_SYMMETRIC)
     refused = (doubts & ~int(Doubt.SATURATED | Doubt.GHOST)) != 0
     scatter = shapes[:, 7]
     covariance = states[:, [4, 6, 6, 5]] * scatter[:, None]
     centres[refused], covariance[refused] = np.nan, np.nan
+    found = result.found
+    peak = lights[:, 6]
+    result.noise[seen] = np.column_stack([states[:, 0] * peak**2, states[:, 1] * peak])
     found.features[seen] = centres
     found.covariance[seen] = covariance.reshape(n, 2, 2)
     found.doubts[seen] = doubts
@@ -209,6 +246,7 @@ def _chunk(  # noqa: PLR0917 - the stages' arrays, in their order
     """Run the stages on the frames `which`."""
     from algorithms.extractors.frames import (  # noqa: PLC0415 - Numba, at first use
         mirror_fit_kernel,
+        mirror_ghost_kernel,
         mirror_outlier_kernel,
         mirror_pairs_kernel,
         mirror_ring_kernel,
@@ -253,7 +291,8 @@ def _chunk(  # noqa: PLR0917 - the stages' arrays, in their order
         if left == 0:
             break
     todo = np.arange(n)
-    mirror_shape_kernel.shapes(todo, boxes, s, keep, e, slack, work, states, shapes)
+    mirror_shape_kernel.shapes(todo, boxes, s, keep, e, slack, work, states, shapes[:, :13])
+    mirror_ghost_kernel.skewness(boxes, s, keep, e, states, shapes[:, 13:])
 
 
 def _doubts(  # noqa: PLR0917 - what is known of each
@@ -292,10 +331,18 @@ def _unlike(shapes: Floats, noise: Floats) -> NDArray[np.bool_]:
             (wide, narrow, area > 0.0),
             (sharp_wide, sharp_narrow, (area >= _SHARP) & (area < _TOP * base)),
         ):
-            unlike = one > (_UNLIKE + _UNLIKE_FEW / area + _UNLIKE_NOISE * noise) * other
+            most = _UNLIKE + _UNLIKE_FEW / area + _UNLIKE_GRID / area**3 + _UNLIKE_NOISE * noise
+            unlike = one > most * other
             apart = 2.0 * np.sqrt(minor) * (np.sqrt(one) - np.sqrt(other))
             several |= tells & unlike & (apart > _UNLIKE_PX + _UNLIKE_NOISE_PX * noise)
     return np.asarray(several)
+
+
+def _skew(shapes: Floats) -> NDArray[np.bool_]:
+    """Whether there is odd light in the spot, surely and by much: that of another one upon it."""
+    scatter, skew, share = shapes.T[[7, 13, 14]]
+    with np.errstate(invalid="ignore"):
+        return np.asarray((skew > _SKEW * scatter) & (share > _SKEW_LIGHT))
 
 
 def _long(shapes: Floats, longest_px: float) -> NDArray[np.bool_]:

@@ -265,7 +265,8 @@ def test_the_gaussian_fit_is_scipys():
 def test_the_gaussian_fit_inverts_its_model(x, y, s, t):
     rows, columns = np.mgrid[:40, :44]
     frame = 7 + 300 * np.exp(-(((columns - x) / s) ** 2 + ((rows - y) / t) ** 2) / 2)
-    np.testing.assert_allclose(GaussianFit().extract(frame[None]), [[x, y]], atol=1e-6)
+    # whatever its shape: the narrowest are drawn out five times
+    np.testing.assert_allclose(GaussianFit(light="any").extract(frame[None]), [[x, y]], atol=1e-6)
 
 
 # Matched profile

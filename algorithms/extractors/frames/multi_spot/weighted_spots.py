@@ -27,7 +27,8 @@ from algorithms.extractors.frames.multi_spot.aperture_pattern import (
     lattice,
     require_pattern,
 )
-from algorithms.inputs import as_frames
+from algorithms.extractors.frames.one_light import agreed, longest_px_of, require_light
+from algorithms.inputs import Frames, as_frames
 
 #: What diffraction and the rims of holes may add to a spot's width, px.
 _RIM_PX = 2.0
@@ -59,6 +60,9 @@ class WeightedSpots(Extractor):
         Lines of apertures (columns or rows) that may be dark or doubled at once without a wrong
         answer, not negative: a displacement is an answer where every other one leaves more of
         them unexplained.
+    longest_px : float or None
+        With one aperture, the longest half axis that the outline of its spot has, px, positive;
+        None where no design tells. See `algorithms.extractors.frames.mirror`.
 
     Raises
     ------
@@ -86,7 +90,9 @@ class WeightedSpots(Extractor):
     spot of an aperture over the detector's middle, seen or not.
 
     Failure: a NaN row where the pattern is not found, as for MCAM, and where no spot's centre can
-    be fitted. With less than four spots none can be told to be the wrong one.
+    be fitted. With less than four spots none can be told to be the wrong one; with one aperture,
+    also where registration (`algorithms.extractors.frames.mirror`) does not find one whole
+    symmetric light within half a pixel of the answer.
 
     Cost: as MCAM, and some 150 operations a pixel of the spots' surroundings.
 
@@ -109,6 +115,7 @@ class WeightedSpots(Extractor):
         name="weighted-spots",
         taxonomy="None",
         origin="ours",
+        version=2,
         needs=PATTERN_NEEDS,
         observation=Observation.FRAMES,
         kind=FeatureKind.SPOT,
@@ -119,6 +126,7 @@ class WeightedSpots(Extractor):
     threshold: float = 0.3
     tolerance_px: float = 0.75
     faulty_lines: int = 1
+    longest_px: float | None = None
 
     def __post_init__(self) -> None:
         require_pattern(
@@ -129,6 +137,7 @@ class WeightedSpots(Extractor):
             self.tolerance_px,
             self.faulty_lines,
         )
+        require_light(self.about.name, "spot", self.longest_px)
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
@@ -136,11 +145,12 @@ class WeightedSpots(Extractor):
 
         UnsuitableDesignError where its light is no spots.
         """
-        return cls(**design_pattern(geometry, cls.about.name))
+        design = design_pattern(geometry, cls.about.name)
+        return cls(**design, longest_px=longest_px_of(geometry))
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Weighted positions (N, 2) in frames (N, H, W); ValueError on wrong input."""
-        return self._combined(observations)[0]
+        return self._combined(as_frames(observations))[0]
 
     def spots(self, observations: ArrayLike) -> Floats:
         """Centres (N, A, 2) of each aperture's spot in frames (N, H, W), px.
@@ -148,12 +158,11 @@ class WeightedSpots(Extractor):
         NaN where a spot is missing, cut or disagrees with the others, and for the whole of a
         frame in which the pattern is not found. ValueError on wrong input.
         """
-        return self._combined(observations)[1]
+        return self._combined(as_frames(observations))[1]
 
-    def _combined(self, observations: ArrayLike) -> tuple[Floats, Floats]:
+    def _combined(self, frames: Frames) -> tuple[Floats, Floats]:
         from algorithms.extractors.frames.multi_spot import combination_kernel  # noqa: PLC0415 - Numba, at first use
 
-        frames = as_frames(observations)
         levels = frame_levels(frames, self.apertures_px, self.threshold)
         pattern = find_pattern(
             frames,
@@ -169,6 +178,10 @@ class WeightedSpots(Extractor):
         used = np.empty((len(frames), len(known)), dtype=np.bool_)
         combination_kernel.combine(centres, variances, misfits, known, found, sure, used)
         centres[~used] = np.nan
+        if len(known) == 1:  # no others say which light it is
+            place = known[0, :2]
+            found = agreed(frames, found + place, longest_px=self.longest_px) - place
+            centres[np.isnan(found[:, 0])] = np.nan
         return found, centres
 
     def _centres(

@@ -1,0 +1,139 @@
+"""Methods of ours answer one whole light, and nothing else."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.special import ndtr
+
+from algorithms.contract import FeatureKind, Observation, SensorGeometry
+from algorithms.discovery import discover_extractors
+from algorithms.extractors.frames.matched import GaussianFit, MatchedProfile
+from algorithms.extractors.frames.one_light import judge, light_of, refused
+from algorithms.measurement import Doubt
+
+SIZE, RADIUS = 64, 8.0
+#: A hole of 16 px, as wide as the spots are.
+SENSOR = SensorGeometry(
+    focal_length_mm=1.0,
+    pixel_pitch_mm=0.01,
+    centre_px=(31.5, 31.5),
+    aperture_width_mm=0.16,
+    aperture_shape="round",
+    half_fov_deg=30.0,
+)
+
+
+def made():
+    """Methods of ours for one spot, for that sensor."""
+    for name, extractor in discover_extractors().items():
+        about = extractor.about
+        if about.origin == "ours" and about.observation is Observation.FRAMES:
+            assert about.kind is FeatureKind.SPOT
+            yield name, extractor.for_sensor(SENSOR)
+
+
+METHODS = dict(made())
+
+
+def disc(x, y):
+    rows, columns = np.mgrid[:SIZE, :SIZE]
+    return ndtr((RADIUS - np.hypot(columns - x, rows - y)) / 0.7)
+
+
+def read(light, rng):
+    mean = 20 + 2000 * np.asarray(light)
+    return np.clip(np.rint(rng.poisson(mean) + rng.normal(0, 10, mean.shape)), 0, 4095).astype(
+        np.uint16
+    )
+
+
+def scenes(kind, count, rng):
+    """Frames, and where the Sun is."""
+    centres = rng.uniform(26, 37, (count, 2))
+    turns = rng.uniform(0, 2 * np.pi, count)
+    away = np.column_stack([np.cos(turns), np.sin(turns)])
+    light = [disc(*c) for c in centres]
+    if kind in {"two", "ghost"}:
+        off = rng.uniform(5, 20, (count, 1)) * away
+        share = 1.0 if kind == "two" else 0.5
+        light = [a + share * disc(*c) for a, c in zip(light, centres + off, strict=True)]
+    elif kind == "cut":
+        centres[:, 0] = rng.uniform(-3, 7, count)
+        light = [disc(*c) for c in centres]
+    elif kind in {"none", "one hot"}:
+        light = np.zeros((count, SIZE, SIZE))
+    frames = read(light, rng)
+    if kind in {"hot", "one hot"}:
+        for frame in frames:
+            frame.flat[rng.integers(0, frame.size, 5 if kind == "hot" else 1)] = 4095
+    return frames, centres
+
+
+def test_all_methods_of_ours_are_held_to_it():
+    assert set(METHODS) == {
+        "energy-filter",
+        "gaussian-fit",
+        "matched-profile",
+        "mirror",
+        "weighted-spots",
+    }
+
+
+@pytest.mark.parametrize("kind", ["two", "ghost", "cut", "hot", "none", "one hot"])
+@pytest.mark.parametrize("name", METHODS)
+def test_no_answer_is_a_pixel_off(name, kind):
+    frames, centres = scenes(kind, 25, np.random.default_rng(771))
+    found = METHODS[name].extract(frames)
+    answered = np.isfinite(found).all(axis=1)
+    if kind == "hot":
+        assert (np.hypot(*(found - centres)[answered].T) < 1.0).all()
+    else:
+        assert not answered.any()
+
+
+@pytest.mark.parametrize("name", METHODS)
+def test_one_whole_spot_is_answered(name):
+    frames, centres = scenes("one", 25, np.random.default_rng(772))
+    found = METHODS[name].extract(frames)
+    assert np.abs(found - centres).max() < 0.1
+
+
+def test_an_answer_to_something_else_than_the_light_is_none():
+    frames, centres = scenes("one", 4, np.random.default_rng(773))
+    centres[1] += 0.8
+    centres[2] = np.nan
+    doubts = judge(frames, centres).doubts
+    assert doubts.tolist() == [0, int(Doubt.NO_SPOT), int(Doubt.NO_SPOT), 0]
+    assert refused(doubts).tolist() == [False, True, True, False]
+
+
+def test_designs_without_a_hole_take_any_light_but_no_hot_pixel():
+    """A slit's line is no spot, yet it is what its sensor sees."""
+    assert light_of(SENSOR) == "spot"
+    slit = GaussianFit.for_sensor(SensorGeometry(focal_length_mm=1.0))
+    assert slit.light == "any"
+    rng = np.random.default_rng(774)
+    rows, columns = np.mgrid[:SIZE, :SIZE]
+    line = ndtr((25 - abs(rows - 31)) / 0.7) * ndtr((3 - abs(columns - 30)) / 0.7)
+    frames = np.concatenate([read(line[None], rng), scenes("one hot", 1, rng)[0]])
+    assert np.isfinite(slit.extract(frames))[:, 0].tolist() == [True, False]
+    assert np.isnan(GaussianFit().extract(frames)).all()
+
+
+def test_parameters_that_are_none_are_refused():
+    with pytest.raises(ValueError, match="gaussian-fit: light must be one of spot, any; got 'all'"):
+        GaussianFit(light="all")
+    with pytest.raises(ValueError, match="matched-profile: longest_px must be positive"):
+        MatchedProfile(longest_px=-1.0)
+
+
+@pytest.mark.parametrize("name", ["gaussian-fit", "matched-profile", "mirror"])
+def test_the_covariance_is_about_that_of_the_errors(name):
+    """Of 300 frames, two coordinates' normalised errors squared average 2 within a third."""
+    frames, centres = scenes("one", 300, np.random.default_rng(775))
+    found = METHODS[name].measure(frames)
+    errors = found.features - centres
+    squares = np.einsum("ni,nij,nj->n", errors, np.linalg.inv(found.covariance), errors)
+    assert 1.4 < squares.mean() < 2.7
+    np.testing.assert_array_equal(found.features, METHODS[name].extract(frames))
