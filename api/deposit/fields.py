@@ -91,6 +91,10 @@ _FIELDS: dict[str, tuple[Type, str]] = {
     "n": ("integer", "Samples at the point; 0 where the extractor's design refuses it."),
     "measured_in": ("string", "Unit of rms, bias and bound."),
     "kept_fraction": ("number", "Share of samples found within 3 px of the truth."),
+    "wrong_fraction": (
+        "number",
+        "Share of samples answered more than 1 px from the truth, or where there is none.",
+    ),
     "rms": ("number", "Root mean square error of one coordinate of the found samples."),
     "bias": ("number", "Root mean square over the coordinates of the mean error."),
     "bound": ("number", "Root mean square Cramer-Rao bound of one coordinate."),

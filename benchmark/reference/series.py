@@ -25,6 +25,8 @@ PEDESTALS = (0.0, 0.5)
 MISSING = (0.0, 0.2)
 #: Distance from the truth within which a tracked feature counts as kept.
 KEPT_PX = 3.0
+#: An answer further off is wrong.
+WRONG_PX = 1.0
 #: Height of the glint in a tracking sequence, in units of the feature.
 GLINT = 1.5
 
@@ -94,7 +96,7 @@ class Setting:
 
 @dataclass(frozen=True)
 class Drawn:
-    """Observations (N, ...) with their truth (N, K) and its bound.
+    """Observations (N, ...) with their truth (N, K), NaN where there is none, and its bound.
 
     `bound` is the root mean square of one coordinate's Cramer-Rao bound; NaN where the setting
     has no meaningful one.
@@ -159,6 +161,10 @@ SWEEPS: Mapping[str, str] = {
     "missing": "share missing",
     "features": "number of features",
     "tracking": "drifting feature and a glint",
+    "shape": "shape of the spot",
+    "radius": "radius of a disc",
+    "lights": "stray light, ghosts, two lights, the frame's edge",
+    "defects": "broken pixels, no Sun",
 }
 
 

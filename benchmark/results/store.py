@@ -58,7 +58,10 @@ _SCORE_COLUMNS: Mapping[str, Reader] = {
 #: Columns of scores that came with metric 3.
 _LATER = ("bound_unit_deg", "over_bound_unit", "floor_deg")
 #: Numbers of a row of a sweep.
-SWEPT = ("found_fraction", "kept_fraction", "rms", "bias", "bound", "over_bound")
+SWEPT = (
+    *("found_fraction", "kept_fraction", "wrong_fraction"),
+    *("rms", "bias", "bound", "over_bound"),
+)
 _SWEEP_COLUMNS: Mapping[str, Reader] = {
     "series": str,
     "sweep": str,

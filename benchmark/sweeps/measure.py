@@ -10,7 +10,7 @@ import numpy as np
 from algorithms.contract import Extractor, Floats, UnusableDataError
 from algorithms.pipeline import checked
 from benchmark.metrics.score import stored
-from benchmark.reference.series import KEPT_PX, Drawn, Series, Setting
+from benchmark.reference.series import KEPT_PX, WRONG_PX, Drawn, Series, Setting
 from benchmark.results.store import SWEPT
 from benchmark.running.threads import one_thread
 from benchmark.sweeps.plan import SERIES, Point
@@ -44,23 +44,29 @@ def _measured(
             extract = getattr(method, "track", extract)
         observations = drawn.observations.copy()
         features = checked(method, extract(observations), len(observations))
-        errors = series.estimates(features) - drawn.truth
+        estimates = series.estimates(features)
     except UnusableDataError as error:
         return row | {"status": "refused", "reason": _reason(error)}
     except Exception as error:  # noqa: BLE001 - any other error is told with its name
         return row | {"status": "failed", "reason": _reason(error)}
-    return row | {"status": "ok"} | _numbers(errors, drawn.bound, series.unit)
+    return row | {"status": "ok"} | _numbers(estimates, drawn, series.unit)
 
 
-def _numbers(errors: Floats, bound: float, unit: str) -> Row:
-    """Return the metrics of errors (N, K); those of an axis are over two, whatever K."""
-    found = np.isfinite(errors).all(axis=1)
-    good = errors[found]
+def _numbers(estimates: Floats, drawn: Drawn, unit: str) -> Row:
+    """Return the metrics of estimates (N, K); those of an axis are over two, whatever K.
+
+    Every answer where there is no truth is wrong.
+    """
+    found = np.isfinite(estimates).all(axis=1)
+    errors, bound = estimates - drawn.truth, drawn.bound
+    off = np.sqrt(np.sum(errors**2, axis=1))
+    wrong = float((found & ~(off <= WRONG_PX)).mean()) if unit == "px" else np.nan
+    good = errors[np.isfinite(errors).all(axis=1)]
     squared = np.sum(good**2, axis=1)
     rms = float(np.sqrt(squared.mean() / 2.0)) if len(good) else np.nan
     bias = float(np.sqrt(np.sum(good.mean(axis=0) ** 2) / 2.0)) if len(good) else np.nan
     kept = float((squared <= KEPT_PX**2).sum() / len(errors)) if unit == "px" else np.nan
-    values = (found.mean(), kept, rms, bias, bound, rms / bound)
+    values = (found.mean(), kept, wrong, rms, bias, bound, rms / bound)
     return {name: stored(float(v)) for name, v in zip(SWEPT, values, strict=True)}
 
 

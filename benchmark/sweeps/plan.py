@@ -11,6 +11,7 @@ from benchmark.datasets import Preset
 from benchmark.datasets.standard import ccd_lens, cmos_lens
 from benchmark.reference.cameras import CameraSeries
 from benchmark.reference.events import EVENTS
+from benchmark.reference.frame_series import FramesSeries
 from benchmark.reference.lines import SLIT, SLITS
 from benchmark.reference.readings import FacesSeries, QuadrantSeries
 from benchmark.reference.series import Series, Setting
@@ -29,6 +30,7 @@ def _camera_of(preset: Preset, name: str, description: str) -> CameraSeries:
 
 _ALL: tuple[Series, ...] = (
     DiscSeries(),
+    FramesSeries(),
     GridSeries(),
     SLIT,
     SLITS,
@@ -57,12 +59,12 @@ _FRAMES_OF: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
         **dict.fromkeys(("MCAM", "FEIC", "FMMS"), ("grid",)),
         "BSCM": ("black-sun",),
-        "HT": ("disc", "blooming", "black-sun"),
+        "HT": ("disc", "frames", "blooming", "black-sun"),
     }
 )
 _SERIES_OF: Mapping[Observation, tuple[str, ...]] = MappingProxyType(
     {
-        Observation.FRAMES: ("disc", "grid"),
+        Observation.FRAMES: ("disc", "frames", "grid"),
         Observation.PROFILES: ("slit", "slits"),
         Observation.EVENTS: ("event-l-slit",),
     }

@@ -25,11 +25,12 @@ from numpy.typing import NDArray
 from algorithms.contract import Floats, Observation
 from algorithms.discovery import discover_extractors
 from algorithms.extractors.frames.mirror import MirrorRegistration
+from benchmark.reference.frame_sets import FRAME_SETS, FrameSet, Scenes
+from benchmark.reference.series import WRONG_PX
 from benchmark.running.threads import one_thread
 from tests.speed.extractor_limits import OPENCV
 from tests.speed.extractor_peers import REACH, Method, opencv_loop, peers
 from tests.speed.extractors import single_spot
-from tests.speed.robustness_frames import FRAME_SETS, FrameSet, Scenes
 from tests.speed.robustness_grids import GRID_SETS, GridSet
 from tests.speed.robustness_limits import LONGEST_PX, SIZE_PX, Measured, verdicts
 from tests.speed.verdicts import Verdict, broken
@@ -43,8 +44,6 @@ _GRID_SHARE = 0.3
 _SECONDS, _LEAST = 0.25, 8
 #: Frames and turns from which the time is told; a run that takes longer is not repeated.
 _TIMED_FRAMES, _TURNS, _LONG_S = 100, 5, 0.05
-#: An answer further off is wrong.
-WRONG_PX = 1.0
 #: Cut-outs for fits hold this many times the spot's longest axis.
 _CUT_OUT = 1.6
 

@@ -9,12 +9,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from benchmark.reference.frame_sets import FRAME_SETS, Scenes
 from benchmark.reference.frames import REFERENCE_SETS
-from tests.speed import robustness
-from tests.speed.extractor_peers import scipy_ellipse
-from tests.speed.robustness_frames import FRAME_SETS, Scenes
-from tests.speed.robustness_grids import GRID_SETS, GridSet
-from tests.speed.robustness_light import (
+from benchmark.reference.shapes import (
     EDGE_PX,
     disc,
     gaussian,
@@ -23,6 +20,9 @@ from tests.speed.robustness_light import (
     square,
     stretched,
 )
+from tests.speed import robustness
+from tests.speed.extractor_peers import scipy_ellipse
+from tests.speed.robustness_grids import GRID_SETS, GridSet
 from tests.speed.robustness_limits import Measured, verdicts
 from tests.speed.verdicts import broken
 

@@ -57,6 +57,9 @@ class Sweep(OpenShape):
     unit: str
     found_fraction: float | None
     kept_fraction: float | None = Field(description="Share within 3 px of the truth.")
+    wrong_fraction: float | None = Field(
+        description="Share answered more than 1 px from the truth, or where there is none."
+    )
     rms: float | None = Field(description="Root mean square error of one coordinate.")
     bias: float | None = Field(description="Root mean square over the coordinates of the mean.")
     bound: float | None = Field(description="Cramer-Rao bound of one coordinate.")

@@ -17,8 +17,7 @@ from numpy.typing import NDArray
 
 from algorithms.contract import Floats
 from benchmark.reference.light import position_bound
-from benchmark.seeds import generator
-from tests.speed.robustness_light import (
+from benchmark.reference.shapes import (
     BACKGROUND_E,
     Shape,
     airy,
@@ -31,6 +30,7 @@ from tests.speed.robustness_light import (
     stretched,
     variance_e,
 )
+from benchmark.seeds import generator
 
 #: What a method is held to on a set, if to anything.
 Kind = Literal["symmetric", "stray", "fault"]
@@ -114,7 +114,7 @@ class FrameSet:
     breaks: Breaks | None = None
     sun: bool = True
 
-    def draw(self, seed: int, count: int) -> Scenes:
+    def draw(self, seed: int | str, count: int) -> Scenes:
         """Return the first `count` frames of this set under a seed."""
         frames = np.empty((count, self.size_px, self.size_px), dtype=np.uint16)
         centres = np.empty((count, 2))
@@ -165,7 +165,7 @@ def _gradient(rng: np.random.Generator, count: int, chosen: FrameSet) -> tuple[F
 
 
 def _glare(rng: np.random.Generator, count: int, chosen: FrameSet) -> tuple[Floats, Floats]:
-    """A broad lobe beside the spot: 5 to 10 % of the peak, sigma 12 to 20 px, 5 to 20 px off."""
+    """Add a broad lobe beside it: 5 to 10 % of the peak, sigma 12 to 20 px, 5 to 20 px off."""
     centres = _within(rng, count, chosen)
     height = chosen.peak_e * rng.uniform(0.05, 0.10, (count, 1, 1))
     sigma = rng.uniform(12.0, 20.0, (count, 1, 1))

@@ -1,5 +1,4 @@
-"""Light of the sets of `tests.speed.robustness`: shapes of one spot, integrated over the pixel,
-and how a camera reads them.
+"""Shapes of one spot, integrated over the pixel, and how a camera reads them (`frame_sets`).
 
 Heights are one in the middle, rims are blurred by a Gaussian; lengths are pixels.
 """
@@ -13,7 +12,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import j1, ndtr
 
 from algorithms.contract import Floats
 
@@ -53,11 +51,18 @@ class Shape:
     reach_px: float
 
 
+def _up_to(edge: Floats) -> Floats:
+    """Share of a blurred rim's light a distance inside it, in sigmas."""
+    from scipy.special import ndtr  # noqa: PLC0415 - SciPy where frames are drawn
+
+    return np.asarray(ndtr(edge))
+
+
 def disc(radius: float) -> Shape:
     """Return a uniform disc."""
 
     def light(x: Floats, y: Floats, _: float) -> Floats:
-        return np.asarray(ndtr((radius - np.hypot(x, y)) / EDGE_PX))
+        return np.asarray(_up_to((radius - np.hypot(x, y)) / EDGE_PX))
 
     return Shape(light, radius, radius, radius + _TAIL_PX)
 
@@ -74,6 +79,8 @@ def gaussian(sigma: float) -> Shape:
 
 def airy(ring: float) -> Shape:
     """Return the pattern of a round hole whose first dark ring has this radius."""
+    from scipy.special import j1  # noqa: PLC0415 - SciPy where frames are drawn
+
     scale = ring / _DARK_RING
 
     def light(x: Floats, y: Floats, _: float) -> Floats:
@@ -91,7 +98,7 @@ def stretched(radius: float, incidence_deg: float) -> Shape:
         u, v = _turned(x, y, turn)
         rho = np.maximum(np.hypot(u / k, v), 1e-9)
         slope = np.maximum(np.hypot(u / k**2, v), 1e-9) / rho
-        return np.asarray(ndtr((radius - rho) / slope / EDGE_PX))
+        return np.asarray(_up_to((radius - rho) / slope / EDGE_PX))
 
     return Shape(light, radius, k * radius, k * radius + _TAIL_PX)
 
@@ -101,7 +108,9 @@ def square(half: float) -> Shape:
 
     def light(x: Floats, y: Floats, turn: float) -> Floats:
         u, v = _turned(x, y, turn)
-        return np.asarray(ndtr((half - np.abs(u)) / EDGE_PX) * ndtr((half - np.abs(v)) / EDGE_PX))
+        return np.asarray(
+            _up_to((half - np.abs(u)) / EDGE_PX) * _up_to((half - np.abs(v)) / EDGE_PX)
+        )
 
     return Shape(light, half, half, math.sqrt(2.0) * half + _TAIL_PX)
 
@@ -112,7 +121,7 @@ def limb_darkened(radius: float) -> Shape:
     def light(x: Floats, y: Floats, _: float) -> Floats:
         rho = np.hypot(x, y)
         mu = np.sqrt(np.maximum(1.0 - (rho / radius) ** 2, 0.0))
-        return np.asarray((1.0 - _LIMB * (1.0 - mu)) * ndtr((radius - rho) / EDGE_PX))
+        return np.asarray((1.0 - _LIMB * (1.0 - mu)) * _up_to((radius - rho) / EDGE_PX))
 
     return Shape(light, radius, radius, radius + _TAIL_PX)
 
