@@ -165,5 +165,6 @@ class UnknownNameError(LookupError):
         self.name = name
         self.known = tuple(sorted(known))
         self.nearest = nearest(name, self.known)
-        hint = f"did you mean {self.nearest!r}?" if self.nearest else f"known: {self.known}"
+        known_ones = f"known: {', '.join(self.known)}"
+        hint = f"did you mean {self.nearest!r}?" if self.nearest else known_ones
         super().__init__(f"no {what} named {name!r}; {hint}")
