@@ -19,7 +19,7 @@ _MASK = compound_eye(
 
 PRESET = many_spots(
     name="cmos-compound-eye",
-    version=4,
+    version=5,
     detector="CMOS",
     mask="Encoded",
     # light gathers behind such holes to 1.9 times the open light: a shorter exposure

@@ -15,7 +15,9 @@ from algorithms.contract import Floats
 
 Four = tuple[float, float, float, float]
 Rays = tuple[float, float, float]
+Sizes = tuple[Floats, Floats, Floats]
 Integers = NDArray[np.int64]
+Singles = NDArray[np.float32]
 
 
 @compiled
@@ -56,6 +58,13 @@ def _blended(out: Floats, tables: Floats, place: float, slope: float) -> None:
 
 
 @compiled
+def _across(table: Floats, row: int, before: int, column: int, shares: Four) -> float:
+    """Interpolate a row of a table between four columns, of which the first is `before`."""
+    near = shares[0] * table[row, before] + shares[1] * table[row, column]
+    return float(near + (shares[2] * table[row, column + 1] + shares[3] * table[row, column + 2]))
+
+
+@compiled
 def _looked_up(table: Floats, along: float, across: float) -> float:
     """Value of a half-plane table at steps (along, across) from its middle.
 
@@ -70,18 +79,13 @@ def _looked_up(table: Floats, along: float, across: float) -> float:
         along, across = along / outside, across / outside
     row, column = math.floor(along), math.floor(across)
     t0, t1, t2, t3 = _shares(along - row)
-    u0, u1, u2, u3 = _shares(across - column)
+    over = _shares(across - column)
     row += reach
     before = abs(column - 1)
-    # written out: this is where the time goes
-    first = u0 * table[row - 1, before] + u1 * table[row - 1, column]
-    first += u2 * table[row - 1, column + 1] + u3 * table[row - 1, column + 2]
-    second = u0 * table[row, before] + u1 * table[row, column]
-    second += u2 * table[row, column + 1] + u3 * table[row, column + 2]
-    third = u0 * table[row + 1, before] + u1 * table[row + 1, column]
-    third += u2 * table[row + 1, column + 1] + u3 * table[row + 1, column + 2]
-    fourth = u0 * table[row + 2, before] + u1 * table[row + 2, column]
-    fourth += u2 * table[row + 2, column + 1] + u3 * table[row + 2, column + 2]
+    first = _across(table, row - 1, before, column, over)
+    second = _across(table, row, before, column, over)
+    third = _across(table, row + 1, before, column, over)
+    fourth = _across(table, row + 2, before, column, over)
     return float(fade * (t0 * first + t1 * second + t2 * third + t3 * fourth))
 
 
@@ -190,7 +194,7 @@ def _lit_columns(y: float, hole_x: float, way: Floats, reach: Floats) -> tuple[f
 @compiled
 def add_spots(
     frame: Floats,
-    tables: tuple[Floats, Floats],
+    tables: Sizes,
     sample: tuple[Floats, Floats, Floats],
     apertures: tuple[Floats, Integers],
     optics: tuple[Floats, Floats],
@@ -202,14 +206,14 @@ def add_spots(
     frame
         (H, W), added to: light averaged over each pixel.
     tables
-        Two of (T, 2 n + 1, n + 1), of `RoundPattern`: of a smaller and of a larger hole.
+        Three of (T, 2 n + 1, n + 1), of `RoundPattern`, of holes of different sizes.
     sample
         (3,) to the Sun; (10,) as of `add_round`; (2,) half axes of the ellipse along and across the
         plane of incidence, mm.
     apertures
-        (A, 4) centre, mm, seen from the frame's first corner, where the hole lies between the
-        smaller and the larger one, and the light it passes; (A, 4) boxes of pixels around the
-        ellipses: first and past-last column and row.
+        (A, 6) centre, mm, seen from the frame's first corner, the light it passes, and the three
+        tables' shares in its own; (A, 4) boxes of pixels around the ellipses: first and past-last
+        column and row.
     optics
         (L, 2) thickness and index from the aperture down, the empty gap first; (Q, 2) nodes in a
         pixel as of `add_round`.
@@ -218,22 +222,20 @@ def add_spots(
     holes, boxes = apertures
     layers, nodes = optics
     pitch = nodes[0, 0] + nodes[-1, 0]
-    shape = tables[0].shape[1:]
-    table, small, large = np.empty(shape), np.empty(shape), np.empty(shape)
     way = _way(sun, numbers, layers)
-    _blended(small, tables[0], numbers[1], numbers[9] / way[3])
-    _blended(large, tables[1], numbers[1], numbers[9] / way[3])
+    one, two, three = _blended_sizes(tables, numbers[1], numbers[9] / way[3])
+    shape = tables[0].shape[1:]
+    table = np.empty(shape)
     for m in range(boxes.shape[0]):
         left, right, top, bottom = boxes[m]
+        a, b, c = holes[m, 3], holes[m, 4], holes[m, 5]
         for i in range(shape[0]):
             for j in range(shape[1]):
-                table[i, j] = small[i, j] + holes[m, 2] * (large[i, j] - small[i, j])
+                table[i, j] = a * one[i, j] + b * two[i, j] + c * three[i, j]
         for row in range(top, bottom):
             ends = _lit_columns((row + 0.5) * pitch - holes[m, 1], holes[m, 0], way, reach)
-            first, last = (
-                max(left, math.floor(ends[0] / pitch)),
-                min(right, math.ceil(ends[1] / pitch)),
-            )
+            first = max(left, math.floor(ends[0] / pitch))
+            last = min(right, math.ceil(ends[1] / pitch))
             for column in range(first, last):
                 total = 0.0
                 for i in range(nodes.shape[0]):
@@ -243,7 +245,18 @@ def add_spots(
                         along, across, factor = _seen(x, y, way)
                         factor *= nodes[i, 1] * nodes[j, 1]
                         total += factor * _looked_up(table, along, across)
-                frame[row, column] += numbers[0] * holes[m, 3] * max(total, 0.0)
+                frame[row, column] += numbers[0] * holes[m, 2] * max(total, 0.0)
+
+
+@compiled
+def _blended_sizes(tables: Sizes, place: float, slope: float) -> Sizes:
+    """`_blended` of each."""
+    shape = tables[0].shape[1:]
+    one, two, three = np.empty(shape), np.empty(shape), np.empty(shape)
+    _blended(one, tables[0], place, slope)
+    _blended(two, tables[1], place, slope)
+    _blended(three, tables[2], place, slope)
+    return one, two, three
 
 
 @compiled
@@ -260,12 +273,34 @@ def _six_shares(fraction: float, out: Floats) -> None:
 
 
 @compiled
-def _lattice(
-    tables: tuple[Floats, Floats], way: Floats, reach: Floats, nodes: Floats, corner: Rays
-) -> tuple[Floats, Floats]:
-    """Means over a pixel about each point of a lattice around a spot: smaller hole, and difference.
+def _looked_up_sizes(tables: Sizes, along: float, across: float) -> Rays:
+    """`_looked_up` of three tables at one place, found once."""
+    small, drawn, large = tables
+    reach = small.shape[1] - 1
+    across = abs(across)
+    fade, far = 1.0, max(abs(along), across)
+    if far > reach - 2.0:
+        outside = far / (reach - 2.0)
+        fade = 1.0 / (outside * outside * outside)
+        along, across = along / outside, across / outside
+    first, column = math.floor(along), math.floor(across)
+    down, over = _shares(along - first), _shares(across - column)
+    before = abs(column - 1)
+    one, two, three = 0.0, 0.0, 0.0
+    for k in range(4):
+        row, share = first + reach + k - 1, fade * down[k]
+        one += share * _across(small, row, before, column, over)
+        two += share * _across(drawn, row, before, column, over)
+        three += share * _across(large, row, before, column, over)
+    return one, two, three
 
-    `corner` is the first point, x and y from the hole, and the points' distance.
+
+@compiled
+def _lattice(tables: Sizes, way: Floats, reach: Floats, nodes: Floats, corner: Rays) -> Singles:
+    """(3, Y, X) means of each table over a pixel about each point of a lattice around a spot.
+
+    `corner` is the first point, x and y from the hole, and the points' distance. In single
+    precision, 1e-7 of the peak: every hole reads all of it.
     """
     left, top, spacing = corner
     ex, ey, chief = way[0], way[1], way[2]
@@ -274,29 +309,32 @@ def _lattice(
     far = 2.0 * half + 4.0 * spacing
     width = math.ceil(2.0 * (chief * ex - left) / spacing) + 2
     height = math.ceil(2.0 * (chief * ey - top) / spacing) + 2
-    one, more = np.zeros((height, width)), np.zeros((height, width))
+    out = np.zeros((3, height, width), dtype=np.float32)
     for row in range(height):
         for column in range(width):
             y, x = top + row * spacing, left + column * spacing
             past, beside = ex * x + ey * y - chief, ex * y - ey * x
             if (past / (reach[0] + far)) ** 2 + (beside / (reach[1] + far)) ** 2 > 1.0:
                 continue
+            one, two, three = 0.0, 0.0, 0.0
             for i in range(nodes.shape[0]):
                 for j in range(nodes.shape[0]):
                     along, across, factor = _seen(
                         x + nodes[j, 0] - half, y + nodes[i, 0] - half, way
                     )
                     factor *= nodes[i, 1] * nodes[j, 1]
-                    small = factor * _looked_up(tables[0], along, across)
-                    one[row, column] += small
-                    more[row, column] += factor * _looked_up(tables[1], along, across) - small
-    return one, more
+                    light = _looked_up_sizes(tables, along, across)
+                    one += factor * light[0]
+                    two += factor * light[1]
+                    three += factor * light[2]
+            out[0, row, column], out[1, row, column], out[2, row, column] = one, two, three
+    return out
 
 
 @compiled
 def add_spots_alike(
     frame: Floats,
-    tables: tuple[Floats, Floats],
+    tables: Sizes,
     sample: tuple[Floats, Floats, Floats],
     apertures: tuple[Floats, Integers],
     optics: tuple[Floats, Floats, int],
@@ -312,44 +350,49 @@ def add_spots_alike(
     layers, nodes, steps = optics
     pitch = nodes[0, 0] + nodes[-1, 0]
     spacing = pitch / steps
-    shape = tables[0].shape[1:]
-    small, large = np.empty(shape), np.empty(shape)
     way = _way(sun, numbers, layers)
-    _blended(small, tables[0], numbers[1], numbers[9] / way[3])
-    _blended(large, tables[1], numbers[1], numbers[9] / way[3])
     far = pitch + 5.0 * spacing
     wide = math.sqrt((reach[0] * way[0]) ** 2 + (reach[1] * way[1]) ** 2) + far
     high = math.sqrt((reach[0] * way[1]) ** 2 + (reach[1] * way[0]) ** 2) + far
     corner = way[2] * way[0] - wide, way[2] * way[1] - high, spacing
-    one, more = _lattice((small, large), way, reach, nodes, corner)
-    down, over, line = np.empty(6), np.empty(6), np.empty(one.shape[1])
+    sizes = _blended_sizes(tables, numbers[1], numbers[9] / way[3])
+    lattice = _lattice(sizes, way, reach, nodes, corner)
+    down, over = np.empty(6), np.empty(6)
+    shares = np.empty((3, 6), dtype=np.float32)
+    line = np.empty(lattice.shape[2], dtype=np.float32)
     for m in range(boxes.shape[0]):
         left, right, top, bottom = boxes[m]
-        start = (0.5 * pitch - holes[m, 0] - corner[0]) / spacing
-        whole = math.floor(start)
-        _six_shares(start - whole, over)
+        # of the frame's first pixel on the lattice; all others are whole points further
+        beside = (0.5 * pitch - holes[m, 0] - corner[0]) / spacing
+        below = (0.5 * pitch - holes[m, 1] - corner[1]) / spacing
+        first_column, first_row = math.floor(beside), math.floor(below)
+        _six_shares(beside - first_column, over)
+        _six_shares(below - first_row, down)
+        for size in range(3):
+            for k in range(6):
+                shares[size, k] = holes[m, 3 + size] * down[k]
+        a, b, c, d, e, f = over[0], over[1], over[2], over[3], over[4], over[5]
         for row in range(top, bottom):
-            y = (row + 0.5) * pitch - holes[m, 1]
-            ends = _lit_columns(y, holes[m, 0], way, reach)
-            first, last = (
-                max(left, math.floor(ends[0] / pitch)),
-                min(right, math.ceil(ends[1] / pitch)),
-            )
+            ends = _lit_columns((row + 0.5) * pitch - holes[m, 1], holes[m, 0], way, reach)
+            first = max(left, math.floor(ends[0] / pitch))
+            last = min(right, math.ceil(ends[1] / pitch))
             if last <= first:
                 continue
-            place = (y - corner[1]) / spacing
-            level = math.floor(place)
-            _six_shares(place - level, down)
-            begin, size = whole + steps * first - 2, steps * (last - 1 - first) + 6
-            line[:size] = 0.0
-            for k in range(6):
-                share, grown = down[k], down[k] * holes[m, 2]
-                here = one[level + k - 2, begin : begin + size]
-                there = more[level + k - 2, begin : begin + size]
-                for i in range(size):
-                    line[i] += share * here[i] + grown * there[i]
-            for column in range(first, last):
-                total = 0.0
-                for k in range(6):
-                    total += over[k] * line[steps * (column - first) + k]
-                frame[row, column] += numbers[0] * holes[m, 3] * max(total, 0.0)
+            count = steps * (last - 1 - first) + 6
+            level, begin = first_row + steps * row - 2, first_column + steps * first - 2
+            end = begin + count
+            line[:count] = 0.0
+            for size in range(3):
+                for k in range(0, 6, 3):
+                    g, h, i = shares[size, k], shares[size, k + 1], shares[size, k + 2]
+                    # sliced one by one: contiguous for the compiler
+                    one = lattice[size, level + k, begin:end]
+                    two = lattice[size, level + k + 1, begin:end]
+                    three = lattice[size, level + k + 2, begin:end]
+                    for j in range(count):
+                        line[j] += g * one[j] + h * two[j] + i * three[j]
+            for column in range(last - first):
+                k = steps * column
+                total = (a * line[k] + b * line[k + 1]) + (c * line[k + 2] + d * line[k + 3])
+                total += e * line[k + 4] + f * line[k + 5]
+                frame[row, first + column] += numbers[0] * holes[m, 2] * max(total, 0.0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -57,6 +58,11 @@ class MaskErrors:
                 "dirty_transmission must be two increasing numbers in [0, 1]; got "
                 f"{self.dirty_transmission}"
             )
+
+    @property
+    def radius_mm(self) -> float:
+        """Standard deviation of a round hole's radius: half the unit's size, the mean of sides."""
+        return math.hypot(self.size_mm, self.edge_mm) / 2.0
 
     def built(self, mask: Mask, *names: str | int) -> tuple[Floats, Floats]:
         """Build the unit of this name.

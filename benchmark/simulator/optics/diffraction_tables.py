@@ -340,7 +340,7 @@ class RoundPattern:
         return both.reshape(-1, 2), np.outer(weights, share).ravel()
 
 
-@memory.tables(16)
+@memory.tables(24)
 def _tables(pattern: RoundPattern) -> Floats:
     steps, _ = pattern.scales(np.zeros(1))
     across = landing(np.zeros(1), pattern.layers())[0, 1]

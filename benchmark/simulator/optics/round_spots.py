@@ -23,10 +23,13 @@ _TABULATED = 25.0
 #: all ways to turn it will do. The Sun and the colours leave little of such waves: frames of the
 #: standard datasets are within 0.4 % of peak of 4 x 4 cells a pixel.
 _CELL_RAD = 5.5
-#: Sizes of the tabulated holes differ at least so much, relatively.
-_LEAST_GROWTH = 1e-3
+#: The smaller and the larger tabulated hole are off by so many standard deviations of built radii:
+#: the parabola through the three is out by as much at 2.6 of them as anywhere between.
+_DEVIATIONS = 2.25
+#: And by so much of the radius, at least and at most.
+_LEAST_GROWTH, _MOST_GROWTH = 1e-2, 0.5
 #: Points a pixel, an axis, of the lattice that holes share: frames of the standard data sets are
-#: within 5e-4 of peak of looking every pixel up.
+#: within 7e-4 of peak of looking every pixel up.
 _LATTICE = 4
 
 
@@ -36,8 +39,8 @@ class _Holes:
 
     diameter_mm: float
     mine: NDArray[np.int64]
-    small: RoundPattern
-    large: RoundPattern
+    #: Of holes smaller than drawn, as drawn, and larger.
+    sizes: tuple[RoundPattern, RoundPattern, RoundPattern]
     #: Light below which a spot is left out.
     level: float
     #: (Q, 2) nodes in a pixel, mm from its first edge, and their weights.
@@ -46,30 +49,50 @@ class _Holes:
     #: Points a pixel of the lattice that the holes share; 0 for none.
     lattice: int
 
+    @property
+    def drawn(self) -> RoundPattern:
+        """Of the hole as drawn."""
+        return self.sizes[1]
+
     @cached_property
-    def tables(self) -> tuple[Floats, Floats]:
-        """Of the smaller and of the larger hole."""
-        return self.small.tables(), self.large.tables()
+    def _tables(self) -> tuple[Floats, Floats, Floats]:
+        small, drawn, large = self.sizes
+        return small.tables(), drawn.tables(), large.tables()
+
+    def tables(self, shares: Floats) -> tuple[Floats, Floats, Floats]:
+        """Return the three sizes'; holes as drawn need no others: theirs three times."""
+        if not shares[:, ::2].any():
+            drawn = self.drawn.tables()
+            return drawn, drawn, drawn
+        return self._tables
+
+    def shares(self, radii_mm: Floats) -> Floats:
+        """Return (A, 3) weights of the tables for holes of these radii: Lagrange's parabola."""
+        place = (radii_mm / self.drawn.radius_mm - 1.0) / self.sizes[2].growth
+        # drawn, but for rounding
+        place = np.where(np.abs(place) < 1e-9, 0.0, place)
+        square = place * place
+        return np.column_stack([(square - place) / 2.0, 1.0 - square, (square + place) / 2.0])
 
 
 @dataclass(frozen=True)
 class RoundSpots:
     """What a camera's round holes put on pixels: Fresnel diffraction of every hole by itself.
 
-    Holes of one drawn diameter share two tables (`RoundPattern`), of holes smaller and larger by
-    `size_mm` than drawn, between which each is interpolated linearly in its radius a:
-    the edges lie where the built rim puts them and the light follows the built area, to first
-    order. What is left is ``(da^2 - size_mm^2) / 2`` times the second derivative over the radius,
-    which is at most ``(2 pi N / a)^2`` times the peak: 1e-3 of it for a = 50 um, N = 4 and 0.25 um.
-    A unit whose holes are all too large lies further out: of the standard ones 2e-3 of peak, but
-    for `cmos-multi-aperture`, where it is 5e-3 of the standard unit and 1.4e-2 of one whose holes
-    are 2.5 % too small.
+    Holes of one drawn diameter share three tables (`RoundPattern`): of the hole as drawn, and of
+    holes smaller and larger by 2.25 `size_mm`. Each is interpolated between them by the parabola in
+    its radius a, whether the unit is off as a whole or the hole by itself. What is left is
+    ``x (x^2 - g^2) / 6`` times the third derivative over a, x the hole's excess and g that of the
+    larger table. Against a table of every hole's own radius, that is 1.0e-3 of peak on
+    `ccd-multi-aperture`, 1.1e-3 on `cmos-multi-aperture` (of a unit whose holes are 2.5 % too
+    small; 4e-4 of others) and 2e-5 on the encoded ones, over six units of each. It grows with the
+    cube of x: holes four standard deviations off are out by ten times as much as those within 2.6.
 
     Tables are of the drawn height, whatever the built one: light that has gone ``r`` times as far
     has the Fresnel numbers, and so the pattern, of a hole ``sqrt(r)`` times smaller, ``sqrt(r)``
     times as large. Of the Sun's image and the pixel that leaves out ``(r - 1) / 2`` of their
-    width, 1e-3 of it in the units of the standard data sets; in return all units, built a little
-    differently, look their light up in the same tables.
+    width: up to 1.2e-3 of peak for the 0.3 % by which heights of the standard data sets are off. In
+    return all units, built a little differently, look their light up in the same tables.
 
     A pixel is divided into cells over which tables are averaged whichever way they are turned
     (`RoundPattern.cell_mm`): one look-up a cell. Where many holes light one frame, their common
@@ -94,7 +117,7 @@ class RoundSpots:
     widest_deg
         Largest incidence tabulated; beyond, the pattern keeps this one's Fresnel numbers.
     size_mm
-        By how much radii of built holes typically differ from each other's mean.
+        Standard deviation of built radii from the drawn one (`MaskErrors.radius_mm`).
     skirt
         Share of the peak at normal incidence below which light is left out.
     """
@@ -117,10 +140,9 @@ class RoundSpots:
         )
 
     def _group(self, diameter_mm: float, mine: NDArray[np.int64]) -> _Holes:
-        growth = max(2.0 * self.size_mm / diameter_mm, _LEAST_GROWTH)
         cells = self.cells(diameter_mm)
-        small = self._pattern(diameter_mm, -growth, cells)
-        _, unit = small.scales(np.zeros(1))
+        sizes = self.sizes(diameter_mm)
+        _, unit = sizes[1].scales(np.zeros(1))
         inside = (np.arange(cells) + 0.5) * (self.pitch_mm / cells)
         # as many as lie over the detector light it at a time
         half = np.array(self.size_px) * self.pitch_mm / 2.0
@@ -129,12 +151,11 @@ class RoundSpots:
         return _Holes(
             diameter_mm,
             mine,
-            small,
-            self._pattern(diameter_mm, growth, cells),
-            self.skirt * float(small.tables()[0].max() * unit[0]),
+            sizes,
+            self.skirt * float(sizes[1].tables()[0].max() * unit[0]),
             np.column_stack([inside, np.full(cells, 1.0 / cells)]),
             self.pitch_mm,
-            # two tables on every point of it, against one look-up a pixel
+            # three tables on every point of it, against one look-up a pixel
             _LATTICE if shown > 4 * _LATTICE**2 else 0,
         )
 
@@ -158,6 +179,16 @@ class RoundSpots:
         phase = math.pi * diameter_mm / (self._wave_mm * across) * self.pitch_mm
         return max(1, math.ceil(phase / _CELL_RAD))
 
+    def sizes(self, diameter_mm: float) -> tuple[RoundPattern, RoundPattern, RoundPattern]:
+        """Return patterns of holes smaller than drawn, as drawn, and larger."""
+        growth = 2.0 * _DEVIATIONS * self.size_mm / diameter_mm
+        growth = min(max(growth, _LEAST_GROWTH), _MOST_GROWTH)
+        cells = self.cells(diameter_mm)
+        small, drawn, large = (
+            self._pattern(diameter_mm, one, cells) for one in (-growth, 0.0, growth)
+        )
+        return small, drawn, large
+
     def _pattern(self, diameter_mm: float, growth: float, cells: int) -> RoundPattern:
         camera = self.camera
         radius, height = diameter_mm / 2.0, camera.focal_length_mm
@@ -177,7 +208,7 @@ class RoundSpots:
 
     def _half_axes(self, head: Floats, group: _Holes) -> Floats:
         """(N, 2) of the ellipses that hold a spot, along and across the plane of incidence, mm."""
-        pattern = group.small
+        pattern = group.drawn
         sine = np.sqrt(np.sum(head[:, :2] ** 2, axis=1))
         spread = landing(sine, pattern.layers())[:, 1:]
         numbers = pattern.numbers(sine, self._wave_mm)
@@ -246,20 +277,23 @@ class RoundSpots:
         known = np.minimum(sine, math.sin(math.radians(self.widest_deg)))
         transmitted = head[:, 2] * self.camera.glass.transmission(head)
         wide = self._stretch
-        numbers, axes = [], []
+        # tables are of the drawn height: so much smaller is a hole that looks alike there
+        alike = holes_mm[:, 2] / wide
+        numbers, axes, shares = [], [], np.empty((len(holes_mm), 3))
         for group in self.groups:
-            steps, unit = group.small.scales(known)
+            steps, unit = group.drawn.scales(known)
             # lengths of the drawn height's pattern, on the built one's
-            seen = group.small.seen(known) * np.array([wide, *(1.0 / wide,) * 5])
-            place = group.small.place(known)
+            seen = group.drawn.seen(known) * np.array([wide, *(1.0 / wide,) * 5])
+            place = group.drawn.place(known)
             light = transmitted * unit
             numbers.append(np.column_stack([light, place, wide / steps, seen]))
             axes.append(self._half_axes(head, group))
+            shares[group.mine] = group.shares(alike[group.mine])
         return RoundLight(
             self.groups,
             layers(self.camera.height_mm, self.camera.glass),
-            # tables are of the drawn height: so much smaller is a hole that looks alike there
-            np.column_stack([holes_mm[:, :2], holes_mm[:, 2] / wide]),
+            holes_mm[:, :2],
+            shares,
             head,
             passed,
             boxes,
@@ -282,7 +316,9 @@ class RoundLight:
     groups, layers
         Of `RoundSpots`; (L, 2) of the built camera.
     holes_mm
-        (A, 3) built x and y from the detector's first corner; radius at the drawn height.
+        (A, 2) built x and y from the detector's first corner.
+    shares
+        (A, 3) of the tables in each hole.
     head
         (N, 3) the Sun as the head sees it.
     passed
@@ -297,6 +333,7 @@ class RoundLight:
     groups: tuple[_Holes, ...]
     layers: Floats
     holes_mm: Floats
+    shares: Floats
     head: Floats
     passed: Floats
     boxes: Integers
@@ -320,19 +357,17 @@ class RoundLight:
             mine = group.mine[lit[group.mine]]
             if not len(mine):
                 continue
-            small, large = group.small, group.large
-            part = self.holes_mm[mine, 2] / small.radius_mm - 1.0 - small.growth
-            part /= large.growth - small.growth
-            sample = self.head[n], numbers[n], axes[n]
+            sample, shares = (self.head[n], numbers[n], axes[n]), self.shares[mine]
             holes = (
-                np.column_stack([self.holes_mm[mine, :2], part, self.passed[n, mine]]),
+                np.column_stack([self.holes_mm[mine], self.passed[n, mine], shares]),
                 np.ascontiguousarray(boxes[mine]),
             )
+            tables = group.tables(shares)
             if group.lattice:
                 optics = self.layers, group.nodes, group.lattice
-                add_spots_alike(frame, group.tables, sample, holes, optics)
+                add_spots_alike(frame, tables, sample, holes, optics)
             else:
-                add_spots(frame, group.tables, sample, holes, (self.layers, group.nodes))
+                add_spots(frame, tables, sample, holes, (self.layers, group.nodes))
         return np.asarray(boxes[lit])
 
     def mark(self, near: NDArray[np.bool_], n: int, margin_px: int) -> None:
@@ -346,5 +381,5 @@ class RoundLight:
         chief = direction * float(landing(np.array([sine]), self.layers)[0, 0])
         for group, axes in zip(self.groups, self.patterns[1], strict=True):
             mine = group.mine[lit[group.mine]]
-            middles = (self.holes_mm[mine, :2] + chief) / group.pitch_mm
+            middles = (self.holes_mm[mine] + chief) / group.pitch_mm
             mark_ellipses(near, middles, axes[n] / group.pitch_mm + margin_px, direction)

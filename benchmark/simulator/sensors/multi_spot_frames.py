@@ -136,15 +136,13 @@ class MultiSpotSensor:
     def _spots(self) -> RoundSpots:
         if self.spectrum is None:
             raise TypeError("a sensor without a spectrum has no diffracted spots")
-        # a radius grows by the mean of four sides' moves
-        size = self.errors.edge_mm / 2.0
         return RoundSpots(
             camera=self.camera,
             spectrum=self.spectrum,
             pitch_mm=self.detector.pitch_mm,
             size_px=(self.detector.columns, self.detector.rows),
             widest_deg=self.widest_deg,
-            size_mm=size,
+            size_mm=self.errors.radius_mm,
             skirt=self.skirt,
         )
 
@@ -227,7 +225,7 @@ class MultiSpotSensor:
         detector = self.detector
         pixels = detector.rows, detector.columns, detector.pitch_mm, detector.tunnel
         # tables are of holes as far apart as built ones are expected to be
-        spots = self.widest_deg, self.skirt, self.errors.edge_mm
+        spots = self.widest_deg, self.skirt, self.errors.radius_mm
         # spelt once: to compare masks hole by hole, sample by sample, would take longer
         said = repr((type(self).__name__, self.camera, self.spectrum, spots, pixels))
         mask = digest_of(pattern["apertures"], pattern["transmission"])

@@ -210,6 +210,15 @@ def test_edges_move_by_themselves() -> None:
     assert np.degrees(np.arctan2(turned[:, 6], turned[:, 5])).std() == pytest.approx(0.5, rel=0.15)
 
 
+def test_built_radii_are_off_by_the_stated_deviation() -> None:
+    """Of many units with one hole each: the unit's common size and the hole's own edges."""
+    errors = MaskErrors(position_mm=0.001, size_mm=0.002, edge_mm=0.0015)
+    mask = Mask((Aperture("round", 0.1, 0.1),))
+    radii = [errors.built(mask, "unit", n)[0][0, 3] for n in range(800)]
+    assert np.mean(radii) == pytest.approx(0.05, abs=4.0 * errors.radius_mm / math.sqrt(800))
+    assert np.std(radii) == pytest.approx(errors.radius_mm, rel=4.0 / math.sqrt(2.0 * 800))
+
+
 def test_missing_and_dirty_apertures_are_exactly_as_many_as_told() -> None:
     mask = grid(10, 10, 0.5, Aperture("round", 0.2, 0.2))
     _, some = MaskErrors(missing=0.2, dirty=0.1).built(mask, "unit")

@@ -12,6 +12,7 @@ from benchmark.datasets.conditions.full_frames import for_bound
 from benchmark.simulator.light.memory import LightMemory
 from benchmark.simulator.light.sun_disc import from_angles
 from benchmark.simulator.masks.apertures import Aperture
+from benchmark.simulator.masks.errors import MaskErrors
 from benchmark.simulator.masks.layouts import grid
 from benchmark.simulator.optics import diffraction_tables
 from benchmark.simulator.optics.assembly import Assembly
@@ -80,8 +81,22 @@ def test_units_and_bounds_look_up_the_same_tables() -> None:
     for sensor in (sensor_of(0.8, holes=2), sensor_of(0.8, holes=2, error_mm=0.003)):
         for one in (sensor, for_bound(sensor)):
             (group,) = one._spots.groups
-            asked.append((id(tables(group.small)), id(tables(group.large))))
+            asked.append(tuple(id(tables(size)) for size in group.sizes))
     assert len(set(asked)) == 1
+
+
+def test_holes_built_as_drawn_need_no_tables_of_others() -> None:
+    """And see the same light to the last bit."""
+    sensor = replace(sensor_of(0.8, holes=2, hole_mm=0.04), errors=MaskErrors())
+    pattern, scene = sensor.fixed_pattern("test"), seen(12.0, -20.0)
+    (group,) = sensor._spots.groups
+    shares = group.shares(np.full(2, 0.02))
+    assert np.array_equal(shares, [[0.0, 1.0, 0.0]] * 2)
+    assert {id(table) for table in group.tables(shares)} == {id(group.drawn.tables())}
+    alone = sensor.lit(scene, pattern)
+    assert "_tables" not in vars(group)
+    vars(group)["tables"] = lambda _: group._tables
+    assert np.array_equal(sensor.lit(scene, pattern), alone)
 
 
 def test_pixels_of_a_bound_are_all_that_a_step_lights() -> None:
