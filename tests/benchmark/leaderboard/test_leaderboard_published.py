@@ -73,7 +73,7 @@ def test_the_record_is_of_the_code_as_it_is(published):
 
 
 def test_it_is_small_and_holds_nothing_that_can_be_derived():
-    assert sum(path.stat().st_size for path in files()) < 3.5e6
+    assert sum(path.stat().st_size for path in files()) < 1.6e6
     tables = {f"scores/{cell.dataset}.csv" for cell in plan.cells()}
     names = {path.relative_to(PUBLISHED).as_posix() for path in files()}
     assert names == {
