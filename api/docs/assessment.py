@@ -122,11 +122,16 @@ def features() -> str:
 
 def accuracy() -> str:
     """Write the tables of the reference settings and of the noise sweep."""
-    shown = [
-        table
-        for table in sweep_tables.tables(_rows())
-        if table.title.partition(":")[0] in ("reference", "noise")
-    ]
+    return _sweep_tables(lambda table: table.title.partition(":")[0] in {"reference", "noise"})
+
+
+def faults() -> str:
+    """Write the tables of other shapes, stray light, other lights and broken pixels."""
+    return _sweep_tables(lambda table: table.series == "frames")
+
+
+def _sweep_tables(wanted: Callable[[sweep_tables.Table], bool]) -> str:
+    shown = [table for table in sweep_tables.tables(_rows()) if wanted(table)]
     if not shown:
         return "Nothing is published yet."
     return "\n\n".join(

@@ -37,6 +37,7 @@ PAGES: Mapping[str, Mapping[str, Make]] = {
     "sweeps.md": {
         "features": assessment.features,
         "accuracy": assessment.accuracy,
+        "faults": assessment.faults,
         "unmeasured": assessment.unmeasured,
     },
     "assessment.md": {
