@@ -79,11 +79,11 @@ def gaussian(sigma: float) -> Shape:
 
 def airy(ring: float) -> Shape:
     """Return the pattern of a round hole whose first dark ring has this radius."""
-    from scipy.special import j1  # noqa: PLC0415 - SciPy where frames are drawn
-
     scale = ring / _DARK_RING
 
     def light(x: Floats, y: Floats, _: float) -> Floats:
+        from scipy.special import j1  # noqa: PLC0415 - SciPy where frames are drawn
+
         t = np.hypot(x, y) / scale + 1e-9
         return np.asarray((2.0 * j1(t) / t) ** 2)
 
