@@ -58,7 +58,7 @@ class AdaptiveEnergyFilter(Extractor):
         answer; or streaks, rings and stars too, as lenses and slits make them.
     longest_px : float or None
         Longest half axis that the outline of one spot has, px, positive; None where no design
-        tells. See `algorithms.extractors.frames.mirror`.
+        tells. See `algorithms.extractors.frames.mirror.extractor`.
 
     Raises
     ------

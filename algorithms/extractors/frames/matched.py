@@ -57,7 +57,7 @@ class MatchedProfile(Extractor):
         answer; or streaks, rings and stars too, as lenses and slits make them.
     longest_px : float or None
         Longest half axis that the outline of one spot has, px, positive; None where no design
-        tells. See `algorithms.extractors.frames.mirror`.
+        tells. See `algorithms.extractors.frames.mirror.extractor`.
 
     Raises
     ------
@@ -183,7 +183,7 @@ class GaussianFit(Extractor):
         answer; or streaks, rings and stars too, as lenses and slits make them.
     longest_px : float or None
         Longest half axis that the outline of one spot has, px, positive; None where no design
-        tells. See `algorithms.extractors.frames.mirror`.
+        tells. See `algorithms.extractors.frames.mirror.extractor`.
 
     Raises
     ------

@@ -1,8 +1,8 @@
 """Whether a frame holds exactly one whole light, for methods that cannot tell that themselves.
 
 A centroid or a fit has an answer to two lights, to one that the edge cuts and to a hot pixel. What
-`algorithms.extractors.frames.registration` finds of the same frame tells these from a spot, and
-says where the spot is: an answer elsewhere is none.
+`algorithms.extractors.frames.mirror.registration` finds of the same frame tells these from a spot,
+and says where the spot is: an answer elsewhere is none.
 """
 
 from __future__ import annotations
@@ -104,7 +104,7 @@ def judge(
     light : {"spot", "any"}
         What the light looks like.
     longest_px : float, optional
-        As for `algorithms.extractors.frames.registration.register`.
+        As for `algorithms.extractors.frames.mirror.registration.register`.
     bad : array_like of bool, shape (H, W), optional
         Pixels to leave out.
 
@@ -150,7 +150,7 @@ def agreed(
 def _elsewhere(
     frames: Frames, centres: Floats, longest_px: float | None, bad: ArrayLike | None
 ) -> Judged:
-    from algorithms.extractors.frames.registration import registered  # noqa: PLC0415 - Numba
+    from algorithms.extractors.frames.mirror.registration import registered  # noqa: PLC0415 - Numba
 
     found, noise = registered(frames, bad, longest_px)
     room = _APART_PX + _APART * found.deviations.max(axis=1)
@@ -161,7 +161,7 @@ def _elsewhere(
 
 def _unlit(frames: Frames) -> NDArray[np.int64]:
     """NO_SPOT where no 2 x 2 pixels are above the border's noise: nothing, or a hot pixel."""
-    from algorithms.extractors.frames import mirror_search_kernel as search  # noqa: PLC0415 - Numba
+    from algorithms.extractors.frames.mirror import search_kernel as search  # noqa: PLC0415 - Numba
 
     if min(frames.shape[1:]) < 5:
         return np.full(len(frames), int(Doubt.NO_SPOT), dtype=np.int64)

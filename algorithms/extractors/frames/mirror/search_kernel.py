@@ -55,13 +55,14 @@ def _sum(a: Floats) -> float:
 
 
 @compiled
-def _mean_of_small(a: Floats, size: Floats, far: float, chosen: Floats, number: Floats) -> float:
-    """Mean of the numbers in `a` whose `size` is at most `far`; the last two are work space."""
+def _mean_of_small(a: Floats, size: Floats, far: float, chosen: Floats) -> float:
+    """Mean of the numbers in `a` whose `size` is at most `far`; the last is work space."""
+    number = 0
     for q in range(a.size):
-        number[q] = 1.0 if size[q] <= far else 0.0
-    for q in range(a.size):
-        chosen[q] = a[q] * number[q]
-    return _sum(chosen) / max(_sum(number), 1.0)
+        near = size[q] <= far
+        chosen[q] = a[q] if near else 0.0
+        number += near
+    return _sum(chosen) / max(number, 1)
 
 
 @compiled
@@ -79,14 +80,15 @@ def _border(frame: NDArray[Any], work: Floats) -> tuple[float, float]:
         around[2 * width + i] = frame[i, 0]
         around[2 * width + height + i] = frame[i, width - 1]
     count = 2 * (width + height)
-    values, size, chosen, number = around[:count], work[1, :count], work[2, :count], work[3, :count]
+    values, size, chosen = around[:count], work[1, :count], work[2, :count]
     mean = _sum(values) / count
     for _ in range(2):
         for q in range(count):
             size[q] = abs(values[q] - mean)
-        mean = _mean_of_small(values, size, _FAR * _sum(size) / count, chosen, number)
-    squares = work[4, : count - 1]
-    size = size[: count - 1]
+        before, mean = mean, _mean_of_small(values, size, _FAR * _sum(size) / count, chosen)
+        if mean == before:
+            break
+    squares, size, chosen = work[3, : count - 1], size[: count - 1], chosen[: count - 1]
     for q in range(count - 1):
         e = values[q + 1] - values[q]
         squares[q] = e * e
@@ -94,24 +96,33 @@ def _border(frame: NDArray[Any], work: Floats) -> tuple[float, float]:
     far = _FAR * _sum(size) / (count - 1)
     variance = 0.0
     for _ in range(3):
-        variance = _mean_of_small(squares, size, far, chosen[: count - 1], number[: count - 1])
+        before, variance = variance, _mean_of_small(squares, size, far, chosen)
+        if variance == before:
+            break
         far = _CLIP * math.sqrt(variance)
     return mean, 0.5 * variance
 
 
 @compiled
-def _erode(frame: NDArray[Any], least: NDArray[Any], maxima: NDArray[Any]) -> None:
-    """Write the least of each 2 x 2 block to `least` (H - 1, W - 1), rows' largest to `maxima`."""
-    height, width = frame.shape
-    for i in range(height - 1):
-        upper, lower, out = frame[i], frame[i + 1], least[i]
-        for j in range(width - 1):
-            a = min(lower[j], upper[j])
-            b = min(lower[j + 1], upper[j + 1])
-            out[j] = min(b, a)
-        largest = out[0]
-        for j in range(out.size):
-            largest = max(largest, out[j])
+def _erode(flat: NDArray[Any], width: int, least: NDArray[Any], maxima: NDArray[Any]) -> None:
+    """Write the least of each 2 x 2 block to `least` (H - 1, W), rows' largest to `maxima`.
+
+    The frame is `flat`, row after row, so that one loop runs over all of it; where that goes around
+    a row's end, the last block stands twice.
+    """
+    out = least.reshape(least.size)
+    below = flat[width:]
+    for q in range(out.size - 1):
+        a = min(below[q], flat[q])
+        b = min(below[q + 1], flat[q + 1])
+        out[q] = min(b, a)
+    for i in range(maxima.size):
+        least[i, width - 1] = least[i, width - 2]
+    for i in range(maxima.size):
+        row = least[i]
+        largest = row[0]
+        for j in range(row.size):
+            largest = max(largest, row[j])
         maxima[i] = largest
 
 
@@ -131,17 +142,27 @@ def _add_run(  # noqa: PLR0917 - Numba takes no keyword-only ones
     `sums`: light, light above the cut and its x and y; blocks, their x, y, x^2, y^2 and x y;
     first and last column, first and last row.
     """
-    light, above, above_x = 0.0, 0.0, 0.0
-    for j in range(first, end):
-        u = float(row[j])
-        light += u - base
-        above += u - cut
-        above_x += j * (u - cut)
-    n = float(end - first)
+    # Every other block to the other sums: one alone waits for itself.
+    light, other, light_x, other_x = 0.0, 0.0, 0.0, 0.0
+    n = end - first
+    part, x = row[first:end], 0.0
+    for q in range(n >> 1):
+        u, v = part[2 * q] - base, part[2 * q + 1] - base
+        light += u
+        other += v
+        light_x += x * u
+        other_x += (x + 1.0) * v
+        x += 2.0
+    if n & 1 == 1:
+        u = part[n - 1] - base
+        light += u
+        light_x += (n - 1) * u
+    light += other
     x = 0.5 * n * (first + end - 1)
+    above = light - n * (cut - base)
     sums[0] += light
     sums[1] += above
-    sums[2] += above_x
+    sums[2] += light_x + other_x + first * light - x * (cut - base)
     sums[3] += i * above
     sums[4] += n
     sums[5] += x
@@ -156,39 +177,54 @@ def _add_run(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def _regions(  # noqa: C901, PLR0912, PLR0917 - one scan, its cases
+def _lit(
+    row: NDArray[Any], cut: float, columns: NDArray[np.int32], lit: NDArray[np.int32]
+) -> tuple[int, int, bool]:
+    """Write which of a row's blocks are lit; return the first, the last and whether all between."""
+    width, number = columns.size, np.int32(0)
+    first, last = np.int32(width), np.int32(-1)
+    for j in range(width):
+        above = row[j] > cut
+        lit[j] = np.int32(1) if above else np.int32(0)
+        first = min(first, columns[j] if above else np.int32(width))
+        last = max(last, columns[j] if above else np.int32(-1))
+        number = np.int32(number + lit[j])
+    return int(first), int(last), bool(number == last + 1 - first)
+
+
+@compiled
+def _regions(  # noqa: C901, PLR0917 - one scan, its cases
     least: NDArray[Any],
     maxima: NDArray[Any],
     base: float,
     cut: float,
+    columns: NDArray[np.int32],
+    lit: NDArray[np.int32],
     runs: NDArray[np.int64],
     parents: NDArray[np.int64],
     sums: Floats,
 ) -> int:
     """Gather the connected regions above a cut; return how many labels were given, -1 for too many.
 
-    Runs of lit blocks are joined with those of the row above that they touch. `runs` (2, 3, W) is
-    work space. A label whose parent is another one has handed its sums over.
+    Runs of lit blocks are joined with those of the row above that they touch. `columns` (W - 1,)
+    are their numbers; `lit` (W,) and `runs` (2, 3, W) are work space. A label whose parent is
+    another one has handed its sums over.
     """
-    height, width = least.shape
     labels, above = 0, 0
-    lit = np.zeros(width + 1, dtype=np.uint8)
-    for i in range(height):
+    for i in range(maxima.size):
         if not maxima[i] > cut:
             above = 0
             continue
         old, new = i % 2, 1 - i % 2
         row = least[i]
-        for j in range(width):
-            lit[j] = 1 if row[j] > cut else 0
-        here, p, j = 0, 0, 0
-        while True:
-            while j < width and lit[j] == 0:
+        begin, last, one = _lit(row, cut, columns, lit)
+        lit[last + 1] = 0
+        here, p, j = 0, 0, begin
+        while j <= last:
+            while lit[j] == 0:  # the last one is not
                 j += 1
-            if j == width:
-                break
-            first = j
-            while lit[j] != 0:  # the last one is none
+            first, j = j, last + 1 if one else j
+            while lit[j] != 0:  # the one after the last is none
                 j += 1
             label = -1
             while p < above and runs[old, 1, p] < first:
@@ -248,9 +284,11 @@ def find_lights(  # noqa: C901 - one frame, its cases
     last, zero, or why there is none: `DARK`, `SEVERAL` or `EDGE`.
     """
     count, height, width = frames.shape
-    least = np.empty((height - 1, width - 1), dtype=frames.dtype)
+    flat = frames.reshape(count, height * width)
+    least = np.empty((height - 1, width), dtype=frames.dtype)
     maxima = np.empty(height - 1, dtype=frames.dtype)
-    work = np.empty((5, 2 * (height + width)))
+    columns, lit = np.arange(width - 1).astype(np.int32), np.empty(width, dtype=np.int32)
+    work = np.empty((4, 2 * (height + width)))
     runs = np.empty((2, 3, width), dtype=np.int64)
     parents = np.empty(_MOST, dtype=np.int64)
     sums = np.empty((_MOST, _SUMS))
@@ -260,14 +298,14 @@ def find_lights(  # noqa: C901 - one frame, its cases
         if unusable[k]:
             continue
         frame = frames[k]
-        _erode(frame, least, maxima)
+        _erode(flat[k], width, least, maxima)
         base, noise = _border(frame, work)
         peak = float(maxima.max()) - base
         sigma = math.sqrt(noise)
         if not peak > _SEEN * sigma:
             continue
         cut = base + max(_CUT * peak, _LIT * sigma)
-        labels = _regions(least, maxima, base, cut, runs, parents, sums)
+        labels = _regions(least, maxima, base, cut, columns, lit, runs, parents, sums)
         best, total = -1, 0.0
         if labels < 0:
             continue

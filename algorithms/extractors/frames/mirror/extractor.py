@@ -121,15 +121,15 @@ class MirrorRegistration(Extractor):
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Centres (N, 2) in frames (N, H, W); ValueError on wrong input."""
-        from algorithms.extractors.frames.registration import register  # noqa: PLC0415 - Numba
+        from algorithms.extractors.frames.mirror.registration import register  # noqa: PLC0415 - Numba
 
         return register(as_frames(observations), None, self.longest_px).features
 
     def measure(self, observations: ArrayLike, bad: ArrayLike | None = None) -> Measurement:
         """Centres, covariances and doubts of frames (N, H, W) or of one; bad pixels are left out.
 
-        See `algorithms.extractors.frames.registration.register`.
+        See `algorithms.extractors.frames.mirror.registration.register`.
         """
-        from algorithms.extractors.frames.registration import register  # noqa: PLC0415 - Numba
+        from algorithms.extractors.frames.mirror.registration import register  # noqa: PLC0415 - Numba
 
         return register(observations, bad, self.longest_px)

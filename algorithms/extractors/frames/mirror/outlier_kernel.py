@@ -1,6 +1,6 @@
 """Leave out the pairs of pixels that depart from what the fit says of them.
 
-The fourth stage of `algorithms.extractors.frames.registration`, which says what the arrays hold.
+The fourth stage of `mirror.registration`, which says what the arrays hold.
 """
 
 from __future__ import annotations
@@ -15,27 +15,29 @@ from algorithms.contract import Floats
 
 Line = NDArray[np.float32]
 
-_REACH, _LANES = 7, 64
+#: Rows around the core; lanes of the sums; lines end at multiples of the last.
+_REACH, _LANES, _WHOLE = 7, 16, 64
 _ZERO, _HALF, _ONE = np.float32(0.0), np.float32(0.5), np.float32(1.0)
 #: A pair is left out whose difference departs by so many deviations, this share of the slope and
 #: this of the peak: at first, and when the fit is good.
 _BAD, _BAD_SLOPE, _BAD_PEAK = (5.0, 4.5), (0.4, 0.05), (0.1, 0.003)
+#: Where the slope, over the peak, is above one over the root of this, little of noise is told.
+_STEEP = np.float32(100.0)
+#: A pixel counts as lit above this fraction of the peak.
+_CUT = np.float32(0.3)
 #: Change of d, px, up to which the slopes for the last one stand.
 _SAME = 0.05
 
 
 @compiled
-def _fold(lanes: Line) -> float:
-    """Sum of the lanes, halves added to halves."""
-    size = lanes.size
-    while size > 8:
-        size //= 2
-        first, second = lanes[:size], lanes[size : 2 * size]
-        for j in range(size):
-            first[j] += second[j]
-    total = 0.0
-    for j in range(size):
-        total += lanes[j]
+def _fold(lanes: Line, which: int) -> float:
+    """Sum of the lanes of one of several sums, halves added to halves."""
+    p = which * _LANES
+    for j in range(_LANES // 2):
+        lanes[p + j] += lanes[p + j + _LANES // 2]
+    a, b = float(lanes[p]) + lanes[p + 1], float(lanes[p + 2]) + lanes[p + 3]
+    c, e = float(lanes[p + 4]) + lanes[p + 5], float(lanes[p + 6]) + lanes[p + 7]
+    total: float = (a + b) + (c + e)
     return total
 
 
@@ -51,6 +53,38 @@ def _complete(s: Line, box: Any) -> None:
 
 
 @compiled
+def _noise(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    mean: Line, keep: Line, slack: Line, e: Line, flat: Line, lanes: Line
+) -> tuple[float, float]:
+    """Variance of a pixel where the spot is lit and flat, and the light there.
+
+    Told by neighbours' departures, which a light beside the spot hardly enters; `e` holds a number
+    more.
+    """
+    n = flat.size
+    for q in range(n):
+        lit = _ONE if mean[q] > _CUT else _ZERO
+        kept = keep[q]
+        lit *= max(_ZERO, kept)
+        flat[q] = np.divide(lit, _ONE + _STEEP * slack[q] * slack[q])
+    flat[n - 1], e[n] = _ZERO, _ZERO
+    for q in range(n - 1):
+        flat[q] *= flat[q + 1]
+    lanes[:] = _ZERO
+    for k in range(0, n, _LANES):
+        for j in range(_LANES):
+            i = np.uint64(k) + np.uint64(j)  # what is never negative is vectorised
+            lanes[j] += flat[i]
+            lanes[j + _LANES] += flat[i] * mean[i]
+            lanes[j + 2 * _LANES] += flat[i] * abs(e[i + np.uint64(1)] - e[i])
+    number = max(_fold(lanes, 0), 1e-30)
+    light = max(_fold(lanes, 1) / number, 1e-30)
+    apart = _fold(lanes, 2) / number
+    # Of a normal variable, the mean size is sqrt(2 / pi) of the standard deviation.
+    return 0.125 * np.pi * apart**2, light
+
+
+@compiled
 def _beyond(  # noqa: PLR0917 - Numba takes no keyword-only ones
     mean: Line, keep: Line, e: Line, slack: Line, state: Floats, good: int, over: Line, lanes: Line
 ) -> float:
@@ -61,18 +95,17 @@ def _beyond(  # noqa: PLR0917 - Numba takes no keyword-only ones
         np.float32(_BAD_SLOPE[good]),
         np.float32(_BAD_PEAK[good]),
     )
-    for q in range(e.size):
-        lit = mean[q]
-        lit = max(_ZERO, lit)
-        over[q] = least + share * slack[q] + sigmas * np.sqrt(noise + gain * lit)
-    for q in range(e.size):
-        over[q] = _ONE if (keep[q] > _ZERO) & (abs(e[q]) > over[q]) else _ZERO
+    noise, gain = noise * sigmas * sigmas, gain * sigmas * sigmas
     lanes[:] = _ZERO
-    for k in range(0, e.size, _LANES):
-        part = over[k : k + _LANES]
+    for k in range(0, over.size, _LANES):
         for j in range(_LANES):
-            lanes[j] += part[j]
-    return _fold(lanes)
+            q = np.uint64(k) + np.uint64(j)
+            beyond = max(_ZERO, abs(e[q]) - least - share * slack[q])
+            far = (keep[q] > _ZERO) & (beyond * beyond > noise + gain * max(_ZERO, mean[q]))
+            one = _ONE if far else _ZERO
+            over[q] = one
+            lanes[j] += one
+    return _fold(lanes, 0)
 
 
 @compiled
@@ -135,16 +168,17 @@ def leave_out(  # noqa: PLR0917 - Numba takes no keyword-only ones
     Return how many these are.
     """
     remaining = 0
-    over, lanes = space[0], space[1, :_LANES]
+    over, lanes = space[0], np.empty(3 * _LANES, dtype=np.float32)
     for k in todo:
         box, state = boxes[k], states[k]
         if not np.isfinite(state[4]):
             continue
-        n = (box[7] * box[4] + _LANES - 1) // _LANES * _LANES
+        n = (box[7] * box[4] + _WHOLE - 1) // _WHOLE * _WHOLE
         p = 8 + (_REACH + box[6]) * box[4]
         before = state[1]
-        state[1] = state[12]
         kept = keep[k, :n]
+        variance, light = _noise(s[k, p : p + n], kept, slack[k, :n], e[k], over[:n], lanes)
+        state[1] = max(variance - state[0], 0.0) / light
         number = _beyond(
             s[k, p : p + n],
             kept,
@@ -160,11 +194,11 @@ def leave_out(  # noqa: PLR0917 - Numba takes no keyword-only ones
                 if over[q] > _ZERO:
                     kept[q] = -_ONE
         if number > 0.0 or (first and bad.size > 0):
-            state[14] += _replace(bad, box, s[k], d[k], kept, e[k])
+            state[13] += _replace(bad, box, s[k], d[k], kept, e[k])
             _complete(s[k], box)
-        state[13] += number
+        state[12] += number
         same = abs(state[1] - before) <= 0.5 * before + 0.02 * state[0]
-        moved = max(abs(state[2] - state[16]), abs(state[3] - state[17]))
+        moved = max(abs(state[2] - state[14]), abs(state[3] - state[15]))
         if first or number > 0.0 or not same or moved >= _SAME:
             todo[remaining] = k
             remaining += 1

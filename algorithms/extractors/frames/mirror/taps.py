@@ -1,4 +1,4 @@
-"""Filters of `algorithms.extractors.frames.mirror_fit_kernel`, and the noise that they share.
+"""Filters of `algorithms.extractors.frames.mirror.fit_kernel`, and the noise that they share.
 
 Numbers alone: what is compiled with them is not compiled anew when they change.
 """

@@ -1,6 +1,6 @@
 """Numbers that tell one point-symmetric spot from two lights and from light without symmetry.
 
-The last stage of `algorithms.extractors.frames.registration`, which says what the arrays hold.
+The last stage of `mirror.registration`, which says what the arrays hold.
 """
 
 from __future__ import annotations
@@ -16,7 +16,8 @@ from algorithms.contract import Floats
 
 Line = NDArray[np.float32]
 
-_REACH, _LANES = 7, 64
+#: Rows around the core; lanes of the sums; lines end at multiples of the last.
+_REACH, _LANES, _WHOLE = 7, 32, 64
 _ZERO, _HALF, _ONE = np.float32(0.0), np.float32(0.5), np.float32(1.0)
 #: What the slopes miss, over the peak, as the fit has it; and what a spot may depart by, squared.
 _FLOOR, _LENIENT = 0.0005, np.float32(2.0 * 0.0015**2)
@@ -34,74 +35,80 @@ _LOW, _HIGH, _BLUR = np.float32(0.3), np.float32(0.75), np.float32(0.1)
 
 
 @compiled
-def _fold(lanes: Line) -> float:
-    """Sum of the lanes, halves added to halves."""
-    size = lanes.size
-    while size > 8:
-        size //= 2
-        first, second = lanes[:size], lanes[size : 2 * size]
-        for j in range(size):
-            first[j] += second[j]
-    total = 0.0
-    for j in range(size):
-        total += lanes[j]
+def _fold(lanes: Line, which: int) -> float:
+    """Sum of the lanes of one of several sums, halves added to halves."""
+    p = which * _LANES
+    for j in range(_LANES // 2):
+        lanes[p + j] += lanes[p + j + _LANES // 2]
+    for j in range(_LANES // 4):
+        lanes[p + j] += lanes[p + j + _LANES // 4]
+    a, b = float(lanes[p]) + lanes[p + 1], float(lanes[p + 2]) + lanes[p + 3]
+    c, e = float(lanes[p + 4]) + lanes[p + 5], float(lanes[p + 6]) + lanes[p + 7]
+    total: float = (a + b) + (c + e)
     return total
 
 
 @compiled
-def _outlines(s: Line, box: Any, columns: Line, sums: Floats) -> None:
+def _places(box: Any, x: Line, y: Line, share: Line) -> None:
+    """Write x and y of the core's pairs, from the middle, and how much of a pair each is.
+
+    That is a half in a middle row, whose pairs appear twice, and nothing outside of the core.
+    """
+    stride, first, columns = box[4], box[5], box[3]
+    whole = _ONE if (box[2] - box[1]) % 2 == 1 else _HALF
+    for j in range(stride):
+        x[j] = np.float32(j - 0.5 * (columns - 1))
+        share[j] = _ONE if first <= j < columns - first else _ZERO
+    for i in range(box[7] - 1, -1, -1):
+        begin, along = np.uint64(i * stride), np.float32(box[6] + i - 0.5 * (box[2] - box[1]))
+        part = whole if i == box[7] - 1 else _ONE
+        for j in range(stride):
+            q = begin + np.uint64(j)
+            x[q] = x[j]
+            y[q] = along
+            share[q] = part * share[j]
+    for j in range(box[7] * stride, x.size):
+        x[j], y[j], share[j] = _ZERO, _ZERO, _ZERO
+
+
+@compiled
+def _outlines(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    mean: Line, box: Any, x: Line, y: Line, share: Line, lanes: Line, sums: Floats
+) -> None:
     """Write area, xx, yy and xy of the pixels above three heights to `sums` (3, 4).
 
     Above the low and the high one, blurred, and above the high one, sharp.
     """
-    stride, first, above, rows = box[4], box[5], box[6], box[7]
-    width = box[3] - 2 * first
-    columns[:] = _ZERO
-    n = columns.size // 9
-    a, a_y, a_yy = columns[:n], columns[n : 2 * n], columns[2 * n : 3 * n]
-    b, b_y, b_yy = columns[3 * n : 4 * n], columns[4 * n : 5 * n], columns[5 * n : 6 * n]
-    c, c_y, c_yy = columns[6 * n : 7 * n], columns[7 * n : 8 * n], columns[8 * n :]
+    _places(box, x, y, share)
     bottom_low, bottom_high = _LOW - _BLUR, _HIGH - _BLUR
     scale = _HALF / _BLUR
-    for i in range(rows):
-        y = np.float32(above + i - 0.5 * (box[2] - box[1]))
-        twice = i == rows - 1 and (box[2] - box[1]) % 2 == 0
-        share = _HALF if twice else _ONE
-        p = 8 + (_REACH + above + i) * stride + first
-        row = s[p : p + width]
-        share_y, share_yy = share * y, share * y * y
-        for j in range(width):
-            t = (row[j] - bottom_low) * scale
+    lanes[:] = _ZERO
+    for k in range(0, x.size, _LANES):
+        for j in range(_LANES):
+            q = np.uint64(k) + np.uint64(j)
+            xx, yy, xy = x[q] * x[q], y[q] * y[q], x[q] * y[q]
+            t = (mean[q] - bottom_low) * scale
             t = max(_ZERO, t)
-            t = min(_ONE, t)
-            a[j] += share * t
-            a_y[j] += share_y * t
-            a_yy[j] += share_yy * t
-        for j in range(width):
-            t = (row[j] - bottom_high) * scale
+            t = min(_ONE, t) * share[q]
+            lanes[j] += t
+            lanes[j + _LANES] += xx * t
+            lanes[j + 2 * _LANES] += yy * t
+            lanes[j + 3 * _LANES] += xy * t
+            t = (mean[q] - bottom_high) * scale
             t = max(_ZERO, t)
-            t = min(_ONE, t)
-            b[j] += share * t
-            b_y[j] += share_y * t
-            b_yy[j] += share_yy * t
-        for j in range(width):
-            t = _ONE if row[j] > _HIGH else _ZERO
-            c[j] += share * t
-            c_y[j] += share_y * t
-            c_yy[j] += share_yy * t
-    sums[:] = 0.0
-    for q in range(3):
-        number, ys, yys = (
-            columns[3 * q * n :],
-            columns[(3 * q + 1) * n :],
-            columns[3 * q * n + 2 * n :],
-        )
-        for j in range(width):
-            x = j - 0.5 * (width - 1)
-            sums[q, 0] += number[j]
-            sums[q, 1] += x * x * number[j]
-            sums[q, 2] += yys[j]
-            sums[q, 3] += x * ys[j]
+            t = min(_ONE, t) * share[q]
+            lanes[j + 4 * _LANES] += t
+            lanes[j + 5 * _LANES] += xx * t
+            lanes[j + 6 * _LANES] += yy * t
+            lanes[j + 7 * _LANES] += xy * t
+            t = share[q] if mean[q] > _HIGH else _ZERO
+            lanes[j + 8 * _LANES] += t
+            lanes[j + 9 * _LANES] += xx * t
+            lanes[j + 10 * _LANES] += yy * t
+            lanes[j + 11 * _LANES] += xy * t
+    for i in range(3):
+        for j in range(4):
+            sums[i, j] = _fold(lanes, 4 * i + j)
 
 
 @compiled
@@ -124,36 +131,34 @@ def _axes(low: tuple[float, float, float], high: tuple[float, float, float]) -> 
 
 
 @compiled
-def _products(a: Line, b: Line, lanes: Line) -> float:
-    """Sum of products; lines are a multiple of the lanes long."""
-    lanes[:] = _ZERO
-    for k in range(0, a.size, _LANES):
-        u, v = a[k : k + _LANES], b[k : k + _LANES]
-        for j in range(_LANES):
-            lanes[j] += u[j] * v[j]
-    return _fold(lanes)
-
-
-@compiled
 def _alike(  # noqa: PLR0917 - Numba takes no keyword-only ones
     mean: Line, keep: Line, e: Line, stride: int, own: Line, line: Line, lanes: Line
 ) -> tuple[float, float]:
     """Return what neighbours miss alike, over the square of the light; sum of the light."""
     n = e.size
-    own[n : n + stride + 1] = _ZERO
+    for q in range(n, n + stride + 1):
+        own[q] = _ZERO
     for q in range(n):
         lit = _ONE if mean[q] > _CUT else _ZERO
         line[q] = lit * keep[q]
-    for q in range(n):
         own[q] = line[q] * e[q]
-    number = _products(line, line, lanes)
-    for q in range(n):
-        line[q] *= mean[q]
-    squares = _products(line, mean, lanes)
-    light = _products(keep, mean, lanes)
-    noise = _products(own[:n], own[:n], lanes)
-    across = _products(own[:n], own[1 : n + 1], lanes)
-    along = _products(own[:n], own[stride : n + stride], lanes)
+    lanes[:] = _ZERO
+    for k in range(0, n, _LANES):
+        for j in range(_LANES):
+            i = np.uint64(k) + np.uint64(j)  # what is never negative is vectorised
+            lanes[j] += line[i] * line[i]
+            lanes[j + _LANES] += line[i] * mean[i] * mean[i]
+            lanes[j + 2 * _LANES] += keep[i] * mean[i]
+            lanes[j + 3 * _LANES] += own[i] * own[i]
+            lanes[j + 4 * _LANES] += own[i] * own[i + np.uint64(1)]
+            lanes[j + 5 * _LANES] += own[i] * own[i + np.uint64(stride)]
+    number, squares, light, noise = (
+        _fold(lanes, 0),
+        _fold(lanes, 1),
+        _fold(lanes, 2),
+        _fold(lanes, 3),
+    )
+    across, along = _fold(lanes, 4), _fold(lanes, 5)
     chance = 5.0 * noise / math.sqrt(max(number, 1.0))
     return (max(across, along) - chance) / max(squares, 1e-30), light
 
@@ -169,22 +174,28 @@ def _scatter(  # noqa: PLR0917 - Numba takes no keyword-only ones
     """
     noise, gain = np.float32(2.0 * (state[0] + _FLOOR * _FLOOR)), np.float32(2.0 * state[1])
     for j in range(e.size):
-        lit = mean[j]
-        lit = max(_ZERO, lit)
-        q[j] = np.divide(keep[j] * slack[j] * slack[j], noise + gain * lit)
-    total, squares = _products(q, keep, lanes), _products(q, q, lanes)
+        z[j] = noise + gain * max(_ZERO, mean[j])
+        q[j] = np.divide(keep[j] * slack[j] * slack[j], z[j])
+    lanes[:] = _ZERO
+    for k in range(0, e.size, _LANES):
+        for j in range(_LANES):
+            i = np.uint64(k) + np.uint64(j)
+            lanes[j] += q[i] * keep[i]
+            lanes[j + _LANES] += q[i] * q[i]
+    total, squares = _fold(lanes, 0), _fold(lanes, 1)
     number = total * total / max(squares, 1e-30)
     rims = _RIMS if number >= _TELLS else _ZERO
-    for j in range(e.size):
-        variance = noise + gain * max(_ZERO, mean[j]) + rims * slack[j] * slack[j]
-        z[j] = np.divide(e[j] * e[j], variance)
-    departing = _products(q, z, lanes) / max(total, 1e-30)
-    all_of_it = (number * departing + _EXPECTED) / (max(number - 2.0, 0.0) + _EXPECTED)
-    for j in range(e.size):
-        variance = noise + gain * max(_ZERO, mean[j]) + _LENIENT + _SHARP * slack[j] * slack[j]
-        z[j] = np.divide(e[j] * e[j], variance)
-    departing = _products(q, z, lanes) / max(total, 1e-30)
-    return all_of_it, (number * departing + _EXPECTED) / (max(number - 2.0, 0.0) + _EXPECTED)
+    lanes[:] = _ZERO
+    for k in range(0, e.size, _LANES):
+        for j in range(_LANES):
+            i = np.uint64(k) + np.uint64(j)
+            square, slope = q[i] * e[i] * e[i], slack[i] * slack[i]
+            lanes[j] += np.divide(square, z[i] + rims * slope)
+            lanes[j + _LANES] += np.divide(square, z[i] + _LENIENT + _SHARP * slope)
+    departing, leniently = _fold(lanes, 0), _fold(lanes, 1)
+    scale = number / max(total, 1e-30)
+    count = max(number - 2.0, 0.0) + _EXPECTED
+    return (departing * scale + _EXPECTED) / count, (leniently * scale + _EXPECTED) / count
 
 
 @compiled
@@ -209,22 +220,21 @@ def shapes(  # noqa: PLR0917 - Numba takes no keyword-only ones
     extent of the low outline.
     """
     sums = np.empty((3, 4))
-    own, line, lanes = space[0], space[1], space[2, :_LANES]
-    columns = space[3:].ravel()
+    own, line, lanes = space[0], space[1], np.empty(12 * _LANES, dtype=np.float32)
     for k in todo:
         box = boxes[k]
         if not np.isfinite(states[k, 4]):
             continue
-        n = (box[7] * box[4] + _LANES - 1) // _LANES * _LANES
+        n = (box[7] * box[4] + _WHOLE - 1) // _WHOLE * _WHOLE
         p = 8 + (_REACH + box[6]) * box[4]
         mean, kept, left = s[k, p : p + n], keep[k, :n], e[k, :n]
         share, light = _alike(mean, kept, left, box[4], own, line[:n], lanes)
         out[k, 7], out[k, 11] = _scatter(
             mean, kept, left, slack[k, :n], states[k], own[:n], line[:n], lanes
         )
-        out[k, 0] = 0.5 * states[k, 14] / max(light, 1e-30)
+        out[k, 0] = 0.5 * states[k, 13] / max(light, 1e-30)
         out[k, 1] = share
-        _outlines(s[k], box, columns[: 9 * (box[3] + 8)], sums)
+        _outlines(mean, box, space[2, :n], space[3, :n], space[4, :n], lanes, sums)
         low, high, sharp = _tensor(sums[0]), _tensor(sums[1]), _tensor(sums[2])
         out[k, 2], out[k, 3] = _axes(low, high)
         out[k, 8], out[k, 9] = _axes(low, sharp)

@@ -9,10 +9,11 @@ import pytest
 from scipy.special import j1, ndtr
 
 from algorithms.contract import SensorGeometry, UnsuitableDesignError
-from algorithms.extractors.frames import mirror_fit_kernel, mirror_taps
 from algorithms.extractors.frames.matched import MatchedProfile
-from algorithms.extractors.frames.mirror import MirrorRegistration
-from algorithms.extractors.frames.registration import register
+from algorithms.extractors.frames.mirror import fit_kernel
+from algorithms.extractors.frames.mirror import taps as filters
+from algorithms.extractors.frames.mirror.extractor import MirrorRegistration
+from algorithms.extractors.frames.mirror.registration import register
 from algorithms.measurement import Doubt
 
 PEAK, DARK, READ = 2000.0, 20.0, 10.0
@@ -111,7 +112,7 @@ def test_the_filter_of_the_slopes_is_the_tangent():
     """2 sum t_n sin(2 pi k n) = 2 tan(pi k d) / d, up to where soft rims have no light left."""
     k = np.linspace(0.01, 0.3, 30)
     for d in (0.0, 0.2, 0.5):
-        taps = sum(mirror_fit_kernel.TAPS[q] * d ** (2 * q) for q in range(4))
+        taps = sum(fit_kernel.TAPS[q] * d ** (2 * q) for q in range(4))
         response = 2 * np.sin(2 * np.pi * np.outer(k, np.arange(1, 7))) @ taps
         tangent = 2 * np.tan(np.pi * k * d) / d if d else 2 * np.pi * k
         np.testing.assert_allclose(response, tangent, rtol=6e-3)
@@ -189,13 +190,13 @@ def test_what_the_weighting_and_the_slopes_have_in_common_is_known_at_every_disp
     rng = np.random.default_rng(49)
     line, taps = rng.normal(size=100_000), np.arange(1, 7)
     for d in (0.0, 0.5):
-        t = sum(mirror_taps.TAPS[q] * d ** (2 * q) for q in range(4))
+        t = sum(filters.TAPS[q] * d ** (2 * q) for q in range(4))
         slope = sum(t[n - 1] * (np.roll(line, -n) - np.roll(line, n)) for n in taps)
-        sharp = mirror_taps.SLOPE_1 * (np.roll(line, -1) - np.roll(line, 1))
-        sharp += mirror_taps.SLOPE_2 * (np.roll(line, -2) - np.roll(line, 2))
-        products = mirror_taps.noise_of_levels()[1][0]
+        sharp = filters.SLOPE_1 * (np.roll(line, -1) - np.roll(line, 1))
+        sharp += filters.SLOPE_2 * (np.roll(line, -2) - np.roll(line, 2))
+        products = filters.noise_of_levels()[1][0]
         expected = sum(products[q] * d ** (2 * q) for q in range(4))
-        assert mirror_taps.MIDDLE * np.mean(slope * sharp) == pytest.approx(expected, rel=0.03)
+        assert filters.MIDDLE * np.mean(slope * sharp) == pytest.approx(expected, rel=0.03)
 
 
 @pytest.mark.slow
@@ -258,6 +259,30 @@ def test_windows_of_a_frame_are_registered_like_frames():
     found = register(windows)
     np.testing.assert_allclose(found.features + np.array([10, 8]), centres, atol=0.05)
     assert (found.doubts == 0).all()
+
+
+@pytest.mark.parametrize("masked", [False, True])
+@pytest.mark.parametrize("dtype", [np.uint16, np.float64])
+def test_a_frame_has_the_same_answer_alone_and_in_any_company(dtype, masked):
+    """To the bit, whatever the others' windows are like: work space is shared."""
+    rng = np.random.default_rng(50)
+    kinds = [
+        render(lambda x, y, radius=radius: disc(x, y, radius), (31.2, 30.7))
+        for radius in (2.0, 8.0, 20.0)
+    ]
+    kinds += [render(gaussian, (22.4, 40.1)), render(disc, (3.0, 30.0)), np.zeros((SIZE, SIZE))]
+    kinds += [render(disc, (14.0, 20.0)) + render(disc, (44.0, 40.0))]
+    frames = noisy(DARK + PEAK * np.stack([kinds[k % len(kinds)] for k in range(64)]), rng)
+    frames[::3, 33, 28] = 4095
+    frames = frames.astype(dtype) + dtype(0 if dtype is np.uint16 else 0.25)
+    bad = rng.uniform(size=(SIZE, SIZE)) < 0.01 if masked else None
+    together = register(frames, bad)
+    assert len(set(together.doubts.tolist())) > 3, "several kinds of answers"
+    for step in (1, 7):
+        apart = [register(frames[k : k + step], bad) for k in range(0, len(frames), step)]
+        for name in ("features", "covariance", "doubts"):
+            parts = np.concatenate([getattr(part, name) for part in apart])
+            np.testing.assert_array_equal(parts, getattr(together, name))
 
 
 def test_a_frame_without_the_sun_is_no_answer_whatever_its_hot_pixels():

@@ -1,7 +1,7 @@
 """Solve for the displacement of a spot against its own mirror image.
 
-The second stage of `algorithms.extractors.frames.registration`, which says what the arrays hold,
-and what a pair's difference has to do with the displacement.
+The second stage of `mirror.registration`, which says what the arrays hold, and what a
+pair's difference has to do with the displacement.
 """
 
 from __future__ import annotations
@@ -13,63 +13,36 @@ from numpy.typing import NDArray
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
-from algorithms.extractors.frames import mirror_taps
+from algorithms.extractors.frames.mirror import taps
 
 Line = NDArray[np.float32]
 
 #: The sharpest weighting: slope along one axis by four pixels, mean along the other by three.
-_SLOPE_1, _SLOPE_2 = np.float32(mirror_taps.SLOPE_1), np.float32(mirror_taps.SLOPE_2)
-_BESIDE, _MIDDLE = np.float32(mirror_taps.BESIDE), np.float32(mirror_taps.MIDDLE)
-TAPS, _LEVELS = mirror_taps.TAPS, mirror_taps.LEVELS
-_SQUARES, _PRODUCTS = mirror_taps.noise_of_levels()
+_SLOPE_1, _SLOPE_2 = np.float32(taps.SLOPE_1), np.float32(taps.SLOPE_2)
+_BESIDE, _MIDDLE = np.float32(taps.BESIDE), np.float32(taps.MIDDLE)
+TAPS, _LEVELS = taps.TAPS, taps.LEVELS
+_SQUARES, _PRODUCTS = taps.noise_of_levels()
 _ZERO, _ONE, _HALF, _QUARTER = np.float32(0.0), np.float32(1.0), np.float32(0.5), np.float32(0.25)
-#: Rows around the core that its slopes reach; lanes of the sums.
-_REACH, _LANES = 7, 64
+#: Rows around the core that its slopes reach; lanes of the sums; lines end at multiples of this.
+_REACH, _LANES, _WHOLE = 7, 16, 64
+#: Numbers that single precision adds up, before double precision goes on.
+_BLOCK = 1024
 #: d, px, from which another middle is nearer; noise's share from which weights are smoothed.
 _AWAY, _NOISY = 0.75, 0.05
 #: What the slopes miss, over the peak: pixels are not trusted to better than that.
 _FLOOR = 0.0005
-#: Where the slope, over the peak, is above one over the root of this, little of noise is told.
-_STEEP = np.float32(100.0)
-#: A pixel counts as lit above this fraction of the peak.
-_CUT = np.float32(0.3)
 
 
 @compiled
-def _fold(lanes: Line) -> float:
-    """Sum of the lanes, halves added to halves."""
-    size = lanes.size
-    while size > 8:
-        size //= 2
-        first, second = lanes[:size], lanes[size : 2 * size]
-        for j in range(size):
-            first[j] += second[j]
-    total = 0.0
-    for j in range(size):
-        total += lanes[j]
+def _fold(lanes: Line, which: int) -> float:
+    """Sum of the lanes of one of several sums, halves added to halves."""
+    p = which * _LANES
+    for j in range(_LANES // 2):
+        lanes[p + j] += lanes[p + j + _LANES // 2]
+    a, b = float(lanes[p]) + lanes[p + 1], float(lanes[p + 2]) + lanes[p + 3]
+    c, e = float(lanes[p + 4]) + lanes[p + 5], float(lanes[p + 6]) + lanes[p + 7]
+    total: float = (a + b) + (c + e)
     return total
-
-
-@compiled
-def _total(a: Line, lanes: Line) -> float:
-    """Sum of what is positive; all lines are a multiple of the lanes long."""
-    lanes[:] = _ZERO
-    for k in range(0, a.size, _LANES):
-        u = a[k : k + _LANES]
-        for j in range(_LANES):
-            lanes[j] += max(_ZERO, u[j])
-    return _fold(lanes)
-
-
-@compiled
-def _product(a: Line, b: Line, lanes: Line) -> float:
-    """Sum of products."""
-    lanes[:] = _ZERO
-    for k in range(0, a.size, _LANES):
-        u, v = a[k : k + _LANES], b[k : k + _LANES]
-        for j in range(_LANES):
-            lanes[j] += u[j] * v[j]
-    return _fold(lanes)
 
 
 @compiled
@@ -91,10 +64,15 @@ def _weighting(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def _taps(d: float) -> tuple[Any, Any, Any, Any, Any, Any]:
+def _tap(n: int, d: float) -> Any:
     d2 = d * d
-    t = (TAPS[0] + d2 * (TAPS[1] + d2 * (TAPS[2] + d2 * TAPS[3]))).astype(np.float32)
-    return t[0], t[1], t[2], t[3], t[4], t[5]
+    t = TAPS[0, n] + d2 * (TAPS[1, n] + d2 * (TAPS[2, n] + d2 * TAPS[3, n]))
+    return np.float32(t)
+
+
+@compiled
+def _taps(d: float) -> tuple[Any, Any, Any, Any, Any, Any]:
+    return _tap(0, d), _tap(1, d), _tap(2, d), _tap(3, d), _tap(4, d), _tap(5, d)
 
 
 @compiled
@@ -151,43 +129,54 @@ def _normal(  # noqa: PLR0917 - Numba takes no keyword-only ones
     lanes: Line,
     sums: Floats,
 ) -> None:
-    """Write the nine weighted sums of products that the fit needs; the last three of variances."""
-    lanes[:] = _ZERO
-    for k in range(0, w.size, _LANES):
-        a, b, wk = h_x[k : k + _LANES], h_y[k : k + _LANES], w[k : k + _LANES]
-        e, f, dk = g_x[k : k + _LANES], g_y[k : k + _LANES], d[k : k + _LANES]
-        part = share[k : k + _LANES]
-        for j in range(_LANES):
-            x, y = wk[j] * a[j], wk[j] * b[j]
-            lanes[j] += x * e[j]
-            lanes[j + _LANES] += y * f[j]
-            lanes[j + 2 * _LANES] += x * f[j]
-            lanes[j + 3 * _LANES] += y * e[j]
-            lanes[j + 4 * _LANES] += x * dk[j]
-            lanes[j + 5 * _LANES] += y * dk[j]
-            x *= part[j]
-            lanes[j + 6 * _LANES] += x * a[j]
-            lanes[j + 7 * _LANES] += y * b[j] * part[j]
-            lanes[j + 8 * _LANES] += x * b[j]
-    for q in range(9):
-        sums[q] = _fold(lanes[q * _LANES : (q + 1) * _LANES])
+    """Write the nine weighted sums of products that the fit needs, and that of the shares.
+
+    Three of the nine are of variances.
+    """
+    sums[:10] = 0.0
+    for begin in range(0, w.size, _BLOCK):
+        lanes[:] = _ZERO
+        for k in range(begin, min(begin + _BLOCK, w.size), _LANES):
+            for j in range(_LANES):
+                q = np.uint64(k) + np.uint64(j)  # what is never negative is vectorised
+                a, b, dk, part = h_x[q], h_y[q], d[q], share[q]
+                x, y = w[q] * a, w[q] * b
+                lanes[j] += x * g_x[q]
+                lanes[j + _LANES] += y * g_y[q]
+                lanes[j + 2 * _LANES] += x * g_y[q]
+                lanes[j + 3 * _LANES] += y * g_x[q]
+                lanes[j + 4 * _LANES] += x * dk
+                lanes[j + 5 * _LANES] += y * dk
+                lanes[j + 9 * _LANES] += part
+                x *= part
+                lanes[j + 6 * _LANES] += x * a
+                lanes[j + 7 * _LANES] += y * b * part
+                lanes[j + 8 * _LANES] += x * b
+        for i in range(10):
+            sums[i] += _fold(lanes, i)
 
 
 @compiled
 def _smoothed(s: Line, apart: int, stride: int, line: Line, out: Line) -> None:
     """Smooth by the binomial (1, 2, 1) / 4 of pixels `apart` along both axes; ends repeat."""
-    n = s.size
-    far = apart * stride
-    line[:] = s[:n]
-    for q in range(far, n - far):
-        line[q] = _QUARTER * (s[q - far] + s[q + far]) + _HALF * s[q]
-    for q in range(far):
-        line[q] = _QUARTER * (s[q % stride] + s[q + far]) + _HALF * s[q]
-        r = n - 1 - q
-        line[r] = _QUARTER * (s[n - 1 - q % stride] + s[r - far]) + _HALF * s[r]
-    out[:] = line[:n]
-    for q in range(apart, n - apart):
-        out[q] = _QUARTER * (line[q - apart] + line[q + apart]) + _HALF * line[q]
+    n, far = s.size, apart * stride
+    above, here, below, out_here = s[: n - 2 * far], s[far : n - far], s[2 * far :], line[far:]
+    for q in range(here.size):
+        out_here[q] = _QUARTER * (above[q] + below[q]) + _HALF * here[q]
+    for i in range(apart):
+        first, last = i * stride, n - (i + 1) * stride
+        a, b, c, e = s[:stride], s[n - stride :], line[first:], line[last:]
+        after, before = s[first + far :], s[last - far :]
+        own, other = s[first:], s[last:]
+        for j in range(stride):
+            c[j] = _QUARTER * (a[j] + after[j]) + _HALF * own[j]
+        for j in range(stride):
+            e[j] = _QUARTER * (b[j] + before[j]) + _HALF * other[j]
+    for q in range(apart):
+        out[q], out[n - 1 - q] = line[q], line[n - 1 - q]
+    here, below, out_here = line[apart:], line[2 * apart :], out[apart:]
+    for q in range(n - 2 * apart):
+        out_here[q] = _QUARTER * (line[q] + below[q]) + _HALF * here[q]
 
 
 @compiled
@@ -247,30 +236,61 @@ def _solve(sums: Floats, product_x: float, product_y: float, square: float, stat
 
 
 @compiled
-def _noise(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    mean: Line, keep: Line, slack: Line, e: Line, flat: Line, apart: Line, lanes: Line
-) -> tuple[float, float]:
-    """Variance of a pixel where the spot is lit and flat, and the light there.
+def _places(box: Any, scale: float, x: Line, y: Line) -> None:
+    """Write x and y of the core's pairs, from the middle, times a scale."""
+    stride, factor = box[4], np.float32(scale)
+    for j in range(stride):
+        x[j] = factor * np.float32(j - 0.5 * (box[3] - 1))
+    for i in range(box[7]):
+        first, along = (
+            np.uint64(i * stride),
+            factor * np.float32(box[6] + i - 0.5 * (box[2] - box[1])),
+        )
+        for j in range(stride):
+            q = first + np.uint64(j)
+            x[q] = x[j]
+            y[q] = along
+    for j in range(box[7] * stride, x.size):
+        x[j], y[j] = _ZERO, _ZERO
 
-    Told by neighbours' departures, which a light beside the spot hardly enters.
+
+@compiled
+def _odd_parts(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    inverse: float,
+    bent: bool,
+    h_x: Line,
+    h_y: Line,
+    w: Line,
+    x: Line,
+    y: Line,
+    lanes: Line,
+    sums: Floats,
+) -> None:
+    """Write weighted products of `h_x` and `h_y` with 2 x, 2 y, and, if `bent`, rho times both.
+
+    ``rho = inverse (x^2 + y^2)``.
     """
-    n = e.size
-    for q in range(n):
-        lit = _ONE if mean[q] > _CUT else _ZERO
-        kept = keep[q]
-        lit *= max(_ZERO, kept)
-        flat[q] = np.divide(lit, _ONE + _STEEP * slack[q] * slack[q])
-    flat[n - 1] = _ZERO
-    for q in range(n - 1):
-        apart[q] = abs(e[q + 1] - e[q])
-    for q in range(n - 1):
-        flat[q] *= flat[q + 1]
-    apart[n - 1] = _ZERO
-    number = max(_total(flat, lanes), 1e-30)
-    light = max(_product(flat, mean, lanes) / number, 1e-30)
-    # Of a normal variable, the mean size is sqrt(2 / pi) of the standard deviation.
-    variance = 0.125 * np.pi * (_product(flat, apart, lanes) / number) ** 2
-    return variance, light
+    factor = np.float32(inverse)
+    lanes[:] = _ZERO
+    for k in range(0, w.size, _LANES):
+        for j in range(_LANES):
+            q = np.uint64(k) + np.uint64(j)
+            a, b = w[q] * h_x[q], w[q] * h_y[q]
+            lanes[j] += a * x[q]
+            lanes[j + _LANES] += a * y[q]
+            lanes[j + 4 * _LANES] += b * x[q]
+            lanes[j + 5 * _LANES] += b * y[q]
+    if bent:
+        for k in range(0, w.size, _LANES):
+            for j in range(_LANES):
+                q = np.uint64(k) + np.uint64(j)
+                rho = factor * w[q] * (x[q] * x[q] + y[q] * y[q])
+                lanes[j + 2 * _LANES] += rho * h_x[q] * x[q]
+                lanes[j + 3 * _LANES] += rho * h_x[q] * y[q]
+                lanes[j + 6 * _LANES] += rho * h_y[q] * x[q]
+                lanes[j + 7 * _LANES] += rho * h_y[q] * y[q]
+    for i in range(8):
+        sums[i] = 2.0 * _fold(lanes, i)
 
 
 @compiled
@@ -287,33 +307,15 @@ def _background(  # noqa: PLR0917 - Numba takes no keyword-only ones
     state: Floats,
 ) -> None:
     """Add to the centre's covariance what the background's slopes are uncertain by."""
-    stride = box[4]
-    left, two = np.float32(0.5 * (box[3] - 1)), np.float32(2.0)
-    x[:], y[:] = _ZERO, _ZERO
-    for i in range(box[7]):
-        at = np.float32(2 * box[6] + 2 * i - (box[2] - box[1]))
-        part, beside = x[i * stride : (i + 1) * stride], y[i * stride : (i + 1) * stride]
-        for j in range(stride):
-            part[j] = two * (np.float32(j) - left)
-        beside[:] = at
-    scale = np.float32(0.25 / slope[4])
-    for bend in range(2):
-        if bend == 1:
-            if slope[2] == 0.0 and slope[3] == 0.0:
-                break
-            for q in range(w.size):
-                rho = (x[q] * x[q] + y[q] * y[q]) * scale
-                x[q] *= rho
-                y[q] *= rho
-        _normal(h_x, h_y, x, y, x, w, w, lanes, sums)
-        for axis in range(2):
-            right_x, right_y = (sums[0], sums[3]) if axis == 0 else (sums[2], sums[1])
-            moved_x = state[8] * right_x + state[9] * right_y
-            moved_y = state[10] * right_x + state[11] * right_y
-            variance = slope[5 + 2 * bend + axis]
-            state[4] += variance * moved_x * moved_x
-            state[5] += variance * moved_y * moved_y
-            state[6] += variance * moved_x * moved_y
+    bent = slope[2] != 0.0 or slope[3] != 0.0
+    _places(box, 1.0, x, y)
+    _odd_parts(1.0 / slope[4], bent, h_x, h_y, w, x, y, lanes, sums)
+    for q in range(4 if bent else 2):
+        moved_x = state[8] * sums[q] + state[9] * sums[4 + q]
+        moved_y = state[10] * sums[q] + state[11] * sums[4 + q]
+        state[4] += slope[5 + q] * moved_x * moved_x
+        state[5] += slope[5 + q] * moved_y * moved_y
+        state[6] += slope[5 + q] * moved_x * moved_y
 
 
 @compiled
@@ -337,17 +339,17 @@ def fit(  # noqa: PLR0915, PLR0917 - the method's steps in order
     """
     away = 0
     work, wide = space[:11], space[11:16]
-    lanes = np.empty(9 * _LANES, dtype=np.float32)
-    sums, other_sums, other = np.empty(9), np.empty(9), np.empty(states.shape[1])
+    lanes = np.empty(10 * _LANES, dtype=np.float32)
+    sums, other_sums, other = np.empty(10), np.empty(10), np.empty(states.shape[1])
     for k in todo:
         box, state = boxes[k], states[k]
         if not np.isfinite(state[4]):
             continue
         stride = box[4]
-        n = (box[7] * stride + _LANES - 1) // _LANES * _LANES
+        n = (box[7] * stride + _WHOLE - 1) // _WHOLE * _WHOLE
         p = 8 + (_REACH + box[6]) * stride
         from_row = box[6] * stride
-        mean, kept, left = s[k, p : p + n], keep[k, :n], e[k, :n]
+        kept, left = keep[k, :n], e[k, :n]
         differences = d[k, from_row : from_row + n]
         w, h_x, h_y, g_x, g_y = work[0, :n], work[1, :n], work[2, :n], work[3, :n], work[4, :n]
         share = wide[4, :n]
@@ -358,10 +360,10 @@ def fit(  # noqa: PLR0915, PLR0917 - the method's steps in order
             g_x, g_y = h_x, h_y
         else:
             d_x, d_y = min(max(state[2], -1.0), 1.0), min(max(state[3], -1.0), 1.0)
-            state[16], state[17] = d_x, d_y
+            state[14], state[15] = d_x, d_y
             _slopes(s[k], p, stride, d_x, d_y, wide[3], g_x, g_y)
         _normal(h_x, h_y, g_x, g_y, differences, w, share, lanes, sums)
-        half = 0.5 * _total(share, lanes[:_LANES])  # the mean of two pixels has half the variance
+        half = 0.5 * sums[9]  # the mean of two pixels has half the variance
         square = half * _SQUARES[0]
         product_x = square if first else half * _in_common(0, d_x)
         product_y = square if first else half * _in_common(0, d_y)
@@ -391,8 +393,7 @@ def fit(  # noqa: PLR0915, PLR0917 - the method's steps in order
         for q in range(n):
             left[q] = differences[q] + n_x * g_x[q] + n_y * g_y[q]
             steep[q] = abs(g_x[q]) + abs(g_y[q])
-        variance, light = _noise(mean, kept, steep, left, work[8, :n], work[9, :n], lanes[:_LANES])
-        state[12] = max(variance - state[0], 0.0) / light
         if not first:
-            _background(box, slopes[k], h_x, h_y, w, work[9, :n], work[10, :n], lanes, sums, state)
+            x, y = work[8, :n], work[9, :n]
+            _background(box, slopes[k], h_x, h_y, w, x, y, lanes, sums, state)
     return away

@@ -1,0 +1,147 @@
+"""What speaks against the answers: from the numbers that tell one symmetric spot from others.
+
+After the last stage of `mirror.registration`, which says what the arrays
+hold, and writes what that returns.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.compiled import compiled
+from algorithms.contract import Floats
+from algorithms.measurement import Doubt
+
+#: Light that departs in clusters of pairs, over the spot's, and the square of what neighbours miss
+#: alike, over that of the light: above either, the spot is not symmetric.
+_CLUSTERS, _ALIKE = 0.02, 0.0006
+#: Mean square of the departures, over what is expected, from which there is a ghost, and from which
+#: the spot is not symmetric; more, over the high outline's area, where few pixels tell.
+_SCATTER_GHOST, _SCATTER, _GHOST_FEW, _SCATTER_FEW = 1.8, 3.5, 100.0, 150.0
+#: The outlines of one spot are alike at all heights: largest ratio of the squared ratios of their
+#: extents, more by 1 over the area, by the cube of that, as few pixels have the outline of their
+#: grid, and by the noise; px by which the extents may differ.
+_UNLIKE, _UNLIKE_FEW, _UNLIKE_GRID, _UNLIKE_NOISE = 1.26, 5.0, 300.0, 1.5
+_UNLIKE_PX, _UNLIKE_NOISE_PX = 0.42, 3.0
+#: Area of an ellipse with an outline's second moments over its own: 1.05 for a square.
+_WAIST, _WAIST_FEW, _WAIST_NOISE = 1.065, 2.0, 0.8
+#: Pixels of a sharp high outline that tell its shape; over the low one's, of what is but a top
+#: where two lights overlap: 0.24 for a Gaussian.
+_SHARP, _TOP = 12.0, 0.15
+#: Standard deviation of the centre, px, over which it is not known.
+_UNSURE = 0.5
+#: From the lit light's centroid, in half extents and px, no registration leads further.
+_ASTRAY, _ASTRAY_PX = 0.25, 0.75
+#: Bits of converters whose most is looked for.
+_FEWEST_BITS, _MOST_BITS = 8, 16
+_NO_SPOT, _SEVERAL, _CUT = int(Doubt.NO_SPOT), int(Doubt.SEVERAL_SPOTS), int(Doubt.CUT)
+_SATURATED, _NOT_SYMMETRIC, _GHOST = (
+    int(Doubt.SATURATED),
+    int(Doubt.NOT_SYMMETRIC),
+    int(Doubt.GHOST),
+)
+
+
+@compiled
+def _is_saturated(frame: NDArray[Any], brightest: float) -> bool:
+    """Whether the spot's neighbouring pixels are at ``2**bits - 1``, and no pixel is above."""
+    whole = float(round(brightest))
+    if not abs(whole - brightest) < 1e-6:
+        return False
+    most = 2.0**_FEWEST_BITS
+    while most - 1.0 < whole:
+        most *= 2.0
+    if most - 1.0 != whole or most > 2.0**_MOST_BITS:
+        return False
+    for row in frame:
+        for value in row:
+            if value > whole:
+                return False
+    return True
+
+
+@compiled
+def _several(shape: Floats, noise: float) -> bool:
+    """Whether outlines are not those of one spot: they have a waist, or differ with height."""
+    minor, area, waist, base = shape[4], shape[5], shape[6], shape[10]
+    if not area > 0.0:
+        return False
+    if waist > _WAIST + _WAIST_FEW / area + _WAIST_NOISE * noise:
+        return True
+    most = _UNLIKE + _UNLIKE_FEW / area + _UNLIKE_GRID / area**3 + _UNLIKE_NOISE * noise
+    for q in (2, 8):
+        one, other = shape[q], shape[q + 1]
+        apart = 2.0 * math.sqrt(max(minor, 0.0)) * (math.sqrt(one) - math.sqrt(other))
+        tells = q == 2 or (area >= _SHARP and area < _TOP * base)
+        if tells and one > most * other and apart > _UNLIKE_PX + _UNLIKE_NOISE_PX * noise:
+            return True
+    return False
+
+
+@compiled
+def _of_shape(light: Floats, state: Floats, shape: Floats, centre: Floats, saturated: bool) -> int:
+    """Doubts that departures from symmetry raise."""
+    clusters, alike, area, scatter, departing = shape[0], shape[1], shape[5], shape[7], shape[11]
+    doubts = 0
+    crooked = clusters > _CLUSTERS or alike > _ALIKE
+    for axis in range(2):
+        far = abs(centre[axis] - light[axis])
+        crooked = crooked or far > _ASTRAY * light[2 + axis] + _ASTRAY_PX
+    if area > 0.0 and not saturated:
+        crooked = crooked or departing > _SCATTER + _SCATTER_FEW / area
+        if departing > _SCATTER_GHOST + _GHOST_FEW / area:
+            doubts |= _GHOST
+    if crooked:
+        doubts |= _NOT_SYMMETRIC
+    if max(state[4], state[5]) * scatter > _UNSURE * _UNSURE:
+        doubts |= _NO_SPOT
+    return doubts
+
+
+@compiled
+def conclude(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    frames: NDArray[Any],
+    seen: NDArray[np.int64],
+    longest_px: float,
+    lights: Floats,
+    boxes: NDArray[np.int64],
+    middles: NDArray[np.int64],
+    states: Floats,
+    shapes: Floats,
+    features: Floats,
+    covariance: Floats,
+    doubts: NDArray[np.int64],
+    noise: Floats,
+) -> None:
+    """Write centres, covariances, doubts and noise of the frames `seen` to the last four.
+
+    Outlines up to `longest_px` are of one spot, whatever their shape: what is no longer than one
+    has fringes, and oblique ones are skew.
+    """
+    centre = np.empty(2)
+    for k in range(len(seen)):
+        at, light, state, shape = seen[k], lights[k], states[k], shapes[k]
+        saturated = _is_saturated(frames[at], light[4] + light[6])
+        found = _SATURATED if saturated else 0
+        for axis in range(2):
+            centre[axis] = 0.5 * (middles[k, axis] + state[2 + axis])
+        if boxes[k, 3] == 0:
+            found |= _CUT
+        if np.isfinite(state[4]):
+            found |= _of_shape(light, state, shape, centre, saturated)
+            if not 2.0 * math.sqrt(max(shape[12], 0.0)) <= longest_px:
+                found |= _NOT_SYMMETRIC if shape[13] > 0.0 and not saturated else 0
+                found |= _SEVERAL if _several(shape, math.sqrt(state[0])) else 0
+        else:
+            found |= _NO_SPOT
+        doubts[at] = found
+        noise[at, 0], noise[at, 1] = state[0] * light[6] ** 2, state[1] * light[6]
+        if found & ~(_SATURATED | _GHOST) == 0:
+            features[at] = centre
+            scatter = shape[7]
+            covariance[at, 0, 0], covariance[at, 1, 1] = state[4] * scatter, state[5] * scatter
+            covariance[at, 0, 1] = covariance[at, 1, 0] = state[6] * scatter

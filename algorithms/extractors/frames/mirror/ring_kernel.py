@@ -1,0 +1,267 @@
+"""Take the background's odd part, told by the ring around a spot, off its pairs' differences.
+
+The third stage of `mirror.registration`, which says what the arrays hold.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.compiled import compiled
+from algorithms.contract import Floats
+
+Line = NDArray[np.float32]
+
+_REACH, _LANES = 7, 16
+_ZERO, _HALF, _ONE = np.float32(0.0), np.float32(0.5), np.float32(1.0)
+#: Standard deviation of the background's slope, over the spot's own, before anything is known.
+_PRIOR = 0.01
+#: Standard deviations of a bend of the background from which it is one: extrapolating costs noise.
+_BENT = 3.0
+#: Share of a bend by which it may be another one inside the ring.
+_UNKNOWN = 0.45
+#: Pairs that depart by so many deviations count no more than that.
+_FAR = 4.0
+_TURNS = 6
+#: Chi squared of a step that is none.
+_STILL = 1e-6
+#: Standard deviations of a slope from which there is a background that may bend.
+_SLOPING = 1e9
+
+
+@compiled
+def _fold(lanes: Line, which: int) -> float:
+    """Sum of the lanes of one of several sums, halves added to halves."""
+    p = which * _LANES
+    for j in range(_LANES // 2):
+        lanes[p + j] += lanes[p + j + _LANES // 2]
+    a, b = float(lanes[p]) + lanes[p + 1], float(lanes[p + 2]) + lanes[p + 3]
+    c, e = float(lanes[p + 4]) + lanes[p + 5], float(lanes[p + 6]) + lanes[p + 7]
+    total: float = (a + b) + (c + e)
+    return total
+
+
+@compiled
+def _lines(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    s: Line, d: Line, box: Any, d_x: float, d_y: float, templates: Line, lines: Line
+) -> int:
+    """Write the window's pairs to `lines`, zero in the core; return how many are not.
+
+    Rows: difference without what the spot's own slope explains, x, y. `templates` (4, stride): of a
+    row above the core and of one through it, which columns are of the ring, and their x.
+    """
+    columns, stride, first, above = box[3], box[4], box[5], box[6]
+    across, along = np.float32(0.5 * d_x), np.float32(0.5 * d_y)
+    rows = above + box[7]
+    middle = np.float32(0.5 * (columns - 1))
+    templates[:] = _ZERO
+    for j in range(columns):
+        templates[0, j], templates[1, j] = _ONE, np.float32(j) - middle
+    for j in range(first):
+        templates[2, j], templates[2, columns - 1 - j] = _ONE, _ONE
+        templates[3, j], templates[3, columns - 1 - j] = np.float32(j) - middle, middle - j
+    p = 8 + _REACH * stride
+    n = rows * stride
+    r, own, after, up, down = lines[0], s[p - 1 :], s[p + 1 :], s[p - stride :], s[p + stride :]
+    for q in range(n):
+        r[q] = d[q] + across * (after[q] - own[q]) + along * (down[q] - up[q])
+    _masked(lines, 0, above, stride, -0.5 * (box[2] - box[1]), templates[:2])
+    _masked(lines, above, rows, stride, -0.5 * (box[2] - box[1]), templates[2:])
+    for q in range(n, (n + _LANES - 1) // _LANES * _LANES):
+        lines[0, q], lines[1, q], lines[2, q] = _ZERO, _ZERO, _ZERO
+    return int(rows * columns - box[7] * (columns - 2 * first))
+
+
+@compiled
+def _masked(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    lines: Line, begin: int, end: int, stride: int, top: float, template: Line
+) -> None:
+    """Write x and y of some rows, and zero where there is no ring."""
+    mask, across = template[0], template[1]
+    r, x, y = lines[0], lines[1], lines[2]
+    for i in range(begin, end):
+        at, first = np.float32(i + top), np.uint64(i * stride)
+        for j in range(stride):
+            q = first + np.uint64(j)
+            r[q] *= mask[j]
+            x[q] = across[j]
+            y[q] = at * mask[j]
+
+
+@compiled
+def _powers(box: Any, inverse: float, sums: Floats) -> None:
+    """Write the sums of x^2, y^2, and these times rho and rho^2, ``rho = inverse (x^2 + y^2)``.
+
+    Of all the window less those of the core: sums of powers of x times such of y.
+    """
+    columns, first, above, rows = box[3], box[5], box[6], box[6] + box[7]
+    sums[:] = 0.0
+    for part in range(2):
+        begin, skip = (0, 0) if part == 0 else (above, first)
+        sign = 1.0 if part == 0 else -1.0
+        x2, x4, x6, y2, y4, y6 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        for j in range(skip, columns - skip):
+            u = (j - 0.5 * (columns - 1)) ** 2
+            x2 += u
+            x4 += u * u
+            x6 += u * u * u
+        for i in range(begin, rows):
+            v = (i - 0.5 * (box[2] - box[1])) ** 2
+            y2 += v
+            y4 += v * v
+            y6 += v * v * v
+        x0, y0 = sign * (columns - 2 * skip), rows - begin
+        sums[0] += sign * x2 * y0
+        sums[1] += x0 * y2
+        sums[2] += inverse * sign * (x4 * y0 + x2 * y2)
+        sums[3] += inverse * (sign * x2 * y2 + x0 * y4)
+        sums[4] += inverse * inverse * sign * (x6 * y0 + 2.0 * x4 * y2 + x2 * y4)
+        sums[5] += inverse * inverse * (sign * (x4 * y2 + 2.0 * x2 * y4) + x0 * y6)
+
+
+@compiled
+def _right(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    lines: Line, n: int, inverse: Any, slope: Floats, limit: float, lanes: Line
+) -> float:
+    """Write sums of what is left times x, y, rho x and rho y to the lanes; how many are beyond."""
+    a, b = np.float32(2.0 * slope[0]), np.float32(2.0 * slope[1])
+    c, e = np.float32(2.0 * slope[2]), np.float32(2.0 * slope[3])
+    far = np.float32(limit)
+    r, across, along = lines[0], lines[1], lines[2]
+    lanes[:] = _ZERO
+    for k in range(0, n, _LANES):
+        for j in range(_LANES):
+            q = np.uint64(k) + np.uint64(j)  # what is never negative is vectorised
+            x, y = across[q], along[q]
+            rho = (x * x + y * y) * inverse
+            left = r[q] - (a + c * rho) * x - (b + e * rho) * y
+            lanes[j + 4 * _LANES] += _ONE if abs(left) > far else _ZERO
+            left = min(far, left)
+            left = max(-far, left)
+            lanes[j] += left * x
+            lanes[j + _LANES] += left * y
+            lanes[j + 2 * _LANES] += left * x * rho
+            lanes[j + 3 * _LANES] += left * y * rho
+    return _fold(lanes, 4)
+
+
+@compiled
+def _solve(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    lines: Line,
+    box: Any,
+    count: int,
+    variance: float,
+    prior: float,
+    lanes: Line,
+    slope: Floats,
+) -> None:
+    """Fit ``difference = 2 (slope + bend |u|^2 / r^2) . u`` to the ring's pairs, all at first.
+
+    No pair has much influence. `prior` is the variance of a slope and of a bend before anything is
+    known, which counts where the frame's edge leaves few pairs.
+    """
+    sums = np.empty(6)
+    inverse = np.float32(1.0 / slope[4])
+    n = ((box[6] + box[7]) * box[4] + _LANES - 1) // _LANES * _LANES
+    _powers(box, 1.0 / slope[4], sums)
+    scale, ridge = 4.0 / variance, 1.0 / prior
+    differences = lines[0]
+    lanes[:] = _ZERO
+    for k in range(0, n, _LANES):
+        for j in range(_LANES):
+            lanes[j] += abs(differences[np.uint64(k) + np.uint64(j)])
+    size = _fold(lanes, 0)
+    least = _FAR * math.sqrt(variance)
+    limit = max(least, 3.0 * size / count)
+    slope[:4] = 0.0
+    for _ in range(_TURNS):
+        beyond, moved = _right(lines, n, inverse, slope, limit, lanes), 0.0
+        for axis in range(2):
+            own, bent = sums[axis] * scale + ridge, sums[4 + axis] * scale + ridge
+            mixed = sums[2 + axis] * scale
+            determinant = own * bent - mixed * mixed
+            right = _fold(lanes, axis)
+            far = _fold(lanes, 2 + axis)
+            one = 0.5 * scale * right - slope[axis] * ridge
+            two = 0.5 * scale * far - slope[2 + axis] * ridge
+            step, turn = bent * one - mixed * two, own * two - mixed * one
+            slope[axis] += step / determinant
+            slope[2 + axis] += turn / determinant
+            moved = max(moved, (step * one + turn * two) / determinant)
+        if limit <= least and (beyond == 0.0 or moved < _STILL):
+            break  # one step solves what is linear
+        limit = max(least, 0.3 * limit)
+    bends = False
+    for axis in range(2):
+        own, bent = sums[axis] * scale + ridge, sums[4 + axis] * scale + ridge
+        mixed = sums[2 + axis] * scale
+        determinant = own * bent - mixed * mixed
+        bends = bends or slope[2 + axis] ** 2 * determinant > _BENT * _BENT * own
+        straight = slope[axis] + slope[2 + axis] * mixed / own
+        bends = bends or straight * straight * own > _SLOPING * _SLOPING
+    for axis in range(2):
+        own, bent = sums[axis] * scale + ridge, sums[4 + axis] * scale + ridge
+        mixed = sums[2 + axis] * scale
+        determinant = own * bent - mixed * mixed
+        if bends:
+            slope[5 + axis], slope[7 + axis] = bent / determinant, own / determinant
+            slope[5 + axis] += (_UNKNOWN * slope[2 + axis] * mixed / own) ** 2
+        else:
+            slope[axis] += slope[2 + axis] * mixed / own
+            slope[5 + axis], slope[2 + axis], slope[7 + axis] = 1.0 / own, 0.0, 0.0
+
+
+@compiled
+def _flatten(d: Line, box: Any, slope: Floats, across: Line) -> None:
+    """Take the background's odd part off the core's differences; `across` is work space."""
+    columns, stride, above = box[3], box[4], box[6]
+    a, b, inverse = (
+        np.float32(2.0 * slope[0]),
+        np.float32(2.0 * slope[1]),
+        np.float32(1.0 / slope[4]),
+    )
+    c, e = np.float32(2.0 * slope[2]), np.float32(2.0 * slope[3])
+    for j in range(stride):
+        across[j] = np.float32(j - 0.5 * (columns - 1))
+    for i in range(above, above + box[7]):
+        y, first = np.float32(i - 0.5 * (box[2] - box[1])), np.uint64(i * stride)
+        for j in range(stride):
+            x, q = across[j], first + np.uint64(j)
+            rho = (x * x + y * y) * inverse
+            d[q] -= (a + c * rho) * x + (b + e * rho) * y
+
+
+@compiled
+def flatten(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    todo: NDArray[np.int64],
+    boxes: NDArray[np.int64],
+    lights: Floats,
+    s: Line,
+    d: Line,
+    space: Line,
+    states: Floats,
+    slopes: Floats,
+) -> None:
+    """Fit the background around the windows `todo`, take it off, and write it to `slopes` (N, 9).
+
+    Columns: slope along x and y, bend along both, the square of the length it is told at; the
+    variances of slope and bend of each axis, and their covariance.
+    """
+    lines = space[:3]
+    lanes = np.empty(6 * _LANES, dtype=np.float32)
+    for k in todo:
+        state, slope = states[k], slopes[k]
+        box = boxes[k]
+        slope[:] = 0.0
+        slope[4] = 0.25 * (box[3] * box[3] + (box[2] - box[1]) ** 2)
+        count = _lines(s[k], d[k], box, state[2], state[3], space[3:7, : box[4]], lines)
+        if count == 0:
+            continue
+        variance = 2.0 * state[0] + 1e-12
+        prior = (_PRIOR / max(lights[k, 2], lights[k, 3])) ** 2
+        _solve(lines, box, count, variance, prior, lanes, slope)
+        _flatten(d[k], boxes[k], slope, space[7])
