@@ -5,6 +5,7 @@ import pytest
 
 from algorithms.extractors.frames.multi_spot import aperture_grid_kernel as kernel
 from algorithms.extractors.frames.multi_spot import evidence_kernel as evidence
+from algorithms.extractors.frames.multi_spot import view_kernel as view
 from algorithms.extractors.frames.multi_spot.aperture_pattern import lattice
 
 #: Asymmetric, so that no turn, mirror or shift of it is itself.
@@ -31,7 +32,7 @@ def test_a_spot_is_expected_where_it_is_whole_in_the_frame(x, y, seen):
     state = np.empty(1, dtype=np.int8)
     for shape, place in (((40, 100), (x, y)), ((100, 40), (y, x))):
         dark = np.zeros(shape)
-        seen_here = evidence._look(dark, 1.0, one, 1.5, *place, np.empty((0, 4)), none, state)
+        seen_here = view._look(dark, 1.0, one, 1.5, *place, np.empty((0, 4)), none, state)
         assert seen_here == (0, int(seen))
 
 
@@ -122,9 +123,11 @@ def matched(spots, shape, tolerance=1.0, share=0.3):
         matches,
         kept,
     )
-    displacement = np.empty((1, 2))
-    partners = np.empty((1, len(APERTURES)), dtype=np.int64)
-    evidence.decide(
+    states = np.empty((1, 24, len(APERTURES)), dtype=np.int8)
+    cut_to = np.empty((1, 24, 4), dtype=np.int32)
+    bright = np.empty((1, len(spots)), dtype=np.bool_)
+    enough = np.empty((1, 24), dtype=np.bool_)
+    view.look(
         frame,
         np.ones(1),
         listed,
@@ -132,15 +135,37 @@ def matched(spots, shape, tolerance=1.0, share=0.3):
         np.empty((1, 4, 3)),
         none,
         known.apertures,
-        known.lines,
         1.0,
-        tolerance,
-        (0.0, share, 0.0),
+        share,
         places,
         matches,
         kept,
+        states,
+        cut_to,
+        bright,
+        enough,
+    )
+    displacement = np.empty((1, 2))
+    partners = np.empty((1, len(APERTURES)), dtype=np.int64)
+    evidence.decide(
+        listed,
+        count,
+        none,
+        known.apertures,
+        known.lines,
+        tolerance,
+        (0.0, 0.0),
+        (0.0, 0.0, np.inf),
+        places,
+        matches,
+        kept,
+        states,
+        cut_to,
+        bright,
+        enough,
         displacement,
         partners,
+        np.empty(1, dtype=np.int64),
     )
     return displacement[0], partners[0].tolist()
 

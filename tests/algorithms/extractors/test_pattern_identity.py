@@ -11,6 +11,7 @@ from algorithms.extractors.frames.multi_spot.image_correlation import ImageCorre
 from algorithms.extractors.frames.multi_spot.mean_shift import MeanShift
 from algorithms.extractors.frames.multi_spot.multiple_centroids import MultipleCentroids
 from algorithms.extractors.frames.multi_spot.weighted_spots import WeightedSpots
+from algorithms.measurement import Doubt
 
 WIDTH = 7.0
 FRAMES = 200
@@ -105,6 +106,47 @@ def test_a_doubled_edge_is_told_unless_the_other_edge_is_out_of_view(side, pitch
         return
     cautious = MultipleCentroids(scenes.apertures, faulty_lines=2)
     assert scenes.shares(cautious.extract(scenes.frames))[0] == 0.0
+
+
+def test_a_doubled_edge_makes_the_very_frame_of_a_mask_moved_by_a_pitch():
+    """Where the other edge is out of view no method can tell them."""
+    apertures = np.array(grid(5, 16.0))[:, :2]
+    place, step = np.array([34.5, 60.2]), np.array([16.0, 0.0])  # the first column is out of view
+    first = [(*(place - step + a), 1.0) for a in apertures]
+    extra = [(*(place + a), 1.0) for a in apertures if a[0] == apertures[:, 0].max()]
+    whole = [(*(place + a), 1.0) for a in apertures]
+    doubled = draw(np.random.default_rng(208), (120, 130), first + extra)
+    moved = draw(np.random.default_rng(208), (120, 130), whole)
+    np.testing.assert_array_equal(doubled, moved)
+
+
+@pytest.mark.slow
+@every_grid
+def test_an_identity_without_a_doubt_is_right(side, pitch):
+    for seed, faults in ((210, {"doubled": 1.0}), (211, {"dark": True}), (212, {})):
+        scenes = Scenes(seed, side, pitch, **faults)
+        extractor = MultipleCentroids(scenes.apertures)
+        found = extractor.measure(scenes.frames)
+        doubted = found.doubts == int(Doubt.AMBIGUOUS_PATTERN)
+        wrong = np.abs(found.features - scenes.places).max(axis=1) > pitch / 4
+        assert not (wrong & ~doubted).any()
+        np.testing.assert_array_equal(found.features, extractor.extract(scenes.frames))
+
+
+@pytest.mark.parametrize("method", [MultipleCentroids, MeanShift, ImageCorrelation, WeightedSpots])
+def test_an_ambiguous_pattern_and_a_dark_frame_are_different_doubts(method):
+    apertures = grid(4, 16.0)
+    own = {MeanShift: {"bandwidth_px": 8.0}, ImageCorrelation: {"correlations": 4}}
+    rng = np.random.default_rng(213)
+    frames = [
+        draw(rng, (120, 120), [(*(np.array(place) + a[:2]), 1.0) for a in apertures])
+        for place in ((60.3, 59.8), (18.3, 59.8), (30.3, 59.8))  # amid, cut by a line, at the edge
+    ]
+    frames.append(draw(rng, (120, 120), []))
+    found = method(apertures, **own.get(method, {})).measure(np.array(frames))
+    unsure = int(Doubt.AMBIGUOUS_PATTERN)
+    assert found.doubts.tolist() == [0, unsure, unsure, int(Doubt.NO_SPOT)]
+    assert np.isfinite(found.features[:, 0]).tolist() == [True, False, True, False]
 
 
 @pytest.mark.slow

@@ -11,21 +11,16 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from algorithms.contract import Floats, SensorGeometry, UnsuitableDesignError
+from algorithms.contract import Floats
 from algorithms.extractors.frames.multi_spot.pattern_memory import found_once
-from algorithms.inputs import require_positive
 from algorithms.row_arithmetic import medians
 
 Apertures = tuple[tuple[float, float, float], ...]
 """A row an aperture: x, y from the middle of the mask, and width, px."""
 
-PATTERN_NEEDS = ("focal_length_mm", "pixel_pitch_mm", "aperture_width_mm", "aperture_shape")
-"""Fields of a sensor's design that `design_pattern` reads; slits have no shape there."""
+FieldPx = tuple[float, float, float]
+"""Where the pattern is for a Sun on the boresight, x and y, and how far it moves from there, px."""
 
-#: Angular diameter of the Sun, rad: its image behind a hole is this times the distance.
-SOLAR_DIAMETER = 0.0093
-#: Middle of the light that silicon sees.
-_WAVELENGTH_MM = 550e-6
 #: Pixels of a spot above its threshold, over those of its aperture: the least of the smallest,
 #: the most of the largest with the Sun's image, which grows with incidence.
 _AREAS = (0.4, 6.0)
@@ -92,75 +87,14 @@ class Pattern(NamedTuple):
         (N, 2) of the mask's middle on the detector; NaN where the pattern was not found.
     spots
         (N, A, 2) position of each aperture's spot; NaN where it is not seen whole.
+    ambiguous
+        (N,) whether another displacement explains the frame nearly as well: that is why there is
+        none, or, where there is one, `faulty_lines` lines seen twice in full light would be why.
     """
 
     displacement: Floats
     spots: Floats
-
-
-def design_pattern(geometry: SensorGeometry, by: str) -> dict[str, Any]:
-    """Parameters ``apertures_px`` and ``blur_px`` of a sensor's mask.
-
-    A sensor without a list of apertures has one, over the detector's middle.
-
-    Raises
-    ------
-    UnsuitableDesignError
-        Where a field needed is None, or the design's light is no image of apertures.
-    """
-    geometry.require(*PATTERN_NEEDS, by=by)
-    for field in ("slits", "code_bits", "lens_distortion"):
-        if getattr(geometry, field) is not None:
-            raise UnsuitableDesignError(
-                f"{by} reads spots behind apertures; the sensor's design has {field}"
-            )
-    pitch, width = geometry.pixel_pitch_mm, geometry.aperture_width_mm
-    focal = geometry.focal_length_mm
-    if pitch is None or width is None or focal is None:
-        raise UnsuitableDesignError(
-            f"{by} needs pixel_pitch_mm, aperture_width_mm and focal_length_mm"
-        )
-    apertures = geometry.apertures or ((0.0, 0.0, width),)
-    fresnel = min(w for _, _, w in apertures) ** 2 / (4.0 * _WAVELENGTH_MM * focal)
-    if fresnel < 1.0:
-        raise UnsuitableDesignError(
-            f"{by} reads images of apertures; the sensor's are of Fresnel number {fresnel:.2g}: "
-            "diffraction makes their spots, at least 1 is needed"
-        )
-    return {
-        # a thousandth of a pixel is a fraction of what masks are made to
-        "apertures_px": tuple(tuple(round(v / pitch, 6) for v in row) for row in apertures),
-        "blur_px": round(SOLAR_DIAMETER * focal / pitch, 6),
-    }
-
-
-def require_pattern(  # noqa: PLR0917 - the parameters in their order
-    by: str,
-    apertures_px: Apertures,
-    blur_px: float,
-    threshold: float,
-    tolerance_px: float,
-    faulty_lines: int,
-) -> None:
-    """Raise ValueError naming the first parameter of a pattern that is out of range."""
-    rows = np.array(apertures_px, dtype=np.float64) if apertures_px else np.empty((0, 3))
-    if rows.ndim != 2 or rows.shape[1] != 3 or len(rows) == 0 or not np.isfinite(rows).all():
-        raise ValueError(f"{by}: apertures_px must be rows of finite x, y, width; got {rows.shape}")
-    if not (rows[:, 2] > 0).all():
-        raise ValueError(f"{by}: widths in apertures_px must be positive; got {rows[:, 2].min()}")
-    if not (math.isfinite(blur_px) and blur_px >= 0):
-        raise ValueError(f"{by}: blur_px must be finite and not negative; got {blur_px!r}")
-    if not 0.0 < threshold < 1.0:
-        raise ValueError(f"{by}: threshold must be in (0, 1); got {threshold!r}")
-    require_positive(by, tolerance_px=tolerance_px)
-    if faulty_lines < 0:
-        raise ValueError(f"{by}: faulty_lines must not be negative; got {faulty_lines!r}")
-    nearest = nearest_distance(rows)
-    if not tolerance_px < nearest / 4.0:
-        raise ValueError(
-            f"{by}: tolerance_px must be below a quarter of the least distance of two apertures, "
-            f"{nearest:.4g} px; got {tolerance_px!r}"
-        )
+    ambiguous: NDArray[np.bool_]
 
 
 def nearest_distance(apertures: Floats) -> float:
@@ -235,6 +169,7 @@ def find_pattern(  # noqa: PLR0917 - the parameters in their order
     blur_px: float,
     tolerance_px: float,
     faulty_lines: int,
+    field_px: FieldPx | None = None,
     *,
     sequence: bool = False,
 ) -> Pattern:
@@ -245,7 +180,7 @@ def find_pattern(  # noqa: PLR0917 - the parameters in their order
     the least distance of two apertures from the frame before's. Not to be written to: it may be
     another method's too (`pattern_memory.shared_patterns`).
     """
-    limits = blur_px, tolerance_px, faulty_lines, sequence
+    limits = blur_px, tolerance_px, faulty_lines, field_px, sequence
     return found_once(
         frames,
         (apertures_px, limits, levels.threshold.tobytes()),
@@ -257,16 +192,17 @@ def _find_pattern(
     frames: NDArray[Any],
     levels: Levels,
     apertures_px: Apertures,
-    limits: tuple[float, float, int, bool],
+    limits: tuple[float, float, int, FieldPx | None, bool],
 ) -> Pattern:
     """`find_pattern` without remembering; `limits` are its parameters from `blur_px` on."""
     from algorithms.extractors.frames.multi_spot import (  # noqa: PLC0415 - Numba on first use
         aperture_grid_kernel,
         evidence_kernel,
         spots_kernel,
+        view_kernel,
     )
 
-    blur_px, tolerance_px, faulty_lines, sequence = limits
+    blur_px, tolerance_px, faulty_lines, field_px, sequence = limits
     count, height, width = frames.shape
     known = lattice(apertures_px)
     widths = known.apertures[:, 2]
@@ -291,16 +227,17 @@ def _find_pattern(
         known.cell_px,
         (height, width),
         tolerance_px,
-        # a line of spots unexplained costs as much as two faults, and some are missing
-        (0.5 * faulty_lines + 1.0) * max(int(np.bincount(line).max()) for line in known.lines) + 4,
+        # for a doubt, a line of spots unexplained is a fault, and some are missing
+        (faulty_lines + 0.5) * max(int(np.bincount(line).max()) for line in known.lines) + 4,
         places,
         matches,
         kept,
     )
-    displacement = np.empty((count, 2))
-    partners = np.empty((count, len(widths)), dtype=np.int64)
-    apart = min(known.nearest_px, float(height + width)) / 4.0
-    evidence_kernel.decide(
+    states = np.empty((count, _COMPARED, len(widths)), dtype=np.int8)
+    cut_to = np.empty((count, _COMPARED, _CUTS), dtype=np.int32)
+    bright = np.empty((count, room), dtype=np.bool_)
+    enough = np.empty((count, _COMPARED), dtype=np.bool_)
+    view_kernel.look(
         frames,
         levels.threshold,
         seen,
@@ -308,19 +245,43 @@ def _find_pattern(
         cuts,
         cut_counts,
         known.apertures,
-        known.lines,
         margin_px(blur_px),
-        tolerance_px,
-        (float(faulty_lines), SHARE, apart if sequence else 0.0),
+        SHARE,
         places,
         matches,
         kept,
+        states,
+        cut_to,
+        bright,
+        enough,
+    )
+    displacement = np.empty((count, 2))
+    partners = np.empty((count, len(widths)), dtype=np.int64)
+    reason = np.empty(count, dtype=np.int64)
+    apart = min(known.nearest_px, float(height + width)) / 4.0
+    evidence_kernel.decide(
+        seen,
+        counts,
+        cut_counts,
+        known.apertures,
+        known.lines,
+        tolerance_px,
+        (float(faulty_lines), apart if sequence else 0.0),
+        field_px or (0.0, 0.0, math.inf),
+        places,
+        matches,
+        kept,
+        states,
+        cut_to,
+        bright,
+        enough,
         displacement,
         partners,
+        reason,
     )
     positions = np.take_along_axis(seen, np.maximum(partners, 0)[:, :, None], axis=1)[:, :, :2]
     positions[partners < 0] = np.nan
-    return Pattern(displacement, positions)
+    return Pattern(displacement, positions, reason >= evidence_kernel.SEVERAL)
 
 
 def margin_px(blur_px: float) -> float:
@@ -365,7 +326,11 @@ def followed(
             if math.hypot(*step) >= astray:
                 break
             end += 1
-        here = Pattern(pattern.displacement[start : start + 1], pattern.spots[start : start + 1])
+        here = Pattern(
+            pattern.displacement[start : start + 1],
+            pattern.spots[start : start + 1],
+            pattern.ambiguous[start : start + 1],
+        )
         part = follow(start, end, here)
         away = np.hypot(*(part - pattern.displacement[start:end]).T)
         lost = np.flatnonzero(~(away < astray))

@@ -3,101 +3,31 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
+from algorithms.extractors.frames.multi_spot.view_kernel import DARK, OUT
 
 Indices = NDArray[np.int64]
 Partners = NDArray[np.int32]
 States = NDArray[np.int8]
 Flags = NDArray[np.bool_]
 
-#: What a frame shows of an aperture: less than half of its place, neither its spot nor darkness,
-#: its spot, darkness or a spot of another place.
-_OUT, _UNSURE, _SPOT, _DARK = 0, 1, 2, 3
-#: Share of lit pixels at an aperture's place below which it is dark: a hot one is no spot.
-_LIT = 0.25
-#: A spot with less than this share of the usual light may be a reflection.
-_DIM = 0.8
+#: What `decide` says of a frame: an answer, no pattern found, several that it may be, and an answer
+#: that it is not, should lines be seen twice in full light.
+FOUND, NOTHING, SEVERAL, DOUBTFUL = 0, 1, 2, 3
 #: Price of a dark line of apertures, and of one of it: one over those in view, within limits.
 _DARKNESS, _DARK_ONE = 1.0, (0.25, 0.34)
 #: The same of lit ones that a displacement leaves unexplained: no reflection is as bright as they.
-_LIGHT, _LIGHT_ONE = 2.0, (0.8, 0.8)
+#: For a doubt suffices a line of them that may be one of its own seen twice: as a dark one.
+_LIGHT, _LIGHT_ONE, _DOUBLED = 2.0, (0.8, 0.8), 1.0
+#: The same of a Sun out of the field.
+_OUTSIDE = 1.0
 #: By how much more than the faults allowed a rival must cost: no more than a spot beside its place.
 _CLEAR = 0.04
-
-
-@compiled
-def _is_dark(frame: NDArray[Any], level: float, x: float, y: float, radius: float) -> bool:
-    """Whether few of the pixels within `radius` of (x, y) are above the level."""
-    height, width = frame.shape
-    lit = 0
-    pixels = 0
-    for i in range(max(math.ceil(y - radius), 0), min(math.floor(y + radius), height - 1) + 1):
-        side = math.sqrt(max(radius * radius - (i - y) * (i - y), 0.0))
-        for j in range(max(math.ceil(x - side), 0), min(math.floor(x + side), width - 1) + 1):
-            pixels += 1
-            lit += frame[i, j] > level
-    return lit < _LIT * pixels
-
-
-@compiled
-def _is_near(spots: Floats, x: float, y: float, radius: float) -> bool:
-    """Whether the middle of a whole spot is within `radius` of (x, y)."""
-    for s in range(spots.shape[0]):
-        dx = spots[s, 0] - x
-        dy = spots[s, 1] - y
-        if dx * dx + dy * dy < radius * radius:
-            return True
-    return False
-
-
-@compiled
-def _look(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    frame: NDArray[Any],
-    level: float,
-    apertures: Floats,
-    margin: float,
-    x: float,
-    y: float,
-    spots: Floats,
-    partner: Partners,
-    state: States,
-) -> tuple[int, int]:
-    """Write what the frame shows of each aperture; return how many spots, and whole places."""
-    height, width = frame.shape
-    found = 0
-    whole = 0
-    for a in range(apertures.shape[0]):
-        px = apertures[a, 0] + x
-        py = apertures[a, 1] + y
-        half = 0.5 * apertures[a, 2]
-        edge = half + margin
-        whole += edge <= px < width - 1 - edge and edge <= py < height - 1 - edge
-        if partner[a] >= 0:
-            state[a] = _SPOT
-            found += 1
-        elif not (1.0 <= px <= width - 2.0 and 1.0 <= py <= height - 2.0):
-            state[a] = _OUT
-        elif _is_dark(frame, level, px, py, max(half - 1.0, 1.0)) or _is_near(spots, px, py, half):
-            state[a] = _DARK
-        else:
-            state[a] = _UNSURE
-    return found, whole
-
-
-@compiled
-def _shown(state: States, lines: Indices, out: Indices) -> None:
-    """Write how many apertures of each line of columns and of rows (2, A) are in view."""
-    out[:] = 0
-    for a in range(state.size):
-        if state[a] != _OUT:
-            out[0, lines[0, a]] += 1
-            out[1, lines[1, a]] += 1
 
 
 @compiled
@@ -107,9 +37,10 @@ def _price(  # noqa: PLR0917 - Numba takes no keyword-only ones
     shown: Indices,
     line: float,
     limits: tuple[float, float],
+    limit: Floats,
     sums: Floats,
 ) -> float:
-    """Price of the faulty, in columns or rows as is cheaper; that of a line has a limit."""
+    """Price of the faulty, in columns or rows as is cheaper; that of a line has a limit (2, A)."""
     least, most = limits
     best = math.inf
     for axis in range(2):
@@ -120,19 +51,30 @@ def _price(  # noqa: PLR0917 - Numba takes no keyword-only ones
                 sums[lines[axis, a]] += min(max(one, least), most)
         total = 0.0
         for a in range(sums.size):
-            total += min(sums[a], line)
+            total += min(sums[a], limit[axis, a])
         best = min(best, total)
     return best
 
 
 @compiled
 def _dark_alone(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    state: States, apertures: Floats, away_x: float, away_y: float, near: float, faults: Flags
+    state: States,
+    partner: Partners,
+    bright: Flags,
+    apertures: Floats,
+    away_x: float,
+    away_y: float,
+    near: float,
+    faults: Flags,
 ) -> bool:
-    """Mark the dark places of one displacement where the other, `away` from it, has no aperture."""
+    """Mark the dark places of one displacement where the other, `away` from it, has no aperture.
+
+    Its spots that are dimmer than usual, as reflections are, count as dark.
+    """
     some = False
     for a in range(state.size):
-        faults[a] = state[a] == _DARK
+        dim = partner[a] >= 0 and not bright[partner[a]]
+        faults[a] = dim or state[a] == DARK
         if not faults[a]:
             continue
         for b in range(state.size):
@@ -173,39 +115,58 @@ def _lit_alone(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def _cut_partners(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    cuts: Floats, apertures: Floats, x: float, y: float, margin: float, dim: float, out: Partners
-) -> None:
-    """Write the aperture that each spot cut by the edge lies on, -1 for none or a dim one."""
-    for c in range(out.size):
-        out[c] = -1
-        if cuts[c, 2] < dim:
-            continue
-        for a in range(apertures.shape[0]):
-            reach = 0.5 * apertures[a, 2] + margin
-            dx = cuts[c, 0] - apertures[a, 0] - x
-            dy = cuts[c, 1] - apertures[a, 1] - y
-            if dx * dx + dy * dy < reach * reach:
-                out[c] = a
-                break
+def _is_beside(at: float, partner: Partners, places: Floats, axis: int, away: float) -> bool:
+    """Whether all of the places (A, 3) that have a spot are on one side of `at` along an axis."""
+    below = above = False
+    for a in range(partner.size):
+        if partner[a] >= 0:
+            below |= places[a, axis] + away < at
+            above |= places[a, axis] + away > at
+    return not (below and above)
 
 
 @compiled
-def _usual(spots: Floats, partner: Partners, bright: Flags) -> float:
-    """Mark the spots (S,) that are not much dimmer than those of the pattern; return the limit.
+def _limit_doubled(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    faults: Flags,
+    apertures: Floats,
+    lines: Indices,
+    other: Partners,
+    away_x: float,
+    away_y: float,
+    near: float,
+    doubled: float,
+    work: tuple[Indices, Indices],
+    limit: Floats,
+) -> None:
+    """Write the limit (2, A) of each line's price: less where it may be one of the other's twice.
 
-    Compared is the light of a lit pixel, which does not depend on an aperture's size.
+    The faulty of a line are, where they lie beyond all spots of the `other` displacement, which is
+    `away` from this one, and a line of it has an aperture beside each of them.
     """
-    lights = np.empty(partner.size)
-    number = 0
-    for a in range(partner.size):
-        if partner[a] >= 0:
-            lights[number] = spots[partner[a], 3] / spots[partner[a], 2]
-            number += 1
-    least = _DIM * np.median(lights[:number])
-    for s in range(bright.size):
-        bright[s] = spots[s, 3] >= least * spots[s, 2]
-    return float(least)
+    faulty, beside = work
+    for axis in range(2):
+        across, along = (away_x, away_y) if axis == 0 else (away_y, away_x)
+        limit[axis, :] = _LIGHT
+        faulty[:] = 0
+        for a in range(faults.size):
+            faulty[lines[axis, a]] += faults[a]
+        for a in range(faults.size):
+            line = lines[axis, a]
+            if faulty[line] == 0:
+                continue
+            number = faulty[line]
+            faulty[line] = 0  # each line is looked at once
+            if not _is_beside(apertures[a, axis], other, apertures, axis, across):
+                continue
+            beside[:] = 0
+            for b in range(faults.size):
+                if not faults[b] or lines[axis, b] != line:
+                    continue
+                for c in range(faults.size):
+                    off = apertures[b, 1 - axis] - along - apertures[c, 1 - axis]
+                    beside[lines[axis, c]] += abs(off) < near
+            if beside.max() >= number:
+                limit[axis, line] = doubled
 
 
 @compiled
@@ -242,151 +203,190 @@ def _ahead(  # noqa: PLR0917 - Numba takes no keyword-only ones
     other: int,
     spots: Floats,
     places: Floats,
-    view: tuple[Partners, Partners, States, Indices, Flags],
+    view: tuple[Partners, Partners, States, Indices, Flags, Floats],
     mask: tuple[Floats, Indices],
     tolerance: float,
-    work: tuple[Indices, Flags, Flags, Floats],
+    doubled: float,
+    work: tuple[Indices, Indices, Indices, Flags, Flags, Floats, Floats],
 ) -> float:
     """By how much more the frame speaks against the `other` displacement than against `one`."""
-    partners, cut_to, state, shown, bright = view
+    partners, cut_to, state, shown, bright, outside = view
     apertures, lines = mask
-    owner, taken, faults, sums = work
+    owner, faulty, beside, taken, faults, limit, sums = work
     ahead = _closer(one, other, spots, places, partners, apertures, tolerance, owner)
     for side in range(2):
         a, b = (other, one) if side == 0 else (one, other)
-        price = 0.0
+        price = outside[a]
         away_x = places[a, 0] - places[b, 0]
         away_y = places[a, 1] - places[b, 1]
-        if _dark_alone(state[a], apertures, away_x, away_y, 2.0 * tolerance, faults):
-            price += _price(faults, lines, shown[a], _DARKNESS, _DARK_ONE, sums)
+        if _dark_alone(
+            state[a], partners[a], bright, apertures, away_x, away_y, 2.0 * tolerance, faults
+        ):
+            limit[:] = _DARKNESS
+            price += _price(faults, lines, shown[a], _DARKNESS, _DARK_ONE, limit, sums)
         if _lit_alone(partners[b], cut_to[b], partners[a], cut_to[a], bright, taken, faults):
-            price += _price(faults, lines, shown[b], _LIGHT, _LIGHT_ONE, sums)
+            _limit_doubled(
+                faults,
+                apertures,
+                lines,
+                partners[a],
+                away_x,
+                away_y,
+                tolerance,
+                doubled,
+                (faulty, beside),
+                limit,
+            )
+            price += _price(faults, lines, shown[b], _LIGHT, _LIGHT_ONE, limit, sums)
         ahead += price if side == 0 else -price
     return ahead
+
+
+@compiled
+def _is_thin(partner: Partners, lines: Indices, allowed: float, work: Indices) -> bool:
+    """Whether all spots are in so few lines that all of them may be faulty, of a mask of more."""
+    for axis in range(2):
+        work[:] = 0
+        for a in range(partner.size):
+            if partner[a] >= 0:
+                work[lines[axis, a]] = 1
+        if work.sum() <= allowed < lines[axis].max() + 1:
+            return True
+    return False
 
 
 @compiled
 def _choose(  # noqa: PLR0917 - Numba takes no keyword-only ones
     spots: Floats,
     places: Floats,
-    view: tuple[Partners, Partners, States, Indices, Flags],
+    view: tuple[Partners, Partners, States, Indices, Flags, Floats],
     mask: tuple[Floats, Indices],
     enough: Flags,
     limits: tuple[float, float],
     last: tuple[float, float, float],
-    work: tuple[Indices, Flags, Flags, Floats],
-) -> int:
-    """Return the displacement that every other exceeds by enough, or -1.
+    work: tuple[Indices, Indices, Indices, Flags, Flags, Floats, Floats],
+) -> tuple[int, int]:
+    """Return the displacement that every other exceeds by enough, or -1, and why there is none.
 
-    `view` is what `decide` saw under each, `limits` the tolerance and what is enough; of those
+    `view` is what `decide` saw under each, `limits` the tolerance and the faults allowed; of those
     nearer, the one within a reach of the last frame's is it too: `last` is x, y and reach.
     """
-    tolerance, clear = limits
+    tolerance, allowed = limits
     best = 0
     for h in range(1, places.shape[0]):
-        if _ahead(best, h, spots, places, view, mask, tolerance, work) < 0.0:
+        if _ahead(best, h, spots, places, view, mask, tolerance, _LIGHT, work) < 0.0:
             best = h
+    doubtful = _is_thin(view[0][best], mask[1], allowed, work[1])
     near_last = 0
     answer = -1
     others = 0
     for h in range(places.shape[0]):
         if h != best:
-            if _ahead(best, h, spots, places, view, mask, tolerance, work) >= clear:
+            ahead = _ahead(best, h, spots, places, view, mask, tolerance, _DOUBLED, work)
+            doubtful |= ahead < allowed + _CLEAR
+            ahead = _ahead(best, h, spots, places, view, mask, tolerance, _LIGHT, work)
+            if ahead >= allowed + _CLEAR:
                 continue
             others += 1
         away = math.hypot(places[h, 0] - last[0], places[h, 1] - last[1])
         if enough[h] and away <= last[2]:  # never where nothing is known of the last
             near_last += 1
             answer = h
+    if others == 0 and not enough[best]:
+        return -1, NOTHING
     if others == 0:
-        return best if enough[best] else -1
-    return answer if near_last == 1 else -1
+        return best, DOUBTFUL if doubtful else FOUND
+    return (answer, FOUND) if near_last == 1 else (-1, SEVERAL)
 
 
 @compiled
 def decide(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    frames: NDArray[Any],
-    levels: Floats,
     spots: Floats,
     counts: Indices,
-    cuts: Floats,
     cut_counts: Indices,
     apertures: Floats,
     lines: Indices,
-    margin: float,
     tolerance: float,
-    limits: tuple[float, float, float],
+    limits: tuple[float, float],
+    field: tuple[float, float, float],
     places: Floats,
     partners: Partners,
     kept: Indices,
+    states: States,
+    cut_to: Partners,
+    bright: Flags,
+    enough: Flags,
     displacement: Floats,
     chosen: Indices,
+    reason: Indices,
 ) -> None:
     """Choose each frame's displacement by what it shows of every aperture, in view and cut.
 
     Against a displacement speak places in view that are dark where another one has no aperture,
-    spots that only the other explains or lie nearer to; a whole line of them is one fault, and
-    what is out of view speaks for neither. The answer is what every other exceeds by enough.
+    spots that only the other explains or lie nearer to, and a Sun out of the field; a whole dark
+    line is one fault, and what is out of view speaks for neither. The answer is what every other
+    exceeds by enough, doubtful where one does not if a line seen twice is one fault, too.
 
     Parameters
     ----------
-    levels
-        (N,) above which a pixel of the frames (N, H, W) is lit.
-    spots, counts, cuts, cut_counts
+    spots, counts, cut_counts
         As `spots_kernel.segment` writes them.
     apertures, lines
         (A, 3) x, y, width; (2, A) in which column and row of the mask each is.
-    margin, tolerance
-        Px that a spot reaches beyond its aperture; largest distance of a spot from its place.
+    tolerance
+        Largest distance of a spot from its place, px.
     limits
-        Faults allowed: lines of apertures that may be dark or doubled; least share of the
-        spots that should be whole in the frame; px from the frame before's displacement within
-        which one of several left open is the answer: 0 where frames are no sequence.
+        Faults allowed: lines of apertures that may be dark or doubled; px from the frame before's
+        displacement within which one of several left open is the answer: 0 where frames are no
+        sequence.
+    field
+        x and y of the middle of the field, and how far displacements are from it along an axis.
     places, partners, kept
         As `aperture_grid_kernel.match` writes them.
-    displacement, chosen
-        (N, 2) and (N, A): receive the displacement, NaN where none is found, and the spot of
-        each aperture, -1 for none.
+    states, cut_to, bright, enough
+        As `view_kernel.look` writes them.
+    displacement, chosen, reason
+        (N, 2), (N, A) and (N,): receive the displacement, NaN where none is found, the spot of
+        each aperture, -1 for none, and FOUND, NOTHING, SEVERAL or DOUBTFUL.
     """
-    allowed, share, reach = limits
+    allowed, reach = limits
     room = places.shape[1]
     number = apertures.shape[0]
-    state = np.empty((room, number), dtype=np.int8)
     shown = np.empty((room, 2, number), dtype=np.int64)
-    cut_to = np.empty((room, cuts.shape[1]), dtype=np.int32)
-    enough = np.empty(room, dtype=np.bool_)
-    bright = np.empty(spots.shape[1], dtype=np.bool_)
+    outside = np.empty(room)
     work = (
         np.empty(spots.shape[1], dtype=np.int64),
+        np.empty(number, dtype=np.int64),
+        np.empty(number, dtype=np.int64),
         np.empty(spots.shape[1], dtype=np.bool_),
         np.empty(number, dtype=np.bool_),
+        np.empty((2, number)),
         np.empty(number),
     )
     last = (np.nan, np.nan, reach)
-    for k in range(frames.shape[0]):
+    for k in range(places.shape[0]):
         displacement[k] = np.nan
         chosen[k] = -1
+        reason[k] = NOTHING
         answer = -1
         if kept[k] > 0:
-            seen = spots[k, : counts[k]]
-            cut = cuts[k, : cut_counts[k]]
-            dim = _usual(seen, partners[k, 0], bright[: counts[k]])
             for h in range(kept[k]):
-                x, y = places[k, h]
-                found, whole = _look(
-                    frames[k], levels[k], apertures, margin, x, y, seen, partners[k, h], state[h]
-                )
-                enough[h] = found >= share * whole
-                _shown(state[h], lines, shown[h])
-                _cut_partners(cut, apertures, x, y, margin, dim, cut_to[h, : cut_counts[k]])
-            view = (partners[k], cut_to[:, : cut_counts[k]], state, shown, bright)
-            answer = _choose(
-                seen,
+                shown[h] = 0
+                for a in range(number):
+                    if states[k, h, a] != OUT:  # in view
+                        shown[h, 0, lines[0, a]] += 1
+                        shown[h, 1, lines[1, a]] += 1
+                away = max(abs(places[k, h, 0] - field[0]), abs(places[k, h, 1] - field[1]))
+                outside[h] = _OUTSIDE if away > field[2] else 0.0
+            cut = cut_to[k, :, : cut_counts[k]]
+            view = (partners[k], cut, states[k], shown, bright[k], outside)
+            answer, reason[k] = _choose(
+                spots[k, : counts[k]],
                 places[k, : kept[k]],
                 view,
                 (apertures, lines),
-                enough,
-                (tolerance, allowed + _CLEAR),
+                enough[k],
+                (tolerance, allowed),
                 last,
                 work,
             )

@@ -19,22 +19,28 @@ from algorithms.contract import (
     SensorGeometry,
     UnsuitableDesignError,
 )
-from algorithms.extractors.frames.multi_spot.aperture_pattern import (
+from algorithms.extractors.frames.multi_spot.aperture_design import (
     PATTERN_NEEDS,
+    design_pattern,
+    require_pattern,
+)
+from algorithms.extractors.frames.multi_spot.aperture_pattern import (
     SHARE,
     Apertures,
+    FieldPx,
     Levels,
     Pattern,
-    design_pattern,
     find_pattern,
     followed,
     frame_levels,
     lattice,
     margin_px,
     nearest_distance,
-    require_pattern,
 )
-from algorithms.inputs import as_frames
+from algorithms.extractors.frames.multi_spot.pattern_doubts import without_covariance
+from algorithms.extractors.frames.one_light import frames_to_measure
+from algorithms.inputs import Frames, as_frames
+from algorithms.measurement import Measurement
 
 Shape = Literal["round", "square"]
 
@@ -75,6 +81,10 @@ class ImageCorrelation(Extractor):
         Lines of apertures (columns or rows) that may be dark or doubled at once without a wrong
         answer, not negative: a displacement is an answer where every other one leaves more of
         them unexplained.
+    field_px : tuple of (x, y, reach) or None
+        Where the pattern's middle is for a Sun on the boresight, and how far along an axis it is
+        from there at the edge of the field of view, px, positive: a Sun beyond it counts as a
+        faulty line. None for no such edge.
 
     Raises
     ------
@@ -141,6 +151,7 @@ class ImageCorrelation(Extractor):
     threshold: float = 0.3
     tolerance_px: float = 0.75
     faulty_lines: int = 1
+    field_px: FieldPx | None = None
 
     def __post_init__(self) -> None:
         require_pattern(
@@ -150,6 +161,7 @@ class ImageCorrelation(Extractor):
             self.threshold,
             self.tolerance_px,
             self.faulty_lines,
+            self.field_px,
         )
         if self.shape not in get_args(Shape):
             raise ValueError(
@@ -187,14 +199,24 @@ class ImageCorrelation(Extractor):
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Positions (N, 2) in frames (N, H, W); ValueError on wrong input."""
-        return self._correlated(observations)[0]
+        return self._correlated(as_frames(observations))[0]
+
+    def measure(self, observations: ArrayLike, bad: ArrayLike | None = None) -> Measurement:
+        """Positions and doubts of frames (N, H, W) or of one; no covariance is stated.
+
+        AMBIGUOUS_PATTERN where another identity of the spots explains a frame nearly as well.
+        Bad pixels are replaced by their neighbours.
+        """
+        frames = frames_to_measure(observations, bad, self.about.name)
+        found, *_, pattern = self._correlated(frames)
+        return without_covariance(found, pattern)
 
     def spots(self, observations: ArrayLike) -> Floats:
         """Positions (N, A, 2) of each aperture's spot in frames (N, H, W), px; NaN for none.
 
         Each from its own correlation. ValueError on wrong input.
         """
-        return self._correlated(observations)[1]
+        return self._correlated(as_frames(observations))[1]
 
     def track(self, observations: ArrayLike) -> Floats:
         """Positions (N, 2) in successive frames (N, H, W) of one sequence.
@@ -223,14 +245,14 @@ class ImageCorrelation(Extractor):
             self.blur_px,
             self.tolerance_px,
             self.faulty_lines,
+            self.field_px,
             sequence=sequence,
         )
 
-    def _correlated(self, observations: ArrayLike) -> tuple[Floats, Floats]:
-        frames = as_frames(observations)
+    def _correlated(self, frames: Frames) -> tuple[Floats, Floats, Pattern]:
         levels = frame_levels(frames, self.apertures_px, self.threshold)
-        starts = self._pattern(frames, levels).displacement
-        return self._correlate(frames, levels, starts, sequence=False)
+        pattern = self._pattern(frames, levels)
+        return *self._correlate(frames, levels, pattern.displacement, sequence=False), pattern
 
     def _correlate(
         self, frames: NDArray[Any], levels: Levels, starts: Floats, *, sequence: bool

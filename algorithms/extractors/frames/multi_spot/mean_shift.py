@@ -16,22 +16,28 @@ from algorithms.contract import (
     Observation,
     SensorGeometry,
 )
-from algorithms.extractors.frames.multi_spot.aperture_pattern import (
+from algorithms.extractors.frames.multi_spot.aperture_design import (
     PATTERN_NEEDS,
+    design_pattern,
+    require_pattern,
+)
+from algorithms.extractors.frames.multi_spot.aperture_pattern import (
     SHARE,
     Apertures,
+    FieldPx,
     Levels,
     Pattern,
-    design_pattern,
     find_pattern,
     followed,
     frame_levels,
     lattice,
     margin_px,
     nearest_distance,
-    require_pattern,
 )
-from algorithms.inputs import as_frames, require_positive
+from algorithms.extractors.frames.multi_spot.pattern_doubts import without_covariance
+from algorithms.extractors.frames.one_light import frames_to_measure
+from algorithms.inputs import Frames, as_frames, require_positive
+from algorithms.measurement import Measurement
 
 
 @dataclass(frozen=True)
@@ -70,6 +76,10 @@ class MeanShift(Extractor):
         Lines of apertures (columns or rows) that may be dark or doubled at once without a wrong
         answer, not negative: a displacement is an answer where every other one leaves more of
         them unexplained.
+    field_px : tuple of (x, y, reach) or None
+        Where the pattern's middle is for a Sun on the boresight, and how far along an axis it is
+        from there at the edge of the field of view, px, positive: a Sun beyond it counts as a
+        faulty line. None for no such edge.
 
     Raises
     ------
@@ -140,6 +150,7 @@ class MeanShift(Extractor):
     similarity: float = 0.5
     tolerance_px: float = 0.75
     faulty_lines: int = 1
+    field_px: FieldPx | None = None
 
     def __post_init__(self) -> None:
         require_pattern(
@@ -149,6 +160,7 @@ class MeanShift(Extractor):
             self.threshold,
             self.tolerance_px,
             self.faulty_lines,
+            self.field_px,
         )
         require_positive(
             self.about.name, bandwidth_px=self.bandwidth_px, convergence_px=self.convergence_px
@@ -175,21 +187,31 @@ class MeanShift(Extractor):
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Averaged positions (N, 2) in frames (N, H, W); ValueError on wrong input."""
-        return self._shifted(observations)[0]
+        return self._shifted(as_frames(observations))[0]
+
+    def measure(self, observations: ArrayLike, bad: ArrayLike | None = None) -> Measurement:
+        """Positions and doubts of frames (N, H, W) or of one; no covariance is stated.
+
+        AMBIGUOUS_PATTERN where another identity of the spots explains a frame nearly as well.
+        Bad pixels are replaced by their neighbours.
+        """
+        frames = frames_to_measure(observations, bad, self.about.name)
+        found, *_, pattern = self._shifted(frames)
+        return without_covariance(found, pattern)
 
     def spots(self, observations: ArrayLike) -> Floats:
         """Positions (N, A, 2) of each aperture's spot in frames (N, H, W), px; NaN for none.
 
         ValueError on wrong input.
         """
-        return self._shifted(observations)[1]
+        return self._shifted(as_frames(observations))[1]
 
     def weights(self, observations: ArrayLike) -> Floats:
         """Similarity (N, A) of each aperture's spot to the goal, over that of the goal's own.
 
         Zero where no spot is found. ValueError on wrong input.
         """
-        return self._shifted(observations)[2]
+        return self._shifted(as_frames(observations))[2]
 
     def track(self, observations: ArrayLike) -> Floats:
         """Averaged positions (N, 2) in successive frames (N, H, W) of one sequence.
@@ -205,7 +227,7 @@ class MeanShift(Extractor):
 
         def follow(start: int, end: int, first: Pattern) -> Floats:
             part = levels.part(start, end)
-            return self._shift(frames[start:end], part, *first, sequence=True)[0]
+            return self._shift(frames[start:end], part, first, sequence=True)[0]
 
         pattern = self._pattern(frames, levels, sequence=True)
         return followed(follow, pattern, lattice(self.apertures_px).nearest_px)
@@ -218,21 +240,20 @@ class MeanShift(Extractor):
             self.blur_px,
             self.tolerance_px,
             self.faulty_lines,
+            self.field_px,
             sequence=sequence,
         )
 
-    def _shifted(self, observations: ArrayLike) -> tuple[Floats, Floats, Floats]:
-        frames = as_frames(observations)
+    def _shifted(self, frames: Frames) -> tuple[Floats, Floats, Floats, Pattern]:
         levels = frame_levels(frames, self.apertures_px, self.threshold)
         pattern = self._pattern(frames, levels)
-        return self._shift(frames, levels, *pattern, sequence=False)
+        return *self._shift(frames, levels, pattern, sequence=False), pattern
 
     def _shift(
         self,
         frames: NDArray[Any],
         levels: Levels,
-        starts: Floats,
-        seen: Floats,
+        pattern: Pattern,
         *,
         sequence: bool,
     ) -> tuple[Floats, Floats, Floats]:
@@ -248,8 +269,8 @@ class MeanShift(Extractor):
             frames,
             levels.threshold,
             steps,
-            seen,
-            starts,
+            pattern.spots,
+            pattern.displacement,
             known,
             margin_px(self.blur_px),
             ((float(known[:, 2].max()) + self.blur_px) / 2.0 + 1.0, self.bandwidth_px),

@@ -16,16 +16,23 @@ from algorithms.contract import (
     Observation,
     SensorGeometry,
 )
-from algorithms.extractors.frames.multi_spot.aperture_pattern import (
+from algorithms.extractors.frames.multi_spot.aperture_design import (
     PATTERN_NEEDS,
-    Apertures,
     design_pattern,
+    require_pattern,
+)
+from algorithms.extractors.frames.multi_spot.aperture_pattern import (
+    Apertures,
+    FieldPx,
+    Pattern,
     find_pattern,
     frame_levels,
     lattice,
-    require_pattern,
 )
-from algorithms.inputs import as_frames
+from algorithms.extractors.frames.multi_spot.pattern_doubts import without_covariance
+from algorithms.extractors.frames.one_light import frames_to_measure
+from algorithms.inputs import Frames, as_frames
+from algorithms.measurement import Measurement
 
 
 @dataclass(frozen=True)
@@ -52,6 +59,10 @@ class MultipleCentroids(Extractor):
         Lines of apertures (columns or rows) that may be dark or doubled at once without a wrong
         answer, not negative: a displacement is an answer where every other one leaves more of
         them unexplained.
+    field_px : tuple of (x, y, reach) or None
+        Where the pattern's middle is for a Sun on the boresight, and how far along an axis it is
+        from there at the edge of the field of view, px, positive: a Sun beyond it counts as a
+        faulty line. None for no such edge.
 
     Raises
     ------
@@ -75,10 +86,11 @@ class MultipleCentroids(Extractor):
     Failure: a NaN row for a frame that is dark, without contrast, holds a NaN or infinity, or
     whose spots rise less than five times its noise; where fewer than 0.3 of the apertures that
     should be seen are; and where two displacements explain the frame alike (two suns, part of a
-    code that several sub-fields share, a grid that has not all its ends in view), or one of them
-    with no more than `faulty_lines` faults. A line doubled by spots as bright as its own, at the
-    pitch, misleads by a pitch where the other end is out of view and `faulty_lines` is 1. Spots
-    that all fall alike on the pixels share the threshold's bias, and averaging gains nothing.
+    code that several sub-fields share), or one of them with no more than `faulty_lines` faults.
+    A grid of which an edge is doubled in full light, the other one out of view, makes the very
+    frame of a grid moved by a pitch: it is answered so, and `measure` says AMBIGUOUS_PATTERN
+    wherever that may be; with one more of `faulty_lines` there is no answer. Spots that all fall
+    alike on the pixels share the threshold's bias, and averaging gains nothing.
 
     Cost: 2 operations a pixel, 8 in rows with spots, and 20 a pair of spot and aperture.
 
@@ -114,6 +126,7 @@ class MultipleCentroids(Extractor):
     threshold: float = 0.3
     tolerance_px: float = 0.75
     faulty_lines: int = 1
+    field_px: FieldPx | None = None
 
     def __post_init__(self) -> None:
         require_pattern(
@@ -123,6 +136,7 @@ class MultipleCentroids(Extractor):
             self.threshold,
             self.tolerance_px,
             self.faulty_lines,
+            self.field_px,
         )
 
     @classmethod
@@ -135,8 +149,17 @@ class MultipleCentroids(Extractor):
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Averaged positions (N, 2) in frames (N, H, W); ValueError on wrong input."""
-        spots = self.spots(observations)
-        return mean_displacement(spots, lattice(self.apertures_px).apertures)
+        return self._answers(as_frames(observations))[0]
+
+    def measure(self, observations: ArrayLike, bad: ArrayLike | None = None) -> Measurement:
+        """Positions and doubts of frames (N, H, W) or of one; no covariance is stated.
+
+        AMBIGUOUS_PATTERN where another identity of the spots explains a frame nearly as well.
+        Bad pixels are replaced by their neighbours.
+        """
+        frames = frames_to_measure(observations, bad, self.about.name)
+        found, *_, pattern = self._answers(frames)
+        return without_covariance(found, pattern)
 
     def spots(self, observations: ArrayLike) -> Floats:
         """Centroids (N, A, 2) of each aperture's spot in frames (N, H, W), px.
@@ -144,16 +167,22 @@ class MultipleCentroids(Extractor):
         NaN where a spot is missing, cut or not where it should be, and for the whole of a frame
         in which the pattern is not found. ValueError on wrong input.
         """
-        frames = as_frames(observations)
-        levels = frame_levels(frames, self.apertures_px, self.threshold)
+        return self._pattern(as_frames(observations)).spots
+
+    def _answers(self, frames: Frames) -> tuple[Floats, Pattern]:
+        pattern = self._pattern(frames)
+        return mean_displacement(pattern.spots, lattice(self.apertures_px).apertures), pattern
+
+    def _pattern(self, frames: Frames) -> Pattern:
         return find_pattern(
             frames,
-            levels,
+            frame_levels(frames, self.apertures_px, self.threshold),
             self.apertures_px,
             self.blur_px,
             self.tolerance_px,
             self.faulty_lines,
-        ).spots
+            self.field_px,
+        )
 
 
 def mean_displacement(spots: Floats, apertures: Floats) -> Floats:

@@ -17,18 +17,29 @@ from algorithms.contract import (
     Observation,
     SensorGeometry,
 )
-from algorithms.extractors.frames.multi_spot.aperture_pattern import (
+from algorithms.extractors.frames.multi_spot.aperture_design import (
     PATTERN_NEEDS,
-    Apertures,
-    Levels,
     design_pattern,
+    require_pattern,
+)
+from algorithms.extractors.frames.multi_spot.aperture_pattern import (
+    Apertures,
+    FieldPx,
+    Levels,
+    Pattern,
     find_pattern,
     frame_levels,
     lattice,
-    require_pattern,
 )
-from algorithms.extractors.frames.one_light import agreed, longest_px_of, require_light
+from algorithms.extractors.frames.multi_spot.pattern_doubts import without_covariance
+from algorithms.extractors.frames.one_light import (
+    agreed,
+    frames_to_measure,
+    longest_px_of,
+    require_light,
+)
 from algorithms.inputs import Frames, as_frames
+from algorithms.measurement import Measurement
 
 #: What diffraction and the rims of holes may add to a spot's width, px.
 _RIM_PX = 2.0
@@ -60,9 +71,13 @@ class WeightedSpots(Extractor):
         Lines of apertures (columns or rows) that may be dark or doubled at once without a wrong
         answer, not negative: a displacement is an answer where every other one leaves more of
         them unexplained.
+    field_px : tuple of (x, y, reach) or None
+        Where the pattern's middle is for a Sun on the boresight, and how far along an axis it is
+        from there at the edge of the field of view, px, positive: a Sun beyond it counts as a
+        faulty line. None for no such edge.
     longest_px : float or None
         With one aperture, the longest half axis that the outline of its spot has, px, positive;
-        None where no design tells. See `algorithms.extractors.frames.mirror`.
+        None where no design tells. See `algorithms.extractors.frames.mirror.extractor`.
 
     Raises
     ------
@@ -126,6 +141,7 @@ class WeightedSpots(Extractor):
     threshold: float = 0.3
     tolerance_px: float = 0.75
     faulty_lines: int = 1
+    field_px: FieldPx | None = None
     longest_px: float | None = None
 
     def __post_init__(self) -> None:
@@ -136,6 +152,7 @@ class WeightedSpots(Extractor):
             self.threshold,
             self.tolerance_px,
             self.faulty_lines,
+            self.field_px,
         )
         require_light(self.about.name, "spot", self.longest_px)
 
@@ -152,6 +169,16 @@ class WeightedSpots(Extractor):
         """Weighted positions (N, 2) in frames (N, H, W); ValueError on wrong input."""
         return self._combined(as_frames(observations))[0]
 
+    def measure(self, observations: ArrayLike, bad: ArrayLike | None = None) -> Measurement:
+        """Positions and doubts of frames (N, H, W) or of one; no covariance is stated.
+
+        AMBIGUOUS_PATTERN where another identity of the spots explains a frame nearly as well.
+        Bad pixels are replaced by their neighbours.
+        """
+        frames = frames_to_measure(observations, bad, self.about.name)
+        found, *_, pattern = self._combined(frames)
+        return without_covariance(found, pattern)
+
     def spots(self, observations: ArrayLike) -> Floats:
         """Centres (N, A, 2) of each aperture's spot in frames (N, H, W), px.
 
@@ -160,7 +187,7 @@ class WeightedSpots(Extractor):
         """
         return self._combined(as_frames(observations))[1]
 
-    def _combined(self, frames: Frames) -> tuple[Floats, Floats]:
+    def _combined(self, frames: Frames) -> tuple[Floats, Floats, Pattern]:
         from algorithms.extractors.frames.multi_spot import combination_kernel  # noqa: PLC0415 - Numba, at first use
 
         levels = frame_levels(frames, self.apertures_px, self.threshold)
@@ -171,6 +198,7 @@ class WeightedSpots(Extractor):
             self.blur_px,
             self.tolerance_px,
             self.faulty_lines,
+            self.field_px,
         )
         centres, variances, misfits = self._centres(frames, levels, pattern.spots)
         known = lattice(self.apertures_px).apertures
@@ -182,7 +210,7 @@ class WeightedSpots(Extractor):
             place = known[0, :2]
             found = agreed(frames, found + place, longest_px=self.longest_px) - place
             centres[np.isnan(found[:, 0])] = np.nan
-        return found, centres
+        return found, centres, pattern
 
     def _centres(
         self, frames: NDArray[Any], levels: Levels, starts: Floats

@@ -1,0 +1,182 @@
+"""What a frame shows of a mask's apertures under each displacement: spots, darkness, cut spots."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.compiled import compiled
+from algorithms.contract import Floats
+
+Indices = NDArray[np.int64]
+Partners = NDArray[np.int32]
+States = NDArray[np.int8]
+Flags = NDArray[np.bool_]
+
+#: What a frame shows of an aperture: less than half of its place, neither its spot nor darkness,
+#: its spot, darkness or a spot of another place. `evidence_kernel` reads them.
+OUT, UNSURE, SPOT, DARK = 0, 1, 2, 3
+#: Share of lit pixels at an aperture's place below which it is dark: a hot one is no spot.
+_LIT = 0.25
+#: A spot with less than this share of the usual light may be a reflection.
+_DIM = 0.8
+
+
+@compiled
+def _is_dark(frame: NDArray[Any], level: float, x: float, y: float, radius: float) -> bool:
+    """Whether few of the pixels within `radius` of (x, y) are above the level."""
+    height, width = frame.shape
+    lit = 0
+    pixels = 0
+    for i in range(max(math.ceil(y - radius), 0), min(math.floor(y + radius), height - 1) + 1):
+        side = math.sqrt(max(radius * radius - (i - y) * (i - y), 0.0))
+        for j in range(max(math.ceil(x - side), 0), min(math.floor(x + side), width - 1) + 1):
+            pixels += 1
+            lit += frame[i, j] > level
+    return lit < _LIT * pixels
+
+
+@compiled
+def _is_near(spots: Floats, x: float, y: float, radius: float) -> bool:
+    """Whether the middle of a whole spot is within `radius` of (x, y)."""
+    for s in range(spots.shape[0]):
+        dx = spots[s, 0] - x
+        dy = spots[s, 1] - y
+        if dx * dx + dy * dy < radius * radius:
+            return True
+    return False
+
+
+@compiled
+def _look(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    frame: NDArray[Any],
+    level: float,
+    apertures: Floats,
+    margin: float,
+    x: float,
+    y: float,
+    spots: Floats,
+    partner: Partners,
+    state: States,
+) -> tuple[int, int]:
+    """Write what the frame shows of each aperture; return how many spots, and whole places."""
+    height, width = frame.shape
+    found = 0
+    whole = 0
+    for a in range(apertures.shape[0]):
+        px = apertures[a, 0] + x
+        py = apertures[a, 1] + y
+        half = 0.5 * apertures[a, 2]
+        edge = half + margin
+        whole += edge <= px < width - 1 - edge and edge <= py < height - 1 - edge
+        if partner[a] >= 0:
+            state[a] = SPOT
+            found += 1
+        elif not (1.0 <= px <= width - 2.0 and 1.0 <= py <= height - 2.0):
+            state[a] = OUT
+        elif _is_dark(frame, level, px, py, max(half - 1.0, 1.0)) or _is_near(spots, px, py, half):
+            state[a] = DARK
+        else:
+            state[a] = UNSURE
+    return found, whole
+
+
+@compiled
+def _cut_partners(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    cuts: Floats, apertures: Floats, x: float, y: float, margin: float, dim: float, out: Partners
+) -> None:
+    """Write the aperture that each spot cut by the edge lies on, -1 for none or a dim one."""
+    for c in range(out.size):
+        out[c] = -1
+        if cuts[c, 2] < dim:
+            continue
+        for a in range(apertures.shape[0]):
+            reach = 0.5 * apertures[a, 2] + margin
+            dx = cuts[c, 0] - apertures[a, 0] - x
+            dy = cuts[c, 1] - apertures[a, 1] - y
+            if dx * dx + dy * dy < reach * reach:
+                out[c] = a
+                break
+
+
+@compiled
+def _usual(spots: Floats, partner: Partners, bright: Flags) -> float:
+    """Mark the spots (S,) that are not much dimmer than those of the pattern; return the limit.
+
+    Compared is the light of a lit pixel, which does not depend on an aperture's size, and that of
+    the spot, which does not depend on where a small one falls on its pixels: dim ones lack both.
+    """
+    lights = np.empty((2, partner.size))
+    number = 0
+    for a in range(partner.size):
+        if partner[a] >= 0:
+            lights[0, number] = spots[partner[a], 3] / spots[partner[a], 2]
+            lights[1, number] = spots[partner[a], 3]
+            number += 1
+    least = _DIM * np.median(lights[0, :number])
+    whole = _DIM * np.median(lights[1, :number])
+    for s in range(bright.size):
+        bright[s] = spots[s, 3] >= least * spots[s, 2] or spots[s, 3] >= whole
+    return float(least)
+
+
+@compiled
+def look(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    frames: NDArray[Any],
+    levels: Floats,
+    spots: Floats,
+    counts: Indices,
+    cuts: Floats,
+    cut_counts: Indices,
+    apertures: Floats,
+    margin: float,
+    share: float,
+    places: Floats,
+    partners: Partners,
+    kept: Indices,
+    states: States,
+    cut_to: Partners,
+    bright: Flags,
+    enough: Flags,
+) -> None:
+    """Write what each frame shows under the displacements that match most of its spots.
+
+    Parameters
+    ----------
+    levels
+        (N,) above which a pixel of the frames (N, H, W) is lit.
+    spots, counts, cuts, cut_counts
+        As `spots_kernel.segment` writes them.
+    apertures
+        (A, 3) x, y, width.
+    margin
+        Px that a spot reaches beyond its aperture.
+    share
+        Least share of the spots that should be whole in the frame.
+    places, partners, kept
+        As `aperture_grid_kernel.match` writes them.
+    states
+        (N, K, A): receive OUT, UNSURE, SPOT or DARK of each aperture.
+    cut_to
+        (N, K, C): receive the aperture on which each bright spot that the edge cuts lies, or -1.
+    bright
+        (N, S): receive which spots are not much dimmer than those of the first displacement.
+    enough
+        (N, K): receive whether that share of the spots is found.
+    """
+    for k in range(frames.shape[0]):
+        if kept[k] == 0:
+            continue
+        seen = spots[k, : counts[k]]
+        cut = cuts[k, : cut_counts[k]]
+        dim = _usual(seen, partners[k, 0], bright[k, : counts[k]])
+        for h in range(kept[k]):
+            x, y = places[k, h]
+            found, whole = _look(
+                frames[k], levels[k], apertures, margin, x, y, seen, partners[k, h], states[k, h]
+            )
+            enough[k, h] = found >= share * whole
+            _cut_partners(cut, apertures, x, y, margin, dim, cut_to[k, h, : cut_counts[k]])
