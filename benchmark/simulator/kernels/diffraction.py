@@ -19,6 +19,9 @@ Sizes = tuple[Floats, Floats, Floats]
 Integers = NDArray[np.int64]
 Singles = NDArray[np.float32]
 
+#: Points that are looked up together.
+_W = 16
+
 
 @compiled
 def _shares(fraction: float) -> Four:
@@ -58,53 +61,64 @@ def _blended(out: Floats, tables: Floats, place: float, slope: float) -> None:
 
 
 @compiled
-def _across(table: Floats, row: int, before: int, column: int, shares: Four) -> float:
-    """Interpolate a row of a table between four columns, of which the first is `before`."""
-    near = shares[0] * table[row, before] + shares[1] * table[row, column]
-    return float(near + (shares[2] * table[row, column + 1] + shares[3] * table[row, column + 2]))
+def _look(work: Floats, y: float, weight: float, way: Floats, last: int) -> None:
+    """Find where tables hold the light at points of a line, and with which weights.
+
+    `work` (13 W,) has first the points' x from the aperture; it is given the places' rows and
+    columns, weights of four rows and of four columns (`_shares`), a factor of the light and by how
+    much it falls beyond the table, with the cube of the distance, as Airy's envelope does. `last`
+    column of the table. Nothing is decided point by point: the compiler takes several at a time.
+    """
+    e, f, chief, row_step, column_step = way[0], way[1], way[2], way[3], way[4]
+    c0, c1, c2, c3, c4 = way[5], way[6], way[7], way[8], way[9]
+    limit = last - 2.0
+    for k in range(_W):
+        x = work[k]
+        along = e * x + f * y - chief
+        across = e * y - f * x
+        row = (along + c0 + c1 * along * along + c2 * across * across) * row_step
+        column = abs(across * max(1.0 + c3 * along, 0.0) * column_step)
+        outside = max(np.true_divide(max(abs(row), column), limit), 1.0)
+        row, column = np.true_divide(row, outside), np.true_divide(column, outside)
+        first, second = np.floor(row), np.floor(column)
+        t, u = row - first, column - second
+        work[_W + k] = first
+        work[2 * _W + k] = second
+        work[3 * _W + k] = -t * (t - 1.0) * (t - 2.0) / 6.0
+        work[4 * _W + k] = (t + 1.0) * (t - 1.0) * (t - 2.0) / 2.0
+        work[5 * _W + k] = -(t + 1.0) * t * (t - 2.0) / 2.0
+        work[6 * _W + k] = (t + 1.0) * t * (t - 1.0) / 6.0
+        work[7 * _W + k] = -u * (u - 1.0) * (u - 2.0) / 6.0
+        work[8 * _W + k] = (u + 1.0) * (u - 1.0) * (u - 2.0) / 2.0
+        work[9 * _W + k] = -(u + 1.0) * u * (u - 2.0) / 2.0
+        work[10 * _W + k] = (u + 1.0) * u * (u - 1.0) / 6.0
+        work[11 * _W + k] = max(1.0 + c4 * along, 0.0) * weight
+        work[12 * _W + k] = np.true_divide(1.0, outside * outside * outside)
 
 
 @compiled
-def _looked_up(table: Floats, along: float, across: float) -> float:
-    """Value of a half-plane table at steps (along, across) from its middle.
-
-    Beyond its edge light falls with the cube of the distance, as Airy's envelope does.
-    """
-    reach = table.shape[1] - 1
-    across = abs(across)
-    fade, far = 1.0, max(abs(along), across)
-    if far > reach - 2.0:
-        outside = far / (reach - 2.0)
-        fade = 1.0 / (outside * outside * outside)
-        along, across = along / outside, across / outside
-    row, column = math.floor(along), math.floor(across)
-    t0, t1, t2, t3 = _shares(along - row)
-    over = _shares(across - column)
-    row += reach
-    before = abs(column - 1)
-    first = _across(table, row - 1, before, column, over)
-    second = _across(table, row, before, column, over)
-    third = _across(table, row + 1, before, column, over)
-    fourth = _across(table, row + 2, before, column, over)
-    return float(fade * (t0 * first + t1 * second + t2 * third + t3 * fourth))
-
-
-@compiled
-def _seen(x: float, y: float, way: Floats) -> Rays:
-    """Place in the tables, in steps, of a point seen from an aperture, and a factor of its light.
-
-    `way` is of `_way`.
-    """
-    along = way[0] * x + way[1] * y - way[2]
-    across = way[0] * y - way[1] * x
-    row = (along + way[5] + way[6] * along * along + way[7] * across * across) * way[3]
-    column = across * max(1.0 + way[8] * along, 0.0) * way[4]
-    return row, column, max(1.0 + way[9] * along, 0.0)
+def _add_looked_up(total: Floats, table: Floats, work: Floats) -> None:
+    """Add to (W or fewer,) what a half-plane table holds at the places of `_look`."""
+    middle = table.shape[1] - 1
+    one, two = np.uintp(1), np.uintp(2)
+    for k in range(total.shape[0]):
+        # without a sign: an index that cannot be below 0
+        column = int(work[2 * _W + k])
+        i, j = np.uintp(int(work[_W + k]) + middle - 1), np.uintp(column)
+        before = np.uintp(abs(column - 1))
+        a, b, c, d = work[7 * _W + k], work[8 * _W + k], work[9 * _W + k], work[10 * _W + k]
+        light = 0.0
+        for row in range(4):
+            line = a * table[i, before] + b * table[i, j]
+            line += c * table[i, j + one] + d * table[i, j + two]
+            light += work[(3 + row) * _W + k] * line
+            i += one
+        total[k] += work[11 * _W + k] * (work[12 * _W + k] * light)
 
 
 @compiled
 def _way(sun: Floats, numbers: Floats, layers: Floats) -> Floats:
-    """Return what `_seen` needs of one sample.
+    """Return what `_look` needs of one sample.
 
     Azimuth (2), where the chief ray lands, steps a mm (2), ``c_0`` to ``c_4`` of
     `RoundPattern.seen`.
@@ -154,6 +168,7 @@ def add_round(
     count, rows, columns = flux.shape
     pitch = nodes[0, 0] + nodes[-1, 0]
     table = np.empty(tables.shape[1:])
+    work, total = np.zeros(13 * _W), np.empty((1, _W))
     for n in range(count):
         if numbers[n, 0] == 0.0:
             continue
@@ -161,16 +176,35 @@ def add_round(
         _blended(table, tables, numbers[n, 1], numbers[n, 9] / way[3])
         for m in range(places.shape[1]):
             for row in range(rows):
-                for column in range(columns):
-                    total = 0.0
-                    for i in range(nodes.shape[0]):
-                        y = row * pitch + nodes[i, 0] - places[n, m, 1]
-                        for j in range(nodes.shape[0]):
-                            x = column * pitch + nodes[j, 0] - places[n, m, 0]
-                            along, across, factor = _seen(x, y, way)
-                            factor *= nodes[i, 1] * nodes[j, 1]
-                            total += factor * _looked_up(table, along, across)
-                    flux[n, row, column] += numbers[n, 0] * max(total, 0.0)
+                y = row * pitch - places[n, m, 1]
+                for start in range(0, columns, _W):
+                    line = start * pitch - places[n, m, 0], y, pitch
+                    _pixels(total, (table, table, table), line, (nodes, way), work)
+                    for k in range(min(_W, columns - start)):
+                        flux[n, row, start + k] += numbers[n, 0] * max(total[0, k], 0.0)
+
+
+@compiled
+def _pixels(
+    total: Floats, tables: Sizes, line: Rays, seen: tuple[Floats, Floats], work: Floats
+) -> None:
+    """Write means (S, W or fewer) of the first S tables over pixels of a row.
+
+    `line` is the first pixel's first corner, x and y from the hole, and the pixels' distance.
+    """
+    left, top, step = line
+    nodes, way = seen
+    total[:] = 0.0
+    for i in range(nodes.shape[0]):
+        for j in range(nodes.shape[0]):
+            for k in range(_W):
+                work[k] = k * step + nodes[j, 0] + left
+            weight = nodes[i, 1] * nodes[j, 1]
+            _look(work, top + nodes[i, 0], weight, way, tables[0].shape[1] - 1)
+            _add_looked_up(total[0], tables[0], work)
+            if total.shape[0] > 1:
+                _add_looked_up(total[1], tables[1], work)
+                _add_looked_up(total[2], tables[2], work)
 
 
 @compiled
@@ -225,7 +259,7 @@ def add_spots(
     way = _way(sun, numbers, layers)
     one, two, three = _blended_sizes(tables, numbers[1], numbers[9] / way[3])
     shape = tables[0].shape[1:]
-    table = np.empty(shape)
+    table, work, total = np.empty(shape), np.zeros(13 * _W), np.empty((1, _W))
     for m in range(boxes.shape[0]):
         left, right, top, bottom = boxes[m]
         a, b, c = holes[m, 3], holes[m, 4], holes[m, 5]
@@ -236,16 +270,12 @@ def add_spots(
             ends = _lit_columns((row + 0.5) * pitch - holes[m, 1], holes[m, 0], way, reach)
             first = max(left, math.floor(ends[0] / pitch))
             last = min(right, math.ceil(ends[1] / pitch))
-            for column in range(first, last):
-                total = 0.0
-                for i in range(nodes.shape[0]):
-                    y = row * pitch + nodes[i, 0] - holes[m, 1]
-                    for j in range(nodes.shape[0]):
-                        x = column * pitch + nodes[j, 0] - holes[m, 0]
-                        along, across, factor = _seen(x, y, way)
-                        factor *= nodes[i, 1] * nodes[j, 1]
-                        total += factor * _looked_up(table, along, across)
-                frame[row, column] += numbers[0] * holes[m, 2] * max(total, 0.0)
+            for start in range(first, last, _W):
+                line = start * pitch - holes[m, 0], row * pitch - holes[m, 1], pitch
+                count = min(_W, last - start)
+                _pixels(total[:, :count], (table, table, table), line, (nodes, way), work)
+                for k in range(count):
+                    frame[row, start + k] += numbers[0] * holes[m, 2] * max(total[0, k], 0.0)
 
 
 @compiled
@@ -273,29 +303,6 @@ def _six_shares(fraction: float, out: Floats) -> None:
 
 
 @compiled
-def _looked_up_sizes(tables: Sizes, along: float, across: float) -> Rays:
-    """`_looked_up` of three tables at one place, found once."""
-    small, drawn, large = tables
-    reach = small.shape[1] - 1
-    across = abs(across)
-    fade, far = 1.0, max(abs(along), across)
-    if far > reach - 2.0:
-        outside = far / (reach - 2.0)
-        fade = 1.0 / (outside * outside * outside)
-        along, across = along / outside, across / outside
-    first, column = math.floor(along), math.floor(across)
-    down, over = _shares(along - first), _shares(across - column)
-    before = abs(column - 1)
-    one, two, three = 0.0, 0.0, 0.0
-    for k in range(4):
-        row, share = first + reach + k - 1, fade * down[k]
-        one += share * _across(small, row, before, column, over)
-        two += share * _across(drawn, row, before, column, over)
-        three += share * _across(large, row, before, column, over)
-    return one, two, three
-
-
-@compiled
 def _lattice(tables: Sizes, way: Floats, reach: Floats, nodes: Floats, corner: Rays) -> Singles:
     """(3, Y, X) means of each table over a pixel about each point of a lattice around a spot.
 
@@ -305,29 +312,24 @@ def _lattice(tables: Sizes, way: Floats, reach: Floats, nodes: Floats, corner: R
     left, top, spacing = corner
     ex, ey, chief = way[0], way[1], way[2]
     half = 0.5 * (nodes[0, 0] + nodes[-1, 0])
-    # a pixel at the ellipse's end may lie outside by its own size, and is interpolated
+    # a pixel at the ellipse's end may lie outside by its own size
     far = 2.0 * half + 4.0 * spacing
     width = math.ceil(2.0 * (chief * ex - left) / spacing) + 2
     height = math.ceil(2.0 * (chief * ey - top) / spacing) + 2
     out = np.zeros((3, height, width), dtype=np.float32)
+    work, total = np.zeros(13 * _W), np.empty((3, _W))
     for row in range(height):
-        for column in range(width):
-            y, x = top + row * spacing, left + column * spacing
-            past, beside = ex * x + ey * y - chief, ex * y - ey * x
-            if (past / (reach[0] + far)) ** 2 + (beside / (reach[1] + far)) ** 2 > 1.0:
-                continue
-            one, two, three = 0.0, 0.0, 0.0
-            for i in range(nodes.shape[0]):
-                for j in range(nodes.shape[0]):
-                    along, across, factor = _seen(
-                        x + nodes[j, 0] - half, y + nodes[i, 0] - half, way
-                    )
-                    factor *= nodes[i, 1] * nodes[j, 1]
-                    light = _looked_up_sizes(tables, along, across)
-                    one += factor * light[0]
-                    two += factor * light[1]
-                    three += factor * light[2]
-            out[0, row, column], out[1, row, column], out[2, row, column] = one, two, three
+        y = top + row * spacing
+        for start in range(0, width, _W):
+            count, lit = min(_W, width - start), False
+            for k in range(count):
+                x = left + (start + k) * spacing
+                past, beside = ex * x + ey * y - chief, ex * y - ey * x
+                lit |= (past / (reach[0] + far)) ** 2 + (beside / (reach[1] + far)) ** 2 <= 1.0
+            if lit:
+                line = left + start * spacing - half, y - half, spacing
+                _pixels(total, tables, line, (nodes, way), work)
+                out[:, row, start : start + count] = total[:, :count]
     return out
 
 

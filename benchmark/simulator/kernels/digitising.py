@@ -19,6 +19,8 @@ from numpy.typing import NDArray
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
 
+Words = NDArray[np.uint32]
+
 _STEPS = 1 << 14
 _TAIL = 2.0**-10
 
@@ -40,25 +42,33 @@ def quantiles() -> Floats:
 
 
 @compiled
-def _normal(word: int, table: Floats) -> float:
-    """Turn 32 random bits into a normal value."""
-    step = word >> 18
-    if 16 <= step < 16368:
-        rest = ((word & 262143) + 0.5) / 262144.0
-        return float(table[0, step] + rest * (table[0, step + 1] - table[0, step]))
-    upper = step >= 16368
-    if upper:
-        word = 4294967295 - word
-    step, rest = word >> 8, ((word & 255) + 0.5) / 256.0
-    value = table[1, step] + rest * (table[1, step + 1] - table[1, step])
-    return float(-value if upper else value)
+def normals(out: Floats, words: Words, table: Floats) -> None:
+    """Turn (n,) words of 32 random bits into (n,) normal values; `table` is `quantiles`."""
+    middle, tail = table[0], table[1]
+    for n in range(out.shape[0]):
+        word = words[n]
+        # without a sign: an index that cannot be below 0
+        step = word >> np.uint32(18)
+        if np.uint32(16) <= step < np.uint32(16368):
+            low = middle[step]
+            rest = (float(word & np.uint32(262143)) + 0.5) / 262144.0
+            out[n] = low + rest * (middle[step + np.uint32(1)] - low)
+            continue
+        upper = step >= np.uint32(16368)
+        if upper:
+            word = np.uint32(4294967295) - word
+        step = word >> np.uint32(8)
+        low = tail[step]
+        rest = (float(word & np.uint32(255)) + 0.5) / 256.0
+        value = low + rest * (tail[step + np.uint32(1)] - low)
+        out[n] = -value if upper else value
 
 
 @compiled
 def digitise(
     out: NDArray[np.uint16],
     light: Floats,
-    bits: NDArray[np.int64],
+    words: Words,
     tables: tuple[Floats, Floats, Floats, Floats],
     numbers: tuple[float, float, float, float, float, float, float, float],
 ) -> None:
@@ -68,8 +78,8 @@ def digitise(
     ----------
     out, light
         (H, W): digital numbers, overwritten, and irradiance in units of mean sunlight.
-    bits
-        (ceil(H W / 2),) random words of 64 bits, two pixels each, low half first.
+    words
+        (H W or more,) of 32 random bits.
     tables
         `quantiles`, and (H, W) relative gain and dark electrons; (W,) electrons that the columns'
         amplifiers add, or (0,) where these have no errors at all.
@@ -80,29 +90,29 @@ def digitise(
     """
     stray, sunlit, read2, full_well, per_dn, offset, top, bend = numbers
     table, gain, dark, columns = tables
-    amplified = columns.shape[0] > 0
+    if per_dn == 0.0:
+        # said once, so that no pixel has to be looked at for it
+        raise ZeroDivisionError("electrons a digital number must not be 0")
     height, width = out.shape
     noise = np.empty(width)
     for row in range(height):
         # in two loops: the look-up cannot be vectorised, the arithmetic can
-        for column in range(width):
-            pixel = row * width + column
-            word = int((bits[pixel >> 1] >> (32 * (pixel & 1))) & 0xFFFFFFFF)
-            noise[column] = _normal(word, table)
-        if amplified:
+        normals(noise, words[row * width : (row + 1) * width], table)
+        numbers_out, seen, gains, darks = out[row], light[row], gain[row], dark[row]
+        if columns.shape[0] > 0:
             for column in range(width):
-                mean = (light[row, column] + stray) * sunlit * gain[row, column] + dark[row, column]
+                mean = (seen[column] + stray) * sunlit * gains[column] + darks[column]
                 value = mean + math.sqrt(max(mean, 0.0) + read2) * noise[column]
                 value = min(value, full_well)
                 value = value * (1.0 - bend * value) + columns[column]
                 value = np.rint(offset + value / per_dn)
-                out[row, column] = np.uint16(min(max(value, 0.0), top))
+                numbers_out[column] = np.uint16(np.int32(min(max(value, 0.0), top)))
             continue
         for column in range(width):
-            mean = (light[row, column] + stray) * sunlit * gain[row, column] + dark[row, column]
+            mean = (seen[column] + stray) * sunlit * gains[column] + darks[column]
             value = mean + math.sqrt(max(mean, 0.0) + read2) * noise[column]
             value = np.rint(offset + min(value, full_well) / per_dn)
-            out[row, column] = np.uint16(min(max(value, 0.0), top))
+            numbers_out[column] = np.uint16(np.int32(min(max(value, 0.0), top)))
 
 
 @compiled
@@ -139,11 +149,3 @@ def gather(out: Floats, light: Floats, shares: tuple[float, float, float]) -> No
         for row in range(height):
             for column in range(width):
                 out[row, column] += smear * total[column]
-
-
-@compiled
-def normals(out: Floats, bits: NDArray[np.int64], table: Floats) -> None:
-    """Write (n,) normal values alone, of (ceil(n / 2),) random words."""
-    for n in range(out.shape[0]):
-        word = int((bits[n >> 1] >> (32 * (n & 1))) & 0xFFFFFFFF)
-        out[n] = _normal(word, table)

@@ -320,22 +320,40 @@ def add_apertures(
 
 @compiled
 def take_light(
-    frame: Floats, boxes: Integers, places: NDArray[np.int32], values: NDArray[np.float32]
-) -> int:
+    frame: Floats, boxes: Integers, runs: NDArray[np.int32], values: NDArray[np.float32]
+) -> tuple[int, int]:
     """Move what is lit within boxes (B, 4) out of a frame, which is dark there afterwards.
 
-    Writes places in the flattened frame and the light there, in single precision, and returns how
-    many.
+    Writes runs of lit pixels (R, 2), first and past-last place in the flattened frame, and the
+    light there, in single precision; returns how many of both.
     """
     width = frame.shape[1]
-    count = 0
+    count, found = 0, 0
     for b in range(boxes.shape[0]):
         for row in range(boxes[b, 2], boxes[b, 3]):
+            last = -1
             for column in range(boxes[b, 0], boxes[b, 1]):
                 light = frame[row, column]
                 if light != 0.0:
-                    places[count] = row * width + column
+                    place = row * width + column
+                    if place != last:
+                        runs[found, 0] = place
+                        found += 1
+                    last = place + 1
+                    runs[found - 1, 1] = last
                     values[count] = light
                     frame[row, column] = 0.0
                     count += 1
-    return count
+    return found, count
+
+
+@compiled
+def put_light(
+    flat: Floats, runs: NDArray[np.int32], values: NDArray[np.float32], factor: float
+) -> None:
+    """Write the light of runs, as of `take_light`, times a factor to a flattened frame."""
+    start = 0
+    for first, last in runs:
+        for place in range(last - first):
+            flat[first + place] = values[start + place] * factor
+        start += last - first

@@ -8,6 +8,7 @@ stands in front of them; the bound moves the Sun alike under each. Nothing is ke
 from __future__ import annotations
 
 import hashlib
+from collections import OrderedDict
 from collections.abc import Callable, Hashable
 from functools import lru_cache
 from typing import Any, TypeVar, cast
@@ -17,10 +18,12 @@ from numpy.typing import NDArray
 
 #: A worker's data and code take 600 MB; with this it stays below 1.5 GB.
 LIMIT_BYTES = 384 * 2**20
+#: Shares of it: what runs may take, and what the latest of them take besides where they find none.
+_OF_RUNS, _LATEST = 0.625, 0.0625
 
-#: Places of light other than 0 in a flattened array, and its values there.
-Places = tuple[NDArray[np.int32], NDArray[np.float32]]
-#: Such places (None: everywhere), the values, the array's shape.
+#: Runs (R, 2) of light in a flattened array, first and past-last place, and its values there.
+Runs = tuple[NDArray[np.int32], NDArray[np.float32]]
+#: Places of light other than 0 (None: everywhere), the values, the array's shape.
 _Kept = tuple[NDArray[np.int32] | None, NDArray[Any], tuple[int, ...]]
 Light = TypeVar("Light", bound=NDArray[Any])
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -32,13 +35,14 @@ class LightMemory:
     def __init__(self, limit_bytes: int = LIMIT_BYTES) -> None:
         self.limit_bytes = limit_bytes
         self.kept_bytes = 0
-        self.places_bytes = 0
+        self.runs_bytes = 0
         self.hits = 0
         self._owner: Hashable = None
         self._family: Hashable = None
         self._tables: list[Callable[[], None]] = []
         self._kept: dict[Hashable, _Kept] = {}
-        self._places: dict[Hashable, Places] = {}
+        self._runs: dict[Hashable, Runs] = {}
+        self._latest: OrderedDict[Hashable, Runs] = OrderedDict()
 
     def remember(self, owner: Hashable, family: Hashable = None) -> None:
         """Keep light from now on; what was kept for another owner is let go.
@@ -66,8 +70,9 @@ class LightMemory:
     def forget(self) -> None:
         """Let go of everything and keep nothing more."""
         self._kept.clear()
-        self._places.clear()
-        self.kept_bytes = self.places_bytes = 0
+        self._runs.clear()
+        self._latest.clear()
+        self.kept_bytes = self.runs_bytes = 0
         self._owner = None
 
     def rendered(self, key: Hashable, render: Callable[[], Light]) -> Light:
@@ -93,23 +98,28 @@ class LightMemory:
             self._kept[key] = kept
         return light
 
-    def places(self, key: Hashable, render: Callable[[], Places]) -> Places:
+    def runs(self, key: Hashable, render: Callable[[], Runs]) -> Runs:
         """Return what `render` makes, as `rendered`, for frames too large to be filled twice.
 
-        Not the caller's own: to be read only.
+        Not the caller's own: to be read only. Where there is no room the latest few are kept
+        nevertheless, for passes over the same poses.
         """
         if self._owner is None:
             return render()
-        known = self._places.get(key)
+        known = self._runs.get(key) or self._latest.get(key)
         if known is not None:
             self.hits += 1
             return known
         found = render()
-        size = found[0].nbytes + found[1].nbytes
-        # half of the room is left to what bounds ask for more often
-        if self.places_bytes + size <= self.limit_bytes // 2 and self._has_room(size):
-            self.places_bytes += size
-            self._places[key] = found
+        size = _size(found)
+        # the rest of the room is left to what bounds ask for more often
+        if self.runs_bytes + size <= _OF_RUNS * self.limit_bytes and self._has_room(size):
+            self.runs_bytes += size
+            self._runs[key] = found
+            return found
+        self._latest[key] = found
+        while sum(map(_size, self._latest.values())) > _LATEST * self.limit_bytes:
+            self._latest.popitem(last=False)
         return found
 
     def _has_room(self, size: int) -> bool:
@@ -117,6 +127,10 @@ class LightMemory:
             return False
         self.kept_bytes += size
         return True
+
+
+def _size(runs: Runs) -> int:
+    return runs[0].nbytes + runs[1].nbytes
 
 
 def digest_of(*arrays: NDArray[Any]) -> bytes:

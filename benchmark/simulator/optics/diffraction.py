@@ -22,6 +22,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -63,8 +64,24 @@ SUNLIT_SILICON = Spectrum(
 )
 
 
-#: Places, half heights, weights and fields of what `strips` cuts an opening into.
-Strips = tuple[Floats, Floats, Floats, NDArray[np.complex128]]
+@dataclass(frozen=True, eq=False)
+class Strips:
+    """What a round opening is cut into across the plane of incidence: pairs of strips.
+
+    An opening is the same on both sides of its middle: what a strip sends across is what the strip
+    opposite does.
+
+    Attributes
+    ----------
+    places
+        (J,) distance of the pairs' strips from the middle; one in the middle is two of half.
+    fields
+        (2, J, T) of a strip, real and imaginary parts; or (4, J + 1, T) with the same with the
+        square of the distance across in the integral, and last the strip over the middle.
+    """
+
+    places: Floats
+    fields: Floats
 
 
 def propagation(mask: Mask, height_mm: float, spectrum: Spectrum) -> dict[str, Any]:
@@ -104,7 +121,6 @@ def round_intensity(
     points: int | None = None,
     apart: float = 0.0,
     blur: float = 0.0,
-    known: Strips | None = None,
 ) -> Floats:
     """Intensity behind a round aperture, (R, T), in units of the open light.
 
@@ -132,8 +148,6 @@ def round_intensity(
         Distance of the two rims' centres in units of the radius; from 2 on it is dark.
     blur
         ``sqrt(lambda t / 2)`` in units of the radius, t the way of the light through the foil.
-    known
-        `strips` of the same arguments, where they are known.
     """
     out = np.zeros((len(radial), len(tangential)))
     if apart >= 2.0:
@@ -142,10 +156,8 @@ def round_intensity(
         squared_sums,
     )
 
-    found = known or strips((radial, tangential), numbers, points, (apart, blur))
-    places, _, _, field = found
-    parts = np.stack([field.real, field.imag])
-    squared_sums(out, np.ascontiguousarray(radial), places, numbers[0], parts)
+    cut = strips((radial, tangential), numbers, points, (apart, blur))
+    squared_sums(out, np.ascontiguousarray(radial), cut.places, numbers[0], cut.fields)
     return out
 
 
@@ -157,13 +169,12 @@ def round_skew(
     *,
     apart: float = 0.0,
     blur: float = 0.0,
-    known: Strips | None = None,
-) -> Floats:
-    """Return how `round_intensity` changes to first order, (R, T), odd along `radial`.
+) -> tuple[Floats, Floats]:
+    """Return `round_intensity`, and how it changes to first order: (R, T), odd along `radial`.
 
     Parameters
     ----------
-    radial, tangential, numbers, apart, blur, known
+    radial, tangential, numbers, apart, blur
         As of `round_intensity`.
     changes
         Of the phase's cubic term ``-pi (N_r A rho_r^3 + N_t B rho_r rho_t^2)``, distances in
@@ -171,33 +182,23 @@ def round_skew(
         J_r and J_t are larger for the arc of positive coordinates, and smaller for the other one:
         the rims of a foil that bound either side of the lens lie at depths of their own.
     """
+    light, skew = np.zeros((2, len(radial), len(tangential)))
+    if apart >= 2.0:
+        return light, skew
     from benchmark.simulator.kernels.diffraction_patterns import (  # noqa: PLC0415 - Numba
         skewed_sums,
     )
 
-    out = np.zeros((len(radial), len(tangential)))
-    if apart >= 2.0:
-        return out
     along, across = numbers
-    found = known or strips((radial, tangential), numbers, None, (apart, blur))
-    places, heights, weights, field = found
-    # with the strip over the middle, where one side's depth ends and the other's begins
-    root, unit = math.sqrt(2.0 * across), math.sqrt(along / 2.0)
-    heights = np.append(heights, math.sqrt(1.0 - apart * apart / 4.0))[:, None]
-    weights = np.append(weights, unit)[:, None]
-    below, above = tangential + heights, tangential - heights
-    last = unit * (fresnel(root * below[-1:]) - fresnel(root * above[-1:]))
-    whole = np.concatenate([field, last])
-    ends = below * _turned(root * below) - above * _turned(root * above)
-    square = (root * weights * ends - whole) / (2j * math.pi * across)
+    cut = strips((radial, tangential), numbers, None, (apart, blur), skewed=True)
     skewed_sums(
-        out,
+        (light, skew),
         np.ascontiguousarray(radial),
-        np.stack([places, np.sign(places)]),
+        cut.places,
         np.array([along, across, *changes, fading(along)]),
-        np.stack([whole.real, whole.imag, square.real, square.imag]),
+        cut.fields,
     )
-    return out
+    return light, skew
 
 
 def strips(
@@ -205,6 +206,8 @@ def strips(
     numbers: tuple[float, float],
     points: int | None,
     rims: tuple[float, float],
+    *,
+    skewed: bool = False,
 ) -> Strips:
     """Cut a round opening into strips across the plane of incidence, each with its field.
 
@@ -214,10 +217,8 @@ def strips(
         As of `round_intensity`: (R,) and (T,) positions, Fresnel numbers, points of the sum.
     rims
         `apart` and `blur` of `round_intensity`; apart below 2.
-
-    Returns
-    -------
-    (J,) places, half heights and weights of the strips, and (J, T) their fields.
+    skewed
+        Whether `round_skew` asks, which needs all of them.
     """
     radial, tangential = places
     along, across = numbers
@@ -228,15 +229,31 @@ def strips(
         points = 24 + math.ceil(4.0 * max(along * reach, across * side))
     sines, along_it, shares = _openings(points, apart / 2.0)
     heights = np.sqrt(1.0 - sines**2)
-    root = math.sqrt(2.0 * across)
-    below, above = (root * (tangential + side * heights[:, None]) for side in (1.0, -1.0))
+    root, unit = math.sqrt(2.0 * across), math.sqrt(along / 2.0)
     # sqrt(N_r N_t) of the amplitude over sqrt(2 N_t) of the substitution
-    weights = heights * shares * math.sqrt(along / 2.0)
-    field = (fresnel(below) - fresnel(above)) * weights[:, None]
+    weights = heights * shares * unit
+    lost = np.zeros(len(heights), dtype=np.complex128)
     if blur > 0.0:
-        lost = blur * root * lost_at_rims(apart * sines / blur) * shares * math.sqrt(along / 2.0)
-        field -= lost[:, None] * (_turned(below) + _turned(above))
-    return along_it, heights, weights, field
+        lost += blur * root * lost_at_rims(apart * sines / blur) * shares * unit
+    if skewed:
+        # with the strip over the middle, where one side's depth ends and the other's begins
+        heights = np.append(heights, math.sqrt(1.0 - apart * apart / 4.0))
+        weights, lost = np.append(weights, unit), np.append(lost, 0.0)
+    fields = np.empty((4 if skewed else 2, len(heights), len(tangential)))
+    below, above = tangential + heights[:, None], tangential - heights[:, None]
+    from scipy.special import fresnel as sine_and_cosine  # noqa: PLC0415 - SciPy on demand
+
+    from benchmark.simulator.kernels.diffraction_patterns import (  # noqa: PLC0415 - Numba
+        strip_fields,
+    )
+
+    strip_fields(
+        fields,
+        (np.ascontiguousarray(tangential), heights, weights, lost.real.copy(), lost.imag.copy()),
+        (root, across),
+        (*sine_and_cosine(root * below), *sine_and_cosine(root * above)),
+    )
+    return Strips(along_it, fields)
 
 
 def fading(number: float) -> float:
@@ -273,20 +290,26 @@ def _turned(argument: Floats) -> NDArray[np.complex128]:
 def _openings(points: int, half: float) -> tuple[Floats, Floats, Floats]:
     """Sines on the circles that bound an opening, places along it and weights, (P,) each.
 
-    `half` is half the distance of the two rims' centres.
+    `half` is half the distance of the two rims' centres. Of one side of the opening's middle; the
+    other one is the same.
     """
     if half == 0.0:
-        turns = [math.pi * ((step + 0.5) / points - 0.5) for step in range(points)]
+        turns = [math.pi * ((step + 0.5) / points - 0.5) for step in range(points // 2, points)]
+        shares = np.full(len(turns), math.pi / points)
+        if points % 2:  # in the middle
+            turns[0] = 0.0
+            shares[0] /= 2.0
         sines = np.array([math.sin(turn) for turn in turns])
-        return np.abs(sines), sines, np.full(points, math.pi / points)
-    nodes, weights = np.polynomial.legendre.leggauss((points + 1) // 2)
+        return sines, sines, shares
+    nodes, weights = _gauss((points + 1) // 2)
     first = math.asin(half)
     span = math.pi / 2.0 - first
     turns = [first + span * (float(node) + 1.0) / 2.0 for node in nodes]
     sines = np.array([math.sin(turn) for turn in turns])
-    shares = weights * (span / 2.0)
-    return (
-        np.concatenate([sines[::-1], sines]),
-        np.concatenate([half - sines[::-1], sines - half]),
-        np.concatenate([shares[::-1], shares]),
-    )
+    return sines, sines - half, weights * (span / 2.0)
+
+
+@lru_cache(maxsize=256)
+def _gauss(points: int) -> tuple[Floats, Floats]:
+    """Nodes and weights of Gauss's rule; every incidence and wavelength asks again."""
+    return np.polynomial.legendre.leggauss(points)

@@ -18,10 +18,9 @@ from benchmark.simulator.optics.diffraction import (
     fresnel,
     round_intensity,
     round_skew,
-    strips,
 )
 from benchmark.simulator.optics.plates import CoverGlass
-from benchmark.simulator.optics.table_grids import both_sides, slopes, spread, turned_cell
+from benchmark.simulator.optics.table_grids import Cell, both_sides, slopes, spread, turned_cell
 
 #: Steps of a table in ``k a`` times the direction cosine, at the shortest wavelength: of the far
 #: pattern, and of a shadow's fringes, of which many wavelengths and the Sun leave only the coarse
@@ -217,9 +216,9 @@ class RoundPattern:
         return _tables(self)
 
     def _table(self, sine: float, reach: int) -> Floats:
-        shifts, weights, margin = self._sun_on_table(sine)
+        shifts, weights, cell, margin = self._sun_on_table(sine)
         light, _ = self._quadrants(sine, reach + margin + 1, skewed=False)
-        return spread(both_sides(light), shifts, weights, margin)
+        return spread(both_sides(light), shifts, weights, margin, cell)
 
     def filled(self, reach: int) -> Floats:
         """(T, 2 n + 1, n + 1) tables, with what `seen` leaves of the cubic phase.
@@ -230,15 +229,15 @@ class RoundPattern:
         last = self.nodes - 1
         sines = [math.sin(math.radians(self.widest_deg) * node / last) for node in range(last + 1)]
         suns = [self._sun_on_table(sine) for sine in sines]
-        size = reach + max(margin for _, _, margin in suns) + 1
+        size = reach + max(margin for *_, margin in suns) + 1
         lights, skews = np.array([self._quadrants(sine, size) for sine in sines]).swapaxes(0, 1)
         nodes = slopes(lights, 0)
         out = np.empty((last + 1, 2 * reach + 1, reach + 1))
-        for node, (shifts, weights, margin) in enumerate(suns):
+        for node, (shifts, weights, cell, margin) in enumerate(suns):
             part = reach + margin + 1
             rest = self._rest(sines[node], lights[node], nodes[node], skews[node])
             both = both_sides(lights[node, :part, :part], rest[:part, :part])
-            out[node] = spread(both, shifts, weights, margin)
+            out[node] = spread(both, shifts, weights, margin, cell)
         return out
 
     def _rest(self, sine: float, light: Floats, change: Floats, whole: Floats) -> Floats:
@@ -303,25 +302,27 @@ class RoundPattern:
             turn = radius / wave
             places = grid[0] * turn / along, grid[1] * turn / across
             blur = math.sqrt(wave * through / 2.0) / radius
-            numbers, known = (along, across), strips(places, (along, across), None, (apart, blur))
-            light += weight * round_intensity(*places, numbers, apart=apart, blur=blur, known=known)
-            if skewed and sine > 0.0:
-                # rims that lie upon each other cut alike
-                part = 1.0 - 1.0 / (1.0 + math.pi * apart / blur) if blur > 0.0 else 0.0
-                changes = third * grown, beside * grown, part * more, part * other
-                skew += weight * round_skew(
-                    *places, numbers, changes, apart=apart, blur=blur, known=known
-                )
+            numbers = along, across
+            if not skewed or sine == 0.0:
+                light += weight * round_intensity(*places, numbers, apart=apart, blur=blur)
+                continue
+            # rims that lie upon each other cut alike
+            part = 1.0 - 1.0 / (1.0 + math.pi * apart / blur) if blur > 0.0 else 0.0
+            changes = third * grown, beside * grown, part * more, part * other
+            own, change = round_skew(*places, numbers, changes, apart=apart, blur=blur)
+            light += weight * own
+            skew += weight * change
         return light / unit[0], skew / unit[0]
 
-    def _sun_on_table(self, sine: float) -> tuple[Floats, Floats, int]:
+    def _sun_on_table(self, sine: float) -> tuple[Floats, Floats, Cell, int]:
         """Return `_spread` in steps of the table, and by how many it reaches beyond."""
         steps, _ = self.scales(np.array([sine]))
-        shifts, weights = self._spread(sine, steps[0])
-        return shifts, weights, math.ceil(float(np.abs(shifts).max())) + 3
+        shifts, weights, cell = self._spread(sine, steps[0])
+        ends = shifts.max(axis=0) + cell[0].max(axis=0), shifts.min(axis=0) + cell[0].min(axis=0)
+        return shifts, weights, cell, math.ceil(float(np.abs(ends).max())) + 3
 
-    def _spread(self, sine: float, steps: Floats) -> tuple[Floats, Floats]:
-        """(K, 2) shifts in steps of the table and (K,) weights: the Sun's disc, and the cell."""
+    def _spread(self, sine: float, steps: Floats) -> tuple[Floats, Floats, Cell]:
+        """(K, 2) shifts in steps of the table and (K,) weights of the Sun's disc, and the cell."""
         centre = np.array([[sine, 0.0, math.sqrt(1.0 - sine * sine)]])
         points = self.sun.directions(centre)
         chief, along, across = landing(np.array([sine]), self.layers())[0]
@@ -332,12 +333,10 @@ class RoundPattern:
         passed = self.glass.transmission(points)[0] / self.glass.transmission(centre)[0]
         weights = shares * points[0, :, 2] / centre[0, 2] * passed
         if self.cell_mm == 0.0:
-            return shifts, weights
+            return shifts, weights, (np.zeros((1, 2)), np.ones(1))
         per_mm = 1.0 / (np.array([along, across]) * steps)
         corner, share = turned_cell(max(2, math.ceil(self.cell_mm * float(per_mm.max())) + 1))
-        corner = corner * self.cell_mm * per_mm
-        both = shifts[:, None, :] + corner[None, :, :]
-        return both.reshape(-1, 2), np.outer(weights, share).ravel()
+        return shifts, weights, (corner * self.cell_mm * per_mm, share)
 
 
 @memory.tables(24)

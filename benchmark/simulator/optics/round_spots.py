@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,8 +28,10 @@ _CELL_RAD = 5.5
 _DEVIATIONS = 2.25
 #: And by so much of the radius, at least and at most.
 _LEAST_GROWTH, _MOST_GROWTH = 1e-2, 0.5
+#: A hole so many times as far off as those two is refused: the parabola is out by per cents there.
+_FARTHEST = 2.5
 #: Points a pixel, an axis, of the lattice that holes share: frames of the standard data sets are
-#: within 7e-4 of peak of looking every pixel up.
+#: within 8e-4 of peak of looking every pixel up.
 _LATTICE = 4
 
 
@@ -67,8 +69,22 @@ class _Holes:
         return self._tables
 
     def shares(self, radii_mm: Floats) -> Floats:
-        """Return (A, 3) weights of the tables for holes of these radii: Lagrange's parabola."""
-        place = (radii_mm / self.drawn.radius_mm - 1.0) / self.sizes[2].growth
+        """Return (A, 3) weights of the tables for holes of these radii: Lagrange's parabola.
+
+        Raises
+        ------
+        ValueError
+            When a hole is further from its drawing than the mask's errors let expect.
+        """
+        growth = self.sizes[2].growth
+        place = (radii_mm / self.drawn.radius_mm - 1.0) / growth
+        off = np.abs(place).max()
+        if off > _FARTHEST:
+            raise ValueError(
+                f"holes drawn {self.diameter_mm} mm wide must be built within "
+                f"{100.0 * _FARTHEST * growth:.3g} % of it, as the mask's errors let expect; got "
+                f"one {100.0 * off * growth:.3g} % off"
+            )
         # drawn, but for rounding
         place = np.where(np.abs(place) < 1e-9, 0.0, place)
         square = place * place
@@ -83,10 +99,11 @@ class RoundSpots:
     holes smaller and larger by 2.25 `size_mm`. Each is interpolated between them by the parabola in
     its radius a, whether the unit is off as a whole or the hole by itself. What is left is
     ``x (x^2 - g^2) / 6`` times the third derivative over a, x the hole's excess and g that of the
-    larger table. Against a table of every hole's own radius, that is 1.0e-3 of peak on
-    `ccd-multi-aperture`, 1.1e-3 on `cmos-multi-aperture` (of a unit whose holes are 2.5 % too
-    small; 4e-4 of others) and 2e-5 on the encoded ones, over six units of each. It grows with the
-    cube of x: holes four standard deviations off are out by ten times as much as those within 2.6.
+    larger table. Against a table of every hole's own radius, six units of each: 1.0e-3 of peak on
+    `ccd-multi-aperture`, 4e-4 on `cmos-multi-aperture` (1.1e-3 where a unit's holes are 2.5 % too
+    small) and 4e-5 on `cmos-encoded`. It grows with the cube of x: holes four standard deviations
+    off are out by ten times as much as those within 2.6. With what lattice and height below leave,
+    frames of standard units were within 1.9e-3 of peak of tables of their own.
 
     Tables are of the drawn height, whatever the built one: light that has gone ``r`` times as far
     has the Fresnel numbers, and so the pattern, of a hole ``sqrt(r)`` times smaller, ``sqrt(r)``
@@ -183,11 +200,8 @@ class RoundSpots:
         """Return patterns of holes smaller than drawn, as drawn, and larger."""
         growth = 2.0 * _DEVIATIONS * self.size_mm / diameter_mm
         growth = min(max(growth, _LEAST_GROWTH), _MOST_GROWTH)
-        cells = self.cells(diameter_mm)
-        small, drawn, large = (
-            self._pattern(diameter_mm, one, cells) for one in (-growth, 0.0, growth)
-        )
-        return small, drawn, large
+        of = partial(self._pattern, diameter_mm, cells=self.cells(diameter_mm))
+        return of(growth=-growth), of(growth=0.0), of(growth=growth)
 
     def _pattern(self, diameter_mm: float, growth: float, cells: int) -> RoundPattern:
         camera = self.camera
@@ -358,10 +372,8 @@ class RoundLight:
             if not len(mine):
                 continue
             sample, shares = (self.head[n], numbers[n], axes[n]), self.shares[mine]
-            holes = (
-                np.column_stack([self.holes_mm[mine], self.passed[n, mine], shares]),
-                np.ascontiguousarray(boxes[mine]),
-            )
+            rows = np.column_stack([self.holes_mm[mine], self.passed[n, mine], shares])
+            holes = rows, np.ascontiguousarray(boxes[mine])
             tables = group.tables(shares)
             if group.lattice:
                 optics = self.layers, group.nodes, group.lattice

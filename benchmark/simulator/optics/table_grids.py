@@ -8,6 +8,8 @@ import numpy as np
 
 from algorithms.contract import Floats
 
+Cell = tuple[Floats, Floats]
+
 
 def slopes(values: Floats, axis: int) -> Floats:
     """Return differences of fourth order a step along an axis of values even about its start.
@@ -29,16 +31,20 @@ def both_sides(light: Floats, rest: Floats | None = None) -> Floats:
     return np.concatenate([(light - rest)[:0:-1], light + rest])
 
 
-def spread(light: Floats, shifts: Floats, weights: Floats, margin: int) -> Floats:
+def spread(
+    light: Floats, shifts: Floats, weights: Floats, margin: int, cell: Cell | None = None
+) -> Floats:
     """(2 n + 1, n + 1) means of light, a `margin` wider all around, moved by (K, 2) steps.
 
-    Light is even across its second axis, and is known on one side of it.
+    Light is even across its second axis, and is known on one side of it. Every shift has all of
+    the places of a `cell`, (C, 2) steps and (C,) weights.
     """
     from scipy.fft import irfft2, next_fast_len, rfft2  # noqa: PLC0415 - SciPy on demand
 
     from benchmark.simulator.kernels.diffraction_patterns import stencil  # noqa: PLC0415 - Numba
 
-    weight = stencil(np.ascontiguousarray(shifts), weights, margin)
+    places = (np.zeros((1, 2)), np.ones(1)) if cell is None else cell
+    weight = stencil(np.ascontiguousarray(shifts), weights, places, margin)
     both = np.concatenate([light[:, margin:0:-1], light], axis=1)
     # whole as long as no sum goes round the ends
     size = tuple(next_fast_len(n, real=True) for n in both.shape)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from algorithms.contract import Floats
 from benchmark.simulator.light.environment import Earth
-from benchmark.simulator.light.memory import Places, digest_of, memory
+from benchmark.simulator.light.memory import Runs, digest_of, memory
 from benchmark.simulator.masks.errors import MaskErrors
 from benchmark.simulator.optics.diffraction import SUNLIT_SILICON, Spectrum
 from benchmark.simulator.optics.earthlight import add_between
@@ -222,14 +222,17 @@ class MultiSpotSensor:
 
     def place(self, pattern: FixedPattern) -> tuple[Hashable, ...]:
         """Return what light on the detector depends on besides the Sun, in brief."""
+        return self._design, digest_of(pattern["apertures"], pattern["transmission"])
+
+    @cached_property
+    def _design(self) -> bytes:
+        """What it depends on but the built mask: the mask is long, and spelt hole by hole."""
         detector = self.detector
         pixels = detector.rows, detector.columns, detector.pitch_mm, detector.tunnel
         # tables are of holes as far apart as built ones are expected to be
         spots = self.widest_deg, self.skirt, self.errors.radius_mm
-        # spelt once: to compare masks hole by hole, sample by sample, would take longer
         said = repr((type(self).__name__, self.camera, self.spectrum, spots, pixels))
-        mask = digest_of(pattern["apertures"], pattern["transmission"])
-        return digest_of(np.frombuffer(said.encode(), dtype=np.uint8)), mask
+        return digest_of(np.frombuffer(said.encode(), dtype=np.uint8))
 
     def add_uneven(self, frames: Floats, scene: Scene) -> bool:
         """Add light of the Earth and sloping stray light to frames (N, rows, columns), if any."""
@@ -286,6 +289,7 @@ class MultiSpotSensor:
             gather,
             quantiles,
         )
+        from benchmark.simulator.kernels.rasteriser import put_light  # noqa: PLC0415 - Numba
 
         detector, errors = self.detector, self.detector.errors
         shape = (detector.rows, detector.columns)
@@ -309,10 +313,10 @@ class MultiSpotSensor:
         # made only where some light is not known yet
         rendering = cache(partial(self.light, scene.alone(), pattern))
         for n in range(len(scene)):
-            places, values = memory.places(
-                (*key, scene.sun[n].tobytes()), partial(_places, light, rendering, n)
+            runs, values = memory.runs(
+                (*key, scene.sun[n].tobytes()), partial(_runs, light, rendering, n)
             )
-            flat[places] = np.multiply(values, scene.irradiance[n], dtype=np.float64)
+            put_light(flat, runs, values, float(scene.irradiance[n]))
             uneven = self.add_uneven(light[None], scene.part(n, n + 1))
             seen, stray = light, float(scene.stray[n])
             if gathered is not None:
@@ -324,11 +328,14 @@ class MultiSpotSensor:
             digitise(
                 out[n],
                 seen,
-                streams.gaussian.bit_generator.random_raw(words).view(np.int64),
+                streams.gaussian.bit_generator.random_raw(words).view(np.uint32),
                 (*tables, added),
                 (stray, *numbers),
             )
-            flat[slice(None) if uneven else places] = 0.0
+            if uneven:
+                flat[:] = 0.0
+            else:
+                put_light(flat, runs, values, 0.0)
         return out
 
 
@@ -358,13 +365,13 @@ class _Shadows:
         mark_boxes(near, self.boxes[n], margin_px)
 
 
-def _places(frame: Floats, rendering: Callable[[], Rendering], n: int) -> Places:
+def _runs(frame: Floats, rendering: Callable[[], Rendering], n: int) -> Runs:
     """Light of one sample, rendered in a dark frame that is dark again afterwards."""
     from benchmark.simulator.kernels.rasteriser import take_light  # noqa: PLC0415 - Numba on demand
 
     boxes = rendering().add(frame, n)
     room = int(((boxes[:, 1] - boxes[:, 0]) * (boxes[:, 3] - boxes[:, 2])).sum())
     room = min(room, frame.size)
-    places, values = np.empty(room, dtype=np.int32), np.empty(room, dtype=np.float32)
-    count = take_light(frame, boxes, places, values)
-    return places[:count].copy(), values[:count].copy()
+    runs, values = np.empty((room, 2), dtype=np.int32), np.empty(room, dtype=np.float32)
+    found, count = take_light(frame, boxes, runs, values)
+    return runs[:found].copy(), values[:count].copy()

@@ -268,6 +268,7 @@ def test_glass_of_index_one_changes_nothing() -> None:
     assert empty.lit(scene) == pytest.approx(sensor.lit(scene), abs=1e-9)
 
 
+@pytest.mark.slow
 def test_a_sun_behind_the_sensor_gives_no_light() -> None:
     sun = np.array([[0.1, 0.0, -math.sqrt(0.99)]])
     scene = Scene(sun, np.ones(1), np.zeros(1), np.full((1, 2), 200))

@@ -56,21 +56,41 @@ def test_nothing_is_kept_unasked_or_for_another_owner_or_beyond_the_limit():
     assert calls[-1] == 1
 
 
-def test_places_are_kept_alike():
+def test_runs_are_kept_alike():
     kept = LightMemory(limit_bytes=100)
     calls = []
 
-    def places(key, count):
-        found = np.arange(count, dtype=np.int32), np.ones(count)
-        return kept.places(key, lambda: calls.append(key) or found)
+    def runs(key, count):
+        found = np.array([[0, count]], dtype=np.int32), np.ones(count)
+        return kept.runs(key, lambda: calls.append(key) or found)
 
     kept.remember("dataset")
-    places("small", 4), places("large", 9), places("small", 4), places("large", 9)
+    runs("small", 5), runs("large", 9), runs("small", 5), runs("large", 9)
     assert calls == ["small", "large", "large"]
     assert kept.kept_bytes == 48
     kept.forget()
-    places("small", 4)
+    runs("small", 5)
     assert calls[-1] == "small"
+
+
+def test_the_latest_runs_are_kept_beyond_the_limit():
+    """Passes over the same poses come at once."""
+    kept = LightMemory(limit_bytes=1000)
+    calls = []
+
+    def runs(key, count):
+        found = np.array([[0, count]], dtype=np.int32), np.ones(count, dtype=np.float32)
+        return kept.runs(key, lambda: calls.append(key) or found)
+
+    kept.remember("dataset")
+    runs("first", 150)
+    for _ in range(3):
+        runs("one", 5), runs("other", 5)
+    assert calls == ["first", "one", "other"]
+    runs("next", 5)  # of three the latest two find room
+    runs("other", 5), runs("one", 5)
+    assert calls == ["first", "one", "other", "next", "one"]
+    assert kept.kept_bytes == 608
 
 
 @pytest.mark.slow

@@ -265,6 +265,7 @@ def test_known_gains_invert_the_drifting_cube() -> None:
     assert apart.max() < 1e-6
 
 
+@pytest.mark.slow
 def test_dark_pixels_follow_the_temperature() -> None:
     sensor = ccd_sensor()
     sensor = replace(sensor, detector=bare(sensor.detector))

@@ -166,6 +166,7 @@ def test_turning_along_the_read_out_stretches_or_squeezes_the_spot(direction: fl
     assert ratio - 1 == pytest.approx(1 / (1 - speed) - 1, rel=0.02)
 
 
+@pytest.mark.slow
 def test_motion_within_the_exposure_blurs_by_its_variance() -> None:
     """A uniform smear of v T adds (v T)^2 / 12 to the spot's variance along it."""
     rate, x, exposure_s = 60.0, np.arange(64), 0.01
@@ -201,6 +202,7 @@ def test_the_row_through_the_spot_tells_the_time() -> None:
         assert np.abs(still.spot_px(late.sun) - still.spot_px(scene.sun)).max() > 0.3
 
 
+@pytest.mark.slow
 def test_a_row_is_exposed_when_it_is_wherever_the_window_lies() -> None:
     sensor = turning(standard(), row_time_s=ROW_S)
     here = scene_of(sensor, [(12.0, -7.0)], (40.0, -30.0, 20.0))

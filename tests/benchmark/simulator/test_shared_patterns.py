@@ -99,6 +99,14 @@ def test_holes_built_as_drawn_need_no_tables_of_others() -> None:
     assert np.array_equal(sensor.lit(scene, pattern), alone)
 
 
+def test_holes_further_off_than_the_masks_errors_are_refused() -> None:
+    sensor = replace(sensor_of(0.8, holes=2, hole_mm=0.04), errors=MaskErrors(size_mm=0.002))
+    pattern = dict(sensor.fixed_pattern("test"))
+    pattern["apertures"] = pattern["apertures"] * np.array([1.0, 1.0, 1.0, 1.5, 1.5, 1.0, 1.0])
+    with pytest.raises(ValueError, match=r"drawn 0.04 mm wide must be built within 28.1 % of it"):
+        sensor.lit(seen(0.0, 0.0), pattern)
+
+
 def test_pixels_of_a_bound_are_all_that_a_step_lights() -> None:
     sensor = sensor_of(0.8, holes=3)
     scene, pattern = seen(41.0, -30.0), sensor.fixed_pattern("test")

@@ -133,6 +133,7 @@ def centroid(frame: np.ndarray) -> np.ndarray:
     return np.array([(frame * x).sum(), (frame * y).sum()]) / frame.sum()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("theta", [0.0, 30.0, 60.0])
 @pytest.mark.parametrize("shape", ["round", "square", "slit"])
 @pytest.mark.parametrize(
