@@ -10,10 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.contract import Floats
-from benchmark.metrics.whitening import Whitening
+from benchmark.metrics.noise_products import noise_products
 from benchmark.simulator.light.environment import Irradiance
 from benchmark.simulator.light.sun_disc import tangent_axes
-from benchmark.simulator.readout.column_noise import CommonNoise
 from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern, Sensor, SharesNoise, UnitSpread
@@ -166,54 +165,51 @@ def _batch(  # noqa: PLR0917 - as `cramer_rao`
     count = len(scene)
     first, second = tangent_axes(scene.sun)
     zero, step = np.zeros(count), np.full(count, step_rad)
-    mean = sensor.expected(scene, pattern)
-    own = np.sqrt(sensor.variance(mean)).reshape(count, -1)
+    whole = sensor.expected(scene, pattern)
+    mean, own = whole.reshape(count, -1), sensor.variance(whole).reshape(count, -1)
     common = unit_common = unit = None
     if isinstance(sensor, SharesNoise):
-        common = sensor.common_noise(mean.shape, None)
-        unit_common = sensor.common_noise(mean.shape, references)
-    noise = Whitening(own, common)
+        common = sensor.common_noise(whole.shape, None)
+        unit_common = sensor.common_noise(whole.shape, references)
     if references is not None and isinstance(sensor, UnitSpread):
-        unit = sensor.unit_variance(mean, scene, references)
-    mean = mean.reshape(count, -1)
+        unit = sensor.unit_variance(whole, scene, references)
 
-    def change(x: Floats, y: Floats) -> Floats:
-        """(N, M) difference to the mean in standard deviations, the Sun moved by (x, y)."""
-        moved = scene.seen_from(_turned(scene.sun, first, second, x, y))
-        return _change(sensor.expected(moved, pattern))
+    def moved(x: Floats, y: Floats) -> Scene:
+        return scene.seen_from(_turned(scene.sun, first, second, x, y))
 
-    def _change(expected: Floats) -> Floats:
-        difference = expected.reshape(count, -1) - mean
-        return noise.whiten(difference)
-
-    sides = [(change(step, zero), change(-step, zero)), (change(zero, step), change(zero, -step))]
-    # nuisances in units of their spread: their prior information is 1
-    brighter = replace(scene, irradiance=scene.irradiance + irradiance.spread)
-    hazier = replace(scene, stray=scene.stray + irradiance.stray_spread)
-    jacobian = [
-        *((plus - minus) / (2.0 * step_rad) for plus, minus in sides),
-        _change(sensor.expected(brighter, pattern)),
-        _change(sensor.expected(hazier, pattern)),
+    sides = [(step, zero), (-step, zero), (zero, step), (zero, -step)]
+    seen = [
+        *(moved(x, y) for x, y in sides),
+        # nuisances in units of their spread: their prior information is 1
+        replace(scene, irradiance=scene.irradiance + irradiance.spread),
+        replace(scene, stray=scene.stray + irradiance.stray_spread),
     ]
-    information, nuisance = _marginal(jacobian)
+    signals = np.empty((len(seen), *mean.shape))
+    for signal, one in zip(signals, seen, strict=True):
+        signal[:] = sensor.expected(one, pattern).reshape(count, -1)
+    products = noise_products(mean, signals, own, common)
+    information, nuisance = _marginal(products, step_rad)
+    unit_information = None
+    if unit is not None:
+        wider = own + unit.reshape(count, -1)
+        unit_information, _ = _marginal(noise_products(mean, signals, wider, unit_common), step_rad)
     values, axes = _principal(information)
     regular = _regular(values)
     inverse = 1.0 / np.where(regular[:, None], values, 1.0)
     covariance = np.einsum("nik,nk,njk->nij", axes, inverse, axes)
     sigma = np.sqrt(inverse[:, 0])
 
-    def as_promised(changed: Floats, promised: Floats) -> NDArray[np.bool_]:
+    def as_promised(square: Floats, shared: Floats, promised: Floats) -> NDArray[np.bool_]:
         # what is left of the change when sunlight and stray light take their best share
-        shared = np.column_stack([_products(one, changed) for one in jacobian[2:]])
         taken = np.einsum("ni,ni->n", shared, np.linalg.solve(nuisance, shared[:, :, None])[..., 0])
-        distance = np.sqrt(np.maximum(_products(changed, changed) - taken, 0.0))
+        distance = np.sqrt(np.maximum(square - taken, 0.0))
         return np.asarray((distance > 0.5 * promised) & (distance < 2.0 * promised))
 
     near = regular & (sigma < step_rad)
-    for axis, both in enumerate(sides):
+    for side in range(4):
+        axis = side // 2
         promised = step_rad * np.sqrt(np.maximum(information[:, axis, axis], 0.0))
-        for changed in both:
-            near &= as_promised(changed, promised)
+        near &= as_promised(products[:, side, side], products[:, side, 4:], promised)
     local = near | (regular & (sigma >= step_rad))
     if (sigma[regular] >= step_rad).any():
         far = regular & (sigma >= step_rad)
@@ -221,7 +217,10 @@ def _batch(  # noqa: PLR0917 - as `cramer_rao`
             # samples that need no such test are not moved: their light may be known already
             x = np.where(far, sign * sigma * axes[:, 0, 0], 0.0)
             y = np.where(far, sign * sigma * axes[:, 1, 0], 0.0)
-            local &= ~far | as_promised(change(x, y), np.ones(count))
+            # in place of a side, which is not needed any more
+            signals[3] = sensor.expected(moved(x, y), pattern).reshape(count, -1)
+            products = noise_products(mean, signals[3:], own, common)
+            local &= ~far | as_promised(products[:, 0, 0], products[:, 0, 1:], np.ones(count))
     alpha, beta = _projected(scene.sun, covariance)
     return Bound(
         angle_deg=_angle_deg(inverse, local),
@@ -229,46 +228,28 @@ def _batch(  # noqa: PLR0917 - as `cramer_rao`
         beta_deg=np.where(local | np.isnan(beta), beta, np.inf),
         observable=local,
         unit_angle_deg=(
-            None
-            if unit is None
-            else _unit_angle_deg(jacobian, noise, unit.reshape(count, -1), unit_common, local)
+            None if unit_information is None else _unit_angle_deg(unit_information, local)
         ),
     )
 
 
-def _unit_angle_deg(
-    jacobian: list[Floats],
-    noise: Whitening,
-    unit: Floats,
-    common: CommonNoise | None,
-    observable: NDArray[np.bool_],
-) -> Floats:
-    """(N,) bound with `unit` (N, M) added to the variances, and `common` noise instead.
-
-    The Jacobian is overwritten.
-    """
-    # a reading that tells nothing has an infinite deviation and no derivative
-    if common is None:
-        share = np.sqrt(1.0 + unit / noise.deviation**2)
-        for column in jacobian:
-            np.divide(column, share, out=column)
-    else:
-        wider = Whitening(np.sqrt(noise.deviation**2 + unit), common)
-        for column in jacobian:
-            wider.whiten(noise.undone(column))
-    information, _ = _marginal(jacobian)
+def _unit_angle_deg(information: Floats, observable: NDArray[np.bool_]) -> Floats:
+    """(N,) bound of who does not know the unit."""
     values, _ = _principal(information)
     regular = _regular(values)
     return _angle_deg(1.0 / np.where(regular[:, None], values, 1.0), observable & regular)
 
 
-def _marginal(jacobian: list[Floats]) -> tuple[Floats, Floats]:
-    """Information on the direction (N, 2, 2) without the nuisances' share, and that on those."""
-    count = len(jacobian[0])
-    fisher = np.empty((count, 4, 4))
-    for i, one in enumerate(jacobian):
-        for j, other in enumerate(jacobian[: i + 1]):
-            fisher[:, i, j] = fisher[:, j, i] = _products(one, other)
+def _marginal(products: Floats, step_rad: float) -> tuple[Floats, Floats]:
+    """Information on the direction (N, 2, 2) without the nuisances' share, and that on those.
+
+    Of products (N, 6, 6) of the changes by a step to either side along both axes, and by the
+    nuisances.
+    """
+    slopes = np.zeros((4, 6))
+    slopes[0, :2] = slopes[1, 2:4] = 0.5 / step_rad, -0.5 / step_rad
+    slopes[2, 4] = slopes[3, 5] = 1.0
+    fisher = slopes @ products @ slopes.T
     fisher[:, 2, 2] += 1.0
     fisher[:, 3, 3] += 1.0
     direction, cross, nuisance = fisher[:, :2, :2], fisher[:, :2, 2:], fisher[:, 2:, 2:]
@@ -291,11 +272,6 @@ def _regular(values: Floats) -> NDArray[np.bool_]:
 def _angle_deg(variances: Floats, observable: NDArray[np.bool_]) -> Floats:
     """(N,) degrees of variances (N, 2) along the principal axes; inf where not observable."""
     return np.degrees(np.sqrt(np.where(observable, variances.sum(axis=1), np.inf)))
-
-
-def _products(one: Floats, other: Floats) -> Floats:
-    """(N,) scalar products of the rows of (N, M) arrays."""
-    return np.asarray(np.einsum("nm,nm->n", one, other))
 
 
 def _projected(sun: Floats, covariance: Floats) -> tuple[Floats, Floats]:

@@ -106,6 +106,7 @@ def test_bound_is_what_a_maximum_likelihood_fit_reaches(
     assert math.sqrt(np.mean(apart**2)) == pytest.approx(bound.angle_deg[0], rel=0.1)
 
 
+@pytest.mark.slow
 def test_shot_limited_bound_falls_with_the_square_root_of_the_photons() -> None:
     setup, _ = setup_of("cmos-single-aperture")
     assert isinstance(setup.sensor, FrameSensor)

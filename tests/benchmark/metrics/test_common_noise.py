@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from benchmark import datasets
 from benchmark.metrics.bounds import cramer_rao
-from benchmark.metrics.whitening import Whitening
+from benchmark.metrics.noise_products import noise_products
 from benchmark.simulator.light.sun_disc import from_angles, tangent_axes
 from benchmark.simulator.readout.column_noise import CommonNoise, column_deviation_e
 from benchmark.simulator.readout.pixel_errors import PixelErrors
@@ -25,19 +25,34 @@ from benchmark.simulator.scene import Scene
 def test_products_are_those_over_the_inverse_covariance(seed: int, common: float) -> None:
     rng = np.random.default_rng(seed)
     group = rng.integers(0, 4, size=(2, 12))
-    deviation = rng.uniform(0.5, 3.0, size=(2, 12))
-    deviation[0, 3] = math.inf
-    noise = Whitening(deviation, CommonNoise(group, common))
-    first, second = rng.standard_normal((2, 2, 12))
-    first[0, 3] = second[0, 3] = 0.0
-    one, other = noise.whiten(first.copy()), noise.whiten(second.copy())
+    variance = rng.uniform(0.5, 3.0, size=(2, 12)) ** 2
+    variance[0, 3] = math.inf
+    mean, first, second = rng.standard_normal((3, 2, 12))
+    signals = np.stack([mean + first, mean + second])
+    found = noise_products(mean, signals, variance, CommonNoise(group, common))
     for n in range(2):
-        seen = np.isfinite(deviation[n])
-        same = group[n, seen][:, None] == group[n, seen][None]
-        covariance = np.diag(deviation[n, seen] ** 2) + common**2 * same
-        product = first[n, seen] @ np.linalg.solve(covariance, second[n, seen])
-        assert one[n] @ other[n] == pytest.approx(product, rel=1e-9, abs=1e-9)
-    assert noise.undone(one) == pytest.approx(first, abs=1e-9)
+        told = np.isfinite(variance[n])
+        same = group[n, told][:, None] == group[n, told][None]
+        covariance = np.diag(variance[n, told]) + common**2 * same
+        changes = np.stack([first[n, told], second[n, told]])
+        expected = changes @ np.linalg.solve(covariance, changes.T)
+        assert found[n] == pytest.approx(expected, rel=1e-9, abs=1e-9)
+
+
+def test_columns_are_groups_of_every_so_many_elements() -> None:
+    """Rows of columns, and without common noise: the sums written out."""
+    rng = np.random.default_rng(3)
+    mean, change = rng.standard_normal((2, 2, 12))
+    variance = rng.uniform(0.5, 3.0, size=(2, 12))
+    listed = CommonNoise(np.arange(12) % 4, 0.7)
+    one, other = (
+        noise_products(mean, (mean + change)[None], variance, common)
+        for common in (listed, CommonNoise(4, 0.7))
+    )
+    assert one == pytest.approx(other, rel=1e-12)
+    alone = noise_products(mean, (mean + change)[None], variance)
+    assert alone[:, 0, 0] == pytest.approx(np.sum(change**2 / variance, axis=1), rel=1e-12)
+    assert (one < alone).all()
 
 
 def window(errors: PixelErrors) -> tuple[Any, Any, Scene]:
