@@ -1,17 +1,21 @@
 """Sun directions as unit vectors, as projected angles and as rotation angles, all in degrees.
 
-Two pairs of angles are in use and agree only on the axes: projected angles
-(``tan(alpha) = s_y/s_z``, ``tan(beta) = s_x/s_z``, eq:stdproj) and rotation angles
-(``s = (sin(beta) cos(alpha), sin(alpha), cos(beta) cos(alpha))``, a turntable's, eq:lsq).
+Three pairs of angles are in use and agree only on the axes: projected angles
+(``tan(alpha) = s_y/s_z``, ``tan(beta) = s_x/s_z``, eq:stdproj) and rotation angles, a turntable's,
+with alpha inside (``s = (sin(beta) cos(alpha), sin(alpha), cos(beta) cos(alpha))``, eq:lsq) or with
+beta inside (``s = (sin(beta), cos(beta) sin(alpha), cos(beta) cos(alpha))``).
 """
 
 from __future__ import annotations
+
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from algorithms.contract import Floats
-from algorithms.row_arithmetic import normalised
+
+Inner = Literal["alpha", "beta"]
 
 
 def angles_from_sun(sun: ArrayLike) -> Floats:
@@ -66,9 +70,8 @@ def sun_from_angles(angles_deg: ArrayLike) -> Floats:
            [  nan,   nan,   nan]])
     """
     angles = _rows(angles_deg, 2, "angles_deg")
-    front = np.abs(angles) < 90.0
-    tangents = np.full_like(angles, np.nan)
-    tangents[front] = np.tan(np.radians(angles[front]))
+    tangents = np.tan(np.radians(angles))
+    tangents[~(np.abs(angles) < 90.0)] = np.nan
     return sun_from_tangents(tangents)
 
 
@@ -125,58 +128,78 @@ def sun_from_tangents(tangents: ArrayLike) -> Floats:
     >>> sun_from_tangents([[0.0, 0.75]])
     array([[0.6, 0. , 0.8]])
     """
-    columns = _rows(tangents, 2, "tangents")
-    return normalised(
-        np.column_stack([columns[:, 1], columns[:, 0], np.ones(len(columns))]),
-    )
+    alpha, beta = _rows(tangents, 2, "tangents").T
+    length = alpha * alpha
+    length += beta * beta
+    length += 1.0
+    np.sqrt(length, out=length)
+    length[~np.isfinite(length)] = np.nan
+    sun = np.empty((len(length), 3))
+    for component, column in zip((beta, alpha, 1.0), sun.T, strict=True):
+        np.divide(component, length, out=column)
+    return sun
 
 
-def rotations_from_sun(sun: ArrayLike) -> Floats:
+def rotations_from_sun(sun: ArrayLike, inner: Inner = "alpha") -> Floats:
     """Rotation angles of Sun vectors: the axes of a two-axis turntable (eq:lsq).
 
     Parameters
     ----------
     sun : array_like, shape (N, 3)
         Vectors to the Sun in the sensor frame.
+    inner : {"alpha", "beta"}
+        The axis next to the sensor, which the other one carries: alpha, about x, as eq:lsq has
+        it, or beta, about y.
 
     Returns
     -------
     ndarray, shape (N, 2)
-        ``(alpha, beta)`` in degrees with ``alpha = asin(s_y)`` and ``beta = atan2(s_x, s_z)``.
+        ``(alpha, beta)`` in degrees: ``alpha = asin(s_y)`` and ``beta = atan2(s_x, s_z)``, or with
+        beta inside ``beta = asin(s_x)`` and ``alpha = atan2(s_y, s_z)``.
 
     Raises
     ------
     ValueError
-        If `sun` is not (N, 3).
+        If `sun` is not (N, 3), or `inner` is neither axis.
 
     Examples
     --------
     >>> rotations_from_sun([[0.0, 1.0, 0.0], [1.0, 0.0, 1.0]])
     array([[90.,  0.],
            [ 0., 45.]])
+    >>> rotations_from_sun([[0.48, 0.64, 0.6]]).round(2)
+    array([[39.79, 38.66]])
+    >>> rotations_from_sun([[0.48, 0.64, 0.6]], inner="beta").round(2)
+    array([[46.85, 28.69]])
     """
     x, y, z = _rows(sun, 3, "sun").T
-    rotations = np.column_stack([np.arctan2(y, np.hypot(x, z)), np.arctan2(x, z)])
+    if _require_axis(inner) == "alpha":
+        rotations = np.column_stack([np.arctan2(y, np.hypot(x, z)), np.arctan2(x, z)])
+    else:
+        rotations = np.column_stack([np.arctan2(y, z), np.arctan2(x, np.hypot(y, z))])
     return np.asarray(np.degrees(rotations), dtype=np.float64)
 
 
-def sun_from_rotations(rotations_deg: ArrayLike) -> Floats:
+def sun_from_rotations(rotations_deg: ArrayLike, inner: Inner = "alpha") -> Floats:
     """Sun unit vectors of rotation angles; the inverse of `rotations_from_sun`.
 
     Parameters
     ----------
     rotations_deg : array_like, shape (N, 2)
         ``(alpha, beta)`` in degrees, any.
+    inner : {"alpha", "beta"}
+        The axis next to the sensor.
 
     Returns
     -------
     ndarray, shape (N, 3)
-        ``(sin(beta) cos(alpha), sin(alpha), cos(beta) cos(alpha))``.
+        ``(sin(beta) cos(alpha), sin(alpha), cos(beta) cos(alpha))``, or with beta inside
+        ``(sin(beta), cos(beta) sin(alpha), cos(beta) cos(alpha))``.
 
     Raises
     ------
     ValueError
-        If `rotations_deg` is not (N, 2).
+        If `rotations_deg` is not (N, 2), or `inner` is neither axis.
 
     Examples
     --------
@@ -184,9 +207,11 @@ def sun_from_rotations(rotations_deg: ArrayLike) -> Floats:
     array([[0.   , 0.5  , 0.866]])
     """
     alpha, beta = np.radians(_rows(rotations_deg, 2, "rotations_deg")).T
-    return np.column_stack(
-        [np.sin(beta) * np.cos(alpha), np.sin(alpha), np.cos(beta) * np.cos(alpha)]
-    )
+    if _require_axis(inner) == "alpha":
+        x, y = np.sin(beta) * np.cos(alpha), np.sin(alpha)
+    else:
+        x, y = np.sin(beta), np.cos(beta) * np.sin(alpha)
+    return np.column_stack([x, y, np.cos(beta) * np.cos(alpha)])
 
 
 def separation_deg(first: ArrayLike, second: ArrayLike) -> Floats:
@@ -221,6 +246,12 @@ def separation_deg(first: ArrayLike, second: ArrayLike) -> Floats:
     cross = np.linalg.norm(np.cross(a, b), axis=1)
     angle = np.degrees(np.arctan2(cross, np.einsum("ij,ij->i", a, b)))
     return np.asarray(angle, dtype=np.float64)
+
+
+def _require_axis(inner: str) -> str:
+    if inner not in get_args(Inner):
+        raise ValueError(f"inner must be one of {', '.join(get_args(Inner))}; got {inner!r}")
+    return inner
 
 
 def _rows(values: ArrayLike, columns: int, name: str) -> Floats:

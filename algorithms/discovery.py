@@ -1,4 +1,4 @@
-"""Every extractor and model there is, found by walking the modules that hold them.
+"""Every extractor, compensation and model there is, found by walking the modules that hold them.
 
 A class counts when it is public, is written in the module walked (not imported into it), and has
 the contract's method. Modules and classes with a leading underscore are skipped, and modules of
@@ -15,9 +15,11 @@ from collections.abc import Iterator
 from types import ModuleType
 from typing import cast
 
+import algorithms.compensations
 import algorithms.extractors
 import algorithms.models
-from algorithms.contract import About, Extractor, Model
+from algorithms.chain import Chain, chains
+from algorithms.contract import About, Compensation, Extractor, Model
 
 
 def discover_extractors() -> dict[str, type[Extractor]]:
@@ -38,6 +40,20 @@ def discover_extractors() -> dict[str, type[Extractor]]:
     return cast("dict[str, type[Extractor]]", found)
 
 
+def discover_compensations() -> dict[str, type[Compensation]]:
+    """Compensation classes by their unique name, in alphabetical order.
+
+    Raises
+    ------
+    TypeError
+        If a class transforms but lacks part of the contract, or is not a dataclass.
+    ValueError
+        If two classes carry the same name.
+    """
+    found = implementations(algorithms.compensations, Compensation, "transform")
+    return cast("dict[str, type[Compensation]]", found)
+
+
 def discover_models() -> dict[str, type[Model]]:
     """Model classes by their unique name, in alphabetical order.
 
@@ -49,6 +65,20 @@ def discover_models() -> dict[str, type[Model]]:
         If two classes carry the same name.
     """
     return cast("dict[str, type[Model]]", implementations(algorithms.models, Model, "predict"))
+
+
+def discover_chains() -> dict[str, type[Model] | Chain]:
+    """Models alone and behind the compensations that say they go ahead of them, by name.
+
+    Raises
+    ------
+    TypeError
+        As `discover_models` and `discover_compensations`.
+    ValueError
+        As these, and where a compensation goes ahead of a model that there is not.
+    """
+    models = discover_models()
+    return {**models, **chains(discover_compensations(), models)}
 
 
 def implementations(package: ModuleType, contract: type, method: str) -> dict[str, type]:

@@ -130,12 +130,39 @@ def as_features(features: ArrayLike, columns: int, by: str) -> Floats:
     array([[ 1.,  2.],
            [nan, nan]])
     """
+    found = np.array(as_feature_rows(features, columns, by), dtype=np.float64)
+    if not np.isfinite(found).all():
+        found[~np.isfinite(found).all(axis=1)] = np.nan
+    return found
+
+
+def as_feature_rows(features: ArrayLike, columns: int, by: str) -> NDArray[Any]:
+    """Features as they are, with `as_features`' demands on their shape and type.
+
+    Parameters
+    ----------
+    features, columns, by
+        As `as_features` takes them.
+
+    Returns
+    -------
+    ndarray, shape (N, columns)
+        Not copied where they are an array already.
+
+    Raises
+    ------
+    ValueError
+        As `as_features`.
+
+    Examples
+    --------
+    >>> as_feature_rows([[1, 2]], 2, "spm")
+    array([[1, 2]])
+    """
     array = _numbers(features, f"features of {by}", 2, f"(N, {columns})")
     if array.shape[1] != columns:
         raise ValueError(f"{by} reads features of shape (N, {columns}); got {array.shape}")
-    found = np.array(array, dtype=np.float64)
-    found[~np.isfinite(found).all(axis=1)] = np.nan
-    return found
+    return array
 
 
 def as_calibration(
@@ -173,6 +200,50 @@ def as_calibration(
     >>> found, sun
     (array([[1., 2.]]), array([[0., 0., 1.]]))
     """
+    found, vectors, _ = as_calibration_rows(features, sun, columns, by)
+    return found, vectors
+
+
+def as_calibration_rows(
+    features: ArrayLike, sun: ArrayLike, columns: int, by: str, *, frontal: bool = False
+) -> tuple[Floats, Floats, NDArray[np.bool_]]:
+    """`as_calibration`, and which rows are left.
+
+    Parameters
+    ----------
+    features : array_like, shape (N, columns)
+        Real numbers.
+    sun : array_like, shape (N, 3)
+        Unit vectors.
+    columns : int
+        Features of a sample.
+    by : str
+        Who reads them, for the message.
+    frontal : bool
+        Whether the Sun must be in front of the detector.
+
+    Returns
+    -------
+    features : ndarray, shape (n, columns)
+        Those that are finite.
+    sun : ndarray, shape (n, 3)
+        Of the same samples.
+    usable : ndarray of bool, shape (N,)
+        Which they are.
+
+    Raises
+    ------
+    UnusableDataError
+        If `frontal` and a row with features has its Sun at ``s_z <= 0``.
+    ValueError
+        As `as_calibration`.
+
+    Examples
+    --------
+    >>> _, _, usable = as_calibration_rows([[1, 2], [np.nan, 2]], [[0, 0, 1], [0, 1, 0]], 2, "spm")
+    >>> usable
+    array([ True, False])
+    """
     found = as_features(features, columns, by)
     vectors = np.array(_numbers(sun, f"sun of {by}", 2, "(N, 3)"), dtype=np.float64)
     if vectors.shape != (len(found), 3):
@@ -185,50 +256,15 @@ def as_calibration(
     if wrong.any():
         row = int(np.argmax(wrong))
         raise ValueError(f"sun must hold unit vectors; row {row} has length {lengths[row]:.6g}")
-    usable = ~np.isnan(found).any(axis=1)
-    return found[usable], vectors[usable]
-
-
-def as_frontal_calibration(features: ArrayLike, sun: ArrayLike, by: str) -> tuple[Floats, Floats]:
-    """`as_calibration` of two columns for a planar detector, with the Sun in front of it.
-
-    Parameters
-    ----------
-    features : array_like, shape (N, 2)
-        Real numbers.
-    sun : array_like, shape (N, 3)
-        Unit vectors.
-    by : str
-        Who reads them, for the message.
-
-    Returns
-    -------
-    features : ndarray, shape (n, 2)
-        Those that are finite.
-    sun : ndarray, shape (n, 3)
-        Of the same samples.
-
-    Raises
-    ------
-    UnusableDataError
-        If a sample with features has its Sun behind the detector, ``s_z <= 0``.
-    ValueError
-        As `as_calibration`.
-
-    Examples
-    --------
-    >>> as_frontal_calibration([[1, 2]], [[0, 1, 0]], "spm")  # doctest: +ELLIPSIS
-    Traceback (most recent call last):
-    algorithms.contract.UnusableDataError: spm is a planar model: ...
-    """
-    found, vectors = as_calibration(features, sun, 2, by)
+    usable = np.asarray(~np.isnan(found).any(axis=1))
+    found, vectors = found[usable], vectors[usable]
     behind = vectors[:, 2] <= 0
-    if behind.any():
+    if frontal and behind.any():
         raise UnusableDataError(
             f"{by} is a planar model: the Sun must be in front of the detector (s_z > 0); "
             f"{int(behind.sum())} calibration rows with features have s_z <= 0"
         )
-    return found, vectors
+    return found, vectors, usable
 
 
 def require_samples(count: int, needed: int, by: str, why: str) -> None:

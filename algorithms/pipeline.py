@@ -1,4 +1,4 @@
-"""An extractor and a model put together: what is scored, and what a user calls.
+"""Extractor, compensations and model put together: what is scored, and what a user calls.
 
 The stages meet in features (N, F), float64. To calibrate several models on what one extractor
 found, extract once with `extracted` and hand the features to each pipeline's `fit_features` and
@@ -7,20 +7,32 @@ found, extract once with `extracted` and hand the features to each pipeline's `f
 
 from __future__ import annotations
 
+import dataclasses
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Self
+from typing import Any, Self, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from algorithms.contract import Extractor, FeatureKind, Floats, Model, SensorGeometry
+from algorithms.contract import (
+    Compensation,
+    Context,
+    Extractor,
+    FeatureKind,
+    Floats,
+    Model,
+    NotFittedError,
+    SensorGeometry,
+)
 
 
 @dataclass
 class Pipeline:
-    """An extractor and a model: what a study resolves to, and what is scored.
+    """An extractor, compensations and a model: what a study resolves to, and what is scored.
 
-    Calibrated once on observations of known Suns, it turns others into directions.
+    Calibrated once on observations of known Suns, it turns others into directions. Each stage is
+    fitted to what the stages before it leave.
 
     Parameters
     ----------
@@ -28,11 +40,13 @@ class Pipeline:
         Made for the sensor (`for_sensor`).
     model : Model
         Fitted or not; it must accept the extractor's kind of features.
+    compensations : tuple of Compensation
+        In the order they are applied, each of the extractor's kind of features.
 
     Raises
     ------
     ValueError
-        If the model does not accept the extractor's kind of features.
+        If a stage does not accept the extractor's kind of features.
 
     Examples
     --------
@@ -49,21 +63,48 @@ class Pipeline:
 
     extractor: Extractor
     model: Model
+    compensations: tuple[Compensation, ...] = ()
 
     def __post_init__(self) -> None:
-        extractor, model = self.extractor.about, self.model.about
-        if extractor.kind not in model.accepts:
-            raise ValueError(
-                f"model {model.name} accepts {sorted(model.accepts)} features; "
-                f"extractor {extractor.name} gives {extractor.kind}"
-            )
+        extractor = self.extractor.about
+        for stage in self.stages:
+            if extractor.kind not in stage.about.accepts:
+                what = "model" if stage is self.model else "compensation"
+                raise ValueError(
+                    f"{what} {stage.about.name} accepts {sorted(stage.about.accepts)} features; "
+                    f"extractor {extractor.name} gives {extractor.kind}"
+                )
 
     @classmethod
     def for_sensor(
-        cls, extractor: type[Extractor], model: type[Model], geometry: SensorGeometry
+        cls,
+        extractor: type[Extractor],
+        model: type[Model],
+        geometry: SensorGeometry,
+        compensations: Sequence[type[Compensation]] = (),
     ) -> Self:
-        """Both parts with the parameters this sensor's design asks for."""
-        return cls(extractor.for_sensor(geometry), model.for_sensor(geometry, extractor.about.kind))
+        """All parts with the parameters this sensor's design asks for."""
+        kind = extractor.about.kind
+        return cls(
+            extractor.for_sensor(geometry),
+            model.for_sensor(geometry, kind),
+            tuple(stage.for_sensor(geometry, kind) for stage in compensations),
+        )
+
+    @property
+    def stages(self) -> tuple[Compensation | Model, ...]:
+        """Compensations and model, in the order they are applied."""
+        return (*self.compensations, self.model)
+
+    @property
+    def name(self) -> str:
+        """Names of compensations and model, such as ``"optical + polynomial-2d"``."""
+        return " + ".join(stage.about.name for stage in self.stages)
+
+    @property
+    def context(self) -> tuple[str, ...]:
+        """Columns that its stages read beside the features, sorted."""
+        return tuple(sorted({name for stage in self.stages for name in stage.about.context}))
 
     def with_model(self, model: Model) -> Self:
         """Return the pipeline with another model behind the same extractor."""
@@ -74,23 +115,45 @@ class Pipeline:
         return extracted(self.extractor, observations, origin_px)
 
     def fit(
-        self, observations: ArrayLike, sun: ArrayLike, origin_px: ArrayLike | None = None
+        self,
+        observations: ArrayLike,
+        sun: ArrayLike,
+        origin_px: ArrayLike | None = None,
+        context: Context | None = None,
     ) -> Self:
-        """Fit the model to observations of known Suns (N, 3), unit vectors; returns self."""
-        return self.fit_features(self.features(observations, origin_px), sun)
+        """Fit all stages to observations of known Suns (N, 3), unit vectors; returns self."""
+        return self.fit_features(self.features(observations, origin_px), sun, context)
 
-    def predict(self, observations: ArrayLike, origin_px: ArrayLike | None = None) -> Floats:
+    def predict(
+        self,
+        observations: ArrayLike,
+        origin_px: ArrayLike | None = None,
+        context: Context | None = None,
+    ) -> Floats:
         """Sun unit vectors (N, 3); NaN rows where undefined."""
-        return self.predict_features(self.features(observations, origin_px))
+        return self.predict_features(self.features(observations, origin_px), context)
 
-    def fit_features(self, features: ArrayLike, sun: ArrayLike) -> Self:
+    def fit_features(
+        self, features: ArrayLike, sun: ArrayLike, context: Context | None = None
+    ) -> Self:
         """`fit` from where features (N, F) are known."""
-        self.model.fit(features, sun)
+        for stage in self.compensations:
+            features = stage.fit(features, sun, context).transform(features, context)
+        self.model.fit(features, sun, context)
         return self
 
-    def predict_features(self, features: ArrayLike) -> Floats:
+    def predict_features(self, features: ArrayLike, context: Context | None = None) -> Floats:
         """`predict` from where features (N, F) are known."""
-        return self.model.predict(features)
+        for stage in self.compensations:
+            features = stage.transform(features, context)
+        return self.model.predict(features, context)
+
+    def require_fitted(self) -> None:
+        """Raise NotFittedError unless every stage has been fitted."""
+        for stage in self.stages:
+            fitted = [f.name for f in dataclasses.fields(cast("Any", stage)) if not f.init]
+            if not all(hasattr(stage, name) for name in fitted):
+                raise NotFittedError(f"{stage.about.name} is not fitted yet; call fit first")
 
 
 def extracted(

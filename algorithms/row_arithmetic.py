@@ -10,6 +10,30 @@ from numpy.typing import NDArray
 from algorithms.contract import Floats
 
 
+def finite_rows(features: NDArray[Any]) -> Floats:
+    """Features as float64, whole columns beside each other in memory, broken rows as NaN.
+
+    Parameters
+    ----------
+    features : ndarray, shape (N, F)
+        Of any real type.
+
+    Returns
+    -------
+    ndarray, shape (N, F)
+        A copy, of rows that are finite or NaN throughout.
+
+    Examples
+    --------
+    >>> finite_rows(np.array([[3.0, float("inf")]]))
+    array([[nan, nan]])
+    """
+    found = np.array(features, dtype=np.float64, order="F")
+    if not np.isfinite(found).all():
+        found[~np.isfinite(found).all(axis=1)] = np.nan
+    return found
+
+
 def quotient_rows(numerators: Floats, divisors: Floats, valid: NDArray[np.bool_]) -> Floats:
     """Rows (N, F) over their divisor (N,); a NaN row where not `valid` (N,)."""
     quotients = np.full_like(numerators, np.nan)
@@ -18,10 +42,19 @@ def quotient_rows(numerators: Floats, divisors: Floats, valid: NDArray[np.bool_]
 
 
 def normalised(vectors: Floats) -> Floats:
-    """Rows scaled to unit length; a NaN row where the length is zero or not finite."""
-    length = np.linalg.norm(vectors, axis=1, keepdims=True)
-    unit = np.full_like(vectors, np.nan)
-    np.divide(vectors, length, out=unit, where=np.isfinite(length) & (length > 0))
+    """Rows scaled to unit length; a NaN row where the length is zero or not finite.
+
+    Column by column: rows of three numbers are too short for NumPy's inner loops.
+    """
+    squares = np.zeros(len(vectors))
+    for column in vectors.T:
+        squares += column * column
+    length = np.sqrt(squares, out=squares)
+    length[~(np.isfinite(length) & (length > 0))] = np.nan
+    unit = np.empty_like(vectors)
+    with np.errstate(invalid="ignore"):
+        for column, scaled in zip(vectors.T, unit.T, strict=True):
+            np.divide(column, length, out=scaled)
     return unit
 
 

@@ -10,7 +10,7 @@ from typing import TypedDict
 
 import numpy as np
 
-from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
+from algorithms.contract import AboutCompensation, AboutModel, FeatureKind, Floats, SensorGeometry
 from algorithms.inputs import require_positive
 
 POSITIONS = frozenset({FeatureKind.SPOT, FeatureKind.BALANCE})
@@ -26,7 +26,7 @@ class NominalProjection(TypedDict):
 
 
 def nominal_projection(
-    geometry: SensorGeometry, kind: FeatureKind, about: AboutModel
+    geometry: SensorGeometry, kind: FeatureKind, about: AboutModel | AboutCompensation
 ) -> NominalProjection:
     """Focal length, unit and centre of a sensor's features.
 
@@ -64,5 +64,8 @@ def nominal_tangents(
     features: Floats, focal_length_mm: float, unit_mm: float, centre: tuple[float, float]
 ) -> Floats:
     """``(tan(alpha), tan(beta))`` (N, 2) of features (x, y) (N, 2): alpha with y, beta with x."""
-    tangents = (features - np.asarray(centre))[:, ::-1] * (unit_mm / focal_length_mm)
-    return np.asarray(tangents, dtype=np.float64)
+    tangents = np.empty_like(features)
+    for column, middle in enumerate(centre):
+        np.subtract(features[:, column], middle, out=tangents[:, 1 - column])
+    tangents *= unit_mm / focal_length_mm
+    return tangents

@@ -6,6 +6,7 @@ import math
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from dataclasses import field as field_
 from pathlib import Path
 from typing import Any
 
@@ -14,13 +15,17 @@ import pytest
 from numpy.typing import NDArray
 
 from algorithms.angles import sun_from_angles
+from algorithms.calibration.parametric import tangent_axes
+from algorithms.context import CONTEXT
 from algorithms.contract import FeatureKind, Observation, SensorGeometry
 
 Floats = NDArray[np.float64]
 
 # The suite's modules import each other by name; what they assert is spelt out where it fails.
 sys.path.append(str(Path(__file__).parent / "suite"))
-pytest.register_assert_rewrite("expectations", "extractor_checks", "model_checks")
+pytest.register_assert_rewrite(
+    "expectations", "compensation_checks", "extractor_checks", "model_checks"
+)
 
 FACES = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
 PYRAMID = tuple(
@@ -30,6 +35,15 @@ PYRAMID = tuple(
 DIAL = {"code_bits": 5, "code_cell_mm": 0.15, "fine_period_mm": 0.3}
 LINE_PIXELS = 60
 HOLES = ((-0.08, -0.06, 0.05), (0.08, -0.05, 0.05), (-0.07, 0.07, 0.05), (0.09, 0.06, 0.05))
+PYRAMIDS = {
+    "angular-loss",
+    "assembled-faces",
+    "panoramic",
+    "panoramic-temperature",
+    "pyramidal",
+    "pyramidal-constant",
+    "temperature",
+}
 MULTI_SPOT = {"mcam", "fmms", "feic", "weighted-spots"}
 #: Fields in which the sensor differs that one implementation is made for.
 OWN_DESIGN = {
@@ -37,18 +51,56 @@ OWN_DESIGN = {
     "bscm": {"lens_distortion": (-0.1, 0.02)},
     "hough-lines": {"lens_distortion": (-0.1, 0.02)},
     "hough-circle": {"aperture_shape": "round"},
+    "optical": {"cover_glass": ((0.3, 1.5), (0.2, 1.8))},
+    "shadow": {"mask_thickness_mm": 0.1},
     "escm": {"aperture_width_mm": 0.04},
     "escm-wta": {"aperture_width_mm": 0.04},
+    "slit": {"line_axes": ("x", "y"), "slits": ((0.0, 0.0, 0.1),)},
+    "multi-slit": {"line_axes": ("y", "x"), "slits": ((-0.6, 0.0, 0.2), (0.7, 0.0, 0.2))},
+    "v-slit": {
+        "line_axes": ("y",),
+        "slits": ((-3.3, 0.0, 0.1), (0.5, 45.0, 0.1)),
+    },
+    "n-slit": {
+        "line_axes": ("y",),
+        "slits": ((-3.0, 45.0, 0.1), (0.0, 0.0, 0.1), (3.0, 45.0, 0.1)),
+    },
+    "camera": {"lens_distortion": (-0.1, 0.02)},
 }
+#: Middle and spread of numbers that a context holds.
+USUAL = {"temperature_K": (298.0, 30.0), "illumination": (1.0, 0.03), "time_s": (500.0, 500.0)}
 COMMON_SUITE = "test_common_suite.py::test_"
+KINDS = ("compensation", "extractor", "model")
 
 
 @dataclass(frozen=True)
 class Calibration:
-    """Features of known Suns."""
+    """Features of known Suns, with what a model reads beside them."""
 
     features: Floats
     sun: Floats
+    context: dict[str, Floats] = field_(default_factory=dict)
+
+    def of(self, rows: Any) -> Calibration:
+        """Those rows."""
+        context = {name: column[rows] for name, column in self.context.items()}
+        return Calibration(self.features[rows], self.sun[rows], context)
+
+    def beside(self, names: tuple[str, ...]) -> Calibration:
+        """The same with context: numbers of a column's usual size, unit vectors."""
+        rng, context = np.random.default_rng(19), {}
+        for name in names:
+            middle, spread = USUAL.get(name, (0.0, 1.0))
+            column = middle + spread * rng.uniform(-1.0, 1.0, (len(self.sun), *CONTEXT[name]))
+            if column.ndim == 2:
+                column /= np.linalg.norm(column, axis=1, keepdims=True)
+            context[name] = column
+        # the sensor's axes are the inertial ones here
+        if "sun_inertial" in context:
+            context["sun_inertial"] = self.sun.copy()
+        if {"magnetic_field_nT", "magnetic_field_inertial_nT"} <= context.keys():
+            context["magnetic_field_inertial_nT"] = context["magnetic_field_nT"].copy()
+        return replace(self, context=context)
 
 
 @pytest.fixture(scope="session")
@@ -72,10 +124,8 @@ def design_for(geometry: SensorGeometry) -> Callable[[Any], SensorGeometry]:
     def make(implementation: Any) -> SensorGeometry:
         if "code_bits" in implementation.about.needs:
             return replace(geometry, line_axes=("x", "y"), **DIAL)
-        if implementation.about.name in {
-            "panoramic",
-            "pyramidal",
-        }:  # three faces lit, whatever the Sun
+        # faces that are all lit, whatever the Sun
+        if implementation.about.name in PYRAMIDS:
             return replace(geometry, face_normals=PYRAMID)
         if implementation.about.name in MULTI_SPOT:
             return replace(geometry, focal_length_mm=0.5, aperture_width_mm=0.05, apertures=HOLES)
@@ -253,12 +303,33 @@ def calibration_for(geometry: SensorGeometry, field: Floats) -> Callable[..., Ca
     return make
 
 
+@pytest.fixture(scope="session")
+def coverage_of() -> Callable[..., float]:
+    """Share of 95 % intervals that hold the truth, over parameters and turntables' errors."""
+
+    def share(model: Any, features: Floats, sun: Floats, truth: Floats, seeds: int = 200) -> float:
+        model.starts = lambda *_: (truth,)  # the solution is the same, and sooner found
+        first, second = tangent_axes(sun)
+        held = []
+        for seed in range(seeds):
+            off = np.random.default_rng(seed).normal(0.0, 2e-4, (2, len(sun), 1))
+            told = sun + off[0] * first + off[1] * second
+            model.learn(features, told / np.linalg.norm(told, axis=1, keepdims=True), {})
+            for parameter, value in zip(model.settled(), truth, strict=True):
+                low, high = parameter.interval()
+                held.append(low <= value <= high)
+        del model.starts
+        return float(np.mean(held))
+
+    return share
+
+
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
     """Say how many checks of the common suite passed, and on how many implementations."""
     passed = [
         report.nodeid
         for report in terminalreporter.stats.get("passed", [])
-        if f"{COMMON_SUITE}extractor[" in report.nodeid or f"{COMMON_SUITE}model[" in report.nodeid
+        if any(f"{COMMON_SUITE}{kind}[" in report.nodeid for kind in KINDS)
     ]
     if passed:
         names = {nodeid.split("[")[1].rsplit("-check_")[0] for nodeid in passed}

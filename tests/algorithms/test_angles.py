@@ -85,3 +85,22 @@ def test_separation_at_its_ends():
 def test_wrong_shapes_are_named(call):
     with pytest.raises(ValueError, match="got"):
         call()
+
+
+@pytest.mark.parametrize("inner", ["alpha", "beta"])
+def test_a_turntable_is_two_rotations_one_inside_the_other(inner):
+    """The sensor, turned by the inner axis and then by the outer, sees the lamp there."""
+    alpha, beta = 23.0, -41.0
+    a, b = np.radians([alpha, beta])
+    about_x = np.array([[1, 0, 0], [0, np.cos(a), np.sin(a)], [0, -np.sin(a), np.cos(a)]])
+    about_y = np.array([[np.cos(b), 0, np.sin(b)], [0, 1, 0], [-np.sin(b), 0, np.cos(b)]])
+    lamp = np.array([0.0, 0.0, 1.0])
+    seen = about_y @ (about_x @ lamp) if inner == "alpha" else about_x @ (about_y @ lamp)
+    np.testing.assert_allclose(sun_from_rotations([[alpha, beta]], inner)[0], seen, atol=1e-15)
+    np.testing.assert_allclose(rotations_from_sun([seen], inner), [[alpha, beta]], atol=1e-12)
+
+
+def test_an_axis_that_is_none_is_named():
+    for call in (rotations_from_sun, sun_from_rotations):
+        with pytest.raises(ValueError, match="inner must be one of alpha, beta; got 'gamma'"):
+            call(np.ones((1, 3 if call is rotations_from_sun else 2)), "gamma")

@@ -1,4 +1,4 @@
-"""What every extractor and every model must do, run on all that discovery finds."""
+"""What every extractor, compensation and model must do, run on all that discovery finds."""
 
 from __future__ import annotations
 
@@ -6,16 +6,24 @@ import os
 import re
 from pathlib import Path
 
+import compensation_checks
 import extractor_checks
 import model_checks
 import pytest
+from compensation_checks import COMPENSATION_CHECKS
 from extractor_checks import EXTRACTOR_CHECKS
 from model_checks import MODEL_CHECKS
 
 import algorithms
-from algorithms.discovery import discover_extractors, discover_models
+from algorithms.context import CONTEXT
+from algorithms.discovery import (
+    discover_compensations,
+    discover_extractors,
+    discover_models,
+)
 
 EXTRACTORS = discover_extractors()
+COMPENSATIONS = discover_compensations()
 MODELS = discover_models()
 
 RAN: set[tuple[str, str]] = set()
@@ -29,6 +37,18 @@ def test_extractor(name, check, design_for, observations_for):
     check(cls, cls.for_sensor(design_for(cls)), observations_for(cls))
 
 
+@pytest.mark.parametrize("check", COMPENSATION_CHECKS, ids=lambda check: check.__name__)
+@pytest.mark.parametrize("name", COMPENSATIONS)
+def test_compensation(name, check, design_for, calibration_for):
+    cls = COMPENSATIONS[name]
+    RAN.add((name, check.__name__))
+    design = design_for(cls)
+    for kind in sorted(cls.about.accepts):
+        extra = (design,) if "geometry" in check.__code__.co_varnames else ()
+        calibration = calibration_for(kind, design).beside(tuple(CONTEXT))
+        check(cls, cls.for_sensor(design, kind), calibration, *extra)
+
+
 @pytest.mark.parametrize("check", MODEL_CHECKS, ids=lambda check: check.__name__)
 @pytest.mark.parametrize("name", MODELS)
 def test_model(name, check, design_for, calibration_for):
@@ -37,26 +57,31 @@ def test_model(name, check, design_for, calibration_for):
     design = design_for(cls)
     for kind in sorted(cls.about.accepts):
         extra = (design,) if "geometry" in check.__code__.co_varnames else ()
-        check(cls, cls.for_sensor(design, kind), calibration_for(kind, design), *extra)
+        calibration = calibration_for(kind, design).beside(cls.about.context)
+        check(cls, cls.for_sensor(design, kind), calibration, *extra)
 
 
 def test_every_check_ran_on_every_implementation(request):
     """An empty discovery, or a check that lost its decorator, must not look green."""
     source = [
         path.read_text(encoding="utf-8")
-        for folder in ("extractors", "models")
+        for folder in ("extractors", "compensations", "models")
         for path in (Path(algorithms.__file__).parent / folder).rglob("*.py")
     ]
     declared = sum(
         len(re.findall(r"^    about: ClassVar = About", text, re.MULTILINE)) for text in source
     )
-    assert declared == len(EXTRACTORS) + len(MODELS) >= 14
+    assert declared == len(EXTRACTORS) + len(COMPENSATIONS) + len(MODELS) >= 14
 
-    written = [Path(module.__file__).read_text() for module in (extractor_checks, model_checks)]
+    written = [
+        Path(module.__file__).read_text()
+        for module in (extractor_checks, compensation_checks, model_checks)
+    ]
     defined = sum(len(re.findall(r"^def check_", text, re.MULTILINE)) for text in written)
-    assert defined == len(EXTRACTOR_CHECKS) + len(MODEL_CHECKS)
+    assert defined == len(EXTRACTOR_CHECKS) + len(COMPENSATION_CHECKS) + len(MODEL_CHECKS)
 
     expected = {(name, check.__name__) for name in EXTRACTORS for check in EXTRACTOR_CHECKS}
+    expected |= {(name, check.__name__) for name in COMPENSATIONS for check in COMPENSATION_CHECKS}
     expected |= {(name, check.__name__) for name in MODELS for check in MODEL_CHECKS}
     collected = {
         (item.callspec.params["name"], item.callspec.params["check"].__name__)

@@ -42,10 +42,10 @@ class Ahead(Model):
         accepts=frozenset({FeatureKind.SPOT, FeatureKind.BALANCE}),
     )
 
-    def fit(self, features, sun):
+    def fit(self, features, sun, context=None):
         return self
 
-    def predict(self, features):
+    def predict(self, features, context=None):
         return np.tile([0.0, 0.0, 1.0], (len(features), 1))
 
 

@@ -12,11 +12,26 @@ import pytest
 from numpydoc.validate import validate
 
 import algorithms
-from algorithms.discovery import discover_extractors, discover_models
+from algorithms.discovery import (
+    discover_compensations,
+    discover_extractors,
+    discover_models,
+)
 
-IMPLEMENTATIONS = {**discover_extractors(), **discover_models()}
+IMPLEMENTATIONS = {**discover_extractors(), **discover_compensations(), **discover_models()}
 #: Modules whose public functions and classes a user calls.
-PUBLIC = ("angles", "contract", "inputs", "measurement", "pipeline")
+PUBLIC = (
+    "about",
+    "angles",
+    "calibration.quality",
+    "calibration.saving",
+    "context",
+    "contract",
+    "design",
+    "inputs",
+    "measurement",
+    "pipeline",
+)
 SECTIONS = ("Notes", "References", "Examples")
 #: What numpydoc reports that is not asked for: a "See Also" (SA01).
 NOT_ASKED = frozenset({"SA01"})

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
@@ -40,3 +41,25 @@ def test_an_image_of_ones_own_takes_three_lines(
     assert cv2.imwrite("sun.png", np.full((60, 80), 20, dtype=dtype))
     exec("\n".join(lines), names)
     assert Doubt(names["found"].doubts[0]) == Doubt.NO_SPOT  # type: ignore[attr-defined]
+
+
+@pytest.mark.slow
+def test_the_examples_of_pipelines_run_one_after_another(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    blocks = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)[1:4]
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, Any] = {}
+    exec(blocks[0], names)
+    fitted, features = names["pipeline"], names["test"].observations
+    exec(blocks[1], names)
+    np.testing.assert_array_equal(
+        names["again"].predict(features, names["test"].origin_px), names["sun"]
+    )
+    known = np.isfinite(names["sun"][:, 0])
+    assert (names["sigma_deg"][known] < 0.1).all()
+    low, high = fitted.model.quality_.parameter("focal_length_error").interval()
+    assert low < high
+    exec(blocks[2], names)
+    assert names["pipeline"].name == "temperature + basic"
+    assert np.isfinite(names["sun"][:, 0]).mean() > 0.5

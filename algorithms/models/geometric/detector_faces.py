@@ -32,6 +32,52 @@ def require_normals(face_normals: Normals, by: str) -> Floats:
     )
 
 
+def axis_faces(face_normals: Normals, by: str) -> tuple[list[int], list[int]]:
+    """Columns of the +x, +y, +z faces and of the -x, -y, -z faces of a cube, in any order.
+
+    Raises
+    ------
+    UnsuitableDesignError
+        If the faces are not these six, naming `by`.
+    """
+    normals = np.asarray(face_normals, dtype=np.float64)
+    axes = np.vstack([np.eye(3), -np.eye(3)])
+    if normals.shape == (6, 3):
+        match = (np.abs(normals - axes[:, None]) <= UNIT_TOLERANCE).all(axis=2)
+        if (match.sum(axis=0) == 1).all() and (match.sum(axis=1) == 1).all():
+            columns = [int(column) for column in match.argmax(axis=1)]
+            return columns[:3], columns[3:]
+    raise UnsuitableDesignError(
+        f"{by} needs six face normals, +-x, +-y and +-z each once; got {face_normals!r}"
+    )
+
+
+def require_square_pairs(face_normals: Normals, by: str) -> Floats:
+    """Return the normals (6, 3): three pairs of opposite ones, the pairs square to each other.
+
+    Raises
+    ------
+    UnsuitableDesignError
+        Otherwise, naming `by`.
+    """
+    normals = np.asarray(face_normals, dtype=np.float64)
+    if normals.shape == (6, 3):
+        # row by row one opposite (-1), itself (1) and four at right angles (0)
+        cosines = np.sort(normals @ normals.T, axis=1)
+        if np.allclose(cosines, [-1.0, 0.0, 0.0, 0.0, 0.0, 1.0], rtol=0, atol=UNIT_TOLERANCE):
+            return normals
+    raise UnsuitableDesignError(
+        f"{by} needs six panel normals, three opposite pairs square to each other; "
+        f"got {face_normals!r}"
+    )
+
+
+def opposite_pairs(normals: Floats) -> tuple[tuple[int, int], ...]:
+    """Panels of each pair of `require_square_pairs`, the earlier one first."""
+    opposite = (normals @ normals.T).argmin(axis=1)
+    return tuple((one, int(other)) for one, other in enumerate(opposite) if one < other)
+
+
 def row_sums(columns: Floats, weights: Sequence[float] | Floats) -> Floats:
     """``sum_k weights_k columns_k`` (N,) of (N, K), added column by column.
 

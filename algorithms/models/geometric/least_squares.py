@@ -2,42 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import ClassVar, Self
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from algorithms.angles import rotations_from_sun, sun_from_rotations
-from algorithms.contract import (
-    AboutModel,
-    FeatureKind,
-    Floats,
-    Model,
-    SensorGeometry,
-    UnusableDataError,
-)
-from algorithms.inputs import (
-    as_features,
-    as_frontal_calibration,
-    require_fitted,
-    require_samples,
-)
-from algorithms.models.conditioning import WORST_CONDITION
+from algorithms.angles import rotations_from_sun
+from algorithms.calibration.calibrated import Columns
+from algorithms.calibration.parametric import ParametricModel
+from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
 from algorithms.models.nominal_projection import (
     POSITIONS,
     nominal_projection,
     require_projection,
 )
 
-TOLERANCE = 1e-15
-"""Relative change of cost, step and gradient at which the fit stops: machine precision."""
-
-MAX_EVALUATIONS = 1000
-
 
 @dataclass
-class LeastSquaresGeometry(Model):
+class LeastSquaresGeometry(ParametricModel):
     """Pinhole projection with focal length, two boresight offsets and zero point calibrated.
 
     The five numbers that carry most of a built sensor's error are found by nonlinear least
@@ -54,16 +37,22 @@ class LeastSquaresGeometry(Model):
         Nominal feature (x, y) of the spot when both angles are zero; where the fit of the zero
         point starts.
 
+    extrapolation : float
+        How far past the convex hull of the calibrated features answers may go, as a share of its
+        half width, from 0 up; infinity for anywhere.
+
     Attributes
     ----------
-    focal_length_error_mm_ : float
-        Delta F.
-    boresight_deg_ : tuple of two float
-        ``(alpha_0, beta_0)``.
-    zero_point_ : tuple of two float
-        ``(x_zp, y_zp)``, in the features' unit.
-    residual_rms_deg_ : float
-        Root mean square of the angle residuals over both axes.
+    vector_ : ndarray, shape (5,)
+        Delta F in mm, alpha_0 and beta_0 in degrees, x_zp and y_zp in the features' unit.
+    covariance_ : ndarray, shape (5, 5)
+        Of their errors.
+    condition_ : float
+        Of the equations at the solution.
+    quality_ : FitQuality
+        Residuals, and the five with their standard errors by name.
+    hull_ : Hull
+        Of the calibrated features.
 
     Raises
     ------
@@ -87,12 +76,13 @@ class LeastSquaresGeometry(Model):
 
     Shapes: features ``(x, y)`` (N, 2), in px or dimensionless, to unit vectors (N, 3).
 
-    Failure: a NaN row for a NaN feature row. fit raises UnusableDataError below 3 samples, where
-    the samples do not settle the five parameters (all in one place, or alpha swept alone), or where
-    it does not converge.
+    Failure: a NaN row for a NaN feature row and outside the hull. fit raises UnusableDataError
+    below 3 samples, where the samples do not settle the five parameters (all in one place, or one
+    axis swept alone), where it does not converge, or where its residuals are as large as the
+    field: with swapped or mirrored axes, which it does not know (`pinhole` does).
 
-    Cost: 5 transcendental functions and 20 operations a sample; the fit, some ten passes of
-    about 80 operations a sample and a QR factorisation (2 N, 5) each.
+    Cost: 5 transcendental functions and 20 operations a sample; the fit, some ten times eleven
+    passes over the samples.
 
     References
     ----------
@@ -106,7 +96,7 @@ class LeastSquaresGeometry(Model):
     >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
     >>> spots = 212.0 * sun[:, :2] / sun[:, 2:] + (100.7, 79.5)  # 0.12 mm too long
     >>> model = LeastSquaresGeometry(focal_length_mm=2.0, unit_mm=0.01, centre=(100.0, 80.0))
-    >>> round(float(model.fit(spots, sun).focal_length_error_mm_), 4)
+    >>> round(model.fit(spots, sun).quality_.parameter("focal_length_error").value, 4)
     0.12
     >>> angles_from_sun(model.predict(spots[[0, 8]])).round(3)
     array([[-20., -20.],
@@ -127,12 +117,8 @@ class LeastSquaresGeometry(Model):
     unit_mm: float
     centre: tuple[float, float] = (0.0, 0.0)
 
-    focal_length_error_mm_: float = field(init=False, repr=False, compare=False)
-    boresight_deg_: tuple[float, float] = field(init=False, repr=False, compare=False)
-    zero_point_: tuple[float, float] = field(init=False, repr=False, compare=False)
-    residual_rms_deg_: float = field(init=False, repr=False, compare=False)
-
     def __post_init__(self) -> None:
+        super().__post_init__()
         require_projection(self.about.name, self.focal_length_mm, self.unit_mm, self.centre)
 
     @classmethod
@@ -140,63 +126,65 @@ class LeastSquaresGeometry(Model):
         """Return the model that starts from the sensor's drawing."""
         return cls(**nominal_projection(geometry, kind, cls.about))
 
-    def fit(self, features: ArrayLike, sun: ArrayLike) -> Self:
-        """Fit Delta F, (alpha_0, beta_0) and (x_zp, y_zp) to the Sun's rotation angles."""
-        from scipy.optimize import least_squares  # noqa: PLC0415 - SciPy, at the first fit only
+    def names(self) -> Sequence[tuple[str, str]]:
+        """Name and unit of each parameter."""
+        return (
+            ("focal_length_error", "mm"),
+            ("alpha_0", "deg"),
+            ("beta_0", "deg"),
+            ("x_zp", ""),
+            ("y_zp", ""),
+        )
 
-        found, vectors = as_frontal_calibration(features, sun, self.about.name)
-        require_samples(len(found), 3, self.about.name, "five parameters, two angles a sample")
-        measured = np.radians(rotations_from_sun(vectors))
-        # Displacements in units of F, so that all five parameters are of order one.
+    def scales(self) -> Sequence[float]:
+        """One focal length, one radian, and the displacement that is one focal length."""
+        radian, reach = float(np.degrees(1.0)), self.focal_length_mm / self.unit_mm
+        return (self.focal_length_mm, radian, radian, reach, reach)
+
+    def starts(self, features: Floats, sun: Floats, context: Columns) -> Sequence[Sequence[float]]:
+        """Give the drawing."""
+        del features, sun, context
+        return ((0.0, 0.0, 0.0, *self.centre),)
+
+    def residuals(
+        self,
+        vector: Floats,
+        features: Floats,
+        sun: Floats,
+        axes: tuple[Floats, Floats],
+        context: Columns,
+    ) -> Floats:
+        """(n, 2) errors of the rotation angles, which the study makes small, radians."""
+        del axes, context
+        return self._angles(vector, features) - np.radians(rotations_from_sun(sun))
+
+    def directions(self, vector: Floats, features: Floats, context: Columns) -> Floats:
+        """(N, 3) directions of features (N, 2).
+
+        Those of the rotation angles, without a trigonometric function of a sample: sines and
+        cosines of an arc tangent are roots, and the offsets turn them.
+        """
+        del context
+        scale = self.unit_mm / (self.focal_length_mm + vector[0])
+        alpha_0, beta_0 = np.radians(vector[1:3])
+        across = (features[:, 0] - vector[3]) * scale + np.tan(beta_0)
+        along = (features[:, 1] - vector[4]) * scale + np.tan(alpha_0) / np.cos(beta_0)
+        sun = np.empty((len(features), 3))
+        sine, cosine = _turned_back(across, beta_0)
+        along /= np.sqrt(1.0 + across * across)
+        up, level = _turned_back(along, alpha_0)
+        np.multiply(sine, level, out=sun[:, 0])
+        sun[:, 1] = up
+        np.multiply(cosine, level, out=sun[:, 2])
+        return sun
+
+    def _angles(self, vector: Floats, features: Floats) -> Floats:
+        """Rotation angles (N, 2) in radians."""
         scale = self.unit_mm / self.focal_length_mm
-        spot = (found - np.asarray(self.centre)) * scale
-
-        def residuals(parameters: Floats) -> Floats:
-            return (rotation_angles(parameters, spot) - measured).ravel()
-
-        def jacobian(parameters: Floats) -> Floats:
-            return rotation_jacobian(parameters, spot).reshape(-1, 5)
-
-        solution = least_squares(
-            residuals,
-            np.zeros(5),
-            jac=jacobian,
-            method="lm",
-            ftol=TOLERANCE,
-            xtol=TOLERANCE,
-            gtol=TOLERANCE,
-            max_nfev=MAX_EVALUATIONS,
-        )
-        stretch, alpha_0, beta_0, x_zp, y_zp = solution.x
-        if not solution.success or not np.isfinite(solution.x).all() or stretch <= -1:
-            raise UnusableDataError(
-                f"{self.about.name}: the fit did not converge ({solution.message})"
-            )
-        _require_settled(jacobian(solution.x), self.about.name)
-
-        self.focal_length_error_mm_ = float(stretch * self.focal_length_mm)
-        self.boresight_deg_ = (float(np.degrees(alpha_0)), float(np.degrees(beta_0)))
-        self.zero_point_ = (
-            float(self.centre[0] + x_zp / scale),
-            float(self.centre[1] + y_zp / scale),
-        )
-        self.residual_rms_deg_ = float(np.degrees(np.sqrt(np.mean(solution.fun**2))))
-        return self
-
-    def predict(self, features: ArrayLike) -> Floats:
-        """Sun unit vectors (N, 3) of features (N, 2)."""
-        require_fitted(self, "boresight_deg_")
-        found = as_features(features, 2, self.about.name)
-        spot = (found - np.asarray(self.zero_point_)) * (self.unit_mm / self.focal_length_mm)
         parameters = np.array(
-            [
-                self.focal_length_error_mm_ / self.focal_length_mm,
-                *np.radians(self.boresight_deg_),
-                0.0,
-                0.0,
-            ]
+            [vector[0] / self.focal_length_mm, *np.radians(vector[1:3]), 0.0, 0.0]
         )
-        return sun_from_rotations(np.degrees(rotation_angles(parameters, spot)))
+        return rotation_angles(parameters, (features - vector[3:]) * scale)
 
 
 def rotation_angles(parameters: Floats, spot: Floats) -> Floats:
@@ -218,44 +206,9 @@ def rotation_angles(parameters: Floats, spot: Floats) -> Floats:
     return np.column_stack([alpha, beta])
 
 
-def rotation_jacobian(parameters: Floats, spot: Floats) -> Floats:
-    """Return the derivatives (N, 2, 5) of `rotation_angles` by its parameters."""
-    stretch, alpha_0, beta_0, x_zp, y_zp = parameters
-    focal = 1.0 + stretch
-    x = (spot[:, 0] - x_zp) / focal
-    y = (spot[:, 1] - y_zp) / focal
-    across = x + np.tan(beta_0)
-    along = y + np.tan(alpha_0) / np.cos(beta_0)
-    cosine = 1.0 / np.hypot(1.0, across)  # of beta_m + beta_0
-    height = along * cosine  # tan(alpha_m + alpha_0)
-
-    by_across = np.zeros((len(spot), 5))
-    by_across[:, 0] = -x / focal
-    by_across[:, 2] = 1.0 / np.cos(beta_0) ** 2
-    by_across[:, 3] = -1.0 / focal
-    by_along = np.zeros((len(spot), 5))
-    by_along[:, 0] = -y / focal
-    by_along[:, 1] = 1.0 / (np.cos(alpha_0) ** 2 * np.cos(beta_0))
-    by_along[:, 2] = np.tan(alpha_0) * np.sin(beta_0) / np.cos(beta_0) ** 2
-    by_along[:, 4] = -1.0 / focal
-
-    jacobian = np.empty((len(spot), 2, 5))
-    jacobian[:, 1] = by_across * (cosine**2)[:, None]
-    jacobian[:, 1, 2] -= 1.0
-    by_height = cosine[:, None] * by_along - (along * across * cosine**3)[:, None] * by_across
-    jacobian[:, 0] = by_height / (1.0 + height**2)[:, None]
-    jacobian[:, 0, 1] -= 1.0
-    return jacobian
-
-
-def _require_settled(jacobian: Floats, by: str) -> None:
-    lengths = np.linalg.norm(jacobian, axis=0)
-    settled = bool((lengths > 0).all())
-    if settled:
-        values = np.linalg.svd(jacobian / lengths, compute_uv=False)
-        settled = bool(values[-1] * WORST_CONDITION > values[0])
-    if not settled:
-        raise UnusableDataError(
-            f"{by}: the calibration samples do not settle the five parameters; "
-            "they must spread over the field of view"
-        )
+def _turned_back(tangent: Floats, offset: float) -> tuple[Floats, Floats]:
+    """Sine and cosine of ``arctan(tangent) - offset``, radians."""
+    cosine = 1.0 / np.sqrt(1.0 + tangent * tangent)
+    sine = tangent * cosine
+    s, c = float(np.sin(offset)), float(np.cos(offset))
+    return sine * c - cosine * s, cosine * c + sine * s

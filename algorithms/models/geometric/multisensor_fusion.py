@@ -2,29 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import ClassVar, Self
 
 import numpy as np
-from numpy.typing import ArrayLike
 
+from algorithms.calibration.calibrated import CalibratedModel, Columns
 from algorithms.contract import (
     AboutModel,
     FeatureKind,
     Floats,
-    Model,
     SensorGeometry,
-    UnsuitableDesignError,
 )
-from algorithms.inputs import as_calibration, as_features, require_fitted
+from algorithms.models.geometric.detector_faces import axis_faces
 from algorithms.row_arithmetic import normalised
-
-AXIS_TOLERANCE = 1e-6
-"""Largest departure of a face normal's components from 0 and 1."""
 
 
 @dataclass
-class SixFaces(Model):
+class SixFaces(CalibratedModel):
     """Sun vector whose components are the brighter face of each opposite pair of a cube.
 
     Each face's signal is the cosine of its angle to the Sun, so the lit one of a pair is that
@@ -36,10 +31,15 @@ class SixFaces(Model):
         Unit normals of the detectors in the order of the features; the six directions +x, -x,
         +y, -y, +z, -z, each once, in any order.
 
+    extrapolation : float
+        As `CalibratedModel` has it; a drawing holds everywhere, whatever was calibrated.
+
     Attributes
     ----------
-    n_samples_ : int
-        Samples with features that `fit` was given.
+    quality_ : FitQuality
+        How many calibration samples there were, and how far off the drawing is.
+    hull_ : Hull
+        Without sides.
 
     Raises
     ------
@@ -54,7 +54,7 @@ class SixFaces(Model):
     when both are equal. A pair whose two signals are negative (noise in the dark) gives 0.
 
     Shapes: signals (N, 6), in any common unit, to unit vectors (N, 3), all directions. Nothing is
-    learnt; fit checks its input and counts it.
+    learnt; fit checks its input and says how far off the drawing is.
 
     Failure: a NaN row for a NaN feature row, or where no signal is positive. Albedo on an unlit
     face is taken for Sun where it is the brighter of its pair.
@@ -86,10 +86,12 @@ class SixFaces(Model):
 
     face_normals: tuple[tuple[float, float, float], ...]
 
-    n_samples_: int = field(init=False, repr=False, compare=False)
+    frontal: ClassVar[bool] = False
+    bounded: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
-        self._columns()
+        super().__post_init__()
+        axis_faces(self.face_normals, self.about.name)
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
@@ -98,31 +100,17 @@ class SixFaces(Model):
         geometry.require("face_normals", by=cls.about.name)
         return cls(geometry.face_normals or ())
 
-    def fit(self, features: ArrayLike, sun: ArrayLike) -> Self:
-        """Check the calibration data; nothing is learnt from them."""
-        found, _ = as_calibration(features, sun, 6, self.about.name)
-        self.n_samples_ = len(found)
-        return self
+    def columns(self) -> int:
+        """Six faces."""
+        return 6
 
-    def predict(self, features: ArrayLike) -> Floats:
-        """Sun unit vectors (N, 3) of signals (N, 6)."""
-        require_fitted(self, "n_samples_")
-        signals = as_features(features, 6, self.about.name)
-        plus, minus = self._columns()
-        positive, negative = signals[:, plus], signals[:, minus]
+    def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
+        """Learn nothing: the drawing is all there is."""
+
+    def answer(self, features: Floats, context: Columns) -> Floats:
+        """Directions (N, 3) of signals (N, 6)."""
+        del context
+        plus, minus = axis_faces(self.face_normals, self.about.name)
+        positive, negative = features[:, plus], features[:, minus]
         brighter = np.maximum(np.maximum(positive, negative), 0.0)
         return normalised(np.where(positive >= negative, brighter, -brighter))
-
-    def _columns(self) -> tuple[list[int], list[int]]:
-        """Columns of the +x, +y, +z faces and of the -x, -y, -z faces."""
-        normals = np.asarray(self.face_normals, dtype=np.float64)
-        axes = np.vstack([np.eye(3), -np.eye(3)])
-        if normals.shape == (6, 3):
-            match = (np.abs(normals - axes[:, None]) <= AXIS_TOLERANCE).all(axis=2)
-            if (match.sum(axis=0) == 1).all() and (match.sum(axis=1) == 1).all():
-                columns = [int(column) for column in match.argmax(axis=1)]
-                return columns[:3], columns[3:]
-        raise UnsuitableDesignError(
-            f"{self.about.name} needs six face normals, +-x, +-y and +-z each once; "
-            f"got {self.face_normals!r}"
-        )

@@ -6,23 +6,18 @@ from dataclasses import dataclass, field
 from typing import ClassVar, Literal, Self, get_args
 
 import numpy as np
-from numpy.typing import ArrayLike
 
+from algorithms.calibration.calibrated import Columns
+from algorithms.calibration.faces_model import FacesModel
 from algorithms.contract import (
     AboutModel,
     FeatureKind,
     Floats,
-    Model,
     SensorGeometry,
     UnsuitableDesignError,
     UnusableDataError,
 )
-from algorithms.inputs import (
-    as_calibration,
-    as_features,
-    require_fitted,
-    require_samples,
-)
+from algorithms.inputs import require_samples
 from algorithms.models.geometric.detector_faces import Normals, directions, require_normals
 from algorithms.row_arithmetic import normalised
 
@@ -36,7 +31,7 @@ FLATTEST = 1e-6
 
 
 @dataclass
-class WeightedCells(Model):
+class WeightedCells(FacesModel):
     """Sun vector that fits the cosines of all lit cells best, by weighted least squares.
 
     Cells spread over a sphere see the Sun from every side, several at a time; each contributes
@@ -52,11 +47,18 @@ class WeightedCells(Model):
     largest_incidence_deg : float
         In (0, 90); a cell counts as lit where its signal over its reference current reaches the
         cosine. The default leaves four of sixteen evenly spread cells in every direction.
+    extrapolation : float
+        How far past the cone of calibrated directions answers may go, in radians, from 0 up;
+        infinity for anywhere.
 
     Attributes
     ----------
     reference_ : ndarray, shape (K,)
         Current of every cell under perpendicular sunlight, in units of the features.
+    quality_ : FitQuality
+        How good the fit is.
+    hull_ : Hull
+        Cone of the directions it gives for the calibration.
 
     Raises
     ------
@@ -116,6 +118,7 @@ class WeightedCells(Model):
     reference_: Floats = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         require_normals(self.face_normals, self.about.name)
         if self.weighting not in get_args(Weighting):
             raise ValueError(
@@ -149,17 +152,21 @@ class WeightedCells(Model):
             )
         return model
 
-    def fit(self, features: ArrayLike, sun: ArrayLike) -> Self:
+    def columns(self) -> int:
+        """One a cell."""
+        return len(self.face_normals)
+
+    def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
         """Learn the reference current of every cell."""
+        del context
         normals = np.asarray(self.face_normals, dtype=np.float64)
-        found, vectors = as_calibration(features, sun, len(normals), self.about.name)
-        cosines = vectors @ normals.T
+        cosines = sun @ normals.T
         cosines[cosines < self._smallest_cosine] = 0.0
         squares = (cosines**2).sum(axis=0)
         lit = squares > 0
         require_samples(int(lit.sum()), 1, self.about.name, "that light a cell")
         reference = np.full(len(normals), np.nan)
-        reference[lit] = (found * cosines).sum(axis=0)[lit] / squares[lit]
+        reference[lit] = (features * cosines).sum(axis=0)[lit] / squares[lit]
         reference[~lit] = reference[lit].mean()
         if not (reference > 0).all():
             raise UnusableDataError(
@@ -167,18 +174,16 @@ class WeightedCells(Model):
                 f"calibration gives a reference current of {reference.min():.6g}"
             )
         self.reference_ = reference
-        return self
 
-    def predict(self, features: ArrayLike) -> Floats:
-        """Sun unit vectors (N, 3) of signals (N, K)."""
-        require_fitted(self, "reference_")
-        signals = as_features(features, len(self.face_normals), self.about.name)
-        relative = signals / self.reference_
+    def answer(self, features: Floats, context: Columns) -> Floats:
+        """Directions (N, 3) of signals (N, K)."""
+        del context
+        relative = features / self.reference_
         lit = relative >= self._smallest_cosine
         weights = np.where(lit, relative if self.weighting == "signal" else 1.0, 0.0)
 
         # the six different elements of A^T W A and the three of A^T W I, added cell by cell
-        elements, right = np.zeros((6, len(signals))), np.zeros((3, len(signals)))
+        elements, right = np.zeros((6, len(features))), np.zeros((3, len(features)))
         for column, (x, y, z) in enumerate(self.face_normals):
             weight = weights[:, column]
             for k, product in enumerate((x * x, x * y, x * z, y * y, y * z, z * z)):

@@ -6,23 +6,19 @@ from dataclasses import dataclass, field
 from typing import ClassVar, Literal, Self, get_args
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
+from algorithms.calibration.calibrated import Columns
+from algorithms.calibration.faces_model import FacesModel
 from algorithms.contract import (
     AboutModel,
     FeatureKind,
     Floats,
-    Model,
     SensorGeometry,
     UnsuitableDesignError,
     UnusableDataError,
 )
-from algorithms.inputs import (
-    as_calibration,
-    as_features,
-    require_fitted,
-    require_samples,
-)
+from algorithms.inputs import require_samples
 from algorithms.models.geometric.detector_faces import (
     UNIT_TOLERANCE,
     Normals,
@@ -35,7 +31,7 @@ Coefficient = Literal["common", "each"]
 
 
 @dataclass
-class RegularPyramid(Model):
+class RegularPyramid(FacesModel):
     """Each component of the Sun vector is the signals' mean, weighted by the faces' normals.
 
     The columns of a regular pyramid's normals are orthogonal, so least squares over all faces
@@ -53,11 +49,18 @@ class RegularPyramid(Model):
     dark_fraction : float
         Share of the row's largest signal, in [0, 1), up to which a face counts as dark: what dark
         current and stray light may look like.
+    extrapolation : float
+        How far past the cone of calibrated directions answers may go, in radians, from 0 up;
+        infinity for anywhere.
 
     Attributes
     ----------
     coefficients_ : ndarray, shape (M,)
         xi of every face: cosine of incidence per unit of signal.
+    quality_ : FitQuality
+        How good the fit is.
+    hull_ : Hull
+        Cone of the directions it gives for the calibration.
 
     Raises
     ------
@@ -115,6 +118,7 @@ class RegularPyramid(Model):
     coefficients_: Floats = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         self._normals()
         if self.coefficient not in get_args(Coefficient):
             raise ValueError(
@@ -136,13 +140,17 @@ class RegularPyramid(Model):
         geometry.require("face_normals", by=cls.about.name)
         return cls(geometry.face_normals or ())
 
-    def fit(self, features: ArrayLike, sun: ArrayLike) -> Self:
+    def columns(self) -> int:
+        """One a face."""
+        return len(self.face_normals)
+
+    def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
         """Learn the measurement coefficients."""
+        del context
         normals = self._normals()
-        found, vectors = as_calibration(features, sun, len(normals), self.about.name)
-        lit = self._all_lit(found)
+        lit = self._all_lit(features)
         require_samples(int(lit.sum()), 1, self.about.name, "with every face lit")
-        signals, cosines = found[lit], vectors[lit] @ normals.T
+        signals, cosines = features[lit], sun[lit] @ normals.T
         products, squares = (signals * cosines).sum(axis=0), (signals**2).sum(axis=0)
         if self.coefficient == "common":
             coefficients = np.full(len(normals), products.sum() / squares.sum())
@@ -154,15 +162,12 @@ class RegularPyramid(Model):
                 f"gives coefficients of {coefficients.min():.6g} and more"
             )
         self.coefficients_ = coefficients
-        return self
 
-    def predict(self, features: ArrayLike) -> Floats:
-        """Sun unit vectors (N, 3) of signals (N, M)."""
-        require_fitted(self, "coefficients_")
-        normals = self._normals()
-        signals = as_features(features, len(normals), self.about.name)
-        signals[~self._all_lit(signals)] = np.nan
-        rows = [b / (b @ b) * self.coefficients_ for b in normals.T]
+    def answer(self, features: Floats, context: Columns) -> Floats:
+        """Directions (N, 3) of signals (N, M)."""
+        del context
+        signals = np.where(self._all_lit(features)[:, None], features, np.nan)
+        rows = [b / (b @ b) * self.coefficients_ for b in self._normals().T]
         return normalised(np.column_stack([row_sums(signals, row) for row in rows]))
 
     def _all_lit(self, signals: Floats) -> NDArray[np.bool_]:

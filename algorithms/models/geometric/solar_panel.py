@@ -2,27 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import ClassVar, Self
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from algorithms.contract import (
-    AboutModel,
-    FeatureKind,
-    Floats,
-    Model,
-    SensorGeometry,
-    UnsuitableDesignError,
-)
-from algorithms.inputs import as_calibration, as_features, require_fitted
-from algorithms.models.geometric.detector_faces import UNIT_TOLERANCE, Normals, row_sums
+from algorithms.calibration.calibrated import CalibratedModel, Columns
+from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
+from algorithms.models.geometric.detector_faces import Normals, require_square_pairs, row_sums
 from algorithms.row_arithmetic import normalised
 
 
 @dataclass
-class SolarPanels(Model):
+class SolarPanels(CalibratedModel):
     """Sum of the lit panels' normals, each weighted by its current, scaled to length one.
 
     On a body with panels square to each other every current is a component of the Sun vector, so
@@ -35,10 +27,15 @@ class SolarPanels(Model):
         Unit normals of the panels in the order of the features: three pairs of opposite ones,
         the pairs square to each other, in any order and turned any way.
 
+    extrapolation : float
+        As `CalibratedModel` has it; a drawing holds everywhere, whatever was calibrated.
+
     Attributes
     ----------
-    n_samples_ : int
-        Samples with features that `fit` was given.
+    quality_ : FitQuality
+        How many calibration samples there were, and how far off the drawing is.
+    hull_ : Hull
+        Without sides.
 
     Raises
     ------
@@ -54,7 +51,7 @@ class SolarPanels(Model):
     light or albedo lights both. A panel is lit whose signal is positive.
 
     Shapes: signals (N, 6), in any common unit, to unit vectors (N, 3), all directions. Nothing is
-    learnt; fit checks its input and counts it.
+    learnt; fit checks its input and says how far off the drawing is.
 
     Failure: a NaN row for a NaN feature row, or where no signal is positive, or opposite ones
     cancel. Albedo is taken for Sun, and differences between the panels go straight into the
@@ -86,9 +83,11 @@ class SolarPanels(Model):
 
     face_normals: Normals
 
-    n_samples_: int = field(init=False, repr=False, compare=False)
+    frontal: ClassVar[bool] = False
+    bounded: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         self._normals()
 
     @classmethod
@@ -98,27 +97,19 @@ class SolarPanels(Model):
         geometry.require("face_normals", by=cls.about.name)
         return cls(geometry.face_normals or ())
 
-    def fit(self, features: ArrayLike, sun: ArrayLike) -> Self:
-        """Check the calibration data; nothing is learnt from them."""
-        found, _ = as_calibration(features, sun, 6, self.about.name)
-        self.n_samples_ = len(found)
-        return self
+    def columns(self) -> int:
+        """Six panels."""
+        return 6
 
-    def predict(self, features: ArrayLike) -> Floats:
-        """Sun unit vectors (N, 3) of signals (N, 6)."""
-        require_fitted(self, "n_samples_")
-        lit = np.maximum(as_features(features, 6, self.about.name), 0.0)
+    def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
+        """Learn nothing: the drawing is all there is."""
+
+    def answer(self, features: Floats, context: Columns) -> Floats:
+        """Directions (N, 3) of signals (N, 6)."""
+        del context
+        lit = np.maximum(features, 0.0)
         return normalised(np.column_stack([row_sums(lit, n) for n in self._normals().T]))
 
     def _normals(self) -> Floats:
         """(6, 3) normals, or UnsuitableDesignError unless they are three square pairs."""
-        normals = np.asarray(self.face_normals, dtype=np.float64)
-        if normals.shape == (6, 3):
-            # row by row one opposite (-1), itself (1) and four at right angles (0)
-            cosines = np.sort(normals @ normals.T, axis=1)
-            if np.allclose(cosines, [-1.0, 0.0, 0.0, 0.0, 0.0, 1.0], rtol=0, atol=UNIT_TOLERANCE):
-                return normals
-        raise UnsuitableDesignError(
-            f"{self.about.name} needs six panel normals, three opposite pairs square to each "
-            f"other; got {self.face_normals!r}"
-        )
+        return require_square_pairs(self.face_normals, self.about.name)

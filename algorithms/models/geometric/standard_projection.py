@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import ClassVar, Self
 
-from numpy.typing import ArrayLike
-
 from algorithms.angles import sun_from_tangents
-from algorithms.contract import AboutModel, FeatureKind, Floats, Model, SensorGeometry
-from algorithms.inputs import as_features, as_frontal_calibration, require_fitted
+from algorithms.calibration.calibrated import CalibratedModel, Columns
+from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
 from algorithms.models.nominal_projection import (
     POSITIONS,
     nominal_projection,
@@ -19,7 +17,7 @@ from algorithms.models.nominal_projection import (
 
 
 @dataclass
-class StandardProjection(Model):
+class StandardProjection(CalibratedModel):
     """Direction from the aperture's centre through the spot, by the nominal geometry.
 
     One multiplication an axis turns the spot's place into the tangents of the Sun angles; errors
@@ -35,10 +33,15 @@ class StandardProjection(Model):
     centre : tuple of two float
         Feature (x, y) of the spot when the Sun is on the boresight.
 
+    extrapolation : float
+        As `CalibratedModel` has it; a drawing holds everywhere, whatever was calibrated.
+
     Attributes
     ----------
-    n_samples_ : int
-        Samples with features that `fit` was given.
+    quality_ : FitQuality
+        How many calibration samples there were, and how far off the drawing is.
+    hull_ : Hull
+        Without sides.
 
     Raises
     ------
@@ -52,7 +55,7 @@ class StandardProjection(Model):
     ``tan(beta) = S_A d / (2 h)``, ``tan(alpha) = S_B d / (2 h)``.
 
     Shapes: features ``(x, y)`` (N, 2), in px or dimensionless, to unit vectors (N, 3). Nothing is
-    learnt; fit checks its input and counts it.
+    learnt; fit checks its input and says how far off the drawing is.
 
     Failure: a NaN row for a NaN feature row.
 
@@ -87,9 +90,10 @@ class StandardProjection(Model):
     unit_mm: float
     centre: tuple[float, float] = (0.0, 0.0)
 
-    n_samples_: int = field(init=False, repr=False, compare=False)
+    bounded: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         require_projection(self.about.name, self.focal_length_mm, self.unit_mm, self.centre)
 
     @classmethod
@@ -97,16 +101,12 @@ class StandardProjection(Model):
         """Return the model of the sensor's drawing."""
         return cls(**nominal_projection(geometry, kind, cls.about))
 
-    def fit(self, features: ArrayLike, sun: ArrayLike) -> Self:
-        """Check the calibration data; nothing is learnt from them."""
-        found, _ = as_frontal_calibration(features, sun, self.about.name)
-        self.n_samples_ = len(found)
-        return self
+    def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
+        """Learn nothing: the drawing is all there is."""
 
-    def predict(self, features: ArrayLike) -> Floats:
-        """Sun unit vectors (N, 3) of features (N, 2)."""
-        require_fitted(self, "n_samples_")
-        found = as_features(features, 2, self.about.name)
+    def answer(self, features: Floats, context: Columns) -> Floats:
+        """Directions (N, 3) of features (N, 2)."""
+        del context
         return sun_from_tangents(
-            nominal_tangents(found, self.focal_length_mm, self.unit_mm, self.centre)
+            nominal_tangents(features, self.focal_length_mm, self.unit_mm, self.centre)
         )

@@ -7,7 +7,7 @@ the smoothest continuation fills it.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache, partial
 from typing import Any
@@ -15,13 +15,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from algorithms.calibration.conditioning import WORST_CONDITION
 from algorithms.contract import Floats, UnusableDataError
-from algorithms.models.conditioning import WORST_CONDITION
 
 Solver = Callable[[Floats], Floats]
 
 MAX_NODES = 250_000
 """Largest table solved for: half a thousand nodes an axis."""
+
+SMOOTHINGS = (1e-3, 1e-1, 1e1, 1e3, 1e5)
+"""Weights tried where none is given; the first only fills what no sample settles."""
 
 MAX_BAND = 16_000_000
 """Most numbers (128 MB) of a system solved as a band, up to here the faster way; LAPACK's, not
@@ -54,31 +57,6 @@ class GridAxis:
         known = np.where(np.isnan(place), 0.0, place)
         lower = np.clip(np.floor(known), 0, self.nodes - 2).astype(np.int64)
         return lower, place - lower
-
-
-def convex_hull(points: Floats, by: str) -> Floats:
-    """Facets (m, 3) of the convex hull of points (n, 2): outward unit normal and offset.
-
-    Raises
-    ------
-    UnusableDataError
-        If the points lie on one line.
-    """
-    from scipy.spatial import ConvexHull, QhullError  # noqa: PLC0415 - SciPy, at the first fit
-
-    try:
-        hull = ConvexHull(points)
-    except QhullError as error:
-        raise UnusableDataError(
-            f"{by} needs calibration samples that spread over both angles; they lie on one line"
-        ) from error
-    return np.asarray(hull.equations, dtype=np.float64)
-
-
-def distance_outside(points: Floats, hull: Floats) -> Floats:
-    """Distance (N,) of points (N, 2) past the hull's nearest facet line; negative inside."""
-    past = points[:, :1] * hull[:, 0] + points[:, 1:] * hull[:, 1] + hull[:, 2]
-    return np.asarray(past.max(axis=1), dtype=np.float64)
 
 
 def interpolation_matrix(axis: GridAxis, values: Floats) -> Any:
@@ -137,16 +115,12 @@ def solve_table(design: Any, roughness: Any, weight: float, errors: Floats, by: 
         If the samples settle the nodes so badly that rounding would show in them.
     """
     normal = (design.T @ design + weight * roughness).tocoo()
-    row, column = normal.coords
-    width = int((row - column).max())
+    width = _width(normal)
     if normal.shape[0] * (width + 1) > MAX_BAND:
         solve, pivots = _factored_sparse(normal)
     else:
-        solve, pivots = _factored_band(normal, width)
-    scale = np.sqrt(normal.diagonal())
-    # what the factor would be, were the diagonal brought to ones
-    pivot = float(np.min(pivots / scale**2))
-    if not (pivot > _SAFE_PIVOT or _condition(solve, scale) <= WORST_CONDITION):
+        solve, pivots = _factored_band(_band(normal, width))
+    if not _settled(solve, pivots, normal.diagonal()):
         raise UnusableDataError(
             f"{by}: the samples settle the table too badly: its equations' condition is above "
             f"{WORST_CONDITION:g}, so that rounding would show in its numbers"
@@ -154,19 +128,85 @@ def solve_table(design: Any, roughness: Any, weight: float, errors: Floats, by: 
     return np.asarray(solve(design.T @ errors), dtype=np.float64)
 
 
-def _factored_band(normal: Any, width: int) -> tuple[Solver, Floats]:
-    """Solver of equations by a banded Cholesky factor, and the factor's squared pivots."""
-    from scipy.linalg import cho_solve_banded, cholesky_banded  # noqa: PLC0415 - at the first fit
+def errors_left_out(
+    design: Any,
+    roughness: Any,
+    weights: Sequence[float],
+    errors: Floats,
+    parts: Sequence[tuple[NDArray[np.bool_], NDArray[np.bool_]]],
+) -> Floats:
+    """Root mean squared error on samples left out, of each weight; infinite where not settled.
 
-    row, column = normal.coords
+    What `solve_table` would give of each part and weight, with the equations of a part assembled
+    once for all weights.
+
+    Parameters
+    ----------
+    design : sparse, shape (n, nodes)
+        Of all samples.
+    roughness : sparse, shape (nodes, nodes)
+        As `solve_table` takes it.
+    weights : sequence of float
+        Of the roughness.
+    errors : ndarray, shape (n, 2)
+        To fit.
+    parts : sequence of (ndarray, ndarray)
+        Which samples are fitted and which left out, as masks (n,).
+    """
+    total, count = np.zeros(len(weights)), 0
+    stiff = roughness.tocoo()
+    for fitted, left_out in parts:
+        rows, asked, missed = design[fitted], design[left_out], errors[left_out]
+        normal, right = (rows.T @ rows).tocoo(), rows.T @ errors[fitted]
+        width = max(_width(normal), _width(stiff))
+        sums, bends = _band(normal, width), _band(stiff, width)
+        count += len(missed)
+        for number, weight in enumerate(weights):
+            equations = sums + weight * bends
+            diagonal = equations[0].copy()
+            solve, pivots = _factored_band(equations)
+            if _settled(solve, pivots, diagonal):
+                total[number] += float(((asked @ solve(right) - missed) ** 2).sum())
+            else:
+                total[number] = np.inf
+    return np.sqrt(total / count) if count else np.full(len(weights), np.inf)
+
+
+def _settled(solve: Solver, pivots: Floats, diagonal: Floats) -> bool:
+    """Whether factored equations are far enough from singular for rounding not to show."""
+    # what the factor would be, were the diagonal brought to ones
+    if float(np.min(pivots / diagonal)) > _SAFE_PIVOT:
+        return True
+    return _condition(solve, np.sqrt(diagonal)) <= WORST_CONDITION
+
+
+def _width(matrix: Any) -> int:
+    """How far from the diagonal a sparse matrix has numbers."""
+    row, column = matrix.coords
+    return int((row - column).max())
+
+
+def _band(matrix: Any, width: int) -> Floats:
+    """Lower band (width + 1, nodes) of a sparse symmetric matrix."""
+    row, column = matrix.coords
     below = row - column
     lower = below >= 0
-    band = np.zeros((width + 1, normal.shape[0]))
-    band[below[lower], column[lower]] = normal.data[lower]
+    band = np.zeros((width + 1, matrix.shape[0]))
+    band[below[lower], column[lower]] = matrix.data[lower]
+    return band
+
+
+def _factored_band(band: Floats) -> tuple[Solver, Floats]:
+    """Solver of equations by a banded Cholesky factor, and the factor's squared pivots.
+
+    The band is overwritten.
+    """
+    from scipy.linalg import cho_solve_banded, cholesky_banded  # noqa: PLC0415 - at the first fit
+
     try:
         factor = cholesky_banded(band, overwrite_ab=True, lower=True, check_finite=False)
     except np.linalg.LinAlgError:  # singular but for rounding
-        return np.zeros_like, np.zeros(normal.shape[0])
+        return np.zeros_like, np.zeros(band.shape[1])
     return partial(cho_solve_banded, (factor, True), check_finite=False), factor[0] ** 2
 
 

@@ -10,11 +10,11 @@ from dataclasses import dataclass
 from typing import Literal, TypedDict
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from algorithms.angles import sun_from_tangents, tangents_from_sun
 from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry, UnusableDataError
-from algorithms.inputs import as_calibration, require_positive
+from algorithms.inputs import require_positive
 
 FINE_TRACKS = 4
 
@@ -142,26 +142,11 @@ class DialCode:
             np.where(readable, phase, np.nan),
         )
 
-    def calibration(
-        self, features: ArrayLike, sun: ArrayLike, by: str
-    ) -> tuple[Floats, Floats, Floats]:
-        """Return places, phases (`read`) and Suns of the readable samples.
-
-        Raises
-        ------
-        UnusableDataError
-            As `as_calibration` does, and for a Sun that is not in front of the detector.
-        """
-        found, vectors = as_calibration(features, sun, self.columns, by)
-        behind = vectors[:, 2] <= 0
-        if behind.any():
-            raise UnusableDataError(
-                f"{by} is a planar model: the Sun must be in front of the detector (s_z > 0); "
-                f"{int(behind.sum())} calibration rows with features have s_z <= 0"
-            )
-        places, phases = self.read(found)
+    def calibration(self, features: Floats, sun: Floats) -> tuple[Floats, Floats, Floats]:
+        """Return places, phases (`read`) and Suns of the readable samples."""
+        places, phases = self.read(features)
         readable = np.isfinite(places).all(axis=1)
-        return places[readable], phases[readable], vectors[readable]
+        return places[readable], phases[readable], sun[readable]
 
 
 def dial_code(geometry: SensorGeometry, kind: FeatureKind, about: AboutModel) -> DialDesign:

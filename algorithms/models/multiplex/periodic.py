@@ -6,10 +6,10 @@ from dataclasses import dataclass, field
 from typing import Any, ClassVar, Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from algorithms.contract import AboutModel, FeatureKind, Floats, Model, SensorGeometry
-from algorithms.inputs import as_features, require_fitted
+from algorithms.calibration.calibrated import CalibratedModel, Columns
+from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
 from algorithms.models.multiplex.dial_code import (
     NEEDS,
     Axes,
@@ -23,7 +23,7 @@ _START = (0.0, 0.0, 0.0, 1.0, 0.0)
 
 
 @dataclass
-class PeriodicCode(Model):
+class PeriodicCode(CalibratedModel):
     """Coarse cell and fine phase of each dial, its periodic error and its assembly taken out.
 
     The Gray code tells which period of the fine rows the light falls on, their phase where in
@@ -45,6 +45,9 @@ class PeriodicCode(Model):
     smallest_contrast : float
         Amplitude of the fine rows over their mean, in [0, 1), below which they say nothing; a
         slit of half a period gives 2/pi, light without a pattern 0.
+    extrapolation : float
+        How far past the cone of calibrated directions answers may go, in radians, from 0 up;
+        infinity for anywhere.
 
     Attributes
     ----------
@@ -53,6 +56,10 @@ class PeriodicCode(Model):
         radians.
     conversion_ : ndarray, shape (2, 4)
         (a, b, c, d) of the dials along x and y, a = -1.
+    quality_ : FitQuality
+        How good the fit is.
+    hull_ : Hull
+        Cone of the calibrated directions.
 
     Raises
     ------
@@ -124,6 +131,7 @@ class PeriodicCode(Model):
     conversion_: Floats = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         self._code().require(self.about.name)
 
     @classmethod
@@ -134,9 +142,14 @@ class PeriodicCode(Model):
         """
         return cls(**dial_code(geometry, kind, cls.about))
 
-    def fit(self, features: ArrayLike, sun: ArrayLike) -> Self:
+    def columns(self) -> int:
+        """Coarse and fine tracks of both dials."""
+        return self._code().columns
+
+    def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
         """Learn (k, t) and (a, b, c, d) of both dials."""
-        places, phases, vectors = self._code().calibration(features, sun, self.about.name)
+        del context
+        places, phases, vectors = self._code().calibration(features, sun)
 
         def tangents(parameters: NDArray[np.complex128]) -> NDArray[np.complex128]:
             numerators, denominators = _fraction(parameters.reshape(2, 5), places, phases)
@@ -146,13 +159,11 @@ class PeriodicCode(Model):
         sine, cosine, shift, slope, bend = found.T
         self.correction_ = np.column_stack([np.hypot(sine, cosine), np.arctan2(cosine, sine)])
         self.conversion_ = np.column_stack([np.full(2, -1.0), shift, bend, -slope])
-        return self
 
-    def predict(self, features: ArrayLike) -> Floats:
-        """Sun unit vectors (N, 3) of signals (N, 2 (bits + 4))."""
-        require_fitted(self, "conversion_")
-        code = self._code()
-        places, phases = code.read(as_features(features, code.columns, self.about.name))
+    def answer(self, features: Floats, context: Columns) -> Floats:
+        """Directions (N, 3) of signals (N, 2 (bits + 4))."""
+        del context
+        places, phases = self._code().read(features)
         k, t = self.correction_.T
         a, b, c, d = self.conversion_.T
         tangent = places + k * np.sin(2.0 * phases + t)

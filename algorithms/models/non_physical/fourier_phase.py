@@ -6,10 +6,10 @@ from dataclasses import dataclass, field
 from typing import Any, ClassVar, Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from algorithms.contract import AboutModel, FeatureKind, Floats, Model, SensorGeometry
-from algorithms.inputs import as_features, require_fitted
+from algorithms.calibration.calibrated import CalibratedModel, Columns
+from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
 from algorithms.models.multiplex.dial_code import (
     NEEDS,
     Axes,
@@ -23,7 +23,7 @@ MAX_HARMONICS = 16
 
 
 @dataclass
-class FourierPhase(Model):
+class FourierPhase(CalibratedModel):
     """Coarse cell and fine phase of each dial, the phase error a Fourier series of the phase.
 
     Whatever the fine rows are like, their phase errs periodically: once a period by gains that
@@ -47,6 +47,9 @@ class FourierPhase(Model):
         slit of half a period gives 2/pi, light without a pattern 0.
     harmonics : int
         Terms of the series, in [1, 16]; 4 reach the first one that plain windows cause.
+    extrapolation : float
+        How far past the cone of calibrated directions answers may go, in radians, from 0 up;
+        infinity for anywhere.
 
     Attributes
     ----------
@@ -56,6 +59,10 @@ class FourierPhase(Model):
     conversion_ : ndarray, shape (3, 3)
         Projection H: ``(tan(beta), tan(alpha), 1)`` in proportion to ``H (T_x, T_y, 1)``,
         ``H_33 = 1``.
+    quality_ : FitQuality
+        How good the fit is.
+    hull_ : Hull
+        Cone of the calibrated directions.
 
     Raises
     ------
@@ -128,6 +135,7 @@ class FourierPhase(Model):
     conversion_: Floats = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         self._code().require(self.about.name)
         if not 1 <= self.harmonics <= MAX_HARMONICS:
             raise ValueError(
@@ -140,9 +148,14 @@ class FourierPhase(Model):
         """Return the model of the sensor's dials; UnsuitableDesignError where it has none."""
         return cls(**dial_code(geometry, kind, cls.about))
 
-    def fit(self, features: ArrayLike, sun: ArrayLike) -> Self:
+    def columns(self) -> int:
+        """Coarse and fine tracks of both dials."""
+        return self._code().columns
+
+    def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
         """Learn the series of both dials and the projection."""
-        places, phases, vectors = self._code().calibration(features, sun, self.about.name)
+        del context
+        places, phases, vectors = self._code().calibration(features, sun)
         waves = self._waves(phases)
 
         def tangents(parameters: NDArray[np.complex128]) -> NDArray[np.complex128]:
@@ -155,13 +168,11 @@ class FourierPhase(Model):
         self.conversion_, self.series_ = self._split(
             fit_tangents(tangents, start, vectors, self.about.name)
         )
-        return self
 
-    def predict(self, features: ArrayLike) -> Floats:
-        """Sun unit vectors (N, 3) of signals (N, 2 (bits + 4))."""
-        require_fitted(self, "conversion_")
-        code = self._code()
-        places, phases = code.read(as_features(features, code.columns, self.about.name))
+    def answer(self, features: Floats, context: Columns) -> Floats:
+        """Directions (N, 3) of signals (N, 2 (bits + 4))."""
+        del context
+        places, phases = self._code().read(features)
         corrected = _corrected(places, self._waves(phases), self.series_)
         return sun_from_fractions(*_projected(self.conversion_, corrected))
 

@@ -3,18 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from algorithms.contract import AboutModel, Floats, Model
-from algorithms.inputs import (
-    as_features,
-    as_frontal_calibration,
-    require_fitted,
-    require_samples,
-)
+from algorithms.calibration.calibrated import CalibratedModel, Columns
+from algorithms.calibration.quality import Parameter
+from algorithms.contract import AboutModel, Floats
 from algorithms.models.nominal_projection import POSITIONS
 from algorithms.models.non_physical.regression_axes import (
     Target,
@@ -27,7 +22,7 @@ from algorithms.models.non_physical.regression_axes import (
 
 
 @dataclass
-class LinearFit(Model):
+class LinearFit(CalibratedModel):
     """Each Sun angle as a straight line on the feature of its axis.
 
     Two numbers an axis make the smallest and fastest calibration there is; it holds over a
@@ -38,12 +33,21 @@ class LinearFit(Model):
     target : {"angle", "tangent"}
         What the line gives: the angle in degrees, as published, or its tangent, which is what a
         pinhole's response is straight in.
+    extrapolation : float
+        How far past the convex hull of the calibrated features answers may go, as a share of its
+        half width, from 0 up; infinity for anywhere.
 
     Attributes
     ----------
     coefficients_ : ndarray, shape (2, 2)
         Intercept and slope on the feature, rows ``alpha`` (on y) and ``beta`` (on x); in degrees
         (or tangents) and per unit of feature.
+    deviations_ : ndarray, shape (2, 2)
+        Their standard errors.
+    quality_ : FitQuality
+        Residuals, and the four coefficients by name.
+    hull_ : Hull
+        Of the calibrated features.
 
     Raises
     ------
@@ -57,8 +61,9 @@ class LinearFit(Model):
 
     Shapes: features ``(x, y)`` (N, 2), in px or dimensionless, to unit vectors (N, 3).
 
-    Failure: a NaN row for a NaN feature row or where an angle reaches 90 degrees. fit raises
-    UnusableDataError below 2 samples or where all have the same feature.
+    Failure: a NaN row for a NaN feature row, outside the hull or where an angle reaches 90 degrees.
+    fit raises UnusableDataError below 3 samples, where they lie on one line, or where a line
+    explains nothing of them, as with swapped axes.
 
     Cost: 4 operations and 2 tangents a sample.
 
@@ -92,30 +97,52 @@ class LinearFit(Model):
 
     target: Target = "angle"
 
+    fewest: ClassVar[int] = 3
+
     coefficients_: Floats = field(init=False, repr=False, compare=False)
+    deviations_: Floats = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         require_target(self.target, self.about.name)
 
-    def fit(self, features: ArrayLike, sun: ArrayLike) -> Self:
-        """Fit one line an axis."""
-        found, vectors = as_frontal_calibration(features, sun, self.about.name)
-        require_samples(len(found), 2, self.about.name, "two coefficients an axis")
-        wanted = target_from_sun(vectors, self.target)
-        middle, half = feature_scaling(found, self.about.name)
-        coefficients = np.empty((2, 2))
+    def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
+        """Fit one line an axis to samples (n, 2) of Suns (n, 3)."""
+        del context
+        wanted = target_from_sun(sun, self.target)
+        middle, half = feature_scaling(features, self.about.name)
+        coefficients, deviations = np.empty((2, 2)), np.empty((2, 2))
         for axis, column in ((0, 1), (1, 0)):
-            scaled = (found[:, column] - middle[column]) / half[column]
+            scaled = (features[:, column] - middle[column]) / half[column]
             design = np.column_stack([np.ones(len(scaled)), scaled])
             level, slope = solve_regression(design, wanted[:, axis], self.about.name)
-            slope = slope / half[column]
-            coefficients[axis] = level - slope * middle[column], slope
-        self.coefficients_ = coefficients
-        return self
+            residual = wanted[:, axis] - level - slope * scaled
+            variance = residual @ residual / max(len(scaled) - 2, 1)
+            errors = variance * np.linalg.inv(design.T @ design)
+            shift = np.array([[1.0, -middle[column] / half[column]], [0.0, 1.0 / half[column]]])
+            coefficients[axis] = shift @ (level, slope)
+            deviations[axis] = np.sqrt(np.diag(shift @ errors @ shift.T))
+        self.coefficients_, self.deviations_ = coefficients, deviations
 
-    def predict(self, features: ArrayLike) -> Floats:
-        """Sun unit vectors (N, 3) of features (N, 2)."""
-        require_fitted(self, "coefficients_")
-        found = as_features(features, 2, self.about.name)
-        level, slope = self.coefficients_.T
-        return sun_from_target(level + slope * found[:, ::-1], self.target)
+    def settled(self) -> tuple[Parameter, ...]:
+        """Give intercepts and slopes, in degrees (or tangents) and per unit of feature."""
+        unit = "deg" if self.target == "angle" else ""
+        return tuple(
+            Parameter(f"{what}_{axis}", float(value), float(deviation), unit)
+            for axis, values, deviations in zip(
+                ("alpha", "beta"), self.coefficients_, self.deviations_, strict=True
+            )
+            for what, value, deviation in zip(
+                ("intercept", "slope"), values, deviations, strict=True
+            )
+        )
+
+    def answer(self, features: Floats, context: Columns) -> Floats:
+        """Directions (N, 3) of features (N, 2)."""
+        del context
+        values = np.empty((len(features), 2), order="F")
+        for axis, column in ((0, 1), (1, 0)):
+            level, slope = self.coefficients_[axis]
+            np.multiply(features[:, column], slope, out=values[:, axis])
+            values[:, axis] += level
+        return sun_from_target(values, self.target)

@@ -2,24 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from numpy.typing import ArrayLike
 
-from algorithms.contract import AboutModel, Floats, Model
-from algorithms.inputs import (
-    as_features,
-    as_frontal_calibration,
-    require_fitted,
-    require_samples,
-)
+from algorithms.calibration.blocks import folds
+from algorithms.calibration.calibrated import CalibratedModel, Columns
+from algorithms.calibration.orders import chosen, errors_of_orders
+from algorithms.calibration.quality import Setting
+from algorithms.contract import AboutModel, Floats
+from algorithms.inputs import require_samples
 from algorithms.models.nominal_projection import POSITIONS
+from algorithms.models.non_physical.axis_regression import AXES, fit_axes
 from algorithms.models.non_physical.regression_axes import (
     Target,
     feature_scaling,
+    in_degrees,
     require_target,
     solve_regression,
     sun_from_target,
@@ -31,7 +32,7 @@ MAX_DEGREE = 15
 
 
 @dataclass
-class AxisPolynomial(Model):
+class AxisPolynomial(CalibratedModel):
     """Each Sun angle as a polynomial of the feature of its own axis.
 
     Compact and fast, it follows any smooth response of one axis, but not what the other axis does
@@ -39,13 +40,14 @@ class AxisPolynomial(Model):
 
     Parameters
     ----------
-    degree : int
-        Degree n, 1 to 15; the study takes the sixth.
+    degree : int, optional
+        Degree n, 1 to 15; the study takes the sixth. None: chosen from the calibration samples
+        by cross-validation.
     target : {"angle", "tangent"}
         What the polynomial gives: the angle in degrees, as published, or its tangent.
     extrapolation : float
-        How far past the calibrated range of a feature predictions may go, as a fraction of half
-        that range, from 0 up. Further out a polynomial says nothing.
+        How far past the convex hull of the calibrated features answers may go, as a share of its
+        half width, from 0 up; infinity for anywhere. Further out a polynomial says nothing.
 
     Attributes
     ----------
@@ -53,6 +55,17 @@ class AxisPolynomial(Model):
         The features' scaling ``u = (feature - middle) / half_range`` onto [-1, 1].
     coefficients_ : ndarray, shape (2, n + 1)
         Chebyshev coefficients in the scaled feature, rows ``alpha`` (on y) and ``beta`` (on x).
+    powers_ : ndarray, shape (2, n + 1)
+        The same as coefficients of powers, which are what is summed.
+    whitening_ : ndarray, shape (2, n + 1, n + 1)
+        Inverse of each design's triangular factor: rows of terms times it have the squared length
+        that their value's variance is, for errors of size one.
+    validated_deg_ : float or None
+        Error on samples left out, where they chose the degree.
+    quality_ : FitQuality
+        Residuals, and the degree.
+    hull_ : Hull
+        Of the calibrated features.
 
     Raises
     ------
@@ -68,8 +81,9 @@ class AxisPolynomial(Model):
 
     Shapes: features ``(x, y)`` (N, 2), in px or dimensionless, to unit vectors (N, 3).
 
-    Failure: a NaN row for a NaN feature row, for one outside the calibrated range, or where an
-    angle reaches 90 degrees. fit raises UnusableDataError below n + 1 different features an axis.
+    Failure: a NaN row for a NaN feature row, outside the hull, or where an angle reaches 90
+    degrees. fit raises UnusableDataError below n + 1 different features an axis, or where they lie
+    on one line.
 
     Cost: 6 (n + 1) operations and 2 tangents a sample.
 
@@ -99,48 +113,72 @@ class AxisPolynomial(Model):
         accepts=POSITIONS,
     )
 
-    degree: int = 6
+    degree: int | None = None
     target: Target = "angle"
-    extrapolation: float = 0.05
 
     middle_: Floats = field(init=False, repr=False, compare=False)
     half_range_: Floats = field(init=False, repr=False, compare=False)
     coefficients_: Floats = field(init=False, repr=False, compare=False)
+    powers_: Floats = field(init=False, repr=False, compare=False)
+    whitening_: Floats = field(init=False, repr=False, compare=False)
+    validated_deg_: float | None = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        _require_polynomial(self.about.name, self.degree, self.extrapolation)
+        super().__post_init__()
+        _require_degree(self.about.name, self.degree)
         require_target(self.target, self.about.name)
 
-    def fit(self, features: ArrayLike, sun: ArrayLike) -> Self:
-        """Fit one polynomial an axis."""
-        found, vectors = as_frontal_calibration(features, sun, self.about.name)
-        require_samples(
-            len(found), self.degree + 1, self.about.name, f"degree {self.degree} on each axis"
-        )
-        middle, half = feature_scaling(found, self.about.name)
-        scaled = (found - middle) / half
-        wanted = target_from_sun(vectors, self.target)
-        coefficients = np.empty((2, self.degree + 1))
-        for axis, column in ((0, 1), (1, 0)):
-            design = _axis_terms(scaled[:, column], self.degree)
-            coefficients[axis] = solve_regression(design, wanted[:, axis], self.about.name)
-        self.middle_, self.half_range_, self.coefficients_ = middle, half, coefficients
-        return self
+    def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
+        """Fit one polynomial an axis to samples (n, 2) of Suns (n, 3)."""
+        del context
+        by = self.about.name
+        if self.degree is None:
+            most = min(MAX_DEGREE, min(len(np.unique(column)) for column in features.T) - 1)
+            require_samples(most, 1, by, "different features on each axis")
+            sizes = list(range(2, most + 2))
+        else:
+            needed = self.degree + 1
+            require_samples(len(features), needed, by, f"degree {self.degree} on each axis")
+            sizes = [needed]
+        fit = fit_axes(_axis_terms, sizes, features, sun, target=self.target, by=by)
+        self.middle_, self.half_range_ = fit.middle, fit.half_range
+        self.coefficients_, self.whitening_ = fit.coefficients, fit.whitening
+        self.powers_ = np.stack([chebyshev.cheb2poly(row) for row in fit.coefficients])
+        self.validated_deg_ = fit.validated_deg
 
-    def predict(self, features: ArrayLike) -> Floats:
-        """Sun unit vectors (N, 3) of features (N, 2)."""
-        require_fitted(self, "coefficients_")
-        found = as_features(features, 2, self.about.name)
-        scaled = _within((found - self.middle_) / self.half_range_, self.extrapolation)
-        alpha, beta = self.coefficients_
-        values = np.column_stack(
-            [chebyshev.chebval(scaled[:, 1], alpha), chebyshev.chebval(scaled[:, 0], beta)]
-        )
+    def settings(self) -> Mapping[str, Setting]:
+        """Give the degree, chosen or given."""
+        return {"degree": self.coefficients_.shape[1] - 1}
+
+    def validation_rms_deg(self) -> float | None:
+        """Error on samples left out, where they chose the degree."""
+        return self.validated_deg_
+
+    def answer(self, features: Floats, context: Columns) -> Floats:
+        """Directions (N, 3) of features (N, 2)."""
+        from algorithms.models.non_physical.regression_kernel import axis_values  # noqa: PLC0415 - Numba
+
+        del context
+        values = np.empty((len(features), 2), order="F")
+        for axis, column in AXES:
+            scaled = (features[:, column] - self.middle_[column]) / self.half_range_[column]
+            axis_values(scaled, self.powers_[axis], values[:, axis])
         return sun_from_target(values, self.target)
+
+    def variance(self, features: Floats, context: Columns) -> Floats:
+        """(N,) variance that the coefficients' errors make, rad^2."""
+        del context
+        scaled = (features - self.middle_) / self.half_range_
+        degree = self.coefficients_.shape[1] - 1
+        share = np.zeros(len(features))
+        for axis, column in AXES:
+            terms = _axis_terms(scaled[:, column], degree + 1)
+            share += ((terms @ self.whitening_[axis]) ** 2).sum(axis=1)
+        return np.asarray(share * np.radians(self.quality_.residual_rms_deg) ** 2 / 4.0)
 
 
 @dataclass
-class SurfacePolynomial(Model):
+class SurfacePolynomial(CalibratedModel):
     """Each Sun angle as a polynomial surface over both features.
 
     The cross terms take up what turns one axis into the other: in-plane rotation, tilt and
@@ -148,20 +186,32 @@ class SurfacePolynomial(Model):
 
     Parameters
     ----------
-    degree : int
-        Total degree n, 1 to 15; 5 (21 terms) is ours.
+    degree : int, optional
+        Total degree n, 1 to 15. None: chosen from the calibration samples by cross-validation.
     target : {"angle", "tangent"}
         What the polynomial gives: the angle in degrees or its tangent.
     extrapolation : float
-        How far past the calibrated range of a feature predictions may go, as a fraction of half
-        that range, from 0 up. Further out a polynomial says nothing.
+        How far past the convex hull of the calibrated features answers may go, as a share of its
+        half width, from 0 up; infinity for anywhere. Further out a polynomial says nothing.
 
     Attributes
     ----------
     middle_, half_range_ : ndarray, shape (2,)
         The features' scaling ``u = (feature - middle) / half_range`` onto [-1, 1].
     coefficients_ : ndarray, shape (2, (n + 1)(n + 2) / 2)
-        Coefficients of ``T_i(u_x) T_j(u_y)``, i + j <= n, j fastest, rows ``alpha`` and ``beta``.
+        Coefficients of ``T_i(u_x) T_j(u_y)``, i + j <= n, by total degree and then by j, rows
+        ``alpha`` and ``beta``.
+    powers_ : ndarray, shape (2, n + 1, n + 1)
+        The same as coefficients of ``u_y^j u_x^k``, which are what is summed.
+    whitening_ : ndarray, shape (terms, terms)
+        Inverse of the design's triangular factor: rows of terms times it have the squared length
+        that their value's variance is, for errors of size one.
+    validated_deg_ : float or None
+        Error on samples left out, where they chose the degree.
+    quality_ : FitQuality
+        Residuals, and the degree.
+    hull_ : Hull
+        Of the calibrated features.
 
     Raises
     ------
@@ -176,9 +226,9 @@ class SurfacePolynomial(Model):
 
     Shapes: features ``(x, y)`` (N, 2), in px or dimensionless, to unit vectors (N, 3).
 
-    Failure: a NaN row for a NaN feature row, for one outside the calibrated range, or where an
-    angle reaches 90 degrees. fit raises UnusableDataError below (n + 1)(n + 2) / 2 samples or where
-    they lie so that they do not settle every term.
+    Failure: a NaN row for a NaN feature row, outside the hull, or where an angle reaches 90
+    degrees. fit raises UnusableDataError below (n + 1)(n + 2) / 2 samples or where they lie so that
+    they do not settle every term.
 
     Cost: 2.5 (n + 1)(n + 2) operations and 2 tangents a sample.
 
@@ -209,65 +259,117 @@ class SurfacePolynomial(Model):
         accepts=POSITIONS,
     )
 
-    degree: int = 5
+    degree: int | None = None
     target: Target = "angle"
-    extrapolation: float = 0.05
 
     middle_: Floats = field(init=False, repr=False, compare=False)
     half_range_: Floats = field(init=False, repr=False, compare=False)
     coefficients_: Floats = field(init=False, repr=False, compare=False)
+    powers_: Floats = field(init=False, repr=False, compare=False)
+    whitening_: Floats = field(init=False, repr=False, compare=False)
+    validated_deg_: float | None = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        _require_polynomial(self.about.name, self.degree, self.extrapolation)
+        super().__post_init__()
+        _require_degree(self.about.name, self.degree)
         require_target(self.target, self.about.name)
 
-    def fit(self, features: ArrayLike, sun: ArrayLike) -> Self:
-        """Fit both surfaces."""
-        found, vectors = as_frontal_calibration(features, sun, self.about.name)
-        terms = (self.degree + 1) * (self.degree + 2) // 2
-        require_samples(len(found), terms, self.about.name, f"total degree {self.degree}")
-        middle, half = feature_scaling(found, self.about.name)
-        design = _surface_terms((found - middle) / half, self.degree)
-        wanted = target_from_sun(vectors, self.target)
-        coefficients = solve_regression(design, wanted, self.about.name).T.copy()
-        self.middle_, self.half_range_, self.coefficients_ = middle, half, coefficients
-        return self
+    def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
+        """Fit both surfaces to samples (n, 2) of Suns (n, 3)."""
+        del context
+        by = self.about.name
+        middle, half = feature_scaling(features, by)
+        scaled = (features - middle) / half
+        wanted = target_from_sun(sun, self.target)
+        degree, validated = self.degree, None
+        if degree is None:
+            require_samples(len(features), 4, by, "three terms and one sample left out")
+            design = _surface_terms(scaled, MAX_DEGREE)
+            sizes = [_terms(n) for n in range(1, MAX_DEGREE + 1) if _terms(n) < len(features)]
+            choice = chosen(errors_of_orders(design, sizes, wanted, folds(sun)), by)
+            degree, validated = choice.order + 1, in_degrees(choice.rms, self.target)
+        require_samples(len(features), _terms(degree), by, f"total degree {degree}")
+        design = _surface_terms(scaled, degree)
+        self.coefficients_ = solve_regression(design, wanted, by).T.copy()
+        self.powers_ = _as_powers(self.coefficients_, degree)
+        self.whitening_ = np.asarray(np.linalg.inv(np.linalg.qr(design, mode="r")))
+        self.middle_, self.half_range_, self.validated_deg_ = middle, half, validated
 
-    def predict(self, features: ArrayLike) -> Floats:
-        """Sun unit vectors (N, 3) of features (N, 2)."""
-        require_fitted(self, "coefficients_")
-        found = as_features(features, 2, self.about.name)
-        scaled = _within((found - self.middle_) / self.half_range_, self.extrapolation)
-        terms = _surface_terms(scaled, self.degree)
-        # Term by term: a matrix product rounds a sample differently in batches of another size.
-        values = np.zeros((len(found), 2))
-        for term in range(terms.shape[1]):
-            values += terms[:, term : term + 1] * self.coefficients_[:, term]
-        return sun_from_target(values, self.target)
+    def settings(self) -> Mapping[str, Setting]:
+        """Give the total degree, chosen or given."""
+        return {"degree": _degree(self.coefficients_.shape[1])}
+
+    def validation_rms_deg(self) -> float | None:
+        """Error on samples left out, where they chose the degree."""
+        return self.validated_deg_
+
+    def answer(self, features: Floats, context: Columns) -> Floats:
+        """Directions (N, 3) of features (N, 2)."""
+        from algorithms.models.non_physical.regression_kernel import surface_values  # noqa: PLC0415 - Numba
+
+        del context
+        x, y = (
+            (features[:, column] - self.middle_[column]) / self.half_range_[column]
+            for column in (0, 1)
+        )
+        # Row by row: a matrix product rounds a sample differently in batches of another size.
+        values = np.empty((2, len(features)))
+        surface_values(x, y, self.powers_, values)
+        return sun_from_target(values.T, self.target)
+
+    def variance(self, features: Floats, context: Columns) -> Floats:
+        """(N,) variance that the coefficients' errors make, rad^2."""
+        del context
+        scaled = (features - self.middle_) / self.half_range_
+        terms = _surface_terms(scaled, _degree(self.coefficients_.shape[1]))
+        share = ((terms @ self.whitening_) ** 2).sum(axis=1)
+        return np.asarray(share * np.radians(self.quality_.residual_rms_deg) ** 2 / 2.0)
 
 
-def _axis_terms(scaled: Floats, degree: int) -> Floats:
-    """``T_k(u)`` for k = 0..degree, (N, degree + 1)."""
-    return np.asarray(chebyshev.chebvander(scaled, degree), dtype=np.float64)
+def _axis_terms(scaled: Floats, size: int) -> Floats:
+    """``T_k(u)`` for k = 0..size - 1, (N, size)."""
+    return np.asarray(chebyshev.chebvander(scaled, size - 1), dtype=np.float64)
+
+
+def _axis_columns(scaled: Floats, degree: int) -> list[Floats]:
+    """``T_k(u)`` for k = 0..degree, each (N,)."""
+    columns = [np.ones_like(scaled), scaled]
+    for _ in range(degree - 1):
+        columns.append(2.0 * scaled * columns[-1] - columns[-2])
+    return columns
+
+
+def _powers(degree: int) -> list[tuple[int, int]]:
+    """Degrees (i, j) of the terms ``T_i(u_x) T_j(u_y)``: every order's come before the next's."""
+    return [(total - j, j) for total in range(degree + 1) for j in range(total + 1)]
+
+
+def _terms(degree: int) -> int:
+    return (degree + 1) * (degree + 2) // 2
+
+
+def _degree(terms: int) -> int:
+    return int(np.sqrt(2 * terms)) - 1
+
+
+def _as_powers(coefficients: Floats, degree: int) -> Floats:
+    """Coefficients (2, n + 1, n + 1) of ``u_y^j u_x^k`` from those (2, terms) of `_powers`."""
+    monomials = np.zeros((degree + 1, degree + 1))
+    for k in range(degree + 1):
+        powers = chebyshev.cheb2poly(np.eye(degree + 1)[k])
+        monomials[: len(powers), k] = powers
+    products = np.zeros((2, degree + 1, degree + 1))
+    for term, (i, j) in enumerate(_powers(degree)):
+        products[:, j, i] = coefficients[:, term]
+    return np.asarray(monomials @ products @ monomials.T)
 
 
 def _surface_terms(scaled: Floats, degree: int) -> Floats:
     """``T_i(u_x) T_j(u_y)`` for i + j <= degree, (N, terms)."""
-    x = _axis_terms(scaled[:, 0], degree)
-    y = _axis_terms(scaled[:, 1], degree)
-    return np.concatenate(
-        [x[:, i : i + 1] * y[:, : degree + 1 - i] for i in range(degree + 1)], axis=1
-    )
+    x, y = (_axis_columns(column, degree) for column in scaled.T)
+    return np.stack([x[i] * y[j] for i, j in _powers(degree)], axis=1)
 
 
-def _within(scaled: Floats, extrapolation: float) -> Floats:
-    """Scaled features, NaN rows past the calibrated range and its margin."""
-    inside = (np.abs(scaled) <= 1.0 + extrapolation).all(axis=1, keepdims=True)
-    return np.where(inside, scaled, np.nan)
-
-
-def _require_polynomial(by: str, degree: int, extrapolation: float) -> None:
-    if not 1 <= degree <= MAX_DEGREE:
-        raise ValueError(f"{by}: degree must be from 1 to {MAX_DEGREE}; got {degree!r}")
-    if not (np.isfinite(extrapolation) and extrapolation >= 0):
-        raise ValueError(f"{by}: extrapolation must be 0 or more; got {extrapolation!r}")
+def _require_degree(by: str, degree: int | None) -> None:
+    if degree is not None and not 1 <= degree <= MAX_DEGREE:
+        raise ValueError(f"{by}: degree must be from 1 to {MAX_DEGREE}, or None; got {degree!r}")

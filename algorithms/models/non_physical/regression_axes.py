@@ -6,16 +6,14 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from algorithms.angles import (
-    angles_from_sun,
-    sun_from_angles,
-    sun_from_tangents,
-    tangents_from_sun,
-)
+from algorithms.angles import angles_from_sun, tangents_from_sun
+from algorithms.calibration.conditioning import WORST_CONDITION
 from algorithms.contract import Floats, UnusableDataError
-from algorithms.models.conditioning import WORST_CONDITION
 
 Target = Literal["angle", "tangent"]
+
+#: What `numpy.radians` multiplies by, one number at a time.
+_RADIAN = np.pi / 180.0
 
 
 def require_target(target: str, by: str) -> None:
@@ -33,7 +31,22 @@ def target_from_sun(sun: Floats, target: Target) -> Floats:
 
 def sun_from_target(values: Floats, target: Target) -> Floats:
     """Sun unit vectors (N, 3) of what a regression gives; NaN where an angle reaches 90."""
-    return sun_from_angles(values) if target == "angle" else sun_from_tangents(values)
+    from algorithms.models.non_physical.regression_kernel import unit_vectors  # noqa: PLC0415 - Numba
+
+    columns = np.ascontiguousarray(values.T)
+    if target == "angle":
+        tangents, limit = columns * _RADIAN, 90.0
+        np.tan(tangents, out=tangents)
+    else:
+        tangents, limit = columns, np.inf
+    sun = np.empty((len(values), 3))
+    unit_vectors(columns, limit, tangents[0], tangents[1], sun)
+    return sun
+
+
+def in_degrees(rms: float, target: Target) -> float:
+    """Error of a pair of angles as degrees; a tangent's as near the boresight, where it is most."""
+    return rms if target == "angle" else float(np.degrees(rms))
 
 
 def feature_scaling(features: Floats, by: str) -> tuple[Floats, Floats]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import cache
 
 import numpy as np
@@ -68,6 +69,7 @@ def fitted(model, tangents=None, signals=None, **parameters):
             "cell_mm": CELL_MM,
             "period_mm": PERIOD_MM,
             "focal_length_mm": FOCAL_MM,
+            "extrapolation": math.inf,
             **parameters,
         }
     )

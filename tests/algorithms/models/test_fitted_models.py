@@ -8,7 +8,8 @@ from numpy.polynomial import polynomial
 
 from algorithms.angles import angles_from_sun, separation_deg, sun_from_angles
 from algorithms.contract import FeatureKind, UnusableDataError
-from algorithms.models.lut.lookup_table import BlendedPolynomials, ErrorTable
+from algorithms.models.lut.blended_polynomials import BlendedPolynomials
+from algorithms.models.lut.lookup_table import ErrorTable
 from algorithms.models.non_physical.linear import LinearFit
 from algorithms.models.non_physical.polynomial import AxisPolynomial, SurfacePolynomial
 
@@ -54,7 +55,7 @@ def test_axis_polynomial_is_numpys_own_fit(degree):
         [30 * np.sin(features[:, 1] / 300), 25 * np.tanh((features[:, 0] - 1000) / 250)]
     )
     model = AxisPolynomial(degree=degree).fit(features, sun_from_angles(angles))
-    new = scattered(29, seed=1) * 10 + 1000
+    new = scattered(25, seed=1) * 10 + 1000
     expected = np.column_stack(
         [
             polynomial.Polynomial.fit(features[:, 1], angles[:, 0], degree)(new[:, 1]),
@@ -67,7 +68,7 @@ def test_axis_polynomial_is_numpys_own_fit(degree):
 def test_axis_polynomial_holds_a_polynomial_of_its_degree_exactly():
     x, y = scattered().T
     angles = np.column_stack([1 + y - 1e-9 * y**6, 0.8 * x + 1e-5 * x**4])
-    model = AxisPolynomial().fit(np.column_stack([x, y]), sun_from_angles(angles))
+    model = AxisPolynomial(degree=6).fit(np.column_stack([x, y]), sun_from_angles(angles))
     predicted = angles_from_sun(model.predict(np.column_stack([x, y])))
     np.testing.assert_allclose(predicted, angles, atol=1e-10)
 
@@ -104,13 +105,13 @@ def test_high_degrees_keep_their_digits_far_from_the_origin():
 def test_polynomials_say_nothing_far_outside_the_calibration(model):
     features = grid()
     model.fit(features, sun_from_angles(response(features)))
-    found = model.predict([[31.0, 0.0], [0.0, -31.4], [31.6, 0.0], [0.0, 40.0]])
+    found = model.predict([[31.0, 0.0], [0.0, -32.4], [32.6, 0.0], [0.0, 40.0]])  # 5 a step
     assert np.isnan(found).any(axis=1).tolist() == [False, False, True, True]
 
 
 @pytest.mark.parametrize(
     ("model", "needed"),
-    [(LinearFit(), 2), (AxisPolynomial(), 7), (SurfacePolynomial(), 21)],
+    [(LinearFit(), 3), (AxisPolynomial(degree=6), 7), (SurfacePolynomial(degree=5), 21)],
     ids=str,
 )
 def test_too_few_samples_are_refused_with_the_number_needed(model, needed):
@@ -133,7 +134,7 @@ def test_samples_that_do_not_spread_are_refused(model):
         model.fit(np.column_stack([np.arange(50.0), np.full(50, 3.0)]), sun)
     if not isinstance(model, LinearFit):
         two_places = np.repeat([[0.0, 0.0], [1.0, 1.0]], 25, axis=0)
-        with pytest.raises(UnusableDataError, match="settle only 2"):
+        with pytest.raises(UnusableDataError, match="on one line"):
             model.fit(two_places, sun)
 
 
@@ -209,6 +210,7 @@ def test_blended_polynomials_are_the_weighted_sum_of_two_neighbours():
     np.testing.assert_allclose(found, np.array([alpha, beta]) + blend, atol=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("model", TABLES)
 def test_tables_average_repeated_samples(model):
     nominal = np.repeat(grid(10.0, 11), 400, axis=0)
@@ -223,10 +225,10 @@ def test_tables_average_repeated_samples(model):
 @pytest.mark.parametrize("model", TABLES)
 def test_tables_say_nothing_outside_the_calibrated_region(model):
     nominal = grid(20.0, 21)
-    nominal = nominal[np.hypot(*nominal.T) < 20]  # a round field
+    nominal = nominal[np.hypot(*nominal.T) < 20]  # a round field, 2 a step
     features = np.tan(np.radians(nominal[:, ::-1]))
     table = model(focal_length_mm=1.0, unit_mm=1.0).fit(features, sun_from_angles(nominal))
-    asked = np.array([[0.0, 0.0], [18.3, 0.0], [0.0, -18.6], [16.0, 16.0], [25.0, 0.0]])
+    asked = np.array([[0.0, 0.0], [18.3, 0.0], [0.0, -19.2], [16.0, 16.0], [19.5, 0.0]])
     found = table.predict(np.tan(np.radians(asked[:, ::-1])))
     assert np.isnan(found).any(axis=1).tolist() == [False, False, True, True, True]
 
@@ -236,13 +238,13 @@ def test_tables_refuse_samples_that_span_no_region(model):
     table = model(focal_length_mm=1.0, unit_mm=1.0)
     line = np.column_stack([np.linspace(-0.5, 0.5, 60), np.linspace(-0.5, 0.5, 60)])
     sun = np.tile([0.0, 0.0, 1.0], (60, 1))
-    with pytest.raises(UnusableDataError, match="on one line"):
+    with pytest.raises(UnusableDataError, match=r"on one line|settle"):
         table.fit(line, sun)
-    with pytest.raises(UnusableDataError, match=r"at least (3|18) samples"):
+    with pytest.raises(UnusableDataError, match=r"at least (3|4) samples"):
         table.fit(line[:2], sun[:2])
     with pytest.raises(UnusableDataError, match="unknowns"):
         model(focal_length_mm=1.0, unit_mm=1.0, interval_deg=1e-4).fit(
-            scattered(0.5), np.tile([0.0, 0.0, 1.0], (300, 1))
+            np.tan(np.radians(scattered(20.0)[:, ::-1])), sun_from_angles(scattered(20.0))
         )
 
 
@@ -252,7 +254,7 @@ def test_blended_polynomials_refuse_what_rounding_would_decide(jitter):
     angles = grid(20.0, 6)
     features = np.tan(np.radians(angles[:, ::-1]))
     features += jitter * np.random.default_rng(3).standard_normal(features.shape)
-    rows = BlendedPolynomials(focal_length_mm=1.0, unit_mm=1.0)
+    rows = BlendedPolynomials(focal_length_mm=1.0, unit_mm=1.0, degree=8, smoothing=1e-3)
     with pytest.raises(UnusableDataError, match=r"settle"):
         rows.fit(features, sun_from_angles(angles))
 
@@ -271,7 +273,7 @@ def test_what_blended_polynomials_accept_does_not_hang_on_the_order_of_sums():
 def test_blended_polynomials_refuse_samples_on_too_few_columns():
     features = np.tan(np.radians(grid(20.0, 5)))  # 5 different beta, 9 terms
     with pytest.raises(UnusableDataError, match="settle"):
-        BlendedPolynomials(focal_length_mm=1.0, unit_mm=1.0).fit(
+        BlendedPolynomials(focal_length_mm=1.0, unit_mm=1.0, degree=8, smoothing=1e-3).fit(
             features, sun_from_angles(grid(20.0, 5))
         )
 

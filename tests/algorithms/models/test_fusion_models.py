@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -66,7 +68,9 @@ def test_pyramid_inverts_cosine_faces_while_all_are_lit(
     normals = np.random.default_rng(seed).permutation(survey_pyramid(count, tilt, first))
     sun = direction(share * (90 - tilt), turn)
     signals = light * cosines(sun, normals)
-    model = RegularPyramid(as_design(normals), dark_fraction=1e-4).fit(signals, sun)
+    model = RegularPyramid(as_design(normals), dark_fraction=1e-4, extrapolation=math.inf).fit(
+        signals, sun
+    )
     assert separation_deg(model.predict(signals), sun).max() < 1e-9
     assert model.coefficients_ == pytest.approx(np.full(count, 1 / light))
 
@@ -77,7 +81,7 @@ def test_pyramid_follows_the_corrected_equation():
     e = np.random.default_rng(3).uniform(0.5, 1.0, 5)
     matrix = np.vstack([column / (column @ column) for column in b.T])
     expected = matrix @ e
-    model = RegularPyramid(as_design(b)).fit(e[None], [[0.0, 0.0, 1.0]])
+    model = RegularPyramid(as_design(b), extrapolation=math.inf).fit(e[None], [[0.0, 0.0, 1.0]])
     np.testing.assert_allclose(
         model.predict(e[None])[0], expected / np.linalg.norm(expected), atol=1e-15
     )
@@ -90,7 +94,9 @@ def test_pyramid_follows_the_corrected_equation():
 def test_light_on_all_faces_alike_moves_the_pyramids_vector_along_z_only(constant, off, turn):
     tilt = 30.0
     normals, sun = survey_pyramid(6, tilt), direction(off, turn)
-    model = RegularPyramid(as_design(normals)).fit(cosines(sun, normals), sun)
+    model = RegularPyramid(as_design(normals), extrapolation=math.inf).fit(
+        cosines(sun, normals), sun
+    )
     found = model.predict(cosines(sun, normals) + constant)
     expected = sun + np.array([0, 0, constant / np.cos(np.radians(tilt))])
     assert separation_deg(found, expected).max() < 1e-9
@@ -99,15 +105,15 @@ def test_light_on_all_faces_alike_moves_the_pyramids_vector_along_z_only(constan
 def test_pyramid_gives_nothing_where_a_face_is_dark():
     normals = survey_pyramid(4, 30.0)
     lit = np.array([[0.9, 0.8, 0.7, 0.6]])
-    model = RegularPyramid(as_design(normals)).fit(lit, [[0.0, 0.0, 1.0]])
+    model = RegularPyramid(as_design(normals), extrapolation=math.inf).fit(lit, [[0.0, 0.0, 1.0]])
     rows = np.array(
         [[0.9, 0.8, 0.7, 0.0091], [0.9, 0.8, 0.7, 0.0089], [0.9, 0.8, 0.7, 0], [0] * 4, [-1] * 4]
     )
     assert np.isnan(model.predict(rows)).all(axis=1).tolist() == [False, True, True, True, True]
     with pytest.raises(ValueError, match="every face lit"):
-        RegularPyramid(as_design(normals)).fit(rows[1:], np.tile([0.0, 0.0, 1.0], (4, 1)))
+        model.fit(rows[1:], np.tile([0.0, 0.0, 1.0], (4, 1)))
     with pytest.raises(ValueError, match="towards the Sun"):
-        RegularPyramid(as_design(normals)).fit(lit, [[0.0, 0.0, -1.0]])
+        model.fit(lit, [[0.0, 0.0, -1.0]])
 
 
 def test_a_coefficient_a_face_makes_up_for_gains_one_in_common_does_not():
@@ -119,7 +125,7 @@ def test_a_coefficient_a_face_makes_up_for_gains_one_in_common_does_not():
     common = RegularPyramid(as_design(normals)).fit(signals, sun)
     assert each.coefficients_ == pytest.approx(1 / gains)
     assert separation_deg(each.predict(signals), sun).max() < 1e-9
-    assert separation_deg(common.predict(signals), sun).max() > 5
+    assert np.nanmax(separation_deg(common.predict(signals), sun)) > 5
 
 
 @pytest.mark.parametrize(
@@ -158,7 +164,7 @@ def test_panoramic_is_weighted_least_squares_over_the_lit_cells(seed, count, wei
     rng = np.random.default_rng(seed)
     normals, sun = spread(count, seed), spread(300, seed + 1)
     reference = rng.uniform(0.5, 2.0, count)
-    model = WeightedCells(as_design(normals), weighting=weighting)
+    model = WeightedCells(as_design(normals), weighting=weighting, extrapolation=math.inf)
     model.fit(reference * cosines(sun, normals), sun)
     np.testing.assert_allclose(model.reference_, reference, rtol=1e-12)
 
@@ -242,6 +248,10 @@ def test_panoramic_refuses_bodies_that_leave_directions_unsolved(normals, half_f
             WeightedCells.for_sensor(design, FeatureKind.SIGNALS)
 
 
+def anywhere(normals):
+    return WeightedCells(as_design(normals), extrapolation=math.inf)
+
+
 def test_a_cell_never_lit_in_calibration_takes_the_others_reference():
     normals = np.array(FACES)
     sun = spread(200)
@@ -251,9 +261,9 @@ def test_a_cell_never_lit_in_calibration_takes_the_others_reference():
     assert model.reference_ == pytest.approx([1, 2, 3, 4, 5, 3])
     up = direction(0.0, 0.0)
     with pytest.raises(ValueError, match="light a cell"):
-        WeightedCells(as_design(survey_pyramid(3, 80.0))).fit(np.ones((1, 3)), up)
+        anywhere(survey_pyramid(3, 80.0)).fit(np.ones((1, 3)), up)
     with pytest.raises(ValueError, match="positive signals"):
-        WeightedCells(as_design(survey_pyramid(3, 30.0))).fit(-np.ones((1, 3)), up)
+        anywhere(survey_pyramid(3, 30.0)).fit(-np.ones((1, 3)), up)
 
 
 # Solar panel

@@ -9,11 +9,7 @@ from hypothesis import strategies as st
 
 from algorithms.angles import separation_deg, sun_from_angles, sun_from_rotations
 from algorithms.contract import FeatureKind, SensorGeometry
-from algorithms.models.geometric.least_squares import (
-    LeastSquaresGeometry,
-    rotation_angles,
-    rotation_jacobian,
-)
+from algorithms.models.geometric.least_squares import LeastSquaresGeometry, rotation_angles
 from algorithms.models.geometric.multisensor_fusion import SixFaces
 from algorithms.models.geometric.standard_projection import StandardProjection
 
@@ -97,21 +93,6 @@ def test_lsq_follows_the_corrected_equation():
         np.testing.assert_allclose(found, [[alpha_m, beta_m]], atol=1e-15)
 
 
-@settings(deadline=None, derandomize=True, max_examples=50)
-@given(
-    st.tuples(*[st.floats(-0.3, 0.3)] * 5),
-)
-def test_lsq_jacobian_is_the_derivative_of_its_angles(values):
-    p = np.array(values)
-    spot = np.random.default_rng(0).uniform(-1.5, 1.5, (6, 2))
-    jacobian = rotation_jacobian(p, spot)
-    for k in range(5):
-        step = np.zeros(5)
-        step[k] = 1e-5
-        slope = (rotation_angles(p + step, spot) - rotation_angles(p - step, spot)) / 2e-5
-        np.testing.assert_allclose(jacobian[:, :, k], slope, atol=2e-8)
-
-
 @pytest.mark.parametrize("boresight", [(0.0, 0.0), (1.5, 0.0), (0.0, -2.0), (0.7, 1.1)])
 @pytest.mark.parametrize("focal_error_mm", [0.0, -0.15, 0.2])
 def test_lsq_inverts_offset_turntable_angles_and_focal_error_exactly(
@@ -125,11 +106,12 @@ def test_lsq_inverts_offset_turntable_angles_and_focal_error_exactly(
     spot = pinhole(head, focal, geometry.pixel_pitch_mm, (203.0, 141.0))
     model = LeastSquaresGeometry.for_sensor(geometry, FeatureKind.SPOT).fit(spot, sun)
     assert separation_deg(model.predict(spot), sun).max() < 1e-6
-    assert model.focal_length_error_mm_ == pytest.approx(focal_error_mm, abs=1e-9)
-    assert model.boresight_deg_ == pytest.approx(boresight, abs=1e-8)
+    found = {parameter.name: parameter.value for parameter in model.quality_.parameters}
+    assert found["focal_length_error"] == pytest.approx(focal_error_mm, abs=1e-9)
+    assert (found["alpha_0"], found["beta_0"]) == pytest.approx(boresight, abs=1e-8)
     zero = pinhole(sun_from_rotations([boresight]), focal, geometry.pixel_pitch_mm, (203.0, 141.0))
-    assert model.zero_point_ == pytest.approx(tuple(zero[0]), abs=1e-6)
-    assert model.residual_rms_deg_ < 1e-9
+    assert (found["x_zp"], found["y_zp"]) == pytest.approx(tuple(zero[0]), abs=1e-6)
+    assert model.quality_.residual_rms_deg < 1e-9
 
 
 def test_lsq_inverts_a_head_turned_about_y_exactly(geometry):
@@ -139,7 +121,7 @@ def test_lsq_inverts_a_head_turned_about_y_exactly(geometry):
     spot = pinhole(head, 2.05, geometry.pixel_pitch_mm, geometry.centre_px)
     model = LeastSquaresGeometry.for_sensor(geometry, FeatureKind.SPOT).fit(spot, sun)
     assert separation_deg(model.predict(spot), sun).max() < 1e-6
-    assert abs(model.boresight_deg_[1]) == pytest.approx(1.7, abs=1e-8)
+    assert abs(model.quality_.parameter("beta_0").value) == pytest.approx(1.7, abs=1e-8)
 
 
 def test_lsq_beats_spm_for_a_head_turned_about_any_axis(geometry):
@@ -177,9 +159,9 @@ def test_lsq_refuses_samples_that_do_not_settle_it(geometry, features):
     nominal = StandardProjection.for_sensor(geometry, FeatureKind.SPOT)
     sun = nominal.fit(features, np.tile([0.0, 0.0, 1.0], (20, 1))).predict(features)
     model = LeastSquaresGeometry.for_sensor(geometry, FeatureKind.SPOT)
-    with pytest.raises(ValueError, match="settle"):
+    with pytest.raises(ValueError, match="on one line"):
         model.fit(features, sun)
-    with pytest.raises(ValueError, match="at least 3 samples"):
+    with pytest.raises(ValueError, match="on one line"):
         model.fit(features[:2], sun[:2])
 
 

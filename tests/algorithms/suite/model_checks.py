@@ -6,11 +6,14 @@ import dataclasses
 import json
 import pickle
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from expectations import assert_documented, assert_metadata, assert_rejects, same, wrong_arrays
 
+from algorithms.angles import separation_deg
+from algorithms.calibration.saving import stage_document, stage_of
 from algorithms.contract import (
     FeatureKind,
     Model,
@@ -22,6 +25,16 @@ from algorithms.contract import (
 )
 
 MODEL_CHECKS: list[Callable[..., None]] = []
+
+
+def assert_learns_nothing(model, cal):
+    """A drawing holds everywhere, since no calibration changes it."""
+    half = cal.of(slice(None, None, 2))
+    whole = model.fit(cal.features, cal.sun, cal.context).predict(cal.features, cal.context)
+    again = model.fit(half.features, half.sun, half.context).predict(cal.features, cal.context)
+    same(again, whole)
+    assert model.quality_.parameters == ()
+    assert not model.quality_.settings
 
 
 def model_check(function):
@@ -48,7 +61,7 @@ def check_fitted_attributes_appear_with_fit(cls, model, cal):
     assert fitted
     assert all(name.endswith("_") and not name.startswith("_") for name in fitted)
     assert not any(hasattr(model, name) for name in fitted)
-    assert model.fit(cal.features, cal.sun) is model
+    assert model.fit(cal.features, cal.sun, cal.context) is model
     assert all(hasattr(model, name) for name in fitted)
     assert repr(model)
 
@@ -56,8 +69,8 @@ def check_fitted_attributes_appear_with_fit(cls, model, cal):
 @model_check
 def check_parameters_are_plain_and_kept(cls, model, cal):
     before = json.dumps(parameters(model), allow_nan=False)
-    model.fit(cal.features, cal.sun)
-    model.predict(cal.features)
+    model.fit(cal.features, cal.sun, cal.context)
+    model.predict(cal.features, cal.context)
     assert json.dumps(parameters(model), allow_nan=False) == before
     assert model == cls(**parameters(model))
 
@@ -65,12 +78,12 @@ def check_parameters_are_plain_and_kept(cls, model, cal):
 @model_check
 def check_predict_before_fit_says_so(cls, model, cal):
     with pytest.raises(NotFittedError, match="fit"):
-        model.predict(cal.features)
+        model.predict(cal.features, cal.context)
 
 
 @model_check
 def check_predicts_unit_vectors(cls, model, cal):
-    predicted = model.fit(cal.features, cal.sun).predict(cal.features)
+    predicted = model.fit(cal.features, cal.sun, cal.context).predict(cal.features, cal.context)
     assert predicted.shape == cal.sun.shape
     assert predicted.dtype == np.float64
     np.testing.assert_allclose(np.linalg.norm(predicted, axis=1), 1.0, atol=1e-14)
@@ -78,39 +91,43 @@ def check_predicts_unit_vectors(cls, model, cal):
 
 @model_check
 def check_finds_the_suns_it_learnt(cls, model, cal):
-    predicted = model.fit(cal.features, cal.sun).predict(cal.features)
+    predicted = model.fit(cal.features, cal.sun, cal.context).predict(cal.features, cal.context)
     error_deg = np.degrees(np.linalg.norm(predicted - cal.sun, axis=1))
     assert np.sqrt(np.mean(error_deg**2)) < 3.0  # a tenth of the field: right axes, right signs
 
 
 @model_check
 def check_nan_feature_rows_are_nan_predictions(cls, model, cal):
-    whole = model.fit(cal.features, cal.sun).predict(cal.features)
+    whole = model.fit(cal.features, cal.sun, cal.context).predict(cal.features, cal.context)
     for bad in (np.nan, np.inf, -np.inf):
         for column in range(cal.features.shape[1]):
             broken = cal.features.copy()
             broken[4, column] = bad
-            predicted = model.predict(broken)
+            predicted = model.predict(broken, cal.context)
             assert np.isnan(predicted[4]).all()
             same(np.delete(predicted, 4, axis=0), np.delete(whole, 4, axis=0))
-    assert np.isnan(model.predict(np.full_like(cal.features[:1], np.nan))).all()
+    first = cal.of(slice(1))
+    assert np.isnan(model.predict(np.full_like(first.features, np.nan), first.context)).all()
 
 
 @model_check
 def check_nan_feature_rows_are_left_out_of_the_fit(cls, model, cal):
-    expected = model.fit(cal.features, cal.sun).predict(cal.features)
-    features = np.insert(cal.features, [0, 7, 7], np.nan, axis=0)
-    sun = np.insert(cal.sun, [0, 7, 7], [0.0, 0.0, 1.0], axis=0)
-    same(cls(**parameters(model)).fit(features, sun).predict(cal.features), expected)
+    expected = model.fit(cal.features, cal.sun, cal.context).predict(cal.features, cal.context)
+    gaps = [0, 7, 7]
+    features = np.insert(cal.features, gaps, np.nan, axis=0)
+    sun = np.insert(cal.sun, gaps, [0.0, 0.0, 1.0], axis=0)
+    context = {name: np.insert(column, gaps, 1.0, axis=0) for name, column in cal.context.items()}
+    again = cls(**parameters(model)).fit(features, sun, context)
+    same(again.predict(cal.features, cal.context), expected)
 
 
 @model_check
 def check_model_refuses_wrong_features(cls, model, cal):
     wrong = wrong_arrays(cal.features)
     wrong["a column more"] = np.hstack([cal.features, cal.features[:, :1]])
-    assert_rejects(lambda features: model.fit(features, cal.sun), wrong)
-    model.fit(cal.features, cal.sun)
-    assert_rejects(model.predict, wrong)
+    assert_rejects(lambda features: model.fit(features, cal.sun, cal.context), wrong)
+    model.fit(cal.features, cal.sun, cal.context)
+    assert_rejects(lambda features: model.predict(features, cal.context), wrong)
 
 
 @model_check
@@ -118,92 +135,99 @@ def check_model_refuses_wrong_suns(cls, model, cal):
     wrong = wrong_arrays(cal.sun)
     wrong["one Sun short"] = cal.sun[1:]
     wrong["two columns"] = cal.sun[:, :2]
-    assert_rejects(lambda sun: model.fit(cal.features, sun), wrong)
+    assert_rejects(lambda sun: model.fit(cal.features, sun, cal.context), wrong)
     for unfit in (cal.sun * 1.01, np.where(np.arange(3) == 1, np.nan, cal.sun), 0 * cal.sun):
         with pytest.raises(ValueError, match="unit vectors"):
-            model.fit(cal.features, unfit)
+            model.fit(cal.features, unfit, cal.context)
 
 
 @model_check
 def check_data_that_do_not_settle_it_are_refused_by_their_own_error(cls, model, cal):
     """Nothing found, one sample, one pose again and again: refused, or enough for this model."""
-    places = np.zeros(len(cal.features), dtype=int)
-    for features, sun in (
-        (np.full_like(cal.features, np.nan), cal.sun),
-        (cal.features[:1], cal.sun[:1]),
-        (cal.features[places], cal.sun[places]),
-    ):
+    nothing = replace(cal, features=np.full_like(cal.features, np.nan))
+    for told in (nothing, cal.of(slice(1)), cal.of(np.zeros(len(cal.features), dtype=int))):
         try:
-            model.fit(features, sun)
+            model.fit(told.features, told.sun, told.context)
         except UnusableDataError as refusal:
             assert model.about.name in str(refusal)  # noqa: PT017 - either outcome is right
         else:
-            found = model.predict(cal.features)
+            found = model.predict(cal.features, cal.context)
             assert (np.isnan(found).all(axis=1) | np.isfinite(found).all(axis=1)).all()
 
 
 @model_check
 def check_a_refused_fit_leaves_no_trace(cls, model, cal):
     with pytest.raises(ValueError, match="unit vectors"):
-        model.fit(cal.features, 2 * cal.sun)
+        model.fit(cal.features, 2 * cal.sun, cal.context)
     with pytest.raises(NotFittedError):
-        model.predict(cal.features)
-    expected = model.fit(cal.features, cal.sun).predict(cal.features)
+        model.predict(cal.features, cal.context)
+    expected = model.fit(cal.features, cal.sun, cal.context).predict(cal.features, cal.context)
     with pytest.raises(ValueError, match="unit vectors"):
-        model.fit(cal.features, 2 * cal.sun)
-    same(model.predict(cal.features), expected)
+        model.fit(cal.features, 2 * cal.sun, cal.context)
+    same(model.predict(cal.features, cal.context), expected)
 
 
 @model_check
 def check_model_is_deterministic(cls, model, cal):
-    first = model.fit(cal.features, cal.sun).predict(cal.features)
-    same(model.predict(cal.features), first)
-    same(cls(**parameters(model)).fit(cal.features, cal.sun).predict(cal.features), first)
+    first = model.fit(cal.features, cal.sun, cal.context).predict(cal.features, cal.context)
+    same(model.predict(cal.features, cal.context), first)
+    same(
+        cls(**parameters(model))
+        .fit(cal.features, cal.sun, cal.context)
+        .predict(cal.features, cal.context),
+        first,
+    )
 
 
 @model_check
 def check_fit_forgets_the_fit_before(cls, model, cal):
-    expected = model.fit(cal.features, cal.sun).predict(cal.features)
-    other = cls(**parameters(model)).fit(cal.features[::2], cal.sun[::2])
-    same(other.fit(cal.features, cal.sun).predict(cal.features), expected)
+    expected = model.fit(cal.features, cal.sun, cal.context).predict(cal.features, cal.context)
+    half = cal.of(slice(None, None, 2))
+    other = cls(**parameters(model)).fit(half.features, half.sun, half.context)
+    same(other.fit(cal.features, cal.sun, cal.context).predict(cal.features, cal.context), expected)
 
 
 @model_check
 def check_model_batch_of_one_equals_batch_of_many(cls, model, cal):
-    together = model.fit(cal.features, cal.sun).predict(cal.features)
+    together = model.fit(cal.features, cal.sun, cal.context).predict(cal.features, cal.context)
     for stop in range(1, 20):
-        same(model.predict(cal.features[stop - 1 : stop]), together[stop - 1 : stop])
-        same(model.predict(cal.features[:stop]), together[:stop])
+        for rows in (slice(stop - 1, stop), slice(stop)):
+            part = cal.of(rows)
+            same(model.predict(part.features, part.context), together[rows])
 
 
 @model_check
 def check_model_leaves_input_alone(cls, model, cal):
     features, sun = cal.features.copy(), cal.sun.copy()
-    model.fit(features, sun).predict(features)
+    context = {name: column.copy() for name, column in cal.context.items()}
+    model.fit(features, sun, context).predict(features, context)
     same(features, cal.features)
     same(sun, cal.sun)
+    for name, column in context.items():
+        same(column, cal.context[name])
 
 
 @model_check
 def check_model_layouts_and_dtypes_agree(cls, model, cal):
-    expected = model.fit(cal.features, cal.sun).predict(cal.features)
+    expected = model.fit(cal.features, cal.sun, cal.context).predict(cal.features, cal.context)
     readonly = cal.features.copy()
     readonly.flags.writeable = False
     for features in (np.asfortranarray(cal.features), readonly, cal.features.tolist()):
-        other = cls(**parameters(model)).fit(features, np.asfortranarray(cal.sun))
-        same(other.predict(features), expected)
-    same(model.predict(cal.features[::3]), expected[::3])
+        other = cls(**parameters(model)).fit(features, np.asfortranarray(cal.sun), cal.context)
+        same(other.predict(features, cal.context), expected)
+    third = cal.of(slice(None, None, 3))
+    same(model.predict(third.features, third.context), expected[::3])
     single = cal.features.astype(np.float32)
-    same(model.predict(single), model.predict(single.astype(np.float64)))
+    same(model.predict(single, cal.context), model.predict(single.astype(np.float64), cal.context))
 
 
 @model_check
 def check_model_survives_pickling(cls, model, cal):
     again = pickle.loads(pickle.dumps(model))
     assert again == model
-    expected = model.fit(cal.features, cal.sun).predict(cal.features)
-    same(again.fit(cal.features, cal.sun).predict(cal.features), expected)
-    same(pickle.loads(pickle.dumps(model)).predict(cal.features), expected)
+    expected = model.fit(cal.features, cal.sun, cal.context).predict(cal.features, cal.context)
+    same(again.fit(cal.features, cal.sun, cal.context).predict(cal.features, cal.context), expected)
+    same(pickle.loads(pickle.dumps(model)).predict(cal.features, cal.context), expected)
 
 
 @model_check
@@ -215,3 +239,113 @@ def check_refuses_other_kinds_and_names_missing_geometry(cls, model, cal, geomet
         for name in cls.about.needs:
             with pytest.raises(UnsuitableDesignError, match=name):
                 cls.for_sensor(SensorGeometry(), kind)
+
+
+@model_check
+def check_a_saved_fit_answers_to_the_last_bit(cls, model, cal):
+    """As JSON's words: what a document says is all there is."""
+    expected = model.fit(cal.features, cal.sun, cal.context).predict(cal.features, cal.context)
+    text = json.dumps(stage_document(model), allow_nan=False)
+    again = stage_of(json.loads(text), {model.about.name: cls})
+    assert again == model
+    same(again.predict(cal.features, cal.context), expected)
+    assert json.dumps(stage_document(again), allow_nan=False) == text
+
+
+@model_check
+def check_a_fit_says_how_good_it_is(cls, model, cal):
+    quality = model.fit(cal.features, cal.sun, cal.context).quality_
+    found = model.predict(cal.features, cal.context)
+    error = separation_deg(found, cal.sun)
+    assert quality.samples == len(cal.features)
+    assert quality.residual_rms_deg == pytest.approx(np.sqrt(np.mean(error**2)), abs=1e-9)
+    assert len(quality.data_digest) == 32
+    assert quality.condition is None or quality.condition >= 1
+    for parameter in quality.parameters:
+        assert np.isfinite((parameter.value, parameter.deviation)).all()
+    rest = cal.of(slice(1, None))
+    again = cls(**parameters(model)).fit(rest.features, rest.sun, rest.context)
+    assert again.quality_.data_digest != quality.data_digest
+
+
+@model_check
+def check_a_direction_has_a_deviation(cls, model, cal):
+    features = cal.features.copy()
+    features[3] = np.nan
+    deviations = model.fit(cal.features, cal.sun, cal.context).deviation_deg(features, cal.context)
+    assert deviations.shape == (len(features),)
+    assert np.isnan(deviations[3])
+    assert (np.delete(deviations, 3) >= 0).all()
+
+
+@model_check
+def check_answers_end_with_what_was_calibrated(cls, model, cal):
+    """Calibrated on one half of the field, it says nothing of the middle of the other."""
+    if not model.bounded:
+        assert_learns_nothing(model, cal)
+        return
+    near, far = cal.sun[:, 0] > -0.02, cal.sun[:, 0] < -0.3
+    half = cal.of(near)
+    model.fit(half.features, half.sun, half.context)
+    found = model.predict(cal.features, cal.context)
+    assert np.isfinite(found[near]).all()
+    assert np.isnan(found[far]).all()
+    anywhere = cls(**{**parameters(model), "extrapolation": float("inf")})
+    anywhere.fit(half.features, half.sun, half.context)
+    assert np.isfinite(anywhere.predict(cal.features, cal.context)[far]).any()
+
+
+@model_check
+def check_one_run_of_the_turntable_is_refused(cls, model, cal):
+    if not model.bounded:
+        assert_learns_nothing(model, cal)
+        return
+    run = cal.of(np.abs(cal.sun[:, 1]) < 1e-12)  # alpha = 0
+    assert 5 < len(run.sun) < 30
+    with pytest.raises(UnusableDataError, match=model.about.name):
+        model.fit(run.features, run.sun, run.context)
+
+
+@model_check
+def check_suns_that_do_not_belong_to_the_features_are_refused(cls, model, cal):
+    """Rows in another order; swapped axes, unless the model finds out itself."""
+    if not model.bounded:
+        assert_learns_nothing(model, cal)
+        return
+    shuffled = np.random.default_rng(2).permutation(len(cal.sun))
+    with pytest.raises(UnusableDataError, match=model.about.name):
+        model.fit(cal.features, cal.sun[shuffled], cal.context)
+    swapped = cal.sun[:, [1, 0, 2]]
+    try:
+        model.fit(cal.features, swapped, cal.context)
+    except UnusableDataError as refusal:
+        assert model.about.name in str(refusal)  # noqa: PT017 - either outcome is right
+    else:
+        error = separation_deg(model.predict(cal.features, cal.context), swapped)
+        assert np.sqrt(np.nanmean(error**2)) < 1.0
+
+
+@model_check
+def check_repeats_of_poses_count_once(cls, model, cal):
+    """All poses taken three times tell of directions what one time does."""
+    once = model.fit(cal.features, cal.sun, cal.context).predict(cal.features, cal.context)
+    thrice, often = cls(**parameters(model)), cal.of(np.repeat(np.arange(len(cal.sun)), 3))
+    thrice.fit(often.features, often.sun, often.context)
+    assert np.nanmax(separation_deg(thrice.predict(cal.features, cal.context), once)) < 1e-3
+
+
+@model_check
+def check_context_that_is_not_read_is_not_looked_at(cls, model, cal):
+    if model.about.context:
+        with pytest.raises(ValueError, match=model.about.context[0]):
+            model.fit(cal.features, cal.sun)
+        with pytest.raises(ValueError, match=model.about.context[0]):
+            model.fit(cal.features, cal.sun, cal.context).predict(cal.features)
+        with pytest.raises(ValueError, match=model.about.context[0]):
+            model.fit(cal.features, cal.sun, {f"{model.about.context[0]}s": cal.sun[:, 0]})
+        return
+    expected = model.fit(cal.features, cal.sun, cal.context).predict(cal.features, cal.context)
+    beside = {"time_s": "now", "anything": None}
+    same(model.fit(cal.features, cal.sun, beside).predict(cal.features, beside), expected)
+    with pytest.raises(ValueError, match="context"):
+        model.fit(cal.features, cal.sun, [1.0])

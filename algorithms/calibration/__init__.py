@@ -1,0 +1,1 @@
+"""What calibrated models share: what they were calibrated on, how well, and how they are kept."""

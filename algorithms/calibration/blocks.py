@@ -1,0 +1,161 @@
+"""Settings chosen from the calibration samples: blocked cross-validation, the same every time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.calibration.hull import Hull
+from algorithms.contract import Floats, UnusableDataError
+
+Candidate = TypeVar("Candidate")
+
+FOLDS = 5
+
+#: Most blocks of neighbouring poses that are dealt out to the folds.
+_BLOCKS = 500
+#: Distances of unit vectors are told apart to this: equal ones must stay equal on every processor.
+_DIGITS = 9
+
+
+def folds(sun: Floats, count: int = FOLDS) -> NDArray[np.int64]:
+    """Fold (n,) of each calibration sample, 0 to count - 1; -1 on the rim, which all fits keep.
+
+    Repeats of a pose are left out together, and of more than 500 poses neighbours too: every
+    `count`-th block of them is one fold's, so that all folds spread over the field. Blocks no
+    larger than that: a fit with a hole in it is judged by more than it will be asked for. So it is
+    by poses on the rim, to which it would have to be continued, as no fit is asked to; they are
+    left out only where there are hardly others.
+
+    Parameters
+    ----------
+    sun : ndarray, shape (n, 3)
+        Unit vectors.
+    count : int
+        Of folds, at least 2.
+
+    Examples
+    --------
+    >>> turns = np.radians(np.arange(0.0, 60.0, 4.0))
+    >>> arc = np.column_stack([np.sin(turns), np.zeros(15), np.cos(turns)])
+    >>> np.bincount(folds(np.repeat(arc, 2, axis=0)))  # each pose taken twice
+    array([6, 6, 6, 6, 6])
+    """
+    places, inverse = np.unique(np.round(sun, _DIGITS), axis=0, return_inverse=True)
+    rim = _rim(places)
+    if (~rim).sum() < 2 * count:
+        rim[:] = False
+    fold = np.full(len(places), -1)
+    fold[~rim] = _blocks(places[~rim]) % count
+    return np.asarray(fold[inverse.reshape(-1)])
+
+
+def _blocks(places: Floats) -> NDArray[np.int64]:
+    """Block (n,) of each pose (n, 3), each around the pose farthest from those before it."""
+    middle = places.mean(axis=0)
+    nearest = np.round(((places - middle) ** 2).sum(axis=1), _DIGITS)
+    chosen = int(np.argmin(nearest))
+    distance = np.full(len(places), np.inf)
+    block = np.zeros(len(places), dtype=np.int64)
+    for number in range(min(_BLOCKS, len(places))):
+        away = np.round(((places - places[chosen]) ** 2).sum(axis=1), _DIGITS)
+        closer = away < distance
+        block[closer], distance[closer] = number, away[closer]
+        chosen = int(np.argmax(distance))
+    return block
+
+
+def _rim(places: Floats) -> NDArray[np.bool_]:
+    """Which directions (n, 3) lie on the border of the cone of all of them; none where it has none.
+
+    A line of poses has no cone, and poses all around the sensor have no border.
+    """
+    try:
+        cone = Hull.of_directions(places, "folds")
+    except UnusableDataError:
+        return np.zeros(len(places), dtype=np.bool_)
+    # the margin is half a step: what lies deeper is in the next row
+    return np.asarray(cone.outside(places) > -cone.margin)
+
+
+def folds_along(values: Floats, count: int = FOLDS) -> NDArray[np.int64]:
+    """Fold (n,) of each sample by one coordinate alone; -1 at both ends, which all fits keep.
+
+    What is fitted along one axis is told nothing new by a sample beside another at the same
+    place: poses of a turntable's grid share their columns. So whole slices are left out together,
+    and none of those that a curve would have to be continued to.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        Of the axis.
+    count : int
+        Of folds, at least 2.
+
+    Examples
+    --------
+    >>> folds_along(np.repeat([0.0, 1.0, 2.0, 3.0, 4.0], 2), 3)
+    array([-1, -1,  1,  1,  0,  0,  1,  1, -1, -1])
+    """
+    low, high = float(values.min()), float(values.max())
+    slices = max(int(2.0 * np.sqrt(len(values))), 3)
+    place = np.round((values - low) / (high - low) * slices, _DIGITS)
+    number = np.minimum(place.astype(np.int64), slices - 1)
+    fold = number % count
+    fold[(number == 0) | (number == slices - 1)] = -1
+    return np.asarray(fold)
+
+
+def splits(fold: NDArray[np.int64]) -> list[tuple[NDArray[np.bool_], NDArray[np.bool_]]]:
+    """Which samples are fitted and which left out by each fold (n,), as masks (n,)."""
+    found = []
+    for number in range(int(fold.max(initial=0)) + 1):
+        left_out = fold == number
+        if left_out.any() and not left_out.all():
+            found.append((~left_out, left_out))
+    return found
+
+
+def best(
+    candidates: Sequence[Candidate], error: Callable[[Candidate], float], by: str
+) -> tuple[Candidate, float]:
+    """Return the candidate with the smallest error on what was left out, and that error.
+
+    Parameters
+    ----------
+    candidates : sequence
+        In the order of preference: of equals the first is taken.
+    error : callable
+        Error of one; NaN, infinity or UnusableDataError where it cannot be fitted.
+    by : str
+        Whose they are, for the message.
+
+    Raises
+    ------
+    UnusableDataError
+        If no candidate can be fitted: what the last one said.
+
+    Examples
+    --------
+    >>> best([1, 2, 3], lambda order: (order - 2.2) ** 2, "test")[0]
+    2
+    """
+    found: list[tuple[float, int]] = []
+    refusal: UnusableDataError | None = None
+    for number, candidate in enumerate(candidates):
+        try:
+            size = error(candidate)
+        except UnusableDataError as told:
+            refusal = told
+            continue
+        if np.isfinite(size):
+            found.append((size, number))
+    if not found:
+        raise refusal or UnusableDataError(
+            f"{by} needs samples of several poses to choose its settings by leaving some out"
+        )
+    size, number = min(found)
+    return candidates[number], size

@@ -1,0 +1,195 @@
+"""`ParametricModel`: a sensor's geometry with a few numbers settled by nonlinear least squares."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from algorithms.calibration.calibrated import CalibratedModel, Columns
+from algorithms.calibration.conditioning import WORST_CONDITION
+from algorithms.calibration.quality import Parameter
+from algorithms.contract import Floats, UnusableDataError
+from algorithms.inputs import require_samples
+
+TOLERANCE = 1e-15
+"""Relative change of cost, step and gradient at which a fit stops: machine precision."""
+
+MAX_EVALUATIONS = 400
+"""Of the residuals' derivatives; a fit that has not come to rest by then does not."""
+
+#: A direction that a trial's numbers leave undefined: farther off than any defined one.
+_UNDEFINED_RAD = 4.0
+#: Step of a central difference, as a share of a parameter's scale: the cube root of precision.
+_STEP = 6e-6
+
+
+@dataclass
+class ParametricModel(CalibratedModel):
+    """Directions as a function of features and a vector of parameters, all fitted together.
+
+    A subclass writes `names`, `starts`, `scales` and `directions`. Residuals are the two
+    components of each direction's error across the true one, so that a fit is as good where the
+    Sun is far off the boresight as where it is near.
+
+    Attributes
+    ----------
+    vector_ : ndarray, shape (P,)
+        Fitted parameters, in the units that `names` says.
+    covariance_ : ndarray, shape (P, P)
+        Of their errors, from the residuals' own size.
+    condition_ : float
+        Of the equations at the solution, their columns brought to one length.
+    """
+
+    vector_: Floats = field(init=False, repr=False, compare=False)
+    covariance_: Floats = field(init=False, repr=False, compare=False)
+    condition_: float = field(init=False, repr=False, compare=False)
+
+    @abstractmethod
+    def names(self) -> Sequence[tuple[str, str]]:
+        """Name and unit of each parameter."""
+        ...
+
+    @abstractmethod
+    def scales(self) -> Sequence[float]:
+        """Change of each parameter that shifts directions by some tenths of a radian."""
+        ...
+
+    @abstractmethod
+    def starts(self, features: Floats, sun: Floats, context: Columns) -> Sequence[Sequence[float]]:
+        """Vectors to start from, the drawing first; the best solution is kept."""
+        ...
+
+    @abstractmethod
+    def directions(self, vector: Floats, features: Floats, context: Columns) -> Floats:
+        """(N, 3) unit vectors of features (N, F), with parameters `vector`; NaN where undefined."""
+        ...
+
+    def residuals(
+        self,
+        vector: Floats,
+        features: Floats,
+        sun: Floats,
+        axes: tuple[Floats, Floats],
+        context: Columns,
+    ) -> Floats:
+        """(n, 2) errors to make small, radians: those across the true directions by default."""
+        return across(self.directions(vector, features, context), sun, *axes)
+
+    def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
+        """Fit all parameters to samples (n, F) of Suns (n, 3)."""
+        from scipy.optimize import least_squares  # noqa: PLC0415 - SciPy, at the first fit only
+
+        by, scales = self.about.name, np.asarray(self.scales(), dtype=np.float64)
+        count = len(scales)
+        require_samples(len(features), count // 2 + 1, by, f"{count} parameters, two angles each")
+        axes = tangent_axes(sun)
+
+        def residuals(scaled: Floats) -> Floats:
+            return self.residuals(scaled * scales, features, sun, axes, context).ravel()
+
+        def derivatives(scaled: Floats) -> Floats:
+            columns = np.empty((2 * len(features), count))
+            for number in range(count):
+                step = np.zeros(count)
+                step[number] = _STEP
+                columns[:, number] = (residuals(scaled + step) - residuals(scaled - step)) / (
+                    2.0 * _STEP
+                )
+            return columns
+
+        best: Any = None
+        for start in self.starts(features, sun, context):
+            solution = least_squares(
+                residuals,
+                np.asarray(start, dtype=np.float64) / scales,
+                jac=derivatives,
+                method="lm",
+                ftol=TOLERANCE,
+                xtol=TOLERANCE,
+                gtol=TOLERANCE,
+                max_nfev=MAX_EVALUATIONS,
+            )
+            if np.isfinite(solution.x).all() and (best is None or solution.cost < best.cost):
+                best = solution
+        if best is None or not best.success:
+            told = "no finite solution" if best is None else best.message
+            raise UnusableDataError(f"{by}: the fit did not converge ({told})")
+
+        jacobian = derivatives(best.x)
+        lengths = np.linalg.norm(jacobian, axis=0)
+        values = (
+            np.linalg.svd(jacobian / lengths, compute_uv=False)
+            if (lengths > 0).all()
+            else np.zeros(1)
+        )
+        if not values[-1] * WORST_CONDITION > values[0]:
+            raise UnusableDataError(
+                f"{by}: the calibration samples do not settle the {count} parameters "
+                f"({', '.join(name for name, _ in self.names())}); they must spread over the field "
+                "of view"
+            )
+        freedom = max(2 * len(features) - count, 1)
+        inverse = np.linalg.inv((jacobian / lengths).T @ (jacobian / lengths))
+        covariance = inverse / np.outer(lengths, lengths) * (2.0 * best.cost / freedom)
+        self.vector_ = np.asarray(best.x * scales)
+        self.covariance_ = np.asarray(covariance * np.outer(scales, scales))
+        self.condition_ = float(values[0] / values[-1])
+
+    def answer(self, features: Floats, context: Columns) -> Floats:
+        """(N, 3) unit vectors of features (N, F)."""
+        return self.directions(self.vector_, features, context)
+
+    def settled(self) -> tuple[Parameter, ...]:
+        """Every parameter with its standard error."""
+        deviations = np.sqrt(np.diag(self.covariance_))
+        return tuple(
+            Parameter(name, float(value), float(deviation), unit)
+            for (name, unit), value, deviation in zip(
+                self.names(), self.vector_, deviations, strict=True
+            )
+        )
+
+    def condition(self) -> float:
+        """Condition of the equations at the solution."""
+        return self.condition_
+
+    def variance(self, features: Floats, context: Columns) -> Floats:
+        """(N,) variance of a tangent axis that the parameters' errors make, rad^2."""
+        steps = np.sqrt(np.diag(self.covariance_))
+        steps = np.where(steps > 0, steps, 1e-12)
+        middle = self.directions(self.vector_, features, context)
+        first, second = tangent_axes(middle)
+        moved = np.empty((len(steps), len(features), 2))
+        for number, step in enumerate(steps):
+            shifted = self.vector_.copy()
+            shifted[number] += step
+            found = self.directions(shifted, features, context)
+            moved[number] = across(found, middle, first, second)
+        correlation = self.covariance_ / np.outer(steps, steps)
+        return np.asarray(np.einsum("ink,ij,jnk->n", moved, correlation, moved) / 2.0)
+
+
+def tangent_axes(sun: Floats) -> tuple[Floats, Floats]:
+    """Two unit vectors (N, 3) across each direction (N, 3) and each other."""
+    # Across the axis that the direction is farthest from, so that no product is small.
+    least = np.abs(np.nan_to_num(sun)).argmin(axis=1)
+    first = np.cross(np.eye(3)[least], sun)
+    first /= np.linalg.norm(first, axis=1, keepdims=True)
+    return first, np.cross(sun, first)
+
+
+def across(found: Floats, sun: Floats, first: Floats, second: Floats) -> Floats:
+    """Errors (N, 2) of directions along two axes across the true ones, radians.
+
+    The length is the angle itself, so that a direction behind is farther off than one beside.
+    """
+    off = np.stack([(found * first).sum(axis=1), (found * second).sum(axis=1)], axis=1)
+    sine = np.linalg.norm(off, axis=1)
+    angle = np.arctan2(sine, (found * sun).sum(axis=1))
+    ratio = np.divide(angle, sine, out=np.ones_like(sine), where=sine > 0)
+    return np.where(np.isfinite(off), off * ratio[:, None], _UNDEFINED_RAD)

@@ -1,0 +1,340 @@
+"""Calibrated chains as JSON documents, and back: plain numbers, no pickle, answers bit-equal."""
+
+from __future__ import annotations
+
+import dataclasses
+import importlib
+import json
+import math
+import os
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+
+from algorithms.contract import Compensation, Extractor, Model, SensorGeometry
+from algorithms.discovery import (
+    discover_compensations,
+    discover_extractors,
+    discover_models,
+)
+from algorithms.pipeline import Pipeline
+
+SCHEMA = "sun-sensor-atlas/calibration"
+SCHEMA_VERSION = 1
+
+CONVENTIONS = {
+    "sun": "unit vector from the sensor to the Sun, sensor frame, +z the boresight",
+    "angles": "tan(alpha) = s_y/s_z, tan(beta) = s_x/s_z, degrees",
+    "pixels": "centres at integers, order (x, y), x along columns",
+    "units": "in the names: _deg, _mm, _px, _s, _K, _nT",
+}
+
+Stage = Extractor | Compensation | Model
+
+
+class UnreadableCalibrationError(ValueError):
+    """A document that is not a calibration of this schema, or of this software."""
+
+
+def document(pipeline: Pipeline, geometry: SensorGeometry | None = None) -> dict[str, Any]:
+    """Return a fitted pipeline as what JSON can say.
+
+    Parameters
+    ----------
+    pipeline : Pipeline
+        Fitted.
+    geometry : SensorGeometry, optional
+        Design of the sensor, for whoever reads the document.
+
+    Returns
+    -------
+    dict
+        With schema, conventions, each stage's name, version, parameters and fitted attributes.
+
+    Raises
+    ------
+    NotFittedError
+        If a stage is not fitted.
+
+    Examples
+    --------
+    >>> from algorithms.extractors.frames.centroid import BasicCentroid
+    >>> from algorithms.models.geometric.standard_projection import StandardProjection
+    >>> model = StandardProjection(focal_length_mm=2.0, unit_mm=0.01)
+    >>> pipeline = Pipeline(BasicCentroid(), model.fit([[0.0, 0.0]], [[0.0, 0.0, 1.0]]))
+    >>> stored = document(pipeline)
+    >>> stored["model"]["name"], stored["model"]["parameters"]["focal_length_mm"]
+    ('spm', 2.0)
+    >>> pipeline_of(stored).model.predict([[100.0, 0.0]]).round(3)
+    array([[0.447, 0.   , 0.894]])
+    """
+    pipeline.require_fitted()
+    design = None if geometry is None else _without_none(dataclasses.asdict(geometry))
+    return {
+        "schema": SCHEMA,
+        "schema_version": SCHEMA_VERSION,
+        "conventions": CONVENTIONS,
+        "sensor": design,
+        "extractor": stage_document(pipeline.extractor),
+        "compensations": [stage_document(stage) for stage in pipeline.compensations],
+        "model": stage_document(pipeline.model),
+    }
+
+
+def pipeline_of(stored: Mapping[str, Any]) -> Pipeline:
+    """Return the fitted pipeline of a document; the inverse of `document`.
+
+    Parameters
+    ----------
+    stored : mapping
+        What `document` gave, or what JSON made of it.
+
+    Returns
+    -------
+    Pipeline
+        Fitted; its answers are the same to the last bit.
+
+    Raises
+    ------
+    UnreadableCalibrationError
+        If it is not a calibration, of another schema version, or of a stage or a stage's version
+        that this software does not have.
+
+    Examples
+    --------
+    >>> pipeline_of({"schema": "recipe"})
+    Traceback (most recent call last):
+    algorithms.calibration.saving.UnreadableCalibrationError: expected a document of \
+sun-sensor-atlas/calibration; got 'recipe'
+    """
+    if not isinstance(stored, Mapping) or stored.get("schema") != SCHEMA:
+        said = stored.get("schema") if isinstance(stored, Mapping) else type(stored).__name__
+        raise UnreadableCalibrationError(f"expected a document of {SCHEMA}; got {said!r}")
+    if stored.get("schema_version") != SCHEMA_VERSION:
+        raise UnreadableCalibrationError(
+            f"expected schema version {SCHEMA_VERSION}; got {stored.get('schema_version')!r}"
+        )
+    try:
+        return Pipeline(
+            cast("Extractor", stage_of(stored["extractor"], discover_extractors())),
+            cast("Model", stage_of(stored["model"], discover_models())),
+            tuple(
+                cast("Compensation", stage_of(stage, discover_compensations()))
+                for stage in stored["compensations"]
+            ),
+        )
+    except UnreadableCalibrationError:
+        raise
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        raise UnreadableCalibrationError(f"the calibration is damaged: {error}") from error
+
+
+def save(pipeline: Pipeline, path: str | Path, geometry: SensorGeometry | None = None) -> None:
+    """Write a fitted pipeline to a file, whole or not at all.
+
+    Parameters
+    ----------
+    pipeline : Pipeline
+        Fitted.
+    path : str or Path
+        Of the file; one that is there is replaced.
+    geometry : SensorGeometry, optional
+        Design of the sensor, for whoever reads the document.
+
+    Raises
+    ------
+    NotFittedError
+        If a stage is not fitted.
+    OSError
+        If the file cannot be written.
+
+    Examples
+    --------
+    >>> save(pipeline, "calibration.json", geometry)  # doctest: +SKIP
+    """
+    text = json.dumps(document(pipeline, geometry), indent=1, allow_nan=False) + "\n"
+    target = Path(path)
+    handle, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8") as file:
+            file.write(text)
+        Path(name).replace(target)
+    except BaseException:
+        Path(name).unlink(missing_ok=True)
+        raise
+
+
+def load(path: str | Path) -> Pipeline:
+    """Read a fitted pipeline from a file that `save` wrote.
+
+    Parameters
+    ----------
+    path : str or Path
+        Of the file.
+
+    Returns
+    -------
+    Pipeline
+        Fitted.
+
+    Raises
+    ------
+    UnreadableCalibrationError
+        If it holds no such document.
+    OSError
+        If it cannot be read.
+
+    Examples
+    --------
+    >>> load("calibration.json").predict(frames)  # doctest: +SKIP
+    """
+    try:
+        stored = json.loads(Path(path).read_text(encoding="utf-8"))
+    except ValueError as error:
+        raise UnreadableCalibrationError(f"{path} is not JSON: {error}") from error
+    return pipeline_of(stored)
+
+
+def stage_document(stage: Stage) -> dict[str, Any]:
+    """Return one fitted stage as what JSON can say.
+
+    Parameters
+    ----------
+    stage : Extractor, Compensation or Model
+        Fitted, where it is to be.
+
+    Returns
+    -------
+    dict
+        Its name and version, what it was given and what it learnt.
+
+    Examples
+    --------
+    >>> from algorithms.extractors.frames.centroid import BasicCentroid
+    >>> stage_document(BasicCentroid())
+    {'name': 'bcm', 'version': 1, 'parameters': {'background': 'none', 'window_px': None}, \
+'fitted': {}}
+    """
+    fields = dataclasses.fields(cast("Any", stage))
+    return {
+        "name": stage.about.name,
+        "version": stage.about.version,
+        "parameters": {f.name: _plain(getattr(stage, f.name)) for f in fields if f.init},
+        "fitted": {f.name: _plain(getattr(stage, f.name)) for f in fields if not f.init},
+    }
+
+
+def stage_of(stored: Mapping[str, Any], known: Mapping[str, type[Any]]) -> Stage:
+    """Return the fitted stage of a document, of those known by name.
+
+    Parameters
+    ----------
+    stored : mapping
+        What `stage_document` gave.
+    known : mapping of str to class
+        Stages by name.
+
+    Returns
+    -------
+    Extractor, Compensation or Model
+        Fitted as it was.
+
+    Raises
+    ------
+    UnreadableCalibrationError
+        If no such stage is known, or in another version, or it is fitted with something else.
+
+    Examples
+    --------
+    >>> from algorithms.extractors.frames.centroid import BasicCentroid
+    >>> stage_of(stage_document(BasicCentroid()), {"bcm": BasicCentroid})
+    BasicCentroid(background='none', window_px=None)
+    """
+    name, version = stored["name"], stored["version"]
+    if name not in known:
+        raise UnreadableCalibrationError(
+            f"no stage is named {name!r} here; there are {', '.join(known)}"
+        )
+    stage_class = known[name]
+    if version != stage_class.about.version:
+        raise UnreadableCalibrationError(
+            f"the calibration is of version {version} of {name}; here is version "
+            f"{stage_class.about.version}: calibrate anew"
+        )
+    made = stage_class(**{key: _value(value) for key, value in stored["parameters"].items()})
+    fitted = {field.name for field in dataclasses.fields(made) if not field.init}
+    if fitted != set(stored["fitted"]):
+        raise UnreadableCalibrationError(
+            f"{name} is fitted with {', '.join(sorted(fitted))}; got "
+            f"{', '.join(sorted(stored['fitted']))}"
+        )
+    for key, value in stored["fitted"].items():
+        object.__setattr__(made, key, _value(value))
+    return cast("Stage", made)
+
+
+def _plain(value: Any) -> Any:
+    """Spell a value in JSON's words; numbers keep every bit."""
+    if isinstance(value, np.generic):
+        value = value.item()
+    spelt = value
+    if isinstance(value, np.ndarray):
+        spelt = {
+            "array": [_number(v) for v in value.ravel().tolist()],
+            "shape": list(value.shape),
+            "dtype": value.dtype.str.lstrip("<|="),
+        }
+    elif isinstance(value, float):
+        spelt = _number(value)
+    elif isinstance(value, str):
+        spelt = str(value)  # of an enumeration, its text
+    elif isinstance(value, tuple | list):
+        spelt = {"tuple": [_plain(v) for v in value]}
+    elif isinstance(value, Mapping):
+        spelt = {"mapping": {str(k): _plain(v) for k, v in value.items()}}
+    elif dataclasses.is_dataclass(value) and not isinstance(value, type):
+        kind = type(value)
+        spelt = {
+            "object": f"{kind.__module__}:{kind.__qualname__}",
+            "fields": {f.name: _plain(getattr(value, f.name)) for f in dataclasses.fields(value)},
+        }
+    elif not (value is None or isinstance(value, bool | int)):
+        raise TypeError(f"a calibration holds numbers, text and tables of them; got {type(value)}")
+    return spelt
+
+
+def _number(value: Any) -> Any:
+    """Spell what JSON has no word for: infinity and NaN."""
+    if isinstance(value, float) and not math.isfinite(value):
+        return {"float": repr(value)}
+    return value
+
+
+def _value(stored: Any) -> Any:
+    if isinstance(stored, list):
+        raise TypeError("a bare list")
+    if not isinstance(stored, dict):
+        return stored
+    if "array" in stored:
+        flat = [_value(v) for v in stored["array"]]
+        return np.array(flat, dtype=stored["dtype"]).reshape(stored["shape"])
+    if "float" in stored:
+        return float(stored["float"])
+    if "tuple" in stored:
+        return tuple(_value(v) for v in stored["tuple"])
+    if "mapping" in stored:
+        return {key: _value(v) for key, v in stored["mapping"].items()}
+    module, _, name = stored["object"].partition(":")
+    if not module.startswith("algorithms."):  # nothing else is loaded on a document's word
+        raise UnreadableCalibrationError(f"a calibration holds no {stored['object']}")
+    kind = getattr(importlib.import_module(module), name)
+    if not (isinstance(kind, type) and dataclasses.is_dataclass(kind)):
+        raise UnreadableCalibrationError(f"a calibration holds no {stored['object']}")
+    return kind(**{key: _value(v) for key, v in stored["fields"].items()})
+
+
+def _without_none(values: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in values.items() if value is not None}

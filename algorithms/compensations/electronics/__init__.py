@@ -1,0 +1,1 @@
+"""What a photodiode makes of the light that reaches it."""

@@ -1,0 +1,1 @@
+"""What the Sun's disc and the temperature do to a sensor in space."""

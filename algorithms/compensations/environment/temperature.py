@@ -1,0 +1,177 @@
+"""The temperature of photodiodes, taken out of their signals (SECM/Temperature)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import ClassVar, Self
+
+import numpy as np
+
+from algorithms.calibration.calibrated import Columns
+from algorithms.calibration.compensated import CalibratedCompensation
+from algorithms.contract import (
+    AboutCompensation,
+    FeatureKind,
+    Floats,
+    SensorGeometry,
+    UnusableDataError,
+)
+from algorithms.models.geometric.detector_faces import Normals, require_normals
+
+SMALLEST_SPREAD_K = 2.0
+"""Standard deviation of the temperature below which a calibration tells nothing of it."""
+
+SURELY_LIT = 0.2
+"""Cosine by the drawing from which on a face's sample tells of its temperature coefficient."""
+
+FEWEST_LIT = 12
+"""Samples that must light a face."""
+
+_ROUNDS = 10
+
+
+@dataclass
+class TemperatureDrift(CalibratedCompensation):
+    """Signals brought to one temperature by each face's own temperature coefficient.
+
+    A photodiode's current grows by some hundredths of a per cent a kelvin, each a little
+    differently; what is common to all faces drops out of a direction, the differences do not.
+
+    Parameters
+    ----------
+    face_normals : tuple of K vectors
+        Unit normals of the faces in the order of the features, K at least 3, spanning space.
+
+    Attributes
+    ----------
+    coefficients_ : ndarray, shape (K,)
+        C of each face, relative change a kelvin at `reference_k_`.
+    deviations_ : ndarray, shape (K,)
+        Their standard errors.
+    reference_k_ : float
+        Mean temperature of the calibration, K.
+    samples_ : int
+        Calibration samples with features.
+    data_digest_ : str
+        Of these samples.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
+    Notes
+    -----
+    Implements: eq:tempcomp (model:temp, Lu2017a): ``I / (1 + C (T - T_0))`` of every face; the
+    choice of the brighter of two opposite ones, which gives the sign k, is the model's behind.
+    The study takes C from the data sheet; here it is learnt, a face each: its signal is a cubic of
+    the cosine by the drawing times ``1 + C (T - T_0)``, fitted by least squares in turns.
+
+    Shapes: signals (N, K), in any common unit, to the same. Context: ``temperature_K`` (N,).
+
+    Failure: a NaN row for a NaN feature row or temperature. fit raises UnusableDataError where the
+    temperature stays the same, or fewer than 12 samples light a face.
+
+    Cost: 3 operations a face.
+
+    References
+    ----------
+    Lu2017a; survey model:temp, eq:tempcomp.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> faces = ((0.6, 0.0, 0.8), (-0.6, 0.0, 0.8), (0.0, 0.6, 0.8), (0.0, -0.6, 0.8))
+    >>> rng = np.random.default_rng(1)
+    >>> sun = rng.normal((0, 0, 4), 1, (60, 3)); sun /= np.linalg.norm(sun, axis=1, keepdims=True)
+    >>> warm = {"temperature_K": rng.uniform(270, 330, 60)}
+    >>> cold = sun @ np.array(faces).T
+    >>> signals = cold * (1 + 1e-3 * (warm["temperature_K"] - 300)[:, None])
+    >>> drift = TemperatureDrift(faces).fit(signals, sun, warm)
+    >>> ratio = drift.transform(signals, warm) / cold
+    >>> float(np.ptp(ratio / ratio[0, 0]).round(6))
+    0.0
+    """
+
+    about: ClassVar = AboutCompensation(
+        name="temperature",
+        taxonomy="SECM/Temperature",
+        studies=("Lu2017a",),
+        labels=("model:temp", "eq:tempcomp"),
+        origin="survey",
+        needs=("face_normals",),
+        accepts=frozenset({FeatureKind.SIGNALS}),
+        context=("temperature_K",),
+        ahead_of=(
+            "basic",
+            "assembled-faces",
+        ),
+    )
+    frontal: ClassVar[bool] = False
+
+    face_normals: Normals
+
+    coefficients_: Floats = field(init=False, repr=False, compare=False)
+    deviations_: Floats = field(init=False, repr=False, compare=False)
+    reference_k_: float = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        require_normals(self.face_normals, self.about.name)
+
+    @classmethod
+    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
+        """Return the compensation of the sensor's faces."""
+        cls.about.require_kind(kind)
+        geometry.require("face_normals", by=cls.about.name)
+        return cls(geometry.face_normals or ())
+
+    def columns(self) -> int:
+        """One a face."""
+        return len(self.face_normals)
+
+    def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
+        """Learn every face's temperature coefficient."""
+        by, temperature = self.about.name, context["temperature_K"]
+        if not np.std(temperature) >= SMALLEST_SPREAD_K:
+            raise UnusableDataError(
+                f"{by} needs calibration samples at different temperatures, spread by at least "
+                f"{SMALLEST_SPREAD_K:g} K; theirs spread by {np.std(temperature):.3g} K"
+            )
+        reference = float(np.mean(temperature))
+        warmer = temperature - reference
+        cosines = sun @ np.asarray(self.face_normals, dtype=np.float64).T
+        count = len(self.face_normals)
+        coefficients, deviations = np.empty(count), np.empty(count)
+        for face in range(count):
+            lit = cosines[:, face] > SURELY_LIT
+            if lit.sum() < FEWEST_LIT:
+                raise UnusableDataError(
+                    f"{by}: face {face + 1} is lit by {int(lit.sum())} calibration samples; at "
+                    f"least {FEWEST_LIT} must light it"
+                )
+            coefficients[face], deviations[face] = _coefficient(
+                features[lit, face], cosines[lit, face], warmer[lit]
+            )
+        self.coefficients_, self.deviations_ = coefficients, deviations
+        self.reference_k_ = reference
+
+    def apply(self, features: Floats, context: Columns) -> Floats:
+        """Signals (N, K) at the reference temperature."""
+        warmer = context["temperature_K"] - self.reference_k_
+        return np.asarray(features / (1.0 + self.coefficients_ * warmer[:, None]))
+
+
+def _coefficient(signal: Floats, cosine: Floats, warmer: Floats) -> tuple[float, float]:
+    """Relative change a kelvin of one face's signals (n,), and its standard error."""
+    powers = np.stack([cosine**k for k in range(4)], axis=1)
+    coefficient = 0.0
+    for _ in range(_ROUNDS):
+        shape = powers @ np.linalg.lstsq(powers, signal / (1 + coefficient * warmer), rcond=None)[0]
+        # a change of the level goes with the temperature's own mean among these samples
+        design = np.stack([shape, shape * warmer], axis=1)
+        level, slope = np.linalg.lstsq(design, signal, rcond=None)[0]
+        coefficient = float(slope / level)
+    residual = signal - design @ (level, slope)
+    variance = residual @ residual / max(len(signal) - 6, 1)
+    spread = np.linalg.inv(design.T @ design)[1, 1]
+    return coefficient, float(np.sqrt(variance * spread) / level)

@@ -1,0 +1,1 @@
+"""Light that is not the Sun's, and shadows in the light that is."""

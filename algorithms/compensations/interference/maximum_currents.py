@@ -1,0 +1,80 @@
+"""The brighter face of each opposite pair alone (ICM/Albedo, maximum currents)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from algorithms.calibration.calibrated import Columns
+from algorithms.calibration.cube_currents import CubeCurrents
+from algorithms.contract import AboutCompensation, FeatureKind, Floats
+
+
+@dataclass
+class MaximumCurrents(CubeCurrents):
+    """Of every opposite pair the brighter face is kept, the darker one's light is the Earth's.
+
+    Sunlight is stronger than albedo, and never reaches both faces of a pair. What of the Earth's
+    light falls on a sunlit face stays.
+
+    Parameters
+    ----------
+    face_normals : tuple of six vectors
+        The six directions +x, -x, +y, -y, +z, -z, each once, in the order of the features.
+
+    Attributes
+    ----------
+    one_sun_ : ndarray, shape (6,)
+        Current of each face under perpendicular sunlight, in units of the features.
+    samples_ : int
+        Calibration samples with features.
+    data_digest_ : str
+        Of these samples.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
+    Notes
+    -----
+    Implements: eq:albedo1 (model:albedo, Frezza2022): ``max(I_+, I_-)`` of every pair; the side is
+    that of the brighter face. Faces are compared in units of their own full sunlight.
+
+    Shapes: signals (N, 6), in any common unit, to the same; the darker of each pair is 0.
+
+    Failure: a NaN row for a NaN feature row. fit raises UnusableDataError where no sample lights a
+    face.
+
+    Cost: 5 operations a face.
+
+    References
+    ----------
+    Frezza2022; survey model:albedo, eq:albedo1.
+
+    Examples
+    --------
+    >>> faces = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
+    >>> clean = MaximumCurrents(faces).fit([[1, 0, 0, 0, 0, 0]], [[1.0, 0.0, 0.0]])
+    >>> clean.transform([[0.6, 0.1, 0.0, 0.2, 0.8, 0.0]])
+    array([[0.6, 0. , 0. , 0.2, 0.8, 0. ]])
+    """
+
+    about: ClassVar = AboutCompensation(
+        name="maximum-currents",
+        taxonomy="ICM/Albedo",
+        studies=("Frezza2022",),
+        labels=("model:albedo", "eq:albedo1"),
+        origin="survey",
+        needs=("face_normals",),
+        accepts=frozenset({FeatureKind.SIGNALS}),
+        ahead_of=("solar-panel",),
+    )
+
+    def apply(self, features: Floats, context: Columns) -> Floats:
+        """Signals (N, 6) of the brighter faces."""
+        del context
+        plus, minus = self.pairs(features)
+        return self.lit_by(np.where(plus >= minus, plus, -minus))

@@ -1,0 +1,143 @@
+"""The shadow that a thick mask throws into its own aperture (ICM/Shadow)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, Self
+
+import numpy as np
+
+from algorithms.calibration.calibrated import Columns
+from algorithms.calibration.compensated import CalibratedCompensation
+from algorithms.contract import (
+    AboutCompensation,
+    FeatureKind,
+    Floats,
+    SensorGeometry,
+    UnsuitableDesignError,
+)
+from algorithms.inputs import require_positive
+from algorithms.models.nominal_projection import (
+    POSITIONS,
+    nominal_projection,
+    require_projection,
+)
+
+
+@dataclass
+class MaskShadow(CalibratedCompensation):
+    """Spots brought from the middle of what a thick mask lets through to a thin one's.
+
+    Light passes where the projections of the mask's two faces overlap; the middle of that lens is
+    the mean of both, so that the spot moves as if the aperture stood half a thickness higher.
+    Beyond the angle at which they part, nothing passes.
+
+    Parameters
+    ----------
+    focal_length_mm : float
+        Distance h from the mask's lower face to the detector, positive.
+    unit_mm : float
+        Displacement of the spot for one unit of feature, positive.
+    thickness_mm : float
+        Of the mask, positive.
+    aperture_mm : float
+        Its aperture's diameter d, positive.
+    centre : tuple of two float
+        Feature (x, y) of the spot when the Sun is on the boresight.
+
+    Attributes
+    ----------
+    samples_ : int
+        Calibration samples with features; nothing is learnt of them.
+    data_digest_ : str
+        Of these samples.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
+    Notes
+    -----
+    Implements: eq:shadcomp (model:shad, Antonello2018) with the elevation e: ``R_C0 = (t + h)
+    tan(pi/2 - e)``, ``R_C1 = h tan(pi/2 - e)``, the spot's centre their mean. Survey prints the
+    distance of the arcs' centres as ``h tan(pi/2 - alpha)``; corrected because it is ``R_C0 -
+    R_C1 = t tan(pi/2 - e)``. Features come out as of a mask without thickness at the lower face:
+    multiplied by ``h / (h + t / 2)``. For a centroid that weighs light evenly this is exact; a
+    drawing that counts h from the mask's middle, as `SensorGeometry` does, has the factor in it.
+
+    Shapes: features ``(x, y)`` (N, 2), in px or dimensionless, to the same.
+
+    Failure: a NaN row for a NaN feature row, and where ``t tan(theta)`` reaches d.
+
+    Cost: 10 operations a sample.
+
+    References
+    ----------
+    Antonello2018; survey model:shad, eq:shadcomp.
+
+    Examples
+    --------
+    >>> mask = MaskShadow(focal_length_mm=2.0, unit_mm=1.0, thickness_mm=0.2, aperture_mm=0.4)
+    >>> mask.fit([[1.05, 0.0]], [[0.0, 0.0, 1.0]]).transform([[1.05, 0.0], [4.5, 0.0]]).round(6)
+    array([[ 1.,  0.],
+           [nan, nan]])
+    """
+
+    about: ClassVar = AboutCompensation(
+        name="shadow",
+        taxonomy="ICM/Shadow",
+        studies=("Antonello2018",),
+        labels=("model:shad", "eq:shadcomp"),
+        origin="survey",
+        needs=("focal_length_mm", "mask_thickness_mm", "aperture_width_mm"),
+        accepts=POSITIONS,
+        ahead_of=("spm",),
+    )
+
+    focal_length_mm: float
+    unit_mm: float
+    thickness_mm: float
+    aperture_mm: float
+    centre: tuple[float, float] = (0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        by = self.about.name
+        require_projection(by, self.focal_length_mm, self.unit_mm, self.centre)
+        require_positive(by, thickness_mm=self.thickness_mm, aperture_mm=self.aperture_mm)
+
+    @classmethod
+    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
+        """Return the compensation of the sensor's mask, whose middle the drawing counts from.
+
+        UnsuitableDesignError where the mask has no thickness.
+        """
+        cls.about.require_kind(kind)
+        geometry.require(*cls.about.needs, by=cls.about.name)
+        drawn = nominal_projection(geometry, kind, cls.about)
+        thickness = geometry.mask_thickness_mm or 0.0
+        if thickness == 0.0:
+            raise UnsuitableDesignError(
+                f"{cls.about.name} needs a mask that has a thickness; got 0"
+            )
+        return cls(
+            focal_length_mm=drawn["focal_length_mm"] - thickness / 2.0,
+            unit_mm=drawn["unit_mm"],
+            thickness_mm=thickness,
+            aperture_mm=geometry.aperture_width_mm or 0.0,
+            centre=drawn["centre"],
+        )
+
+    def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
+        """Learn nothing: the mask is the drawing's."""
+
+    def apply(self, features: Floats, context: Columns) -> Floats:
+        """Spots (N, 2) as of a mask without thickness at its lower face."""
+        del context
+        moved = (features - np.asarray(self.centre)) * self.unit_mm
+        middle = self.focal_length_mm + self.thickness_mm / 2.0
+        tangent = np.sqrt(moved[:, 0] ** 2 + moved[:, 1] ** 2) / middle
+        dark = ~(self.thickness_mm * tangent < self.aperture_mm)
+        found = moved * (self.focal_length_mm / middle) / self.unit_mm + np.asarray(self.centre)
+        found[dark] = np.nan
+        return np.asarray(found)

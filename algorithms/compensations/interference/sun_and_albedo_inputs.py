@@ -1,0 +1,188 @@
+"""Sun and albedo told apart face by face, with a magnetometer where it takes one (SAIE)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import product
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.calibration.calibrated import Columns
+from algorithms.calibration.cube_currents import CubeCurrents
+from algorithms.contract import AboutCompensation, FeatureKind, Floats
+from algorithms.row_arithmetic import normalised
+
+#: Ways to give each of three pairs' plus face to the Sun (+1) or to the Earth (-1).
+_SIDES = tuple(product((1.0, -1.0), repeat=3))
+
+
+@dataclass
+class SunAndAlbedoInputs(CubeCurrents):
+    """Sun's share of every face's current, in closed form from the Sun's known strength.
+
+    Where both faces of a pair are lit, one is the Sun's and one the Earth's; where one is, both
+    may share it. The Sun's vector has length one, which settles one shared face; a magnetometer
+    and the almanac settle two; three leave the Sun open.
+
+    Parameters
+    ----------
+    face_normals : tuple of six vectors
+        The six directions +x, -x, +y, -y, +z, -z, each once, in the order of the features.
+    tolerance : float
+        Relative error of currents, in (0, 0.5): up to it a face is dark, a length is one, a share
+        may be larger than the face's current.
+
+    Attributes
+    ----------
+    one_sun_ : ndarray, shape (6,)
+        Current of each face under perpendicular sunlight, in units of the features.
+    samples_ : int
+        Calibration samples with features.
+    data_digest_ : str
+        Of these samples.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
+    Notes
+    -----
+    Implements: eq:albedo3a, eq:albedo3b (model:albedo, Frezza2022). Type 0, no face shared: the
+    Sun's are those of the lit faces whose squares add up to one. Type 1, one shared: its share is
+    ``sqrt(1 - sum of the others' squares)``. Type 2, two shared: the Sun lies on a cone around the
+    field, ``s . b = s_i . b_i`` with the inertial vectors of almanac and field model; the circle
+    that the length leaves cuts it in two points, of which one must be possible. Type 3: no
+    solution, unless currents have length one: then nothing is the Earth's. Survey shows one
+    example a type; sides are tried in turn here, and what two ways explain is no answer.
+
+    Shapes: signals (N, 6), in any common unit, to the same. Context: ``magnetic_field_nT``,
+    ``sun_inertial`` and ``magnetic_field_inertial_nT``, (N, 3) each.
+
+    Failure: a NaN row for a NaN row of features or context, for type 3 with albedo, and where no
+    way or several different ones fit. fit raises UnusableDataError where no sample lights a face.
+
+    Cost: 8 sides of 40 operations a sample.
+
+    References
+    ----------
+    Frezza2022; survey model:albedo, eq:albedo3a, eq:albedo3b.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> faces = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
+    >>> field = {"magnetic_field_nT": [[3e4, 0.0, 0.0]], "sun_inertial": [[0.0, 0.6, 0.8]],
+    ...          "magnetic_field_inertial_nT": [[3e4, 0.0, 0.0]]}
+    >>> clean = SunAndAlbedoInputs(faces).fit([[0, 0, 0.6, 0, 0.8, 0]], [[0.0, 0.6, 0.8]], field)
+    >>> seen = [[0.1, 0.0, 0.6, 0.0, 0.8, 0.2]]  # the Earth on +x and -z
+    >>> clean.transform(seen, field).round(3)
+    array([[0. , 0. , 0.6, 0. , 0.8, 0. ]])
+    """
+
+    about: ClassVar = AboutCompensation(
+        name="sun-and-albedo-inputs",
+        taxonomy="ICM/Albedo",
+        studies=("Frezza2022",),
+        labels=("model:albedo", "eq:albedo3a", "eq:albedo3b"),
+        origin="survey",
+        needs=("face_normals",),
+        accepts=frozenset({FeatureKind.SIGNALS}),
+        context=("magnetic_field_nT", "sun_inertial", "magnetic_field_inertial_nT"),
+        ahead_of=("basic",),
+    )
+
+    tolerance: float = 0.02
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not 0 < self.tolerance < 0.5:
+            raise ValueError(
+                f"{self.about.name}: tolerance must be in (0, 0.5); got {self.tolerance!r}"
+            )
+
+    def apply(self, features: Floats, context: Columns) -> Floats:
+        """Signals (N, 6) of the Sun alone."""
+        plus, minus = self.pairs(features)
+        field = normalised(context["magnetic_field_nT"])
+        along = (context["sun_inertial"] * normalised(context["magnetic_field_inertial_nT"])).sum(
+            axis=1
+        )
+        candidates = [
+            candidate
+            for sides in _SIDES
+            for candidate in self._of_sides(plus, minus, np.array(sides), field, along)
+        ]
+        return self.lit_by(self._agreed(np.stack(candidates)))
+
+    def _of_sides(
+        self, plus: Floats, minus: Floats, sides: Floats, field: Floats, along: Floats
+    ) -> list[Floats]:
+        """Sun vectors (N, 3) with the Sun on these sides, four ways; NaN where impossible."""
+        seen = np.where(sides > 0, plus, minus)
+        other = np.where(sides > 0, minus, plus)
+        dark = self.tolerance
+        # the Earth on the other face of a pair: this one is the Sun's alone
+        shared = (other <= dark) & (seen > dark)
+        alone = np.where(shared, 0.0, np.where(seen > dark, seen, 0.0))
+        # no light on this side and some on the other: the Sun may be square to the pair
+        count = shared.sum(axis=1)
+        length = (alone**2).sum(axis=1)
+        left = np.maximum(1.0 - length, 0.0)
+
+        everything = np.where((np.abs(_length(seen) - 1.0) <= dark)[:, None], seen, np.nan)
+        everything[count != 3] = np.nan
+        none = np.where((np.abs(np.sqrt(length) - 1.0) <= dark)[:, None], alone, np.nan)
+        none[count != 0] = np.nan
+        one = np.where(shared, np.sqrt(left)[:, None], alone)
+        one[(count != 1) | (length > 1.0 + dark)] = np.nan
+        first, second = self._on_cone(alone, shared, left, sides[None] * field, along)
+        found = [everything, none, one, first, second]
+        for vector in found:
+            possible = ((vector >= -dark) & (vector <= seen + dark)).all(axis=1)
+            vector[~possible] = np.nan
+        return [np.asarray(vector * sides) for vector in found]
+
+    def _on_cone(
+        self,
+        alone: Floats,
+        shared: NDArray[np.bool_],
+        left: Floats,
+        field: Floats,
+        along: Floats,
+    ) -> tuple[Floats, Floats]:
+        """Both vectors (N, 3) of the length and the cone with two faces shared; NaN elsewhere."""
+        two = shared.sum(axis=1) == 2
+        axes = np.argsort(~shared, axis=1, kind="stable")  # shared ones first
+        rows = np.arange(len(alone))
+        p, q = field[rows, axes[:, 0]], field[rows, axes[:, 1]]
+        wanted = along - (alone * field).sum(axis=1)
+        across = p * p + q * q
+        with np.errstate(divide="ignore", invalid="ignore"):
+            square = left * across - wanted * wanted
+            # a cone that noise keeps from the circle touches it
+            root = np.sqrt(np.where(square < -self.tolerance * across, np.nan, square.clip(0.0)))
+            solutions = []
+            for sign in (1.0, -1.0):
+                found = alone.copy()
+                found[rows, axes[:, 0]] = (wanted * p - sign * root * q) / across
+                found[rows, axes[:, 1]] = (wanted * q + sign * root * p) / across
+                found[~two] = np.nan
+                solutions.append(found)
+        return solutions[0], solutions[1]
+
+    def _agreed(self, candidates: Floats) -> Floats:
+        """Mean (N, 3) of the possible vectors (C, N, 3) where they agree, else NaN."""
+        known = np.asarray(np.isfinite(candidates).all(axis=2))
+        count = known.sum(axis=0)
+        total = np.where(known[:, :, None], candidates, 0.0).sum(axis=0)
+        mean = total / np.maximum(count, 1)[:, None]
+        off = np.where(known, _length(candidates - mean), 0.0).max(axis=0)
+        mean[(count == 0) | (off > 2.0 * self.tolerance)] = np.nan
+        return np.asarray(mean)
+
+
+def _length(vectors: Floats) -> Floats:
+    return np.asarray(np.sqrt((vectors**2).sum(axis=-1)))

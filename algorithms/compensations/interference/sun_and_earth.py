@@ -1,0 +1,127 @@
+"""Sun and Earth as one sum, the Earth's part taken off (ICM/Albedo, summarised Sun and Earth)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import ClassVar
+
+import numpy as np
+
+from algorithms.calibration.calibrated import Columns
+from algorithms.calibration.cube_currents import CubeCurrents
+from algorithms.contract import AboutCompensation, FeatureKind, Floats
+from algorithms.row_arithmetic import normalised
+
+ITERATIONS = 8
+"""Steps from the sum's direction to the Sun's; each leaves a fraction of the albedo's share."""
+
+
+#: Cosine between a face and the nadir below which it sees next to nothing of the Earth.
+_AWAY = 0.1
+
+
+@dataclass
+class SunAndEarth(CubeCurrents):
+    """Differences of opposite faces as Sun and Earth together, less what the Earth sends.
+
+    The Earth's light comes from about the nadir, the more of it the fuller the Earth is seen; how
+    much is learnt from the calibration. What is left of the sum is the Sun's.
+
+    Parameters
+    ----------
+    face_normals : tuple of six vectors
+        The six directions +x, -x, +y, -y, +z, -z, each once, in the order of the features.
+
+    Attributes
+    ----------
+    albedo_ : float
+        Length of the Earth's vector when it is seen full, in units of one Sun; 0 where the
+        calibration shows none.
+    one_sun_ : ndarray, shape (6,)
+        Current of each face under perpendicular sunlight, in units of the features.
+    samples_ : int
+        Calibration samples with features.
+    data_digest_ : str
+        Of these samples.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
+    Notes
+    -----
+    Implements: eq:albedo2 (model:albedo, Bhanderi2006): ``(I_+x - I_-x, I_+y - I_-y, I_+z -
+    I_-z)`` is the sum of Sun and albedo vectors. The study compares it with a model's sum; here
+    the model is one vector towards the nadir of length ``a ((1 - s . nadir) / 2)^2``, the share of
+    the visible disc that is lit, squared for the low Sun on it (ours), and a is learnt.
+
+    Shapes: signals (N, 6), in any common unit, to the same. Context: ``nadir`` (N, 3).
+
+    Failure: a NaN row for a NaN feature row or nadir. fit raises UnusableDataError where no sample
+    lights a face. Clouds and coasts are not in the model.
+
+    Cost: 8 steps of 20 operations a sample.
+
+    References
+    ----------
+    Bhanderi2006; survey model:albedo, eq:albedo2.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> faces = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
+    >>> sun = np.array([[0.6, 0.0, 0.8], [0.0, 0.6, 0.8]])
+    >>> nadir = {"nadir": np.array([[0.0, 0.0, -1.0], [0.0, 0.0, -1.0]])}
+    >>> earth = 0.2 * 0.9**2 * nadir["nadir"]
+    >>> normals = np.array(faces).T
+    >>> seen = (sun @ normals).clip(0) + (earth @ normals).clip(0)
+    >>> clean = SunAndEarth(faces).fit(seen, sun, nadir)
+    >>> round(clean.albedo_, 2)
+    0.2
+    """
+
+    about: ClassVar = AboutCompensation(
+        name="sun-and-earth",
+        taxonomy="ICM/Albedo",
+        studies=("Bhanderi2006",),
+        labels=("model:albedo", "eq:albedo2"),
+        origin="survey",
+        needs=("face_normals",),
+        accepts=frozenset({FeatureKind.SIGNALS}),
+        context=("nadir",),
+        ahead_of=(
+            "basic",
+            "assembled-faces",
+        ),
+    )
+
+    albedo_: float = field(init=False, repr=False, compare=False)
+
+    def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
+        """Learn every face's current in full sunlight, and the Earth's strength."""
+        nadir = context["nadir"]
+        # faces that look away from the Earth tell of the Sun alone
+        away = nadir @ np.asarray(self.face_normals, dtype=np.float64).T < _AWAY
+        self.one_sun_ = self.full_sunlight(features, sun, away)
+        share = _share(sun, nadir)
+        plus, minus = self.pairs(features)
+        along = ((plus - minus - sun) * nadir).sum(axis=1)
+        self.albedo_ = max(float((share * along).sum() / max((share**2).sum(), 1e-12)), 0.0)
+
+    def apply(self, features: Floats, context: Columns) -> Floats:
+        """Signals (N, 6) of the Sun alone."""
+        nadir = context["nadir"]
+        plus, minus = self.pairs(features)
+        both = plus - minus
+        sun = normalised(both)
+        for _ in range(ITERATIONS):
+            sun = normalised(both - (self.albedo_ * _share(sun, nadir))[:, None] * nadir)
+        left = both - (self.albedo_ * _share(sun, nadir))[:, None] * nadir
+        return self.lit_by(left)
+
+
+def _share(sun: Floats, nadir: Floats) -> Floats:
+    """Share (N,) of the Earth's light when it is seen full."""
+    cosine = sun[:, 0] * nadir[:, 0] + sun[:, 1] * nadir[:, 1] + sun[:, 2] * nadir[:, 2]
+    return np.asarray(((1.0 - cosine) / 2.0) ** 2)

@@ -1,0 +1,1 @@
+"""What glass does to light on its way to the detector."""

@@ -1,0 +1,151 @@
+"""A bare detector as it stands behind its mask: homography and radial stretch (ours)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar, Self
+
+import numpy as np
+
+from algorithms.calibration.calibrated import Columns
+from algorithms.calibration.forward import ForwardModel
+from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
+from algorithms.models.nominal_projection import nominal_projection, require_projection
+
+
+@dataclass
+class BareDetector(ForwardModel):
+    """Homography of a detector that stands any way behind its mask, after a radial stretch.
+
+    Eight numbers hold all that a plane behind a pinhole can do: scales, turns, tilts, skew, and a
+    mirror. Refraction and the aperture's depth stretch tangents about the mask's normal before.
+
+    Parameters
+    ----------
+    focal_length_mm : float
+        Nominal distance from aperture to detector, positive.
+    unit_mm : float
+        Pixel pitch, positive.
+    centre : tuple of two float
+        Nominal spot (x, y) when the Sun is on the boresight.
+    extrapolation : float
+        How far past the convex hull of the calibrated features answers may go, as a share of its
+        half width, from 0 up; infinity for anywhere.
+
+    Attributes
+    ----------
+    vector_ : ndarray, shape (10,)
+        The homography's first eight elements by rows, the ninth being 1, in nominal focal lengths
+        off the nominal centre; k1 and k2.
+    covariance_ : ndarray, shape (10, 10)
+        Of their errors.
+    condition_ : float
+        Of the equations at the solution.
+    quality_ : FitQuality
+        Residuals, and the ten with their standard errors by name.
+    hull_ : Hull
+        Of the calibrated features.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
+    Notes
+    -----
+    Implements: model:cam (eq:cameq) for a sensor without a lens: ``(x', y', 1) ~ H (t (1 + k1 r^2 +
+    k2 r^4), 1)`` with t the tangents, r their length. Without distortion a homography is a camera
+    with skew, turned: ``H = K R``. With it, it is not: a camera's distortion comes after its turn,
+    about its optical axis, a bare sensor's before the detector's tilt, about the mask's normal.
+    Hence a class of its own. The start is the affine map that fits best.
+
+    Shapes: features ``(x, y)`` (N, 2), in px, to unit vectors (N, 3).
+
+    Failure: a NaN row for a NaN feature row, outside the hull, and where the steps have not come
+    to rest within 6e-8 deg. fit raises UnusableDataError below 6 samples, where they do not settle
+    the parameters, or do not belong together.
+
+    Cost: 36 times 30 operations a sample; the fit, some ten times 21 passes of 30.
+
+    References
+    ----------
+    Survey model:cam, eq:cameq.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from algorithms.angles import sun_from_angles
+    >>> steps = [-40, -20, 0, 20, 40]
+    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> x, y = (sun[:, :2] / sun[:, 2:]).T
+    >>> tilted = 200.0 * np.column_stack([x, y]) / (1.0 + 0.05 * x)[:, None]
+    >>> model = BareDetector(focal_length_mm=2.0, unit_mm=0.01).fit(tilted, sun)
+    >>> round(model.quality_.parameter("h31").value, 6)
+    0.05
+    """
+
+    about: ClassVar = AboutModel(
+        name="homography",
+        taxonomy="Camera",
+        labels=("model:cam", "eq:cameq"),
+        needs=("focal_length_mm", "pixel_pitch_mm", "centre_px"),
+        accepts=frozenset({FeatureKind.SPOT}),
+    )
+
+    focal_length_mm: float
+    unit_mm: float
+    centre: tuple[float, float] = (0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        require_projection(self.about.name, self.focal_length_mm, self.unit_mm, self.centre)
+
+    @classmethod
+    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
+        """Return the model that starts from the sensor's drawing."""
+        return cls(**nominal_projection(geometry, kind, cls.about))
+
+    def names(self) -> Sequence[tuple[str, str]]:
+        """Name and unit of each parameter."""
+        elements = ("h11", "h12", "h13", "h21", "h22", "h23", "h31", "h32")
+        return tuple((name, "") for name in (*elements, "k1", "k2"))
+
+    def scales(self) -> Sequence[float]:
+        """One each: all are in focal lengths and tangents."""
+        return (1.0,) * 10
+
+    def starts(self, features: Floats, sun: Floats, context: Columns) -> Sequence[Sequence[float]]:
+        """Give the affine map that fits best."""
+        del context
+        slope, centre = self.drawing()
+        design = np.column_stack([sun[:, :2] / sun[:, 2:], np.ones(len(sun))])
+        affine = np.linalg.lstsq(design, (features - centre) * slope, rcond=None)[0].T
+        return ((*affine.ravel().tolist(), 0.0, 0.0, 0.0, 0.0),)
+
+    def drawing(self) -> tuple[float, tuple[float, float]]:
+        """Tangent of a pixel, and the spot on the boresight."""
+        return self.unit_mm / self.focal_length_mm, self.centre
+
+    def turns(self, vector: Floats) -> tuple[float, float, float]:
+        """None: the homography has them."""
+        del vector
+        return 0.0, 0.0, 0.0
+
+    def cast(self, vector: Floats, tangents: Floats) -> Floats:
+        """(N, 2) places in px of tangents (N, 2); NaN where the detector does not reach."""
+        x, y = tangents.T
+        square = x * x + y * y
+        stretch = 1.0 + square * (vector[8] + square * vector[9])
+        x, y = x * stretch, y * stretch
+        depth = vector[6] * x + vector[7] * y + 1.0
+        with np.errstate(invalid="ignore"):
+            depth = np.where(depth > 0, depth, np.nan)
+        slope, centre = self.drawing()
+        return np.stack(
+            [
+                (vector[0] * x + vector[1] * y + vector[2]) / depth / slope + centre[0],
+                (vector[3] * x + vector[4] * y + vector[5]) / depth / slope + centre[1],
+            ],
+            axis=1,
+        )

@@ -1,0 +1,148 @@
+"""The Multi-slit model: rows of slits in a thick mask over lines of pixels (Bolshakov2020)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from algorithms.calibration.calibrated import Columns
+from algorithms.calibration.slit_sensor import NEEDS, SlitModel
+from algorithms.contract import AboutModel, FeatureKind, Floats, UnsuitableDesignError
+
+
+@dataclass
+class MultiSlit(SlitModel):
+    """Spots of many slits whose two edges come from the lower and the upper rim of the mask.
+
+    Light that falls askew is cut by the upper rim on one side and by the lower on the other; what
+    a method makes of both edges is one height, or one for each side of the boresight.
+
+    Parameters
+    ----------
+    focal_length_mm : float
+        Distance from the mask's middle to the lines, ``h + t / 2``, positive.
+    pixel_pitch_mm : float
+        Distance of two pixels, positive.
+    centre_px : tuple of two float
+        Spot (x, y) when the Sun is on the boresight.
+    line_axes : tuple of {"x", "y"}
+        The detector axis along which each line lies.
+    slits : tuple of (float, float, float)
+        Position mm, slant deg and width mm of each slit, at least two.
+    cover_glass : tuple of (float, float)
+        Thickness mm and index of each plate between mask and lines.
+    extrapolation : float
+        How far past the convex hull of the calibrated features answers may go, as a share of its
+        half width, from 0 up; infinity for anywhere.
+
+    Attributes
+    ----------
+    vector_ : ndarray, shape (8,)
+        Focal length and zero shift of the first line (or slant), then of the second, and what both
+        sides' heights differ by, mm; the head's rotation and tilts about x and y in degrees.
+    covariance_ : ndarray, shape (8, 8)
+        Of their errors.
+    condition_ : float
+        Of the equations at the solution.
+    quality_ : FitQuality
+        Residuals, and the eight with their standard errors by name.
+    hull_ : Hull
+        Of the calibrated features.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
+    Notes
+    -----
+    Implements: eq:mslit1, eq:mslit2 (model:mslit, Bolshakov2020): ``tan(theta_i) = (X_i - d_i) /
+    h`` of edges from the lower rim (even i), ``(X_i - d_i) / (h + t)`` of those from the upper one
+    (odd i); on the other side of the boresight they change places. Extractors of profiles give one
+    shift for all edges of a line, not d_i: the mean over slits, and over both edges with a weight
+    r of the upper end's, is ``tan(theta) (h + t / 2 + sign(theta) (1/2 - r) t)``. A method that
+    sees both edges alike (r = 1/2) leaves one height, ``h + t / 2``. Both are fitted, not t itself:
+    telling h from t takes each edge's own place. Of slits that slant, ``tan(theta)`` is ``tan(u) +
+    tan(slant) tan(v)``. Ours: a focal length and a zero a line or slant, the head's turns, plates
+    of the drawing by Snell's law (eq:refcomp1).
+
+    Shapes: features ``(x, y)`` (N, 2), in px, to unit vectors (N, 3).
+
+    Failure: a NaN row for a NaN feature row, outside the hull, and where the steps have not come
+    to rest within 6e-8 deg. fit raises UnusableDataError below 5 samples, where they do not settle
+    the parameters, or do not belong together. An inclined mask is left as a residual (`slit`).
+
+    Cost: 30 times 40 operations a sample; the fit, some ten times twenty passes of 40.
+
+    References
+    ----------
+    Bolshakov2020; survey model:mslit, eq:mslit1, eq:mslit2, eq:refcomp1.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from algorithms.angles import sun_from_angles
+    >>> steps = [-40, -20, 0, 20, 40]
+    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> spots = 24.5 * sun[:, :2] / sun[:, 2:]  # 1.225 mm over pixels of 50 um
+    >>> lines = dict(line_axes=("x", "y"), slits=((-0.6, 0.0, 0.2), (0.7, 0.0, 0.2)))
+    >>> model = MultiSlit(focal_length_mm=1.2, pixel_pitch_mm=0.05, centre_px=(0.0, 0.0), **lines)
+    >>> round(model.fit(spots, sun).quality_.parameter("focal_length_1").value, 6)
+    1.225
+    """
+
+    about: ClassVar = AboutModel(
+        name="multi-slit",
+        taxonomy="Multi-Slit",
+        studies=("Bolshakov2020",),
+        labels=("model:mslit", "eq:mslit1", "eq:mslit2", "eq:refcomp1"),
+        origin="survey",
+        needs=NEEDS,
+        accepts=frozenset({FeatureKind.SPOT}),
+    )
+
+    def require_slits(self) -> None:
+        """More than one slit of a slant."""
+        if len(self.slits) < 2 * len(self.slants()):
+            raise UnsuitableDesignError(
+                f"{self.about.name} needs several slits of each slant; got slits {self.slits!r}"
+            )
+
+    def names(self) -> Sequence[tuple[str, str]]:
+        """Name and unit of each parameter."""
+        return (
+            ("focal_length_1", "mm"),
+            ("zero_1", "mm"),
+            ("focal_length_2", "mm"),
+            ("zero_2", "mm"),
+            ("sides_differ", "mm"),
+            ("rotation", "deg"),
+            ("tilt_x", "deg"),
+            ("tilt_y", "deg"),
+        )
+
+    def scales(self) -> Sequence[float]:
+        """One focal length, one radian."""
+        radian = float(np.degrees(1.0))
+        return (*(self.focal_length_mm,) * 5, radian, radian, radian)
+
+    def starts(self, features: Floats, sun: Floats, context: Columns) -> Sequence[Sequence[float]]:
+        """Give the drawing."""
+        del features, sun, context
+        return ((*(self.focal_length_mm, 0.0) * 2, *(0.0,) * 4),)
+
+    def turns(self, vector: Floats) -> tuple[float, float, float]:
+        """Rotation and tilts of the head."""
+        return float(vector[5]), float(vector[6]), float(vector[7])
+
+    def shifts(self, vector: Floats, tangents: Floats) -> Floats:
+        """(N, 2) shifts, mm, of tangents (N, 2), by line and slant."""
+        found, glass = np.empty_like(tangents), self.glass(tangents)
+        for number, (x, y) in enumerate(self.layout()):
+            focal, zero = vector[2 * number : 2 * number + 2]
+            reach = x * tangents[:, 0] + y * tangents[:, 1]
+            found[:, number] = (focal - glass) * reach + 0.5 * vector[4] * np.abs(reach) + zero
+        return found

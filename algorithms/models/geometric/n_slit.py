@@ -1,0 +1,164 @@
+"""The N-slit model: one line under a square slit between two slanted ones (Maji2015)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from algorithms.calibration.calibrated import Columns
+from algorithms.calibration.slit_sensor import NEEDS, SlitModel, shadow
+from algorithms.contract import AboutModel, FeatureKind, Floats, UnsuitableDesignError
+
+#: Largest difference of the outer slits' slants, degrees.
+_SAME_SLANT_DEG = 1e-6
+
+
+@dataclass
+class NSlit(SlitModel):
+    """One line under an N of slits, its refraction factor, slant, place and turns fitted.
+
+    The middle spot moves with the angle along the line alone, the mean of both outer ones with
+    both angles; the difference, over the tangent of the slant, is the other angle's.
+
+    Parameters
+    ----------
+    focal_length_mm : float
+        Distance h from mask to line, positive; it stays, as K scales it.
+    pixel_pitch_mm : float
+        Distance of two pixels, positive.
+    centre_px : tuple of two float
+        Spot (x, y) when the Sun is on the boresight.
+    line_axes : tuple of {"x", "y"}
+        The detector axis along which the line lies.
+    slits : tuple of (float, float, float)
+        Position mm, slant deg and width mm of the three slits, in the order of their positions;
+        the middle one square to the line, the others of one slant.
+    cover_glass : tuple of (float, float)
+        Thickness mm and index of each plate between mask and line.
+    extrapolation : float
+        How far past the convex hull of the calibrated features answers may go, as a share of its
+        half width, from 0 up; infinity for anywhere.
+
+    Attributes
+    ----------
+    vector_ : ndarray, shape (9,)
+        K; the mask's shifts along and across the line in mm; the outer slits' slant, the line's
+        deflection in the mask's plane and its slope out of it, the head's rotation and tilts about
+        x and y in degrees.
+    covariance_ : ndarray, shape (9, 9)
+        Of their errors.
+    condition_ : float
+        Of the equations at the solution.
+    quality_ : FitQuality
+        Residuals, and the nine with their standard errors by name.
+    hull_ : Hull
+        Of the calibrated features.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
+    Notes
+    -----
+    Implements: eq:nslit1, eq:nslit2 (model:nslit, Maji2015): ``tan(alpha) = K (C_m - C_r) / h``,
+    ``tan(beta) = K [(L_m - L_r + R_m - R_r) / 2 - (C_m - C_r)] / (h tan(delta))``. Extractors of
+    profiles give the middle shift and the mean of the outer ones, which is all that the equations
+    ask. The printed K is one number; no number undoes refraction over a wide field, so here it
+    stands beside Snell's law (eq:refcomp1) for the drawing's plates, and is what the survey prints
+    where there are none. Ours: the line's place and turns under the mask (see `v-slit`) and the
+    head's turns; the reference centroids are the shifts.
+
+    Shapes: features ``(x, y)`` (N, 2), in px, to unit vectors (N, 3).
+
+    Failure: a NaN row for a NaN feature row, outside the hull, and where the steps have not come
+    to rest within 6e-8 deg. fit raises UnusableDataError below 5 samples, where they do not settle
+    the parameters, or do not belong together.
+
+    Cost: 30 times 60 operations a sample; the fit, some ten times twenty passes of 60.
+
+    References
+    ----------
+    Maji2015; survey model:nslit, eq:nslit1, eq:nslit2, eq:refcomp1.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from algorithms.angles import sun_from_angles
+    >>> steps = [-40, -20, 0, 20, 40]
+    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> spots = 100.0 * sun[:, :2] / sun[:, 2:]
+    >>> slits = ((-3.0, 45.0, 0.1), (0.0, 0.0, 0.1), (3.0, 45.0, 0.1))
+    >>> lines = dict(line_axes=("y",), slits=slits, centre_px=(0.0, 0.0))
+    >>> model = NSlit(focal_length_mm=1.2, pixel_pitch_mm=0.01, **lines).fit(spots, sun)
+    >>> round(model.quality_.parameter("K").value, 6)
+    1.2
+    """
+
+    about: ClassVar = AboutModel(
+        name="n-slit",
+        taxonomy="N-Slit",
+        studies=("Maji2015",),
+        labels=("model:nslit", "eq:nslit1", "eq:nslit2", "eq:refcomp1"),
+        origin="survey",
+        needs=NEEDS,
+        accepts=frozenset({FeatureKind.SPOT}),
+    )
+
+    def require_slits(self) -> None:
+        """One line, a square slit between two of one slant."""
+        slants = [slit[1] for slit in self.slits]
+        if not (
+            len(self.line_axes) == 1
+            and len(slants) == 3
+            and slants[1] == 0.0
+            and slants[0] != 0.0
+            and abs(slants[0] - slants[2]) <= _SAME_SLANT_DEG
+        ):
+            raise UnsuitableDesignError(
+                f"{self.about.name} needs one line behind a slit square to it between two of one "
+                f"slant; got lines {self.line_axes!r} and slits {self.slits!r}"
+            )
+
+    def names(self) -> Sequence[tuple[str, str]]:
+        """Name and unit of each parameter."""
+        return (
+            ("K", ""),
+            ("shift_along", "mm"),
+            ("shift_across", "mm"),
+            ("slant", "deg"),
+            ("deflection", "deg"),
+            ("slope", "deg"),
+            ("rotation", "deg"),
+            ("tilt_x", "deg"),
+            ("tilt_y", "deg"),
+        )
+
+    def scales(self) -> Sequence[float]:
+        """One, one focal length, one radian."""
+        focal, radian = self.focal_length_mm, float(np.degrees(1.0))
+        return (1.0, focal, focal, *(radian,) * 6)
+
+    def starts(self, features: Floats, sun: Floats, context: Columns) -> Sequence[Sequence[float]]:
+        """Give the drawing."""
+        del features, sun, context
+        return ((1.0, 0.0, 0.0, self.slits[0][1], *(0.0,) * 5),)
+
+    def turns(self, vector: Floats) -> tuple[float, float, float]:
+        """Rotation and tilts of the head."""
+        return float(vector[6]), float(vector[7]), float(vector[8])
+
+    def shifts(self, vector: Floats, tangents: Floats) -> Floats:
+        """(N, 2) shifts, mm, of tangents (N, 2): of the outer spots' mean and the middle one."""
+        height = self.focal_length_mm / vector[0] - self.glass(tangents)
+        along_line = tangents if self.line_axes[0] == "x" else tangents[:, ::-1]
+        line = (vector[1], vector[2], vector[4], vector[5])
+        outer = (self.slits[0][0] + self.slits[2][0]) / 2.0, float(np.tan(np.radians(vector[3])))
+        middle = self.slits[1][0], 0.0
+        found = np.empty_like(tangents)
+        for column, slit in enumerate((outer, middle)):
+            found[:, column] = shadow(along_line, slit, height, line)
+        return found

@@ -1,0 +1,163 @@
+"""The Slit model: two lines, each under a slit that stands off its drawing (KeQiang2020)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from algorithms.calibration.calibrated import Columns
+from algorithms.calibration.slit_sensor import NEEDS, SlitModel
+from algorithms.contract import AboutModel, FeatureKind, Floats, UnsuitableDesignError
+
+
+@dataclass
+class DeflectedSlits(SlitModel):
+    """Slits at another height, not square to their lines and with one end higher than the other.
+
+    Each line measures one angle; a slit that is deflected or inclined lets the other one in. The
+    three errors of each slit, both zero points and the head's tilts are fitted together.
+
+    Parameters
+    ----------
+    focal_length_mm : float
+        Theoretical distance f from slit to line, positive.
+    pixel_pitch_mm : float
+        Distance of two pixels, positive.
+    centre_px : tuple of two float
+        Spot (x, y) when the Sun is on the boresight.
+    line_axes : tuple of {"x", "y"}
+        The detector axis along which each of the two lines lies.
+    slits : tuple of (float, float, float)
+        Position mm, slant deg and width mm of each slit over a line; all square to it.
+    cover_glass : tuple of (float, float)
+        Thickness mm and index of each plate between slits and lines.
+    extrapolation : float
+        How far past the convex hull of the calibrated features answers may go, as a share of its
+        half width, from 0 up; infinity for anywhere.
+
+    Attributes
+    ----------
+    vector_ : ndarray, shape (10,)
+        f', theta and delta of the first line, then of the second, mm and degrees; centre (x, y)
+        in px; tilts of the head about x and y in degrees.
+    covariance_ : ndarray, shape (10, 10)
+        Of their errors.
+    condition_ : float
+        Of the equations at the solution.
+    quality_ : FitQuality
+        Residuals, and the ten with their standard errors by name.
+    hull_ : Hull
+        Of the calibrated features.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
+    Notes
+    -----
+    Implements: eq:slit (model:slit, KeQiang2020) for each line, u along it and v across: ``tan(u')
+    = (f'/f) [tan(u) + tan(v) tan(arctan(tan(u) tan(delta) / (1 - tan(v) tan(delta))) - theta)]``.
+    The survey calls u' the corrected angle; it is the one that the sensor gives by its theoretical
+    f, and u and v are the Sun's, as the geometry shows: with theta = 0 it is the spot ``f' tan(u)
+    / (1 - tan(v) tan(delta))`` of a slit inclined by -delta. The two equations of both lines are
+    solved for u and v by Newton's method. Ours: the zero points; the head's tilts, which bend both
+    axes alike (a turn about the boresight is both deflections); plates of the drawing, which take
+    ``t (1 - 1 / sqrt(n^2 + (n^2 - 1) tan^2))`` off each focal length (eq:refcomp1).
+
+    Shapes: features ``(x, y)`` (N, 2), in px, to unit vectors (N, 3).
+
+    Failure: a NaN row for a NaN feature row, outside the hull, and where the steps have not come
+    to rest within 6e-8 deg. fit raises UnusableDataError below 6 samples, where they do not settle
+    the parameters, or do not belong together. In a narrow field a tilt moves spots as the centre
+    does; standard errors then say so.
+
+    Cost: 30 times 60 operations a sample; the fit, some ten times twenty passes of 60.
+
+    References
+    ----------
+    KeQiang2020; survey model:slit, eq:slit, eq:refcomp1.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from algorithms.angles import sun_from_angles
+    >>> steps = [-40, -20, 0, 20, 40]
+    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> x, y = (sun[:, :2] / sun[:, 2:]).T
+    >>> spots = 350.0 * np.column_stack([x / (1 - 0.02 * y), y])  # one end of x's slit is lower
+    >>> lines = dict(line_axes=("x", "y"), slits=((0.0, 0.0, 0.1),), centre_px=(0.0, 0.0))
+    >>> model = DeflectedSlits(focal_length_mm=3.4, pixel_pitch_mm=0.01, **lines).fit(spots, sun)
+    >>> round(float(np.tan(np.radians(model.quality_.parameter("inclination_x").value))), 6)
+    0.02
+    """
+
+    about: ClassVar = AboutModel(
+        name="slit",
+        taxonomy="Slit",
+        studies=("KeQiang2020",),
+        labels=("model:slit", "eq:slit", "eq:refcomp1"),
+        origin="survey",
+        needs=NEEDS,
+        accepts=frozenset({FeatureKind.SPOT}),
+    )
+
+    def require_slits(self) -> None:
+        """Two lines at right angles, slits square to them."""
+        if len(self.line_axes) != 2 or any(slit[1] for slit in self.slits):
+            raise UnsuitableDesignError(
+                f"{self.about.name} needs two lines at right angles behind slits square to them; "
+                f"got lines {self.line_axes!r} and slits {self.slits!r}"
+            )
+
+    def names(self) -> Sequence[tuple[str, str]]:
+        """Name and unit of each parameter."""
+        lines = (
+            (f"{what}_{axis}", unit)
+            for axis in self.line_axes
+            for what, unit in (
+                ("focal_length", "mm"),
+                ("deflection", "deg"),
+                ("inclination", "deg"),
+            )
+        )
+        return (
+            *lines,
+            ("centre_x", "px"),
+            ("centre_y", "px"),
+            ("tilt_x", "deg"),
+            ("tilt_y", "deg"),
+        )
+
+    def scales(self) -> Sequence[float]:
+        """One focal length, one radian, and the displacement that is one focal length."""
+        focal, radian = self.focal_length_mm, float(np.degrees(1.0))
+        reach = focal / self.pixel_pitch_mm
+        return (*(focal, radian, radian) * 2, reach, reach, radian, radian)
+
+    def starts(self, features: Floats, sun: Floats, context: Columns) -> Sequence[Sequence[float]]:
+        """Give the drawing."""
+        del features, sun, context
+        return ((*(self.focal_length_mm, 0.0, 0.0) * 2, *self.centre_px, 0.0, 0.0),)
+
+    def turns(self, vector: Floats) -> tuple[float, float, float]:
+        """Tilts; both deflections are the rotation."""
+        return 0.0, float(vector[8]), float(vector[9])
+
+    def shifts(self, vector: Floats, tangents: Floats) -> Floats:
+        """(N, 2) shifts, mm, of tangents (N, 2): ``f tan(u')`` of both lines, with their zeros."""
+        found = np.empty_like(tangents)
+        glass = self.glass(tangents)
+        for number, axis in enumerate(self.line_axes):
+            focal, theta, delta = vector[3 * number : 3 * number + 3]
+            u, v = tangents.T if axis == "x" else tangents.T[::-1]
+            slope, turn = np.tan(np.radians(delta)), np.tan(np.radians(theta))
+            let_in = u * slope / (1.0 - v * slope)
+            let_in = (let_in - turn) / (1.0 + let_in * turn)  # tan(arctan(let_in) - theta)
+            place = 0 if axis == "x" else 1
+            zero = (vector[6 + place] - self.centre_px[place]) * self.pixel_pitch_mm
+            found[:, number] = (focal - glass) * (u + v * let_in) + zero
+        return found

@@ -1,0 +1,165 @@
+"""The V-slit model: one line under a square and a slanted slit, and glass (Fan2015, Fan2016)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from algorithms.calibration.calibrated import Columns
+from algorithms.calibration.slit_sensor import NEEDS, SlitModel, shadow, shortening
+from algorithms.contract import AboutModel, FeatureKind, Floats, UnsuitableDesignError
+
+
+@dataclass
+class VSlit(SlitModel):
+    """One line under a V of two slits, with its place and turns, and the glass between, fitted.
+
+    Both angles come from one line, so every error of how it stands under the mask mixes them. Five
+    numbers place the line, two the glass, and three turn the head against the outer frame.
+
+    Parameters
+    ----------
+    focal_length_mm : float
+        Nominal distance from mask to line, positive.
+    pixel_pitch_mm : float
+        Distance of two pixels, positive.
+    centre_px : tuple of two float
+        Spot (x, y) when the Sun is on the boresight.
+    line_axes : tuple of {"x", "y"}
+        The detector axis along which the line lies.
+    slits : tuple of (float, float, float)
+        Position mm, slant deg and width mm of both slits: one square to the line, one slanted.
+    cover_glass : tuple of (float, float)
+        Thickness mm and index of each plate between mask and line; none leaves refraction out.
+    extrapolation : float
+        How far past the convex hull of the calibrated features answers may go, as a share of its
+        half width, from 0 up; infinity for anywhere.
+
+    Attributes
+    ----------
+    vector_ : ndarray, shape (8,) or (10,)
+        Focal length, the mask's shifts along and across the line in mm, the line's deflection in
+        the mask's plane and its slope out of it, the head's rotation and tilts about x and y in
+        degrees; with glass, its thickness in mm and its index.
+    covariance_ : ndarray, shape (P, P)
+        Of their errors.
+    condition_ : float
+        Of the equations at the solution.
+    quality_ : FitQuality
+        Residuals, and the parameters with their standard errors by name.
+    hull_ : Hull
+        Of the calibrated features.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
+    Notes
+    -----
+    Implements: eq:vslit1, eq:vslit2 (model:vslit, Fan2015, Fan2016) as what they are solved from:
+    with ``p = (X - X_slit + T_1, T_2, T_3)`` a point of the line and ``p' = R^T p`` in the mask's
+    frame, a ray from p' meets the plane of the mask on the slit, ``p'_1 - p'_3 tan(u) = 0`` for
+    the square one (eq:vslit1) and ``p'_1 - p'_3 tan(u) + tan(slant) (p'_2 - p'_3 tan(v)) = 0`` for
+    the slanted one (eq:vslit2, whose angle v counts the other way). Six structural and two
+    refraction parameters in the survey. Of R's three turns, that about the line itself is a turn
+    of the head with a shift T_2: with angles counted in the mask's frame, as printed, no sample
+    tells them apart. So five are left here, T and two turns, and the head has three of its own,
+    which the survey leaves out. X is counted without refraction in print; here a plate takes ``t
+    (1 - 1 / sqrt(n^2 + (n^2 - 1) tan^2))`` off the height (Snell's law, eq:refcomp1), for all
+    plates together, starting from their whole thickness and mean index.
+
+    Shapes: features ``(x, y)`` (N, 2), in px, to unit vectors (N, 3).
+
+    Failure: a NaN row for a NaN feature row, outside the hull, and where the steps have not come
+    to rest within 6e-8 deg. fit raises UnusableDataError below 5 samples (6 with glass), where
+    they do not settle the parameters, or do not belong together. Thickness and index act alike but
+    far off the boresight: their standard errors are large together, those of directions are not.
+
+    Cost: 30 times 60 operations a sample; the fit, some ten times twenty passes of 60.
+
+    References
+    ----------
+    Fan2015, Fan2016; survey model:vslit, eq:vslit1, eq:vslit2, eq:refcomp1.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from algorithms.angles import sun_from_angles
+    >>> steps = [-40, -20, 0, 20, 40]
+    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> spots = 180.0 * sun[:, :2] / sun[:, 2:]
+    >>> lines = dict(line_axes=("y",), slits=((-3.3, 0.0, 0.1), (0.5, 45.0, 0.1)))
+    >>> model = VSlit(focal_length_mm=1.7, pixel_pitch_mm=0.01, centre_px=(0.0, 0.0), **lines)
+    >>> round(model.fit(spots, sun).quality_.parameter("focal_length").value, 6)
+    1.8
+    """
+
+    about: ClassVar = AboutModel(
+        name="v-slit",
+        taxonomy="V-Slit",
+        studies=("Fan2015", "Fan2016"),
+        labels=("model:vslit", "eq:vslit1", "eq:vslit2", "eq:refcomp1"),
+        origin="survey",
+        needs=NEEDS,
+        accepts=frozenset({FeatureKind.SPOT}),
+    )
+
+    def require_slits(self) -> None:
+        """One line, a square slit and a slanted one."""
+        slants = [slit[1] for slit in self.slits]
+        if len(self.line_axes) != 1 or len(slants) != 2 or slants.count(0.0) != 1:
+            raise UnsuitableDesignError(
+                f"{self.about.name} needs one line behind one slit square to it and one slanted; "
+                f"got lines {self.line_axes!r} and slits {self.slits!r}"
+            )
+
+    def names(self) -> Sequence[tuple[str, str]]:
+        """Name and unit of each parameter."""
+        glass = (("glass_thickness", "mm"), ("glass_index", "")) if self.cover_glass else ()
+        return (
+            ("focal_length", "mm"),
+            ("shift_along", "mm"),
+            ("shift_across", "mm"),
+            ("deflection", "deg"),
+            ("slope", "deg"),
+            ("rotation", "deg"),
+            ("tilt_x", "deg"),
+            ("tilt_y", "deg"),
+            *glass,
+        )
+
+    def scales(self) -> Sequence[float]:
+        """One focal length, one radian, all of the glass."""
+        focal, radian = self.focal_length_mm, float(np.degrees(1.0))
+        glass = (focal, 1.0) if self.cover_glass else ()
+        return (focal, focal, focal, *(radian,) * 5, *glass)
+
+    def starts(self, features: Floats, sun: Floats, context: Columns) -> Sequence[Sequence[float]]:
+        """Give the drawing."""
+        del features, sun, context
+        glass: tuple[float, ...] = ()
+        if self.cover_glass:
+            thickness = sum(plate[0] for plate in self.cover_glass)
+            glass = (thickness, sum(t * n for t, n in self.cover_glass) / thickness)
+        return ((self.focal_length_mm, *(0.0,) * 7, *glass),)
+
+    def turns(self, vector: Floats) -> tuple[float, float, float]:
+        """Rotation and tilts of the head."""
+        return float(vector[5]), float(vector[6]), float(vector[7])
+
+    def shifts(self, vector: Floats, tangents: Floats) -> Floats:
+        """(N, 2) shifts, mm, of tangents (N, 2) by slant, in the order of the slits."""
+        height = np.full(len(tangents), vector[0])
+        if self.cover_glass:
+            height -= shortening(tangents, vector[8], vector[9])
+        along_line = tangents if self.line_axes[0] == "x" else tangents[:, ::-1]
+        line = (vector[1], vector[2], vector[3], vector[4])
+        slits = [(position, np.tan(np.radians(slant))) for position, slant, _ in self.slits]
+        found = np.empty_like(tangents)
+        for column, slit in enumerate(slits):
+            found[:, column] = shadow(along_line, slit, height, line)
+        return found

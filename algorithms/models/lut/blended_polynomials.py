@@ -1,0 +1,294 @@
+"""Look-up table of row polynomials of the error of the nominal projection (LUT)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, ClassVar, Self
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from algorithms.angles import angles_from_sun, sun_from_angles
+from algorithms.calibration.blocks import best, folds, splits
+from algorithms.calibration.calibrated import CalibratedModel, Columns
+from algorithms.calibration.conditioning import WORST_CONDITION
+from algorithms.calibration.hull import spacing
+from algorithms.calibration.quality import Setting
+from algorithms.contract import (
+    AboutModel,
+    FeatureKind,
+    Floats,
+    SensorGeometry,
+    UnusableDataError,
+)
+from algorithms.inputs import require_positive, require_samples
+from algorithms.models.lut.error_tables import (
+    MAX_NODES,
+    SMOOTHINGS,
+    GridAxis,
+    errors_left_out,
+    interpolation_matrix,
+    require_size,
+    row_products,
+    row_roughness,
+    solve_table,
+)
+from algorithms.models.nominal_projection import (
+    POSITIONS,
+    nominal_projection,
+    nominal_tangents,
+    require_projection,
+)
+
+MAX_DEGREE = 15
+
+DEGREES = (2, 4, 6, 8, 12)
+"""Of each row, tried where none is given; the study's is the last."""
+
+
+@dataclass
+class BlendedPolynomials(CalibratedModel):
+    """Nominal angles corrected by polynomials of one angle, blended between rows of the other.
+
+    A table of polynomial coefficients takes far less room than one of nodes; weighting the two
+    neighbouring polynomials keeps the correction smooth from row to row.
+
+    Parameters
+    ----------
+    focal_length_mm : float
+        Nominal distance from aperture to detector, positive.
+    unit_mm : float
+        Displacement of the spot for one unit of feature, positive: the pixel pitch for spots,
+        half the aperture's width for balances.
+    centre : tuple of two float
+        Nominal feature (x, y) of the spot when the Sun is on the boresight.
+    interval_deg : float
+        Distance in alpha between rows, positive; the study's is 1.
+    degree : int, optional
+        Degree n of each row's polynomial in beta, 1 to 15; the study's is 8. None: chosen from the
+        calibration samples by cross-validation, with the smoothing.
+    smoothing : float, optional
+        Weight of the squared second differences of coefficients from row to row against one
+        sample's squared error, positive; 1e-3 only fills rows no sample settles. None: chosen.
+    extrapolation : float
+        How far past the convex hull of the calibrated features answers may go, as a share of its
+        half width, from 0 up; infinity for anywhere.
+
+    Attributes
+    ----------
+    alpha_axis_ : GridAxis
+        The rows' nominal alpha in degrees.
+    beta_middle_deg_, beta_half_range_deg_ : float
+        Scaling of the nominal beta onto [-1, 1].
+    coefficients_deg_ : ndarray, shape (A, n + 1, 2)
+        Chebyshev coefficients of the errors of alpha and beta, row by row.
+    smoothing_ : float
+        Given or chosen.
+    validated_deg_ : float or None
+        Error on samples left out, where they chose a setting.
+    quality_ : FitQuality
+        How good the fit is.
+    hull_ : Hull
+        Of the calibrated features.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
+    Notes
+    -----
+    Implements: model:lut (He2013), in words there: for nominal angles (eq:stdproj) between rows k
+    and k + 1, ``e = (1 - w) P_k(beta) + w P_{k+1}(beta)`` with w the fraction of the interval. All
+    rows are fitted at once to samples anywhere, in Chebyshev polynomials, which span the same
+    functions without the loss of digits.
+
+    Shapes: features ``(x, y)`` (N, 2), in px or dimensionless, to unit vectors (N, 3).
+
+    Failure: a NaN row for a NaN feature row, outside the hull, or where an angle reaches 90
+    degrees. fit raises UnusableDataError below 2 (n + 1) samples, where they do not settle a
+    polynomial on two rows, where they settle the rows so badly that rounding would show, or past
+    250,000 coefficients.
+
+    Cost: 12 (n + 1) operations a sample, and 2 a facet of the hull; the fit solves one sparse
+    system in A (n + 1) unknowns.
+
+    References
+    ----------
+    He2013; survey model:lut, eq:stdproj.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from algorithms.angles import angles_from_sun, sun_from_angles
+    >>> steps = np.arange(-10, 11, 2)
+    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> bent = 200.0 * (sun[:, :2] / sun[:, 2:]) ** 3  # what the drawing does not know
+    >>> spots = 200.0 * sun[:, :2] / sun[:, 2:] + bent
+    >>> model = BlendedPolynomials(focal_length_mm=2.0, unit_mm=0.01, interval_deg=5.0, degree=4)
+    >>> angles_from_sun(model.fit(spots, sun).predict([spots[0], [900.0, 0.0]])).round(2)
+    array([[-10., -10.],
+           [ nan,  nan]])
+    """
+
+    about: ClassVar = AboutModel(
+        name="lut-polynomial",
+        taxonomy="LUT",
+        studies=("He2013",),
+        labels=("model:lut", "eq:stdproj"),
+        origin="survey",
+        needs=("focal_length_mm",),
+        accepts=POSITIONS,
+    )
+
+    focal_length_mm: float
+    unit_mm: float
+    centre: tuple[float, float] = (0.0, 0.0)
+    interval_deg: float = 1.0
+    degree: int | None = None
+    smoothing: float | None = None
+
+    fewest: ClassVar[int] = 4
+
+    alpha_axis_: GridAxis = field(init=False, repr=False, compare=False)
+    beta_middle_deg_: float = field(init=False, repr=False, compare=False)
+    beta_half_range_deg_: float = field(init=False, repr=False, compare=False)
+    coefficients_deg_: Floats = field(init=False, repr=False, compare=False)
+    smoothing_: float = field(init=False, repr=False, compare=False)
+    validated_deg_: float | None = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        require_projection(self.about.name, self.focal_length_mm, self.unit_mm, self.centre)
+        smoothing = 1.0 if self.smoothing is None else self.smoothing
+        require_positive(self.about.name, interval_deg=self.interval_deg, smoothing=smoothing)
+        if self.degree is not None and not 1 <= self.degree <= MAX_DEGREE:
+            raise ValueError(
+                f"{self.about.name}: degree must be from 1 to {MAX_DEGREE}, or None; "
+                f"got {self.degree!r}"
+            )
+
+    @classmethod
+    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
+        """Return the rows over the sensor's nominal angles, at the published interval."""
+        return cls(**nominal_projection(geometry, kind, cls.about))
+
+    def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
+        """Solve for all rows' coefficients."""
+        del context
+        nominal = self._nominal_deg(features)
+        errors = angles_from_sun(sun) - nominal
+        degree, smoothing, self.validated_deg_ = self.degree, self.smoothing, None
+        if degree is None or smoothing is None:
+            (degree, smoothing), self.validated_deg_ = self._chosen(nominal, errors, sun)
+        self.smoothing_ = smoothing
+        self.solve(nominal, errors, degree, smoothing)
+
+    def settings(self) -> Mapping[str, Setting]:
+        """Give degree and smoothing, chosen or given."""
+        return {"degree": self.coefficients_deg_.shape[1] - 1, "smoothing": self.smoothing_}
+
+    def validation_rms_deg(self) -> float | None:
+        """Error on samples left out, where they chose a setting."""
+        return self.validated_deg_
+
+    def answer(self, features: Floats, context: Columns) -> Floats:
+        """Directions (N, 3) of features (N, 2)."""
+        del context
+        nominal = self._nominal_deg(features)
+        return sun_from_angles(nominal + self.interpolated(nominal))
+
+    def _chosen(
+        self, nominal: Floats, errors: Floats, sun: Floats
+    ) -> tuple[tuple[int, float], float]:
+        """Degree and smoothing with the smallest error on samples left out, and that error.
+
+        Tried on rows as coarse as the poses, where it takes tenths of the time: second differences
+        grow with the interval squared, and rows become fewer.
+        """
+        degrees = DEGREES if self.degree is None else (self.degree,)
+        smoothings = SMOOTHINGS if self.smoothing is None else (self.smoothing,)
+        step = spacing(np.unique(np.round(nominal, 9), axis=0))
+        coarse = max(self.interval_deg, step)
+        while (nodes := _rows(nominal, coarse).nodes * (max(degrees) + 1)) > MAX_NODES:
+            coarse *= 2.0
+        alpha, basis, design = _equations(nominal, coarse, max(degrees))
+        weights = [weight * (self.interval_deg / coarse) ** 3 for weight in smoothings]
+        parts = splits(folds(sun))
+        found: dict[tuple[int, float], float] = {}
+        for degree in degrees:
+            terms = degree + 1
+            if _rank(nominal, basis[:, :terms]) < 2 * terms:
+                continue
+            # of every row the terms up to this degree
+            part = design[:, np.arange(nodes) % (max(degrees) + 1) < terms]
+            errors_of = errors_left_out(
+                part, row_roughness(alpha.nodes, terms), weights, errors, parts
+            )
+            found |= {(degree, s): e for s, e in zip(smoothings, errors_of.tolist(), strict=True)}
+        tried = [(n, weight) for n in degrees for weight in smoothings]
+        return best(tried, lambda settings: found.get(settings, np.inf), self.about.name)
+
+    def solve(self, nominal: Floats, errors: Floats, degree: int, smoothing: float) -> None:
+        """Solve for the rows that fit errors (n, 2) at nominal angles (n, 2), degrees."""
+        terms, by = degree + 1, self.about.name
+        require_samples(len(nominal), 2 * terms, by, f"degree {degree} on at least two rows")
+        require_size(_rows(nominal, self.interval_deg).nodes * terms, by, self.interval_deg)
+        alpha, basis, design = _equations(nominal, self.interval_deg, degree)
+        rank = _rank(nominal, basis)
+        if rank < 2 * terms:
+            raise UnusableDataError(
+                f"{by} needs samples that settle {2 * terms} terms (degree {degree} on two rows); "
+                f"the {len(nominal)} given settle only {rank}"
+            )
+        roughness = row_roughness(alpha.nodes, terms)
+        solution = solve_table(design, roughness, smoothing, errors, by)
+        self.alpha_axis_ = alpha
+        self.beta_middle_deg_, self.beta_half_range_deg_ = _scaling(nominal)
+        self.coefficients_deg_ = solution.reshape(alpha.nodes, terms, 2)
+
+    def interpolated(self, nominal: Floats) -> Floats:
+        """(N, 2) errors at nominal angles, blended between the rows, degrees."""
+        row, weight = self.alpha_axis_.cells(nominal[:, 0])
+        scaled = (nominal[:, 1] - self.beta_middle_deg_) / self.beta_half_range_deg_
+        blend = weight[:, None, None]
+        rows = self.coefficients_deg_
+        coefficients = (1 - blend) * rows[row] + blend * rows[row + 1]
+        moved = np.moveaxis(coefficients, 1, 0)
+        return np.asarray(chebyshev.chebval(scaled[:, None], moved, tensor=False))
+
+    def _nominal_deg(self, features: Floats) -> Floats:
+        tangents = nominal_tangents(features, self.focal_length_mm, self.unit_mm, self.centre)
+        return np.degrees(np.arctan(tangents))
+
+
+def _rows(nominal: Floats, interval: float) -> GridAxis:
+    return GridAxis.covering(nominal[:, 0], interval)
+
+
+def _scaling(nominal: Floats) -> tuple[float, float]:
+    """Middle and half range of beta."""
+    low, high = float(nominal[:, 1].min()), float(nominal[:, 1].max())
+    return (low + high) / 2, (high - low) / 2
+
+
+def _equations(nominal: Floats, interval: float, degree: int) -> tuple[GridAxis, Floats, Any]:
+    """Rows, their terms (n, degree + 1) at each sample, and both rows' around it (n, unknowns)."""
+    from scipy.sparse import csr_array  # noqa: PLC0415 - SciPy, at the first fit only
+
+    alpha = _rows(nominal, interval)
+    middle, half = _scaling(nominal)
+    scaled = (nominal[:, 1] - middle) / half
+    basis = np.asarray(chebyshev.chebvander(scaled, degree), dtype=np.float64)
+    across = interpolation_matrix(alpha, nominal[:, 0])
+    return alpha, basis, row_products(across, csr_array(basis))
+
+
+def _rank(nominal: Floats, basis: Floats) -> int:
+    """How many terms of polynomials that change linearly from row to row the samples settle.
+
+    Such coefficients are free of roughness: the samples themselves must settle those.
+    """
+    trend = np.hstack([basis, basis * nominal[:, :1] / np.abs(nominal[:, 0]).max()])
+    return int(np.linalg.matrix_rank(trend, rtol=1.0 / WORST_CONDITION))

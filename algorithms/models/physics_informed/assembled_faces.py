@@ -1,0 +1,333 @@
+"""Photodiodes as they were mounted: normals, gains and responses learnt on the ground (ACM)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import ClassVar, Literal, Self, get_args
+
+import numpy as np
+
+from algorithms.calibration.calibrated import Columns
+from algorithms.calibration.faces_model import FacesModel
+from algorithms.calibration.quality import Parameter
+from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
+from algorithms.inputs import require_positive
+from algorithms.models.geometric.detector_faces import Normals, require_normals
+from algorithms.models.physics_informed.faces_fit import FEWEST_LIT, FacesFit
+from algorithms.row_arithmetic import normalised
+
+Sharing = Literal["common", "each"]
+
+ITERATIONS = 40
+"""Most steps towards a direction; ten are usual."""
+
+#: Smallest step, over its vector, that is still taken.
+_AT_REST = 1e-13
+#: Of the equations' diagonal, over its mean, at the first step and at least.
+_FIRST_DAMPING, _LEAST_DAMPING = 1e-4, 1e-12
+#: Deviations above darkness, and cosine below the horizon, up to which a face pulls towards it.
+_PULLS, _HORIZON = 2.0, 0.3
+#: Of the equations of the first vector, so that what is open is nothing.
+_LEAST_START = 1e-6
+#: Standard deviation of a direction from which on it is none: the lit faces leave it open.
+_WORST_RAD = 0.1
+
+
+@dataclass
+class AssembledFaces(FacesModel):
+    """Direction that explains all faces' signals best, each face as the calibration found it.
+
+    Of every face the calibration gives where it really looks and how its signal goes with the
+    angle of incidence; a direction is then the least-squares one over all faces, dark ones too,
+    with the light's strength left free within what it may be.
+
+    Parameters
+    ----------
+    face_normals : tuple of K vectors
+        Nominal unit normals of the faces in the order of the features, K at least 3, spanning
+        space.
+    response : {"common", "each"}
+        Whether all faces have one response but for their gains, as elements of one make do, or
+        each its own.
+    level_spread : float
+        Standard deviation of the light's strength around that of the calibration, relative,
+        positive: Sun and lamp differ, and the Sun's distance changes.
+    extrapolation : float
+        How far past the cone of calibrated directions answers may go, in radians, from 0 up;
+        infinity for anywhere.
+
+    Attributes
+    ----------
+    normals_ : ndarray, shape (K, 3)
+        Where each face looks.
+    responses_ : ndarray, shape (K, 4)
+        Of each face ``b``: its signal is ``b_0 + b_1 c + b_2 c^2 + b_3 c^3`` at the cosine c of
+        incidence, nothing where that is negative or the Sun behind; in the signals' unit.
+    dark_ : ndarray, shape (K,)
+        Signal of each face in the dark; 0 where no sample left it so.
+    noise_ : ndarray, shape (K,)
+        Standard deviation of each face's residuals.
+    parameters_ : tuple of Parameter
+        Gains, tilts, response and the slopes of the lamp's light, with standard errors.
+    condition_ : float
+        Of the equations, their columns brought to one length.
+    quality_ : FitQuality
+        Residuals, and all of these with their standard errors by name.
+    hull_ : Hull
+        Cone of the directions it gives for the calibration.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
+    Notes
+    -----
+    Implements: model:assem (Radan2019), on the ground: installation errors found by
+    Levenberg-Marquardt. The survey gives no equations since every sensor has its own; for faces
+    these are a normal and a response each, the response a cubic as eq:kellycos is, with
+    coefficients of its own (ours).
+
+    Shapes: signals (N, K), in any common unit, to unit vectors (N, 3).
+
+    Failure: a NaN row for a NaN feature row, where no face is lit, where the lit ones leave the
+    direction open, and outside the cone. Albedo is taken for Sun. fit raises UnusableDataError
+    where a face is lit by fewer than 12 samples, or they do not settle its six numbers.
+
+    Cost: some ten steps of 30 operations a face and 60 a sample; the fit, some ten passes of
+    seven over the samples a face.
+
+    References
+    ----------
+    Radan2019; survey model:assem, eq:kellycos.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> normals = ((0.6, 0.0, 0.8), (-0.6, 0.0, 0.8), (0.0, 0.6, 0.8), (0.0, -0.6, 0.8))
+    >>> turns, offs = np.meshgrid(np.radians(range(0, 360, 30)), np.radians([5, 15, 25, 35]))
+    >>> sine = np.sin(offs.ravel())
+    >>> sun = np.column_stack([sine * np.cos(turns.ravel()), sine * np.sin(turns.ravel()),
+    ...                        np.cos(offs.ravel())])
+    >>> signals = np.maximum(sun @ np.array(normals).T, 0.0) * (1.0, 1.1, 0.9, 1.2)
+    >>> model = AssembledFaces(normals).fit(signals, sun)
+    >>> gains = [model.quality_.parameter(f"gain_{face}").value for face in (1, 4)]
+    >>> round(gains[1] / gains[0], 6)
+    1.2
+    >>> float(np.abs(model.predict(signals) - sun).max().round(6))
+    0.0
+    """
+
+    about: ClassVar = AboutModel(
+        name="assembled-faces",
+        taxonomy="ACM",
+        studies=("Radan2019",),
+        labels=("model:assem", "eq:kellycos"),
+        origin="survey",
+        needs=("face_normals",),
+        accepts=frozenset({FeatureKind.SIGNALS}),
+    )
+    fewest: ClassVar[int] = FEWEST_LIT
+
+    face_normals: Normals
+    response: Sharing = "common"
+    level_spread: float = 0.05
+
+    normals_: Floats = field(init=False, repr=False, compare=False)
+    responses_: Floats = field(init=False, repr=False, compare=False)
+    dark_: Floats = field(init=False, repr=False, compare=False)
+    noise_: Floats = field(init=False, repr=False, compare=False)
+    parameters_: tuple[Parameter, ...] = field(init=False, repr=False, compare=False)
+    condition_: float = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        require_normals(self.face_normals, self.about.name)
+        require_positive(self.about.name, level_spread=self.level_spread)
+        if self.response not in get_args(Sharing):
+            raise ValueError(
+                f"{self.about.name}: response must be one of {', '.join(get_args(Sharing))}; "
+                f"got {self.response!r}"
+            )
+
+    @classmethod
+    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
+        """Return the model that starts from the sensor's drawing."""
+        cls.about.require_kind(kind)
+        geometry.require("face_normals", by=cls.about.name)
+        return cls(geometry.face_normals or ())
+
+    def columns(self) -> int:
+        """One a face."""
+        return len(self.face_normals)
+
+    def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
+        """Learn normals, gains and response of all faces together."""
+        del context
+        fit = FacesFit(
+            np.asarray(self.face_normals, dtype=np.float64), features, sun, self.about.name
+        ).solved(each=self.response == "each")
+        self.normals_, self.responses_, self.dark_ = fit.normals, fit.responses, fit.dark
+        # a noiseless calibration leaves rounding, which must not decide between faces
+        least = 1e-9 * float(self.responses_.sum(axis=1).max())
+        self.noise_ = np.maximum(fit.noise, least)
+        self.parameters_, self.condition_ = fit.parameters, fit.condition
+
+    def condition(self) -> float:
+        """Give the condition of the equations."""
+        return self.condition_
+
+    def settled(self) -> tuple[Parameter, ...]:
+        """Gains, tilts and coefficients of the response, and the lamp's slopes."""
+        return self.parameters_
+
+    def answer(self, features: Floats, context: Columns) -> Floats:
+        """Directions (N, 3) of signals (N, K)."""
+        del context
+        return self._solved(features)[0]
+
+    def variance(self, features: Floats, context: Columns) -> Floats:
+        """(N,) variance of a tangent axis that the residuals' size makes, rad^2."""
+        del context
+        return self._solved(features)[1]
+
+    def _solved(self, signals: Floats) -> tuple[Floats, Floats]:
+        """Directions (N, 3), and the mean variance (N,) of their two components across.
+
+        Levenberg-Marquardt, every sample with a damping of its own.
+        """
+        light = signals - self.dark_
+        vector = self._start(light)
+        normal, right, cost = self._equations(vector, light)
+        damping = np.full(len(light), _FIRST_DAMPING)
+        resting = ~np.isfinite(vector[:, 0])
+        for _ in range(ITERATIONS):
+            size = damping * (normal[:, 0, 0] + normal[:, 1, 1] + normal[:, 2, 2])
+            step = _solve3(normal + size[:, None, None] * np.eye(3), right)
+            step[resting] = 0.0
+            tried = vector + step
+            found = self._equations(tried, light)
+            better = found[2] <= cost
+            small = (step**2).sum(axis=1) <= _AT_REST**2 * (vector**2).sum(axis=1)
+            for kept, new in zip((vector, normal, right, cost), (tried, *found), strict=True):
+                kept[better] = new[better]
+            damping = np.clip(np.where(better, damping / 10.0, damping * 10.0), _LEAST_DAMPING, 1e6)
+            resting |= small
+            if resting.all():
+                break
+        sun = normalised(vector)
+        inverse = _inverse3(normal)
+        along = np.zeros(len(sun))
+        for i in range(3):
+            for j in range(3):
+                along += inverse[:, i, j] * sun[:, i] * sun[:, j]
+        spread = inverse[:, 0, 0] + inverse[:, 1, 1] + inverse[:, 2, 2] - along
+        variance = spread / 2.0 / (vector**2).sum(axis=1)
+        known = (variance >= 0) & (variance <= _WORST_RAD**2)
+        sun[~known] = np.nan
+        return sun, np.where(known, variance, 0.0)
+
+    def _start(self, light: Floats) -> Floats:
+        """(N, 3) vectors that fit the lit faces' cosines; NaN where no face is lit.
+
+        A component that no lit face tells of starts at nothing, as the dark ones say.
+        """
+        normal, right = np.zeros((len(light), 3, 3)), np.zeros((len(light), 3))
+        lit = np.zeros(len(light), dtype=np.bool_)
+        for face, axis in enumerate(self.normals_):
+            cosine = inverted(light[:, face], self.responses_[face])
+            seen = light[:, face] > 3.0 * self.noise_[face]
+            lit |= seen
+            weight = seen.astype(np.float64)
+            _add_row(normal, right, [weight * component for component in axis], weight * cosine)
+        start = _solve3(normal + _LEAST_START * np.eye(3), right)
+        start[~lit] = np.nan
+        return start
+
+    def _equations(self, vector: Floats, light: Floats) -> tuple[Floats, Floats, Floats]:
+        """Give normal equations (N, 3, 3), right sides (N, 3) and sum of squares at a vector.
+
+        The vector's (N, 3) direction is the Sun's, its length the light's strength.
+        """
+        level = np.sqrt((vector**2).sum(axis=1))
+        sun = vector / level[:, None]
+        normal, right = np.zeros((len(light), 3, 3)), np.zeros((len(light), 3))
+        cost = np.zeros(len(light))
+        for face, axis in enumerate(self.normals_):
+            cosine = sun[:, 0] * axis[0] + sun[:, 1] * axis[1] + sun[:, 2] * axis[2]
+            value, slope = cubic_and_slope(cosine, self.responses_[face])
+            residual = (light[:, face] - level * value) / self.noise_[face]
+            # a face that is lit although it should be dark pulls the direction over its horizon
+            pulls = (value == 0.0) & (residual > _PULLS) & (cosine > -_HORIZON)
+            slope = np.where(pulls, self.responses_[face, 1], slope)
+            # of level * f(n . v / level): f s + f' (n - c s)
+            rows = [
+                (value * sun[:, k] + slope * (axis[k] - cosine * sun[:, k])) / self.noise_[face]
+                for k in range(3)
+            ]
+            _add_row(normal, right, rows, residual)
+            cost += residual * residual
+        rows = [sun[:, k] / self.level_spread for k in range(3)]
+        residual = (1.0 - level) / self.level_spread
+        _add_row(normal, right, rows, residual)
+        return normal, right, cost + residual * residual
+
+
+def cubic_and_slope(cosine: Floats, coefficients: Floats) -> tuple[Floats, Floats]:
+    """Response at cosines of incidence (N,), nothing below zero or from behind; its derivative."""
+    b0, b1, b2, b3 = coefficients
+    value = ((b3 * cosine + b2) * cosine + b1) * cosine + b0
+    lit = (cosine > 0) & (value > 0)
+    slope = (3.0 * b3 * cosine + 2.0 * b2) * cosine + b1
+    return np.where(lit, value, 0.0), np.where(lit, slope, 0.0)
+
+
+def inverted(signal: Floats, coefficients: Floats) -> Floats:
+    """Cosines (N,) in [0, 1.2] at which a response gives signals (N,), by Newton's steps."""
+    b0, b1, b2, b3 = coefficients
+    cosine = np.clip(signal / coefficients.sum(), 0.0, 1.2)
+    for _ in range(6):
+        value = ((b3 * cosine + b2) * cosine + b1) * cosine + b0
+        slope = np.maximum((3.0 * b3 * cosine + 2.0 * b2) * cosine + b1, 0.1 * b1)
+        cosine = np.clip(cosine - (value - signal) / slope, 0.0, 1.2)
+    return np.asarray(cosine)
+
+
+def _add_row(normal: Floats, right: Floats, row: list[Floats], residual: Floats) -> None:
+    """Add one equation a sample, derivatives `row` (3 of (N,)) and residual (N,), in place."""
+    for i in range(3):
+        right[:, i] += row[i] * residual
+        for j in range(i, 3):
+            normal[:, i, j] += row[i] * row[j]
+            if j > i:
+                normal[:, j, i] = normal[:, i, j]
+
+
+def _inverse3(matrix: Floats) -> Floats:
+    """Inverses (N, 3, 3) of symmetric matrices, element by element; NaN where singular."""
+    a, b, c = matrix[:, 0, 0], matrix[:, 0, 1], matrix[:, 0, 2]
+    d, e, f = matrix[:, 1, 1], matrix[:, 1, 2], matrix[:, 2, 2]
+    first, second, third = d * f - e * e, c * e - b * f, b * e - c * d
+    determinant = a * first + b * second + c * third
+    inverse = np.empty_like(matrix)
+    inverse[:, 0, 0], inverse[:, 0, 1], inverse[:, 0, 2] = first, second, third
+    inverse[:, 1, 0], inverse[:, 1, 1], inverse[:, 1, 2] = second, a * f - c * c, b * c - a * e
+    inverse[:, 2, 0], inverse[:, 2, 1], inverse[:, 2, 2] = third, b * c - a * e, a * d - b * b
+    with np.errstate(divide="ignore", invalid="ignore"):
+        inverse /= determinant[:, None, None]
+    inverse[~np.isfinite(determinant) | (determinant == 0)] = np.nan
+    return inverse
+
+
+def _solve3(matrix: Floats, right: Floats) -> Floats:
+    """Solutions (N, 3) of symmetric equations."""
+    inverse = _inverse3(matrix)
+    return np.stack(
+        [
+            inverse[:, i, 0] * right[:, 0]
+            + inverse[:, i, 1] * right[:, 1]
+            + inverse[:, i, 2] * right[:, 2]
+            for i in range(3)
+        ],
+        axis=1,
+    )

@@ -1,0 +1,134 @@
+"""Calibrations as files: whole or not at all, the same answers, refusals that name what came."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+from algorithms.calibration.quality import FitQuality, Parameter, data_digest
+from algorithms.calibration.saving import (
+    SCHEMA,
+    UnreadableCalibrationError,
+    document,
+    load,
+    pipeline_of,
+    save,
+)
+from algorithms.compensations.optics.refraction import Refraction
+from algorithms.contract import FeatureKind, NotFittedError
+from algorithms.extractors.frames.centroid import BasicCentroid
+from algorithms.models.geometric.least_squares import LeastSquaresGeometry
+from algorithms.models.non_physical.polynomial import SurfacePolynomial
+from algorithms.pipeline import Pipeline
+
+
+@pytest.fixture
+def calibrated(geometry, field):
+    spots = 200.0 + 180.0 * field[:, :2] / field[:, 2:]
+    glass = Refraction(2.0, 0.01, (200.0, 200.0), ((0.1, 1.5),))
+    pipeline = Pipeline(BasicCentroid(), SurfacePolynomial(extrapolation=math.inf), (glass,))
+    return pipeline.fit_features(spots, field), spots
+
+
+def test_a_file_answers_as_what_was_saved(calibrated, geometry, tmp_path):
+    pipeline, spots = calibrated
+    path = tmp_path / "calibration.json"
+    save(pipeline, path, geometry)
+    again = load(path)
+    assert again.name == "optical + polynomial-2d"
+    np.testing.assert_array_equal(
+        again.predict_features(spots * 1.5), pipeline.predict_features(spots * 1.5)
+    )
+    assert again.model.quality_ == pipeline.model.quality_
+    assert again.model.extrapolation == math.inf
+    stored = json.loads(path.read_text())
+    assert stored["sensor"]["focal_length_mm"] == geometry.focal_length_mm
+    assert {"sun", "angles", "pixels", "units"} <= set(stored["conventions"])
+    save(again, path, geometry)
+    assert json.loads(path.read_text()) == stored
+
+
+def test_nothing_half_written_is_left(calibrated, tmp_path, monkeypatch):
+    pipeline, _ = calibrated
+    path = tmp_path / "calibration.json"
+    path.write_text("what was there")
+    unfitted = Pipeline(BasicCentroid(), SurfacePolynomial())
+    with pytest.raises(NotFittedError, match="polynomial-2d"):
+        save(unfitted, path)
+    with pytest.raises(OSError, match="no-such"):
+        save(pipeline, tmp_path / "no-such" / "calibration.json")
+    monkeypatch.setattr("os.fdopen", lambda *_, **__: (_ for _ in ()).throw(OSError("disc full")))
+    with pytest.raises(OSError, match="disc full"):
+        save(pipeline, path)
+    assert path.read_text() == "what was there"
+    assert [entry.name for entry in tmp_path.iterdir()] == ["calibration.json"]
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda stored: stored.update(schema="other"), "expected a document of"),
+        (lambda stored: stored.update(schema_version=99), "expected schema version 1; got 99"),
+        (lambda stored: stored["model"].update(name="nobody"), "no stage is named 'nobody'"),
+        (lambda stored: stored["model"].update(version=99), "of version 99 of polynomial-2d"),
+        (lambda stored: stored["model"]["fitted"].pop("hull_"), "is fitted with"),
+        (lambda stored: stored["model"]["parameters"].update(nothing=1), "damaged"),
+        (lambda stored: stored["model"]["parameters"].update(degree=99), "damaged: .*degree"),
+        (lambda stored: stored.pop("extractor"), "damaged"),
+        (
+            lambda stored: stored["model"]["fitted"]["hull_"].update(object="os:system"),
+            "holds no os:system",
+        ),
+        (
+            lambda stored: stored["model"]["fitted"]["hull_"].update(
+                object="algorithms.pipeline:extracted"
+            ),
+            "holds no algorithms.pipeline:extracted",
+        ),
+    ],
+)
+def test_a_document_that_is_none_is_named(calibrated, change, said):
+    stored = json.loads(json.dumps(document(calibrated[0])))
+    change(stored)
+    with pytest.raises(UnreadableCalibrationError, match=said):
+        pipeline_of(stored)
+
+
+@pytest.mark.parametrize("text", ["", "[1, 2]", "{", '{"schema": 3}', "null"])
+def test_a_file_that_is_none_is_named(tmp_path, text):
+    path = tmp_path / "calibration.json"
+    path.write_text(text)
+    with pytest.raises(UnreadableCalibrationError, match=r"JSON|expected a document"):
+        load(path)
+    assert SCHEMA.endswith("calibration")
+
+
+def test_quality_names_its_parameters():
+    quality = FitQuality(9, 0.1, "0" * 32, parameters=(Parameter("tilt", 1.0, 0.5, "deg"),))
+    assert quality.parameter("tilt").interval() == pytest.approx((1 - 0.98, 1 + 0.98), abs=1e-3)
+    with pytest.raises(KeyError, match="tilt"):
+        quality.parameter("turn")
+
+
+def test_a_digest_is_of_numbers_names_and_order():
+    features, sun = np.arange(6.0).reshape(3, 2), np.eye(3)
+    first = data_digest(features, sun, {"time_s": np.arange(3.0)})
+    assert first == data_digest(features.copy(), sun, {"time_s": np.arange(3.0)})
+    others = [
+        data_digest(features[::-1], sun, {"time_s": np.arange(3.0)}),
+        data_digest(features, sun, {"time_s": np.arange(3.0) + 1e-12}),
+        data_digest(features, sun, {"illumination": np.arange(3.0)}),
+        data_digest(features, sun, {}),
+    ]
+    assert len({first, *others}) == 5
+
+
+def test_a_fitted_vector_is_kept_to_the_last_bit(geometry, calibration_for):
+    known = calibration_for(FeatureKind.SPOT)
+    model = LeastSquaresGeometry.for_sensor(geometry, FeatureKind.SPOT)
+    pipeline = Pipeline(BasicCentroid(), model).fit_features(known.features, known.sun)
+    again = pipeline_of(json.loads(json.dumps(document(pipeline))))
+    assert again.model.vector_.tobytes() == pipeline.model.vector_.tobytes()

@@ -1,0 +1,262 @@
+"""Slit, Multi-slit, V-slit and N-slit against rays traced from slits to lines of pixels."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from algorithms.angles import angles_from_sun, separation_deg, sun_from_angles
+from algorithms.calibration.forward import inward, outward, tangents_cast
+from algorithms.contract import FeatureKind, SensorGeometry, UnusableDataError
+from algorithms.models.geometric.multi_slit import MultiSlit
+from algorithms.models.geometric.n_slit import NSlit
+from algorithms.models.geometric.single_slit import DeflectedSlits
+from algorithms.models.geometric.v_slit import VSlit
+
+MIDDLE = 500.0
+PITCH = 0.01
+PIXELS = {"pixel_pitch_mm": PITCH, "centre_px": (MIDDLE, MIDDLE)}
+TWO_LINES = {**PIXELS, "line_axes": ("x", "y")}
+ONE_LINE = {**PIXELS, "line_axes": ("y",)}
+V = ((-3.3, 0.0, 0.1), (0.5, 45.0, 0.1))
+N = ((-3.0, 45.0, 0.1), (0.0, 0.0, 0.1), (3.0, 45.0, 0.1))
+ROW = ((-1.1, 0.0, 0.2), (-0.6, 0.0, 0.2), (0.0, 0.0, 0.2), (0.7, 0.0, 0.2), (1.5, 0.0, 0.2))
+GLASS = ((0.5, 1.52),)
+
+#: A model, and parameters of a built sensor far off the drawing.
+BUILT = {
+    "slit": (
+        DeflectedSlits(focal_length_mm=3.5, slits=((0.0, 0.0, 0.1),), **TWO_LINES),
+        (3.53, 0.5, 1.0, 3.48, -0.4, -0.8, 505.0, 496.0, 1.0, -0.7),
+    ),
+    "multi-slit": (
+        MultiSlit(focal_length_mm=1.2, slits=ROW, **TWO_LINES),
+        (1.23, 0.05, 1.19, -0.04, 0.02, 0.5, 1.0, -0.7),
+    ),
+    "v-slit": (
+        VSlit(focal_length_mm=1.8, slits=V, cover_glass=GLASS, **ONE_LINE),
+        (1.83, 0.05, -0.04, 0.5, 0.3, 0.5, 1.0, -0.7, 0.47, 1.50),
+    ),
+    "n-slit": (
+        NSlit(focal_length_mm=1.2, slits=N, cover_glass=GLASS, **ONE_LINE),
+        (1.02, 0.05, -0.04, 45.3, 0.5, 0.3, 0.5, 1.0, -0.7),
+    ),
+}
+
+
+def field(limit_deg, steps=11):
+    axis = np.linspace(-limit_deg, limit_deg, steps)
+    return sun_from_angles(np.stack(np.meshgrid(axis, axis), axis=-1).reshape(-1, 2))
+
+
+def spots_of(name, sun):
+    model, truth = BUILT[name]
+    truth = np.array(truth)
+    return model.cast(truth, inward(sun, model.turns(truth))), truth
+
+
+def turned(axis, angle_deg):
+    c, s = np.cos(np.radians(angle_deg)), np.sin(np.radians(angle_deg))
+    i, j = (axis + 1) % 3, (axis + 2) % 3
+    matrix = np.eye(3)
+    matrix[i, i] = matrix[j, j] = c
+    matrix[i, j], matrix[j, i] = -s, s
+    return matrix
+
+
+def met(head, slit, line, glass=()):
+    """Place along a line of pixels where light of a slit meets it: one ray, three equations.
+
+    Slit and line are a point and a way each; in the mask's frame, whose z points to the Sun, with
+    the detector's axes flipped as the contract has it: light moves on by ``+tan`` as it falls.
+    """
+    (slit_point, slit_way), (middle, line_way) = slit, line
+    found = []
+    for x, y, z in head:
+        ray = np.array([x / z, y / z, -1.0])
+        through = np.zeros(3)
+        for thickness, index in glass:
+            theta = np.arcsin(np.hypot(x, y) / index)  # Snell's law
+            length = np.hypot(x, y) or 1.0
+            through += thickness * np.array(
+                [np.tan(theta) * x / length, np.tan(theta) * y / length, -1.0]
+            )
+        equations = np.column_stack([slit_way, ray, -np.asarray(line_way)])
+        found.append(np.linalg.solve(equations, middle - slit_point - through)[2])
+    return np.array(found)
+
+
+@pytest.mark.parametrize("name", BUILT)
+def test_a_noiseless_sensor_is_inverted_and_its_numbers_found(name):
+    sun = field(50.0)
+    spots, truth = spots_of(name, sun)
+    model = BUILT[name][0].fit(spots, sun)
+    between = field(48.0, 8)
+    assert separation_deg(model.predict(spots), sun).max() < 1e-6
+    assert separation_deg(model.predict(spots_of(name, between)[0]), between).max() < 1e-6
+    np.testing.assert_allclose(model.vector_, truth, atol=1e-7)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", BUILT)
+def test_intervals_hold_the_truth_as_often_as_they_say(name, coverage_of):
+    sun = field(50.0, 7)
+    spots, truth = spots_of(name, sun)
+    assert 0.93 <= coverage_of(BUILT[name][0], spots, sun, truth) <= 0.97
+
+
+@pytest.mark.parametrize("glass", [(), GLASS])
+@pytest.mark.parametrize(("name", "slits", "height"), [("v", V, 1.83), ("n", N, 1.24)])
+def test_one_line_under_slits_is_found_from_traced_rays(name, slits, height, glass):
+    """The mask stands off the line, is turned against it, and all of it is turned as a head."""
+    sun = field(50.0)
+    head = sun @ (turned(2, 0.5) @ turned(1, -0.7) @ turned(0, 1.0)).T
+    along = np.array([0.006, 1.0, -0.004])  # the line goes along y, askew both ways
+    along /= np.linalg.norm(along)
+    middle = np.array([0.03, -0.05, -height])
+    shifts = []
+    for position, slant, _ in slits:
+        rho = np.radians(slant)  # across the line runs x; a slit is y + x tan(rho) = position
+        way = np.array([np.cos(rho), -np.sin(rho), 0.0])
+        place = met(head, (np.array([0.0, position, 0.0]), way), (middle, along), glass)
+        shifts.append(place - position)
+    square = shifts[0] if name == "v" else shifts[1]
+    slanted = shifts[1] if name == "v" else (shifts[0] + shifts[2]) / 2.0
+    spots = MIDDLE + np.column_stack([slanted - square, square]) / PITCH  # by the drawing, 45 deg
+    lines = {**ONE_LINE, "slits": slits, "cover_glass": glass}
+    kind = VSlit if name == "v" else NSlit
+    model = kind(focal_length_mm=height - 0.03, **lines).fit(spots, sun)
+    assert separation_deg(model.predict(spots), sun).max() < 1e-6
+    found = {parameter.name: parameter.value for parameter in model.quality_.parameters}
+    turns = (found["rotation"], found["tilt_x"], found["tilt_y"])
+    assert turns == pytest.approx((-0.5, -1.0, 0.7), abs=1e-6)
+    if name == "v":
+        assert found["focal_length"] == pytest.approx(height, abs=1e-6)
+    else:
+        assert found["K"] == pytest.approx((height - 0.03) / height, abs=1e-6)
+
+
+def test_nslit_without_errors_is_the_surveys_two_equations():
+    h, k, slant = 1.2, 1.08, 40.0
+    slits = tuple((position, slant if position else 0.0, 0.1) for position in (-3.0, 0.0, 3.0))
+    sun = field(50.0, 5)
+    model = NSlit(focal_length_mm=h, slits=slits, **ONE_LINE)
+    spots = model.cast(np.array([k, 0, 0, slant, 0, 0, 0, 0, 0.0]), sun[:, :2] / sun[:, 2:])
+    middle, outer = model.layout()[1], model.layout()[0]
+    c = (spots - MIDDLE) @ middle * PITCH
+    l_and_r = 2 * (spots - MIDDLE) @ outer * PITCH
+    alpha = np.arctan(c / h * k)
+    delta = np.tan(np.radians(slant))
+    beta = np.arctan((l_and_r / (2 * h * delta) - c / (h * delta)) * k)
+    found = angles_from_sun(model.fit(spots, sun).predict(spots))
+    np.testing.assert_allclose(found, np.degrees(np.column_stack([alpha, beta])), atol=1e-7)
+
+
+@pytest.mark.parametrize(("theta", "delta"), [(0.7, 0.0), (0.0, 1.3), (-2.0, 0.0), (0.0, -3.0)])
+def test_deflected_or_inclined_slits_are_found_from_traced_rays(theta, delta):
+    """KeQiang2020: with one of the errors at a time the printed equation is exact."""
+    sun = field(50.0)
+    places = []
+    for number in range(2):
+        head = sun if number == 0 else sun[:, [1, 0, 2]]
+        phi, tilt = np.radians([theta, -delta])  # as the survey counts them
+        way = np.array([np.sin(phi) * np.cos(tilt), np.cos(phi) * np.cos(tilt), np.sin(tilt)])
+        line = np.array([0.0, 0.0, -3.55]), np.array([1.0, 0.0, 0.0])
+        places.append(met(head, (np.zeros(3), way), line))
+    spots = MIDDLE + np.column_stack(places) / PITCH
+    model = BUILT["slit"][0].fit(spots, sun)
+    assert separation_deg(model.predict(spots), sun).max() < 1e-6
+    found = {parameter.name: parameter.value for parameter in model.quality_.parameters}
+    for axis in "xy":
+        assert found[f"focal_length_{axis}"] == pytest.approx(3.55, abs=1e-7)
+        assert found[f"deflection_{axis}"] == pytest.approx(theta, abs=1e-6)
+        assert found[f"inclination_{axis}"] == pytest.approx(delta, abs=1e-6)
+
+
+@pytest.mark.parametrize("share", [0.5, 0.3])
+def test_rims_of_a_thick_mask_are_one_height_or_one_a_side(share):
+    """eq:mslit1 and eq:mslit2 of every edge, weighed as a method may weigh left and right ones."""
+    h, t = 1.2, 0.05
+    sun = field(50.0)
+    tangents = sun[:, :2] / sun[:, 2:]
+    edges = []
+    for position, _, width in ROW:
+        lower, upper = h * tangents, (h + t) * tangents
+        left = position - width / 2 + np.maximum(lower, upper)
+        right = position + width / 2 + np.minimum(lower, upper)
+        drawn = position + (share - 0.5) * width  # where the method has the slit at no tangent
+        edges.append(share * right + (1 - share) * left - drawn)
+    spots = MIDDLE + np.mean(edges, axis=0) / PITCH
+    model = BUILT["multi-slit"][0].fit(spots, sun)
+    assert separation_deg(model.predict(spots), sun).max() < 1e-6
+    found = {parameter.name: parameter.value for parameter in model.quality_.parameters}
+    assert found["focal_length_1"] == pytest.approx(h + t / 2, abs=1e-7)
+    assert found["sides_differ"] == pytest.approx((1 - 2 * share) * t, abs=1e-7)
+
+
+@pytest.mark.parametrize("name", BUILT)
+def test_poses_that_do_not_settle_a_sensor_are_refused(name):
+    model = BUILT[name][0]
+    sun = field(50.0)
+    spots, _ = spots_of(name, sun)
+    for rows in (np.arange(3), np.zeros(60, dtype=int)):
+        with pytest.raises(UnusableDataError, match=name):
+            model.fit(spots[rows], sun[rows])
+
+
+@pytest.mark.parametrize(
+    ("kind", "axes", "slits"),
+    [
+        (DeflectedSlits, ("y",), V),
+        (DeflectedSlits, ("x", "x"), ((0.0, 0.0, 0.1),)),
+        (DeflectedSlits, ("x", "y"), ((0.0, 5.0, 0.1),)),
+        (MultiSlit, ("x", "y"), ((0.0, 0.0, 0.1),)),
+        (MultiSlit, ("y",), V),
+        (MultiSlit, ("x", "y"), (*V, *V)),  # four shifts are not a spot
+        (VSlit, ("x", "y"), ((0.0, 0.0, 0.1),)),
+        (VSlit, ("y",), N),
+        (VSlit, ("y",), ((-1.0, -45.0, 0.1), (1.0, 45.0, 0.1))),
+        (NSlit, ("y",), V),
+        (NSlit, ("y",), ((-3.0, 45.0, 0.1), (0.0, 0.0, 0.1), (3.0, -45.0, 0.1))),
+        (NSlit, ("y",), ()),
+    ],
+)
+def test_other_architectures_are_refused(kind, axes, slits):
+    geometry = SensorGeometry(
+        focal_length_mm=1.8,
+        pixel_pitch_mm=PITCH,
+        centre_px=(MIDDLE, MIDDLE),
+        line_axes=axes,
+        slits=slits,
+    )
+    with pytest.raises(ValueError, match=f"{kind.about.name} needs"):
+        kind.for_sensor(geometry, FeatureKind.SPOT)
+
+
+@pytest.mark.parametrize("glass", [((0.5, 0.9),), ((0.0, 1.5),), ((1.0, 1.5), (0.9, 1.5))])
+def test_glass_that_cannot_be_is_refused(glass):
+    with pytest.raises(ValueError, match="cover_glass"):
+        VSlit(focal_length_mm=1.8, slits=V, cover_glass=glass, **ONE_LINE)
+
+
+def test_a_fold_has_no_direction():
+    """Where the features run back, two directions cast the same ones; the far one is not found."""
+
+    def bent(t):
+        return t - t**3 / 3.0  # turns at 1
+
+    wanted = bent(np.array([[0.5, 0.0], [0.9, 0.2]]))
+    found = tangents_cast(bent, wanted, wanted)
+    np.testing.assert_allclose(found, [[0.5, 0.0], [0.9, 0.2]], atol=1e-9)
+    beyond = tangents_cast(bent, wanted, np.array([[1.6, 0.0], [1.2, 0.2]]))
+    assert np.isnan(beyond[0]).all()
+    assert np.isnan(tangents_cast(bent, np.array([[0.7, 0.0]]), np.zeros((1, 2)))).all()
+
+
+def test_outward_is_the_inverse_of_inward():
+    sun, turns = field(60.0, 5), (3.0, -2.0, 5.0)
+    np.testing.assert_allclose(outward(inward(sun, turns), turns), sun, atol=1e-15)
+    matrix = turned(0, -2.0) @ turned(1, 5.0) @ turned(2, 3.0)
+    head = sun @ matrix  # its transpose, row by row
+    np.testing.assert_allclose(inward(sun, turns), head[:, :2] / head[:, 2:], atol=1e-14)
+    assert np.isnan(inward(-sun, turns)).all()

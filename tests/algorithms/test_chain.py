@@ -1,0 +1,67 @@
+"""Compensations ahead of models: named, made for a sensor, fitted in order, refused where none."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from algorithms.chain import Chain, chains
+from algorithms.compensations.electronics.angular_loss import AngularLoss
+from algorithms.compensations.interference.shadow import MaskShadow
+from algorithms.compensations.optics.refraction import Refraction
+from algorithms.contract import FeatureKind, UnsuitableDesignError
+from algorithms.discovery import discover_chains, discover_compensations, discover_models
+from algorithms.extractors.frames.centroid import BasicCentroid
+from algorithms.models.geometric.multisensor_fusion import SixFaces
+from algorithms.models.geometric.standard_projection import StandardProjection
+from algorithms.models.non_physical.polynomial import SurfacePolynomial
+
+
+def test_every_compensation_goes_ahead_of_something_that_there_is():
+    found = discover_chains()
+    assert set(discover_models()) < set(found)
+    for name, compensation in discover_compensations().items():
+        for behind in compensation.about.ahead_of:
+            chain = found[f"{name} + {behind}"]
+            assert chain.about.taxonomy == compensation.about.taxonomy
+        assert compensation.about.ahead_of, f"{name} is never measured"
+
+
+def test_a_chain_says_what_its_parts_say():
+    about = Chain((Refraction, MaskShadow), SurfacePolynomial).about
+    assert about.name == "optical + shadow + polynomial-2d"
+    assert about.needs == (
+        "focal_length_mm", "cover_glass", "mask_thickness_mm", "aperture_width_mm",
+    )  # fmt: skip
+    assert {"Wei2011", "Antonello2018", "Chang2006"} == set(about.studies)
+    assert about.version == 1
+    assert Chain((AngularLoss,), SixFaces).about.accepts == {FeatureKind.SIGNALS}
+
+
+def test_a_chain_is_made_for_a_sensor_and_answers_as_its_parts_do(geometry, field):
+    design = replace(geometry, cover_glass=((0.5, 1.5),))
+    spots = 200.0 + 150.0 * field[:, :2] / field[:, 2:]
+    made = Chain((Refraction,), StandardProjection).for_sensor(design, FeatureKind.SPOT)
+    glass = Refraction.for_sensor(design, FeatureKind.SPOT).fit(spots, field)
+    alone = StandardProjection.for_sensor(design, FeatureKind.SPOT).fit(spots, field)
+    found = made.fit(spots, field).predict(spots)
+    np.testing.assert_array_equal(found, alone.predict(glass.transform(spots)))
+    kept = Chain((Refraction,), StandardProjection).pipeline(BasicCentroid, design)
+    assert kept.name == "optical + spm"
+    np.testing.assert_array_equal(kept.fit_features(spots, field).predict_features(spots), found)
+    with pytest.raises(UnsuitableDesignError, match="cover_glass"):
+        Chain((Refraction,), StandardProjection).for_sensor(geometry, FeatureKind.SPOT)
+
+
+@pytest.mark.parametrize(
+    ("behind", "said"),
+    [("nobody", "no such model"), ("nobody + spm", "no such model"), ("basic", "other features")],
+)
+def test_a_compensation_ahead_of_what_cannot_be_is_named(behind, said):
+    class Lost(Refraction):
+        about = replace(Refraction.about, ahead_of=(behind,))
+
+    with pytest.raises(ValueError, match=f"optical goes ahead of .*{said}"):
+        chains({"optical": Lost}, discover_models())
