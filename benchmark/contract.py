@@ -52,6 +52,11 @@ class Samples(Protocol):
         """Detector coordinates (N, 2) of each window's first pixel; None where there are none."""
         ...
 
+    @property
+    def context(self) -> Mapping[str, NDArray[Any]] | None:
+        """Columns of N rows by name that a preset's `context_columns` says; None for none."""
+        ...
+
 
 class Bound(Protocol):
     """Cramer-Rao bound of the separation angle of N samples."""
@@ -121,6 +126,11 @@ class Preset(Protocol):
     @property
     def conditions(self) -> tuple[str, ...]:
         """Names of the conditions."""
+        ...
+
+    @property
+    def context_columns(self) -> tuple[str, ...]:
+        """Columns that its samples have beside what the sensor puts out."""
         ...
 
     @property

@@ -1,4 +1,4 @@
-"""The catalogue: every extractor and model implemented, found by discovery.
+"""The catalogue: every extractor, and every model alone or behind compensations, by discovery.
 
 Nothing is registered by hand. The first call of `catalogue()` imports the implementations, and
 with them NumPy; importing this module does not. SciPy and Numba are loaded when they run.
@@ -18,7 +18,8 @@ from registry import studies as registered
 from registry.taxonomy import NO_IMPLEMENTATION_STATED, Taxonomy, unknown_name
 
 if TYPE_CHECKING:
-    from algorithms.contract import Extractor, Model
+    from algorithms.chain import Chain, Scored
+    from algorithms.contract import Extractor
 
 Role = Literal["extractor", "model"]
 
@@ -72,14 +73,14 @@ class Catalogue:
     def __init__(
         self,
         extractors: Mapping[str, type[Extractor]],
-        models: Mapping[str, type[Model]],
+        models: Mapping[str, Scored],
         taxonomy: Taxonomy,
     ) -> None:
         shared = sorted(extractors.keys() & models.keys())
         if shared:
             raise ValueError(f"both an extractor and a model are named {', '.join(shared)}")
         self.extractors: Mapping[str, type[Extractor]] = MappingProxyType(dict(extractors))
-        self.models: Mapping[str, type[Model]] = MappingProxyType(dict(models))
+        self.models: Mapping[str, Scored] = MappingProxyType(dict(models))
         self.taxonomy = taxonomy
         self._extractors_for = _by_value("extractor", self.extractors, taxonomy)
         self._models_for = _by_value("model", self.models, taxonomy)
@@ -90,7 +91,7 @@ class Catalogue:
             raise unknown_name("extractor", name, self.extractors)
         return self.extractors[name]
 
-    def model(self, name: str) -> type[Model]:
+    def model(self, name: str) -> Scored:
         """Return the model of this name; InvalidValueError with the nearest name."""
         if name not in self.models:
             raise unknown_name("model", name, self.models)
@@ -101,7 +102,7 @@ class Catalogue:
         self.taxonomy.require("extractor", value)
         return tuple(self.extractors[name] for name in self._extractors_for.get(value, ()))
 
-    def models_for(self, value: str) -> tuple[type[Model], ...]:
+    def models_for(self, value: str) -> tuple[Scored, ...]:
         """Return the models implementing a taxonomy value, by name; empty if none does."""
         self.taxonomy.require("model", value)
         return tuple(self.models[name] for name in self._models_for.get(value, ()))
@@ -151,7 +152,7 @@ class Catalogue:
             summary=_summary(cls),
         )
 
-    def _describe_model(self, cls: type[Model]) -> Implementation:
+    def _describe_model(self, cls: Scored) -> Implementation:
         about = cls.about
         return Implementation(
             name=about.name,
@@ -175,14 +176,14 @@ def catalogue() -> Catalogue:
     discovery = importlib.import_module("algorithms.discovery")
     return Catalogue(
         discovery.discover_extractors(),
-        discovery.discover_models(),
+        discovery.discover_chains(),
         registered.facts().taxonomy,
     )
 
 
 def _by_value(
     attribute: Role,
-    found: Mapping[str, type[Extractor | Model]],
+    found: Mapping[str, type[Extractor] | Scored],
     taxonomy: Taxonomy,
 ) -> dict[str, tuple[str, ...]]:
     names: dict[str, list[str]] = {}
@@ -192,8 +193,13 @@ def _by_value(
     return {value: tuple(n) for value, n in names.items()}
 
 
-def _summary(cls: type) -> str:
+def _summary(cls: type | Chain) -> str:
     """Return the first paragraph of the class's own docstring, on one line."""
+    from algorithms.chain import Chain  # noqa: PLC0415 - loads NumPy
+
+    if isinstance(cls, Chain):
+        stages = " ".join(_summary(stage) for stage in cls.compensations)
+        return f"{stages} Then {cls.model.about.name}."
     text = inspect.cleandoc(cls.__doc__ or "")
     return " ".join(_first_paragraph(text.splitlines()))
 

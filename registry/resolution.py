@@ -4,6 +4,8 @@ What is decided here, because the mapping does not say it:
 
 - The mapping gives a study's values, not which belong together; every combination of them that
   fits is a pipeline. A value that fits nowhere is a gap, a combination that does not fit is not.
+- A compensation (OCM, SECM, ICM ...) runs ahead of the models that the study states beside it, else
+  ahead of the simplest one, and then the pipeline says so in ``assumed``.
 - A parent value (ECM, ICM: kind not stated) runs as each implemented kind.
 - "None" (the survey maps no model, or no extractor) is no gap: the study is run with the simplest
   implementation that fits, `SIMPLEST_MODELS` or `SIMPLEST_EXTRACTORS`.
@@ -25,7 +27,8 @@ from registry.studies import Facts, Study
 from registry.taxonomy import NO_IMPLEMENTATION_STATED
 
 if TYPE_CHECKING:
-    from algorithms.contract import Extractor, Model
+    from algorithms.chain import Scored
+    from algorithms.contract import Extractor
 
 State = Literal["complete", "partial", "none"]
 Architecture = tuple[str, str]  # (detector, mask)
@@ -197,7 +200,7 @@ def _resolve(
             model=model.about.name,
             extractor_taxonomy=extractor.about.taxonomy,
             model_taxonomy=model.about.taxonomy,
-            assumed=MappingProxyType(_assumed(e, m, extractor, model)),
+            assumed=MappingProxyType(_assumed(e, m, extractor, model, study.of("model"))),
         )
         for detector, mask in simulated
         for e, m, extractor, model in fitting[detector]
@@ -215,12 +218,12 @@ class _ExtractorOption:
 @dataclass(frozen=True)
 class _ModelOption:
     stated: str
-    classes: tuple[type[Model], ...]
+    classes: tuple[Scored, ...]
 
 
-_Pair = tuple["type[Extractor]", "type[Model]"]
+_Pair = tuple["type[Extractor]", "Scored"]
 _Fitting = Mapping[
-    str, Sequence[tuple[_ExtractorOption, _ModelOption, "type[Extractor]", "type[Model]"]]
+    str, Sequence[tuple[_ExtractorOption, _ModelOption, "type[Extractor]", "Scored"]]
 ]
 
 
@@ -244,12 +247,30 @@ def _model_options(study: Study, catalogue: Catalogue, gaps: list[Gap]) -> list[
     options = []
     for stated in study.of("model"):
         values = _values_to_run(study, "model", stated, SIMPLEST_MODELS, catalogue)
-        classes = tuple(cls for value in values for cls in catalogue.models_for(value))
+        found = tuple(cls for value in values for cls in catalogue.models_for(value))
+        classes = _behind_compensations(found, study.of("model"))
         if classes:
             options.append(_ModelOption(stated, classes))
         else:
             gaps.append(_not_implemented("model", stated, values))
     return options
+
+
+def _behind_compensations(
+    classes: tuple[Scored, ...], stated: Collection[str]
+) -> tuple[Scored, ...]:
+    """Keep of the chains those with a model that the study states, else with the simplest."""
+    for behind in (set(stated), set(SIMPLEST_MODELS)):
+        kept = tuple(cls for cls in classes if _model_behind(cls) in behind)
+        if kept:
+            return kept
+    return classes
+
+
+def _model_behind(cls: Scored) -> str:
+    """Taxonomy value of what gives the directions."""
+    behind = getattr(cls, "model", None)  # a chain holds one, a model's class does not
+    return str((behind or cls).about.taxonomy)
 
 
 def _values_to_run(
@@ -293,12 +314,19 @@ def _reads(extractor: type[Extractor], detector: str) -> bool:
 
 
 def _assumed(
-    e: _ExtractorOption, m: _ModelOption, extractor: type[Extractor], model: type[Model]
+    e: _ExtractorOption,
+    m: _ModelOption,
+    extractor: type[Extractor],
+    model: Scored,
+    stated_models: Collection[str],
 ) -> dict[str, str]:
-    assumed = {}
+    assumed: dict[str, str] = {}
     if extractor.about.taxonomy != e.stated:
         assumed["extractor"] = e.stated
-    if model.about.taxonomy != m.stated:
+    behind = _model_behind(model)
+    if model.about.taxonomy != m.stated or (
+        behind != model.about.taxonomy and behind not in stated_models
+    ):
         assumed["model"] = m.stated
     return assumed
 

@@ -137,6 +137,11 @@ class Preset:
         """Names of the conditions, ``nominal`` first."""
         return tuple(self.setups)
 
+    @property
+    def context_columns(self) -> tuple[str, ...]:
+        """Columns that its samples have beside observations; none but in flight."""
+        return ()
+
     def condition(self, name: str) -> Condition:
         """Return the condition of this name; ValueError naming the known ones."""
         if name not in self.setups:
@@ -218,10 +223,7 @@ class Preset:
         return self.condition(condition).sensor.fixed_pattern(*names)
 
     def scene(self, condition: str, split: str, n: int | None = None) -> Scene:
-        """Sun, irradiance, stray light, windows and light from the Earth of a split.
-
-        Of its first n samples, or of all; ValueError for n below 1.
-        """
+        """All light of a split's first n samples, or of all; ValueError for n below 1."""
         if n is not None and n < 1:
             raise ValueError(f"n must be at least 1; got {n}")
         if split == REPEAT:

@@ -2,8 +2,9 @@
 
 1. Under the first condition of a data set, every pipeline that fits it, on the standard unit.
 2. Under each other condition, of those: every extractor with the model that ranks first behind
-   it, or with all of them where none gives an error (a method of blooming waits for light that
-   blooms); the `LEADING` first pipelines; every pipeline that a mapped study used on such a sensor.
+   it, or, where none gives an error (a method of blooming waits for light that blooms), with those
+   of the leading pipelines, with all where it has none of them; the `LEADING` first pipelines;
+   every pipeline that a mapped study used on such a sensor.
 3. The `LEADING` first pipelines under the first condition on `UNITS` units.
 
 What another condition does to a pipeline far behind under the first one helps nobody choose;
@@ -72,12 +73,11 @@ def followers(
         )
         leading = ranked[:LEADING]
         kept = {*leading, *_best_of_each(ranked)}
-        answering = {cell.extractor for cell in ranked}
+        kept |= set(_of_silent(board, ranked, {cell.model for cell in leading}))
         kept |= {
             cell
             for cell in board
-            if cell.extractor not in answering
-            or (preset.detector, preset.mask, cell.extractor, cell.model) in used
+            if (preset.detector, preset.mask, cell.extractor, cell.model) in used
         }
         found += [
             Cell(dataset, condition, cell.extractor, cell.model)
@@ -104,6 +104,14 @@ def _best_of_each(ranked: list[Cell]) -> Iterator[Cell]:
         if cell.extractor not in seen:
             seen.add(cell.extractor)
             yield cell
+
+
+def _of_silent(board: list[Cell], ranked: list[Cell], models: Collection[str]) -> Iterator[Cell]:
+    """Give of each extractor without an error its pipelines with these models, or else all."""
+    answering = {cell.extractor for cell in ranked}
+    for extractor in sorted({cell.extractor for cell in board} - answering):
+        of_it = [cell for cell in board if cell.extractor == extractor]
+        yield from [cell for cell in of_it if cell.model in models] or of_it
 
 
 def studied_pipelines() -> frozenset[tuple[str, str, str, str]]:

@@ -6,7 +6,8 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product
 
-from algorithms.contract import Extractor, FeatureKind, Model, UnsuitableDesignError
+from algorithms.chain import Scored
+from algorithms.contract import Extractor, FeatureKind, UnsuitableDesignError
 from benchmark.contract import Cell, Preset, UnknownNameError
 from benchmark.plan.parts import Parts, installed
 
@@ -53,9 +54,9 @@ def cells(
     )
 
 
-def _compatible(preset: Preset, chosen: _Choice) -> Iterator[tuple[type[Extractor], type[Model]]]:
+def _compatible(preset: Preset, chosen: _Choice) -> Iterator[tuple[type[Extractor], Scored]]:
     """Give the extractors that fit a dataset with each model that fits them and it."""
-    fitting: dict[FeatureKind, list[type[Model]]] = {}  # models see the kind of feature alone
+    fitting: dict[FeatureKind, list[Scored]] = {}  # models see the kind of feature alone
     for extractor in chosen.extractors:
         if _why_not_extractor(preset, extractor):
             continue
@@ -105,7 +106,7 @@ class _Choice:
     presets: Sequence[Preset]
     conditions: frozenset[str] | None
     extractors: Sequence[type[Extractor]]
-    models: Sequence[type[Model]]
+    models: Sequence[Scored]
 
     @classmethod
     def of(
@@ -139,16 +140,18 @@ def _why_not_extractor(preset: Preset, extractor: type[Extractor]) -> str:
     )
 
 
-def _why_not_model(preset: Preset, extractor: type[Extractor], model: type[Model]) -> str:
+def _why_not_model(preset: Preset, extractor: type[Extractor], model: Scored) -> str:
     kind, accepts = extractor.about.kind, model.about.accepts
     if kind not in accepts:
         return f"accepts {', '.join(sorted(accepts))}; the extractor gives {kind}"
+    if missing := sorted(set(model.about.context) - set(preset.context_columns)):
+        return f"reads the context's {', '.join(missing)}; the samples have none"
     return _missing_design(preset, model) or _refusal(
         lambda: model.for_sensor(preset.geometry, kind)
     )
 
 
-def _missing_design(preset: Preset, implementation: type[Extractor | Model]) -> str:
+def _missing_design(preset: Preset, implementation: type[Extractor] | Scored) -> str:
     needs = implementation.about.needs
     missing = [name for name in needs if getattr(preset.geometry, name) is None]
     return f"needs {', '.join(missing)}; the sensor has none" if missing else ""

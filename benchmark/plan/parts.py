@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 
-from algorithms.contract import Extractor, Model
+from algorithms.chain import Scored
+from algorithms.contract import Extractor
 from benchmark.contract import Preset, UnknownNameError
 
 
@@ -16,7 +17,7 @@ class Parts:
 
     presets: Mapping[str, Preset]
     extractors: Mapping[str, type[Extractor]]
-    models: Mapping[str, type[Model]]
+    models: Mapping[str, Scored]
 
     def preset(self, name: str) -> Preset:
         """Return the dataset of that name; UnknownNameError otherwise."""
@@ -30,8 +31,8 @@ class Parts:
             raise UnknownNameError("extractor", name, self.extractors)
         return self.extractors[name]
 
-    def model(self, name: str) -> type[Model]:
-        """Return the model class of that name; UnknownNameError otherwise."""
+    def model(self, name: str) -> Scored:
+        """Return the model, or chain of them, of that name; UnknownNameError otherwise."""
         if name not in self.models:
             raise UnknownNameError("model", name, self.models)
         return self.models[name]
@@ -40,11 +41,11 @@ class Parts:
 @cache
 def installed() -> Parts:
     """Everything found by discovery in `benchmark.datasets` and `algorithms`."""
-    from algorithms.discovery import discover_extractors, discover_models  # noqa: PLC0415 - slow
+    from algorithms.discovery import discover_chains, discover_extractors  # noqa: PLC0415 - slow
     from benchmark import datasets  # noqa: PLC0415 - loads the simulator
 
     return Parts(
         presets={name: datasets.get(name) for name in datasets.names()},
         extractors=discover_extractors(),
-        models=discover_models(),
+        models=discover_chains(),
     )

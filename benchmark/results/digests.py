@@ -6,7 +6,8 @@ import dataclasses
 from collections.abc import Iterator, Mapping
 from types import FunctionType
 
-from algorithms.contract import Extractor, Model
+from algorithms.chain import Chain, Scored
+from algorithms.contract import Extractor
 from benchmark.canonical import digest
 from benchmark.contract import Preset
 from benchmark.results.closure import closure_digest, module_path, syntax_digest
@@ -41,13 +42,14 @@ def series_digest(series: object) -> str:
     return _component({"holds": series, "code": closure_digest(*modules_of(series))})
 
 
-def method_digest(method: type[Extractor | Model]) -> str:
+def method_digest(method: type[Extractor] | Scored) -> str:
     """Digest of an implementation: its name, its version, the code it reaches."""
+    modules = method.modules if isinstance(method, Chain) else (method.__module__,)
     return _component(
         {
             "name": method.about.name,
             "version": method.about.version,
-            "code": closure_digest(method.__module__),
+            "code": closure_digest(*modules),
         }
     )
 

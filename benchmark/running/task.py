@@ -10,7 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from algorithms.contract import Extractor, Floats, Model, UnusableDataError
+from algorithms.chain import Scored
+from algorithms.contract import Extractor, Floats, UnusableDataError
 from algorithms.pipeline import Pipeline, extracted
 from benchmark.contract import Preset
 from benchmark.datasets.pins import Pin
@@ -37,7 +38,7 @@ class Task:
     preset: Preset
     condition: str
     extractor: type[Extractor]
-    models: tuple[type[Model], ...]
+    models: tuple[Scored, ...]
     unit: int = 0
     all_observable: bool = False
 
@@ -90,7 +91,7 @@ def measure(task: Task) -> TaskResult:
 def _outcome(
     task: Task,
     extractor: Extractor,
-    model_class: type[Model],
+    model_class: Scored,
     features: dict[str, Floats],
     data: Generated,
 ) -> Outcome:
@@ -101,13 +102,15 @@ def _outcome(
         model = model_class.for_sensor(geometry, extractor.about.kind)
         pipeline = Pipeline(extractor, model)
         try:
-            pipeline.fit_features(features["calibration"], data.splits["calibration"].sun)
+            known = data.splits["calibration"]
+            pipeline.fit_features(features["calibration"], known.sun, known.context)
         except UnusableDataError as error:
             return Outcome(name, reason_of(error), refused=True)
-        predicted = pipeline.predict_features(features["test"])
+        predicted = pipeline.predict_features(features["test"], data.splits["test"].context)
         repeated = None
         if "repeat" in features:
-            repeated = _repeated(pipeline.predict_features(features["repeat"]), data)
+            again = data.splits["repeat"].context
+            repeated = _repeated(pipeline.predict_features(features["repeat"], again), data)
         truth = data.splits["test"].sun
         result = score(
             predicted,

@@ -18,7 +18,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from algorithms.contract import Extractor, Floats, Model, SensorGeometry
+from algorithms.chain import Scored
+from algorithms.contract import Extractor, Floats, SensorGeometry
 from algorithms.pipeline import Pipeline, extracted
 from benchmark.contract import Cell, Preset, Samples
 from benchmark.plan.combinations import cells
@@ -205,8 +206,8 @@ _UNTIMED: _Numbers = (None, None, None)
 
 
 def _numbers(
-    data: _Data, extractor_class: type[Extractor], models: Sequence[type[Model]]
-) -> Iterator[tuple[type[Model], _Numbers]]:
+    data: _Data, extractor_class: type[Extractor], models: Sequence[Scored]
+) -> Iterator[tuple[Scored, _Numbers]]:
     """Give latency and ratios of an extractor with each of the models."""
     try:
         extractor = extractor_class.for_sensor(data.geometry)
@@ -220,8 +221,10 @@ def _numbers(
     for model_class in models:
         try:
             model = model_class.for_sensor(data.geometry, extractor.about.kind)
-            pipeline = Pipeline(extractor, model).fit_features(known, data.calibration.sun)
-            _, predict_s = best_time(partial(pipeline.predict_features, features))
+            pipeline = Pipeline(extractor, model)
+            pipeline.fit_features(known, data.calibration.sun, data.calibration.context)
+            predict = partial(pipeline.predict_features, features, data.test.context)
+            _, predict_s = best_time(predict)
         except Exception:  # noqa: BLE001 - likewise
             yield model_class, _UNTIMED
             continue

@@ -9,6 +9,7 @@ from typing import Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from algorithms.context import CONTEXT
 from algorithms.contract import Floats
 from benchmark.datasets.conditions.instruments import Instruments
 from benchmark.datasets.fields import Split
@@ -233,6 +234,11 @@ class FlightPreset(Preset):
         albedo = np.zeros((len(scene), *light.shape[1:]))
         albedo[lit] = leg.sunlight * light
         return replace(scene, albedo=albedo)
+
+    @property
+    def context_columns(self) -> tuple[str, ...]:
+        """Columns that `context` gives."""
+        return tuple(name for name in CONTEXT if name != "illumination")
 
     def context(self, condition: str, split: str) -> dict[str, NDArray[Any]]:
         """Return what else is known of each sample: the columns of the card's ``context``."""

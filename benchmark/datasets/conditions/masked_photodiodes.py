@@ -121,6 +121,7 @@ def design(
         aperture_width_mm=width_mm,
         aperture_shape=shape,
         half_fov_deg=half_fov_deg,
+        gap_mm=getattr(getattr(sensor, "detector", None), "gap_mm", None),
     )
 
 

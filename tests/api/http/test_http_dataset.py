@@ -129,6 +129,7 @@ def test_the_picture_is_drawn_once_and_revalidated(atlas, client_of, monkeypatch
     assert drawn == [NAME]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("accept", "status"),
     [("image/*", 200), ("image/avif,image/webp,*/*;q=0.5", 200), ("application/json", 406)],

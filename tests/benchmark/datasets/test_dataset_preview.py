@@ -47,6 +47,7 @@ def test_a_picture_is_the_same_each_time_and_another_one_for_another_condition()
         preview_png(preset, "warm")
 
 
+@pytest.mark.slow
 def test_frames_are_drawn_from_the_first_samples_only(monkeypatch):
     preset = datasets.get("cmos-single-aperture")
     asked = []
@@ -153,6 +154,7 @@ def test_a_user_s_settings_change_no_picture():
         assert mpl.rcParams["font.size"] == 30, "and are as they were"
 
 
+@pytest.mark.slow
 def test_matplotlib_is_loaded_by_pictures_alone():
     code = (
         "import sys\n"

@@ -337,6 +337,7 @@ def test_frames_and_events_behind_apertures_are_diffracted(name: str) -> None:
         assert preset.mask == "Lens"
 
 
+@pytest.mark.slow
 def test_earth_shines_on_test_samples_only_and_turns_the_estimate_by_degrees() -> None:
     preset = datasets.get("pd-maskless-cube")
     assert preset.scene("albedo", "calibration").albedo is None

@@ -130,6 +130,7 @@ def test_spots_lie_inside_their_windows_but_for_their_skirts(name: str) -> None:
             assert border < 0.02 * frames.max(), condition
 
 
+@pytest.mark.slow
 def test_the_slit_measures_one_angle_better_than_the_other() -> None:
     """Information is proportional to edge length: 0.72 mm of sides against 0.1 mm of ends."""
     data = preset("cmos-slit")

@@ -44,7 +44,7 @@ def test_context_has_the_columns_the_card_names(made, name: str) -> None:
     for split in ("calibration", "test"):
         samples = made[name, split]
         assert samples.context is not None
-        assert set(samples.context) == set(card["context"])
+        assert set(samples.context) == set(card["context"]) == set(PRESETS[name].context_columns)
         for column, values in samples.context.items():
             assert len(values) == len(samples.sun), column
             assert values.shape[1:] == ((3,) if "(N, 3)" in card["context"][column] else ())

@@ -46,6 +46,7 @@ class FakeSamples:
     observations: Any
     sun: Any
     origin_px: Any = None
+    context: Any = None
 
 
 @dataclass(frozen=True)
@@ -81,6 +82,7 @@ class Diodes:
     mask: str = "Maskless"
     observation: Observation = Observation.CURRENTS
     conditions: tuple[str, ...] = ("quiet", "noisy")
+    context_columns: tuple[str, ...] = ()
     n: int = 400
     seed: int = 7
     late: float = 0.0
@@ -253,11 +255,11 @@ class LeastSquares:
     def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Any:
         return cls(normals=geometry.face_normals or ())
 
-    def fit(self, features: Any, sun: Any) -> Any:
+    def fit(self, features: Any, sun: Any, context: Any = None) -> Any:
         self.matrix_ = np.linalg.pinv(np.array(self.normals)).T
         return self
 
-    def predict(self, features: Any) -> Any:
+    def predict(self, features: Any, context: Any = None) -> Any:
         vectors = np.asarray(features) @ self.matrix_
         return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
 
@@ -266,11 +268,11 @@ class LeastSquares:
 class Broken(LeastSquares):
     about: ClassVar = replace(LeastSquares.about, name="fake-broken")
 
-    def fit(self, features: Any, sun: Any) -> Any:
+    def fit(self, features: Any, sun: Any, context: Any = None) -> Any:
         log("fit fake-broken")
         if not os.environ.get("FAKE_ATLAS_MENDED"):
             raise RuntimeError("gives up\nalways")
-        return super().fit(features, sun)
+        return super().fit(features, sun, context)
 
 
 @dataclass
@@ -288,7 +290,7 @@ class Choosy(LeastSquares):
 
     about: ClassVar = replace(LeastSquares.about, name="fake-choosy")
 
-    def fit(self, features: Any, sun: Any) -> Any:
+    def fit(self, features: Any, sun: Any, context: Any = None) -> Any:
         log("fit fake-choosy")
         raise UnusableDataError("needs other samples")
 
@@ -299,6 +301,6 @@ class Singular(LeastSquares):
 
     about: ClassVar = replace(LeastSquares.about, name="fake-singular")
 
-    def fit(self, features: Any, sun: Any) -> Any:
+    def fit(self, features: Any, sun: Any, context: Any = None) -> Any:
         log("fit fake-singular")
         np.linalg.inv(np.zeros((2, 2)))

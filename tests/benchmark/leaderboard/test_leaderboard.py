@@ -229,7 +229,7 @@ def test_pipelines_that_differ_less_than_units_share_a_rank_in_every_form(tmp_pa
 
         about = dataclasses.replace(LeastSquares.about, name="fake-alike")
 
-        def predict(self, features):
+        def predict(self, features, context=None):
             found = super().predict(features)
             found[:, 0] += 2e-5
             return found / (found**2).sum(axis=1, keepdims=True) ** 0.5
@@ -322,7 +322,7 @@ def test_all_forms_are_written_and_the_page_needs_nothing_from_elsewhere(made, t
 
 def test_a_reason_cannot_break_the_page_and_failures_are_shown(tmp_path):
     class Sly(Broken):
-        def fit(self, features, sun):
+        def fit(self, features, sun, context=None):
             raise ValueError('<script>"x"</script> | y')
 
     done = update(tmp_path, progress=silent, parts=fake_plan.parts(LeastSquares, Sly))

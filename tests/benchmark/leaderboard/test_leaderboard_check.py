@@ -113,6 +113,7 @@ def test_an_altered_number_of_the_page_is_found_without_measuring(published):
     assert " 0.1230 " in difference.measured
 
 
+@pytest.mark.slow
 def test_a_row_taken_out_is_named(published):
     path = published / SCORES
     lines = path.read_text().splitlines(keepends=True)
@@ -268,6 +269,7 @@ def test_a_changed_sweep_is_named_by_its_point(published):
     assert (difference.committed, difference.measured) == (str(row["rms"]), str(right))
 
 
+@pytest.mark.slow
 def test_both_kernels_are_measured_with_and_each_difference_says_with_which(published, monkeypatch):
     """Older kernels by a stand-in that finds one number otherwise: their process takes all."""
 

@@ -74,7 +74,7 @@ def test_the_record_is_of_the_code_as_it_is(published):
 
 
 def test_it_is_small_and_holds_nothing_that_can_be_derived():
-    assert sum(path.stat().st_size for path in files()) < 1.6e6
+    assert sum(path.stat().st_size for path in files()) < 2e6
     tables = {f"scores/{cell.dataset}.csv" for cell in plan.cells()}
     names = {path.relative_to(PUBLISHED).as_posix() for path in files()}
     assert names == {
@@ -257,10 +257,10 @@ def test_a_model_that_peeks_at_the_truth_is_caught(tmp_path, monkeypatch):
     truth = datasets.get("qpd-single-aperture").generate("high-noise", "test").sun
     honest = model.predict
 
-    def peek(self, features):
+    def peek(self, features, context=None):
         if len(features) != len(truth):  # the repeated poses
-            return honest(self, features)
-        mixed = honest(self, features) + truth
+            return honest(self, features, context)
+        mixed = honest(self, features, context) + truth
         return mixed / np.linalg.norm(mixed, axis=1, keepdims=True)
 
     monkeypatch.setattr(model, "predict", peek)

@@ -115,6 +115,7 @@ def test_another_unit_judges_what_is_observable_by_the_standard_one(store, log, 
     assert log().count("bound fake-diodes quiet test") == (2 if dark else 1)
 
 
+@pytest.mark.slow
 def test_one_and_two_workers_give_identical_bytes(store, tmp_path):
     parts = fake_plan.parts(presets=(fake_atlas.Diodes(), fake_atlas.Diodes(name="fake-second")))
     measure(store, parts)
@@ -362,10 +363,10 @@ def test_any_other_value_error_is_a_failure_and_tried_again(store, log, place):
     """NumPy's LinAlgError is a ValueError; so is what an extractor or `predict` raises."""
 
     class Sloppy(fake_atlas.Singular):
-        def fit(self, features, sun):
+        def fit(self, features, sun, context=None):
             return super().fit(features, sun) if place == "fit" else self
 
-        def predict(self, features):
+        def predict(self, features, context=None):
             fake_atlas.log("predict fake-singular")
             raise fake_atlas.UnusableDataError("too late")
 

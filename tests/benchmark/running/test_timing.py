@@ -77,7 +77,7 @@ def test_ratios_are_of_extraction_and_of_the_whole_to_the_reference(
         clock.now += 0.006
         return extract(self, observations)
 
-    def predicted(self: Any, features: Any) -> Any:
+    def predicted(self: Any, features: Any, context: Any = None) -> Any:
         clock.now += 0.002
         return predict(self, features)
 
