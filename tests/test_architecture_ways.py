@@ -87,7 +87,7 @@ def test_a_frame_passes_the_functions_listed_from_data_set_to_score() -> None:
     landmarks = [
         "benchmark/datasets/preset.py: Preset.generate",
         "algorithms/extractors/frames/centroid.py: BasicCentroid.extract",
-        "algorithms/models/geometric/standard_projection.py: StandardProjection.predict",
+        "algorithms/calibration/calibrated.py: CalibratedModel.predict",
         "benchmark/metrics/score.py: score",
     ]
     assert on_the_way(lambda: measure(task), landmarks) == ways

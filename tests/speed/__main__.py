@@ -18,7 +18,15 @@ from tests.speed.verdicts import Verdict
 
 #: Modules of this package, each with `run() -> list[Verdict]`, imported when their turn comes: what
 #: one cannot import is no reason to leave out the next.
-NAMES = ("simulator", "extractors", "robustness", "recommendations", "startup", "service")
+NAMES = (
+    "simulator",
+    "extractors",
+    "robustness",
+    "models",
+    "recommendations",
+    "startup",
+    "service",
+)
 #: Those of them that draw what they measure on: `run(seed)`.
 SEEDED = frozenset({"robustness"})
 

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from algorithms.contract import Floats, Observation
 from algorithms.discovery import discover_extractors
-from algorithms.extractors.frames.mirror import MirrorRegistration
+from algorithms.extractors.frames.mirror.extractor import MirrorRegistration
 from benchmark.reference.frame_sets import FRAME_SETS, FrameSet, Scenes
 from benchmark.reference.series import WRONG_PX
 from benchmark.running.threads import one_thread
