@@ -16,8 +16,8 @@ from typing import Any, TypeVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
-#: A worker's data and code take 600 MB; with this it stays below 1.5 GB.
-LIMIT_BYTES = 384 * 2**20
+#: A worker's data, tables and code take up to 1.2 GB; with this it stays below 1.5 GB.
+LIMIT_BYTES = 256 * 2**20
 #: Shares of it: what runs may take, and what the latest of them take besides where they find none.
 _OF_RUNS, _LATEST = 0.625, 0.0625
 
