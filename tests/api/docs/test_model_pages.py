@@ -36,7 +36,7 @@ def test_an_example_that_fails_is_named(tmp_path):
     page = tmp_path / "models" / "lut.md"
     page.parent.mkdir()
     page.write_text("```python\nprint(1 / 0)\n```\n")
-    with pytest.raises(RuntimeError, match=r"(?s)models/lut\.md fails.*ZeroDivisionError"):
+    with pytest.raises(RuntimeError, match=r"models/lut\.md fails: ZeroDivisionError"):
         model_pages.output("models/lut.md", tmp_path)
     page.write_text("```python\na = 2\n```\nand\n```python\nprint(a)\n```\n")
     assert model_pages.output("models/lut.md", tmp_path) == "```text\n2\n```"
