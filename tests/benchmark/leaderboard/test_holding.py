@@ -119,6 +119,16 @@ def test_as_it_is_the_chain_errs_as_the_runner_says(quadrant):
     assert found.errors_deg["as_is"] == pytest.approx(score.rms_deg, rel=1e-9)
 
 
+def test_told_rightly_it_errs_as_under_the_condition_of_an_ideal_calibration(quadrant):
+    found, _ = quadrant
+    parts = installed()
+    extractor, model = parts.extractor("voltage-balance"), parts.model("polynomial-2d")
+    preset = datasets.get("qpd-single-aperture")
+    (outcome,) = measure(Task(preset, "ideal-calibration", extractor, (model,))).outcomes
+    # other noise, and sunlight in the place of a lamp, which balances do not see
+    assert found.errors_deg["reference"] == pytest.approx(outcome.score.rms_deg, rel=0.1)
+
+
 def test_a_perfect_part_never_makes_it_worse_beyond_chance(quadrant):
     found, _ = quadrant
     errors = found.errors_deg
