@@ -79,6 +79,7 @@ mutants: $(MUTANTS) ## put small faults into the code, one at a time; list those
 
 leaderboard: $(SERVING) ## bring scores and leaderboard up to date with code and data
 	$(BIN)/sunatlas leaderboard update --workers $(WORKERS)
+	$(BIN)/python -m benchmark.leaderboard.holding
 
 docs: $(DEVELOPING) ## regenerate the generated parts of docs/
 	$(BIN)/python -m api.docs.documentation

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from functools import cache, partial
 from typing import Any
 
+from api.docs.markdown import table as _table
 from benchmark.assessment import assess as assessment
 from benchmark.assessment import former
 from benchmark.assessment.definitions import DEFINITIONS
@@ -187,12 +188,3 @@ def _value(verdict: Mapping[str, Any]) -> str:
         return f"{verdict['value']:.3g}"
     # why a column is not judged stands once, in the definitions
     return "" if verdict["agreement"] == assessment.NOT_JUDGED else str(verdict["reason"])
-
-
-def _table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    lines = [header, ["---"] * len(header), *rows]
-    return "\n".join(f"| {' | '.join(map(_escaped, line))} |" for line in lines)
-
-
-def _escaped(text: str) -> str:
-    return " ".join(text.split()).replace("|", "\\|")

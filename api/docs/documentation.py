@@ -13,7 +13,7 @@ import sys
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from api.docs import assessment
+from api.docs import assessment, limits, model_pages
 from api.docs.export import export_example
 from api.docs.parts import (
     command_line,
@@ -32,8 +32,18 @@ DIRECTORY = Path(__file__).resolve().parents[2] / "docs"
 
 Make = Callable[[], str]
 PAGES: Mapping[str, Mapping[str, Make]] = {
-    "algorithms.md": {"extractors": extractors, "models": models, "missing": missing},
+    "algorithms.md": {
+        "extractors": extractors,
+        "model-pages": model_pages.index,
+        "models": models,
+        "missing": missing,
+    },
     "datasets.md": {"coverage": coverage, "example": export_example, "datasets": datasets},
+    "limits.md": {
+        "standings": limits.standings,
+        "contributions": limits.contributions,
+        "sentences": limits.sentences,
+    },
     "sweeps.md": {
         "features": assessment.features,
         "accuracy": assessment.accuracy,
@@ -62,6 +72,23 @@ _PART = re.compile(
 
 class DocumentationError(ValueError):
     """A page does not have the parts it should; the message names both."""
+
+
+def every_page(directory: Path = DIRECTORY) -> Mapping[str, Mapping[str, Make]]:
+    """Return what makes the parts of each page, those of the models' categories among them."""
+    return {**PAGES, **model_pages.pages(directory)}
+
+
+def every_picture() -> Mapping[str, Make]:
+    """Return what draws each picture."""
+    return {**assessment.PICTURES, **model_pages.pictures()}
+
+
+def text_of(page: str, directory: Path = DIRECTORY) -> str:
+    """Return a page as it is; one of a category that has its first model, as it starts."""
+    if page in PAGES:
+        return (directory / page).read_text("utf-8")
+    return model_pages.text_of(page, directory)
 
 
 def renewed(page: str, text: str, parts: Mapping[str, Make]) -> str:
@@ -106,12 +133,12 @@ def regenerate(directory: Path = DIRECTORY, *, write: bool = True) -> list[str]:
         Where a page is missing.
     """
     behind = {}
-    for page, parts in PAGES.items():
-        text = (directory / page).read_text("utf-8")
-        new = renewed(page, text, parts)
-        if new != text:
+    for page, parts in every_page(directory).items():
+        path = directory / page
+        new = renewed(page, text_of(page, directory), parts)
+        if not path.is_file() or new != path.read_text("utf-8"):
             behind[page] = new
-    for picture, make in assessment.PICTURES.items():
+    for picture, make in every_picture().items():
         path = directory / picture
         new = make()
         if not path.is_file() or path.read_text("utf-8") != new:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from functools import cache
 from typing import Any
 
 import survey_data
 from api.docs.examples import command_line, http_examples
+from api.docs.markdown import table as _table
 from api.http.knowledge import Knowledge
 from benchmark.datasets import coverage as simulated
 
@@ -164,12 +165,3 @@ def _labels(labels: Iterable[str]) -> str:
 
 def _number(value: float | None) -> str:
     return "not measured" if value is None else f"{value:.3g}"
-
-
-def _table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    lines = [header, ["---"] * len(header), *rows]
-    return "\n".join(f"| {' | '.join(map(_escaped, line))} |" for line in lines)
-
-
-def _escaped(text: str) -> str:
-    return " ".join(text.split()).replace("|", "\\|")

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import io
 import math
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from benchmark.drawing import plain_style
+from benchmark.drawing import svg
 from benchmark.reference.series import SWEEPS
 from benchmark.sweeps.plan import SERIES
 
@@ -30,16 +28,6 @@ _LEFT, _RIGHT, _TOP, _BOTTOM = 46, 10, 36, 30
 _MARGIN, _HEAD, _FOOT = 12, 58, 20
 #: Two that every kind of colour vision tells apart (Okabe and Ito), and dark to light greys.
 _ERROR, _BOUND, _INK, _FAINT, _GRID = "#0072b2", "#d55e00", "#1a1d21", "#5c6570", "#e3e7eb"
-#: The same rows give the same bytes: no identifiers at random, text left to the reader's fonts.
-_STYLE = {
-    "svg.hashsalt": "sun-sensor-atlas",
-    "svg.fonttype": "none",
-    "font.family": "sans-serif",
-    "font.sans-serif": "DejaVu Sans",
-    "path.simplify": False,
-}
-
-_FONT = "font-family: 'DejaVu Sans', sans-serif; "
 
 
 @dataclass(frozen=True)
@@ -60,14 +48,8 @@ def picture(rows: Sequence[Row], sweep: str) -> str:
     Dots are hollow where less than 90 % are found; an error of zero has no place on the axis.
     ValueError for a sweep that is not drawn.
     """
-    with plain_style(**_STYLE):
-        drawn = figure(rows, sweep)
-        written = io.StringIO()
-        about = f"Error against {SWEEPS[sweep]} of every method, with its bound"
-        drawn.savefig(
-            written, format="svg", metadata={"Title": about, "Date": None, "Creator": None}
-        )
-    return _compact(written.getvalue())
+    about = f"Error against {SWEEPS[sweep]} of every method, with its bound"
+    return svg(lambda: figure(rows, sweep), about)
 
 
 def figure(rows: Sequence[Row], sweep: str) -> Figure:
@@ -102,22 +84,6 @@ def figure(rows: Sequence[Row], sweep: str) -> Figure:
     if not panels:
         drawn.text(left, 1 - 70 / height, "nothing is stored", size=11, color=_FAINT, **place)
     return drawn
-
-
-def _compact(svg: str) -> str:
-    """Leave out of an SVG what draws nothing: indents, names and empty groups, turns by nothing.
-
-    Numbers keep two digits, a hundredth of a point: rounding that differs between machines is not
-    a change of the picture.
-    """
-    svg = svg[svg.index("<svg") :]  # no prolog that refers to a definition elsewhere
-    svg = re.sub(r' transform="rotate\(-?0 [^)]*\)"', "", svg)
-    svg = re.sub(r'\n *<g id="[^"]*"/>', "", svg)
-    svg = re.sub(r'<g id="[^"]*">', "<g>", svg)
-    # once, where all text finds it
-    svg = svg.replace(_FONT, "").replace("<g>", f'<g style="{_FONT.strip("; ")}">', 1)
-    svg = re.sub(r"-?\d+\.\d{3,}", lambda found: f"{float(found[0]):.2f}", svg)
-    return "".join(f"{line.strip()}\n" for line in svg.splitlines())
 
 
 def _panels(rows: Sequence[Row], sweep: str) -> list[_Panel]:

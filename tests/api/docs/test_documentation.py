@@ -18,8 +18,9 @@ def test_the_committed_docs_are_current():
 def test_what_is_altered_is_noticed_and_renewed(tmp_path, monkeypatch, capsys):
     docs = tmp_path / "docs"
     shutil.copytree(documentation.DIRECTORY, docs)
-    monkeypatch.setattr(documentation, "PAGES", {"survey.md": PAGES["survey.md"]})
-    monkeypatch.setattr(documentation.assessment, "PICTURES", {"made.svg": lambda: "<svg/>"})
+    pages = {"survey.md": PAGES["survey.md"]}
+    monkeypatch.setattr(documentation, "every_page", lambda _: pages)
+    monkeypatch.setattr(documentation, "every_picture", lambda: {"made.svg": lambda: "<svg/>"})
     monkeypatch.setattr(documentation.regenerate, "__defaults__", (docs,))
     page = docs / "survey.md"
     good = page.read_text("utf-8")

@@ -1,0 +1,35 @@
+"""Renew the table: `python -m benchmark.leaderboard.holding [DATASET ...] [--all]`."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+
+from benchmark.leaderboard.holding import table
+from benchmark.leaderboard.scope import compared
+from benchmark.plan.parts import installed
+from benchmark.progress import terminal_progress
+from benchmark.results.store import Store
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Measure the data sets whose best score has changed, those named, or all."""
+    parser = argparse.ArgumentParser(
+        prog="python -m benchmark.leaderboard.holding", description=main.__doc__
+    )
+    parser.add_argument("datasets", nargs="*", metavar="DATASET")
+    parser.add_argument("--all", action="store_true", help="measure every data set again")
+    options = parser.parse_args(arguments)
+    parts = installed()
+    leading = table.leaders(Store().rows(), compared(parts))
+    if unknown := sorted(set(options.datasets) - leading.keys()):
+        parser.error(f"no score leads on {', '.join(unknown)}; there are {', '.join(leading)}")
+    only = leading.keys() if options.all else options.datasets or None
+    with terminal_progress("holding back") as report:
+        done = table.renew(leading, parts, only=only, progress=report)
+    sys.stderr.write(f"{len(done)} of {len(leading)} data sets measured\n")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,173 @@
+"""The table of what holds pipelines back: of every data set, current, and said in words."""
+
+import pytest
+
+from benchmark.leaderboard.holding import __main__ as command
+from benchmark.leaderboard.holding import sentences, table
+from benchmark.leaderboard.holding.measure import VARIANTS
+from benchmark.leaderboard.scope import compared
+from benchmark.plan.parts import installed
+from benchmark.results.store import Store
+
+SCORE = {
+    "dataset": "ccd-slit",
+    "condition": "nominal",
+    "extractor": "ppe",
+    "model": "slit",
+    "rms_deg": 0.05,
+    "bound_deg": 0.005,
+    "answered": 400,
+    "judged": 400,
+}
+
+
+def _row(**errors):
+    """Return a row whose chain as it is errs by 0.05; what is not given changes nothing."""
+    known = {f"{name}_deg": 0.05 for name in VARIANTS}
+    given = {f"{name}_deg": error for name, error in errors.items()}
+    return {**SCORE, **known, "surroundings_deg": None, **given}
+
+
+@pytest.fixture(scope="module")
+def leading():
+    return table.leaders(Store().rows(), compared(installed()))
+
+
+def test_every_data_set_of_the_leaderboard_has_a_row_of_the_score_that_leads_it(leading):
+    assert leading.keys() == {row["dataset"] for row in Store().rows()}
+    behind = table.behind(table.rows(), leading)
+    assert behind == [], "run `python -m benchmark.leaderboard.holding`"
+    assert table.rows().keys() == leading.keys()
+
+
+def test_whatever_is_not_near_its_bound_has_a_sentence_with_its_measurement():
+    for name, row in table.rows().items():
+        found = sentences.verdict(row)
+        assert name in found.sentence
+        assert sentences.degrees(row["rms_deg"]) in found.sentence
+        assert found.near == (row["rms_deg"] <= 1.5 * row["bound_deg"])
+        if not found.near:
+            assert "holds it back" in found.sentence
+            assert found.parts_deg[found.leading] == max(found.parts_deg.values())
+
+
+def test_errors_of_independent_parts_add_as_squares():
+    parts = sentences.contributions(
+        _row(reference=0.03, noise=0.04, perfect=0.005, perfect_dense=0.003, places_dense=0.0)
+    )
+    assert parts["reference"] == pytest.approx(0.04)
+    assert parts["noise"] == pytest.approx(0.03)
+    assert parts["poses"] == pytest.approx(0.004)
+    assert parts["extractor"] == pytest.approx(0.003)
+    assert parts["model"] == 0.0
+    assert parts["lamp"] == 0.0
+    assert "surroundings" not in parts
+
+
+@pytest.mark.parametrize(
+    ("errors", "part", "said"),
+    [
+        (
+            {"reference": 0.006, "perfect": 0.004, "perfect_dense": 0.004, "places_dense": 0.001},
+            "reference",
+            (
+                "told the calibration's "
+                "directions rightly it errs by 0.0060 deg (1.2 times): the calibration's own "
+                "reference holds it back."
+            ),
+        ),
+        (
+            {"perfect": 0.045, "perfect_dense": 0.04, "places": 0.02, "places_dense": 0.01},
+            "extractor",
+            (
+                "with calibration, unit "
+                "and readings perfect it still errs by 0.045 deg (9.0 times), with the spots' true "
+                "places by 0.020 deg: the extractor's systematic error holds it back. Next comes "
+                "the distance between the calibration's poses, 0.021 deg."
+            ),
+        ),
+        (
+            {"perfect": 0.04, "perfect_dense": 0.003, "places": None, "places_dense": None},
+            "poses",
+            (
+                "with calibration, unit "
+                "and readings perfect it still errs by 0.040 deg (8.0 times), fitted to the test "
+                "poses as well by 0.0030 deg: the distance between the calibration's poses holds "
+                "it back."
+            ),
+        ),
+        (
+            {"perfect": 0.04, "perfect_dense": 0.039, "places": None, "places_dense": None},
+            "model",
+            (
+                "with calibration, unit "
+                "and readings perfect it still errs by 0.040 deg (8.0 times), fitted to the test "
+                "poses as well by 0.039 deg: the model holds it back."
+            ),
+        ),
+        (
+            {"noise": 0.03, "perfect": 0.001, "perfect_dense": 0.001, "places_dense": 0.0},
+            "noise",
+            (
+                "read without noise it "
+                "errs by 0.030 deg (6.0 times): noise, 8.0 times what the bound allows, by an "
+                "extractor that does not use all light holds it back. Next comes the extractor's "
+                "systematic error, 0.0010 deg."
+            ),
+        ),
+    ],
+)
+def test_the_part_that_contributes_most_is_named_with_what_was_measured(errors, part, said):
+    found = sentences.verdict(_row(**errors))
+    assert found.leading == part
+    assert found.sentence == f"`ccd-slit`: ppe + slit errs by 0.050 deg, 10 times its bound; {said}"
+
+
+def test_what_is_near_its_bound_is_held_back_by_nothing():
+    found = sentences.verdict(_row() | {"rms_deg": 0.006, "bound_deg": 0.005})
+    assert found.near
+    assert found.sentence == (
+        "`ccd-slit`: ppe + slit errs by 0.0060 deg, 1.2 times its bound: within 1.5 of it."
+    )
+
+
+def test_samples_that_are_left_out_are_said():
+    found = sentences.verdict(_row(reference=0.006, perfect=0.001) | {"judged": 300})
+    assert "10 times its bound (below, over 300 of its 400 answers); told" in found.sentence
+
+
+@pytest.mark.parametrize(
+    ("angle", "said"),
+    [(12.34, "12 deg"), (1.26, "1.3 deg"), (0.0098, "0.0098 deg"), (3e-9, "less than 1e-6 deg")],
+)
+def test_angles_have_two_digits(angle, said):
+    assert sentences.degrees(angle) == said
+
+
+def test_only_what_is_behind_is_measured_and_what_is_gone_is_dropped(tmp_path, monkeypatch):
+    path = tmp_path / "held_back.csv"
+    measured = []
+
+    def pretend(score, _):
+        measured.append(score["dataset"])
+        return {**_row(), **score}
+
+    monkeypatch.setattr(table, "measured", pretend)
+    leading = {name: {**SCORE, "dataset": name} for name in ("a", "b", "c")}
+    assert table.renew(leading, installed(), path=path) == ["a", "b", "c"]
+    leading.pop("a")
+    leading["b"] = {**leading["b"], "extractor": "pd"}
+    assert table.renew(leading, installed(), path=path) == ["b"]
+    assert table.renew(leading, installed(), path=path) == []
+    assert table.renew(leading, installed(), only=["c"], path=path) == ["c"]
+    assert measured == ["a", "b", "c", "b", "c"]
+    known = table.rows(path)
+    assert list(known) == ["b", "c"]
+    assert known["b"]["extractor"] == "pd"
+    assert known["b"]["surroundings_deg"] is None
+
+
+def test_a_data_set_that_nothing_leads_is_refused(capsys):
+    with pytest.raises(SystemExit):
+        command.main(["ccd-slitt"])
+    assert "no score leads on ccd-slitt" in capsys.readouterr().err
