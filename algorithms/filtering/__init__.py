@@ -1,1 +1,1 @@
-"""State estimation over sequences: one description of a state space, and the filters that read it."""
+"""State estimation over sequences: a description of state spaces, and filters that read it."""

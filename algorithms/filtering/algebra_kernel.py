@@ -62,7 +62,7 @@ def innovation_covariance(covariance: Floats, sensitivity: Floats, noise: Floats
 
 
 @compiled
-def updated(
+def updated(  # noqa: C901, PLR0912, PLR0915 - one pass, nothing allocated between
     covariance: Floats,
     sensitivity: Floats,
     noise: Floats,
@@ -157,7 +157,7 @@ def updated(
 
 
 @compiled
-def gained(
+def gained(  # noqa: C901, PLR0912 - one pass, nothing allocated between
     covariance: Floats, crossed: Floats, spread: Floats, innovation: Floats
 ) -> tuple[Floats, Floats, Floats, Floats]:
     """As `updated`, of sigma points: ``K = C S^-1``, ``P - K S K'``; C (B, n, m), S (B, m, m)."""

@@ -127,7 +127,11 @@ class ExtendedKalman:
         innovation = read - space.measured(belief.states, known)
         noise = self.weighed(belief, sensitivity, innovation)
         step, covariance, squared, likelihood = algebra.updated(
-            belief.covariance, sensitivity, noise, innovation, _estimated(space.errors, self.considered)
+            belief.covariance,
+            sensitivity,
+            noise,
+            innovation,
+            _estimated(space.errors, self.considered),
         )
         states = space.moved(belief.states, step)
         after = Belief(states, covariance, belief.noise, squared, likelihood, belief.weights)
@@ -144,7 +148,6 @@ class ExtendedKalman:
         """Belief with what the update tells of the noise: nothing here."""
         del space, read, known, sensitivity
         return after
-
 
 
 @dataclass(frozen=True)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import product
 from typing import Protocol
 
 import numpy as np
 
+from algorithms.calibration.blocks import folds
+from algorithms.calibration.orders import chosen, errors_of_orders
 from algorithms.contract import Floats, UnusableDataError
 from algorithms.filtering import readings_kernel as kernel
 
@@ -16,6 +17,8 @@ FEWEST = 60
 
 #: Share of full sunlight below which a face is dark.
 _DARK = 0.2
+#: Order of a spot's polynomial, at most.
+_HIGHEST = 7
 #: Of singular values, below which equations have no solution of their own.
 _SMALLEST = 1e-9
 
@@ -34,7 +37,7 @@ class Readings(Protocol):
         ...
 
     def at(self, states: Floats, chosen: Floats, known: Floats) -> tuple[Floats, Floats]:
-        """Readings (B, m) and their derivatives (B, m, n)."""
+        """Give readings (B, m) and their derivatives (B, m, n)."""
         ...
 
     def lit(self, features: Floats) -> Floats:
@@ -166,30 +169,38 @@ class SpotReadings:
         return found
 
     def lit(self, features: Floats) -> Floats:
-        """A spot does not say what made it."""
+        """Say nothing: a spot does not tell what made it."""
         return np.ones(len(features))
 
+    @property
+    def order(self) -> int:
+        """Of the polynomial."""
+        return int(self.powers.sum(axis=1).max())
+
     @classmethod
-    def learnt(
-        cls, spots: Floats, sun: Floats, known: Floats, by: str, degree: int = 3
-    ) -> SpotReadings:
-        """Least squares of spots (n, 2) px, of Suns (n, 3) and what is known (n, 7)."""
+    def learnt(cls, spots: Floats, sun: Floats, known: Floats, by: str) -> SpotReadings:
+        """Least squares of spots (n, 2) px, of Suns (n, 3) and what is known (n, 7).
+
+        The order, up to 7, is the one that does best on poses left out.
+        """
         middle = float(known[:, 6].mean())
         warmth = known[:, 6] - middle
         beta, alpha = sun[:, 0] / sun[:, 2], sun[:, 1] / sun[:, 2]
-        powers = [(i, j) for i, j in product(range(degree + 1), repeat=2) if i + j <= degree]
-        powers.sort(key=lambda pair: (sum(pair), -pair[0]))
-        columns = [beta**i * alpha**j for i, j in powers]
-        columns += [warmth, warmth * beta, warmth * alpha]
-        solved, singular = _least_squares(np.column_stack(columns), spots)
+        powers = [(order - j, j) for order in range(_HIGHEST + 1) for j in range(order + 1)]
+        columns = [warmth, warmth * beta, warmth * alpha]
+        columns += [beta**i * alpha**j for i, j in powers]
+        sizes = [3 + (order + 1) * (order + 2) // 2 for order in range(1, _HIGHEST + 1)]
+        design = np.column_stack(columns)
+        errors = errors_of_orders(design, sizes, spots, folds(sun))
+        size = sizes[chosen(errors, by).order]
+        solved, singular = _least_squares(design[:, :size], spots)
         if not singular[-1] > _SMALLEST * singular[0]:
             raise UnusableDataError(
                 f"{by}: the calibration samples do not settle where spots fall; they must spread "
                 "over the field of view"
             )
-        count = len(powers)
-        found = np.asarray(powers, dtype=np.float64)
-        return cls(found, solved[:count].copy(), solved[count:].copy(), middle)
+        found = np.asarray(powers[: size - 3], dtype=np.float64)
+        return cls(found, solved[3:].copy(), solved[:3].copy(), middle)
 
 
 def earth_columns(sun: Floats, nadir: Floats, normal: Floats) -> Floats:

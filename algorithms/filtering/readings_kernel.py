@@ -13,7 +13,7 @@ from algorithms.contract import Floats
 
 
 @compiled
-def faces(
+def faces(  # noqa: PLR0915 - values and derivatives together
     states: Floats,
     chosen: Floats,
     known: Floats,
@@ -90,7 +90,7 @@ def faces(
 
 
 @compiled
-def spots(
+def spots(  # noqa: C901, PLR0912, PLR0917 - values and derivatives together
     states: Floats, chosen: Floats, known: Floats, powers: Floats, design: Floats, warm: Floats
 ) -> tuple[Floats, Floats]:
     """Spots (B, 2), px, and their derivatives (B, 2, n); NaN where the Sun is not in front.

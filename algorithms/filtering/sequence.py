@@ -12,12 +12,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from algorithms.angles import separation_deg
 from algorithms.calibration.calibrated import WORST_RESIDUAL
-from algorithms.calibration.quality import FitQuality, data_digest
+from algorithms.calibration.quality import FitQuality, Setting, data_digest
 from algorithms.context import Context, as_context, complete
 from algorithms.contract import FeatureKind, Floats, Model, SensorGeometry, UnusableDataError
 from algorithms.filtering.filters import Belief, Filter
 from algorithms.filtering.readings import FEWEST, FaceReadings, SpotReadings
-from algorithms.filtering.sun_space import Drift, Gyroscope, SunSpace
+from algorithms.filtering.sun_space import LEVEL, Drift, Gyroscope, SunSpace
 from algorithms.inputs import (
     as_calibration_rows,
     as_features,
@@ -38,7 +38,7 @@ _LONGEST = 1.5
 _FEWEST_READ = 2
 #: Longest correlation of residuals that is looked for, in steps.
 _LAGS = 200
-_LEVEL = Drift(place=0, deviation=0.05, walk=5e-4)
+_LEVEL = Drift(place=LEVEL, deviation=0.05, walk=5e-4)
 _HOUR_S = 3600.0
 _ROOT_HOUR = _HOUR_S**0.5
 
@@ -218,7 +218,12 @@ class SunFilter(Model):
             samples=len(features),
             residual_rms_deg=residual,
             data_digest=data_digest(features, sun, told),
+            settings=self.settings(),
         )
+
+    def settings(self) -> dict[str, Setting]:
+        """Give what the calibration samples chose: the order of a spot's polynomial."""
+        return {"order": self.readings_.order} if isinstance(self.readings_, SpotReadings) else {}
 
     def predict(self, features: ArrayLike, context: Context | None = None) -> Floats:
         """Sun unit vectors (N, 3) of rows in the order of time; NaN where nothing was read."""
@@ -301,7 +306,7 @@ class SunFilter(Model):
         return np.where(held[:, None], track.sun, np.nan)
 
     def _explained(self, sun: Floats, known: Floats) -> Floats:
-        """Readings (n, m) of known Suns."""
+        """Give readings (n, m) of known Suns."""
         space = SunSpace(self.readings_, np.eye(self.columns()), Gyroscope(1.0, 1.0, 1.0), ())
         states = space.states_towards(sun)
         known = known - np.array([0.0] * 6 + [self.readings_.middle_k])
@@ -310,7 +315,7 @@ class SunFilter(Model):
 
 
 def correlated_steps(residuals: Floats) -> Floats:
-    """Steps (m,) over which residuals (n, m) are correlated, at least 1.
+    """Count steps (m,) over which residuals (n, m) are correlated, at least 1.
 
     ``1 + 2 sum rho_k`` up to where the correlation has fallen to a twentieth: a mean over many
     samples has this many times the variance that it would have of white ones.

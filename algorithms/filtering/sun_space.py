@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -19,6 +20,12 @@ KNOWN = 7
 #: Errors ahead of the sensor's parameters: two of the direction, three of the bias.
 MOTION = 5
 _DIRECTION = slice(6, 9)
+LEVEL, EARTH, GAINS = 0, 1, 2
+"""Places of faces' parameters: the light's strength, the Earth's, the first face's gain; behind
+the gains two tilts a face."""
+HEAD_TURNS, HEAD_SHIFTS = (0, 1), (2, 3, 4)
+"""Places of a spot's parameters: turns of the head, focal length and offsets."""
+_DAY_S = 86_400.0
 #: Of the direction, rad, before the first reading; and steps towards what explains it best.
 _FIRST_RAD, _STEPS = 0.5, 6
 
@@ -40,6 +47,11 @@ class Drift:
     place: int
     deviation: float
     walk: float
+
+
+def wandering(place: int, deviation: float) -> Drift:
+    """Return a number that wanders by its deviation in a day."""
+    return Drift(place, deviation, deviation / math.sqrt(_DAY_S))
 
 
 @dataclass(frozen=True)
@@ -120,7 +132,7 @@ class SunSpace:
         return self._step[1]
 
     def measured(self, states: Floats, known: Floats) -> Floats:
-        """Readings without noise."""
+        """Give readings without noise."""
         return self._readings.at(states, self._chosen, known)[0]
 
     def sensitivity(self, states: Floats, known: Floats) -> Floats:
