@@ -9,11 +9,9 @@ import numpy as np
 
 from algorithms.calibration.blocks import folds
 from algorithms.calibration.orders import chosen, errors_of_orders
+from algorithms.calibration.quality import Setting
 from algorithms.contract import Floats, UnusableDataError
 from algorithms.filtering import readings_kernel as kernel
-
-FEWEST = 60
-"""Calibration samples below which readings are not learnt."""
 
 #: Share of full sunlight below which a face is dark.
 _DARK = 0.2
@@ -38,6 +36,10 @@ class Readings(Protocol):
 
     def at(self, states: Floats, chosen: Floats, known: Floats) -> tuple[Floats, Floats]:
         """Give readings (B, m) and their derivatives (B, m, n)."""
+        ...
+
+    def settings(self) -> dict[str, Setting]:
+        """Give what the calibration samples chose."""
         ...
 
     def lit(self, features: Floats) -> Floats:
@@ -72,6 +74,10 @@ class FaceReadings:
         """Signals (B, K) and their derivatives."""
         found: tuple[Floats, Floats] = kernel.faces(states, chosen, known, self.design, self.albedo)
         return found
+
+    def settings(self) -> dict[str, Setting]:
+        """Give nothing: nothing was to be chosen."""
+        return {}
 
     def lit(self, features: Floats) -> Floats:
         """Whether a face has a fifth of full sunlight: on a closed body the Sun gives one more."""
@@ -172,10 +178,9 @@ class SpotReadings:
         """Say nothing: a spot does not tell what made it."""
         return np.ones(len(features))
 
-    @property
-    def order(self) -> int:
-        """Of the polynomial."""
-        return int(self.powers.sum(axis=1).max())
+    def settings(self) -> dict[str, Setting]:
+        """Give the order of the polynomial."""
+        return {"order": int(self.powers.sum(axis=1).max())}
 
     @classmethod
     def learnt(cls, spots: Floats, sun: Floats, known: Floats, by: str) -> SpotReadings:

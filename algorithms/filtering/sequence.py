@@ -5,19 +5,17 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import ClassVar, Self
+from typing import TYPE_CHECKING, ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from algorithms.angles import separation_deg
 from algorithms.calibration.calibrated import WORST_RESIDUAL
-from algorithms.calibration.quality import FitQuality, Setting, data_digest
+from algorithms.calibration.quality import FitQuality, data_digest
 from algorithms.context import Context, as_context, complete
 from algorithms.contract import FeatureKind, Floats, Model, SensorGeometry, UnusableDataError
-from algorithms.filtering.filters import Belief, Filter
-from algorithms.filtering.readings import FEWEST, FaceReadings, SpotReadings
-from algorithms.filtering.sun_space import LEVEL, Drift, Gyroscope, SunSpace
+from algorithms.filtering.drift import LEVEL, MOTION, Drift, Gyroscope
 from algorithms.inputs import (
     as_calibration_rows,
     as_features,
@@ -27,8 +25,16 @@ from algorithms.inputs import (
 )
 from algorithms.models.geometric.detector_faces import Normals, require_normals
 
+if TYPE_CHECKING:
+    from algorithms.filtering.filters import Belief, Filter
+    from algorithms.filtering.readings import FaceReadings, SpotReadings
+    from algorithms.filtering.sun_space import SunSpace
+
 CONTEXT = ("time_s", "rate_deg_s", "eclipse", "nadir", "temperature_K")
 """Columns of the context that every filter reads."""
+
+FEWEST = 60
+"""Calibration samples below which nothing is learnt."""
 
 #: Directions tried at a series' first reading.
 _STARTS = 256
@@ -184,6 +190,11 @@ class SunFilter(Model):
 
     def learn(self, features: Floats, sun: Floats, told: dict[str, Floats]) -> None:
         """Set readings, their noise, and what series begin from."""
+        from algorithms.filtering.readings import (  # noqa: PLC0415 - Numba, at the first fit only
+            FaceReadings,
+            SpotReadings,
+        )
+
         by, known = self.about.name, _known(told)
         if self.face_normals:
             normals = np.asarray(self.face_normals, dtype=np.float64)
@@ -218,12 +229,8 @@ class SunFilter(Model):
             samples=len(features),
             residual_rms_deg=residual,
             data_digest=data_digest(features, sun, told),
-            settings=self.settings(),
+            settings=self.readings_.settings(),
         )
-
-    def settings(self) -> dict[str, Setting]:
-        """Give what the calibration samples chose: the order of a spot's polynomial."""
-        return {"order": self.readings_.order} if isinstance(self.readings_, SpotReadings) else {}
 
     def predict(self, features: ArrayLike, context: Context | None = None) -> Floats:
         """Sun unit vectors (N, 3) of rows in the order of time; NaN where nothing was read."""
@@ -249,6 +256,8 @@ class SunFilter(Model):
 
     def space(self) -> SunSpace:
         """State space of the fitted sensor."""
+        from algorithms.filtering.sun_space import SunSpace  # noqa: PLC0415 - Numba
+
         gyroscope = Gyroscope(
             float(np.radians(self.angle_walk_deg_sqrt_h / _ROOT_HOUR)),
             float(np.radians(self.bias_deg_h / _HOUR_S)),
@@ -291,7 +300,7 @@ class SunFilter(Model):
             squared_innovation=squared,
             series=np.cumsum(~follows) - int(count > 0 and not follows[0]),
             drift=states[:, 12:],
-            drift_deviation=np.sqrt(variance[:, 5:]),
+            drift_deviation=np.sqrt(variance[:, MOTION:]),
             bias_deg_h=np.degrees(states[:, 9:12]) * _HOUR_S,
         )
 
@@ -307,6 +316,8 @@ class SunFilter(Model):
 
     def _explained(self, sun: Floats, known: Floats) -> Floats:
         """Give readings (n, m) of known Suns."""
+        from algorithms.filtering.sun_space import SunSpace  # noqa: PLC0415 - Numba
+
         space = SunSpace(self.readings_, np.eye(self.columns()), Gyroscope(1.0, 1.0, 1.0), ())
         states = space.states_towards(sun)
         known = known - np.array([0.0] * 6 + [self.readings_.middle_k])

@@ -2,75 +2,20 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from algorithms.contract import Floats
 from algorithms.filtering import algebra_kernel as algebra
 from algorithms.filtering import sun_kernel as motion
+from algorithms.filtering.drift import MOTION, Drift, Gyroscope
 from algorithms.filtering.filters import Belief, Filter
 from algorithms.filtering.readings import Readings
 
-KNOWN = 7
-"""Columns of what is known: rate (3) rad/s, nadir (3), temperature less the calibration's (1)."""
-
-#: Errors ahead of the sensor's parameters: two of the direction, three of the bias.
-MOTION = 5
 _DIRECTION = slice(6, 9)
-LEVEL, EARTH, GAINS = 0, 1, 2
-"""Places of faces' parameters: the light's strength, the Earth's, the first face's gain; behind
-the gains two tilts a face."""
-HEAD_TURNS, HEAD_SHIFTS = (0, 1), (2, 3, 4)
-"""Places of a spot's parameters: turns of the head, focal length and offsets."""
-_DAY_S = 86_400.0
 #: Of the direction, rad, before the first reading; and steps towards what explains it best.
 _FIRST_RAD, _STEPS = 0.5, 6
-
-
-@dataclass(frozen=True)
-class Drift:
-    """A number of the sensor that may differ from its calibration, and wander.
-
-    Attributes
-    ----------
-    place : int
-        Among the sensor's parameters (see `algorithms.filtering.readings_kernel`).
-    deviation : float
-        Standard deviation at the start.
-    walk : float
-        Of what it moves in a second.
-    """
-
-    place: int
-    deviation: float
-    walk: float
-
-
-def wandering(place: int, deviation: float) -> Drift:
-    """Return a number that wanders by its deviation in a day."""
-    return Drift(place, deviation, deviation / math.sqrt(_DAY_S))
-
-
-@dataclass(frozen=True)
-class Gyroscope:
-    """What a gyroscope's data sheet says.
-
-    Attributes
-    ----------
-    angle_walk : float
-        White noise, rad/sqrt(s).
-    bias : float
-        Standard deviation when switched on, rad/s.
-    bias_walk : float
-        Of what the bias moves in a second, rad/s.
-    """
-
-    angle_walk: float
-    bias: float
-    bias_walk: float
 
 
 class SunSpace:

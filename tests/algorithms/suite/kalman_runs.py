@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from algorithms.filtering.drift import EARTH, GAINS, LEVEL, Drift, Gyroscope
 from algorithms.filtering.readings import FaceReadings, SpotReadings
 from algorithms.filtering.state_space import LinearStateSpace
-from algorithms.filtering.sun_space import EARTH, GAINS, LEVEL, Drift, Gyroscope, SunSpace
+from algorithms.filtering.sun_space import SunSpace
 
 Floats = NDArray[np.float64]
 
