@@ -54,8 +54,8 @@ def begun(space: StateSpace, states: Floats, covariance: Floats) -> Belief:
     nothing = np.full(count, np.nan)
     return Belief(
         states,
-        np.ascontiguousarray(np.broadcast_to(covariance, (count, n, n))),
-        np.ascontiguousarray(np.broadcast_to(space.measurement_noise(), (count, m, m))),
+        np.array(np.broadcast_to(covariance, (count, n, n)), order="C"),
+        np.array(np.broadcast_to(space.measurement_noise(), (count, m, m)), order="C"),
         nothing,
         nothing,
         np.ones(count),
@@ -259,7 +259,7 @@ class SigmaPointKalman:
         points, _ = self._points(space, belief)
         count, number, size = points.shape
         after = space.propagated(points.reshape(-1, size), known, step_s)
-        middle = after[::number]
+        middle = after[::number].copy()
         off = space.away(after, np.repeat(middle, number, axis=0))
         mean, _ = algebra.centred(off.reshape(count, number, -1), means)
         states = space.moved(middle, mean)
