@@ -13,7 +13,7 @@ import sys
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from api.docs import assessment
+from api.docs import assessment, filters
 from api.docs.export import export_example
 from api.docs.parts import (
     command_line,
@@ -47,6 +47,7 @@ PAGES: Mapping[str, Mapping[str, Make]] = {
         "first-outcomes": assessment.first_outcomes,
         "values": assessment.values,
     },
+    "filters.md": {"errors": filters.errors},
     "survey.md": {"findings": findings, "resolutions": resolutions},
     "http.md": {"endpoints": http_examples},
     "command-line.md": {"help": command_line},
