@@ -147,7 +147,9 @@ class FaceReadings:
 
 @dataclass(frozen=True)
 class SpotReadings:
-    """Where a spot falls: a polynomial of the tangents, whose centre and scale follow warmth.
+    """Where a spot falls, or how a balance stands: a polynomial of the tangents.
+
+    Its centre and scale follow warmth.
 
     Attributes
     ----------

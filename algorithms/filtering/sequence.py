@@ -94,7 +94,7 @@ class SunFilter(Model):
     Parameters
     ----------
     face_normals : tuple of K vectors
-        Of faces, in the order of the features; none for spots.
+        Of faces, in the order of the features; none for spots and balances.
     angle_walk_deg_sqrt_h, bias_deg_h, bias_walk_deg_h_sqrt_h : float
         The gyroscope's data sheet, positive: angle random walk, bias when switched on, and what
         the bias moves in an hour.
@@ -143,10 +143,10 @@ class SunFilter(Model):
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
-        """Return the filter for the sensor's faces, or for a spot."""
+        """Return the filter for the sensor's faces, or for a spot or balance."""
         cls.about.require_kind(kind)
         geometry.require(*cls.about.needs, by=cls.about.name)
-        if kind is FeatureKind.SPOT:
+        if kind is not FeatureKind.SIGNALS:
             return cls()
         geometry.require("face_normals", by=cls.about.name)
         return cls(face_normals=geometry.face_normals or ())
@@ -165,7 +165,7 @@ class SunFilter(Model):
         return ()
 
     def columns(self) -> int:
-        """One a face; two of a spot."""
+        """One a face; two of a spot or balance."""
         return len(self.face_normals) or 2
 
     def fit(self, features: ArrayLike, sun: ArrayLike, context: Context | None = None) -> Self:

@@ -23,7 +23,7 @@ class AdaptiveKalmanFilter(SunFilter):
     Parameters
     ----------
     face_normals : tuple of K vectors
-        Nominal unit normals of faces in the order of the features; none for spots.
+        Nominal unit normals of faces in the order of the features; none for spots and balances.
     angle_walk_deg_sqrt_h : float
         The gyroscope's angle random walk, positive.
     bias_deg_h : float
@@ -62,8 +62,8 @@ class AdaptiveKalmanFilter(SunFilter):
     found it, warmth and the Earth's light by nadir included.
     ``R <- R + (e e' + H P H' - R) / window``.
 
-    Shapes: signals (N, K) or spots (N, 2) in the order of time, with the context's columns, to
-    unit vectors (N, 3).
+    Shapes: signals (N, K), or spots or balances (N, 2), in the order of time, with the context's
+    columns, to unit vectors (N, 3).
 
     Failure: a NaN row for a NaN feature row, in eclipse and in the dark, at the first reading of a
     series, and where the 1-sigma is beyond `worst_deg`. A series ends where time does not go on by
@@ -105,7 +105,7 @@ class AdaptiveKalmanFilter(SunFilter):
         studies=(),
         labels=("model:mnc",),
         origin="ours",
-        accepts=frozenset({FeatureKind.SIGNALS, FeatureKind.SPOT}),
+        accepts=frozenset(FeatureKind),
         context=CONTEXT,
     )
 

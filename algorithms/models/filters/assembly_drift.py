@@ -27,7 +27,7 @@ class AssemblyDriftFilter(SunFilter):
     Parameters
     ----------
     face_normals : tuple of K vectors
-        Nominal unit normals of faces in the order of the features; none for spots.
+        Nominal unit normals of faces in the order of the features; none for spots and balances.
     angle_walk_deg_sqrt_h : float
         The gyroscope's angle random walk, positive.
     bias_deg_h : float
@@ -71,8 +71,8 @@ class AssemblyDriftFilter(SunFilter):
     light's strength; ``s' = exp(-[(w - b) dt]) s``, ``z = h(s) + v`` with h as the calibration
     found it, warmth and the Earth's light by nadir included.
 
-    Shapes: signals (N, K) or spots (N, 2) in the order of time, with the context's columns, to
-    unit vectors (N, 3).
+    Shapes: signals (N, K), or spots or balances (N, 2), in the order of time, with the context's
+    columns, to unit vectors (N, 3).
 
     Failure: a NaN row for a NaN feature row, in eclipse and in the dark, at the first reading of a
     series, and where the 1-sigma is beyond `worst_deg`. A series ends where time does not go on by
@@ -114,7 +114,7 @@ class AssemblyDriftFilter(SunFilter):
         studies=("Radan2019",),
         labels=("model:assem", "model:mnc"),
         origin="survey",
-        accepts=frozenset({FeatureKind.SIGNALS, FeatureKind.SPOT}),
+        accepts=frozenset(FeatureKind),
         context=CONTEXT,
     )
 

@@ -26,7 +26,7 @@ class ConsiderKalmanFilter(SunFilter):
     Parameters
     ----------
     face_normals : tuple of K vectors
-        Nominal unit normals of faces in the order of the features; none for spots.
+        Nominal unit normals of faces in the order of the features; none for spots and balances.
     angle_walk_deg_sqrt_h : float
         The gyroscope's angle random walk, positive.
     bias_deg_h : float
@@ -73,8 +73,8 @@ class ConsiderKalmanFilter(SunFilter):
     found it, warmth and the Earth's light by nadir included.
     ``K = P H' S^-1`` with the rows of what is considered set to nothing; Joseph's form.
 
-    Shapes: signals (N, K) or spots (N, 2) in the order of time, with the context's columns, to
-    unit vectors (N, 3).
+    Shapes: signals (N, K), or spots or balances (N, 2), in the order of time, with the context's
+    columns, to unit vectors (N, 3).
 
     Failure: a NaN row for a NaN feature row, in eclipse and in the dark, at the first reading of a
     series, and where the 1-sigma is beyond `worst_deg`. A series ends where time does not go on by
@@ -116,7 +116,7 @@ class ConsiderKalmanFilter(SunFilter):
         studies=("OKeefe2017",),
         labels=("model:mnc", "eq:mnoise"),
         origin="survey",
-        accepts=frozenset({FeatureKind.SIGNALS, FeatureKind.SPOT}),
+        accepts=frozenset(FeatureKind),
         context=CONTEXT,
     )
 

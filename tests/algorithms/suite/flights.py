@@ -9,11 +9,11 @@ import numpy as np
 from algorithms.angles import sun_from_angles
 from algorithms.contract import FeatureKind, SensorGeometry
 
-STEPS, STEP_S = 220, 10.0
+STEPS, STEP_S = 180, 10.0
 
 
 def path(kind: FeatureKind) -> np.ndarray:
-    """(T, 3) the Sun in the body: over the whole sphere for faces, ahead of them for spots."""
+    """(T, 3) the Sun in the body: all over the sphere for faces, else ahead."""
     k = np.arange(STEPS)
     if kind is FeatureKind.SIGNALS:
         turn, height = 0.13 * k, np.radians(80.0) * np.sin(0.037 * k)
@@ -38,8 +38,12 @@ def features_of(kind: FeatureKind, sun: np.ndarray, geometry: SensorGeometry) ->
     if kind is FeatureKind.SIGNALS:
         lit = np.maximum(sun @ np.array(geometry.face_normals).T, 0.0)
         return lit + 1e-3 * rng.standard_normal(lit.shape)
+    tangents = sun[:, :2] / sun[:, 2:]
+    if kind is FeatureKind.BALANCE:
+        balances = 2.0 * geometry.focal_length_mm / geometry.aperture_width_mm * tangents
+        return balances + 1e-3 * rng.standard_normal(balances.shape)
     scale = geometry.focal_length_mm / geometry.pixel_pitch_mm
-    spots = np.array(geometry.centre_px) + scale * sun[:, :2] / sun[:, 2:]
+    spots = np.array(geometry.centre_px) + scale * tangents
     return spots + 0.1 * rng.standard_normal(spots.shape)
 
 

@@ -9,6 +9,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from algorithms.angles import separation_deg
+from algorithms.contract import FeatureKind
 from algorithms.discovery import discover_models
 from algorithms.models.filters.assembly_drift import AssemblyDriftFilter
 from algorithms.models.filters.extended import ExtendedKalmanFilter
@@ -96,8 +97,7 @@ def test_in_eclipse_no_sun_is_invented_and_in_sunlight_single_samples_are_beaten
     flown, name
 ) -> None:
     for condition, (calibration, test) in flown.items():
-        kind = next(iter(FILTERS[name].about.accepts - {"spot"}))
-        model = FILTERS[name].for_sensor(CUBE.geometry, kind)
+        model = FILTERS[name].for_sensor(CUBE.geometry, FeatureKind.SIGNALS)
         model.fit(calibration.observations, calibration.sun, calibration.context)
         found = model.predict(test.observations, test.context)
         eclipse = test.context["eclipse"]
