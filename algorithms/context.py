@@ -13,6 +13,7 @@ CONTEXT: dict[str, tuple[int, ...]] = {
     "time_s": (),
     "temperature_K": (),
     "illumination": (),
+    "rate_deg_s": (3,),
     "eclipse": (),
     "albedo": (),
     "magnetic_field_nT": (3,),
@@ -23,7 +24,8 @@ CONTEXT: dict[str, tuple[int, ...]] = {
 }
 """Columns by name, with the shape of a sample's value: a number, or a vector of the sensor's frame
 (``_inertial``: of an inertial one). ``illumination`` is sunlight over its mean at one astronomical
-unit; ``eclipse`` and ``albedo`` are 0 or 1; ``nadir`` are unit vectors."""
+unit; ``rate_deg_s`` is the body's mean rate since the sample before, as a gyroscope has it;
+``eclipse`` and ``albedo`` are 0 or 1; ``nadir`` are unit vectors."""
 
 
 def as_context(

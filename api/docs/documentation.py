@@ -13,7 +13,7 @@ import sys
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from api.docs import assessment, limits, model_pages
+from api.docs import assessment, filters, limits, model_pages
 from api.docs.export import export_example
 from api.docs.parts import (
     command_line,
@@ -57,6 +57,7 @@ PAGES: Mapping[str, Mapping[str, Make]] = {
         "first-outcomes": assessment.first_outcomes,
         "values": assessment.values,
     },
+    "filters.md": {"errors": filters.errors},
     "survey.md": {"findings": findings, "resolutions": resolutions},
     "http.md": {"endpoints": http_examples},
     "command-line.md": {"help": command_line},

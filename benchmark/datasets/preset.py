@@ -138,6 +138,11 @@ class Preset:
         return tuple(self.setups)
 
     @property
+    def streams(self) -> tuple[str, int]:
+        """Name and version that random streams begin with."""
+        return self.name, self.version
+
+    @property
     def context_columns(self) -> tuple[str, ...]:
         """Columns that its samples have beside observations; none but in flight."""
         return ()
@@ -171,11 +176,10 @@ class Preset:
             raise ValueError(f"units are drawn from unit 0; this is unit {self.unit}")
         if number == 0:
             return self
-        names = (self.name, self.version, "unit", number)
-        setups = {
-            name: dataclasses.replace(setup, sensor=assembled(setup.sensor, *names))
-            for name, setup in self.setups.items()
-        }
+        unit = (*self.streams, "unit", number)
+        setups = dict(self.setups)
+        for name, setup in self.setups.items():
+            setups[name] = dataclasses.replace(setup, sensor=assembled(setup.sensor, *unit))
         return dataclasses.replace(self, setups=setups, unit=number)
 
     def reference_error_deg(self, condition: str) -> float:
@@ -187,8 +191,8 @@ class Preset:
         bench = self.condition(condition).bench
         if bench is None:
             return 0.0
-        stream = generator(self.name, self.version, "test", "sun")
-        return bench.systematic_deg(self.directions.sun("test", stream))
+        drawn = generator(*self.streams, "test", "sun")
+        return bench.systematic_deg(self.directions.sun("test", drawn))
 
     def with_ideal_calibration(self) -> Self:
         """Return the dataset with one condition more: the first one, perfectly calibrated."""
@@ -208,7 +212,7 @@ class Preset:
     @property
     def _bench_names(self) -> tuple[str | int, ...]:
         """Names of the random streams of the calibration's errors."""
-        return self._of_unit(self.name, self.version, "bench")
+        return self._of_unit(*self.streams, "bench")
 
     def sensor_for(self, condition: str, split: str) -> Sensor:
         """Return the sensor as a split is taken with it: before a lamp the Sun has its size."""
@@ -219,8 +223,8 @@ class Preset:
 
     def fixed_pattern(self, condition: str) -> FixedPattern:
         """Return the unit as this condition shows it."""
-        names = (self.name, self.version, "unit", *((self.unit,) if self.unit else ()))
-        return self.condition(condition).sensor.fixed_pattern(*names)
+        unit = (self.unit,) if self.unit else ()
+        return self.condition(condition).sensor.fixed_pattern(*self.streams, "unit", *unit)
 
     def scene(self, condition: str, split: str, n: int | None = None) -> Scene:
         """All light of a split's first n samples, or of all; ValueError for n below 1."""
@@ -236,7 +240,7 @@ class Preset:
         What is drawn is drawn for all of them; the Earth, which costs more, is seen from these.
         """
         setup = self.condition(condition)
-        names = (self.name, self.version, known)
+        names = (*self.streams, known)
         sun = self.directions.sun(known, generator(*names, "sun"))
         light, stray = setup.irradiance.draw(len(sun), generator(*names, "irradiance"))
         if known == "calibration" and isinstance(setup.bench, Bench):
@@ -276,8 +280,7 @@ class Preset:
         sensor = self.sensor_for(condition, split)
         scene = self.scene(condition, split, n)
         pattern = self.fixed_pattern(condition)
-        names = self._of_unit(self.name, self.version, condition, split)
-        streams = NoiseStreams.named(*names)
+        streams = NoiseStreams.named(*self._of_unit(*self.streams, condition, split))
         # passes over the same poses share their light where light is remembered
         poses = len(self.repeats.chosen(self._tested))
         size = poses if split == REPEAT else self.batch or BATCH
@@ -326,33 +329,30 @@ class Preset:
         sensor = self.condition(condition).sensor
         if not isinstance(sensor, UnitSpread):
             return {}
-        names = self._of_unit(self.name, self.version, condition, "references")
-        streams = NoiseStreams.named(*names)
+        streams = NoiseStreams.named(*self._of_unit(*self.streams, condition, "references"))
         return sensor.reference_readings(self.fixed_pattern(condition), self.offered, streams)
 
     def parameters(self, condition: str) -> dict[str, Any]:
         """Everything the numbers of a condition depend on, as plain JSON values."""
         setup = self.condition(condition)
-        plain: dict[str, Any] = described(
-            {
-                "simulator_version": SIMULATOR_VERSION,
-                "dataset": self.name,
-                "dataset_version": self.version,
-                "condition": condition,
-                "sensor": setup.sensor,
-                "irradiance": setup.irradiance,
-                "earth": setup.earth,
-                "bench": setup.bench,
-                "directions": self.directions,
-                "geometry": self.geometry_for(condition),
-                "bound_step_rad": self.bound_step_rad,
-                "offered": self.offered,
-                "repeats": self.repeats,
-                "unit": self.unit,
-                "spin": setup.spin,
-            }
-        )
-        return plain
+        named = {
+            "simulator_version": SIMULATOR_VERSION,
+            "dataset": self.name,
+            "dataset_version": self.version,
+            "condition": condition,
+            "sensor": setup.sensor,
+            "irradiance": setup.irradiance,
+            "earth": setup.earth,
+            "bench": setup.bench,
+            "directions": self.directions,
+            "geometry": self.geometry_for(condition),
+            "bound_step_rad": self.bound_step_rad,
+            "offered": self.offered,
+            "repeats": self.repeats,
+            "unit": self.unit,
+            "spin": setup.spin,
+        }
+        return dict(described(named))
 
     def card(self) -> dict[str, Any]:
         """Everything a reader of the dataset needs, as plain JSON values; renders nothing.
@@ -387,7 +387,7 @@ class Preset:
             "parameters": shared,
             "conditions": conditions,
             "regime": described(self.regime),
-            "seeds": stream_names(self.name, self.version),
+            "seeds": stream_names(*self.streams),
         }
 
 

@@ -24,7 +24,7 @@ Floats = NDArray[np.float64]
 # The suite's modules import each other by name; what they assert is spelt out where it fails.
 sys.path.append(str(Path(__file__).parent / "suite"))
 pytest.register_assert_rewrite(
-    "expectations", "compensation_checks", "extractor_checks", "model_checks"
+    "expectations", "compensation_checks", "extractor_checks", "model_checks", "sequence_checks"
 )
 
 FACES = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
@@ -70,7 +70,7 @@ OWN_DESIGN = {
 #: Middle and spread of numbers that a context holds.
 USUAL = {"temperature_K": (298.0, 30.0), "illumination": (1.0, 0.03), "time_s": (500.0, 500.0)}
 COMMON_SUITE = "test_common_suite.py::test_"
-KINDS = ("compensation", "extractor", "model")
+KINDS = ("compensation", "extractor", "model", "sequence")
 
 
 @dataclass(frozen=True)
@@ -301,6 +301,14 @@ def calibration_for(geometry: SensorGeometry, field: Floats) -> Callable[..., Ca
         raise NotImplementedError(f"make sample {kind} features here")
 
     return make
+
+
+@pytest.fixture(scope="session")
+def flight_for(geometry: SensorGeometry) -> Callable[..., Calibration]:
+    """Noiseless features of the sensor on a body that turns, in the order of time."""
+    import flights
+
+    return lambda kind: Calibration(**flights.flight(kind, geometry))
 
 
 @pytest.fixture(scope="session")

@@ -10,9 +10,11 @@ import compensation_checks
 import extractor_checks
 import model_checks
 import pytest
+import sequence_checks
 from compensation_checks import COMPENSATION_CHECKS
 from extractor_checks import EXTRACTOR_CHECKS
 from model_checks import MODEL_CHECKS
+from sequence_checks import SEQUENCE_CHECKS
 
 import algorithms
 from algorithms.context import CONTEXT
@@ -24,7 +26,9 @@ from algorithms.discovery import (
 
 EXTRACTORS = discover_extractors()
 COMPENSATIONS = discover_compensations()
-MODELS = discover_models()
+#: Models of single samples, and those that read them in the order of time.
+SEQUENCES = {n: m for n, m in discover_models().items() if getattr(m, "sequential", False)}
+MODELS = {n: m for n, m in discover_models().items() if n not in SEQUENCES}
 
 RAN: set[tuple[str, str]] = set()
 
@@ -61,6 +65,16 @@ def test_model(name, check, design_for, calibration_for):
         check(cls, cls.for_sensor(design, kind), calibration, *extra)
 
 
+@pytest.mark.parametrize("check", SEQUENCE_CHECKS, ids=lambda check: check.__name__)
+@pytest.mark.parametrize("name", SEQUENCES)
+def test_sequence(name, check, geometry, flight_for):
+    cls = SEQUENCES[name]
+    RAN.add((name, check.__name__))
+    for kind in sorted(cls.about.accepts):
+        extra = (geometry,) if "geometry" in check.__code__.co_varnames else ()
+        check(cls, cls.for_sensor(geometry, kind), flight_for(kind), *extra)
+
+
 def test_every_check_ran_on_every_implementation(request):
     """An empty discovery, or a check that lost its decorator, must not look green."""
     source = [
@@ -71,18 +85,23 @@ def test_every_check_ran_on_every_implementation(request):
     declared = sum(
         len(re.findall(r"^    about: ClassVar = About", text, re.MULTILINE)) for text in source
     )
-    assert declared == len(EXTRACTORS) + len(COMPENSATIONS) + len(MODELS) >= 14
+    found = (EXTRACTORS, COMPENSATIONS, MODELS, SEQUENCES)
+    assert declared == sum(map(len, found)) >= 14
+    assert len(SEQUENCES) >= 8
 
     written = [
         Path(module.__file__).read_text()
-        for module in (extractor_checks, compensation_checks, model_checks)
+        for module in (extractor_checks, compensation_checks, model_checks, sequence_checks)
     ]
     defined = sum(len(re.findall(r"^def check_", text, re.MULTILINE)) for text in written)
-    assert defined == len(EXTRACTOR_CHECKS) + len(COMPENSATION_CHECKS) + len(MODEL_CHECKS)
+    shared = set(MODEL_CHECKS) & set(SEQUENCE_CHECKS)
+    checks = (EXTRACTOR_CHECKS, COMPENSATION_CHECKS, MODEL_CHECKS, SEQUENCE_CHECKS)
+    assert defined == sum(map(len, checks)) - len(shared)
 
     expected = {(name, check.__name__) for name in EXTRACTORS for check in EXTRACTOR_CHECKS}
     expected |= {(name, check.__name__) for name in COMPENSATIONS for check in COMPENSATION_CHECKS}
     expected |= {(name, check.__name__) for name in MODELS for check in MODEL_CHECKS}
+    expected |= {(name, check.__name__) for name in SEQUENCES for check in SEQUENCE_CHECKS}
     collected = {
         (item.callspec.params["name"], item.callspec.params["check"].__name__)
         for item in request.session.items

@@ -18,6 +18,7 @@ from benchmark.datasets.repeats import REPEAT, Rows
 from benchmark.datasets.samples import Samples
 from benchmark.seeds import generator
 from benchmark.simulator.flight.attitude import Attitude, rotated, turned
+from benchmark.simulator.flight.gyro import Gyro
 from benchmark.simulator.flight.magnetic_field import TiltedDipole
 from benchmark.simulator.flight.orbit import (
     DAY_S,
@@ -63,7 +64,8 @@ class Leg:
 
     `time_s` counts from the start of the flight, `since_s` from the start of the leg. `orbit`
     and `sun` (3,) stand still during a leg: they move by less than half a degree. `turn`
-    (N, 3, 3) takes inertial vectors to the body frame. `field_nt` is the model's.
+    (N, 3, 3) takes inertial vectors to the body frame, `turn_before` a step earlier. `field_nt` is
+    the model's.
     """
 
     orbit: CircularOrbit
@@ -76,6 +78,7 @@ class Leg:
     nadir_body: Floats
     field_nt: Floats
     turn: Floats
+    turn_before: Floats
     eclipse: NDArray[np.bool_]
 
 
@@ -95,7 +98,9 @@ class Flight:
     calibration, test
         When each split is taken, by the flight's days.
     magnetometer_nt, horizon_deg
-        Noise a component, and a tangent axis, of the two other instruments.
+        Noise a component, and a tangent axis, of two other instruments.
+    gyro
+        The third; switched on anew for each split.
     """
 
     orbit: CircularOrbit
@@ -106,6 +111,7 @@ class Flight:
     dipole: TiltedDipole = field(default_factory=TiltedDipole)
     magnetometer_nt: float = 200.0
     horizon_deg: float = 0.5
+    gyro: Gyro = field(default_factory=Gyro)
 
     def span(self, split: Split) -> Span:
         """Return when a split is taken."""
@@ -138,6 +144,7 @@ class Flight:
             nadir_body=turned(turn, -place),
             field_nt=self.dipole.inertial(place, orbit.distance_km, start_s + since),
             turn=turn,
+            turn_before=self.attitude.matrices(orbit, sun, since - span.step_s, start_s),
             eclipse=eclipse,
         )
 
@@ -173,7 +180,15 @@ class FlightPreset(Preset):
 
     Samples carry the context columns that `card` lists. The calibration split is flown too, on
     earlier orbits of the same unit, so that filters have a time series to be tuned on.
+
+    Attributes
+    ----------
+    drawn_as
+        Version that its random streams are named by, where a later one added columns to the
+        context and moved nothing else; None for its own.
     """
+
+    drawn_as: int | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.directions, Flight):
@@ -200,6 +215,11 @@ class FlightPreset(Preset):
         """Where the satellite flies."""
         return cast("Flight", self.directions)
 
+    @property
+    def streams(self) -> tuple[str, int]:
+        """As `Preset`, with the version that it was drawn as."""
+        return self.name, self.version if self.drawn_as is None else self.drawn_as
+
     def _scene(self, condition: str, known: Split, rows: Rows = slice(None)) -> TimedScene:
         """Return what a split looks at; no sunlight, direct or stray, reaches it in eclipse.
 
@@ -207,7 +227,7 @@ class FlightPreset(Preset):
         """
         setup = self.condition(condition)
         leg = self.flight.leg(known)
-        names = (self.name, self.version, known)
+        names = (*self.streams, known)
         _, stray = setup.irradiance.draw(len(leg.time_s), generator(*names, "irradiance"))
         sensor = cast("DriftingSensor", setup.sensor)
         origin = sensor.origins(leg.sun_body, generator(*names, "window"))
@@ -249,7 +269,7 @@ class FlightPreset(Preset):
         known = drawn_split(split)
         setup = self.condition(condition)
         leg = self.flight.leg(known)
-        names = (self.name, self.version, known)
+        names = (*self.streams, known)
         noise = generator(*names, "magnetometer").standard_normal((len(leg.time_s), 3))
         first, second = tangent_axes(leg.nadir_body)
         tilt = math.tan(math.radians(self.flight.horizon_deg)) * generator(
@@ -264,13 +284,17 @@ class FlightPreset(Preset):
             fixed, distance = self._bench_names, leg.orbit.distance_km
             noisy = self._of_unit(*names, "instruments")
             temperature = aboard.thermometer_k(temperature, fixed, noisy)
-            missing = aboard.missing_field(distance, self.name, self.version)
+            missing = aboard.missing_field(distance, *self.streams)
             field_nt = field_nt + missing.inertial(-leg.nadir, distance, leg.time_s)
             offset = aboard.magnetometer_offset_nt(*fixed)
         read_nt = rotated(leg.turn, field_nt) + offset + self.flight.magnetometer_nt * noise
+        step_s = self.flight.span(known).step_s
+        drawn = generator(*self._of_unit(*names, "gyro"))
+        rate = self.flight.gyro.read(leg.turn, leg.turn_before, leg.time_s, step_s, drawn)
         return {
             "time_s": leg.time_s,
             "temperature_K": temperature,
+            "rate_deg_s": rate,
             "eclipse": leg.eclipse,
             "albedo": np.full(len(leg.time_s), setup.earth is not None) & ~leg.eclipse,
             "magnetic_field_nT": read_nt,
@@ -295,6 +319,11 @@ class FlightPreset(Preset):
                 "time_s": "(N,) seconds since the start of the flight",
                 "temperature_K": "(N,) of the sensor, as a thermometer with the errors of the "
                 "condition's bench reads it",
+                "rate_deg_s": "(N, 3) mean rate of the body over the step before, body frame, as a "
+                "gyroscope reads it: angle random walk "
+                f"{flight.gyro.angle_random_walk_deg_sqrt_h:g} deg/sqrt(h), bias "
+                f"{flight.gyro.bias_deg_h:g} deg/h when switched on for the split, wandering by "
+                f"{flight.gyro.bias_walk_deg_h_sqrt_h:g} deg/h in an hour",
                 "eclipse": "(N,) bool: in Earth's cylindrical shadow, no sunlight at all",
                 "albedo": "(N,) bool: whether light from the sunlit Earth is simulated",
                 "magnetic_field_nT": "(N, 3) body frame, as a magnetometer reads it: noise of "

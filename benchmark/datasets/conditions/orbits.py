@@ -44,6 +44,7 @@ def in_orbit(
     *,
     name: str,
     version: int,
+    drawn_as: int,
     ground: Preset,
     setups: Mapping[str, Condition],
     attitude: Attitude,
@@ -72,6 +73,7 @@ def in_orbit(
         follows=follows,
         description=description,
         regime=ground.regime,
+        drawn_as=drawn_as,
     )
 
 

@@ -36,6 +36,6 @@ class UnevenPreset(Preset):
         irradiance = self.condition(condition).irradiance
         if not isinstance(irradiance, UnevenIrradiance):
             return scene
-        stream = generator(self.name, self.version, known, "stray-slope")
-        size = len(self.directions.sun(known, generator(self.name, self.version, known, "sun")))
+        stream = generator(*self.streams, known, "stray-slope")
+        size = len(self.directions.sun(known, generator(*self.streams, known, "sun")))
         return UnevenScene.of(scene, irradiance.draw_slopes(size, stream)[rows])

@@ -1,0 +1,1 @@
+"""State estimation over sequences: a description of state spaces, and filters that read it."""

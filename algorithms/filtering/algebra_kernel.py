@@ -1,0 +1,265 @@
+"""Kalman algebra on batches of small matrices: prediction, update in Joseph's form, spreads.
+
+All arrays are (B, ...), float64; B are Monte-Carlo runs, or hypotheses of one run.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from algorithms.compiled import compiled
+from algorithms.contract import Floats
+
+
+@compiled
+def predicted(covariance: Floats, transition: Floats, noise: Floats) -> Floats:
+    """``F P F' + Q`` (B, n, n), symmetric to the last bit; Q (n, n) for all."""
+    count, n = covariance.shape[0], covariance.shape[1]
+    out = np.empty((count, n, n))
+    half = np.empty((n, n))
+    for b in range(count):
+        half[:] = 0.0
+        for i in range(n):
+            for k in range(n):
+                f = transition[b, i, k]
+                if f != 0.0:
+                    for j in range(n):
+                        half[i, j] += f * covariance[b, k, j]
+        for i in range(n):
+            for j in range(i + 1):
+                total = 0.5 * (noise[i, j] + noise[j, i])
+                for k in range(n):
+                    total += half[i, k] * transition[b, j, k]
+                out[b, i, j] = total
+                out[b, j, i] = total
+    return out
+
+
+@compiled
+def innovation_covariance(covariance: Floats, sensitivity: Floats, noise: Floats) -> Floats:
+    """``H P H' + R`` (B, m, m)."""
+    count, m, n = sensitivity.shape
+    out = np.empty((count, m, m))
+    half = np.empty((m, n))
+    for b in range(count):
+        half[:] = 0.0
+        for i in range(m):
+            for k in range(n):
+                h = sensitivity[b, i, k]
+                if h != 0.0:
+                    for j in range(n):
+                        half[i, j] += h * covariance[b, k, j]
+        for i in range(m):
+            for j in range(i + 1):
+                total = 0.5 * (noise[b, i, j] + noise[b, j, i])
+                for k in range(n):
+                    total += half[i, k] * sensitivity[b, j, k]
+                out[b, i, j] = total
+                out[b, j, i] = total
+    return out
+
+
+@compiled
+def updated(  # noqa: C901, PLR0912, PLR0915 - one pass, nothing allocated between
+    covariance: Floats,
+    sensitivity: Floats,
+    noise: Floats,
+    innovation: Floats,
+    estimated: Floats,
+) -> tuple[Floats, Floats, Floats, Floats]:
+    """Step (B, n), covariance in Joseph's form, squared innovation (B,), log-likelihood (B,).
+
+    `estimated` (n,) is 1 where the gain counts and 0 where an error is only considered. A NaN in
+    an innovation leaves its run as it is, with NaN of both numbers.
+    """
+    count, m, n = sensitivity.shape
+    step, out = np.zeros((count, n)), covariance.copy()
+    squared, likelihood = np.full(count, np.nan), np.full(count, np.nan)
+    shape = np.empty((n, m))  # P H'
+    gain, white = np.empty((n, m)), np.empty(m)
+    left, half = np.empty((n, n)), np.empty((n, n))
+    root = np.empty((m, m))
+    for b in range(count):
+        heard = True
+        for i in range(m):
+            if not math.isfinite(innovation[b, i]):
+                heard = False
+        if not heard:
+            continue
+        for i in range(n):
+            for j in range(m):
+                total = 0.0
+                for k in range(n):
+                    total += covariance[b, i, k] * sensitivity[b, j, k]
+                shape[i, j] = total
+        determinant = 0.0
+        for i in range(m):
+            for j in range(i + 1):
+                total = 0.5 * (noise[b, i, j] + noise[b, j, i])
+                for k in range(n):
+                    total += sensitivity[b, i, k] * shape[k, j]
+                for k in range(j):
+                    total -= root[i, k] * root[j, k]
+                if i == j:
+                    root[i, i] = math.sqrt(total) if total > 0.0 else math.nan
+                    determinant += 2.0 * math.log(root[i, i])
+                else:
+                    root[i, j] = total / root[j, j]
+        squares = 0.0
+        for i in range(m):
+            total = innovation[b, i]
+            for k in range(i):
+                total -= root[i, k] * white[k]
+            white[i] = total / root[i, i]
+            squares += white[i] * white[i]
+        squared[b] = squares
+        likelihood[b] = -0.5 * (squares + determinant + m * math.log(2.0 * math.pi))
+        for i in range(n):  # rows of K = P H' S^-1 by the two triangles
+            for j in range(m):
+                total = shape[i, j]
+                for k in range(j):
+                    total -= root[j, k] * gain[i, k]
+                gain[i, j] = total / root[j, j]
+            for j in range(m - 1, -1, -1):
+                total = gain[i, j]
+                for k in range(j + 1, m):
+                    total -= root[k, j] * gain[i, k]
+                gain[i, j] = total / root[j, j]
+            for j in range(m):
+                gain[i, j] *= estimated[i]
+                step[b, i] += gain[i, j] * innovation[b, j]
+        for i in range(n):
+            for j in range(n):
+                total = 1.0 if i == j else 0.0
+                for k in range(m):
+                    total -= gain[i, k] * sensitivity[b, k, j]
+                left[i, j] = total
+        half[:] = 0.0
+        for i in range(n):
+            for k in range(n):
+                f = left[i, k]
+                if f != 0.0:
+                    for j in range(n):
+                        half[i, j] += f * covariance[b, k, j]
+        for i in range(n):
+            for j in range(i + 1):
+                total = 0.0
+                for k in range(n):
+                    total += half[i, k] * left[j, k]
+                for k in range(m):
+                    for q in range(m):
+                        total += gain[i, k] * noise[b, k, q] * gain[j, q]
+                out[b, i, j] = total
+                out[b, j, i] = total
+    return step, out, squared, likelihood
+
+
+@compiled
+def gained(  # noqa: C901, PLR0912 - one pass, nothing allocated between
+    covariance: Floats, crossed: Floats, spread: Floats, innovation: Floats
+) -> tuple[Floats, Floats, Floats, Floats]:
+    """As `updated`, of sigma points: ``K = C S^-1``, ``P - K S K'``; C (B, n, m), S (B, m, m)."""
+    count, n, m = crossed.shape
+    step, out = np.zeros((count, n)), covariance.copy()
+    squared, likelihood = np.full(count, np.nan), np.full(count, np.nan)
+    half, white, root = np.empty((n, m)), np.empty(m), np.empty((m, m))
+    for b in range(count):
+        heard = True
+        for i in range(m):
+            if not math.isfinite(innovation[b, i]):
+                heard = False
+        if not heard:
+            continue
+        determinant = 0.0
+        for i in range(m):
+            for j in range(i + 1):
+                total = spread[b, i, j]
+                for k in range(j):
+                    total -= root[i, k] * root[j, k]
+                if i == j:
+                    root[i, i] = math.sqrt(total) if total > 0.0 else math.nan
+                    determinant += 2.0 * math.log(root[i, i])
+                else:
+                    root[i, j] = total / root[j, j]
+        squares = 0.0
+        for i in range(m):
+            total = innovation[b, i]
+            for k in range(i):
+                total -= root[i, k] * white[k]
+            white[i] = total / root[i, i]
+            squares += white[i] * white[i]
+        squared[b] = squares
+        likelihood[b] = -0.5 * (squares + determinant + m * math.log(2.0 * math.pi))
+        for i in range(n):  # C L'^-1, whose square is K S K'
+            for j in range(m):
+                total = crossed[b, i, j]
+                for k in range(j):
+                    total -= root[j, k] * half[i, k]
+                half[i, j] = total / root[j, j]
+                step[b, i] += half[i, j] * white[j]
+        for i in range(n):
+            for j in range(i + 1):
+                total = covariance[b, i, j]
+                for k in range(m):
+                    total -= half[i, k] * half[j, k]
+                out[b, i, j] = total
+                out[b, j, i] = total
+    return step, out, squared, likelihood
+
+
+@compiled
+def crossed(first: Floats, second: Floats, weights: Floats) -> Floats:
+    """``sum_p w_p a_p b_p'`` (B, n, m) of deviations (B, p, n) and (B, p, m)."""
+    count, points, n = first.shape
+    m = second.shape[2]
+    out = np.zeros((count, n, m))
+    for b in range(count):
+        for p in range(points):
+            for i in range(n):
+                f = weights[p] * first[b, p, i]
+                for j in range(m):
+                    out[b, i, j] += f * second[b, p, j]
+    return out
+
+
+@compiled
+def sigma_errors(covariance: Floats, scale: float) -> Floats:
+    """(B, 2 n + 1, n): none, then `scale` times each column of a root of P, then their opposites.
+
+    NaN throughout where P has no root.
+    """
+    count, n = covariance.shape[0], covariance.shape[1]
+    out = np.zeros((count, 2 * n + 1, n))
+    root = np.zeros((n, n))
+    for b in range(count):
+        for i in range(n):
+            for j in range(i + 1):
+                total = covariance[b, i, j]
+                for k in range(j):
+                    total -= root[i, k] * root[j, k]
+                if i == j:
+                    root[i, i] = math.sqrt(total) if total > 0.0 else math.nan
+                else:
+                    root[i, j] = total / root[j, j]
+        for p in range(n):
+            for i in range(p, n):
+                out[b, 1 + p, i] = scale * root[i, p]
+                out[b, 1 + n + p, i] = -scale * root[i, p]
+    return out
+
+
+@compiled
+def centred(values: Floats, weights: Floats) -> tuple[Floats, Floats]:
+    """Weighted means (B, q) of points (B, p, q), and the points less their mean."""
+    count, points, size = values.shape
+    mean, off = np.zeros((count, size)), np.empty((count, points, size))
+    for b in range(count):
+        for p in range(points):
+            for i in range(size):
+                mean[b, i] += weights[p] * values[b, p, i]
+        for p in range(points):
+            for i in range(size):
+                off[b, p, i] = values[b, p, i] - mean[b, i]
+    return mean, off

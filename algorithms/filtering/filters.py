@@ -1,0 +1,313 @@
+"""Kalman filters on a `StateSpace`: extended, unscented, cubature, adaptive, robust, considering.
+
+A filter holds settings only. What it knows is a `Belief`, which each step turns into another; the
+batch axis B are Monte-Carlo runs, or the hypotheses of `algorithms.filtering.hypotheses`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import Protocol
+
+import numpy as np
+
+from algorithms.contract import Floats
+from algorithms.filtering import algebra_kernel as algebra
+from algorithms.filtering.state_space import StateSpace
+
+
+@dataclass(frozen=True)
+class Belief:
+    """What a filter knows after a step.
+
+    Attributes
+    ----------
+    states : ndarray, shape (B, S)
+        Best estimates.
+    covariance : ndarray, shape (B, n, n)
+        Of their errors.
+    noise : ndarray, shape (B, m, m)
+        Covariance of readings as the filter takes it.
+    squared_innovation : ndarray, shape (B,)
+        Of the last update, in units of its own covariance; NaN where nothing was read. Chi-square
+        of m degrees of freedom where the state space is the system's.
+    log_likelihood : ndarray, shape (B,)
+        Of the last reading.
+    weights : ndarray, shape (B,)
+        Probability of each hypothesis among those of its run; 1 where there is one.
+    """
+
+    states: Floats
+    covariance: Floats
+    noise: Floats
+    squared_innovation: Floats
+    log_likelihood: Floats
+    weights: Floats
+
+
+def begun(space: StateSpace, states: Floats, covariance: Floats) -> Belief:
+    """Belief before anything is read; covariance (B, n, n) or (n, n)."""
+    count = len(states)
+    n, m = space.errors, space.readings
+    nothing = np.full(count, np.nan)
+    return Belief(
+        states,
+        np.array(np.broadcast_to(covariance, (count, n, n)), order="C"),
+        np.array(np.broadcast_to(space.measurement_noise(), (count, m, m)), order="C"),
+        nothing,
+        nothing,
+        np.ones(count),
+    )
+
+
+class Filter(Protocol):
+    """A way from belief to belief."""
+
+    def begin(self, space: StateSpace, states: Floats, covariance: Floats) -> Belief:
+        """Belief before anything is read, of states (B, S); covariance (B, n, n) or (n, n)."""
+        ...
+
+    def estimate(self, space: StateSpace, belief: Belief) -> tuple[Floats, Floats]:
+        """Best states (B, S) and covariances (B, n, n), one a run."""
+        ...
+
+    def predict(self, space: StateSpace, belief: Belief, known: Floats, step_s: float) -> Belief:
+        """Belief one step on, nothing read."""
+        ...
+
+    def update(self, space: StateSpace, belief: Belief, read: Floats, known: Floats) -> Belief:
+        """Belief once readings (B, m) are in; a run with a NaN among them stays as it was."""
+        ...
+
+
+@dataclass(frozen=True)
+class ExtendedKalman:
+    """EKF: dynamics and readings linearised at the estimate, covariance in Joseph's form.
+
+    Parameters
+    ----------
+    considered : tuple of int
+        Errors that are considered, not estimated (Schmidt): their covariance enters gain and
+        update of all others, and no reading moves them.
+
+    Examples
+    --------
+    >>> from algorithms.filtering.state_space import LinearStateSpace
+    >>> one = np.eye(1)
+    >>> space = LinearStateSpace(one, 0 * one, one, one)
+    >>> belief = begun(space, np.zeros((1, 1)), one)
+    >>> belief = ExtendedKalman().update(space, belief, np.array([[2.0]]), np.zeros(0))
+    >>> belief.states, belief.covariance
+    (array([[1.]]), array([[[0.5]]]))
+    """
+
+    considered: tuple[int, ...] = ()
+
+    def begin(self, space: StateSpace, states: Floats, covariance: Floats) -> Belief:
+        """Belief before anything is read."""
+        return begun(space, states, covariance)
+
+    def estimate(self, space: StateSpace, belief: Belief) -> tuple[Floats, Floats]:
+        """States and covariances of the belief."""
+        del space
+        return belief.states, belief.covariance
+
+    def predict(self, space: StateSpace, belief: Belief, known: Floats, step_s: float) -> Belief:
+        """Belief one step on."""
+        transition = space.transition(belief.states, known, step_s)
+        covariance = algebra.predicted(belief.covariance, transition, space.process_noise(step_s))
+        states = space.propagated(belief.states, known, step_s)
+        return replace(belief, states=states, covariance=covariance)
+
+    def update(self, space: StateSpace, belief: Belief, read: Floats, known: Floats) -> Belief:
+        """Belief with readings (B, m)."""
+        sensitivity = space.sensitivity(belief.states, known)
+        innovation = read - space.measured(belief.states, known)
+        noise = self.weighed(belief, sensitivity, innovation)
+        step, covariance, squared, likelihood = algebra.updated(
+            belief.covariance,
+            sensitivity,
+            noise,
+            innovation,
+            _estimated(space.errors, self.considered),
+        )
+        states = space.moved(belief.states, step)
+        after = Belief(states, covariance, belief.noise, squared, likelihood, belief.weights)
+        return self.learnt(space, after, read, known, sensitivity)
+
+    def weighed(self, belief: Belief, sensitivity: Floats, innovation: Floats) -> Floats:
+        """(B, m, m) covariance of these readings: that of the belief."""
+        del sensitivity, innovation
+        return belief.noise
+
+    def learnt(
+        self, space: StateSpace, after: Belief, read: Floats, known: Floats, sensitivity: Floats
+    ) -> Belief:
+        """Belief with what the update tells of the noise: nothing here."""
+        del space, read, known, sensitivity
+        return after
+
+
+@dataclass(frozen=True)
+class AdaptiveKalman(ExtendedKalman):
+    """AKF: the covariance of readings follows what they leave (Mohamed and Schwarz).
+
+    After each update ``R <- R + (e e' + H P H' - R) / window``, e the residual and P the
+    covariance after the update: of a filter that has the right R, both together have it as their
+    mean.
+
+    Parameters
+    ----------
+    considered : tuple of int
+        As `ExtendedKalman`.
+    window : float
+        Readings over which the noise is averaged, above 1.
+    least : float
+        Share of the space's own variance below which none falls.
+    """
+
+    window: float = 50.0
+    least: float = 1e-4
+
+    def learnt(
+        self, space: StateSpace, after: Belief, read: Floats, known: Floats, sensitivity: Floats
+    ) -> Belief:
+        """Belief with its noise moved towards that of the residuals."""
+        residual = read - space.measured(after.states, known)
+        heard = np.isfinite(residual).all(axis=1) & np.isfinite(after.squared_innovation)
+        left = residual[:, :, None] * residual[:, None, :]
+        found = algebra.innovation_covariance(after.covariance, sensitivity, left)
+        noise = after.noise + (found - after.noise) / self.window
+        floor = self.least * np.diagonal(space.measurement_noise())
+        place = np.arange(space.readings)
+        noise[:, place, place] = np.maximum(noise[:, place, place], floor)
+        noise[~heard] = after.noise[~heard]
+        return replace(after, noise=noise)
+
+
+@dataclass(frozen=True)
+class RobustKalman(ExtendedKalman):
+    """RKF: a reading beyond some standard deviations counts less, so that its pull is bounded.
+
+    Huber's weights on each innovation: beyond `limit` standard deviations, its variance is
+    raised until the gain falls with the innovation's size and their product stays.
+
+    Parameters
+    ----------
+    considered : tuple of int
+        As `ExtendedKalman`.
+    limit : float
+        Standard deviations up to which a reading counts in full, positive.
+    """
+
+    limit: float = 2.0
+
+    def weighed(self, belief: Belief, sensitivity: Floats, innovation: Floats) -> Floats:
+        """Give the readings' covariance, raised where they are far off."""
+        spread = algebra.innovation_covariance(belief.covariance, sensitivity, belief.noise)
+        variance = np.diagonal(spread, axis1=1, axis2=2)
+        size = np.abs(innovation) / np.sqrt(variance)
+        excess = np.where(size > self.limit, size / self.limit - 1.0, 0.0)
+        noise = belief.noise.copy()
+        place = np.arange(noise.shape[1])
+        noise[:, place, place] += variance * excess
+        return noise
+
+
+@dataclass(frozen=True)
+class SigmaPointKalman:
+    """UKF and CKF: covariances by points on both sides of the estimate, without derivatives.
+
+    The n errors have 2 n points at ``sqrt(n + kappa)`` standard deviations, and the estimate
+    itself: the cubature rule of third degree for kappa 0, where the middle has no weight.
+
+    Parameters
+    ----------
+    kappa : float
+        From 0 up.
+    beta : float
+        Weight added to the middle's in covariances; 2 suits a normal distribution.
+
+    Examples
+    --------
+    >>> cubature = SigmaPointKalman(kappa=0.0, beta=0.0)
+    >>> cubature.weights(2)
+    (array([0.  , 0.25, 0.25, 0.25, 0.25]), array([0.  , 0.25, 0.25, 0.25, 0.25]))
+    """
+
+    kappa: float = 1.0
+    beta: float = 2.0
+
+    def weights(self, n: int) -> tuple[Floats, Floats]:
+        """(2 n + 1,) of means and of covariances, the middle first."""
+        return _weights(self.kappa, self.beta, n)
+
+    def begin(self, space: StateSpace, states: Floats, covariance: Floats) -> Belief:
+        """Belief before anything is read."""
+        return begun(space, states, covariance)
+
+    def estimate(self, space: StateSpace, belief: Belief) -> tuple[Floats, Floats]:
+        """States and covariances of the belief."""
+        del space
+        return belief.states, belief.covariance
+
+    def predict(self, space: StateSpace, belief: Belief, known: Floats, step_s: float) -> Belief:
+        """Belief one step on: the points' mean and spread, and the process noise."""
+        means, spreads = self.weights(space.errors)
+        points, _ = self._points(space, belief)
+        count, number, size = points.shape
+        after = space.propagated(points.reshape(-1, size), known, step_s)
+        middle = after[::number].copy()
+        off = space.away(after, np.repeat(middle, number, axis=0))
+        mean, _ = algebra.centred(off.reshape(count, number, -1), means)
+        states = space.moved(middle, mean)
+        # of the mean, in its own axes
+        off = space.away(after, np.repeat(states, number, axis=0)).reshape(count, number, -1)
+        covariance = algebra.crossed(off, off, spreads)
+        covariance += space.process_noise(step_s)
+        return replace(belief, states=states, covariance=covariance)
+
+    def update(self, space: StateSpace, belief: Belief, read: Floats, known: Floats) -> Belief:
+        """Belief with readings (B, m), by the points' readings."""
+        means, spreads = self.weights(space.errors)
+        points, errors = self._points(space, belief)
+        count, number, size = points.shape
+        seen = space.measured(points.reshape(-1, size), known).reshape(count, number, -1)
+        mean, off = algebra.centred(seen, means)
+        spread = algebra.crossed(off, off, spreads)
+        spread += belief.noise
+        step, covariance, squared, likelihood = algebra.gained(
+            belief.covariance, algebra.crossed(errors, off, spreads), spread, read - mean
+        )
+        states = space.moved(belief.states, step)
+        return Belief(states, covariance, belief.noise, squared, likelihood, belief.weights)
+
+    def _points(self, space: StateSpace, belief: Belief) -> tuple[Floats, Floats]:
+        """States (B, 2 n + 1, S) of the points, the estimate first, and their errors."""
+        n, count = space.errors, len(belief.states)
+        errors = algebra.sigma_errors(belief.covariance, math.sqrt(n + self.kappa))
+        number = 2 * n + 1
+        states = space.moved(np.repeat(belief.states, number, axis=0), errors.reshape(-1, n))
+        return states.reshape(count, number, -1), errors
+
+
+@lru_cache(maxsize=64)
+def _estimated(n: int, considered: tuple[int, ...]) -> Floats:
+    counts = np.ones(n)
+    counts[list(considered)] = 0.0
+    return counts
+
+
+@lru_cache(maxsize=64)
+def _weights(kappa: float, beta: float, n: int) -> tuple[Floats, Floats]:
+    means = np.full(2 * n + 1, 0.5 / (n + kappa))
+    means[0] = kappa / (n + kappa)
+    spreads = means.copy()
+    spreads[0] += beta
+    return means, spreads
+
+
+#: Cubature Kalman filter.
+CUBATURE = SigmaPointKalman(kappa=0.0, beta=0.0)

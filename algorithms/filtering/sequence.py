@@ -1,0 +1,350 @@
+"""`SunFilter`: a model that reads samples in the order of time and carries the Sun between them."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, ClassVar, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from algorithms.angles import separation_deg
+from algorithms.calibration.calibrated import WORST_RESIDUAL
+from algorithms.calibration.quality import FitQuality, data_digest
+from algorithms.context import Context, as_context, complete
+from algorithms.contract import FeatureKind, Floats, Model, SensorGeometry, UnusableDataError
+from algorithms.filtering.drift import LEVEL, MOTION, Drift, Gyroscope
+from algorithms.inputs import (
+    as_calibration_rows,
+    as_features,
+    require_fitted,
+    require_positive,
+    require_samples,
+)
+from algorithms.models.geometric.detector_faces import Normals, require_normals
+
+if TYPE_CHECKING:
+    from algorithms.filtering.filters import Belief, Filter
+    from algorithms.filtering.readings import FaceReadings, SpotReadings
+    from algorithms.filtering.sun_space import SunSpace
+
+CONTEXT = ("time_s", "rate_deg_s", "eclipse", "nadir", "temperature_K")
+"""Columns of the context that every filter reads."""
+
+FEWEST = 60
+"""Calibration samples below which nothing is learnt."""
+
+#: Directions tried at a series' first reading.
+_STARTS = 256
+#: Steps, in units of the calibration's, from which on a series is broken off.
+_LONGEST = 1.5
+#: Readings after which a series is answered: one alone is the static calibration's.
+_FEWEST_READ = 2
+#: Longest correlation of residuals that is looked for, in steps.
+_LAGS = 200
+_LEVEL = Drift(place=LEVEL, deviation=0.05, walk=5e-4)
+_HOUR_S = 3600.0
+_ROOT_HOUR = _HOUR_S**0.5
+
+
+@dataclass(frozen=True)
+class Track:
+    """What a filter makes of samples, row by row.
+
+    Attributes
+    ----------
+    sun : ndarray, shape (N, 3)
+        Unit vectors, dead reckoning where nothing is read; NaN before a series' first reading.
+    deviation_deg : ndarray, shape (N,)
+        1-sigma of a tangent axis.
+    read : ndarray of bool, shape (N,)
+        Whether the row's features were used.
+    squared_innovation : ndarray, shape (N,)
+        In units of its covariance; NaN where nothing was read, and at a series' start.
+    series : ndarray of int, shape (N,)
+        Number of the row's series, from 0.
+    drift : ndarray, shape (N, p)
+        The sensor's parameters in the state.
+    drift_deviation : ndarray, shape (N, p)
+        Their 1-sigma.
+    bias_deg_h : ndarray, shape (N, 3)
+        Of the gyroscope.
+    """
+
+    sun: Floats
+    deviation_deg: Floats
+    read: NDArray[np.bool_]
+    squared_innovation: Floats
+    series: NDArray[np.int64]
+    drift: Floats
+    drift_deviation: Floats
+    bias_deg_h: Floats
+
+
+@dataclass
+class SunFilter(Model):
+    """Base of the filters: learns how the sensor reads a Sun, then follows it from row to row.
+
+    Rows are taken in the order given. Where time does not go on by a step of the calibration's, a
+    new series begins and what was known is forgotten. A row is read where it has features and
+    light; any other is answered NaN, and the filter goes on by dead reckoning beneath it.
+
+    Parameters
+    ----------
+    face_normals : tuple of K vectors
+        Of faces, in the order of the features; none for spots and balances.
+    angle_walk_deg_sqrt_h, bias_deg_h, bias_walk_deg_h_sqrt_h : float
+        The gyroscope's data sheet, positive: angle random walk, bias when switched on, and what
+        the bias moves in an hour.
+    worst_deg : float
+        1-sigma beyond which a direction is not answered, positive.
+
+    Attributes
+    ----------
+    readings_ : FaceReadings or SpotReadings
+        How the sensor reads a direction.
+    noise_ : ndarray, shape (m,)
+        Variance of each reading: of the residuals, times the steps over which they are correlated.
+    starts_ : ndarray, shape (G, 3)
+        Directions that the calibration saw.
+    step_s_ : float
+        Between its samples.
+    quality_ : FitQuality
+        Of the filter on its own calibration.
+    """
+
+    face_normals: Normals = ()
+    angle_walk_deg_sqrt_h: float = 0.15
+    bias_deg_h: float = 10.0
+    bias_walk_deg_h_sqrt_h: float = 0.5
+    worst_deg: float = 10.0
+
+    readings_: FaceReadings | SpotReadings = field(init=False, repr=False, compare=False)
+    noise_: Floats = field(init=False, repr=False, compare=False)
+    starts_: Floats = field(init=False, repr=False, compare=False)
+    step_s_: float = field(init=False, repr=False, compare=False)
+    quality_: FitQuality = field(init=False, repr=False, compare=False)
+
+    #: Rows that a model of single samples would answer, a filter does not answer alone.
+    sequential: ClassVar[bool] = True
+
+    def __post_init__(self) -> None:
+        if self.face_normals:
+            require_normals(self.face_normals, self.about.name)
+        require_positive(
+            self.about.name,
+            angle_walk_deg_sqrt_h=self.angle_walk_deg_sqrt_h,
+            bias_deg_h=self.bias_deg_h,
+            bias_walk_deg_h_sqrt_h=self.bias_walk_deg_h_sqrt_h,
+            worst_deg=self.worst_deg,
+        )
+
+    @classmethod
+    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
+        """Return the filter for the sensor's faces, or for a spot or balance."""
+        cls.about.require_kind(kind)
+        geometry.require(*cls.about.needs, by=cls.about.name)
+        if kind is not FeatureKind.SIGNALS:
+            return cls()
+        geometry.require("face_normals", by=cls.about.name)
+        return cls(face_normals=geometry.face_normals or ())
+
+    @abstractmethod
+    def filter(self) -> Filter:
+        """How beliefs go on."""
+        ...
+
+    def drifts(self) -> Sequence[Drift]:
+        """Parameters of the sensor in the state: the light's strength before faces."""
+        return (_LEVEL,) if self.face_normals else ()
+
+    def considered(self) -> tuple[int, ...]:
+        """Which errors of the state are considered and not estimated; none."""
+        return ()
+
+    def columns(self) -> int:
+        """One a face; two of a spot or balance."""
+        return len(self.face_normals) or 2
+
+    def fit(self, features: ArrayLike, sun: ArrayLike, context: Context | None = None) -> Self:
+        """Learn how the sensor reads Suns (N, 3), unit vectors, from features (N, F); self."""
+        by = self.about.name
+        found, vectors, usable = as_calibration_rows(
+            features, sun, self.columns(), by, frontal=not self.face_normals
+        )
+        told = as_context(context, self.about.context, len(usable), by)
+        known = complete(told, len(usable))[usable]
+        told = {name: column[usable] for name, column in told.items()}
+        known &= told["eclipse"] == 0
+        require_samples(int(known.sum()), FEWEST, by, "to learn how the sensor reads a Sun")
+        order = np.flatnonzero(known)[np.argsort(told["time_s"][known], kind="stable")]
+        found, vectors = found[order], vectors[order]
+        told = {name: column[order] for name, column in told.items()}
+        learnt = replace(self)  # a refusal leaves no trace
+        learnt.learn(found, vectors, told)
+        learnt.assess(found, vectors, told)
+        vars(self).update(vars(learnt))
+        return self
+
+    def learn(self, features: Floats, sun: Floats, told: dict[str, Floats]) -> None:
+        """Set readings, their noise, and what series begin from."""
+        from algorithms.filtering.readings import (  # noqa: PLC0415 - Numba, at the first fit only
+            FaceReadings,
+            SpotReadings,
+        )
+
+        by, known = self.about.name, _known(told)
+        if self.face_normals:
+            normals = np.asarray(self.face_normals, dtype=np.float64)
+            self.readings_ = FaceReadings.learnt(normals, features, sun, known, by)
+        else:
+            self.readings_ = SpotReadings.learnt(features, sun, known, by)
+        residuals = features - self._explained(sun, known)
+        apart = np.diff(told["time_s"])
+        self.step_s_ = float(np.median(apart))
+        if not self.step_s_ > 0:
+            raise UnusableDataError(f"{by}: the calibration's samples must follow each other")
+        size = float(np.abs(features).max())
+        variance = np.maximum((residuals**2).mean(axis=0), (1e-9 * size) ** 2)
+        self.noise_ = variance * correlated_steps(residuals)
+        chosen = np.linspace(0, len(sun) - 1, min(_STARTS, len(sun))).round().astype(int)
+        self.starts_ = sun[chosen]
+
+    def assess(self, features: Floats, sun: Floats, told: dict[str, Floats]) -> None:
+        """Set `quality_`: UnusableDataError where the filter does not follow its calibration."""
+        found = self._answers(self.track(features, told))
+        error = separation_deg(found, sun)
+        answered = error[np.isfinite(error)]
+        residual = float(np.sqrt(np.mean(answered**2))) if len(answered) else np.inf
+        spread = np.degrees(np.sqrt(((sun - sun.mean(axis=0)) ** 2).sum(axis=1).mean()))
+        if not residual <= WORST_RESIDUAL * spread:
+            raise UnusableDataError(
+                f"{self.about.name}: the filter leaves {residual:.3g} deg on its own calibration, "
+                f"whose Suns spread over {spread:.3g} deg: features, Suns, rates and times do not "
+                "belong together"
+            )
+        self.quality_ = FitQuality(
+            samples=len(features),
+            residual_rms_deg=residual,
+            data_digest=data_digest(features, sun, told),
+            settings=self.readings_.settings(),
+        )
+
+    def predict(self, features: ArrayLike, context: Context | None = None) -> Floats:
+        """Sun unit vectors (N, 3) of rows in the order of time; NaN where nothing was read."""
+        require_fitted(self, "quality_")
+        return self._answers(self.track(features, context))
+
+    def deviation_deg(self, features: ArrayLike, context: Context | None = None) -> Floats:
+        """1-sigma (N,) of each answer's errors along a tangent axis, degrees."""
+        require_fitted(self, "quality_")
+        track = self.track(features, context)
+        answered = np.isfinite(self._answers(track)[:, 0])
+        return np.where(answered, track.deviation_deg, np.nan)
+
+    def track(self, features: ArrayLike, context: Context | None = None) -> Track:
+        """Follow the Sun through rows, those in the dark too, with what the filter thinks of it."""
+        require_fitted(self, "starts_")
+        found = as_features(features, self.columns(), self.about.name)
+        told = as_context(context, self.about.context, len(found), self.about.name)
+        usable = complete(told, len(found)) & np.isfinite(found).all(axis=1)
+        usable &= told["eclipse"] == 0
+        usable &= np.where(usable, self.readings_.lit(found), 0.0) > 0
+        return self._followed(found, told["time_s"], _known(told), usable)
+
+    def space(self) -> SunSpace:
+        """State space of the fitted sensor."""
+        from algorithms.filtering.sun_space import SunSpace  # noqa: PLC0415 - Numba
+
+        gyroscope = Gyroscope(
+            float(np.radians(self.angle_walk_deg_sqrt_h / _ROOT_HOUR)),
+            float(np.radians(self.bias_deg_h / _HOUR_S)),
+            float(np.radians(self.bias_walk_deg_h_sqrt_h / (_HOUR_S * _ROOT_HOUR))),
+        )
+        return SunSpace(self.readings_, np.diag(self.noise_), gyroscope, self.drifts())
+
+    def _followed(
+        self, found: Floats, time_s: Floats, known: Floats, usable: NDArray[np.bool_]
+    ) -> Track:
+        space, by = self.space(), self.filter()
+        known = known - np.array([0.0] * 6 + [self.readings_.middle_k])
+        count = len(found)
+        states = np.full((count, space.errors + 7), np.nan)
+        variance = np.full((count, space.errors), np.nan)
+        squared, read = np.full(count, np.nan), np.zeros(count, dtype=np.bool_)
+        moving = np.isfinite(known[:, :3]).all(axis=1)
+        steps = np.diff(time_s, prepend=-np.inf)
+        follows = moving & (steps > 0) & (steps <= _LONGEST * self.step_s_)
+        belief: Belief | None = None
+        for row in range(count):
+            if not follows[row]:
+                belief = None
+            elif belief is not None:
+                belief = by.predict(space, belief, known[row], float(steps[row]))
+            if usable[row] and belief is None:
+                belief = space.started(by, self.starts_, found[row], known[row], self.considered())
+                read[row] = belief is not None
+            elif usable[row] and belief is not None:
+                belief = by.update(space, belief, found[row : row + 1], known[row])
+                squared[row] = belief.squared_innovation[0]
+                read[row] = squared[row] == squared[row]  # not NaN
+            if belief is not None:
+                best, covariance = by.estimate(space, belief)
+                states[row], variance[row] = best[0], covariance[0].diagonal()
+        return Track(
+            sun=states[:, 6:9],
+            deviation_deg=np.degrees(np.sqrt(0.5 * (variance[:, 0] + variance[:, 1]))),
+            read=read,
+            squared_innovation=squared,
+            series=np.cumsum(~follows) - int(count > 0 and not follows[0]),
+            drift=states[:, 12:],
+            drift_deviation=np.sqrt(variance[:, MOTION:]),
+            bias_deg_h=np.degrees(states[:, 9:12]) * _HOUR_S,
+        )
+
+    def _answers(self, track: Track) -> Floats:
+        """Directions of rows that were read, from a series' second reading on."""
+        total = np.cumsum(track.read)
+        start = np.zeros(int(track.series.max()) + 1)
+        first = np.r_[True, np.diff(track.series) > 0]
+        start[track.series[first]] = (total - track.read)[first]
+        counted = total - start[track.series]
+        held = track.read & (counted >= _FEWEST_READ) & (track.deviation_deg <= self.worst_deg)
+        return np.where(held[:, None], track.sun, np.nan)
+
+    def _explained(self, sun: Floats, known: Floats) -> Floats:
+        """Give readings (n, m) of known Suns."""
+        from algorithms.filtering.sun_space import SunSpace  # noqa: PLC0415 - Numba
+
+        space = SunSpace(self.readings_, np.eye(self.columns()), Gyroscope(1.0, 1.0, 1.0), ())
+        states = space.states_towards(sun)
+        known = known - np.array([0.0] * 6 + [self.readings_.middle_k])
+        rows = [space.measured(states[n : n + 1], known[n]) for n in range(len(sun))]
+        return np.concatenate(rows)
+
+
+def correlated_steps(residuals: Floats) -> Floats:
+    """Count steps (m,) over which residuals (n, m) are correlated, at least 1.
+
+    ``1 + 2 sum rho_k`` up to where the correlation has fallen to a twentieth: a mean over many
+    samples has this many times the variance that it would have of white ones.
+    """
+    count, number = residuals.shape
+    steps = np.ones(number)
+    for m in range(number):
+        r = residuals[:, m] - residuals[:, m].mean()
+        power = float((r**2).sum())
+        for lag in range(1, min(_LAGS, count // 4)):
+            rho = float((r[lag:] * r[:-lag]).sum()) / power if power > 0 else 0.0
+            if rho < 0.05:
+                break
+            steps[m] += 2.0 * rho
+    return steps
+
+
+def _known(told: dict[str, Floats]) -> Floats:
+    """(N, 7) what states and readings go by: rate in rad/s, nadir, temperature."""
+    rate, nadir = np.radians(told["rate_deg_s"]), told["nadir"]
+    return np.column_stack([rate, nadir, told["temperature_K"]])

@@ -1,0 +1,147 @@
+"""`SunSpace`: the Sun seen from a turning body, its gyroscope's bias, and a sensor that drifts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from algorithms.contract import Floats
+from algorithms.filtering import algebra_kernel as algebra
+from algorithms.filtering import sun_kernel as motion
+from algorithms.filtering.drift import MOTION, Drift, Gyroscope
+from algorithms.filtering.filters import Belief, Filter
+from algorithms.filtering.readings import Readings
+
+_DIRECTION = slice(6, 9)
+#: Of the direction, rad, before the first reading; and steps towards what explains it best.
+_FIRST_RAD, _STEPS = 0.5, 6
+
+
+class SunSpace:
+    """State space of a Sun sensor on a body whose turning a gyroscope tells.
+
+    ``s' = exp(-[(w - b) dt]) s``, bias and parameters wander, readings are those learnt. States
+    are (B, 12 + p), errors (B, 5 + p): see `algorithms.filtering.sun_kernel`.
+
+    Parameters
+    ----------
+    readings : Readings
+        Learnt.
+    noise : ndarray, shape (m, m)
+        Covariance of readings.
+    gyroscope : Gyroscope
+        Its data sheet.
+    drifts : sequence of Drift
+        The p numbers of the sensor that are in the state.
+    """
+
+    def __init__(
+        self, readings: Readings, noise: Floats, gyroscope: Gyroscope, drifts: Sequence[Drift]
+    ) -> None:
+        self._readings, self._noise = readings, noise
+        self._gyroscope = gyroscope
+        self._chosen = np.array([drift.place for drift in drifts], dtype=np.float64)
+        self.errors = MOTION + len(drifts)
+        first = [_FIRST_RAD] * 2 + [gyroscope.bias] * 3 + [drift.deviation for drift in drifts]
+        self._first = np.diag(np.square(first))
+        walks = [0.0] * 2 + [gyroscope.bias_walk] * 3 + [drift.walk for drift in drifts]
+        self._walks = np.square(walks)
+        self._step: tuple[float, Floats] | None = None
+
+    @property
+    def readings(self) -> int:
+        """Numbers read at a time."""
+        return self._readings.count
+
+    def propagated(self, states: Floats, known: Floats, step_s: float) -> Floats:
+        """States after the body turned."""
+        found: Floats = motion.propagated(states, known, step_s)
+        return found
+
+    def transition(self, states: Floats, known: Floats, step_s: float) -> Floats:
+        """Jacobian of `propagated`."""
+        after = motion.propagated(states, known, step_s)
+        found: Floats = motion.transition(states, after, known, step_s)
+        return found
+
+    def process_noise(self, step_s: float) -> Floats:
+        """Angle random walk, and what the bias' own walk adds to it; walks of all the rest."""
+        if self._step is None or self._step[0] != step_s:  # steps are nearly always alike
+            noise = np.diag(self._walks * step_s)
+            walk = self._gyroscope
+            noise[0, 0] = noise[1, 1] = (
+                walk.angle_walk**2 * step_s + walk.bias_walk**2 * step_s**3 / 3.0
+            )
+            self._step = step_s, noise
+        return self._step[1]
+
+    def measured(self, states: Floats, known: Floats) -> Floats:
+        """Give readings without noise."""
+        return self._readings.at(states, self._chosen, known)[0]
+
+    def sensitivity(self, states: Floats, known: Floats) -> Floats:
+        """Jacobian of `measured`."""
+        return self._readings.at(states, self._chosen, known)[1]
+
+    def measurement_noise(self) -> Floats:
+        """Covariance of readings."""
+        return self._noise
+
+    def moved(self, states: Floats, errors: Floats) -> Floats:
+        """States with errors added."""
+        found: Floats = motion.moved(states, errors)
+        return found
+
+    def away(self, states: Floats, origins: Floats) -> Floats:
+        """Errors that take origins to states."""
+        found: Floats = motion.away(states, origins)
+        return found
+
+    def states_towards(self, sun: Floats) -> Floats:
+        """States (B, S) of directions (B, 3), without bias and drift."""
+        states = np.zeros((len(sun), self.errors + 7))
+        least = np.eye(3)[np.abs(sun).argmin(axis=1)]
+        first = np.cross(least, sun)
+        first /= np.sqrt((first**2).sum(axis=1, keepdims=True))
+        states[:, 0:3], states[:, 3:6], states[:, 6:9] = first, np.cross(sun, first), sun
+        return states
+
+    def started(
+        self,
+        by: Filter,
+        starts: Floats,
+        read: Floats,
+        known: Floats,
+        considered: tuple[int, ...] = (),
+    ) -> Belief | None:
+        """Belief after a first reading (m,), from the best of directions (G, 3); None without one.
+
+        Gauss-Newton steps of the update, all from the same prior (iterated Kalman update).
+        """
+        scale = np.sqrt(np.diagonal(self._noise))
+        tried = self.states_towards(starts)
+        off = (read - self.measured(tried, known)) / scale
+        cost = (off**2).sum(axis=1)
+        if not np.isfinite(cost).any():
+            return None
+        first = tried[[int(np.nanargmin(cost))]]
+        state, step = first, np.zeros((1, self.errors))
+        noise = self._noise[None]
+        estimated = np.ones(self.errors)
+        estimated[list(considered)] = 0.0
+        prior = self._first[None].copy()
+        covariance = prior
+        for _ in range(_STEPS):
+            values, slopes = self._readings.at(state, self._chosen, known)
+            innovation = read - values + (slopes @ step[0])
+            if not np.isfinite(innovation).all():
+                return None
+            step, covariance, _, _ = algebra.updated(prior, slopes, noise, innovation, estimated)
+            state = self.moved(first, step)
+        return by.begin(self, state, covariance)
+
+    @staticmethod
+    def direction(states: Floats) -> Floats:
+        """(B, 3) unit vectors to the Sun."""
+        return states[:, _DIRECTION]

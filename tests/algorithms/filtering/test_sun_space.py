@@ -1,0 +1,146 @@
+"""The Sun in a turning body: exact turns, derivatives, and filters that know their own errors."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from kalman_runs import SPACES, STEP_S, drawn, first_doubt, turned_exactly
+from scipy.stats import chi2
+
+from algorithms.filtering.filters import CUBATURE, ExtendedKalman, SigmaPointKalman
+
+NAMES = ("faces", "spot", "gains", "earth", "head")
+KNOWN = np.array([0.01, -0.02, 0.015, 0.6, 0.0, -0.8, 12.0])
+
+
+def some_states(space, count=7):
+    rng = np.random.default_rng(4)
+    sun = rng.normal((0.2, -0.1, 1.0), 0.3, (count, 3))
+    states = space.states_towards(sun / np.linalg.norm(sun, axis=1, keepdims=True))
+    size = np.r_[0.3, 0.3, 1e-3 * np.ones(3), 0.02 * np.ones(space.errors - 5)]
+    return space.moved(states, size * rng.standard_normal((count, space.errors)))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_body_that_turns_sees_the_sun_turn_back(name: str) -> None:
+    states = some_states(SPACES[name])
+    after = SPACES[name].propagated(states, KNOWN, STEP_S)
+    for before, found in zip(states, after, strict=True):
+        turn = -(KNOWN[:3] - before[9:12]) * STEP_S
+        expected = turned_exactly(before[:9].reshape(3, 3), turn)
+        np.testing.assert_allclose(found[:9].reshape(3, 3), expected, atol=1e-14)
+        np.testing.assert_array_equal(found[9:], before[9:])
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_moved_and_away_undo_each_other(name: str) -> None:
+    space, rng = SPACES[name], np.random.default_rng(6)
+    states = some_states(space)
+    errors = rng.normal(0.0, 0.2, (len(states), space.errors))
+    again = space.moved(states, errors)
+    np.testing.assert_allclose(space.away(again, states), errors, atol=1e-13)
+    axes = again[:, :9].reshape(-1, 3, 3)
+    np.testing.assert_allclose(
+        axes @ axes.transpose(0, 2, 1), np.eye(3)[None] * np.ones((7, 1, 1)), atol=1e-14
+    )
+    np.testing.assert_allclose(np.linalg.det(axes), 1.0, atol=1e-14)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_derivatives_are_those_of_differences(name: str) -> None:
+    space = SPACES[name]
+    states = some_states(space)
+    n, step = space.errors, 1e-6
+    transition = space.transition(states, KNOWN, STEP_S)
+    sensitivity = space.sensitivity(states, KNOWN)
+    after = space.propagated(states, KNOWN, STEP_S)
+    for column in range(n):
+        error = np.zeros((len(states), n))
+        error[:, column] = step
+        up, down = space.moved(states, error), space.moved(states, -error)
+        change = space.away(space.propagated(up, KNOWN, STEP_S), after)
+        change -= space.away(space.propagated(down, KNOWN, STEP_S), after)
+        np.testing.assert_allclose(transition[:, :, column], change / (2 * step), atol=2e-6)
+        read = space.measured(up, KNOWN) - space.measured(down, KNOWN)
+        np.testing.assert_allclose(sensitivity[:, :, column], read / (2 * step), atol=2e-5)
+
+
+FILTERS = {"extended": ExtendedKalman(), "unscented": SigmaPointKalman(), "cubature": CUBATURE}
+
+
+@pytest.mark.parametrize("name", ["faces", "spot", "head"])
+@pytest.mark.parametrize("by", FILTERS)
+def test_errors_and_innovations_are_as_large_as_the_filter_says(name: str, by: str) -> None:
+    """100 runs: squares in units of the filter's own covariance within their 95 % bounds."""
+    space, kalman = SPACES[name], FILTERS[by]
+    first = first_doubt(space)
+    runs = drawn(space, first=first, seed=11)
+    belief = kalman.begin(space, runs.first, first)
+    errors, innovations = [], []
+    for step in range(len(runs.known)):
+        if step:
+            belief = kalman.predict(space, belief, runs.known[step], STEP_S)
+        belief = kalman.update(space, belief, runs.readings[step], runs.known[step])
+        off = space.away(runs.states[step], belief.states)
+        inverse = np.linalg.inv(belief.covariance)
+        errors.append(np.einsum("bi,bij,bj->b", off, inverse, off))
+        innovations.append(belief.squared_innovation)
+    count = len(runs.first)
+    # of 120 independent sums 95 % +- 2 % are within; errors are correlated over some ten steps
+    for squares, freedom, least in (
+        (innovations, space.readings, 0.89),
+        (errors, space.errors, 0.80),
+    ):
+        low, high = chi2.ppf((0.025, 0.975), count * freedom)
+        sums = np.sum(squares, axis=1)
+        inside = np.mean((sums > low) & (sums < high))
+        assert inside > least, f"{inside:.2f} of the steps within the bounds"
+    # innovations are white: all of them together have bounds of their own
+    low, high = chi2.ppf((0.025, 0.975), count * space.readings * (len(innovations) - 20))
+    assert low < np.sum(innovations[20:]) < high
+
+
+def test_a_filter_that_ignores_gains_is_too_sure_and_one_that_considers_them_is_not() -> None:
+    """Faces whose gains are 1 % off: 200 runs, the direction's errors beside each filter's own."""
+    whole, plain = SPACES["gains"], SPACES["faces"]
+    first = first_doubt(whole)
+    runs = drawn(whole, runs=200, steps=80, first=first, seed=12)
+    schmidt = ExtendedKalman(considered=tuple(range(6, 12)))
+    considering = schmidt.begin(whole, runs.first, first)
+    ignoring = ExtendedKalman().begin(plain, runs.first[:, :13], first[:6, :6])
+    spread, said = {}, {}
+    for step, known in enumerate(runs.known):
+        if step:
+            considering = schmidt.predict(whole, considering, known, STEP_S)
+            ignoring = ExtendedKalman().predict(plain, ignoring, known, STEP_S)
+        considering = schmidt.update(whole, considering, runs.readings[step], known)
+        ignoring = ExtendedKalman().update(plain, ignoring, runs.readings[step], known)
+    for name, belief in {"considering": considering, "ignoring": ignoring}.items():
+        off = plain.away(
+            np.ascontiguousarray(runs.states[-1][:, :13]), belief.states[:, :13].copy()
+        )
+        spread[name] = float(np.mean(off[:, :2] ** 2))
+        said[name] = float(np.mean(belief.covariance[:, [0, 1], [0, 1]]))
+    assert said["considering"] == pytest.approx(spread["considering"], rel=0.25)
+    assert said["considering"] > said["ignoring"]
+    assert spread["ignoring"] > 1.5 * said["ignoring"]
+    assert (considering.states[:, 13:] == 0).all()
+
+
+def test_gains_that_drift_are_found_by_the_filter_that_has_them_in_its_state() -> None:
+    space = SPACES["gains"]
+    first = first_doubt(space)
+    runs = drawn(space, runs=50, steps=200, first=first, seed=13)
+    kalman = ExtendedKalman()
+    belief = kalman.begin(space, runs.first, first)
+    for step, known in enumerate(runs.known):
+        if step:
+            belief = kalman.predict(space, belief, known, STEP_S)
+        belief = kalman.update(space, belief, runs.readings[step], known)
+    # of the faces that the Sun lights; a common change of all is the light's strength
+    lit = runs.readings.mean(axis=(0, 1)) > 5.0
+    true, found = runs.states[-1][:, 13:][:, lit], belief.states[:, 13:][:, lit]
+    off = (found - true) - (found - true).mean(axis=1, keepdims=True)
+    before = true - true.mean(axis=1, keepdims=True)
+    assert lit.sum() >= 3
+    assert np.sqrt(np.mean(off**2)) < 0.5 * np.sqrt(np.mean(before**2))
