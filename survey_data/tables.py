@@ -38,6 +38,9 @@ class SurveyTables:
     references: pd.DataFrame
     counts: pd.DataFrame
     hardware: pd.DataFrame
+    defaults: pd.DataFrame
+    architectures: pd.DataFrame
+    roles: pd.DataFrame
 
 
 def load(directory: str | Path | None = None) -> SurveyTables:
