@@ -274,30 +274,24 @@ def _why_not(attribute: str, value: str, where: str, fitting: Fitting) -> str:
     kinds = fitting.kinds(attribute, value)
     if value == NO_IMPLEMENTATION_STATED:
         return f"no simple {attribute} fits the study's other methods"
+    asked: list[set[str]] = []
     if attribute == "extractor":
-        classes = [cls for kind in kinds for cls in known.extractors_for(kind)]
-        needs = dict.fromkeys(str(cls.about.observation) for cls in classes)
+        extractors = [cls for kind in kinds for cls in known.extractors_for(kind)]
+        reads = {str(cls.about.observation) for cls in extractors}
     else:
-        classes = [m for m in known.models.values() if set(stages(m)) & set(kinds)]
-        needs = dict.fromkeys(sorted({str(kind) for m in classes for kind in m.about.accepts}))
-    if not classes:
+        models = [m for m in known.models.values() if set(stages(m)) & set(kinds)]
+        reads = {str(kind) for m in models for kind in m.about.accepts}
+        asked = [{*m.about.needs, *m.about.context} for m in models]
+    if not reads:
         listed = value if kinds == (value,) else f"any of {', '.join(kinds)}"
         return f"no {attribute} implements {listed}"
     if not where:
         return "no data set simulates an architecture of the study"
-    asks = _asks(attribute, classes)
+    needs = sorted(set.intersection(*asked)) if asked else []
     return (
-        f"reads {_join(needs)}{asks}; no data set of {where} "
-        "offers that to it with the study's other methods"
+        f"reads {_join(sorted(reads))}{' and needs ' * bool(needs)}{', '.join(needs)}; "
+        f"no data set of {where} offers that to it with the study's other methods"
     )
-
-
-def _asks(attribute: str, classes: Sequence[object]) -> str:
-    """Say what designs and columns all implementations of a value ask for, if anything."""
-    abouts = [cls.about for cls in classes]  # type: ignore[attr-defined]
-    asked = [{*about.needs, *getattr(about, "context", ())} for about in abouts]
-    common = sorted(set.intersection(*asked)) if attribute == "model" else []
-    return f" and needs {', '.join(common)}" if common else ""
 
 
 def _join(words: Iterable[str]) -> str:

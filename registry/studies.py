@@ -102,6 +102,11 @@ class Study:
         every = itertools.product(self.of("detector"), self.of("mask"))
         return self.combined or tuple(every)
 
+    def has_sensor(self, values: Mapping[str, str | None]) -> bool:
+        """Say whether a sensor of the study can have these values of detector and mask."""
+        pair = (values.get("detector"), values.get("mask"))
+        return not self.combined or None in pair or pair in self.combined
+
     def of(self, attribute: str) -> tuple[str, ...]:
         """Return the stated values of an attribute, without repetition; empty if unknown."""
         return self._stated.get(attribute, ())
