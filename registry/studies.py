@@ -205,6 +205,11 @@ class Tables(Protocol):
         ...
 
     @property
+    def model_families(self) -> pd.DataFrame:
+        """One row a model: whether it is calibrated on the ground or in operation."""
+        ...
+
+    @property
     def roles(self) -> pd.DataFrame:
         """One row a method of a study that it proposed or only compared."""
         ...
@@ -242,9 +247,12 @@ def facts_from(tables: Tables) -> Facts:
     Raises InvalidValueError for a value outside the taxonomy and ValueError for attributes of a
     study that is not in the table of studies.
     """
+    rings = {("model", row["model"]): row["calibration"] for row in _rows(tables.model_families)}
+    columns = ("attribute", "value", "name", "category", "survey_section")
     taxonomy = Taxonomy(
         TaxonomyEntry(
-            row["attribute"], row["value"], row["name"], row["category"], row["survey_section"]
+            *(row[name] for name in columns),
+            calibration=rings.get((row["attribute"], row["value"]), ""),
         )
         for row in _rows(tables.taxonomy)
     )

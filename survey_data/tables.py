@@ -41,6 +41,10 @@ class SurveyTables:
     defaults: pd.DataFrame
     architectures: pd.DataFrame
     roles: pd.DataFrame
+    advice: pd.DataFrame
+    protocol: pd.DataFrame
+    model_families: pd.DataFrame
+    venues: pd.DataFrame
 
 
 def load(directory: str | Path | None = None) -> SurveyTables:

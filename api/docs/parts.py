@@ -12,6 +12,9 @@ from api.docs.examples import command_line, http_examples
 from api.http.knowledge import Knowledge
 from benchmark.datasets import coverage as simulated
 
+#: Values of a finding whose counts are printed.
+_COUNTS_SHOWN = 8
+
 __all__ = [
     "command_line",
     "coverage",
@@ -102,15 +105,16 @@ def findings() -> str:
             finding.id,
             finding.verdict,
             finding.statement,
-            ", ".join(f"{value} {count}" for value, count in finding.ranking[:3]),
-            str(finding.counted),
+            f"{finding.given or 'all studies'} → {finding.expects} ({finding.kind})",
+            _ranked(finding.ranking),
+            finding.settled_by,
         )
         for finding in report.findings
     ]
     return (
         f"{report.studies} studies; the survey states {report.stated}. {report.explanation}\n\n"
         f"{len(report.findings)} findings: {counted}.\n\n"
-        + _table(("id", "verdict", "finding", "most frequent", "studies counted"), rows)
+        + _table(("id", "verdict", "finding", "expects", "counts", "what settles it"), rows)
     )
 
 
@@ -136,6 +140,13 @@ def resolutions() -> str:
         lines.append("What they wait for, by the number of studies:")
         lines.append(_table(("attribute", "value", "reason", "studies"), rows))
     return "\n\n".join(lines)
+
+
+def _ranked(ranking: Sequence[tuple[str, int]]) -> str:
+    """Write the counts of a finding, the rarest of many left out."""
+    shown = ", ".join(f"{value} {count}" for value, count in ranking[:_COUNTS_SHOWN])
+    more = len(ranking) - _COUNTS_SHOWN
+    return f"{shown} and {more} rarer" if more > 0 else shown
 
 
 @cache

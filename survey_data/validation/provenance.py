@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from survey_data.findings.checks import Vocabulary
 from survey_data.problems import Problem
 from survey_data.validation.cells import Frames, Rule, problem, stated, texts
 
@@ -72,9 +73,49 @@ def _rules_of_empty_cells_parse(frames: Frames) -> Iterator[Problem]:
                 yield problem("defaults", index, "given", message)
 
 
+def _advice_speaks_the_vocabulary(frames: Frames) -> Iterator[Problem]:
+    """Check that advice names values and categories of the taxonomy, and an architecture."""
+    vocabulary = Vocabulary(frames["taxonomy"])
+    known = {
+        **{name: vocabulary.values.get(name, set()) for name in ("detector", "mask")},
+        "model_category": vocabulary.categories("model_category"),
+        "extractor": vocabulary.values.get("extractor", set())
+        | vocabulary.categories("extractor_family"),
+    }
+    for index, cells in texts(frames["advice"], *known):
+        for (column, values), cell in zip(known.items(), cells, strict=True):
+            if cell and cell not in values:
+                yield problem("advice", index, column, f"unknown value {cell!r} of {column}")
+        if not any(cells[:2]):
+            yield problem("advice", index, "mask", "names neither a detector nor a mask")
+
+
+def _families_cover_the_models(frames: Frames) -> Iterator[Problem]:
+    """Check that every model of the taxonomy has its place in the middle ring, and none else."""
+    models = Vocabulary(frames["taxonomy"]).values.get("model", set()) - {"None"}
+    frame = frames["model_families"]
+    held = [model for _, (model,) in texts(frame, "model")]
+    for index, model in enumerate(held):
+        if model not in models:
+            yield problem("model_families", index, "model", f"unknown model {model!r}")
+    for model in sorted(models - set(held)):
+        yield problem("model_families", len(frame) - 1, "model", f"no row for the model {model!r}")
+
+
+def _venues_are_of_known_ones(frames: Frames) -> Iterator[Problem]:
+    """Check that a venue is given for studies alone that have one."""
+    known = {key for _, (key, venue) in texts(frames["studies"], "key", "venue") if venue}
+    for index, (study,) in texts(frames["venues"], "study"):
+        if study not in known:
+            yield problem("venues", index, "study", f"no venue of {study} in studies.csv")
+
+
 RULES: tuple[tuple[tuple[str, ...], Rule], ...] = (
     (("attributes",), _evidence_is_told),
     (("attributes", "roles"), _roles_are_of_methods),
     (("attributes", "architectures"), _sensors_use_every_value),
     (("taxonomy", "defaults"), _rules_of_empty_cells_parse),
+    (("taxonomy", "advice"), _advice_speaks_the_vocabulary),
+    (("taxonomy", "model_families"), _families_cover_the_models),
+    (("studies", "venues"), _venues_are_of_known_ones),
 )

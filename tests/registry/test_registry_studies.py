@@ -86,5 +86,13 @@ def test_tables_that_contradict_each_other_are_refused() -> None:
 
 
 def _tables(tables: survey_data.SurveyTables, **changed: pd.DataFrame) -> SimpleNamespace:
-    names = ("studies", "attributes", "taxonomy", "roles", "architectures", "defaults")
+    names = (
+        "studies",
+        "attributes",
+        "taxonomy",
+        "roles",
+        "architectures",
+        "defaults",
+        "model_families",
+    )
     return SimpleNamespace(**{name: changed.get(name, getattr(tables, name)) for name in names})
