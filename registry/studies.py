@@ -248,10 +248,13 @@ def facts_from(tables: Tables) -> Facts:
     study that is not in the table of studies.
     """
     rings = {("model", row["model"]): row["calibration"] for row in _rows(tables.model_families)}
-    columns = ("attribute", "value", "name", "category", "survey_section")
     taxonomy = Taxonomy(
         TaxonomyEntry(
-            *(row[name] for name in columns),
+            attribute=row["attribute"],
+            value=row["value"],
+            name=row["name"],
+            category=row["category"],
+            section=row["survey_section"],
             calibration=rings.get((row["attribute"], row["value"]), ""),
         )
         for row in _rows(tables.taxonomy)
