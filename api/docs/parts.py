@@ -133,8 +133,7 @@ def resolutions() -> str:
     )
     lines = [
         counted,
-        "What the parts of a study's pipeline rest on, by the number of studies (of several "
-        + "pipelines, the one that rests on most):",
+        "What the parts of a pipeline rest on, by studies (of several, that of most evidence):",
         _table(("part", *BASES), _by_basis(resolved)),
         "By what rules empty cells are filled, and methods stand in for others:",
         _table(("part", "rule", "studies"), _by_rule(resolved)),

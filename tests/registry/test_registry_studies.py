@@ -50,6 +50,7 @@ def test_the_detail_of_a_study_shows_empty_cells_and_numbers(survey: Facts) -> N
         "basis": "unknown",
         "source": "",
         "note": "",
+        "role": "",
     } in cells
     assert found.number("accuracy_deg") is None
     assert survey.study("Minor2010").number("accuracy_deg") == 0.1
