@@ -95,12 +95,19 @@ def test_levels_are_at_least_two_and_may_be_two(facts_of: Build) -> None:
             flows(wrong, facts=facts_of(TABLE))
 
 
-def entry(value: str, category: str = "C") -> TaxonomyEntry:
-    return TaxonomyEntry("model", value, f"the {value}", category, "")
+def entry(value: str, category: str = "C", calibration: str = "") -> TaxonomyEntry:
+    return TaxonomyEntry("model", value, f"the {value}", category, "", calibration)
 
 
 def test_a_taxonomy_keeps_the_order_given_and_what_it_implies() -> None:
-    made = Taxonomy([entry("ECM", "P"), entry("None", "N"), entry("LUT", "L"), entry("ECM/x", "P")])
+    made = Taxonomy(
+        [
+            entry("ECM", "P", "online"),
+            entry("None", "N"),
+            entry("LUT", "L"),
+            entry("ECM/x", "P", "offline"),
+        ]
+    )
     assert made.attributes == ("model",)
     assert made.levels == ("model", "model_category", "calibration")
     assert made.values("model") == ("ECM", "None", "LUT", "ECM/x")
