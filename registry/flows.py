@@ -304,5 +304,6 @@ def _combinations(
                 for level, i in zip(levels, at, strict=True)
             )
             for row in itertools.product(*choices)
+            if study.has_sensor(dict(zip(bases, row, strict=True)))
         )
     )

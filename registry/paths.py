@@ -15,7 +15,7 @@ from typing import NamedTuple, TypeVar
 from registry.flows import LeftOut, Link, Node
 from registry.measured import Measured, Measurements, Route
 from registry.requirements import LIMITS, Requirements
-from registry.studies import Facts
+from registry.studies import Facts, Study
 from registry.taxonomy import ATTRIBUTES
 
 PATH_LEVELS = ("task", "detector", "mask", "model", "extractor")
@@ -47,8 +47,9 @@ class Answer(NamedTuple):
 class PathTable:
     """Paths and study sets of some facts.
 
-    A path exists if one study has all five of its values; a study without a value at one of the
-    levels is on none and stands in ``left_out``.
+    A path exists if one study has all five of its values, on a sensor that it can have had; what a
+    study only compared is none of its values here. A study without a value at one of the levels is
+    on none and stands in ``left_out``.
     """
 
     def __init__(self, facts: Facts) -> None:
@@ -71,7 +72,7 @@ class PathTable:
             for level in PATH_LEVELS:
                 if not study.of(level):
                     missing.setdefault(level, []).append(study.key)
-            for path in itertools.product(*(study.of(level) for level in PATH_LEVELS)):
+            for path in _paths_of(study):
                 for end in range(3, len(PATH_LEVELS) + 1):
                     took[path[:end]] = took.get(path[:end], 0) | bit
         order = [{v: i for i, v in enumerate(self.taxonomy.values(a))} for a in PATH_LEVELS]
@@ -232,6 +233,13 @@ class PathTable:
             if number is not None and within(limit, number, bound):
                 found |= 1 << at
         return found
+
+
+def _paths_of(study: Study) -> Iterator[tuple[str, ...]]:
+    """Give every path of a study: what it stands for, on the sensors that it can have had."""
+    for path in itertools.product(*(study.supported(level) for level in PATH_LEVELS)):
+        if study.has_sensor(dict(zip(PATH_LEVELS, path, strict=True))):
+            yield path
 
 
 _TABLES: weakref.WeakKeyDictionary[Facts, PathTable] = weakref.WeakKeyDictionary()

@@ -1,69 +1,44 @@
-"""From a study to what can be run of it: its pipelines, and a reason for everything that cannot.
+"""From a study to what is scored of it: its pipelines, and a reason for everything that is not.
 
-What is decided here, because the mapping does not say it:
+What can be scored is the plan's to say (`registry.plan`): a pipeline is announced only where it
+has a cell. What is decided here, because the mapping does not say it:
 
 - The mapping gives a study's values, not which belong together; every combination of them that
-  fits is a pipeline. A value that fits nowhere is a gap, a combination that does not fit is not.
-- A compensation (OCM, SECM, ICM ...) runs ahead of the models that the study states beside it, else
-  ahead of the simplest one, and then the pipeline says so in ``assumed``.
-- A parent value (ECM, ICM: kind not stated) runs as each implemented kind.
-- "None" (the survey maps no model, or no extractor) is no gap: the study is run with the simplest
-  implementation that fits, `SIMPLEST_MODELS` or `SIMPLEST_EXTRACTORS`.
-- In both cases the pipeline says so in ``assumed``: its score is not the study's own method.
-- An empty cell is a gap and nothing is assumed for it.
+  is planned is a pipeline. A value that fits nowhere is a gap, a combination that does not is not.
+- The sensor is the study's own; an empty cell is filled by a rule (`registry.sensors`).
+- Methods are the study's own with its compensations as stages, or the nearest (`registry.fitting`).
+- Every value of a pipeline has a basis. What is not stated is ``assumed``, with the rule that put
+  it there: its score is not the study's own.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from registry import catalogue as implementations
 from registry import studies as registered
 from registry.catalogue import Catalogue
-from registry.studies import Facts, Study
+from registry.fitting import Chosen, Fitted, Fitting, stages
+from registry.plan import Plan
+from registry.sensors import BASES, SENSOR, Basis, Part, Sensor, cell, sensors
+from registry.studies import METHODS, Facts, Study
 from registry.taxonomy import NO_IMPLEMENTATION_STATED
 
-if TYPE_CHECKING:
-    from algorithms.chain import Scored
-    from algorithms.contract import Extractor
-
 State = Literal["complete", "partial", "none"]
-Architecture = tuple[str, str]  # (detector, mask)
 
-ESSENTIAL = ("detector", "mask", "extractor", "model")
-
-READOUTS: Mapping[str, frozenset[str]] = MappingProxyType(
-    {
-        "PD": frozenset({"currents"}),
-        "QPD": frozenset({"currents"}),
-        "PSD": frozenset({"currents"}),
-        "OI": frozenset({"currents"}),
-        "LTF": frozenset({"currents"}),
-        "PVA": frozenset({"currents"}),
-        "PDA": frozenset({"currents", "profiles", "frames"}),
-        "CCD": frozenset({"profiles", "frames"}),
-        "CMOS": frozenset({"profiles", "frames"}),
-        "Event": frozenset({"events"}),
-    }
-)
-"""What each detector of the taxonomy gives an extractor to read (`Observation` values)."""
-
-SIMPLEST_MODELS = ("SPM", "Linear", "Basic")
-"""For model "None": the plain reading of a spot, of a balance, of single signals."""
-
-SIMPLEST_EXTRACTORS = ("BCM", "PPE", "Voltage balance", "Direct", "ESCM")
-"""For extractor "None": a plain one for each kind of detector and feature."""
+ESSENTIAL = (*SENSOR, "extractor", "model")
 
 
 @dataclass(frozen=True)
 class RunnablePipeline:
-    """An extractor and a model, by name, on one of the study's architectures.
+    """An extractor and a model, by name, on a sensor of the study, with what each rests on.
 
-    ``assumed`` maps an attribute to what the study states for it where that is not what runs:
-    "None", or a parent whose kind is not stated.
+    ``stages`` are the model's by their taxonomy values: compensations, and the model itself last.
+    ``basis`` says of detector, mask, extractor and model what they rest on, ``assumed`` of those
+    that are not stated by what rule they stand there. ``datasets`` are where it is scored.
     """
 
     detector: str
@@ -72,10 +47,13 @@ class RunnablePipeline:
     model: str
     extractor_taxonomy: str
     model_taxonomy: str
-    assumed: Mapping[str, str] = field(default_factory=dict, hash=False)
+    stages: tuple[str, ...]
+    datasets: tuple[str, ...]
+    basis: Mapping[str, Basis] = field(hash=False)
+    assumed: Mapping[str, str] = field(hash=False)
 
     def to_dict(self) -> dict[str, object]:
-        """As in the HTTP answer, without the datasets, which the registry does not know."""
+        """As in the HTTP answer."""
         return {
             "detector": self.detector,
             "mask": self.mask,
@@ -83,13 +61,16 @@ class RunnablePipeline:
             "model": self.model,
             "extractor_taxonomy": self.extractor_taxonomy,
             "model_taxonomy": self.model_taxonomy,
+            "stages": list(self.stages),
+            "basis": dict(self.basis),
             "assumed": dict(self.assumed),
+            "datasets": list(self.datasets),
         }
 
 
 @dataclass(frozen=True)
 class Gap:
-    """Something of a study that cannot be run, and why.
+    """Something of a study that does not run as it is, and why.
 
     ``attribute`` is one of the study's (value "" if its cell is empty), or "architecture" with
     the value "detector + mask".
@@ -106,15 +87,26 @@ class Gap:
 
 @dataclass(frozen=True)
 class Resolution:
-    """What can be run of a study.
+    """What is scored of a study.
 
-    ``state`` is complete (pipelines and no gap), partial (pipelines and gaps) or none.
+    ``state`` is complete (every value of its mapping runs), partial (something of it does, or
+    what stands nearest to it) or none.
     """
 
     study: str
     state: State
     pipelines: tuple[RunnablePipeline, ...]
     gaps: tuple[Gap, ...]
+
+    @property
+    def best(self) -> RunnablePipeline | None:
+        """The pipeline that rests on most: the first of those whose weakest part is strongest."""
+        rank = {basis: at for at, basis in enumerate(BASES)}
+        return min(
+            self.pipelines,
+            key=lambda p: sorted((rank[basis] for basis in p.basis.values()), reverse=True),
+            default=None,
+        )
 
     def to_dict(self) -> dict[str, object]:
         """As in the HTTP answer."""
@@ -128,266 +120,179 @@ class Resolution:
 
 def resolve(
     study: Study | str,
-    architectures: Collection[Architecture] | None = None,
+    plan: Plan,
     *,
     catalogue: Catalogue | None = None,
     facts: Facts | None = None,
 ) -> Resolution:
-    """Every runnable pipeline of a study and every gap.
-
-    A pipeline is runnable if its detector gives what its extractor reads (`READOUTS`), its model
-    reads what its extractor gives (`kind` in `accepts`), and, where `architectures` is given, its
-    (detector, mask) is among them. A value that is in no pipeline is in a gap, unless all there is
-    to combine it with is in gaps.
+    """Every pipeline of a study that is planned, and every gap.
 
     Parameters
     ----------
     study : Study or str
         A study or its key; InvalidValueError for an unknown key.
-    architectures : collection of (detector, mask), optional
-        What the caller can simulate; everything if None.
+    plan : Plan
+        What can be scored, as `benchmark.plan.combinations.scorable` gives it.
     catalogue, facts : optional
         What is implemented and the studies; ours and the survey's by default.
     """
     known = facts or registered.facts()
     found = known.study(study) if isinstance(study, str) else study
-    return _resolve(found, architectures, catalogue or implementations.catalogue())
+    return _resolve(found, Fitting(plan, catalogue or implementations.catalogue()), known)
 
 
 def resolve_all(
-    architectures: Collection[Architecture] | None = None,
+    plan: Plan,
     *,
     catalogue: Catalogue | None = None,
     facts: Facts | None = None,
 ) -> dict[str, Resolution]:
     """`resolve` of every study, by key."""
     known = facts or registered.facts()
-    available = catalogue or implementations.catalogue()
-    pairs = None if architectures is None else frozenset(architectures)
-    return {key: _resolve(study, pairs, available) for key, study in known.studies.items()}
+    fitting = Fitting(plan, catalogue or implementations.catalogue())
+    return {key: _resolve(study, fitting, known) for key, study in known.studies.items()}
 
 
-def _resolve(
-    study: Study, architectures: Collection[Architecture] | None, catalogue: Catalogue
-) -> Resolution:
-    gaps = [
-        Gap(attribute, "", "the mapping states no value")
-        for attribute in ESSENTIAL
-        if not study.of(attribute)
-    ]
-    extractors = _extractor_options(study, catalogue, gaps)
-    models = _model_options(study, catalogue, gaps)
-    detectors = study.of("detector")
-    fitting = {
-        detector: [
-            (e, m, extractor, model)
-            for e in extractors
-            for m in models
-            for extractor, model in _fitting_pairs(detector, e, m)
-        ]
-        for detector in detectors
-    }
-    if detectors and extractors and models:
-        gaps += _compatibility_gaps(detectors, extractors, models, fitting)
-    pairs = [(d, m) for d in detectors for m in study.of("mask")]
-    simulated = [p for p in pairs if architectures is None or p in architectures]
-    gaps += _architecture_gaps(pairs, simulated)
+def _resolve(study: Study, fitting: Fitting, facts: Facts) -> Resolution:
+    on = sensors(study, facts, fitting.plan, lambda pair: fitting.own(study, pair))
+    fitted = fitting.fitted(study, (sensor.architecture for sensor in on))
     pipelines = tuple(
-        RunnablePipeline(
-            detector=detector,
-            mask=mask,
-            extractor=extractor.about.name,
-            model=model.about.name,
-            extractor_taxonomy=extractor.about.taxonomy,
-            model_taxonomy=model.about.taxonomy,
-            assumed=MappingProxyType(_assumed(e, m, extractor, model, study.of("model"))),
-        )
-        for detector, mask in simulated
-        for e, m, extractor, model in fitting[detector]
+        _pipeline(study, sensor, one, fitting.catalogue)
+        for sensor in on
+        for one in fitted[sensor.architecture]
+    )
+    ran = [one for found in fitted.values() for one in found]
+    gaps = (
+        *_empty_cells(study, pipelines),
+        *_architecture_gaps(study, fitting.plan, pipelines),
+        *_method_gaps(study, ran, on, fitting),
     )
     state: State = "none" if not pipelines else "partial" if gaps else "complete"
-    return Resolution(study.key, state, pipelines, tuple(gaps))
+    return Resolution(study.key, state, pipelines, gaps)
 
 
-@dataclass(frozen=True)
-class _ExtractorOption:
-    stated: str
-    classes: tuple[type[Extractor], ...]
-
-
-@dataclass(frozen=True)
-class _ModelOption:
-    stated: str
-    classes: tuple[Scored, ...]
-
-
-_Pair = tuple["type[Extractor]", "Scored"]
-_Fitting = Mapping[
-    str, Sequence[tuple[_ExtractorOption, _ModelOption, "type[Extractor]", "Scored"]]
-]
-
-
-def _extractor_options(
-    study: Study, catalogue: Catalogue, gaps: list[Gap]
-) -> list[_ExtractorOption]:
-    """Return what implements each extractor of the study; add a gap for each without."""
-    options = []
-    for stated in study.of("extractor"):
-        values = _values_to_run(study, "extractor", stated, SIMPLEST_EXTRACTORS, catalogue)
-        classes = tuple(cls for value in values for cls in catalogue.extractors_for(value))
-        if classes:
-            options.append(_ExtractorOption(stated, classes))
-        else:
-            gaps.append(_not_implemented("extractor", stated, values))
-    return options
-
-
-def _model_options(study: Study, catalogue: Catalogue, gaps: list[Gap]) -> list[_ModelOption]:
-    """Return what implements each model of the study; add a gap for each without."""
-    options = []
-    for stated in study.of("model"):
-        values = _values_to_run(study, "model", stated, SIMPLEST_MODELS, catalogue)
-        found = tuple(cls for value in values for cls in catalogue.models_for(value))
-        classes = _behind_compensations(found, study.of("model"))
-        if classes:
-            options.append(_ModelOption(stated, classes))
-        else:
-            gaps.append(_not_implemented("model", stated, values))
-    return options
-
-
-def _behind_compensations(
-    classes: tuple[Scored, ...], stated: Collection[str]
-) -> tuple[Scored, ...]:
-    """Keep of the chains those with a model that the study states, else with the simplest."""
-    for behind in (set(stated), set(SIMPLEST_MODELS)):
-        kept = tuple(cls for cls in classes if _model_behind(cls) in behind)
-        if kept:
-            return kept
-    return classes
-
-
-def _model_behind(cls: Scored) -> str:
-    """Taxonomy value of what gives the directions."""
-    behind = getattr(cls, "model", None)  # a chain holds one, a model's class does not
-    return str((behind or cls).about.taxonomy)
-
-
-def _values_to_run(
-    study: Study, attribute: str, stated: str, simplest: tuple[str, ...], catalogue: Catalogue
-) -> tuple[str, ...]:
-    """Return the values that stand for one stated; for "None", of those not stated as well."""
-    if stated == NO_IMPLEMENTATION_STATED:
-        return tuple(value for value in simplest if value not in study.of(attribute))
-    return catalogue.taxonomy.kinds(attribute, stated)
-
-
-def _not_implemented(attribute: str, stated: str, values: tuple[str, ...]) -> Gap:
-    if values == (stated,):
-        return Gap(attribute, stated, f"no {attribute} implements {stated}")
-    return Gap(attribute, stated, f"no {attribute} implements any of {', '.join(values)}")
-
-
-def _fitting_pairs(
-    detector: str, extractors: _ExtractorOption, models: _ModelOption
-) -> list[_Pair]:
-    """Return the pairs that fit; for "None" only the first that does for each counterpart."""
-    fitting = [
-        (extractor, model)
-        for extractor in extractors.classes
-        for model in models.classes
-        if _reads(extractor, detector) and extractor.about.kind in model.about.accepts
-    ]
-    if extractors.stated == NO_IMPLEMENTATION_STATED:
-        by_name = {model.about.name: (e, model) for e, model in reversed(fitting)}
-        fitting = list(by_name.values())[::-1]
-    if models.stated == NO_IMPLEMENTATION_STATED:
-        by_name = {e.about.name: (e, model) for e, model in reversed(fitting)}
-        fitting = list(by_name.values())[::-1]
-        if extractors.stated == NO_IMPLEMENTATION_STATED:
-            fitting = fitting[:1]
-    return fitting
-
-
-def _reads(extractor: type[Extractor], detector: str) -> bool:
-    return str(extractor.about.observation) in READOUTS.get(detector, ())
-
-
-def _assumed(
-    e: _ExtractorOption,
-    m: _ModelOption,
-    extractor: type[Extractor],
-    model: Scored,
-    stated_models: Collection[str],
-) -> dict[str, str]:
-    assumed: dict[str, str] = {}
-    if extractor.about.taxonomy != e.stated:
-        assumed["extractor"] = e.stated
-    behind = _model_behind(model)
-    if model.about.taxonomy != m.stated or (
-        behind != model.about.taxonomy and behind not in stated_models
-    ):
-        assumed["model"] = m.stated
-    return assumed
-
-
-def _compatibility_gaps(
-    detectors: Sequence[str],
-    extractors: Sequence[_ExtractorOption],
-    models: Sequence[_ModelOption],
-    fitting: _Fitting,
-) -> list[Gap]:
-    """Return a gap for every implemented value and every detector that fits nothing."""
-    gaps = []
-    used_extractors = {row[0].stated for rows in fitting.values() for row in rows}
-    used_models = {row[1].stated for rows in fitting.values() for row in rows}
-    readable = _join(sorted({r for d in detectors for r in READOUTS.get(d, ())}))
-    given = _join(sorted({str(cls.about.kind) for e in extractors for cls in e.classes}))
-    read = _join(
-        sorted({str(kind) for m in models for cls in m.classes for kind in cls.about.accepts})
+def _pipeline(study: Study, sensor: Sensor, one: Fitted, catalogue: Catalogue) -> RunnablePipeline:
+    extractor, model = catalogue.extractors[one.extractor.name], catalogue.models[one.model.name]
+    parts = {
+        "detector": sensor.detector,
+        "mask": sensor.mask,
+        "extractor": _method(study, "extractor", one.extractor),
+        "model": _method(study, "model", one.model),
+    }
+    return RunnablePipeline(
+        *sensor.architecture,
+        extractor=one.extractor.name,
+        model=one.model.name,
+        extractor_taxonomy=extractor.about.taxonomy,
+        model_taxonomy=model.about.taxonomy,
+        stages=stages(model),
+        datasets=one.datasets,
+        basis=MappingProxyType({a: part.basis for a, part in parts.items()}),
+        assumed=MappingProxyType({a: part.rule for a, part in parts.items() if part.rule}),
     )
-    observed = _join(sorted({str(cls.about.observation) for e in extractors for cls in e.classes}))
-    for e in extractors:
-        if e.stated in used_extractors:
+
+
+def _method(study: Study, attribute: str, chosen: Chosen) -> Part:
+    """Return what a method rests on: the weakest of its stated values, or a rule."""
+    if chosen.stands_for:
+        return Part(chosen.name, "defaulted", _stand_in(attribute, chosen))
+    parts = [cell(study, attribute, value) for value in chosen.runs]
+    weakest = max(parts, key=lambda part: BASES.index(part.basis))
+    return Part(chosen.name, weakest.basis, weakest.rule)
+
+
+def _stand_in(attribute: str, chosen: Chosen) -> str:
+    """Say by what rule a method that a study does not state stands in its pipeline."""
+    if chosen.runs:
+        return f"{', '.join(chosen.runs)} ahead of the simplest model that fits"
+    if chosen.stands_for == NO_IMPLEMENTATION_STATED:
+        return f"the survey maps no {attribute}: the simplest that fits"
+    return f"in place of {chosen.stands_for}, which does not run here: the nearest that fits"
+
+
+def _empty_cells(study: Study, pipelines: Sequence[RunnablePipeline]) -> list[Gap]:
+    """Return a gap for each essential attribute without a value, with what fills it."""
+    gaps = []
+    for attribute in ESSENTIAL:
+        if study.of(attribute):
             continue
-        if not any(_reads(cls, d) for cls in e.classes for d in detectors):
-            reads = _join(sorted({str(cls.about.observation) for cls in e.classes}))
-            reason = f"reads {reads}; {_join(detectors)} gives {readable or 'nothing known'}"
-        else:
-            gives = _join(sorted({str(cls.about.kind) for cls in e.classes}))
-            reason = f"gives {gives} features; the study's implemented models read {read}"
-        gaps.append(Gap("extractor", e.stated, reason))
-    for m in models:
-        if m.stated not in used_models:
-            reads = _join(sorted({str(kind) for cls in m.classes for kind in cls.about.accepts}))
-            reason = (
-                f"reads {reads} features; the study's implemented extractors give {given} "
-                f"from {observed}, its detectors {readable or 'nothing known'}"
-            )
-            gaps.append(Gap("model", m.stated, reason))
-    for detector in detectors:
-        if not fitting[detector]:
-            gives = _join(sorted(READOUTS.get(detector, ()))) or "nothing known"
-            reason = (
-                f"gives {gives}; no implemented extractor of the study that fits one of its "
-                f"models reads that (they read {observed})"
-            )
-            gaps.append(Gap("detector", detector, reason))
+        rules = dict.fromkeys(p.assumed[attribute] for p in pipelines if attribute in p.assumed)
+        filled = f"; filled: {' and '.join(rules)}" if rules else ""
+        gaps.append(Gap(attribute, "", f"the mapping states no value{filled}"))
     return gaps
 
 
 def _architecture_gaps(
-    pairs: Sequence[Architecture], simulated: Sequence[Architecture]
+    study: Study, plan: Plan, pipelines: Sequence[RunnablePipeline]
 ) -> list[Gap]:
-    """Return a gap for every architecture not simulated, unless others show both its parts."""
-    shown = {("detector", d) for d, _ in simulated} | {("mask", m) for _, m in simulated}
-    return [
-        Gap("architecture", f"{detector} + {mask}", "no dataset simulates this architecture")
-        for detector, mask in pairs
-        if (detector, mask) not in simulated
-        and not {("detector", detector), ("mask", mask)} <= shown
+    """Return a gap for every detector and mask that no pipeline shows, with the reason."""
+    gaps = [
+        Gap("architecture", f"{detector} + {mask}", "no data set simulates this architecture")
+        for detector, mask in study.architectures
+        if (detector, mask) not in plan
+        and not all(
+            any(getattr(p, attribute) == value for p in pipelines)
+            for attribute, value in zip(SENSOR, (detector, mask), strict=True)
+        )
     ]
+    for attribute, at in zip(SENSOR, (0, 1), strict=True):
+        for value in study.of(attribute):
+            simulated = [pair for pair in study.architectures if pair[at] == value and pair in plan]
+            if simulated and not any(getattr(p, attribute) == value for p in pipelines):
+                where = _join(" + ".join(pair) for pair in simulated)
+                reason = f"none of the study's methods fits a data set of {where}"
+                gaps.append(Gap(attribute, value, reason))
+    return gaps
 
 
-def _join(words: Sequence[str]) -> str:
+def _method_gaps(
+    study: Study, ran: Sequence[Fitted], on: Sequence[Sensor], fitting: Fitting
+) -> list[Gap]:
+    """Return a gap for every extractor and model that no pipeline runs as it is stated."""
+    where = _join(dict.fromkeys(" + ".join(sensor.architecture) for sensor in on))
+    gaps = []
+    for attribute in METHODS:
+        run = {value for one in ran for value in getattr(one, attribute).runs}
+        for value in study.of(attribute):
+            if value in run or (value == NO_IMPLEMENTATION_STATED and ran):
+                continue
+            reason = _why_not(attribute, value, where, fitting)
+            instead = dict.fromkeys(
+                getattr(one, attribute).name
+                for one in ran
+                if getattr(one, attribute).stands_for == value
+            )
+            if instead:
+                reason += f"; {_join(instead)} in its place"
+            gaps.append(Gap(attribute, value, reason))
+    return gaps
+
+
+def _why_not(attribute: str, value: str, where: str, fitting: Fitting) -> str:
+    """Say why nothing runs a value: nothing implements it, or it fits no data set."""
+    known = fitting.catalogue
+    kinds = fitting.kinds(attribute, value)
+    if value == NO_IMPLEMENTATION_STATED:
+        return f"no simple {attribute} fits the study's other methods"
+    asked: list[set[str]] = []
+    if attribute == "extractor":
+        extractors = [cls for kind in kinds for cls in known.extractors_for(kind)]
+        reads = {str(cls.about.observation) for cls in extractors}
+    else:
+        models = [m for m in known.models.values() if set(stages(m)) & set(kinds)]
+        reads = {str(kind) for m in models for kind in m.about.accepts}
+        asked = [{*m.about.needs, *m.about.context} for m in models]
+    if not reads:
+        listed = value if kinds == (value,) else f"any of {', '.join(kinds)}"
+        return f"no {attribute} implements {listed}"
+    if not where:
+        return "no data set simulates an architecture of the study"
+    needs = sorted(set.intersection(*asked)) if asked else []
+    return (
+        f"reads {_join(sorted(reads))}{' and needs ' * bool(needs)}{', '.join(needs)}; "
+        f"no data set of {where} offers that to it with the study's other methods"
+    )
+
+
+def _join(words: Iterable[str]) -> str:
     return " or ".join(words)

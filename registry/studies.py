@@ -6,8 +6,9 @@ that other tables can be handed in.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Protocol
@@ -23,6 +24,9 @@ from registry.taxonomy import (
 if TYPE_CHECKING:
     import pandas as pd
 
+METHODS = ("model", "extractor")
+"""Attributes whose values a study proposes, or only compares against."""
+
 
 @dataclass(frozen=True)
 class AttributeValue:
@@ -35,11 +39,38 @@ class AttributeValue:
 
 
 @dataclass(frozen=True)
+class MethodRole:
+    """Whether a study proposed a method or only compared another against it, and who says so."""
+
+    role: str  # proposed, compared
+    basis: str
+    source: str
+    note: str
+
+
+@dataclass(frozen=True)
+class Default:
+    """What stands in an empty cell of a study that meets every condition, and why.
+
+    ``given`` are (attribute, value) that the study must have.
+    """
+
+    id: str
+    attribute: str
+    given: tuple[tuple[str, str], ...]
+    value: str
+    section: str
+    rule: str
+
+
+@dataclass(frozen=True)
 class Study:
     """One study of the survey's mapping.
 
     ``values`` holds the stated values only; an attribute whose cell is empty is absent from it
-    and stands in ``unknown`` with the note beside the empty cell.
+    and stands in ``unknown`` with the note beside the empty cell. ``roles`` are those of
+    (attribute, value), where one is known; ``combined`` says which detector goes with which mask
+    where not every one goes with every other.
     """
 
     key: str
@@ -53,6 +84,28 @@ class Study:
     note: str
     values: Mapping[str, tuple[AttributeValue, ...]]
     unknown: Mapping[str, str]
+    roles: Mapping[tuple[str, str], MethodRole] = field(default_factory=dict, hash=False)
+    combined: tuple[tuple[str, str], ...] = ()
+
+    def role(self, attribute: str, value: str) -> str:
+        """Return `proposed`, `compared` or `unknown`, of a model or an extractor of the study."""
+        known = self.roles.get((attribute, value))
+        return "unknown" if known is None else known.role
+
+    def supported(self, attribute: str) -> tuple[str, ...]:
+        """Return the stated values that the study stands for: those it only compared are not."""
+        return tuple(v for v in self.of(attribute) if self.role(attribute, v) != "compared")
+
+    @cached_property
+    def architectures(self) -> tuple[tuple[str, str], ...]:
+        """Detector and mask of each sensor that the study can have had; empty if one is unknown."""
+        every = itertools.product(self.of("detector"), self.of("mask"))
+        return self.combined or tuple(every)
+
+    def has_sensor(self, values: Mapping[str, str | None]) -> bool:
+        """Say whether a sensor of the study can have these values of detector and mask."""
+        pair = (values.get("detector"), values.get("mask"))
+        return not self.combined or None in pair or pair in self.combined
 
     def of(self, attribute: str) -> tuple[str, ...]:
         """Return the stated values of an attribute, without repetition; empty if unknown."""
@@ -94,12 +147,20 @@ class Study:
                 "basis": cell.basis,
                 "source": cell.source,
                 "note": cell.note,
+                "role": self.role(attribute, cell.value) if attribute in METHODS else "",
             }
             for attribute, cells in self.values.items()
             for cell in cells
         ]
         cells += [
-            {"attribute": a, "value": "", "basis": "unknown", "source": "", "note": note}
+            {
+                "attribute": a,
+                "value": "",
+                "basis": "unknown",
+                "source": "",
+                "note": note,
+                "role": "",
+            }
             for a, note in self.unknown.items()
         ]
         return {**self.summary(), "note": self.note, "attributes": cells}
@@ -111,6 +172,7 @@ class Facts:
 
     studies: Mapping[str, Study]
     taxonomy: Taxonomy
+    defaults: tuple[Default, ...] = ()
 
     @cached_property
     def keys(self) -> tuple[str, ...]:
@@ -125,7 +187,7 @@ class Facts:
 
 
 class Tables(Protocol):
-    """The three tables read here, as `survey_data.load` gives them."""
+    """The tables read here, as `survey_data.load` gives them."""
 
     @property
     def studies(self) -> pd.DataFrame:
@@ -140,6 +202,26 @@ class Tables(Protocol):
     @property
     def taxonomy(self) -> pd.DataFrame:
         """One row a value of the vocabulary."""
+        ...
+
+    @property
+    def model_families(self) -> pd.DataFrame:
+        """One row a model: whether it is calibrated on the ground or in operation."""
+        ...
+
+    @property
+    def roles(self) -> pd.DataFrame:
+        """One row a method of a study that it proposed or only compared."""
+        ...
+
+    @property
+    def architectures(self) -> pd.DataFrame:
+        """One row a sensor of a study whose detectors and masks do not all go together."""
+        ...
+
+    @property
+    def defaults(self) -> pd.DataFrame:
+        """One row a rule of what stands in an empty cell."""
         ...
 
 
@@ -165,9 +247,15 @@ def facts_from(tables: Tables) -> Facts:
     Raises InvalidValueError for a value outside the taxonomy and ValueError for attributes of a
     study that is not in the table of studies.
     """
+    rings = {("model", row["model"]): row["calibration"] for row in _rows(tables.model_families)}
     taxonomy = Taxonomy(
         TaxonomyEntry(
-            row["attribute"], row["value"], row["name"], row["category"], row["survey_section"]
+            attribute=row["attribute"],
+            value=row["value"],
+            name=row["name"],
+            category=row["category"],
+            section=row["survey_section"],
+            calibration=rings.get((row["attribute"], row["value"]), ""),
         )
         for row in _rows(tables.taxonomy)
     )
@@ -182,6 +270,14 @@ def facts_from(tables: Tables) -> Facts:
             taxonomy.require(attribute, value, parameter=f"{key} {attribute}")
         cell = AttributeValue(value, row["basis"], row["source"], row["note"])
         stated.setdefault(key, {}).setdefault(attribute, []).append(cell)
+    roles: dict[str, dict[tuple[str, str], MethodRole]] = {}
+    for row in _rows(tables.roles):
+        role = MethodRole(row["role"], row["basis"], row["source"], row["note"])
+        roles.setdefault(row["study"], {})[row["attribute"], row["value"]] = role
+    combined: dict[str, tuple[tuple[str, str], ...]] = {}
+    for row in _rows(tables.architectures):
+        pair = (row["detector"], row["mask"])
+        combined[row["study"]] = (*combined.get(row["study"], ()), pair)
     found: dict[str, Study] = {}
     for row in _rows(tables.studies):
         key = row["key"]
@@ -201,13 +297,22 @@ def facts_from(tables: Tables) -> Facts:
                 {attribute: tuple(cells) for attribute, cells in stated.pop(key, {}).items()}
             ),
             unknown=MappingProxyType(unknown.pop(key, {})),
+            roles=MappingProxyType(roles.get(key, {})),
+            combined=combined.get(key, ()),
         )
     strangers = sorted({*stated, *unknown})
     if strangers:
         raise ValueError(
             f"attributes of studies not in the table of studies: {', '.join(strangers)}"
         )
-    return Facts(MappingProxyType(found), taxonomy)
+    return Facts(MappingProxyType(found), taxonomy, tuple(map(_default, _rows(tables.defaults))))
+
+
+def _default(row: Mapping[str, str]) -> Default:
+    conditions = tuple(condition.partition("=")[::2] for condition in row["given"].split("&"))
+    return Default(
+        *(row["id"], row["attribute"], conditions, row["value"], row["survey_section"], row["rule"])
+    )
 
 
 def _rows(frame: pd.DataFrame) -> Iterable[dict[str, str]]:

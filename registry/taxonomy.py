@@ -31,20 +31,6 @@ _ALIKE = 0.5
 NO_IMPLEMENTATION_STATED = "None"
 """The taxonomy's own value for a study without a model, an extractor or an error."""
 
-ONLINE_MODELS: Mapping[str, str] = MappingProxyType(
-    {
-        "ACM": "model:assem - compensates during operation, typically by iterative online filters",
-        "ECM": "model:elec - electrical effects, kind not stated, filtered during operation",
-        "ECM/Noise": "model:mnc - online iterative calibration such as Kalman filters",
-    }
-)
-"""The models the survey describes as calibrated online, with its section and reason.
-
-Every other model stands under its list of offline techniques (sec:ssmodrep). Networks trained in
-orbit are an option it mentions (model:dnn), not their rule, so they count as offline; so does the
-angular loss model (model:nonlin), a fixed response curve.
-"""
-
 _CALIBRATION_NAMES = {"offline": "Offline calibration", "online": "Online calibration"}
 
 
@@ -90,6 +76,7 @@ class TaxonomyEntry:
     name: str
     category: str
     section: str  # label in the survey, "" where it has none
+    calibration: str = ""  # of a model: offline, online (the middle ring of the sunburst)
 
     def to_dict(self) -> dict[str, str]:
         """`value`, `name`, `category`, `section`."""
@@ -181,7 +168,7 @@ class Taxonomy:
         if level == "calibration":
             if value == NO_IMPLEMENTATION_STATED:
                 return NO_IMPLEMENTATION_STATED
-            return "online" if value in ONLINE_MODELS else "offline"
+            return self.entry("model", value).calibration or "offline"
         return self.category(DERIVED_LEVELS[level], value)
 
     def to_dict(self) -> dict[str, list[dict[str, str]]]:

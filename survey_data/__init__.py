@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from survey_data.findings.checks import FindingVerdict
     from survey_data.findings.report import FidelityReport, fidelity
     from survey_data.importing.columns import ColumnMapping, match_columns
+    from survey_data.importing.identities import BibliographyPlan, import_bibliography
     from survey_data.importing.plan import Difference, ImportPlan, differences, plan_import
     from survey_data.importing.reading import read_table
     from survey_data.importing.table_import import apply_import, import_table
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from survey_data.validation.validate import validate
 
 __all__ = [
+    "BibliographyPlan",
     "ColumnMapping",
     "Difference",
     "FidelityReport",
@@ -33,6 +35,7 @@ __all__ = [
     "apply_import",
     "differences",
     "fidelity",
+    "import_bibliography",
     "import_table",
     "load",
     "match_columns",
@@ -42,6 +45,7 @@ __all__ = [
 ]
 
 _HOMES = {
+    "BibliographyPlan": "importing.identities",
     "ColumnMapping": "importing.columns",
     "Difference": "importing.plan",
     "FidelityReport": "findings.report",
@@ -54,6 +58,7 @@ _HOMES = {
     "apply_import": "importing.table_import",
     "differences": "importing.plan",
     "fidelity": "findings.report",
+    "import_bibliography": "importing.identities",
     "import_table": "importing.table_import",
     "load": "tables",
     "match_columns": "importing.columns",

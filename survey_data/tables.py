@@ -38,6 +38,13 @@ class SurveyTables:
     references: pd.DataFrame
     counts: pd.DataFrame
     hardware: pd.DataFrame
+    defaults: pd.DataFrame
+    architectures: pd.DataFrame
+    roles: pd.DataFrame
+    advice: pd.DataFrame
+    protocol: pd.DataFrame
+    model_families: pd.DataFrame
+    venues: pd.DataFrame
 
 
 def load(directory: str | Path | None = None) -> SurveyTables:

@@ -15,6 +15,27 @@ Type = Literal["string", "integer", "number", "boolean"]
 TABLE_SCHEMA = "https://datapackage.org/profiles/2.0/tableschema.json"
 
 _FIELDS: dict[str, tuple[Type, str]] = {
+    # what follows from the facts
+    "study": ("string", "Key of the study."),
+    "state": ("string", "How much of the study runs: complete, partial or none."),
+    "detector_basis": (
+        "string",
+        "What the detector rests on: stated, inferred, recalled, defaulted.",
+    ),
+    "mask_basis": ("string", "What the mask rests on."),
+    "extractor_basis": ("string", "What the extractor rests on."),
+    "model_basis": ("string", "What the model rests on."),
+    "assumed": ("string", "Of each part that is not stated, the reason or rule why it is there."),
+    "finding": ("string", "Identifier of the finding."),
+    "verdict": ("string", "reproduced, tied, contradicted or undecidable."),
+    "matching": ("integer", "Studies that pass the finding's filter."),
+    "counted": ("integer", "Those of them with a known value of what it ranks."),
+    "named": ("string", "Studies of each value that the finding names."),
+    "ranking": ("string", "Studies of every value, most first."),
+    "settled_by": ("string", "The counts that decide it, and the evidence that would turn it."),
+    "per": ("string", "year or venue."),
+    "year_or_venue": ("string", "The year, or the venue in one spelling."),
+    "studies_count": ("integer", "Number of mapped studies."),
     # what was measured
     "rank": (
         "integer",

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from api.cells import cell
+from api.deposit import told
 from api.deposit.fields import schema
 from benchmark import datasets
 from benchmark.leaderboard.board import build
@@ -19,6 +20,7 @@ from survey_data.csv_writing import csv_text
 
 #: Columns of sweeps that stand in the bundle under another name or value.
 _RENAMED = frozenset({"series", "sweep", "point", "unit"})
+_PLACE = ("detector", "mask")
 _PIPELINE = ("dataset", "condition", "extractor", "model")
 _RANKED = ("rank", "tied", *_PIPELINE, "rms_deg", "low_deg", "high_deg", "unit_rms_deg")
 
@@ -84,6 +86,38 @@ def measured_tables(published: Path) -> list[MeasuredTable]:
         _leaderboard(scores, foreign),
         _pins(store),
         *([_sweeps(swept)] if swept else []),
+        *_told(foreign),
+    ]
+
+
+def _told(foreign: Mapping[str, tuple[str, str]]) -> list[MeasuredTable]:
+    """Make the tables that follow from facts and plan, with the numbers of none."""
+    return [
+        _table(
+            "resolution",
+            "Resolution of the studies",
+            "What runs for each study: a row a pipeline and data set, what each part rests on, and "
+            "by what rule it stands there where the study does not state it.",
+            told.resolution(),
+            primary=("study", *_PLACE, "dataset", "extractor", "model"),
+            foreign={**foreign, "study": ("studies", "key")},
+        ),
+        _table(
+            "verdicts",
+            "Verdicts of the findings",
+            "Each checkable statement of the survey, judged strictly by the tables, with the "
+            "counts and the evidence that would turn it.",
+            told.verdicts(),
+            primary=("finding",),
+            foreign={"finding": ("findings", "id")},
+        ),
+        _table(
+            "publications",
+            "Publications per year and per venue",
+            "Mapped studies of each year, and of each venue that is known.",
+            told.published(),
+            primary=("per", "year_or_venue"),
+        ),
     ]
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
 from typing import Any
 
@@ -12,6 +12,11 @@ from api.docs.examples import command_line, http_examples
 from api.docs.markdown import table as _table
 from api.http.knowledge import Knowledge
 from benchmark.datasets import coverage as simulated
+from registry.resolution import ESSENTIAL, Resolution
+from registry.sensors import BASES
+
+#: Values of a finding whose counts are printed.
+_COUNTS_SHOWN = 8
 
 __all__ = [
     "command_line",
@@ -103,29 +108,41 @@ def findings() -> str:
             finding.id,
             finding.verdict,
             finding.statement,
-            ", ".join(f"{value} {count}" for value, count in finding.ranking[:3]),
-            str(finding.counted),
+            f"{finding.given or 'all studies'} → {finding.expects} ({finding.kind})",
+            _ranked(finding.ranking),
+            finding.settled_by,
         )
         for finding in report.findings
     ]
     return (
         f"{report.studies} studies; the survey states {report.stated}. {report.explanation}\n\n"
         f"{len(report.findings)} findings: {counted}.\n\n"
-        + _table(("id", "verdict", "finding", "most frequent", "studies counted"), rows)
+        + _table(("id", "verdict", "finding", "expects", "counts", "what settles it"), rows)
     )
 
 
 def resolutions() -> str:
-    """Say how many studies run, and what the others wait for."""
+    """Say how the studies run: on what evidence, by what rules, and what does not run as it is."""
     known = _knowledge()
     resolved = known.resolutions
     states = Counter(resolution.state for resolution in resolved.values())
-    counted = f"{states['complete']} run completely, {states['partial']} in part"
-    lines = [f"Of {len(resolved)} studies, {counted}, {states['none']} not at all."]
+    cells = sum(len(p.datasets) for found in resolved.values() for p in found.pipelines)
+    counted = (
+        f"Of {len(resolved)} studies {states['complete']} run with every value of their mapping, "
+        f"{states['partial']} in part, {states['none']} not at all. They have {cells} cells (a "
+        "pipeline on a data set)."
+    )
+    lines = [
+        counted,
+        "What the parts of a pipeline rest on, by studies (of several, that of most evidence):",
+        _table(("part", *BASES), _by_basis(resolved)),
+        "By what rules empty cells are filled, and methods stand in for others:",
+        _table(("part", "rule", "studies"), _by_rule(resolved)),
+    ]
     waiting: Counter[tuple[str, str, str]] = Counter(
         gap
         for resolution in resolved.values()
-        for gap in {(g.attribute, g.value or "not stated", g.reason) for g in resolution.gaps}
+        for gap in {(g.attribute, g.value, g.reason) for g in resolution.gaps if g.value}
     )
     rows = [
         (attribute, value, reason, str(count))
@@ -134,9 +151,39 @@ def resolutions() -> str:
         )
     ]
     if rows:
-        lines.append("What they wait for, by the number of studies:")
+        lines.append("What does not run as the mapping states it, by the number of studies:")
         lines.append(_table(("attribute", "value", "reason", "studies"), rows))
     return "\n\n".join(lines)
+
+
+def _by_basis(resolved: Mapping[str, Resolution]) -> Iterable[Sequence[str]]:
+    """Count the studies by what each part of their best pipeline rests on."""
+    best = [found.best for found in resolved.values() if found.best is not None]
+    for part in ESSENTIAL:
+        counted = Counter(pipeline.basis[part] for pipeline in best)
+        yield part, *(str(counted[basis]) for basis in BASES)
+    weakest = Counter(max(p.basis.values(), key=BASES.index) for p in best)
+    yield "the weakest of them", *(str(weakest[basis]) for basis in BASES)
+
+
+def _by_rule(resolved: Mapping[str, Resolution]) -> Iterable[Sequence[str]]:
+    """List the rules that fill something in, with the studies they do it for."""
+    found: dict[tuple[str, str], dict[str, None]] = {}
+    for key, resolution in resolved.items():
+        for pipeline in resolution.pipelines:
+            for part in ESSENTIAL:
+                if pipeline.basis[part] == "defaulted":
+                    found.setdefault((part, pipeline.assumed[part]), {})[key] = None
+    order = {part: at for at, part in enumerate(ESSENTIAL)}
+    for (part, rule), keys in sorted(found.items(), key=lambda item: (order[item[0][0]], item[0])):
+        yield part, rule, ", ".join(keys)
+
+
+def _ranked(ranking: Sequence[tuple[str, int]]) -> str:
+    """Write the counts of a finding, the rarest of many left out."""
+    shown = ", ".join(f"{value} {count}" for value, count in ranking[:_COUNTS_SHOWN])
+    more = len(ranking) - _COUNTS_SHOWN
+    return f"{shown} and {more} rarer" if more > 0 else shown
 
 
 @cache

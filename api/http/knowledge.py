@@ -45,9 +45,10 @@ class Knowledge:
 
     @cached_property
     def resolutions(self) -> Mapping[str, Resolution]:
-        """What can be run of each study, by key."""
-        pairs = self.measurements.architectures
-        return resolve_all(pairs, catalogue=self.catalogue, facts=self.facts)
+        """What is scored of each study, by key."""
+        from benchmark.plan.combinations import scorable  # noqa: PLC0415 - loads the simulator
+
+        return resolve_all(scorable(), catalogue=self.catalogue, facts=self.facts)
 
     @cached_property
     def _measured(self) -> Mapping[str, Measured]:

@@ -49,6 +49,16 @@ class Measurements:
         return [row for row in self._every_unit if row["unit"] == 0]
 
     @cached_property
+    def nominal(self) -> Mapping[tuple[str, str, str], Row]:
+        """Score under the first condition of each data set, by data set, extractor and model."""
+        first = {name: preset.conditions[0] for name, preset in self.presets.items()}
+        return {
+            (row["dataset"], row["extractor"], row["model"]): row
+            for row in self.scores
+            if row["condition"] == first.get(row["dataset"])
+        }
+
+    @cached_property
     def times(self) -> Mapping[Place, Time]:
         """Times of this machine that are of the code as it is."""
         if self.times_directory is None:
@@ -183,13 +193,3 @@ class Measurements:
             if dataset is None or board["name"] == dataset
             for row in board.get("rows", ())
         ]
-
-    @cached_property
-    def architectures(self) -> frozenset[tuple[str, str]]:
-        """The (detector, mask) pairs that a standard data set simulates."""
-        return frozenset((preset.detector, preset.mask) for preset in self.presets.values())
-
-    def simulating(self, detector: str, mask: str) -> list[str]:
-        """Return the names of the data sets of an architecture."""
-        presets = self.presets.values()
-        return [p.name for p in presets if (p.detector, p.mask) == (detector, mask)]

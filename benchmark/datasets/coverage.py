@@ -17,15 +17,7 @@ from registry.studies import Facts, facts
 Pair = tuple[str, str]  # (detector, mask)
 
 #: Why no dataset simulates a pair that the mapping gives a study.
-REASONS: Mapping[Pair, str] = MappingProxyType(
-    {
-        ("PDA", "Maskless"): "No such sensor: the mapping lists the study's detectors and masks, "
-        "not which belong together. Post2013 has two sensors, a photodiode array behind an N-slit "
-        "and bare solar cells.",
-        ("PVA", "N-Slit"): "No such sensor: the other cross of Post2013's two sensors, a "
-        "photodiode array behind an N-slit and bare solar cells.",
-    }
-)
+REASONS: Mapping[Pair, str] = MappingProxyType({})
 
 
 class CoverageError(ValueError):
@@ -125,9 +117,8 @@ def coverage(
         architectures = {name: (p.detector, p.mask) for name, p in presets.items()}
     using: dict[Pair, list[str]] = {}
     for key, study in mapped.studies.items():
-        for detector in study.of("detector"):
-            for mask in study.of("mask"):
-                using.setdefault((detector, mask), []).append(key)
+        for pair in study.architectures:
+            using.setdefault(pair, []).append(key)
     simulating: dict[Pair, list[str]] = {}
     for name, pair in sorted(architectures.items()):
         simulating.setdefault(pair, []).append(name)

@@ -19,7 +19,7 @@ from typing import Any
 
 from benchmark.contract import Cell
 from benchmark.leaderboard.ranking import order
-from benchmark.plan.combinations import cells
+from benchmark.plan.combinations import cells, scorable
 from benchmark.plan.parts import Parts
 from registry.resolution import resolve_all
 
@@ -61,7 +61,7 @@ def followers(
         Detector, mask, extractor and model of pipelines that studies used; those of the registry
         by default.
     """
-    used = studied_pipelines() if studied is None else frozenset(studied)
+    used = studied_pipelines(parts) if studied is None else frozenset(studied)
     found: list[Cell] = []
     known = [cell for cell in first(parts) if cell in scores]
     for dataset, group in groupby(known, key=lambda cell: cell.dataset):
@@ -114,10 +114,14 @@ def _of_silent(board: list[Cell], ranked: list[Cell], models: Collection[str]) -
         yield from [cell for cell in of_it if cell.model in models] or of_it
 
 
-def studied_pipelines() -> frozenset[tuple[str, str, str, str]]:
-    """Return detector, mask, extractor and model of every pipeline that a mapped study used."""
+def studied_pipelines(parts: Parts) -> frozenset[tuple[str, str, str, str]]:
+    """Return detector, mask, extractor and model of every pipeline that a mapped study used.
+
+    Pipelines in which something stands in for what the study states count as well: they are what
+    is shown for it.
+    """
     return frozenset(
         (pipeline.detector, pipeline.mask, pipeline.extractor, pipeline.model)
-        for resolution in resolve_all().values()
+        for resolution in resolve_all(scorable(parts=parts)).values()
         for pipeline in resolution.pipelines
     )

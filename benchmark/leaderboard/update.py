@@ -61,7 +61,7 @@ def update(
     started = time.perf_counter()
     known = parts or installed()
     components = current(known, sweeps.series_digests())
-    first, studied = scope.first(known), scope.studied_pipelines()
+    first, studied = scope.first(known), scope.studied_pipelines(known)
     choose = partial(scope.followers, studied=studied)
     store = Store(directory)
     with opened(store) as record:

@@ -10,6 +10,7 @@ from algorithms.chain import Scored
 from algorithms.contract import Extractor, FeatureKind, UnsuitableDesignError
 from benchmark.contract import Cell, Preset, UnknownNameError
 from benchmark.plan.parts import Parts, installed
+from registry.plan import Plan
 
 Names = str | Iterable[str] | None
 
@@ -93,6 +94,24 @@ def architectures(*, parts: Parts | None = None) -> frozenset[tuple[str, str]]:
     """Return the (detector, mask) pairs that the datasets simulate."""
     presets = (parts or installed()).presets.values()
     return frozenset((preset.detector, preset.mask) for preset in presets)
+
+
+def scorable(*, parts: Parts | None = None) -> Plan:
+    """Return what can be scored on each architecture: what a study's resolution is made from.
+
+    Returns
+    -------
+    mapping of (detector, mask) to mapping of (extractor, model) to tuple of str
+        Every pipeline that `cells` plans, with the names of its data sets, sorted.
+    """
+    chosen = _Choice.of(parts or installed(), None, None, None, None)
+    found: dict[tuple[str, str], dict[tuple[str, str], tuple[str, ...]]] = {}
+    for preset in chosen.presets:
+        pairs = found.setdefault((preset.detector, preset.mask), {})
+        for extractor, model in _compatible(preset, chosen):
+            pair = extractor.about.name, model.about.name
+            pairs[pair] = (*pairs.get(pair, ()), preset.name)
+    return found
 
 
 def datasets_for(detector: str, mask: str, *, parts: Parts | None = None) -> tuple[str, ...]:

@@ -2,24 +2,24 @@
 
 A finding filters the studies (`given`: attribute=value joined by ``&``), ranks an attribute over
 them by the number of studies a value occurs in, and says how named values rank (`expects`,
-`kind`). Verdict: ``reproduced``, ``contradicted``, or ``undecidable`` where fewer than three
-studies that pass the filter have a known value of the ranked attribute.
+`kind`). Values joined by `` or `` are counted as one: a study with either counts once. Verdicts are
+strict: ``reproduced``, ``tied`` (it would hold if an equal count did not stand in its way),
+``contradicted``, or ``undecidable`` where fewer than three studies that pass the filter have a
+known value of the ranked attribute. A named value that occurs in no study fails.
 
-- ``top``: the most frequent value is one of those named (a tie for the first place counts).
-- ``top-set``: of the n named, all but at most one are among the max(n, 2) most frequent, ties with
-  the last of these included.
-- ``order``: strictly falling in the order given, the first being the most frequent.
-- ``bottom``, ``bottom-set``: no other occurring value is rarer than a named one.
-- ``among``: every named value occurs. ``spread``: at least three of the named occur.
+- ``top``: the most frequent value is one of those named.
+- ``top-set``: the named values are the most frequent, every one above all others.
+- ``order``: the same, falling in the order given.
+- ``bottom``, ``bottom-set``: every named value is below all others that occur.
+- ``among``, ``spread``: every named value occurs.
 - ``top-centroid``: as ``top``, within the category Centroid detection.
 
-``PD`` in a filter includes ``QPD``. Ranked besides attributes: ``detector+mask`` (pairs within a
-study), ``model_category`` and ``extractor_family`` (the taxonomy's categories), ``year``.
+``PD`` in a filter includes ``QPD``. Ranked besides attributes: ``detector+mask`` (pairs of a sensor
+of the study), ``model_category`` and ``extractor_family`` (the taxonomy's categories), ``year``.
 """
 
 from __future__ import annotations
 
-import itertools
 import re
 from collections import Counter
 from collections.abc import Iterable, Mapping
@@ -28,15 +28,19 @@ from typing import Any, Literal
 
 import pandas as pd
 
-Verdict = Literal["reproduced", "contradicted", "undecidable"]
+from survey_data.findings.evidence import OCCURRING, Tally, settled_by
+
+Verdict = Literal["reproduced", "tied", "contradicted", "undecidable"]
+VERDICTS: tuple[Verdict, ...] = ("reproduced", "tied", "contradicted", "undecidable")
 Values = Mapping[str, Mapping[str, frozenset[str]]]  # study -> attribute -> values
 
 KINDS = ("top", "top-set", "order", "bottom", "bottom-set", "among", "spread", "top-centroid")
-LEAST_COUNTED = 3
+_COUNTS = ("ranking", "named")
 _CENTROID_FAMILY = "Centroid detection"
 _INCLUDES = {("detector", "PD"): frozenset({"PD", "QPD"})}
 _CATEGORY_OF = {"model_category": "model", "extractor_family": "extractor"}
 _PAIR = "detector+mask"
+_EITHER = " or "
 
 
 class FindingSyntaxError(ValueError):
@@ -65,8 +69,9 @@ class FindingVerdict:
     """A finding's verdict and the counts behind it.
 
     `matching` studies pass the filter, `counted` of them have a known value of the ranked
-    attribute; `ranking` is (value, number of studies), most frequent first, ties by name. `tied`:
-    several values share the first place.
+    attribute; `ranking` is (value, number of studies), most frequent first, ties by name; `named`
+    the same of the values that the finding names. `settled_by` says on which counts the verdict
+    rests, and which evidence would turn or decide it.
     """
 
     id: str
@@ -79,11 +84,13 @@ class FindingVerdict:
     matching: int
     counted: int
     ranking: tuple[tuple[str, int], ...]
-    tied: bool
+    named: tuple[tuple[str, int], ...]
+    settled_by: str
 
     def to_dict(self) -> dict[str, Any]:
         """Return the verdict as plain JSON data."""
-        return asdict(self) | {"ranking": [[value, count] for value, count in self.ranking]}
+        counts = {name: [list(pair) for pair in getattr(self, name)] for name in _COUNTS}
+        return asdict(self) | counts
 
 
 class Vocabulary:
@@ -140,7 +147,7 @@ def parse_finding(row: Mapping[str, Any], vocabulary: Vocabulary) -> Finding:
             f"got {row['expects']!r}",
         )
     values = tuple(listed.split(">" if kind == "order" else "|"))
-    for value in values:
+    for value in (one for named in values for one in named.split(_EITHER)):
         fault = vocabulary.fault(ranked, value)
         if fault is not None:
             raise FindingSyntaxError("expects", fault)
@@ -176,7 +183,10 @@ def _parse_given(text: Any, vocabulary: Vocabulary) -> Iterable[tuple[str, str]]
 
 
 def study_values(
-    studies: pd.DataFrame, attributes: pd.DataFrame, vocabulary: Vocabulary
+    studies: pd.DataFrame,
+    attributes: pd.DataFrame,
+    architectures: pd.DataFrame,
+    vocabulary: Vocabulary,
 ) -> dict[str, dict[str, frozenset[str]]]:
     """Return study -> attribute -> known values, with the derived attributes findings rank."""
     collected: dict[str, dict[str, set[str]]] = {
@@ -186,12 +196,15 @@ def study_values(
     known = attributes[attributes["value"].notna()]
     for row in known.itertuples(index=False):
         collected[str(row.study)].setdefault(str(row.attribute), set()).add(str(row.value))
-    for values in collected.values():
+    sensors: dict[str, set[str]] = {}
+    for row in architectures.itertuples(index=False):
+        sensors.setdefault(str(row.study), set()).add(f"{row.detector}+{row.mask}")
+    for key, values in collected.items():
         for derived, attribute in _CATEGORY_OF.items():
             values[derived] = {
                 vocabulary.category[attribute, value] for value in values.get(attribute, ())
             }
-        values[_PAIR] = {
+        values[_PAIR] = sensors.get(key) or {
             f"{detector}+{mask}"
             for detector in values.get("detector", ())
             for mask in values.get("mask", ())
@@ -220,22 +233,18 @@ def evaluate(
     """
     matching = [entry for entry in values.values() if _passes(entry, finding.given)]
     counted = [entry[finding.ranked] for entry in matching if finding.ranked in entry]
-    counts = Counter(value for entry in counted for value in entry)
-    if finding.kind == "top-centroid":
-        counts = Counter(
-            {
-                value: count
-                for value, count in counts.items()
-                if vocabulary.category["extractor", value] == _CENTROID_FAMILY
-            }
-        )
-    ranking = tuple(sorted(counts.items(), key=lambda item: (-item[1], item[0])))
-    verdict: Verdict = "undecidable"
-    if len(counted) >= LEAST_COUNTED and ranking:
-        verdict = "reproduced" if _holds(finding, counts, ranking) else "contradicted"
+    counts = _counts(finding, counted, vocabulary)
+    tally = Tally(
+        kind=finding.kind,
+        ranked=finding.ranked,
+        named={value: counts[value] for value in finding.values},
+        others={value: n for value, n in counts.items() if value not in finding.values},
+        counted=len(counted),
+        matching=len(matching),
+    )
     return FindingVerdict(
         id=finding.id,
-        verdict=verdict,
+        verdict=_judged(tally),
         kind=finding.kind,
         survey_section=finding.survey_section,
         given="" if pd.isna(row["given"]) else str(row["given"]),
@@ -243,8 +252,9 @@ def evaluate(
         statement=finding.statement,
         matching=len(matching),
         counted=len(counted),
-        ranking=ranking,
-        tied=len(ranking) > 1 and ranking[0][1] == ranking[1][1],
+        ranking=tuple(sorted(counts.items(), key=lambda item: (-item[1], item[0]))),
+        named=tuple(tally.named.items()),
+        settled_by=settled_by(tally),
     )
 
 
@@ -255,19 +265,27 @@ def _passes(entry: Mapping[str, frozenset[str]], given: Iterable[tuple[str, str]
     )
 
 
-def _holds(finding: Finding, counts: Counter[str], ranking: tuple[tuple[str, int], ...]) -> bool:
-    named = [counts[value] for value in finding.values]
-    most = ranking[0][1]
-    if finding.kind in {"top", "top-centroid"}:
-        return most in named
-    if finding.kind == "top-set":
-        places = min(max(len(named), 2), len(ranking))
-        least = ranking[places - 1][1]
-        return sum(count < least for count in named) <= 1
-    if finding.kind == "order":
-        return named[0] == most and all(a > b for a, b in itertools.pairwise(named))
-    if finding.kind in {"bottom", "bottom-set"}:
-        others = [count for value, count in ranking if value not in finding.values]
-        return not others or max(named) <= min(others)
-    occurring = sum(count > 0 for count in named)
-    return occurring >= 3 if finding.kind == "spread" else occurring == len(named)
+def _counts(
+    finding: Finding, counted: Iterable[frozenset[str]], vocabulary: Vocabulary
+) -> Counter[str]:
+    """Count the studies of each value; those that a finding names as one, as one."""
+    name = {
+        value: named for named in finding.values for value in named.split(_EITHER) if named != value
+    }
+    counts = Counter(named for entry in counted for named in {name.get(v, v) for v in entry})
+    if finding.kind == "top-centroid":
+        kept = [v for v in counts if vocabulary.category["extractor", v] == _CENTROID_FAMILY]
+        return Counter({value: counts[value] for value in kept})
+    return counts
+
+
+def _judged(tally: Tally) -> Verdict:
+    """Judge the two counts that the finding hangs on."""
+    if not tally.decided:
+        return "undecidable"
+    if tally.absent:
+        return "contradicted"
+    if tally.kind in OCCURRING or tally.closest is None:
+        return "reproduced"
+    (_, ours), (_, theirs) = tally.closest
+    return "reproduced" if ours > theirs else "tied" if ours == theirs else "contradicted"

@@ -13,6 +13,7 @@ from typing import Any
 import pandas as pd
 
 from survey_data.findings.checks import (
+    VERDICTS,
     FindingVerdict,
     Vocabulary,
     evaluate,
@@ -75,7 +76,7 @@ class FidelityReport:
     @property
     def verdicts(self) -> dict[str, int]:
         """Return verdict -> number of findings."""
-        counted = {"reproduced": 0, "contradicted": 0, "undecidable": 0}
+        counted: dict[str, int] = dict.fromkeys(VERDICTS, 0)
         for finding in self.findings:
             counted[finding.verdict] += 1
         return counted
@@ -132,7 +133,7 @@ def fidelity(tables: SurveyTables, problems: Sequence[Problem] = ()) -> Fidelity
     if stated is None:
         raise LookupError("counts.csv states no number of studies")
     vocabulary = Vocabulary(tables.taxonomy)
-    values = study_values(tables.studies, tables.attributes, vocabulary)
+    values = study_values(tables.studies, tables.attributes, tables.architectures, vocabulary)
     findings = []
     for record in tables.findings.to_dict("records"):
         row = {str(name): cell for name, cell in record.items()}

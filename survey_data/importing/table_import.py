@@ -2,20 +2,12 @@
 
 from __future__ import annotations
 
-import shutil
-import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 
 from survey_data.csv_reading import read_records
 from survey_data.csv_writing import csv_text
-from survey_data.descriptor import (
-    DATA_DIRECTORY,
-    DESCRIPTOR_FILE,
-    column_types,
-    file_name,
-    table_names,
-)
+from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name
 from survey_data.importing.columns import match_columns
 from survey_data.importing.plan import (
     AUTHORS_BASIS,
@@ -26,10 +18,9 @@ from survey_data.importing.plan import (
     require_readable,
 )
 from survey_data.importing.reading import read_table
+from survey_data.importing.writing import write_valid
 from survey_data.problems import SurveyImportError
 from survey_data.tables import SurveyTables, load
-from survey_data.validation.validate import validate
-from survey_data.whole_files import replace_file
 
 _TABLE = "attributes"
 
@@ -110,11 +101,7 @@ def apply_import(directory: str | Path | None, plan: ImportPlan) -> ImportPlan:
     if not plan.edits:
         return plan
     text = _edited(folder, plan, _authors_doi(tables))
-    try:
-        _require_valid(folder, text)
-        replace_file(folder / file_name(_TABLE), text)
-    except OSError as error:
-        raise SurveyImportError(f"cannot write in {folder}: {error.strerror or error}") from error
+    write_valid(folder, _TABLE, text)
     return plan.after_writing()
 
 
@@ -176,15 +163,3 @@ def _rows_of(edit: Difference, replaced: list[list[str]], doi: str) -> list[list
 def _note(basis: str, source: str, note: str) -> str:
     said = f"{basis} ({source})" if source else basis
     return f"{said}: {note}" if note else said
-
-
-def _require_valid(folder: Path, text: str) -> None:
-    with tempfile.TemporaryDirectory() as scratch:
-        for name in (DESCRIPTOR_FILE, *map(file_name, table_names())):
-            shutil.copyfile(folder / name, Path(scratch) / name)
-        (Path(scratch) / file_name(_TABLE)).write_text(text, encoding="utf-8", newline="")
-        problems = validate(scratch)
-    if problems:
-        raise SurveyImportError(
-            f"the tables would not be valid: {problems[0]}", problems=tuple(problems)
-        )

@@ -8,38 +8,26 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator
 
 import pandas as pd
 
-from survey_data.descriptor import file_name, primary_key
+from survey_data.descriptor import primary_key
 from survey_data.findings.checks import FindingSyntaxError, Vocabulary, parse_finding
 from survey_data.problems import Problem
 from survey_data.tables import FIRST_ROW
-
-Frames = Mapping[str, pd.DataFrame]
-Rule = Callable[[Frames], Iterator[Problem]]
+from survey_data.validation import provenance
+from survey_data.validation.cells import Frames, Rule, problem, texts
 
 
 def check_rules(frames: Frames) -> list[Problem]:
     """Return the problems every rule finds whose tables are all in `frames`."""
     return [
-        problem
-        for needed, rule in _RULES
+        found
+        for needed, rule in (*_RULES, *provenance.RULES)
         if all(table in frames for table in needed)
-        for problem in rule(frames)
+        for found in rule(frames)
     ]
-
-
-def _problem(table: str, index: int, column: str, message: str) -> Problem:
-    return Problem(file_name(table), index + FIRST_ROW, column, message)
-
-
-def _texts(frame: pd.DataFrame, *columns: str) -> Iterator[tuple[int, tuple[str, ...]]]:
-    """Yield (index, cells as text, '' where missing) of some columns."""
-    parts = [frame[column].astype(object).where(frame[column].notna(), "") for column in columns]
-    for index, cells in enumerate(zip(*parts, strict=True)):
-        yield index, tuple(str(cell) for cell in cells)
 
 
 def _values_belong(frames: Frames) -> Iterator[Problem]:
@@ -47,18 +35,18 @@ def _values_belong(frames: Frames) -> Iterator[Problem]:
     vocabulary = Vocabulary(frames["taxonomy"]).values
     rows = frames["attribute_definitions"].to_dict("records")
     definitions = {str(row["attribute"]): row for row in rows}
-    for index, (attribute, value) in _texts(frames["attributes"], "attribute", "value"):
+    for index, (attribute, value) in texts(frames["attributes"], "attribute", "value"):
         if not value or attribute not in definitions:
             continue
         definition = definitions[attribute]
         if definition["kind"] == "categorical":
             if value not in vocabulary.get(attribute, ()):
                 message = f"unknown taxonomy value {value!r} of {attribute}"
-                yield _problem("attributes", index, "value", message)
+                yield problem("attributes", index, "value", message)
             continue
         fault = number_fault(value, definition["min"], definition["max"])
         if fault is not None:
-            yield _problem("attributes", index, "value", f"{attribute}: {fault}")
+            yield problem("attributes", index, "value", f"{attribute}: {fault}")
 
 
 def number_fault(text: str, least: float, most: float) -> str | None:
@@ -75,17 +63,17 @@ def _one_basis_a_cell(frames: Frames) -> Iterator[Problem]:
     """Check that a (study, attribute, value) stands once, with one basis."""
     seen: dict[tuple[str, ...], tuple[int, str]] = {}
     columns = ("study", "attribute", "value", "basis")
-    for index, (*cell, basis) in _texts(frames["attributes"], *columns):
+    for index, (*cell, basis) in texts(frames["attributes"], *columns):
         first = seen.setdefault(tuple(cell), (index, basis))
         if first[0] == index:
             continue
         row = first[0] + FIRST_ROW
         if basis == first[1]:
             message = f"duplicate row: {', '.join(cell)} stands already in row {row}"
-            yield _problem("attributes", index, "value", message)
+            yield problem("attributes", index, "value", message)
         else:
             message = f"two bases for {', '.join(cell)}: {first[1]} in row {row} and {basis}"
-            yield _problem("attributes", index, "basis", message)
+            yield problem("attributes", index, "basis", message)
 
 
 def _unknown_is_empty(frames: Frames) -> Iterator[Problem]:
@@ -93,66 +81,69 @@ def _unknown_is_empty(frames: Frames) -> Iterator[Problem]:
     known: dict[tuple[str, str], int] = {}
     unknown: dict[tuple[str, str], int] = {}
     columns = ("study", "attribute", "value", "basis")
-    for index, (study, attribute, value, basis) in _texts(frames["attributes"], *columns):
+    for index, (study, attribute, value, basis) in texts(frames["attributes"], *columns):
         if basis == "unknown" and value:
-            yield _problem("attributes", index, "value", f"basis unknown, yet value {value!r}")
+            yield problem("attributes", index, "value", f"basis unknown, yet value {value!r}")
         elif not value and basis != "unknown":
             message = f"the value is empty, so the basis must be unknown, not {basis!r}"
-            yield _problem("attributes", index, "basis", message)
+            yield problem("attributes", index, "basis", message)
         (known if value else unknown).setdefault((study, attribute), index)
     for cell, index in unknown.items():
         if cell in known:
             message = f"unknown beside a value in row {known[cell] + FIRST_ROW}"
-            yield _problem("attributes", index, "value", message)
+            yield problem("attributes", index, "value", message)
 
 
 def _studies_are_complete(frames: Frames) -> Iterator[Problem]:
     """Check that every study has a row for every attribute, and one where one is admitted."""
     definitions = frames["attribute_definitions"]
     held: dict[tuple[str, str], list[int]] = {}
-    for index, cell in _texts(frames["attributes"], "study", "attribute"):
+    for index, cell in texts(frames["attributes"], "study", "attribute"):
         held.setdefault((cell[0], cell[1]), []).append(index)
     for definition in definitions.to_dict("records"):
         attribute, complete = str(definition["attribute"]), definition["complete"]
         single = not pd.isna(definition["multiple"]) and not definition["multiple"]
-        for index, (key,) in _texts(frames["studies"], "key"):
+        for index, (key,) in texts(frames["studies"], "key"):
             rows = held.get((key, attribute), [])
             if not pd.isna(complete) and complete and not rows:
                 message = f"{key} has no row for the attribute {attribute} in attributes.csv"
-                yield _problem("studies", index, "key", message)
+                yield problem("studies", index, "key", message)
             if single and len(rows) > 1:
                 message = f"{key} has several values of {attribute}, which admits one"
-                yield _problem("attributes", rows[1], "value", message)
+                yield problem("attributes", rows[1], "value", message)
 
 
 def _printed_cells_agree(frames: Frames) -> Iterator[Problem]:
     """Check that basis survey-table and the printed tables say the same."""
     meant: dict[tuple[str, str], set[str]] = {}
-    for _, (attribute, alias, value, origin) in _texts(
+    for _, (attribute, alias, value, origin) in texts(
         frames["aliases"], "attribute", "alias", "value", "origin"
     ):
         if origin == "survey":
             meant.setdefault((attribute, alias), set()).add(value)
     columns = ("study", "attribute", "value", "basis")
     ours: dict[tuple[str, str, str], int] = {}
-    for index, (study, attribute, value, basis) in _texts(frames["attributes"], *columns):
+    held: set[tuple[str, str, str]] = set()
+    for index, (study, attribute, value, basis) in texts(frames["attributes"], *columns):
+        held.add((study, attribute, value))
         if basis == "survey-table":
             ours[study, attribute, value] = index
     backed: set[tuple[str, str, str]] = set()
-    for index, (study, attribute, label) in _texts(
+    for index, (study, attribute, label) in texts(
         frames["study_tables"], "study", "attribute", "value"
     ):
-        cells = {
-            (study, attribute, value) for value in {label} | meant.get((attribute, label), set())
-        } & ours.keys()
+        same = {label} | meant.get((attribute, label), set())
+        kinds = {value for value in same if value.startswith(f"{label}/")}
+        cells = {(study, attribute, value) for value in same - kinds} & ours.keys()
         backed |= cells
-        if not cells:
+        # The tables print parents alone: which kind it is rests on something else.
+        if not cells and not {(study, attribute, kind) for kind in kinds} & held:
             message = f"{study} is printed under {label!r}, but attributes.csv does not carry it"
-            yield _problem("study_tables", index, "value", message)
+            yield problem("study_tables", index, "value", message)
     for cell, index in ours.items():
         if cell not in backed:
             message = f"basis survey-table, but study_tables.csv has no such cell: {cell}"
-            yield _problem("attributes", index, "value", message)
+            yield problem("attributes", index, "value", message)
 
 
 def _printed_labels_are_known(frames: Frames) -> Iterator[Problem]:
@@ -163,83 +154,83 @@ def _printed_labels_are_known(frames: Frames) -> Iterator[Problem]:
     for index, cell in _pairs(frames["study_tables"], "attribute", "value"):
         if cell not in known:
             message = f"unknown taxonomy value {cell[1]!r} of {cell[0]}"
-            yield _problem("study_tables", index, "value", message)
-    for index, (extractor,) in _texts(frames["feature_assessment"], "extractor"):
+            yield problem("study_tables", index, "value", message)
+    for index, (extractor,) in texts(frames["feature_assessment"], "extractor"):
         if ("extractor", extractor) not in known:
             message = f"unknown taxonomy value {extractor!r} of extractor"
-            yield _problem("feature_assessment", index, "extractor", message)
+            yield problem("feature_assessment", index, "extractor", message)
 
 
 def _pairs(frame: pd.DataFrame, a: str, b: str) -> Iterator[tuple[int, tuple[str, str]]]:
-    for index, cells in _texts(frame, a, b):
+    for index, cells in texts(frame, a, b):
         yield index, (cells[0], cells[1])
 
 
 def _absences_are_none(frames: Frames) -> Iterator[Problem]:
     """Check that a study absent from a printed table has the label None, alone."""
     label_of: dict[tuple[str, str], set[str]] = {}
-    rows = list(_texts(frames["study_tables"], "study", "attribute", "value", "source"))
+    rows = list(texts(frames["study_tables"], "study", "attribute", "value", "source"))
     for _, (study, attribute, value, _) in rows:
         label_of.setdefault((study, attribute), set()).add(value)
     for index, (study, attribute, value, source) in rows:
         table = {"model": "tab:mrlit", "extractor": "tab:felit"}.get(attribute, "")
         if source.removeprefix("absent from ") != table:
             message = f"the {attribute} table is {table}, not {source}"
-            yield _problem("study_tables", index, "source", message)
+            yield problem("study_tables", index, "source", message)
         if source.startswith("absent") != (value == "None"):
             message = "absent from a table and the label None go together"
-            yield _problem("study_tables", index, "value", message)
+            yield problem("study_tables", index, "value", message)
         elif value == "None" and len(label_of[study, attribute]) > 1:
             message = f"{study} has the label None beside others"
-            yield _problem("study_tables", index, "value", message)
-    for index, (key,) in _texts(frames["studies"], "key"):
+            yield problem("study_tables", index, "value", message)
+    for index, (key,) in texts(frames["studies"], "key"):
         for attribute in ("model", "extractor"):
             if (key, attribute) not in label_of:
                 message = f"{key} has no {attribute} row in study_tables.csv"
-                yield _problem("studies", index, "key", message)
+                yield problem("studies", index, "key", message)
 
 
 def _years_match_keys(frames: Frames) -> Iterator[Problem]:
     """Check that the year is the one in the key, and an unidentified study has no title."""
-    for index, (key, year, title, identity) in _texts(
+    for index, (key, year, title, identity) in texts(
         frames["studies"], "key", "year", "title", "identity"
     ):
         digits = re.search(r"[0-9]{4}", key)
         if digits is not None and year != digits.group():
             message = f"the key {key} says {digits.group()}, got {year!r}"
-            yield _problem("studies", index, "year", message)
+            yield problem("studies", index, "year", message)
         if identity == "unknown" and title:
-            yield _problem("studies", index, "title", "identity unknown, yet a title")
+            yield problem("studies", index, "title", "identity unknown, yet a title")
         if identity == "confirmed" and not title:
-            yield _problem("studies", index, "title", "identity confirmed, yet no title")
+            yield problem("studies", index, "title", "identity confirmed, yet no title")
 
 
 def _cited_keys_exist(frames: Frames) -> Iterator[Problem]:
     """Check keys of claims and case studies against the studies and the other cited keys."""
-    known = {key for _, (key,) in _texts(frames["studies"], "key")}
-    cited = {key for _, (key,) in _texts(frames["references"], "key")}
-    for index, (key,) in _texts(frames["references"], "key"):
+    known = {key for _, (key,) in texts(frames["studies"], "key")}
+    cited = {key for _, (key,) in texts(frames["references"], "key")}
+    for index, (key,) in texts(frames["references"], "key"):
         if key in known:
-            yield _problem("references", index, "key", f"{key} is a mapped study")
+            yield problem("references", index, "key", f"{key} is a mapped study")
     for table, column in (("claims", "study"), ("feature_assessment", "case_study")):
-        for index, (key,) in _texts(frames[table], column):
+        for index, (key,) in texts(frames[table], column):
             if key and key not in known | cited:
-                yield _problem(table, index, column, f"no study and no reference {key!r}")
+                yield problem(table, index, column, f"no study and no reference {key!r}")
 
 
 def _claim_sections_exist(frames: Frames) -> Iterator[Problem]:
     """Check that a claim's section is one the taxonomy files a value under."""
-    sections = {section for _, (section,) in _texts(frames["taxonomy"], "survey_section")}
-    for index, (section,) in _texts(frames["claims"], "section"):
+    sections = {section for _, (section,) in texts(frames["taxonomy"], "survey_section")}
+    for index, (section,) in texts(frames["claims"], "section"):
         if section not in sections:
             message = f"no taxonomy value has the section {section!r}"
-            yield _problem("claims", index, "section", message)
+            yield problem("claims", index, "section", message)
 
 
 def _assessment_is_full(frames: Frames) -> Iterator[Problem]:
     """Check that every extractor is assessed by every property, with one case study."""
     frame = frames["feature_assessment"]
-    cells = list(_texts(frame, "extractor", "property", "case_study"))
+    cells = list(texts(frame, "extractor", "property", "case_study"))
     properties = dict.fromkeys(cell[1] for _, cell in cells)
     held: dict[str, set[str]] = {}
     case_study: dict[str, str] = {}
@@ -249,12 +240,12 @@ def _assessment_is_full(frames: Frames) -> Iterator[Problem]:
         last[extractor] = index
         if case_study.setdefault(extractor, study) != study:
             message = f"{extractor} has two case studies, {case_study[extractor]} and {study}"
-            yield _problem("feature_assessment", index, "case_study", message)
+            yield problem("feature_assessment", index, "case_study", message)
     for extractor, names in held.items():
         for name in properties:
             if name not in names:
                 message = f"{extractor} has no row for the property {name!r}"
-                yield _problem("feature_assessment", last[extractor], "property", message)
+                yield problem("feature_assessment", last[extractor], "property", message)
 
 
 def _accuracy_classes_tile(frames: Frames) -> Iterator[Problem]:
@@ -266,20 +257,20 @@ def _accuracy_classes_tile(frames: Frames) -> Iterator[Problem]:
     ]
     for least, most, index, is_class in limits:
         if not is_class and not (math.isnan(least) and math.isnan(most)):
-            yield _problem("taxonomy", index, "min_deg", "only accuracy classes have limits")
+            yield problem("taxonomy", index, "min_deg", "only accuracy classes have limits")
     upper = 0.0
     classes = sorted((entry for entry in limits if entry[3]), key=lambda entry: entry[0])
     for least, most, index, _ in classes:
         if least != upper:
             message = f"accuracy classes must follow one another: expected {upper!r}, got {least!r}"
-            yield _problem("taxonomy", index, "min_deg", message)
+            yield problem("taxonomy", index, "min_deg", message)
         upper = math.inf if math.isnan(most) else most
         if upper <= least:
             message = f"expected more than {least!r}, got {most!r}"
-            yield _problem("taxonomy", index, "max_deg", message)
+            yield problem("taxonomy", index, "max_deg", message)
     if classes and not math.isinf(upper):
         message = "the coarsest accuracy class must be open upwards"
-        yield _problem("taxonomy", classes[-1][2], "max_deg", message)
+        yield problem("taxonomy", classes[-1][2], "max_deg", message)
 
 
 def _findings_parse(frames: Frames) -> Iterator[Problem]:
@@ -289,7 +280,7 @@ def _findings_parse(frames: Frames) -> Iterator[Problem]:
         try:
             parse_finding({str(name): cell for name, cell in row.items()}, vocabulary)
         except FindingSyntaxError as error:
-            yield _problem("findings", index, error.column, str(error))
+            yield problem("findings", index, error.column, str(error))
 
 
 def _identifiers_run_on(frames: Frames) -> Iterator[Problem]:
@@ -298,14 +289,16 @@ def _identifiers_run_on(frames: Frames) -> Iterator[Problem]:
         ("findings", "id", "F{:02d}"),
         ("claims", "id", "C{:02d}"),
         ("bases", "rank", "{:d}"),
+        ("defaults", "id", "D{:02d}"),
+        ("advice", "id", "A{:02d}"),
     ):
         if table not in frames:
             continue
-        for index, (found,) in _texts(frames[table], column):
+        for index, (found,) in texts(frames[table], column):
             expected = form.format(index + 1)
             if found != expected:
                 message = f"expected {expected} here, got {found!r}"
-                yield _problem(table, index, column, message)
+                yield problem(table, index, column, message)
                 break
 
 
@@ -313,17 +306,17 @@ def count_rows(frame: pd.DataFrame, column: str, value: str) -> int:
     """Count a frame's rows, or those with a value (as text) in a column."""
     if not column:
         return len(frame)
-    return sum(cell == value for _, (cell,) in _texts(frame, column))
+    return sum(cell == value for _, (cell,) in texts(frame, column))
 
 
 def _counts_hold(frames: Frames) -> Iterator[Problem]:
     """Check that every table holds as many rows as counts.csv says."""
     names = ("table", "column", "value", "held")
-    for index, (table, column, value, held) in _texts(frames["counts"], *names):
+    for index, (table, column, value, held) in texts(frames["counts"], *names):
         if table not in frames:
             continue
         if column and column not in frames[table].columns:
-            yield _problem("counts", index, "column", f"{table} has no column {column!r}")
+            yield problem("counts", index, "column", f"{table} has no column {column!r}")
             continue
         found = count_rows(frames[table], column, value)
         if str(found) != held:
@@ -332,7 +325,7 @@ def _counts_hold(frames: Frames) -> Iterator[Problem]:
                 f"a row is missing or too many: {found} {what}, "
                 f"counts.csv (row {index + FIRST_ROW}) says {held}"
             )
-            yield _problem(table, len(frames[table]), column or primary_key(table)[0], message)
+            yield problem(table, len(frames[table]), column or primary_key(table)[0], message)
 
 
 _RULES: tuple[tuple[tuple[str, ...], Rule], ...] = (

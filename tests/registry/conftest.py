@@ -1,10 +1,14 @@
+import sys
 from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from types import MappingProxyType
 
 import pytest
 
 from registry import studies
 from registry.studies import AttributeValue, Facts, Study
+
+sys.path.append(str(Path(__file__).parent / "fakes"))
 
 Row = Mapping[str, Sequence[str]]
 

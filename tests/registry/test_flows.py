@@ -47,6 +47,15 @@ def recount(facts: Facts, levels: Sequence[str]) -> pd.DataFrame:
             dtype=object,
         )
         frame = frame.merge(long, how="left", on="study")
+    if {"of detector", "of mask"} <= set(frame.columns):
+        crossed = [
+            bool(facts.studies[study].combined)
+            and (detector, mask) not in facts.studies[study].combined
+            for study, detector, mask in zip(
+                frame["study"], frame["of detector"], frame["of mask"], strict=True
+            )
+        ]
+        frame = frame[~pd.Series(crossed, index=frame.index, dtype=bool)]
     for level in levels:
         frame[level] = [
             None if pd.isna(v) else facts.taxonomy.derived(level, v)

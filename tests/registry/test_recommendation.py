@@ -1,5 +1,6 @@
 """Recommendations: what brute force over studies and rows gives, ranked as said."""
 
+import dataclasses
 import itertools
 import math
 import statistics
@@ -283,7 +284,8 @@ def test_support_is_the_geometric_mean_of_distinct_studies_at_three_depths(surve
     for path in answer.paths:
         depths = [
             sum(
-                all(getattr(path, level) in s.of(level) for level in LEVELS[:end])
+                all(getattr(path, level) in s.supported(level) for level in LEVELS[:end])
+                and (not s.combined or (path.detector, path.mask) in s.combined)
                 for s in survey.studies.values()
             )
             for end in (5, 4, 3)
@@ -318,10 +320,40 @@ def test_for_accuracy_cmos_with_multi_aperture_and_encoded_masks_is_among_the_fi
     assert answer.count > 50
 
 
+def without_what_was_only_compared(facts: Facts) -> Facts:
+    kept = {}
+    for key, s in facts.studies.items():
+        values = {
+            attribute: tuple(c for c in cells if s.role(attribute, c.value) != "compared")
+            for attribute, cells in s.values.items()
+        }
+        kept[key] = dataclasses.replace(s, values=values)
+    return Facts(kept, facts.taxonomy)
+
+
+def test_what_a_study_only_compared_is_none_of_its_support(survey: Facts) -> None:
+    # Chang2007a and Chang2008 took basic centroids to show that a template is better.
+    for key in ("Chang2007a", "Chang2008"):
+        assert survey.studies[key].supported("extractor") == ("TM",)
+    ask = {"detector": ["CMOS"], "mask": ["Single-Ap."], "model": ["SPM"]}
+    paths = recommend({**ask, "task": ["Accuracy"]}, facts=survey).paths
+    backing = {path.extractor: set(path.studies) for path in paths}
+    assert {"Chang2007a", "Chang2008"} <= backing["TM"]
+    assert backing["BCTM"] == {"ONeill2020", "Rhee2012"}
+    assert "BCM" not in backing
+
+
+def test_no_path_is_of_a_sensor_that_there_is_not(survey: Facts) -> None:
+    paths = recommend({}, facts=survey).paths
+    pairs = {(path.detector, path.mask) for path in paths}
+    assert ("PDA", "N-Slit") in pairs
+    assert not pairs & {("PDA", "Maskless"), ("PVA", "N-Slit")}
+
+
 def test_nodes_and_links_are_the_cross_analysis_narrowed_to_the_answer(survey: Facts) -> None:
     ask = {"task": ["Accuracy"], "detector": ["CMOS"]}
     answer = recommend(ask, facts=survey)
-    whole = chart("cross-analysis", ask, facts=survey)
+    whole = chart("cross-analysis", ask, facts=without_what_was_only_compared(survey))
     wide = {(link.source, link.target): set(link.studies) for link in whole.links}
     narrow = {(link.source, link.target): set(link.studies) for link in answer.links}
     complete = {s.key for s in survey.studies.values() if all(s.of(level) for level in LEVELS)}

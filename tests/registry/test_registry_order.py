@@ -1,12 +1,9 @@
 """In what order the registry answers, and its small refusals: tables small enough to be read."""
 
 from collections.abc import Callable, Mapping
-from types import SimpleNamespace
-from typing import Any
 
 import pytest
 
-from registry import resolution
 from registry.flows import allowed_values, chart, flows
 from registry.studies import AttributeValue, Facts, Study
 from registry.taxonomy import (
@@ -98,12 +95,19 @@ def test_levels_are_at_least_two_and_may_be_two(facts_of: Build) -> None:
             flows(wrong, facts=facts_of(TABLE))
 
 
-def entry(value: str, category: str = "C") -> TaxonomyEntry:
-    return TaxonomyEntry("model", value, f"the {value}", category, "")
+def entry(value: str, category: str = "C", calibration: str = "") -> TaxonomyEntry:
+    return TaxonomyEntry("model", value, f"the {value}", category, "", calibration)
 
 
 def test_a_taxonomy_keeps_the_order_given_and_what_it_implies() -> None:
-    made = Taxonomy([entry("ECM", "P"), entry("None", "N"), entry("LUT", "L"), entry("ECM/x", "P")])
+    made = Taxonomy(
+        [
+            entry("ECM", "P", "online"),
+            entry("None", "N"),
+            entry("LUT", "L"),
+            entry("ECM/x", "P", "offline"),
+        ]
+    )
     assert made.attributes == ("model",)
     assert made.levels == ("model", "model_category", "calibration")
     assert made.values("model") == ("ECM", "None", "LUT", "ECM/x")
@@ -150,72 +154,12 @@ def test_of_several_numbers_the_best_counts() -> None:
     assert study(mask=["Slit", "Lens", "Slit"]).of("mask") == ("Slit", "Lens")
     assert study().of("mask") == ()
     assert study().to_dict()["attributes"] == [
-        {"attribute": "mask", "value": "", "basis": "unknown", "source": "", "note": "why"}
+        {
+            "attribute": "mask",
+            "value": "",
+            "basis": "unknown",
+            "source": "",
+            "note": "why",
+            "role": "",
+        }
     ]
-
-
-def made(name: str, **about: object) -> Any:
-    return SimpleNamespace(about=SimpleNamespace(name=name, **about))
-
-
-#: In the order in which they are tried: the second reads what the first does, the third currents.
-CLASSES = (
-    made("first", observation="frames", kind="spot"),
-    made("second", observation="frames", kind="spot"),
-    made("third", observation="currents", kind="signals"),
-    made("fourth", observation="frames", kind="balance"),
-)
-READERS = (
-    made("signals alone", accepts={"signals"}),
-    made("plain", accepts={"spot"}),
-    made("both", accepts={"spot", "balance"}),
-    made("balances alone", accepts={"balance"}),
-)
-
-
-@pytest.mark.parametrize(
-    ("extractor", "model", "detector", "pairs"),
-    [
-        (
-            "BCM", "LUT", "CMOS",
-            [("first", "plain"), ("first", "both"), ("second", "plain"), ("second", "both"),
-             ("fourth", "both"), ("fourth", "balances alone")],
-        ),
-        # the first extractor that fits, for each model; the first model, for each extractor
-        (
-            "None", "LUT", "CMOS",
-            [("first", "plain"), ("first", "both"), ("fourth", "balances alone")],
-        ),
-        ("BCM", "None", "CMOS", [("first", "plain"), ("second", "plain"), ("fourth", "both")]),
-        ("None", "None", "CMOS", [("first", "plain")]),
-        ("None", "LUT", "PD", [("third", "signals alone")]),
-        ("None", "None", "Event", []),
-    ],
-)  # fmt: skip
-def test_for_what_a_study_leaves_open_the_first_that_fits_is_taken(
-    extractor: str, model: str, detector: str, pairs: list[tuple[str, str]]
-) -> None:
-    found = resolution._fitting_pairs(
-        detector,
-        resolution._ExtractorOption(extractor, CLASSES),
-        resolution._ModelOption(model, READERS),
-    )
-    assert [(one.about.name, other.about.name) for one, other in found] == pairs
-
-
-@pytest.mark.parametrize(
-    ("simulated", "missing"),
-    [
-        ([("CMOS", "Slit"), ("PD", "Lens")], []),  # others show both parts of what is not
-        ([("CMOS", "Slit")], ["CMOS + Lens", "PD + Lens"]),
-        ([("CMOS", "Slit"), ("CMOS", "Lens")], ["PD + Lens"]),
-        ([], ["CMOS + Slit", "CMOS + Lens", "PD + Lens"]),
-    ],
-)
-def test_an_architecture_lacks_where_others_do_not_show_its_parts(
-    simulated: list[tuple[str, str]], missing: list[str]
-) -> None:
-    pairs = [("CMOS", "Slit"), ("CMOS", "Lens"), ("PD", "Lens")]
-    found = resolution._architecture_gaps(pairs, simulated)
-    assert [gap.value for gap in found] == missing
-    assert {gap.attribute for gap in found} <= {"architecture"}

@@ -50,6 +50,7 @@ def test_the_detail_of_a_study_shows_empty_cells_and_numbers(survey: Facts) -> N
         "basis": "unknown",
         "source": "",
         "note": "",
+        "role": "",
     } in cells
     assert found.number("accuracy_deg") is None
     assert survey.study("Minor2010").number("accuracy_deg") == 0.1
@@ -86,5 +87,13 @@ def test_tables_that_contradict_each_other_are_refused() -> None:
 
 
 def _tables(tables: survey_data.SurveyTables, **changed: pd.DataFrame) -> SimpleNamespace:
-    names = ("studies", "attributes", "taxonomy")
+    names = (
+        "studies",
+        "attributes",
+        "taxonomy",
+        "roles",
+        "architectures",
+        "defaults",
+        "model_families",
+    )
     return SimpleNamespace(**{name: changed.get(name, getattr(tables, name)) for name in names})

@@ -13,7 +13,7 @@ from api.cli.tables import Format, FormatOption, emit
 from api.http.routers import studies
 from benchmark.contract import Cell, UnknownNameError
 from benchmark.metrics.score import METRICS
-from benchmark.plan.combinations import cells, datasets_for
+from benchmark.plan.combinations import cells
 from registry.resolution import Resolution
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
@@ -49,12 +49,13 @@ def run(
 ) -> None:
     """Run a study's pipelines on the data of its architecture.
 
-    Every pipeline that the study's mapping resolves to is scored on every data set with its
-    detector and mask; bound is the Cramer-Rao bound with the unit known, over bound the error
+    Every pipeline that the study's mapping resolves to is scored on every data set of its detector
+    and mask that it fits; assumed says what the study does not state, and by what rule it stands
+    there; bound is the Cramer-Rao bound with the unit known, over bound the error
     divided by it; bound unit and over bound unit are those with the unit unknown but for flat and
     dark readings, and floor adds the systematic error of the calibration's reference: precision
-    and accuracy are two numbers. What lacks an implementation or data is a gap: listed on stderr,
-    and in JSON under "gaps". Where nothing runs, the exit code is 1.
+    and accuracy are two numbers. What does not run as the study states it is a gap: listed on
+    stderr, and in JSON under "gaps". Where nothing runs, the exit code is 1.
 
     Cells that the published results hold are read there. Others are measured into the working
     store (see --store) and not measured again.
@@ -72,11 +73,7 @@ def run(
 
 def _planned(resolution: Resolution, conditions: Sequence[str] | None) -> dict[Cell, list[str]]:
     """Return the study's cells, each with what is assumed where the study does not say."""
-    places = {
-        pipeline: datasets_for(pipeline.detector, pipeline.mask)
-        for pipeline in resolution.pipelines
-    }
-    presets = {name for names in places.values() for name in names}
+    presets = {name for pipeline in resolution.pipelines for name in pipeline.datasets}
     everything = [cell for name in presets for cell in cells(name)]
     known = {cell.condition for cell in everything}
     for name in conditions or ():
@@ -84,10 +81,10 @@ def _planned(resolution: Resolution, conditions: Sequence[str] | None) -> dict[C
             raise UnknownNameError("condition", name, known)
     wanted = set(conditions or known)
     planned: dict[Cell, list[str]] = {}
-    for pipeline, names in places.items():
-        assumed = [f"{attribute} {stated}" for attribute, stated in pipeline.assumed.items()]
+    for pipeline in resolution.pipelines:
+        assumed = [f"{attribute}: {rule}" for attribute, rule in pipeline.assumed.items()]
         for cell in everything:
-            ours = cell.dataset in names and cell.condition in wanted
+            ours = cell.dataset in pipeline.datasets and cell.condition in wanted
             if ours and (cell.extractor, cell.model) == (pipeline.extractor, pipeline.model):
                 # A pipeline that the study states outright is not an assumption.
                 planned[cell] = [] if planned.get(cell) == [] else assumed

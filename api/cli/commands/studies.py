@@ -58,8 +58,9 @@ def studies(
 ) -> None:
     """List the studies and how far each one runs, or show one.
 
-    A study is complete when every value of its mapping runs, partial when some values lack an
-    implementation or a data set, none when nothing of it runs. `sunatlas studies KEY` says why.
+    A study is complete when every value of its mapping runs, partial when some do not, or a rule
+    fills what the mapping leaves empty, none when nothing of it runs. `sunatlas studies KEY` says
+    why, and of every value of a pipeline what it rests on.
     """
     filters: dict[str, Any] = {
         "task": task,
@@ -99,9 +100,38 @@ def _show(key: str, form: Format) -> None:
         year = study["year"] or "year unknown"
         typer.echo(f"{study['authors'] or 'authors unknown'}, {year}. {study['venue'] or ''}")
         typer.echo(f"{study['doi'] or study['url'] or 'no DOI known'}; runs: {study['state']}\n")
-    emit(study["attributes"], ("attribute", "value", "basis", "source", "note"), form)
+    emit(study["attributes"], answers.DETAIL_COLUMNS, form)
     if form is Format.TABLE:
-        pipelines = ("detector", "mask", "extractor", "model", "datasets")
-        emit(study["pipelines"], pipelines, form, title=f"Runs: {len(study['pipelines'])}")
+        reported = study["reported_accuracy_deg"]
+        said = "nothing is known" if reported is None else f"{reported:g} deg"
+        typer.echo(f"Accuracy that the study reports of its own sensor: {said}\n")
+        pipelines = (*("detector", "mask", "extractor", "model", "measured here"), "assumed")
+        emit(
+            [
+                {**p, "measured here": _measured(p), "assumed": _assumed(p)}
+                for p in study["pipelines"]
+            ],
+            *(pipelines, form),
+            title=f"Runs: {len(study['pipelines'])}",
+        )
         gaps = ("attribute", "value", "reason")
         emit(study["gaps"], gaps, form, title=f"Gaps: {len(study['gaps'])}")
+
+
+def _assumed(pipeline: Mapping[str, Any]) -> list[str]:
+    """Return a line for each part of a pipeline that the study does not state."""
+    return [
+        f"{attribute} ({pipeline['basis'][attribute]}): {rule}"
+        for attribute, rule in pipeline["assumed"].items()
+    ]
+
+
+def _measured(pipeline: Mapping[str, Any]) -> list[str]:
+    """Return each data set of a pipeline with its published error there."""
+    return [f"{score['dataset']} {_error(score)}" for score in pipeline["scores"]]
+
+
+def _error(score: Mapping[str, Any]) -> str:
+    if score["rms_deg"] is not None:
+        return f"{score['rms_deg']:.3g} deg"
+    return "not measured yet" if score["status"] is None else "without an error"

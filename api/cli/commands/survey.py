@@ -20,10 +20,10 @@ app = typer.Typer(
 )
 app.command("import")(import_)
 
-FINDINGS = ("id", "verdict", "counted", "given", "expects", "most_frequent", "statement")
+FINDINGS = ("id", "verdict", "counted", "given", "expects", "most_frequent", "settled_by")
 FINDINGS_CSV = (
     *("id", "verdict", "kind", "survey_section", "given", "expects", "matching", "counted"),
-    *("tied", "ranking", "statement"),
+    *("named", "ranking", "settled_by", "statement"),
 )
 
 

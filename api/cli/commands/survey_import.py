@@ -1,4 +1,4 @@
-"""`sunatlas survey import`: the authors' own table compared with ours, and taken over if asked."""
+"""`sunatlas survey import`: the authors' table, or their bibliography, compared and taken over."""
 
 from __future__ import annotations
 
@@ -13,12 +13,22 @@ from api.cli.tables import Format, FormatOption, emit, emit_json
 from api.cli.wrong_call import WrongCallError
 from survey_data import ImportPlan
 
+IDENTITIES = ("study", "column", "kind", "identity", "ours", "theirs", "line")
 CELLS = ("study", "attribute", "kind", "ours", "theirs", "basis", "row", "column")
 
 
 def import_(
-    file: Annotated[Path, typer.Argument(help="CSV or XLSX table of studies.", show_default=False)],
+    file: Annotated[
+        Path | None, typer.Argument(help="CSV or XLSX table of studies.", show_default=False)
+    ] = None,
     *,
+    bibliography: Annotated[
+        Path | None,
+        typer.Option(
+            help="The survey's bibliography, BibTeX or .bbl: completes what its keys are.",
+            show_default=False,
+        ),
+    ] = None,
     mapped: Annotated[
         list[str] | None,
         typer.Option(
@@ -38,13 +48,21 @@ def import_(
     ] = None,
     form: FormatOption = Format.TABLE,
 ) -> None:
-    """Compare a table with ours, cell by cell, and take it over with --apply.
+    """Compare a table or a bibliography with ours, and take it over with --apply.
 
     Shows which column was taken for what, and every cell that differs: new (ours is unknown),
     changed, confirmed (the same on better evidence), or conflict (the survey prints ours, which
     stays). Cells that cannot be read are named on stderr with row and column, and the exit code
-    is 1.
+    is 1. With --bibliography: title, authors, venue and DOI of each key, which are taken where the
+    identity is not confirmed, and shown as a conflict where it is.
     """
+    if (file is None) == (bibliography is None):
+        raise WrongCallError("expected either a table or --bibliography FILE")
+    if file is None:
+        if mapped or sheet:
+            raise WrongCallError("--map and --sheet are of a table, not of a bibliography")
+        _bibliography(bibliography, data, form, apply=apply)
+        return
     plan = survey_data.import_table(
         file, data, overrides=_overrides(mapped or ()), sheet=sheet, apply=apply
     )
@@ -58,6 +76,29 @@ def import_(
         typer.echo(f"sunatlas: {problem}", err=True)
     if plan.errors:
         raise typer.Exit(1)
+
+
+def _bibliography(file: Path | None, data: Path | None, form: Format, *, apply: bool) -> None:
+    """Compare a bibliography with the table of studies."""
+    if file is None:
+        return
+    plan = survey_data.import_bibliography(file, data, apply=apply)
+    rows = [difference.to_dict() for difference in plan.differences]
+    title = f"{len(rows)} cells of studies that {plan.source} says otherwise"
+    emit(rows, IDENTITIES, form, document=plan.to_dict(), title=title)
+    if form is not Format.TABLE:
+        return
+    for key, reason in plan.left_aside:
+        typer.echo(f"left aside: {key}: {reason}")
+    if plan.missing:
+        typer.echo(f"{len(plan.missing)} studies are not in it: {', '.join(plan.missing)}")
+    what = f"{len(plan.edits)} cells and {len(plan.settled)} identities"
+    if apply and (plan.edits or plan.settled):
+        typer.echo(f"{what} written.")
+    elif plan.edits or plan.settled:
+        typer.echo(f"Nothing written; --apply writes {what}.")
+    else:
+        typer.echo("Nothing written.")
 
 
 def _overrides(mapped: Sequence[str]) -> dict[str, str]:

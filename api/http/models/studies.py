@@ -9,6 +9,7 @@ from pydantic import ConfigDict, Field
 from api.http.models import words
 from api.http.models.base import Listing, Question, Shape
 from api.http.models.parameters import DEFAULT_PAGE, GIVEN, WHOLE, Cursor, Limit, Several, several
+from registry.sensors import Basis
 from registry.taxonomy import ATTRIBUTES
 
 State = Literal["complete", "partial", "none"]
@@ -61,6 +62,32 @@ class StudiesQuery(StudyFilters):
     cursor: Cursor = None
 
 
+class Runs(Shape):
+    """What is scored of a study; basis and assumed are of the pipeline that rests on most."""
+
+    pipelines: int
+    cells: int = Field(description="Pairs of a pipeline and a data set that it is planned on.")
+    scored: int = Field(description="Those of them that have a published score.")
+    basis: dict[str, Basis] = Field(
+        description="What detector, mask, extractor and model rest on: stated by the study, "
+        "inferred, recalled, or filled in by a rule."
+    )
+    assumed: dict[str, str] = Field(
+        description="Of what is not stated, the reason or the rule why it stands there."
+    )
+
+
+class Score(Shape):
+    """What is published of a pipeline under the first condition of a data set; null: nothing."""
+
+    dataset: str
+    condition: str | None
+    status: str | None
+    rms_deg: float | None
+    bound_deg: float | None
+    availability: float | None
+
+
 class Study(Shape):
     """A mapped study. A text is empty where nothing is known."""
 
@@ -73,8 +100,10 @@ class Study(Shape):
     url: str
     identity: str = Field(description="Whether a public page confirms author, year and topic.")
     state: State = Field(
-        description="How much of the study can be run: every value of its mapping, some, none."
+        description="How much of the study runs: every value of its mapping, or some of them, or "
+        "none."
     )
+    runs: Runs
     values: dict[str, list[str]]
 
 
@@ -86,10 +115,13 @@ class AttributeValue(Shape):
     basis: str
     source: str
     note: str
+    role: Literal["proposed", "compared", "unknown", ""] = Field(
+        description="Of a model or an extractor: whether the study proposed it or only compared it."
+    )
 
 
 class StudyPipeline(Shape):
-    """A pipeline that runs what the study did, and the data sets it can be scored on."""
+    """A pipeline that runs what the study did, and the data sets that it is scored on."""
 
     detector: str
     mask: str
@@ -97,14 +129,22 @@ class StudyPipeline(Shape):
     model: str
     extractor_taxonomy: str
     model_taxonomy: str
+    stages: list[str] = Field(
+        description="The model's compensations by their taxonomy values, and the model itself last."
+    )
+    basis: dict[str, Basis] = Field(
+        description="What detector, mask, extractor and model rest on: the study states it, it is "
+        "inferred, recalled, or stands there by a rule."
+    )
     assumed: dict[str, str] = Field(
-        description="What the study states where that is not what runs: None, or a parent."
+        description="Of what is not stated, the reason or the rule why it stands there."
     )
     datasets: list[str]
+    scores: list[Score]
 
 
 class Gap(Shape):
-    """Something of a study that cannot be run."""
+    """Something of a study that does not run as the mapping states it, and why."""
 
     attribute: str
     value: str
@@ -116,6 +156,10 @@ class StudyDetail(Study):
 
     note: str
     attributes: list[AttributeValue]
+    reported_accuracy_deg: float | None = Field(
+        description="What the study reports of its own sensor; `scores` are measured here, on "
+        "simulated ones."
+    )
     pipelines: list[StudyPipeline]
     gaps: list[Gap]
 

@@ -12,6 +12,7 @@ from api.http.knowledge import Knowledge
 from api.http.models.studies import Studies, StudiesQuery, StudyDetail
 from api.http.models.words import StudyKey
 from api.http.pagination import page
+from registry.resolution import RunnablePipeline
 from registry.studies import Study
 from registry.taxonomy import ATTRIBUTES, NUMERIC_ATTRIBUTES
 
@@ -21,7 +22,7 @@ COLUMNS = (
     *("key", "title", "authors", "year", "venue", "doi", "url", "identity", "state"),
     *(*ATTRIBUTES, *NUMERIC_ATTRIBUTES),
 )
-DETAIL_COLUMNS = ("attribute", "value", "basis", "source", "note")
+DETAIL_COLUMNS = ("attribute", "value", "basis", "source", "note", "role")
 
 
 @router.get("/studies", summary="The mapped studies", response_model=Studies)
@@ -35,7 +36,8 @@ async def studies(known: Known, query: Annotated[StudiesQuery, Query()]) -> Answ
         items,
         COLUMNS,
         lambda: [
-            {name: value for name, value in item.items() if name != "values"} | item["values"]
+            {name: value for name, value in item.items() if name not in {"values", "runs"}}
+            | item["values"]
             for item in items
         ],
     )
@@ -51,21 +53,21 @@ async def study(
     known: Known,
     key: Annotated[StudyKey, Path(description="Key of the study.", examples=["Chang2008"])],
 ) -> Answer:
-    """Every value of the mapping with its basis, and what of the study can be run.
+    """Every value of the mapping with its basis, and what of the study is scored.
 
-    That is the pipelines that run what the study did, and the values that nothing implements yet.
-    As CSV: the values.
+    That is the pipelines that run what the study did, or what stands nearest to it, each with the
+    data sets that it is scored on; and the values that do not run as they are. As CSV: the values.
     """
     found = known.facts.study(key)
     resolution = known.resolutions[key]
     described = found.to_dict()
-    simulating = known.measurements.simulating
     document = {
         **_row(found, known),
         "note": described["note"],
         "attributes": described["attributes"],
+        "reported_accuracy_deg": found.number("accuracy_deg"),
         "pipelines": [
-            {**pipeline.to_dict(), "datasets": simulating(pipeline.detector, pipeline.mask)}
+            {**pipeline.to_dict(), "scores": _scores(pipeline, known)}
             for pipeline in resolution.pipelines
         ],
         "gaps": [gap.to_dict() for gap in resolution.gaps],
@@ -76,7 +78,27 @@ async def study(
 def _row(study: Study, known: Knowledge) -> dict[str, Any]:
     summary = study.summary()
     values = summary.pop("values")
-    return {**summary, "state": known.resolutions[study.key].state, "values": values}
+    resolution = known.resolutions[study.key]
+    best = resolution.best
+    scored = [_scores(pipeline, known) for pipeline in resolution.pipelines]
+    runs = {
+        "pipelines": len(resolution.pipelines),
+        "cells": sum(len(pipeline.datasets) for pipeline in resolution.pipelines),
+        "scored": sum(score["status"] is not None for scores in scored for score in scores),
+        "basis": {} if best is None else dict(best.basis),
+        "assumed": {} if best is None else dict(best.assumed),
+    }
+    return {**summary, "state": resolution.state, "runs": runs, "values": values}
+
+
+def _scores(pipeline: RunnablePipeline, known: Knowledge) -> list[dict[str, Any]]:
+    """Return what is published of a pipeline, under the first condition of each data set."""
+    found = []
+    for dataset in pipeline.datasets:
+        row = known.measurements.nominal.get((dataset, pipeline.extractor, pipeline.model), {})
+        names = ("condition", "status", "rms_deg", "bound_deg", "availability")
+        found.append({"dataset": dataset, **{name: row.get(name) for name in names}})
+    return found
 
 
 def _is_wanted(study: Study, query: StudiesQuery, known: Knowledge) -> bool:

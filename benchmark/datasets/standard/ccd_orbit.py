@@ -16,7 +16,7 @@ PRESET = in_orbit(
     setups=frames_aloft(_GROUND, SPACER),
     attitude=Tumble(24.0, nutation_deg=24.0, precession_deg_s=0.2531, inertia_ratio=0.75),
     step_s=20.0,
-    follows=("Radan2019",),
+    follows=(),
     description=(
         "The sensor of ccd-single-aperture flown on a sun-synchronous orbit of 600 km, on a "
         "satellite whose nutation takes the Sun from the boresight to 48 deg and back in 24 min. "

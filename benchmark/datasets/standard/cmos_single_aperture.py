@@ -23,7 +23,7 @@ PRESET = pixels.windows(
     },
     geometry=pixels.design(_SENSOR, 60.0, aperture_width_mm=0.1, aperture_shape="round"),
     directions=AngleField(60.0),
-    follows=("Chang2008", "Rufino2017", "Xie2012"),
+    follows=("Chang2008", "Xie2012"),
     description=(
         "64 x 64 px windows of a 512 x 512 px array behind one round hole. 512 px are the "
         "micro-DSS's (Xie2012, the paper's predecessor Xie2010), pixels of 6.5 um its flown "

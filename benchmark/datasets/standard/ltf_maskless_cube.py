@@ -26,7 +26,7 @@ PRESET = faces(
     order=OF_THE_CUBE,
     setups=converter_conditions(FrequencySensor(CUBE, _COUNTER, normal_error_deg=0.1)),
     directions=SphereField(),
-    follows=("Allgeier2009",),
+    follows=(),
     description=(
         "One converter a face, Sun from anywhere on the sphere. No mapped study is known to use "
         "light-to-frequency converters, and no sun sensor of that kind was found: an idealisation, "

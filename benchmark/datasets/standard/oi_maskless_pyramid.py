@@ -24,7 +24,7 @@ PRESET = faces(
     setups=opto_isolator_conditions(_SENSOR),
     half_fov_deg=55.0,
     directions=ConeField(55.0),
-    follows=("Wang2019",),
+    follows=(),
     description=(
         "The phototransistors of four opto-isolators, opened towards the Sun, in Wang2019's "
         "pyramid. No mapped study is known to use opto-isolators (the survey lists them among its "

@@ -99,9 +99,20 @@ def test_states_partition_the_studies(atlas):
         assert {item["state"] for item in items} <= {state}
 
 
+def row_role(row):
+    return "unknown" if row["attribute"] in {"model", "extractor"} else ""
+
+
 def test_a_study_carries_every_cell_with_its_basis(atlas):
+    roles = {
+        (row["attribute"], row["value"]): row["role"]
+        for row in read("roles")
+        if row["study"] == "Chang2008"
+    }
+    assert set(roles.values()) == {"proposed", "compared"}
     expected = [
         {k: v for k, v in row.items() if k != "study"}
+        | {"role": roles.get((row["attribute"], row["value"]), row_role(row))}
         for row in read("attributes")
         if row["study"] == "Chang2008"
     ]
@@ -125,6 +136,9 @@ def test_no_study_is_silent_about_what_cannot_be_run(atlas):
             assert study["gaps"]
         for pipeline in study["pipelines"]:
             assert pipeline["datasets"]
+            assert [score["dataset"] for score in pipeline["scores"]] == pipeline["datasets"]
+        assert item["runs"]["pipelines"] == len(study["pipelines"])
+        assert item["runs"]["cells"] == sum(len(p["datasets"]) for p in study["pipelines"])
 
 
 def test_csv_and_json_say_the_same_of_studies(atlas):
@@ -166,10 +180,15 @@ def by_link(answer):
 def test_links_are_the_studies_that_have_both_values(atlas, values, chart):
     levels = CHARTS[chart]
     expected = defaultdict(set)
+    together = defaultdict(set)
+    for row in read("architectures"):
+        together[row["study"]].add((row["detector"], row["mask"]))
     for key, of in values.items():
         for one, two in itertools.pairwise(levels):
             for pair in itertools.product(of[one], of[two]):
-                expected[f"{one}:{pair[0]}", f"{two}:{pair[1]}"].add(key)
+                sensors = together.get(key, {pair})
+                if (one, two) != ("detector", "mask") or pair in sensors:
+                    expected[f"{one}:{pair[0]}", f"{two}:{pair[1]}"].add(key)
     answer = atlas.get(f"/v1/flows/{chart}").json()
     assert tuple(answer["levels"]) == levels
     assert by_link(answer) == expected

@@ -24,7 +24,7 @@ CELLS = [
     (CMOS, "nominal", "bctm", "lsq", 0.01, 0.001, 1.0, 9.0),
     (CMOS, "nominal", "bcm", "spm", 0.5, 0.002, 0.98, 3.0),
     (CMOS, "nominal", "bcm", "lsq", None, None, None, None),
-    (CMOS, "nominal", "ifm", "spm", 0.005, 0.001, 0.94, 3.0),
+    (CMOS, "nominal", "tm", "spm", 0.005, 0.001, 0.94, 3.0),
     (CMOS, "misaligned", "bctm", "spm", 2.0, 0.001, 1.0, 5.0),
     (QPD, "nominal", "voltage-balance", "linear", 1.5, 0.05, 1.0, 1.0),
 ]
@@ -148,7 +148,7 @@ def test_the_leaderboard_ranks_by_error_within_a_condition(measured):
         (1, True, "bctm", "lsq"),
         (1, True, "bctm", "spm"),
         (3, False, "bcm", "spm"),
-        (4, False, "ifm", "spm"),  # the smallest error, of too few answers
+        (4, False, "tm", "spm"),  # the smallest error, of too few answers
         (None, False, "bcm", "lsq"),
     ]
     assert (board[0]["low_deg"], board[0]["high_deg"]) == (0.01, 0.012)
@@ -185,7 +185,7 @@ def test_the_leaderboard_ranks_by_the_field_that_keeps_an_error(measured):
         (1, "bctm", "lsq", 10),
         (None, "bctm", "spm", None),
         (None, "bcm", "spm", None),
-        (None, "ifm", "spm", None),  # too few answers
+        (None, "tm", "spm", None),  # too few answers
         (None, "bcm", "lsq", None),
     ]
     assert measured.get(f"{address}-1").status_code == 422
@@ -284,7 +284,7 @@ def test_where_nothing_is_published_the_rest_is_served(unmeasured):
 
 
 def test_an_error_of_too_few_answers_keeps_no_limit(measured):
-    query = "detector=CMOS&mask=Single-Ap.&model=SPM&extractor=IFM"
+    query = "detector=CMOS&mask=Single-Ap.&model=SPM&extractor=TM"
     answer = measured.get(f"/v1/recommendations?{query}").json()
     assert {path["measured"]["availability"] for path in answer["paths"]} == {0.94}
     limited = measured.get(f"/v1/recommendations?{query}&max_error_deg=0.01").json()

@@ -16,6 +16,10 @@ def values():
         for row in csv.DictReader(file):
             if row["value"]:
                 found[row["study"]][row["attribute"]].add(row["value"])
+    with (TABLES / "roles.csv").open(encoding="utf-8", newline="") as file:
+        for row in csv.DictReader(file):
+            if row["role"] == "compared":
+                found[row["study"]][row["attribute"]].remove(row["value"])
     return found
 
 

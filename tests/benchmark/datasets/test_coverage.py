@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from itertools import product
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -11,6 +12,8 @@ import pytest
 import survey_data
 from benchmark import datasets
 from benchmark.datasets.coverage import REASONS, CoverageError, coverage
+from benchmark.plan.combinations import scorable
+from registry.resolution import resolve_all
 from registry.studies import facts
 
 OURS = Path(survey_data.__file__).parent
@@ -26,6 +29,10 @@ def mapped():
                     row["value"]
                 )
     pairs = {}
+    with (OURS / "architectures.csv").open(encoding="utf-8", newline="") as file:
+        for row in csv.DictReader(file):
+            pairs.setdefault((row["detector"], row["mask"]), set()).add(row["study"])
+            values.pop(row["study"], None)
     for study, found in values.items():
         for detector in found.get("detector", ()):
             for mask in found.get("mask", ()):
@@ -66,8 +73,6 @@ def test_a_pair_without_data_set_and_reason_is_an_error():
     fewer = {name: pair for name, pair in simulated.items() if pair != ("PSD", "Single-Ap.")}
     with pytest.raises(CoverageError, match=r"^PSD Single-Ap\. has neither a dataset nor a reason"):
         coverage(fewer)
-    with pytest.raises(CoverageError, match="PDA Maskless has neither"):
-        coverage(simulated, reasons={})
     found = coverage(fewer, reasons={**REASONS, ("PSD", "Single-Ap."): "why not"})
     (pair,) = (p for p in found.pairs if p.detector == "PSD")
     assert (pair.datasets, pair.reason) == ((), "why not")
@@ -80,11 +85,19 @@ def test_a_reason_that_is_not_needed_is_an_error():
         coverage(reasons={**REASONS, ("OI", "V-Slit"): "nobody asked"})
 
 
-def test_reasons_say_what_the_mapping_says():
-    """Both reasons name Post2013, whose detectors and masks cross to the two pairs."""
-    for pair, reason in REASONS.items():
-        assert mapped()[pair] == {"Post2013"}
-        assert "Post2013" in reason
+def test_every_pair_that_a_study_has_is_simulated():
+    assert not REASONS
+    assert ("PDA", "Maskless") not in mapped()  # Post2013's sensors do not cross
+    assert ("PVA", "N-Slit") not in mapped()
+
+
+def test_a_data_set_follows_studies_of_its_own_architecture():
+    resolved = resolve_all(scorable())
+    for preset in map(datasets.get, datasets.names()):
+        for key in preset.follows:
+            pairs = {(p.detector, p.mask) for p in resolved[key].pipelines}
+            pairs.update(facts().studies[key].architectures)
+            assert (preset.detector, preset.mask) in pairs, (preset.name, key)
 
 
 def test_coverage_is_counted_of_what_studies_use_and_data_sets_have():
@@ -94,7 +107,7 @@ def test_coverage_is_counted_of_what_studies_use_and_data_sets_have():
         "S1": {"detector": ["CMOS"], "mask": ["Lens", "Slit"]},
     }
     studies = {
-        key: SimpleNamespace(of=lambda name, row=row: row.get(name, ()))
+        key: SimpleNamespace(architectures=tuple(product(row["detector"], row["mask"])))
         for key, row in cells.items()
     }
     known = SimpleNamespace(studies=studies, taxonomy=facts().taxonomy)

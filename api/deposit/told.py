@@ -1,0 +1,52 @@
+"""Tables of the bundle that are told from facts and plan: resolution, verdicts, publications."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import survey_data
+from benchmark.plan.combinations import scorable
+from registry.resolution import ESSENTIAL, resolve_all
+from survey_data.findings.publications import publications
+
+
+def resolution() -> list[Mapping[str, Any]]:
+    """Return a row for each pipeline of each study on each data set that it is planned on."""
+    return [
+        {
+            "study": key,
+            "state": found.state,
+            **{name: getattr(pipeline, name) for name in ESSENTIAL},
+            "dataset": dataset,
+            **{f"{name}_basis": pipeline.basis[name] for name in ESSENTIAL},
+            "assumed": [f"{name}: {rule}" for name, rule in pipeline.assumed.items()],
+        }
+        for key, found in resolve_all(scorable()).items()
+        for pipeline in found.pipelines
+        for dataset in pipeline.datasets
+    ]
+
+
+def verdicts() -> list[Mapping[str, Any]]:
+    """Return a row for each finding of the survey, with its counts and what would settle it."""
+    return [
+        {
+            "finding": found.id,
+            "verdict": found.verdict,
+            "matching": found.matching,
+            "counted": found.counted,
+            "named": [f"{value} {count}" for value, count in found.named],
+            "ranking": [f"{value} {count}" for value, count in found.ranking],
+            "settled_by": found.settled_by,
+        }
+        for found in survey_data.fidelity(survey_data.load()).findings
+    ]
+
+
+def published() -> list[Mapping[str, Any]]:
+    """Return the studies per year and per venue."""
+    return [
+        {"per": row.kind, "year_or_venue": row.value, "studies_count": row.studies}
+        for row in publications(survey_data.load())
+    ]

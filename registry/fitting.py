@@ -1,0 +1,251 @@
+"""Which of a plan's pipelines are a study's: its own methods, or the nearest that there are.
+
+A compensation that the study states is a stage of its pipelines: where a chain holds more of them
+ahead of the same model, the model alone is left out. One that is stated beside no model that it is
+planned ahead of runs ahead of the simplest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+from registry.catalogue import Catalogue
+from registry.plan import Architecture, Plan
+from registry.studies import Study
+from registry.taxonomy import NO_IMPLEMENTATION_STATED
+
+if TYPE_CHECKING:
+    from algorithms.chain import Scored
+
+SIMPLEST: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {
+        "model": ("SPM", "Linear", "Basic"),
+        "extractor": ("BCM", "PPE", "Voltage balance", "Direct", "ESCM"),
+    }
+)
+"""For "None", and last of what stands in for a method: the plain reading of a spot, of a balance,
+of single signals; a plain extractor for each kind of detector and feature."""
+
+KIN: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {"Neural network": ("Polynomial",), "LUT": ("Polynomial",)}
+)
+"""By category of models, what stands in before the simplest: a curve fitted to the same data."""
+
+COMPENSATIONS = "Physics-Informed"
+"""The category whose models compensate: without them the study's model runs bare."""
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """A method by name, the stated values that it runs, and what it stands in for.
+
+    ``stands_for`` is a stated value that nothing runs here, or "None" where the study states none;
+    empty where the method is the study's own.
+    """
+
+    name: str
+    runs: tuple[str, ...]
+    stands_for: str = ""
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """A pipeline of the plan that stands for a study's methods, and where it is scored."""
+
+    extractor: Chosen
+    model: Chosen
+    datasets: tuple[str, ...]
+
+
+class Fitting:
+    """The plan's pipelines by a study's methods.
+
+    Parameters
+    ----------
+    plan : Plan
+        Names that the catalogue does not have are passed over.
+    catalogue : Catalogue
+    """
+
+    def __init__(self, plan: Plan, catalogue: Catalogue) -> None:
+        self.catalogue = catalogue
+        self.plan: Plan = {
+            architecture: {
+                pair: datasets
+                for pair, datasets in pairs.items()
+                if pair[0] in catalogue.extractors and pair[1] in catalogue.models
+            }
+            for architecture, pairs in plan.items()
+        }
+        self._stages = {name: stages(scored) for name, scored in catalogue.models.items()}
+
+    def fitted(
+        self, study: Study, architectures: Iterable[Architecture]
+    ) -> dict[Architecture, list[Fitted]]:
+        """Return the pipelines of a study on each architecture.
+
+        Methods are its own where any fit on one of the architectures. Else one of them is the
+        nearest that does: the extractor, for the model is what a calibration is about; then the
+        model; then both.
+        """
+        places = list(dict.fromkeys(architectures))
+        for near in ((), ("extractor",), ("model",), ("extractor", "model")):
+            found = {place: self._on(study, place, near) for place in places}
+            if any(found.values()):
+                return found
+        return {place: [] for place in places}
+
+    def own(self, study: Study, architecture: Architecture) -> int:
+        """Return how many of a study's own methods run on an architecture."""
+        pairs = self.plan.get(architecture, {})
+        extractors = {self.catalogue.extractors[e].about.taxonomy for e, _ in pairs}
+        models = {value for _, m in pairs for value in self._stages[m]}
+        return sum(v in extractors for v in study.of("extractor")) + sum(
+            not models.isdisjoint(self.kinds("model", v)) for v in study.of("model")
+        )
+
+    def kinds(self, attribute: str, value: str) -> tuple[str, ...]:
+        """Return the values that run for a stated one: itself, and a parent's kinds."""
+        return self.catalogue.taxonomy.kinds(attribute, value)
+
+    def _on(self, study: Study, place: Architecture, near: Collection[str]) -> list[Fitted]:
+        pairs = self.plan.get(place, {})
+        models = self._nearest_models if "model" in near else self._own_models
+        for group in self._extractors(study, near="extractor" in near):
+            found = [
+                Fitted(extractor, model, tuple(pairs[extractor.name, model.name]))
+                for extractor in group
+                for model in models(study, [m for e, m in pairs if e == extractor.name])
+            ]
+            if found:
+                return found
+        return []
+
+    def _extractors(self, study: Study, *, near: bool) -> list[list[Chosen]]:
+        """Return the extractors to try, group after group until one fits."""
+        own = [v for v in study.of("extractor") if v != NO_IMPLEMENTATION_STATED]
+        if near:
+            return [
+                self._extractors_of(other, stands_for=value)
+                for value in own
+                for other in self._stand_ins("extractor", value)
+                if other not in own
+            ]
+        stated = [chosen for value in own for chosen in self._extractors_of(value)]
+        if len(own) == len(study.of("extractor")):
+            return [stated]
+        return [stated] * bool(own) + [
+            self._extractors_of(simple, stands_for=NO_IMPLEMENTATION_STATED)
+            for simple in SIMPLEST["extractor"]
+            if simple not in own
+        ]
+
+    def _extractors_of(self, value: str, stands_for: str = "") -> list[Chosen]:
+        runs = () if stands_for else (value,)
+        return [
+            Chosen(cls.about.name, runs, stands_for)
+            for kind in self.kinds("extractor", value)
+            for cls in self.catalogue.extractors_for(kind)
+        ]
+
+    def _own_models(self, study: Study, planned: Sequence[str]) -> list[Chosen]:
+        """Return of what is planned what the study states, with all its compensations that fit."""
+        of = {
+            kind: value
+            for value in study.of("model")
+            if value != NO_IMPLEMENTATION_STATED
+            for kind in self.kinds("model", value)
+        }
+        usable = {
+            name: self._stages[name]
+            for name in planned
+            if all(stage in of for stage in self._stages[name][:-1])
+        }
+        whole = _with_most_stages({n: own for n, own in usable.items() if own[-1] in of})
+        found = [self._chosen(name, of) for name in whole]
+        covered = {stage for own in whole.values() for stage in own}
+        behind = {n: own for n, own in usable.items() if own[-1] not in of and len(own) > 1}
+        for compensation in (kind for kind in of if kind not in covered):
+            ahead = {n: own for n, own in behind.items() if compensation in own[:-1]}
+            for name in _with_most_stages(_simplest(ahead)):
+                chosen = self._chosen(name, of, NO_IMPLEMENTATION_STATED)
+                if chosen not in found:
+                    found.append(chosen)
+        if NO_IMPLEMENTATION_STATED in study.of("model") and not found:
+            bare = {name: own for name, own in usable.items() if len(own) == 1}
+            simplest = [n for n, own in _simplest(bare).items() if own[0] in SIMPLEST["model"]]
+            found = [Chosen(name, (), NO_IMPLEMENTATION_STATED) for name in simplest]
+        return found
+
+    def _nearest_models(self, study: Study, planned: Sequence[str]) -> list[Chosen]:
+        """Return of what is planned what stands nearest to each model of the study.
+
+        A compensation is no model to stand in for where the study states another.
+        """
+        bare = {n: self._stages[n] for n in planned if len(self._stages[n]) == 1}
+        of = [v for v in study.of("model") if v != NO_IMPLEMENTATION_STATED]
+        category = self.catalogue.taxonomy.category
+        models = [v for v in of if category("model", v) != COMPENSATIONS] or of
+        found: list[Chosen] = []
+        for value in models:
+            for other in self._stand_ins("model", value):
+                names = [n for n, own in bare.items() if own[0] == other]
+                if names:
+                    found += [Chosen(name, (), value) for name in names]
+                    break
+        return found
+
+    def _stand_ins(self, attribute: str, value: str) -> tuple[str, ...]:
+        """Return the values that may stand for one, nearest first.
+
+        Those of its category, the simplest of them first; its kin; the simplest of all.
+        """
+        taxonomy = self.catalogue.taxonomy
+        category = taxonomy.category(attribute, value)
+        simplest = SIMPLEST[attribute]
+        family = [
+            v for v in taxonomy.values(attribute) if taxonomy.category(attribute, v) == category
+        ]
+        if attribute == "model" and category == COMPENSATIONS:
+            family = []
+        order = (
+            *(v for v in simplest if v in family),
+            *family,
+            *KIN.get(category, ()),
+            *simplest,
+        )
+        return tuple(v for v in dict.fromkeys(order) if v != value)
+
+    def _chosen(self, name: str, of: Mapping[str, str], stands_for: str = "") -> Chosen:
+        runs = (of[stage] for stage in self._stages[name] if stage in of)
+        return Chosen(name, tuple(dict.fromkeys(runs)), stands_for)
+
+
+def stages(scored: Scored) -> tuple[str, ...]:
+    """Return the taxonomy values of a model's stages: its compensations, and itself last."""
+    from algorithms.chain import Chain  # noqa: PLC0415 - loads NumPy
+
+    if isinstance(scored, Chain):
+        return tuple(stage.about.taxonomy for stage in scored.stages)
+    return (scored.about.taxonomy,)
+
+
+def _with_most_stages(found: Mapping[str, tuple[str, ...]]) -> dict[str, tuple[str, ...]]:
+    """Leave out what lacks a compensation that another has ahead of the same model."""
+    return {
+        name: own
+        for name, own in found.items()
+        if not any(other[-1] == own[-1] and set(other) > set(own) for other in found.values())
+    }
+
+
+def _simplest(found: Mapping[str, tuple[str, ...]]) -> dict[str, tuple[str, ...]]:
+    """Keep what has the simplest model behind; all of it where none is simple."""
+    for simple in SIMPLEST["model"]:
+        kept = {name: own for name, own in found.items() if own[-1] == simple}
+        if kept:
+            return kept
+    return dict(found)

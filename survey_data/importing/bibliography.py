@@ -1,0 +1,192 @@
+"""Reading a bibliography: BibTeX, or the .bbl that BibTeX makes of one, into entries by key."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from survey_data.problems import SurveyImportError
+
+#: Fields that name where a work is published, first of these that is there.
+_VENUES = ("journal", "journaltitle", "booktitle", "series", "school", "institution")
+_KINDS = {"article": "journal", "inproceedings": "conference", "conference": "conference"}
+_ACCENTS = {
+    "`": "\u0300", "'": "\u0301", "^": "\u0302", "~": "\u0303", '"': "\u0308", "c": "\u0327",
+    "v": "\u030c", "u": "\u0306", "H": "\u030b", "=": "\u0304", ".": "\u0307", "k": "\u0328",
+    "r": "\u030a",
+}  # fmt: skip
+_LETTERS = {"ss": "ß", "o": "ø", "O": "Ø", "l": "ł", "L": "Ł", "ae": "æ", "AE": "Æ", "i": "i"}
+_MOST_BYTES = 20_000_000
+
+
+@dataclass(frozen=True)
+class Entry:
+    """What a bibliography says of a key; a text is empty where it says nothing.
+
+    ``authors`` are separated by semicolons, ``kind`` is journal, conference or unknown; ``line``
+    is where the entry starts.
+    """
+
+    key: str
+    title: str
+    authors: str
+    year: str
+    venue: str
+    kind: str
+    doi: str
+    line: int
+
+
+def read_bibliography(path: str | Path) -> tuple[Entry, ...]:
+    """Read the entries of a BibTeX or .bbl file, in its order.
+
+    Raises
+    ------
+    SurveyImportError
+        The file cannot be read, or holds no entry; it names what was expected.
+    """
+    where = Path(path)
+    try:
+        if where.stat().st_size > _MOST_BYTES:
+            raise SurveyImportError(f"{where.name} is too large for a bibliography")
+        text = where.read_text(encoding="utf-8-sig")
+    except OSError as error:
+        raise SurveyImportError(f"cannot read {where}: {error.strerror or error}") from error
+    except UnicodeDecodeError as error:
+        raise SurveyImportError(f"{where.name} is not UTF-8 text") from error
+    found = _items(text) if "\\bibitem" in text else _records(text)
+    entries = tuple(found)
+    if not entries:
+        raise SurveyImportError(
+            f"{where.name} holds no entry: expected BibTeX (@article{{...) or a .bbl (\\bibitem...)"
+        )
+    return entries
+
+
+def _records(text: str) -> Iterator[Entry]:
+    """Give the entries of BibTeX."""
+    for start in re.finditer(r"@(\w+)\s*\{\s*([^\s,{}]+)\s*,", text):
+        kind = start[1].casefold()
+        if kind in {"comment", "string", "preamble"}:
+            continue
+        fields = _fields(text, start.end())
+        yield _entry(start[2], kind, fields, text.count("\n", 0, start.start()) + 1)
+
+
+def _fields(text: str, at: int) -> dict[str, str]:
+    """Return the fields of an entry, the first of each name, up to the brace that closes it."""
+    fields: dict[str, str] = {}
+    name = re.compile(r"\s*,?\s*([A-Za-z][\w-]*)\s*=\s*")
+    while match := name.match(text, at):
+        at = match.end()
+        if text[at : at + 1] == "{":
+            end = _closing(text, at)
+            value, at = text[at + 1 : end], end + 1
+        elif text[at : at + 1] == '"':
+            end = _closing_quote(text, at)
+            value, at = text[at + 1 : end], end + 1
+        else:
+            bare = re.compile(r"[^,}\s]*").match(text, at)
+            value, at = (bare[0], bare.end()) if bare else ("", at + 1)
+        fields.setdefault(match[1].casefold(), value)
+    return fields
+
+
+def _closing(text: str, at: int) -> int:
+    """Return where the brace that opens at `at` is closed; the end of the text if nowhere."""
+    depth = 0
+    for place in range(at, len(text)):
+        if text[place] in "{}" and text[place - 1 : place] != "\\":
+            depth += 1 if text[place] == "{" else -1
+            if depth == 0:
+                return place
+    return len(text)
+
+
+def _closing_quote(text: str, at: int) -> int:
+    depth = 0
+    for place in range(at + 1, len(text)):
+        if text[place] in "{}":
+            depth += 1 if text[place] == "{" else -1
+        elif text[place] == '"' and depth == 0 and text[place - 1] != "\\":
+            return place
+    return len(text)
+
+
+def _items(text: str) -> Iterator[Entry]:
+    """Give the entries of a .bbl whose style marks its fields by 'bibinfo'."""
+    for start in re.finditer(r"\\bibitem\s*", text):
+        at = start.end()
+        if text[at : at + 1] == "[":
+            at = _closing_label(text, at) + 1
+        opened = text.find("{", at)
+        key_end = _closing(text, opened) if opened >= 0 else -1
+        if key_end < 0:
+            continue
+        end = text.find("\\bibitem", key_end)
+        body = text[key_end + 1 : end if end >= 0 else len(text)]
+        fields: dict[str, str] = {}
+        for mark in re.finditer(r"\\(?:bibinfo\s*\{(\w+)\}|(doi|url)|href)\s*\{", body):
+            value = body[mark.end() : _closing(body, mark.end() - 1)]
+            name = mark[1] or mark[2] or "url"
+            if name == "author" and "author" in fields:
+                fields["author"] += f" and {value}"
+            else:
+                fields.setdefault(name, value)
+        yield _entry(
+            text[opened + 1 : key_end].strip(),
+            "article" if "journal" in fields else "inproceedings" * ("booktitle" in fields),
+            fields,
+            text.count("\n", 0, start.start()) + 1,
+        )
+
+
+def _closing_label(text: str, at: int) -> int:
+    """Return where the bracket of a label is closed, braces in it aside."""
+    depth = 0
+    for place in range(at, len(text)):
+        if text[place] in "{}":
+            depth += 1 if text[place] == "{" else -1
+        elif text[place] == "]" and depth == 0:
+            return place
+    return len(text)
+
+
+def _entry(key: str, kind: str, fields: Mapping[str, str], line: int) -> Entry:
+    year = re.search(r"[0-9]{4}", fields.get("year", "") or fields.get("date", ""))
+    doi = re.search(r"10\.[0-9]{4,9}/[^\s{}]+", _plain(fields.get("doi") or fields.get("url", "")))
+    authors = [_natural(_plain(name)) for name in re.split(r"\s+and\s+", fields.get("author", ""))]
+    return Entry(
+        key=key,
+        title=_plain(fields.get("title", "")).rstrip(".,"),
+        authors="; ".join(name for name in authors if name),
+        year=year[0] if year else "",
+        venue=next((_plain(fields[name]) for name in _VENUES if fields.get(name)), ""),
+        kind=_KINDS.get(kind, "unknown"),
+        doi=doi[0].rstrip(".,;") if doi else "",
+        line=line,
+    )
+
+
+def _natural(name: str) -> str:
+    """Return "Last, First" as "First Last"."""
+    last, comma, first = name.partition(",")
+    return f"{first.strip()} {last.strip()}".strip() if comma else name.strip(" ,")
+
+
+def _plain(text: str) -> str:
+    """Return TeX as text: accents composed, commands and braces left out."""
+    text = re.sub(r"(?<!\\)~", " ", text)
+    text = re.sub(
+        r"\\([`'^~\"=.]|[cvuHkr](?![A-Za-z]))\s*\{?\s*\\?([A-Za-z])\s*\}?",
+        lambda m: unicodedata.normalize("NFC", m[2] + _ACCENTS[m[1]]),
+        text,
+    )
+    text = re.sub(r"\\(ss|ae|AE|[oOlLi])(?![A-Za-z])\s*", lambda m: _LETTERS[m[1]], text)
+    text = re.sub(r"\\([&%$#_{}])", r"\1", text)
+    text = re.sub(r"\\[A-Za-z]+\s*", "", text)
+    text = re.sub(r"-{2,}", "-", text.replace("{", "").replace("}", ""))
+    return " ".join(text.split())

@@ -1,0 +1,218 @@
+"""Which works the survey's keys are: its own bibliography compared with ours, and taken over."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Any, Literal
+
+import pandas as pd
+
+from survey_data.csv_reading import read_records
+from survey_data.csv_writing import csv_text
+from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name
+from survey_data.importing.bibliography import Entry, read_bibliography
+from survey_data.importing.text_similarity import normalise, similarity
+from survey_data.importing.writing import write_valid
+from survey_data.tables import SurveyTables, load
+
+_TABLE = "studies"
+_COLUMNS = ("title", "authors", "venue", "type", "doi")
+_ALIKE = 0.9
+#: Identities that a bibliography settles; what a page has confirmed is a person's to change.
+_OPEN = ("unknown", "ambiguous", "recalled")
+
+Kind = Literal["new", "changed", "conflict"]
+
+
+@dataclass(frozen=True)
+class IdentityDifference:
+    """A cell of a study that the bibliography says otherwise.
+
+    ``new``: ours is empty. ``changed``: the identity was not confirmed, so that theirs is taken.
+    ``conflict``: it was, and ours stays. ``line`` is where their entry starts.
+    """
+
+    study: str
+    column: str
+    kind: Kind
+    ours: str
+    theirs: str
+    identity: str
+    line: int
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the difference as plain JSON data."""
+        return asdict(self)
+
+
+@dataclass(frozen=True)
+class BibliographyPlan:
+    """What a bibliography changes in the table of studies.
+
+    ``settled`` are the studies whose identity it confirms; ``left_aside`` its keys that are no
+    study of ours or contradict one, with the reason; ``missing`` our studies that it does not name.
+    """
+
+    source: str
+    entries: int
+    differences: tuple[IdentityDifference, ...]
+    settled: tuple[str, ...]
+    left_aside: tuple[tuple[str, str], ...]
+    missing: tuple[str, ...]
+    written: int = 0
+
+    @property
+    def edits(self) -> tuple[IdentityDifference, ...]:
+        """The cells to be written."""
+        return tuple(d for d in self.differences if d.kind != "conflict")
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the plan as plain JSON data."""
+        return {
+            "source": self.source,
+            "entries": self.entries,
+            "differences": [difference.to_dict() for difference in self.differences],
+            "settled": list(self.settled),
+            "left_aside": [{"key": key, "reason": reason} for key, reason in self.left_aside],
+            "missing": list(self.missing),
+            "written": self.written,
+        }
+
+
+def import_bibliography(
+    path: str | Path, directory: str | Path | None = None, *, apply: bool = False
+) -> BibliographyPlan:
+    """Compare the survey's bibliography with our table of studies, and take it over when asked.
+
+    Parameters
+    ----------
+    path : str or Path
+        BibTeX or .bbl, UTF-8, with the survey's keys.
+    directory : str or Path, optional
+        Our tables; by default the package's own data.
+    apply : bool
+        Write. Applying the same file twice changes nothing the second time.
+
+    Returns
+    -------
+    BibliographyPlan
+        What would be written, or has been.
+
+    Raises
+    ------
+    SurveyImportError
+        The file is no bibliography, or (with `apply`) the tables would be invalid or cannot be
+        written; nothing has been written.
+    SurveyDataError
+        Our own tables cannot be read.
+    """
+    folder = DATA_DIRECTORY if directory is None else Path(directory)
+    plan = plan_identities(load(folder), read_bibliography(path), Path(path).name)
+    if not apply or not (plan.edits or plan.settled):
+        return plan
+    write_valid(folder, _TABLE, _edited(folder, plan))
+    return replace(plan, written=len(plan.edits))
+
+
+def plan_identities(
+    tables: SurveyTables, entries: Iterable[Entry], source: str
+) -> BibliographyPlan:
+    """Compare entries with the table of studies."""
+    rows = {str(row["key"]): row for row in tables.studies.to_dict("records")}
+    meant = tables.references.dropna(subset=["mapped_key"])
+    also = dict(zip(meant["key"], meant["mapped_key"], strict=True))
+    other = {str(key) for key in tables.references["key"]} - {str(key) for key in also}
+    differences: list[IdentityDifference] = []
+    settled: list[str] = []
+    left: list[tuple[str, str]] = []
+    seen: set[str] = set()
+    count = 0
+    for entry in entries:
+        count += 1
+        key = str(also.get(entry.key, entry.key))
+        reason = _refusal(entry, key, rows, seen)
+        if reason:
+            if entry.key not in other:
+                left.append((entry.key, reason))
+            continue
+        seen.add(key)
+        row = {name: _text(rows[key][name]) for name in (*_COLUMNS, "identity")}
+        differences += _differences(key, row, entry)
+        if row["identity"] in _OPEN:
+            settled.append(key)
+    missing = tuple(key for key in rows if key not in seen)
+    return BibliographyPlan(source, count, tuple(differences), tuple(settled), tuple(left), missing)
+
+
+def _refusal(entry: Entry, key: str, rows: Mapping[str, object], seen: set[str]) -> str:
+    """Say why an entry tells nothing of a study; empty where it does."""
+    if key not in rows:
+        return "no study has this key"
+    if key in seen:
+        return "stands twice in the bibliography; the first is taken"
+    if not entry.title:
+        return "no title can be read"
+    digits = re.search(r"[0-9]{4}", key)
+    if entry.year and digits and entry.year != digits[0]:
+        return f"published in {entry.year}, which the key contradicts"
+    return ""
+
+
+def _differences(key: str, row: Mapping[str, str], entry: Entry) -> list[IdentityDifference]:
+    theirs = {
+        "title": entry.title,
+        "authors": entry.authors,
+        "venue": entry.venue,
+        "type": "" if entry.kind == "unknown" else entry.kind,
+        "doi": entry.doi,
+    }
+    found = []
+    for column, said in theirs.items():
+        ours = row[column]
+        if not said or _same(column, ours, said):
+            continue
+        empty = not ours or (column == "type" and ours == "unknown")
+        kind: Kind = "new" if empty else "changed" if row["identity"] in _OPEN else "conflict"
+        found.append(IdentityDifference(key, column, kind, ours, said, row["identity"], entry.line))
+    return found
+
+
+def _same(column: str, ours: str, theirs: str) -> bool:
+    """Say whether two texts mean the same, spelling and abbreviation aside."""
+    if column in {"doi", "type"}:
+        return ours.casefold() == theirs.casefold()
+    if column == "authors":
+        return _surnames(ours) == _surnames(theirs)
+    one, two = normalise(ours), normalise(theirs)
+    if column == "venue" and one and two and (one in two or two in one):
+        return True
+    return similarity(one, two) >= _ALIKE
+
+
+def _surnames(authors: str) -> list[str]:
+    return [normalise(name).split()[-1] for name in authors.split(";") if normalise(name)]
+
+
+def _text(cell: object) -> str:
+    return "" if pd.isna(cell) else str(cell)  # type: ignore[call-overload]
+
+
+def _edited(folder: Path, plan: BibliographyPlan) -> str:
+    """Return the text of studies.csv with the plan's cells in it."""
+    header = list(column_types(_TABLE))
+    rows = [list(c) for _, c in read_records(folder / file_name(_TABLE), header).rows]
+    at = {name: index for index, name in enumerate(header)}
+    by_key = {row[at["key"]]: row for row in rows}
+    for edit in plan.edits:
+        by_key[edit.study][at[edit.column]] = edit.theirs
+    for key in plan.settled:
+        row = by_key[key]
+        said = (
+            f"identified by the survey's bibliography ({plan.source}), {row[at['identity']]} before"
+        )
+        row[at["note"]] = "; ".join(filter(None, (row[at["note"]], said)))
+        row[at["identity"]] = "confirmed"
+    return csv_text(header, rows)

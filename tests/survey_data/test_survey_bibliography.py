@@ -1,0 +1,159 @@
+"""A bibliography is read as printed, compared with ours, and completes identities when asked."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from survey_data import SurveyImportError, import_bibliography, load, validate
+from survey_data.importing.bibliography import Entry, read_bibliography
+
+BIB = r"""% the survey's references
+@string{jgcd = "Journal of Guidance"}
+@comment{Nobody2000, title = {left out}}
+@Article{Duan2006,
+  author = {Gonz{\'a}lez, Jos\'e and M{\"u}ller-{\O}st, Karl},
+  title = {{Sun} Sensor Error \& Compensation -- {CCD}},
+  journal = "Acta Test, {T}wo",
+  year = 2006, doi = {https://doi.org/10.1234/abc.5}
+}
+@inproceedings{Fan2017, author={Q. Fan}, title={A Title, With Commas}, year={2017},
+  booktitle={Some Conference}}
+@article{Chang2008, title = {Another title altogether}, year = {2008}}
+@article{Mafi2023, title = {Of another year}, year = {2021}}
+@book{Knuth1984, title = {No study}, year = {1984}}
+@misc{Herman2025a, title = {The survey's own data}, year = {2025}}
+"""
+
+BBL = r"""\begin{thebibliography}{2}
+\expandafter\ifx\csname natexlab\endcsname\relax\fi
+\bibitem[{Duan(2006)}]{Duan2006}
+\bibinfo{author}{J.~Gonz\'{a}lez}, \bibinfo{author}{K.~M\"uller},
+\newblock \bibinfo{title}{Sun sensor error},
+\newblock \bibinfo{journal}{Acta Test} \bibinfo{volume}{3} (\bibinfo{year}{2006})
+  \bibinfo{pages}{1--4}. \DOIprefix\doi{10.1234/abc.5}.
+\bibitem[{Fan et~al.(2017)Fan, Gao}]{Fan2017}
+\bibinfo{author}{Q.~Fan}, \bibinfo{title}{A title},
+\newblock in: \bibinfo{booktitle}{Some Conference}, \bibinfo{year}{2017}.
+\end{thebibliography}
+"""
+
+
+def offer(copy: Any, text: str, name: str = "refs.bib") -> Path:
+    path = copy.directory / name
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def cells(copy: Any, key: str) -> dict[str, str]:
+    rows = copy.rows("studies")
+    return dict(zip(rows[0], next(row for row in rows if row[0] == key), strict=True))
+
+
+def test_bibtex_is_read_as_printed(copy: Any) -> None:
+    entries = {entry.key: entry for entry in read_bibliography(offer(copy, BIB))}
+    assert list(entries) == [
+        "Duan2006", "Fan2017", "Chang2008", "Mafi2023", "Knuth1984", "Herman2025a",
+    ]  # fmt: skip
+    assert entries["Duan2006"] == Entry(
+        key="Duan2006",
+        title="Sun Sensor Error & Compensation - CCD",
+        authors="José González; Karl Müller-Øst",
+        year="2006",
+        venue="Acta Test, Two",
+        kind="journal",
+        doi="10.1234/abc.5",
+        line=4,
+    )
+    assert (entries["Fan2017"].title, entries["Fan2017"].kind) == (
+        "A Title, With Commas",
+        "conference",
+    )
+
+
+def test_a_bbl_is_read_alike(copy: Any) -> None:
+    first, second = read_bibliography(offer(copy, BBL, "refs.bbl"))
+    assert (first.key, first.title, first.authors) == (
+        *("Duan2006", "Sun sensor error"),
+        "J. González; K. Müller",
+    )
+    assert (first.venue, first.year, first.doi, first.kind, first.line) == (
+        *("Acta Test", "2006", "10.1234/abc.5"),
+        *("journal", 3),
+    )
+    assert (second.key, second.venue, second.kind) == ("Fan2017", "Some Conference", "conference")
+
+
+def test_a_comparison_shows_what_differs_and_writes_nothing(copy: Any) -> None:
+    before = copy.path("studies").read_bytes()
+    plan = import_bibliography(offer(copy, BIB), copy.directory)
+    assert copy.path("studies").read_bytes() == before
+    kinds = {(d.study, d.column): d.kind for d in plan.differences}
+    assert kinds["Duan2006", "title"] == kinds["Duan2006", "doi"] == "new"
+    assert kinds["Duan2006", "type"] == "new"
+    assert kinds["Chang2008", "title"] == "conflict"  # a page has confirmed ours
+    assert plan.settled == ("Duan2006", "Fan2017")
+    assert dict(plan.left_aside) == {
+        "Mafi2023": "published in 2021, which the key contradicts",
+        "Knuth1984": "no study has this key",
+    }
+    assert len(plan.missing) == 129 - 3
+    assert plan.written == 0
+
+
+def test_applying_completes_identities_once(copy: Any) -> None:
+    path = offer(copy, BIB)
+    known = len(load(copy.directory).studies.query("identity == 'confirmed'"))
+    plan = import_bibliography(path, copy.directory, apply=True)
+    assert plan.written == len(plan.edits) == 9  # five cells of one study, four of the other
+    assert validate(copy.directory) == []
+    duan = cells(copy, "Duan2006")
+    assert (duan["identity"], duan["type"], duan["doi"]) == (
+        "confirmed",
+        "journal",
+        "10.1234/abc.5",
+    )
+    assert duan["note"] == "identified by the survey's bibliography (refs.bib), unknown before"
+    assert cells(copy, "Chang2008")["title"] != "Another title altogether"
+    assert len(load(copy.directory).studies.query("identity == 'confirmed'")) == known + 2
+    after = copy.path("studies").read_bytes()
+    again = import_bibliography(path, copy.directory, apply=True)
+    assert (again.written, again.settled) == (0, ())
+    assert copy.path("studies").read_bytes() == after
+
+
+def test_the_first_of_two_entries_of_a_key_is_taken(copy: Any) -> None:
+    twice = "@article{Fan2017, title={One}}\n@article{Fan2017, title={Two}}\n"
+    plan = import_bibliography(offer(copy, twice), copy.directory)
+    assert [d.theirs for d in plan.differences if d.column == "title"] == ["One"]
+    assert plan.left_aside[0][1] == "stands twice in the bibliography; the first is taken"
+
+
+@pytest.mark.parametrize("text", ["", "a,b\n1,2\n", "@article{", "% nothing"])
+def test_what_is_no_bibliography_is_refused(copy: Any, text: str) -> None:
+    with pytest.raises(SurveyImportError, match=r"refs\.bib holds no entry"):
+        import_bibliography(offer(copy, text), copy.directory, apply=True)
+    with pytest.raises(SurveyImportError, match="cannot read"):
+        import_bibliography(copy.directory / "nowhere.bib")
+    (copy.directory / "bad.bib").write_bytes(b"\xff\xfe")
+    with pytest.raises(SurveyImportError, match="not UTF-8"):
+        import_bibliography(copy.directory / "bad.bib")
+
+
+@pytest.mark.parametrize("cut", range(40, len(BIB), 61))
+def test_a_file_cut_off_anywhere_is_read_or_refused(copy: Any, cut: int) -> None:
+    try:
+        read_bibliography(offer(copy, BIB[:cut]))
+    except SurveyImportError:
+        assert "{Duan2006," not in BIB[:cut]
+
+
+def test_a_doi_that_is_another_study_s_is_refused_whole(copy: Any) -> None:
+    taken = next(row for row in copy.rows("studies") if row[6].startswith("10."))[6]
+    before = copy.path("studies").read_bytes()
+    text = f"@article{{Fan2017, title={{One}}, doi={{{taken}}}}}"
+    with pytest.raises(SurveyImportError, match="would not be valid"):
+        import_bibliography(offer(copy, text), copy.directory, apply=True)
+    assert copy.path("studies").read_bytes() == before
