@@ -13,11 +13,17 @@ WORKERS ?= 2
 PORT ?= 8000
 # Bytecode is left to the first import of a module: most of it would never be read.
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile
+# Each worker keeps to one half of the suite and takes from the other only when its own is done: what
+# tests share (services, records, simulated light) is then made in one process and not in all.
+TEST := $(BIN)/python -m pytest -n $(WORKERS) --dist worksteal
 # One thread per worker: parallel work is by processes, and scores must not depend on the machine's cores.
 export OMP_NUM_THREADS = 1
 export OPENBLAS_NUM_THREADS = 1
 export MKL_NUM_THREADS = 1
 export NUMBA_NUM_THREADS = 1
+# Some containers forbid bytecode. Each process would then compile what it imports, pip having left
+# that to the first import: seconds for each worker, and for each process that tests start.
+unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
 .PHONY: help install serve test test-all coverage lint bench mutants leaderboard docs lock clean
@@ -56,13 +62,13 @@ serve: $(SERVING) ## serve the page and the API on http://127.0.0.1:8000 (instal
 	$(BIN)/sunatlas serve --port $(PORT) --times
 
 test: $(COMPILED) ## run the tests, the slow ones left out
-	$(BIN)/python -m pytest -n $(WORKERS) -m "not slow"
+	$(TEST) -m "not slow"
 
 test-all: $(COMPILED) ## run every test, as CI does
-	$(BIN)/python -m pytest -n $(WORKERS)
+	$(TEST)
 
 coverage: $(COMPILED) ## run every test and tell which lines and branches of the floors it reached
-	$(BIN)/python -m pytest -n $(WORKERS) --cov --cov-report=term:skip-covered --cov-report=html:out/coverage
+	$(TEST) --cov --cov-report=term:skip-covered --cov-report=html:out/coverage
 
 lint: $(DEVELOPING) ## ruff, mypy (strict), the floors
 	$(BIN)/ruff check .

@@ -111,6 +111,7 @@ def test_what_is_measured_reaches_the_answer(swept):
     assert "tracking" in found["Feature tracking"]["reason"]
 
 
+@pytest.mark.slow
 def test_the_page_prints_the_definitions_and_outcomes(published, monkeypatch):
     rows = Store(published).swept()
     document = assessment.document(assessment.assess(published))

@@ -10,7 +10,10 @@ from functools import partial
 from pathlib import Path
 
 import pytest
+import uvicorn
+from typer.testing import CliRunner
 
+from api.cli.command_line import app
 from api.cli.commands.serve import address, listen
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -43,18 +46,12 @@ def test_serve_prints_where_it_answers_and_ctrl_c_ends_it_with_130():
     assert "Traceback" not in said
 
 
-def test_a_port_that_is_taken_is_refused_in_one_line():
+def test_a_port_that_is_taken_is_refused_in_one_line(monkeypatch):
+    monkeypatch.setattr(uvicorn.Server, "run", lambda *_, **__: pytest.fail("it serves"))
     with socket.create_server(("127.0.0.1", 0)) as other:
         port = str(other.getsockname()[1])
-        shown = subprocess.run(
-            [*SERVE, "--port", port],
-            cwd=ROOT,
-            capture_output=True,
-            text=True,
-            timeout=600,
-            check=False,
-        )
-    assert shown.returncode == 1
+        shown = CliRunner().invoke(app, ["serve", "--port", port])
+    assert shown.exit_code == 1
     assert shown.stdout == ""
     assert shown.stderr.count("\n") == 1
     assert port in shown.stderr

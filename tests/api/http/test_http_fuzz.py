@@ -88,6 +88,7 @@ def test_any_request_is_answered_as_documented_or_refused(api, method, path, mod
     assert len(asked) >= (1 if path in PLAIN else fewest)
 
 
+@pytest.mark.slow
 def test_every_operation_is_fuzzed(api):
     found = {(o.ok().method.upper(), o.ok().path) for o in api.get_all_operations()}
     assert found == set(OPERATIONS)

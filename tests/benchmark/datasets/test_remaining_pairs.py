@@ -183,22 +183,6 @@ def test_samples_have_the_sizes_of_the_card(name: str) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
-def test_generation_depends_on_neither_batch_nor_order(
-    name: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    data = few(name)
-    condition = data.conditions[-1]
-    first = data.generate(condition, "test")
-    data.generate("nominal", "calibration")
-    monkeypatch.setattr("benchmark.datasets.preset.BATCH", 3)
-    again = data.generate(condition, "test")
-    assert np.array_equal(first.observations, again.observations)
-    part = data.generate(condition, "test", n=2)
-    assert np.array_equal(part.observations, first.observations[:2])
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", NAMES)
 def test_bounds_are_finite_everywhere_and_order_with_the_noise(name: str) -> None:
     data = few(name, steps=2)  # the field's corners
     found = {c: data.bound(c, "calibration") for c in ("low-noise", "nominal", "high-noise")}

@@ -65,17 +65,17 @@ def sampled_slit(half_mm: float, reach_mm: float, step_mm: float) -> tuple[np.nd
 
 
 def currents(
-    opening: np.ndarray,
+    lights: tuple[np.ndarray, ...],
     place: np.ndarray,
     spot: np.ndarray,
     elements: Callable[[np.ndarray, np.ndarray], np.ndarray],
 ) -> np.ndarray:
-    """(K,) light on elements, in units of the whole opening.
+    """(L, K) light on elements, of L patterns on one grid.
 
     `elements` gives the (K, ...) sensitivity at x (1, C) and y (R, 1).
     """
     x, y = place[None, :] + spot[0], place[:, None] + spot[1]
-    return np.asarray([np.sum(opening * one) for one in elements(x, y)])
+    return np.einsum("lyx,kyx->lk", np.asarray(lights), np.asarray(elements(x, y)))
 
 
 def covered(boxes: np.ndarray, step_mm: float) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:

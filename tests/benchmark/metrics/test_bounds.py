@@ -82,8 +82,6 @@ def fitted_angles(setup: Condition, pattern: Any, scene: Scene, seen: np.ndarray
         ("cmos-single-aperture", 41.3, -17.2, 350),
         ("qpd-single-aperture", 21.0, -9.0, 1500),
         ("pd-maskless-cube", 25.0, 40.0, 1500),
-        ("ccd-slit", 33.3, -17.2, 500),
-        ("pd-code-dial", 21.0, -9.0, 900),
     ],
 )
 def test_bound_is_what_a_maximum_likelihood_fit_reaches(

@@ -28,17 +28,12 @@ from benchmark.simulator.scene import Scene
 
 OFFERED = References()
 NONE = References(flats=0, darks=0)
-#: Data set, alpha and beta (deg), trials: one standard error is at most 3.5 %.
+#: Data set, alpha and beta (deg), trials: one standard error is at most 3.5 %. One of each readout
+#: and each kind of element: masks enter bound and estimate alike, by the mean signal they share.
 ARCHITECTURES = [
     ("cmos-single-aperture", 3.3, -2.2, 400),
-    ("ccd-single-aperture", 3.3, -2.2, 400),
-    ("cmos-slit", 3.3, -2.2, 400),
     ("ccd-slit", 33.3, -17.2, 400),
-    ("ccd-multi-slit", 21.3, -9.7, 400),
-    ("ccd-v-slit", 21.3, -9.7, 400),
     ("pda-slit", 21.3, -9.7, 400),
-    ("pda-multi-slit", 21.3, -9.7, 400),
-    ("pda-n-slit", 11.3, -9.7, 400),
     ("qpd-single-aperture", 21.0, -9.0, 1000),
     ("psd-single-aperture", -13.0, 18.0, 1000),
     ("pd-maskless-cube", 25.0, 40.0, 1000),

@@ -58,15 +58,13 @@ class Setup:
         """
         light = pattern(self.opening, self.step, spread(directions[0], self.layers))
         whole = self.opening.sum()
-        out = [
-            [
-                currents(which, self.place, landing(one, self.layers), self.elements())
-                * (one[2] / whole)
-                for one in directions
-            ]
-            for which in (light, self.opening)
+        found = [
+            currents((light, self.opening), self.place, landing(one, self.layers), self.elements())
+            * (one[2] / whole)
+            for one in directions
         ]
-        return np.array(out[0]), np.array(out[1])
+        diffracted, geometric = np.stack(found, axis=1)
+        return diffracted, geometric
 
 
 SETUPS = {

@@ -165,7 +165,7 @@ def test_square_hole_is_the_kirchhoff_integral(pitch_mm: float, step: int, beta:
     base = behind(2.0)
     camera = Camera(10.0, Mask((Aperture("rectangle", 0.2, 0.2),)), SolarDisc(0.0))
     detector = replace(base.detector, pitch_mm=pitch_mm)
-    sensor = replace(base, camera=camera, detector=detector, spectrum=GREEN)
+    sensor = replace(base, camera=camera, detector=detector, spectrum=GREEN, widest_deg=40.0)
     scene = scene_at(sensor, [0.0], [beta])
     assert scene.origin_px is not None
     rendered = sensor.lit(scene)[0]
