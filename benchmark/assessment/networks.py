@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from typing import cast
 
 import numpy as np
+from numpy.typing import NDArray
 
 from algorithms.angles import separation_deg, tangents_from_sun
 from algorithms.compensations.environment.temperature import TemperatureDrift
@@ -74,7 +75,7 @@ class _Part:
     features: Floats
     sun: Floats
     context: Context
-    lit: Floats
+    lit: NDArray[np.bool_]
 
     @classmethod
     def of(cls, preset: Preset, condition: str, split: str) -> _Part:

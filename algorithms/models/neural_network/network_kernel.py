@@ -26,9 +26,9 @@ _ROWS = 32
 _FARTHEST = 32.0
 """Sums beyond are taken for this: both functions are flat there to 2e-14."""
 _SHARE, _SQUARINGS = 1.0 / 128.0, 7
-"""A sum is taken for so small a share of it, and the exponential of that squared so often."""
 _SERIES = np.array([1.0 / factorial(term) for term in range(12, -1, -1)])
-"""Of the exponential up to a quarter, highest power first: to 2e-18."""
+"""The exponential of a small share of a sum by its series (highest power first; to 2e-18 up to a
+quarter), then squared so often."""
 
 _BETTER = 0.999
 """Share of the best error held out below which one counts as better."""
@@ -248,11 +248,8 @@ def _normal_equations(  # noqa: PLR0917 - Numba takes no keyword-only ones
                                 + d * rows[r + 3, q]
                             )
                 held = 0
-    share = 1.0 / len(inputs)
-    for p in range(count):
-        gradient[p] *= share
-        for q in range(p, count):
-            normal[p, q] *= share
+    gradient /= len(inputs)
+    normal /= len(inputs)
 
 
 @compiled

@@ -180,8 +180,12 @@ def trained(
     if not held.any():
         raise UnusableDataError(f"{by} needs samples of more poses, to hold some out of the fit")
     widths, kinds = (np.array(v, dtype=np.int64) for v in (training.widths, training.kinds))
-    parts = [np.ascontiguousarray(v) for v in (inputs[~held], wanted[~held])]
-    parts += [np.ascontiguousarray(v) for v in (inputs[held], wanted[held])]
+    parts = (
+        np.ascontiguousarray(inputs[~held]),
+        np.ascontiguousarray(wanted[~held]),
+        np.ascontiguousarray(inputs[held]),
+        np.ascontiguousarray(wanted[held]),
+    )
     best: tuple[Floats, tuple[float, float, int]] | None = None
     for number in range(training.restarts):
         weights = training.start(number)
