@@ -22,6 +22,7 @@ from algorithms.models.nominal_projection import POSITIONS
 from algorithms.models.non_physical.regression_axes import feature_scaling, sun_from_target
 
 _LAYERS = (1, 0)  # log-sigmoid, then linear
+_STEPS = 400
 
 
 @dataclass
@@ -139,7 +140,8 @@ class AxisNetworks(CalibratedModel):
             angle = np.empty(len(sun))
             angles_deg(sun[:, component] / sun[:, 2], angle)
             reach = max(float(np.abs(angle).max()), 1e-9)
-            training = Training((2, self.hidden, 1), _LAYERS, self.restarts, self.seed)
+            widths = 2, self.hidden, 1
+            training = Training(widths, _LAYERS, self.restarts, self.seed, steps=_STEPS)
             found = trained(inputs, (angle / reach)[:, None], held, training, by)
             self.reach_deg_[axis] = reach
             networks.append(found.network)

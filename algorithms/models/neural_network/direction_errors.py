@@ -15,7 +15,7 @@ from algorithms.row_arithmetic import normalised
 _RIDGE = 1e-10
 #: Errors, in radians, below which there is nothing to learn, and the share of the largest that
 #: need not be learnt.
-_NOTHING, _GOAL = 1e-6, 1e-5
+_NOTHING, _GOAL = 1e-8, 1e-5
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class Correction:
     held_deg : float
         Error on the samples held out.
     steps : int
-        Of training.
+        Of training; 0 where there was nothing to correct.
     """
 
     network: Network
@@ -134,12 +134,17 @@ def learn_correction(
     if not usable.any():
         raise UnusableDataError(f"{by}: no sample has a direction that is about right")
     wanted = wanted[usable]
-    scale = max(float(np.abs(wanted).max()), _NOTHING)
+    scale = float(np.abs(wanted).max())
     count, outputs = inputs.shape[1], wanted.shape[1]
     held = held_out(sun)
     training = Training(
         (count, count, hidden, hidden, outputs), (1, 2, 2, 0), restarts, seed, goal=_GOAL
     )
+    if scale < _NOTHING:
+        silent = Network(
+            np.zeros(training.count), np.array(training.widths), np.array(training.kinds)
+        )
+        return Correction(silent, 1.0, float(np.degrees(scale)), 0)
     found: Trained = trained(inputs[usable], wanted / scale, held[usable], training, by)
     held_deg = float(np.degrees(scale * found.held))
     return Correction(found.network, scale, held_deg, found.steps)

@@ -272,6 +272,16 @@ def test_deep_networks_learn_light_that_comes_with_the_sun():
     assert np.sqrt(np.mean(after**2)) < 0.2 * np.sqrt(np.mean(before**2))
 
 
+def test_nothing_is_learnt_where_there_is_nothing_to_correct():
+    sun = turntable(40, 5)
+    model = DeepSurface().fit(sun[:, :2] / sun[:, 2:], sun)
+    assert not model.correction_.network.weights.any()
+    assert model.correction_.steps == 0
+    between = sun_from_angles(np.random.default_rng(16).uniform(-39.0, 39.0, (50, 2)))
+    found = model.predict(between[:, :2] / between[:, 2:])
+    assert separation_deg(found, between).max() < 1e-6
+
+
 def test_seeds_give_other_networks_and_one_seed_the_same():
     sun = turntable(40, 5)
     features = quadrants(sun) + 0.002 * np.random.default_rng(14).standard_normal((len(sun), 2))

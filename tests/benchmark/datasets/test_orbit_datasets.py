@@ -130,7 +130,7 @@ def test_eclipse_is_scored_as_not_observable() -> None:
     assert wrong.max_deg == wrong.over_bound == honest.over_bound == 0.0
 
 
-@pytest.mark.parametrize("name", ("pd-orbit", "ccd-orbit"))
+@pytest.mark.parametrize("name", ["pd-orbit", "ccd-orbit"])
 def test_other_instruments_agree_with_the_truth(made, name: str) -> None:
     """Nadir and field in both frames, with the true Sun, are one rotation apart."""
     perfect = PRESETS[name].generate("ideal-calibration", "test")
