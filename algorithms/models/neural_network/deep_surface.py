@@ -90,12 +90,12 @@ class DeepSurface(CalibratedModel):
     --------
     >>> import numpy as np
     >>> from algorithms.angles import angles_from_sun, sun_from_angles
-    >>> steps = np.arange(-40, 41, 5)
+    >>> steps = np.arange(-30, 31, 5)
     >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
     >>> balances = np.tanh(sun[:, :2] / sun[:, 2:])
     >>> model = DeepSurface().fit(balances, sun)
     >>> angles_from_sun(model.predict([balances[0], [9.0, 0.0]])).round(1)
-    array([[-40., -40.],
+    array([[-30., -30.],
            [ nan,  nan]])
     """
 

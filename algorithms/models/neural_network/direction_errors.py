@@ -62,7 +62,7 @@ def across_from_boresight(directions: Floats) -> tuple[Floats, Floats]:
     Examples
     --------
     >>> first, second = across_from_boresight(np.array([[0.0, 0.6, 0.8]]))
-    >>> first, second
+    >>> first + 0.0, second + 0.0
     (array([[1., 0., 0.]]), array([[ 0. ,  0.8, -0.6]]))
     """
     x, y, z = directions.T
