@@ -38,6 +38,7 @@ HOLES = ((-0.08, -0.06, 0.05), (0.08, -0.05, 0.05), (-0.07, 0.07, 0.05), (0.09, 
 PYRAMIDS = {
     "angular-loss",
     "assembled-faces",
+    "dnn",
     "panoramic",
     "panoramic-temperature",
     "pyramidal",

@@ -144,6 +144,7 @@ GROUPS: Mapping[str, Group] = {
         50,
         {
             "algorithms/models/multiplex/*": _in(_MODELS, "model_limits", "code_dial_models"),
+            "algorithms/models/neural_network/*": _in(_MODELS, "networks"),
             "algorithms/models/non_physical/fourier_phase.py": _in(
                 _MODELS, "model_limits", "code_dial_models"
             ),

@@ -1,0 +1,1 @@
+"""Neural networks: one hidden layer an axis (ANN), several hidden layers (DNN)."""

@@ -1,0 +1,201 @@
+"""A deep network that corrects the direction that a few detectors' signals give (DNN)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import ClassVar, Self
+
+import numpy as np
+
+from algorithms.calibration.calibrated import Columns
+from algorithms.calibration.faces_model import FacesModel
+from algorithms.calibration.quality import Setting
+from algorithms.contract import (
+    AboutModel,
+    FeatureKind,
+    Floats,
+    SensorGeometry,
+    UnsuitableDesignError,
+    UnusableDataError,
+)
+from algorithms.models.neural_network.direction_errors import (
+    Correction,
+    combined,
+    learn_correction,
+    least_squares,
+)
+from algorithms.models.neural_network.training import require_training
+from algorithms.row_arithmetic import normalised
+
+MAX_SIGNALS = 8
+"""Every signal has a unit of the first layer that sees all others."""
+
+
+@dataclass
+class DeepSignals(FacesModel):
+    """A Sun direction from all signals in common proportion, corrected by a deep network.
+
+    The network learns from the signals themselves how far the direction is off: by light from the
+    Earth, by responses that are no cosine, by faces in the dark. No model of any of these is
+    needed, only samples that show them.
+
+    Parameters
+    ----------
+    signals : int
+        Detectors K, 2 to 8.
+    hidden : int
+        Units of each of the two hidden layers, 1 to 40.
+    restarts : int
+        Trainings from other weights, 1 to 50, of which the best on samples held out is kept.
+    seed : int
+        Of the weights that trainings start from, not negative; the same fit for the same seed.
+    extrapolation : float
+        How far past the cone of calibrated directions answers may go, in radians, from 0 up;
+        infinity for anywhere.
+
+    Attributes
+    ----------
+    middle_, half_range_ : ndarray, shape (K,)
+        The signals' scaling ``u = (signal - middle) / half_range`` onto [-1, 1]; a signal that
+        never changed is left alone.
+    coefficients_ : ndarray, shape (K + 1, 3)
+        Of one and of each scaled signal in s_x, s_y and s_z, before they are brought to length one.
+    correction_ : Correction
+        The network, with its error on the samples held out.
+    quality_ : FitQuality
+        Residuals, error on samples held out, units and steps.
+    hull_ : Hull
+        Cone of the directions it gives for the calibration.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not as said above; the message names it.
+
+    Notes
+    -----
+    Implements: model:dnn (model:nn, Soken2023), in words there: a network of the photodiodes'
+    voltages gives the errors of the two Sun angles, trained on attitudes known from elsewhere in
+    orbit or on the ground. Its layers are the study's, 4-n-n-2: units as many as voltages with a
+    log-sigmoid, two layers of hyperbolic tangents, linear outputs. The study does not give n in
+    what was mapped; eight is ours. So is the direction that is corrected, linear in the signals by
+    least squares, where the study's is its sensor's own. Errors are tangents along two axes across
+    the direction; of a sensor that was calibrated with Suns behind it too, the three components of
+    the vector to be added, for no two axes are smooth on a whole sphere. Signals are not
+    normalised: their strength beside the Sun's tells of other light. Trained by Levenberg and
+    Marquardt's method on four fifths of the poses until the error on the other fifth, in blocks, no
+    longer falls.
+
+    Shapes: signals (N, K), in any common unit, to unit vectors (N, 3), all directions.
+
+    Failure: a NaN row for a NaN feature row, and outside the cone. What the calibration never
+    showed, such as the Earth's light to one made on the ground, is corrected wrongly. Faces that
+    all see Sun and Earth measure little but the sum of both: where the Earth stands differently for
+    the same sum, as on a satellite that tumbles, no network can tell. fit raises
+    UnusableDataError for fewer samples than the network has weights an output, 75 of four signals.
+    UnsuitableDesignError for more than eight detectors.
+
+    Cost: 1200 operations a sample for four signals. A fit takes some 10 ms a sample and start.
+
+    References
+    ----------
+    Soken2023; survey model:nn, model:dnn.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> normals = np.array([[0.6, 0, 0.8], [-0.6, 0, 0.8], [0, 0.6, 0.8], [0, -0.6, 0.8]])
+    >>> sun = np.random.default_rng(1).uniform((-0.5, -0.5, 1), (0.5, 0.5, 1), (300, 3))
+    >>> sun /= np.linalg.norm(sun, axis=1, keepdims=True)
+    >>> signals = (sun @ normals.T) ** 1.3
+    >>> model = DeepSignals(signals=4).fit(signals, sun)
+    >>> model.predict((np.array([[0.28, 0.0, 0.96]]) @ normals.T) ** 1.3)[:, ::2].round(2)
+    array([[0.28, 0.96]])
+    """
+
+    about: ClassVar = AboutModel(
+        name="dnn",
+        taxonomy="DNN",
+        studies=("Soken2023",),
+        labels=("model:nn", "model:dnn"),
+        origin="survey",
+        needs=("face_normals",),
+        accepts=frozenset({FeatureKind.SIGNALS}),
+    )
+
+    signals: int
+    hidden: int = 8
+    restarts: int = 3
+    seed: int = 0
+
+    fewest: ClassVar[int] = 4
+
+    middle_: Floats = field(init=False, repr=False, compare=False)
+    half_range_: Floats = field(init=False, repr=False, compare=False)
+    coefficients_: Floats = field(init=False, repr=False, compare=False)
+    correction_: Correction = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not 2 <= self.signals <= MAX_SIGNALS:
+            raise UnsuitableDesignError(
+                f"{self.about.name} reads 2 to {MAX_SIGNALS} signals; got {self.signals!r}"
+            )
+        require_training(self.about.name, self.hidden, self.restarts, self.seed)
+
+    @classmethod
+    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
+        """Return the model of the sensor's detectors; UnsuitableDesignError past eight."""
+        cls.about.require_kind(kind)
+        geometry.require("face_normals", by=cls.about.name)
+        return cls(signals=len(geometry.face_normals or ()))
+
+    def columns(self) -> int:
+        """One a detector."""
+        return self.signals
+
+    def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
+        """Fit the direction, then train on what it leaves, samples (n, K) of Suns (n, 3)."""
+        del context
+        by = self.about.name
+        low, high = features.min(axis=0), features.max(axis=0)
+        half = (high - low) / 2.0
+        if not (half > 0).any():
+            raise UnusableDataError(f"{by} needs samples in which a signal changes; got none")
+        self.middle_, self.half_range_ = (low + high) / 2.0, np.where(half > 0, half, 1.0)
+        inputs = self._scaled(features)
+        design = np.column_stack([np.ones(len(inputs)), inputs])
+        self.coefficients_ = least_squares(design, sun, by)
+        base = self._base(inputs)
+        self.correction_ = learn_correction(
+            base,
+            inputs,
+            sun,
+            hidden=self.hidden,
+            restarts=self.restarts,
+            seed=self.seed,
+            by=by,
+        )
+
+    def settings(self) -> Mapping[str, Setting]:
+        """Give the units, and the steps at which the held-out error was least."""
+        return {"hidden": self.hidden, "steps": self.correction_.steps}
+
+    def validation_rms_deg(self) -> float:
+        """Error on the samples held out."""
+        return self.correction_.held_deg
+
+    def answer(self, features: Floats, context: Columns) -> Floats:
+        """Directions (N, 3) of signals (N, K)."""
+        del context
+        inputs = self._scaled(features)
+        return self.correction_.corrected(self._base(inputs), inputs)
+
+    def _scaled(self, features: Floats) -> Floats:
+        return np.asarray((features - self.middle_) / self.half_range_)
+
+    def _base(self, inputs: Floats) -> Floats:
+        """Directions (N, 3) before they are corrected."""
+        columns = [np.ones(len(inputs)), *inputs.T]
+        return normalised(combined(columns, self.coefficients_))

@@ -1,0 +1,192 @@
+"""What a network adds to a direction that another way has found: errors, and their undoing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from algorithms.contract import Floats, UnusableDataError
+from algorithms.models.neural_network.training import Network, Trained, Training, held_out, trained
+from algorithms.row_arithmetic import normalised
+
+#: Added to the diagonal of normal equations, as a share of its mean: an element that no sample
+#: lights has no part.
+_RIDGE = 1e-10
+#: Errors, in radians, below which there is nothing to learn, and the share of the largest that
+#: need not be learnt.
+_NOTHING, _GOAL = 1e-8, 1e-5
+
+
+@dataclass(frozen=True)
+class Correction:
+    """A network whose outputs, times their scale, are the errors of directions.
+
+    Parameters
+    ----------
+    network : Network
+        With two outputs, tangents of the errors along two axes across the direction, or with
+        three, components of the vector to be added.
+    scale : float
+        What an output of one means.
+    held_deg : float
+        Error on the samples held out.
+    steps : int
+        Of training; 0 where there was nothing to correct.
+    """
+
+    network: Network
+    scale: float
+    held_deg: float
+    steps: int
+
+    def corrected(self, base: Floats, inputs: Floats) -> Floats:
+        """Give unit vectors (N, 3) of directions (N, 3) and the network's inputs (N, F)."""
+        errors = self.network.values(inputs) * self.scale
+        if errors.shape[1] == base.shape[1]:
+            return normalised(base + errors)
+        first, second = across_from_boresight(base)
+        return normalised(base + errors[:, :1] * first + errors[:, 1:] * second)
+
+
+def across_from_boresight(directions: Floats) -> tuple[Floats, Floats]:
+    """Two unit vectors (N, 3) across each direction: x and y turned with +z, the shortest way.
+
+    Smooth everywhere but behind the sensor, at -z, where they are not defined.
+
+    Parameters
+    ----------
+    directions : ndarray, shape (N, 3)
+        Unit vectors.
+
+    Examples
+    --------
+    >>> first, second = across_from_boresight(np.array([[0.0, 0.6, 0.8]]))
+    >>> first + 0.0, second + 0.0
+    (array([[1., 0., 0.]]), array([[ 0. ,  0.8, -0.6]]))
+    """
+    x, y, z = directions.T
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = 1.0 / (1.0 + z)
+    first = np.column_stack([1.0 - x * x * share, -x * y * share, -x])
+    second = np.column_stack([-x * y * share, 1.0 - y * y * share, -y])
+    return first, second
+
+
+def errors_of(base: Floats, sun: Floats, *, frontal: bool) -> Floats:
+    """Errors (n, 2) of directions (n, 3), or (n, 3) where Suns are behind the sensor too.
+
+    Parameters
+    ----------
+    base, sun : ndarray, shape (n, 3)
+        Unit vectors, found and true.
+    frontal : bool
+        Whether every Sun is in front of the sensor: then tangents of the errors along the two axes
+        of `across_from_boresight`, NaN where they reach 90 degrees; else ``sun - base``.
+    """
+    if not frontal:
+        return np.asarray(sun - base)
+    along = _dot(base, sun)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        errors = [_dot(axis, sun) / along for axis in across_from_boresight(base)]
+    found = np.column_stack(errors)
+    found[~(along > 0.0)] = np.nan
+    return found
+
+
+def learn_correction(
+    base: Floats,
+    inputs: Floats,
+    sun: Floats,
+    *,
+    hidden: int,
+    restarts: int,
+    seed: int,
+    by: str,
+) -> Correction:
+    """Train a network on the errors of directions that another way has found.
+
+    Layers as Soken2023: as many log-sigmoid units as inputs, two layers of `hidden` hyperbolic
+    tangents, linear outputs.
+
+    Parameters
+    ----------
+    base : ndarray, shape (n, 3)
+        Unit vectors found; rows that are NaN are left out.
+    inputs : ndarray, shape (n, F)
+        Scaled to [-1, 1].
+    sun : ndarray, shape (n, 3)
+        Unit vectors, true.
+    hidden : int
+        Units of either hidden layer.
+    restarts, seed : int
+        Starts, and the seed of their weights.
+    by : str
+        Whose it is, for the message.
+
+    Raises
+    ------
+    UnusableDataError
+        If the samples are too few for the weights.
+    """
+    wanted = errors_of(base, sun, frontal=bool((sun[:, 2] > 0).all()))
+    usable = np.isfinite(wanted).all(axis=1)
+    if not usable.any():
+        raise UnusableDataError(f"{by}: no sample has a direction that is about right")
+    wanted = wanted[usable]
+    scale = float(np.abs(wanted).max())
+    count, outputs = inputs.shape[1], wanted.shape[1]
+    held = held_out(sun)
+    training = Training(
+        (count, count, hidden, hidden, outputs), (1, 2, 2, 0), restarts, seed, goal=_GOAL
+    )
+    if scale < _NOTHING:
+        silent = Network(
+            np.zeros(training.count), np.array(training.widths), np.array(training.kinds)
+        )
+        return Correction(silent, 1.0, float(np.degrees(scale)), 0)
+    found: Trained = trained(inputs[usable], wanted / scale, held[usable], training, by)
+    held_deg = float(np.degrees(scale * found.held))
+    return Correction(found.network, scale, held_deg, found.steps)
+
+
+def least_squares(design: Floats, wanted: Floats, by: str) -> Floats:
+    """Coefficients (P, T) of a design (n, P) for columns (n, T), the same on every processor.
+
+    Raises
+    ------
+    UnusableDataError
+        If the samples do not settle them.
+    """
+    from algorithms.models.neural_network.network_kernel import solved  # noqa: PLC0415 - Numba
+    from algorithms.models.neural_network.portable_kernel import products  # noqa: PLC0415 - Numba
+
+    terms = design.shape[1]
+    normal, factor = np.empty((terms, terms)), np.empty((terms, terms))
+    right, found = np.empty(terms), np.empty((terms, wanted.shape[1]))
+    contiguous = np.ascontiguousarray(design)
+    for number in range(wanted.shape[1]):
+        products(contiguous, np.ascontiguousarray(wanted[:, number]), normal, right)
+        added = _RIDGE * float(np.diag(normal).mean())
+        column = np.empty(terms)
+        if not solved(normal, added, right, factor, column):
+            raise UnusableDataError(f"{by}: the calibration samples do not settle {terms} terms")
+        found[:, number] = column
+    return found
+
+
+def combined(columns: list[Floats], coefficients: Floats) -> Floats:
+    """Add up columns (N,) times their coefficients (P, T) to (N, T), one by one.
+
+    A matrix product rounds a sample differently in batches of another size.
+    """
+    found = np.zeros((len(columns[0]), coefficients.shape[1]), order="F")
+    for column, shares in zip(columns, coefficients, strict=True):
+        for number, share in enumerate(shares):
+            found[:, number] += share * column
+    return found
+
+
+def _dot(first: Floats, second: Floats) -> Floats:
+    x, y, z = (a * b for a, b in zip(first.T, second.T, strict=True))
+    return np.asarray(x + y + z)

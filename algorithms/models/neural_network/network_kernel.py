@@ -1,0 +1,399 @@
+"""Feed-forward networks: values, derivatives and Levenberg-Marquardt training, portable.
+
+Only sums, products, quotients and roots, in a fixed order: the numbers are the same on every
+processor, as those of the C library's exponential and of BLAS are not.
+"""
+
+from __future__ import annotations
+
+from math import factorial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.compiled import compiled
+from algorithms.contract import Floats
+
+Layers = NDArray[np.int64]
+
+LINEAR, LOG_SIGMOID, TANH = 0, 1, 2
+"""How a layer answers its sums."""
+
+_BLOCK = 64
+"""Samples whose activations stay in the first cache; inner loops run along them."""
+_ROWS = 32
+"""Rows of derivatives that are held at a time; a multiple of four."""
+_FARTHEST = 32.0
+"""Sums beyond are taken for this: both functions are flat there to 2e-14."""
+_SHARE, _SQUARINGS = 1.0 / 128.0, 7
+_SERIES = np.array([1.0 / factorial(term) for term in range(12, -1, -1)])
+"""The exponential of a small share of a sum by its series (highest power first; to 2e-18 up to a
+quarter), then squared so often."""
+
+_BETTER = 0.999
+"""Share of the best error held out below which one counts as better."""
+_DAMPING, _LESS, _MORE = 1e-2, 0.1, 10.0
+_LEAST, _MOST = 1e-14, 1e10
+"""Damping, in units of the mean squared derivative: where it starts, how it changes, its limits."""
+
+
+@compiled
+def _respond(sums: Floats, kind: int) -> None:
+    """Turn sums (u, b) into what units of this kind answer, in place."""
+    if kind == LINEAR:
+        return
+    units, size = sums.shape
+    for unit in range(units):
+        row = sums[unit]
+        for i in range(size):
+            x = row[i]
+            if kind == TANH:
+                x = 2.0 * x
+            # NaN passes both comparisons, as it would not minimum and maximum
+            if x > _FARTHEST:  # noqa: PLR1730
+                x = _FARTHEST
+            if x < -_FARTHEST:  # noqa: PLR1730
+                x = -_FARTHEST
+            x = -x * _SHARE
+            power = _SERIES[0]
+            for term in range(1, 13):
+                power = power * x + _SERIES[term]
+            for _ in range(_SQUARINGS):
+                power = power * power
+            sigmoid = 1.0 / (1.0 + power)
+            row[i] = 2.0 * sigmoid - 1.0 if kind == TANH else sigmoid
+
+
+@compiled
+def _forward(inputs: Floats, weights: Floats, widths: Layers, kinds: Layers, units: Floats) -> None:
+    """Answers of all units (sum of widths, b) of samples (b, F), the inputs' own first."""
+    size = len(inputs)
+    for column in range(widths[0]):
+        for i in range(size):
+            units[column, i] = inputs[i, column]
+    before, at = 0, 0
+    for layer in range(len(kinds)):
+        first = before + widths[layer]
+        for unit in range(widths[layer + 1]):
+            row = units[first + unit]
+            bias = weights[at + widths[layer]]
+            for i in range(size):
+                row[i] = bias
+            for source in range(widths[layer]):
+                weight = weights[at + source]
+                seen = units[before + source]
+                for i in range(size):
+                    row[i] += weight * seen[i]
+            at += widths[layer] + 1
+        _respond(units[first : first + widths[layer + 1]], kinds[layer])
+        before = first
+
+
+@compiled
+def network_values(
+    inputs: Floats, weights: Floats, widths: Layers, kinds: Layers, out: Floats
+) -> None:
+    """Write outputs (N, O) of a network for inputs (N, F), into `out`; NaN rows for NaN rows.
+
+    Parameters
+    ----------
+    inputs : ndarray, shape (N, F)
+        Scaled.
+    weights : ndarray, shape (P,)
+        Unit by unit, layer by layer: one weight a unit of the layer before, then the bias.
+    widths : ndarray of int, shape (L + 1,)
+        Units of the inputs and of every layer.
+    kinds : ndarray of int, shape (L,)
+        How every layer answers: `LINEAR`, `LOG_SIGMOID` or `TANH`.
+    out : ndarray, shape (N, O)
+        Overwritten.
+    """
+    everything = 0
+    for width in widths:
+        everything += width
+    units = np.empty((everything, _BLOCK))
+    outputs = widths[-1]
+    for start in range(0, len(inputs), _BLOCK):
+        size = min(_BLOCK, len(inputs) - start)
+        part = units[:, :size]
+        _forward(inputs[start : start + size], weights, widths, kinds, part)
+        for output in range(outputs):
+            row = part[everything - outputs + output]
+            for i in range(size):
+                out[start + i, output] = row[i]
+
+
+@compiled
+def _derivative_row(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    units: Floats,
+    sample: int,
+    output: int,
+    weights: Floats,
+    widths: Layers,
+    kinds: Layers,
+    slopes: Floats,
+    row: Floats,
+) -> None:
+    """Derive one output of one sample by all weights (P,): the chain rule backwards."""
+    layers = len(kinds)
+    at, before = len(weights), len(slopes)
+    for layer in range(layers - 1, -1, -1):
+        width, sources = widths[layer + 1], widths[layer]
+        last_at, last = at, before
+        at -= width * (sources + 1)
+        before -= width
+        below = before - sources
+        for unit in range(width):
+            answer = units[before + unit, sample]
+            if layer == layers - 1:
+                slope = 1.0 if unit == output else 0.0
+            else:
+                slope = 0.0
+                above = widths[layer + 2]
+                for target in range(above):
+                    slope += slopes[last + target] * weights[last_at + target * (width + 1) + unit]
+            if kinds[layer] == TANH:
+                slope *= 1.0 - answer * answer
+            elif kinds[layer] == LOG_SIGMOID:
+                slope *= answer * (1.0 - answer)
+            slopes[before + unit] = slope
+            place = at + unit * (sources + 1)
+            for source in range(sources):
+                row[place + source] = slope * units[below + source, sample]
+            row[place + sources] = slope
+
+
+@compiled
+def network_derivatives(
+    inputs: Floats, weights: Floats, widths: Layers, kinds: Layers, out: Floats
+) -> None:
+    """Write derivatives (N, O, P) of outputs by weights into `out`, as `network_values`."""
+    everything = 0
+    for width in widths:
+        everything += width
+    units, slopes = np.empty((everything, _BLOCK)), np.empty(everything)
+    for start in range(0, len(inputs), _BLOCK):
+        size = min(_BLOCK, len(inputs) - start)
+        _forward(inputs[start : start + size], weights, widths, kinds, units[:, :size])
+        for i in range(size):
+            for output in range(widths[-1]):
+                _derivative_row(
+                    units, i, output, weights, widths, kinds, slopes, out[start + i, output]
+                )
+
+
+@compiled
+def _mean_square(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    inputs: Floats, wanted: Floats, weights: Floats, widths: Layers, kinds: Layers, units: Floats
+) -> float:
+    """Mean over samples (n, F) of squared errors, outputs added."""
+    everything, outputs = len(units), wanted.shape[1]
+    total = 0.0
+    for start in range(0, len(inputs), _BLOCK):
+        size = min(_BLOCK, len(inputs) - start)
+        _forward(inputs[start : start + size], weights, widths, kinds, units[:, :size])
+        for output in range(outputs):
+            for i in range(size):
+                off = units[everything - outputs + output, i] - wanted[start + i, output]
+                total += off * off
+    return total / len(inputs)
+
+
+@compiled
+def _normal_equations(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    inputs: Floats,
+    wanted: Floats,
+    weights: Floats,
+    widths: Layers,
+    kinds: Layers,
+    units: Floats,
+    normal: Floats,
+    gradient: Floats,
+) -> None:
+    """Mean products of derivatives (P, P; the upper triangle) and with the errors (P,)."""
+    count, outputs, everything = len(weights), wanted.shape[1], len(units)
+    normal[:] = 0.0
+    gradient[:] = 0.0
+    rows, errors = np.zeros((_ROWS, count)), np.zeros(_ROWS)
+    slopes = np.empty(everything)
+    held = 0
+    for start in range(0, len(inputs), _BLOCK):
+        size = min(_BLOCK, len(inputs) - start)
+        _forward(inputs[start : start + size], weights, widths, kinds, units[:, :size])
+        for i in range(size):
+            for output in range(outputs):
+                _derivative_row(units, i, output, weights, widths, kinds, slopes, rows[held])
+                errors[held] = units[everything - outputs + output, i] - wanted[start + i, output]
+                held += 1
+                last = start + i == len(inputs) - 1 and output == outputs - 1
+                if held < _ROWS and not last:
+                    continue
+                rows[held:] = 0.0
+                errors[held:] = 0.0
+                for r in range(0, _ROWS, 4):
+                    for p in range(count):
+                        a, b, c, d = rows[r, p], rows[r + 1, p], rows[r + 2, p], rows[r + 3, p]
+                        gradient[p] += (
+                            a * errors[r]
+                            + b * errors[r + 1]
+                            + c * errors[r + 2]
+                            + d * errors[r + 3]
+                        )
+                        line = normal[p]
+                        for q in range(p, count):
+                            line[q] += (
+                                a * rows[r, q]
+                                + b * rows[r + 1, q]
+                                + c * rows[r + 2, q]
+                                + d * rows[r + 3, q]
+                            )
+                held = 0
+    gradient /= len(inputs)
+    normal /= len(inputs)
+
+
+@compiled
+def solved(normal: Floats, added: float, wanted: Floats, factor: Floats, out: Floats) -> bool:
+    """Solve ``(normal + added I) out = wanted`` by Cholesky's factor; whether it could be.
+
+    Parameters
+    ----------
+    normal : ndarray, shape (P, P)
+        Symmetric; only its upper triangle is read.
+    added : float
+        To the diagonal.
+    wanted : ndarray, shape (P,)
+        Right-hand side.
+    factor : ndarray, shape (P, P)
+        Overwritten: U with ``U' U`` the matrix, in the upper triangle.
+    out : ndarray, shape (P,)
+        Overwritten.
+    """
+    count = len(wanted)
+    for p in range(count):
+        for q in range(p, count):
+            factor[p, q] = normal[p, q]
+        factor[p, p] += added
+        out[p] = wanted[p]
+    for p in range(count):
+        pivot = factor[p, p]
+        if not pivot > 0.0:
+            return False
+        root = np.sqrt(pivot)
+        for q in range(p, count):
+            factor[p, q] /= root
+        out[p] /= root
+        for r in range(p + 1, count):
+            share = factor[p, r]
+            for q in range(r, count):
+                factor[r, q] -= share * factor[p, q]
+            out[r] -= share * out[p]
+    for p in range(count - 1, -1, -1):
+        value = out[p]
+        for q in range(p + 1, count):
+            value -= factor[p, q] * out[q]
+        out[p] = value / factor[p, p]
+    return True
+
+
+@compiled
+def _lower(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    inputs: Floats,
+    wanted: Floats,
+    here: Floats,
+    widths: Layers,
+    kinds: Layers,
+    cost: float,
+    damping: float,
+    units: Floats,
+    trial: Floats,
+) -> tuple[float, float]:
+    """Step from weights `here` to `trial`: its mean square error, and the damping it took.
+
+    The error is `cost` itself where no step lowers it.
+    """
+    count = len(here)
+    normal, factor = np.empty((count, count)), np.empty((count, count))
+    gradient = np.empty(count)
+    _normal_equations(inputs, wanted, here, widths, kinds, units, normal, gradient)
+    mean = 0.0
+    for p in range(count):
+        mean += normal[p, p]
+    mean /= count
+    while damping <= _MOST:
+        if solved(normal, damping * mean, gradient, factor, trial):
+            for p in range(count):
+                trial[p] = here[p] - trial[p]
+            found = _mean_square(inputs, wanted, trial, widths, kinds, units)
+            if found < cost:
+                return found, damping
+        damping *= _MORE
+    return cost, damping
+
+
+@compiled
+def train(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    inputs: Floats,
+    wanted: Floats,
+    held_inputs: Floats,
+    held_wanted: Floats,
+    weights: Floats,
+    widths: Layers,
+    kinds: Layers,
+    steps: int,
+    patience: int,
+    goal: float,
+) -> tuple[float, float, int]:
+    """Levenberg-Marquardt from `weights`, left as they were best on the samples held out.
+
+    Parameters
+    ----------
+    inputs, wanted : ndarray, shapes (n, F) and (n, O)
+        Samples that are fitted.
+    held_inputs, held_wanted : ndarray, shapes (m, F) and (m, O)
+        Samples that say when to stop.
+    weights : ndarray, shape (P,)
+        Where to start; overwritten by the best.
+    widths, kinds
+        As `network_values`.
+    steps : int
+        Most steps.
+    patience : int
+        Steps without a better error on the samples held out after which it stops.
+    goal : float
+        Mean square error on the samples held out that is good enough.
+
+    Returns
+    -------
+    held : float
+        Mean square error of the weights left, on the samples held out, outputs added.
+    fitted : float
+        The same on the samples fitted.
+    taken : int
+        Steps to those weights.
+    """
+    everything = 0
+    for width in widths:
+        everything += width
+    units = np.empty((everything, _BLOCK))
+    here, trial = weights.copy(), np.empty(len(weights))
+    cost = _mean_square(inputs, wanted, here, widths, kinds, units)
+    best = _mean_square(held_inputs, held_wanted, here, widths, kinds, units)
+    fitted, taken, damping, stale = cost, 0, _DAMPING, 0
+    for number in range(1, steps + 1):
+        if best <= goal or stale >= patience:
+            break
+        found, damping = _lower(inputs, wanted, here, widths, kinds, cost, damping, units, trial)
+        if not found < cost:
+            break
+        damping = max(damping * _LESS, _LEAST)
+        here[:] = trial
+        cost = found
+        held = _mean_square(held_inputs, held_wanted, here, widths, kinds, units)
+        stale += 1
+        if held < best:
+            if held < best * _BETTER:
+                stale = 0
+            best, fitted, taken = held, cost, number
+            weights[:] = here
+    return best, fitted, taken

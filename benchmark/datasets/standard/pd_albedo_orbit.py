@@ -1,0 +1,40 @@
+"""`pd-albedo-orbit`: four photodiodes in orbit, a day of orbits to learn the Earth's light on."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from benchmark.datasets.conditions.flight import Span
+from benchmark.datasets.conditions.orbits import PHOTODIODES, in_orbit, photodiodes_aloft
+from benchmark.datasets.standard import qpd_maskless_pyramid
+from benchmark.simulator.flight.attitude import Tumble
+
+_GROUND = replace(qpd_maskless_pyramid.PRESET, detector="PD")
+_FLOWN = in_orbit(
+    name="pd-albedo-orbit",
+    version=1,
+    ground=_GROUND,
+    setups=photodiodes_aloft(_GROUND, PHOTODIODES),
+    attitude=Tumble(24.0, nutation_deg=24.0, precession_deg_s=0.2531, inertia_ratio=0.75),
+    step_s=30.0,
+    follows=("Soken2023", "Sozen2021"),
+    description=(
+        "The four photodiodes of qpd-maskless-pyramid flown on a sun-synchronous orbit of 600 km, "
+        "on a satellite whose nutation takes the Sun from the boresight to 48 deg and back in 24 "
+        "min. Soken2023 corrects an analog sensor by a network of four voltages, trained in orbit "
+        "on attitudes of other instruments; its geometry, orbit and training set are not in what "
+        "was mapped, and are not followed. Calibration: the sunlight of one day, fifteen orbits, "
+        "Earth in view; test: three whole orbits a week later, which the study gives as how long "
+        "its network holds. Thermal cycle and drift as in pd-orbit."
+    ),
+)
+
+#: A day and three orbits of 97 minutes.
+PRESET = replace(
+    _FLOWN,
+    directions=replace(
+        _FLOWN.flight,
+        calibration=Span(start_day=0.0, samples=2880, step_s=30.0),
+        test=Span(start_day=7.0, samples=870, step_s=20.0),
+    ),
+)

@@ -1,0 +1,111 @@
+"""What networks are held against: orbits and units not trained on, an albedo model, nothing."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from benchmark import datasets
+from benchmark.assessment import networks
+from benchmark.datasets.conditions.flight import FlightPreset
+from benchmark.datasets.preset import Preset
+
+PRESET = datasets.get(networks.ALBEDO_ORBIT)
+
+
+def flight():
+    assert isinstance(PRESET, FlightPreset)
+    return PRESET.flight
+
+
+@pytest.fixture(scope="module")
+def parts():
+    return networks._parts(PRESET, "nominal")
+
+
+def thinned(part):
+    """Every eighth sample."""
+    rows = slice(None, None, 8)
+    context = {name: np.asarray(column)[rows] for name, column in part.context.items()}
+    return networks._Part(part.features[rows], part.sun[rows], context, part.lit[rows])
+
+
+def test_training_is_a_day_of_orbits_and_the_test_others_a_week_on():
+    calibration, test = flight().calibration, flight().test
+    trained_s, period_s = calibration.samples * calibration.step_s, flight().orbit.period_s
+    assert trained_s == 86_400.0
+    assert trained_s / period_s == pytest.approx(14.9, abs=0.1)
+    assert test.samples * test.step_s / period_s == pytest.approx(3.0, abs=0.01)
+    assert test.start_day * 86_400.0 > trained_s
+
+
+def test_the_sun_stays_in_the_field_of_the_four_photodiodes(parts):
+    reach = np.cos(np.radians(PRESET.geometry.half_fov_deg))
+    for part in parts:
+        assert part.features.shape[1] == 4
+        assert part.sun[:, 2].min() > reach
+
+
+def test_an_albedo_model_takes_off_what_no_correction_leaves(parts):
+    """The simulator's own Earth at a nadir half a degree off: a tenth of the error stays."""
+    known, asked = (thinned(part) for part in parts)
+    rms = {}
+    for method in ("no correction", "albedo model"):
+        found = networks.METHODS[method](PRESET.geometry, known, asked)
+        rms[method] = networks._measured("orbits", "", method, found, asked).rms_deg
+    assert rms["albedo model"] < 0.2 * rms["no correction"]
+    assert 1.0 < rms["no correction"] < 10.0  # degrees: what Soken2023 and Sozen2021 speak of
+
+
+@pytest.mark.slow
+def test_seeds_and_units_are_all_measured():
+    found = [*networks.seeds(chosen=(0, 1)), *networks.units(others=(1,))]
+    assert [(row.question, row.method) for row in found] == [
+        ("seeds", "dnn"),
+        ("seeds", "dnn"),
+        ("units", "dnn of unit 0"),
+        ("units", "dnn of its own"),
+        ("units", "no correction of its own"),
+    ]
+    assert all(0.1 < row.rms_deg < 10.0 and row.answered > 0.9 for row in found)
+    assert found[0].rms_deg != found[1].rms_deg
+    # gains of another unit are none that the network was trained on
+    assert found[2].rms_deg > found[3].rms_deg
+
+
+def test_errors_count_lit_samples_that_were_answered(parts):
+    _, asked = parts
+    part = replace(
+        asked,
+        sun=np.tile([0.0, 0.0, 1.0], (4, 1)),
+        lit=np.array([True, True, False, True]),
+    )
+    ten = np.array([np.sin(np.radians(10.0)), 0.0, np.cos(np.radians(10.0))])
+    found = np.array([ten, [0.0, 0.0, 1.0], ten, [np.nan] * 3])
+    row = networks._measured("orbits", "case", "method", found, part)
+    assert row.rms_deg == pytest.approx(np.sqrt(50.0))
+    assert row.max_deg == pytest.approx(10.0)
+    assert row.answered == pytest.approx(2.0 / 3.0)
+    assert "rms 7.0711" in networks.line(row)
+    none = networks._measured("orbits", "case", "method", np.full((4, 3), np.nan), part)
+    assert np.isnan(none.rms_deg)
+    assert none.answered == 0.0
+
+
+def test_spans_fly_the_same_orbit_for_other_times(monkeypatch):
+    flown = []
+
+    def seen(preset: Preset, condition: str):
+        assert isinstance(preset, FlightPreset)
+        flown.append((preset.flight.calibration.samples, preset.flight.test.start_day))
+        return networks._Part(np.ones((2, 4)), np.eye(3)[[2, 2]], {}, np.ones(2, bool)), asked
+
+    asked = networks._Part(np.ones((2, 4)), np.eye(3)[[2, 2]], {}, np.ones(2, bool))
+    monkeypatch.setattr(networks, "_parts", seen)
+    stay = {name: lambda geometry, known, asked: asked.sun for name in networks.METHODS}
+    monkeypatch.setattr(networks, "METHODS", stay)
+    rows = list(networks.spans(trained_days=(0.5, 2.0), tested_days=(7.0,)))
+    assert flown == [(1440, 7.0), (5760, 7.0)]
+    assert [row.rms_deg for row in rows] == [0.0] * 4
