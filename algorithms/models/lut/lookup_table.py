@@ -103,7 +103,7 @@ class ErrorTable(CalibratedModel):
     Examples
     --------
     >>> import numpy as np
-    >>> from algorithms.angles import angles_from_sun
+    >>> from algorithms.angles import angles_from_sun, sun_from_angles
     >>> steps = np.arange(-10, 11, 2)
     >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
     >>> bent = 200.0 * (sun[:, :2] / sun[:, 2:]) ** 3  # what the drawing does not know
