@@ -19,6 +19,8 @@ FOLDS = 5
 _BLOCKS = 500
 #: Distances of unit vectors are told apart to this: equal ones must stay equal on every processor.
 _DIGITS = 9
+#: Poses around one on a grid.
+_NEIGHBOURS = 8
 
 
 def folds(sun: Floats, count: int = FOLDS) -> NDArray[np.int64]:
@@ -107,6 +109,37 @@ def folds_along(values: Floats, count: int = FOLDS) -> NDArray[np.int64]:
     fold = number % count
     fold[(number == 0) | (number == slices - 1)] = -1
     return np.asarray(fold)
+
+
+def between_poses(sun: Floats, features: Floats) -> Floats:
+    """Features (m, F) in the middle between neighbouring poses, 8 neighbours each.
+
+    Parameters
+    ----------
+    sun : ndarray, shape (n, 3)
+        Unit vectors.
+    features : ndarray, shape (n, F)
+        Of them; those of repeats of a pose are averaged.
+
+    Examples
+    --------
+    >>> turns = np.radians([0.0, 2.0, 6.0])
+    >>> arc = np.column_stack([np.sin(turns), np.zeros(3), np.cos(turns)])
+    >>> between_poses(arc, np.array([[0.0], [1.0], [3.0]])).ravel()
+    array([0.5, 1.5, 0.5, 2. , 2. , 1.5])
+    """
+    from scipy.spatial import cKDTree  # noqa: PLC0415 - SciPy, at the first fit only
+
+    places, pose = np.unique(np.round(sun, _DIGITS), axis=0, return_inverse=True)
+    pose = pose.reshape(-1)
+    times = np.bincount(pose)
+    found = np.stack([np.bincount(pose, column) / times for column in features.T], axis=1)
+    count = min(_NEIGHBOURS, len(places) - 1)
+    if count == 0:
+        return np.empty((0, features.shape[1]))
+    near = np.asarray(cKDTree(places).query(places, k=count + 1)[1])
+    middles = (found[:, None, :] + found[near[:, 1:]]) / 2.0
+    return np.asarray(middles.reshape(-1, features.shape[1]))
 
 
 def splits(fold: NDArray[np.int64]) -> list[tuple[NDArray[np.bool_], NDArray[np.bool_]]]:

@@ -122,16 +122,13 @@ class Hull:
             for k in (0, 1)
         ):
             return np.ones(len(points), dtype=np.bool_)
+        from algorithms.calibration.hull_kernel import in_region  # noqa: PLC0415 - Numba
+
         low, high, start, slices_a_unit = self._slices
-        place = (points[:, 0] - (start - 1.0 / slices_a_unit)) * slices_a_unit
-        # NaN falls into the slice before the first, in which nothing is
-        slice_of = np.fmin(np.fmax(place, 0.0), _SLICES + 1.0).astype(np.int64)
-        y = points[:, 1]
-        inside = (y >= low[slice_of]) & (y <= high[slice_of])
-        if not inside.all():
-            unsure = np.flatnonzero(~inside)
-            inside[unsure] = self.outside(points[unsure]) <= self.margin
-        return np.asarray(inside)
+        slices = (low, high, start - 1.0 / slices_a_unit, slices_a_unit)
+        inside = np.empty(len(points), dtype=np.bool_)
+        in_region(points[:, 0], points[:, 1], slices, (self.facets, float(self.margin)), inside)
+        return inside
 
     def outside(self, points: Floats) -> Floats:
         """Distance (n,) of points (n, d) past the farthest side; negative inside."""

@@ -29,9 +29,14 @@ class Choice:
 
 
 def errors_of_orders(
-    design: Floats, sizes: list[int], wanted: Floats, fold: NDArray[np.int64]
+    design: Floats, sizes: list[int], wanted: Floats, fold: NDArray[np.int64], between: Floats
 ) -> Floats:
-    """Mean of squared errors of each order on samples left out, over all folds.
+    """Mean of squared errors that each order is expected to leave all over the field.
+
+    Errors on samples left out, over all folds, are those at poses. Where a field has hardly more
+    poses than a polynomial has degrees, it swings between them, most in the outermost cells, and
+    no pose tells. So an order's error is raised by as much as random errors of the samples would
+    come out larger between the poses of the whole fit than where samples were left out.
 
     Parameters
     ----------
@@ -43,35 +48,63 @@ def errors_of_orders(
         What is fitted.
     fold : ndarray of int, shape (n,)
         By which each sample is left out (`algorithms.calibration.blocks`).
+    between : ndarray, shape (m, terms)
+        The same terms between the poses (`algorithms.calibration.blocks.between_poses`).
 
     Returns
     -------
     ndarray, shape (orders,)
-        Over samples left out, targets added; infinite where a fold does not settle an order.
+        Targets added; infinite where a fold does not settle an order.
 
     Notes
     -----
     One factorisation a fold serves every order: with ``design = Q R``, an order's coefficients
-    are those of the first columns of R, and its errors on what was left out follow from them.
+    are those of the first columns of R, and its errors on what was left out follow from them. So
+    do the variances ``|R^-T t|^2`` of its values at terms t, for errors of size one.
     """
-    total, count = np.zeros(len(sizes)), 0
+    total, open_to_noise, count = np.zeros(len(sizes)), np.zeros(len(sizes)), 0
     for fitted, left_out in splits(fold):
         count += int(left_out.sum())
-        usable = [size for size in sizes if size <= int(fitted.sum())]
+        q, r, usable = _factored(design[fitted], sizes)
         error = np.full(len(sizes), np.inf)
         if usable:
-            q, r = np.linalg.qr(design[fitted][:, : usable[-1]])
             aim = q.T @ wanted[fitted]
-            diagonal = np.abs(np.diag(r))
-            for number, size in enumerate(usable):
-                # a column that those before it nearly span: this order and all after are open
-                if not diagonal[:size].min() * WORST_CONDITION > diagonal[:size].max():
-                    break
-                fit = np.linalg.solve(r[:size, :size], aim[:size])
-                off = design[left_out][:, :size] @ fit - wanted[left_out]
-                error[number] = float((off**2).sum())
+            open_to_noise[:usable] += _variances(r, design[left_out], sizes[:usable])
+        for number, size in enumerate(sizes[:usable]):
+            fit = np.linalg.solve(r[:size, :size], aim[:size])
+            off = design[left_out][:, :size] @ fit - wanted[left_out]
+            error[number] = float((off**2).sum())
         total += error
-    return total / max(count, 1)
+    error, left = total / max(count, 1), open_to_noise / max(count, 1)
+    _, r, usable = _factored(design, sizes)
+    error[usable:] = np.inf
+    if usable and len(between):
+        swing = _variances(r, between, sizes[:usable]) / len(between)
+        error[:usable] *= np.maximum((1.0 + swing) / (1.0 + left[:usable]), 1.0)
+    return error
+
+
+def _factored(design: Floats, sizes: list[int]) -> tuple[Floats, Floats, int]:
+    """Q and R of a design (n, terms), and how many of the orders its samples settle."""
+    most = max((size for size in sizes if size <= len(design)), default=0)
+    q, r = np.linalg.qr(design[:, :most])
+    diagonal = np.abs(np.diag(r))
+    usable = 0
+    for size in sizes:
+        # a column that those before it nearly span: this order and all after are open
+        if size > most or not diagonal[:size].min() * WORST_CONDITION > diagonal[:size].max():
+            break
+        usable += 1
+    return q, r, usable
+
+
+def _variances(r: Floats, design: Floats, sizes: list[int]) -> Floats:
+    """Sum, over the rows of a design (m, terms), of each order's variance there (orders,)."""
+    from scipy.linalg import solve_triangular  # noqa: PLC0415 - SciPy, at the first fit only
+
+    most = sizes[-1]
+    terms = solve_triangular(r[:most, :most].T, design[:, :most].T, lower=True)
+    return np.asarray(np.cumsum((terms**2).sum(axis=1))[np.array(sizes) - 1])
 
 
 def chosen(errors: Floats, by: str) -> Choice:

@@ -12,6 +12,7 @@ import numpy as np
 from algorithms.calibration.calibrated import CalibratedModel, Columns
 from algorithms.calibration.conditioning import WORST_CONDITION
 from algorithms.calibration.quality import Parameter
+from algorithms.calibration.residual_noise import parameter_covariance
 from algorithms.contract import Floats, UnusableDataError
 from algorithms.inputs import require_samples
 
@@ -40,7 +41,7 @@ class ParametricModel(CalibratedModel):
     vector_ : ndarray, shape (P,)
         Fitted parameters, in the units that `names` says.
     covariance_ : ndarray, shape (P, P)
-        Of their errors, from the residuals' own size.
+        Of their errors, from the residuals: of a turntable and of features (`residual_noise`).
     condition_ : float
         Of the equations at the solution, their columns brought to one length.
     """
@@ -133,12 +134,33 @@ class ParametricModel(CalibratedModel):
                 f"({', '.join(name for name, _ in self.names())}); they must spread over the field "
                 "of view"
             )
-        freedom = max(2 * len(features) - count, 1)
-        inverse = np.linalg.inv((jacobian / lengths).T @ (jacobian / lengths))
-        covariance = inverse / np.outer(lengths, lengths) * (2.0 * best.cost / freedom)
+        moved = self._moved(best.x * scales, features, sun, axes, context)
+        covariance = parameter_covariance(
+            jacobian.reshape(-1, 2, count), residuals(best.x).reshape(-1, 2), moved
+        )
         self.vector_ = np.asarray(best.x * scales)
         self.covariance_ = np.asarray(covariance * np.outer(scales, scales))
         self.condition_ = float(values[0] / values[-1])
+
+    def _moved(
+        self,
+        vector: Floats,
+        features: Floats,
+        sun: Floats,
+        axes: tuple[Floats, Floats],
+        context: Columns,
+    ) -> Floats:
+        """(n, 2, F) derivatives of the residuals by each feature; 0 where there are none."""
+        found = np.empty((len(features), 2, features.shape[1]))
+        for column in range(features.shape[1]):
+            step = _STEP * (float(np.std(features[:, column])) or 1.0)
+            ends = []
+            for way in (step, -step):
+                beside = features.copy()
+                beside[:, column] += way
+                ends.append(self.residuals(vector, beside, sun, axes, context))
+            found[:, :, column] = (ends[0] - ends[1]) / (2.0 * step)
+        return np.nan_to_num(found, posinf=0.0, neginf=0.0)
 
     def answer(self, features: Floats, context: Columns) -> Floats:
         """(N, 3) unit vectors of features (N, F)."""

@@ -164,18 +164,22 @@ class LeastSquaresGeometry(ParametricModel):
         Those of the rotation angles, without a trigonometric function of a sample: sines and
         cosines of an arc tangent are roots, and the offsets turn them.
         """
+        from algorithms.models.geometric.projection_kernel import projected_and_turned  # noqa: PLC0415 - Numba
+
         del context
-        scale = self.unit_mm / (self.focal_length_mm + vector[0])
-        alpha_0, beta_0 = np.radians(vector[1:3])
-        across = (features[:, 0] - vector[3]) * scale + np.tan(beta_0)
-        along = (features[:, 1] - vector[4]) * scale + np.tan(alpha_0) / np.cos(beta_0)
+        stretch, _, _, left, low = (float(value) for value in vector)
+        alpha_0, beta_0 = (float(angle) for angle in np.radians(vector[1:3]))
+        tan_beta, tan_alpha = float(np.tan(beta_0)), float(np.tan(alpha_0) / np.cos(beta_0))
+        scale = float(self.unit_mm) / (float(self.focal_length_mm) + stretch)
+        turns = tuple(float(wave(turn)) for turn in (beta_0, alpha_0) for wave in (np.sin, np.cos))
         sun = np.empty((len(features), 3))
-        sine, cosine = _turned_back(across, beta_0)
-        along /= np.sqrt(1.0 + across * across)
-        up, level = _turned_back(along, alpha_0)
-        np.multiply(sine, level, out=sun[:, 0])
-        sun[:, 1] = up
-        np.multiply(cosine, level, out=sun[:, 2])
+        projected_and_turned(
+            features[:, 0],
+            features[:, 1],
+            ((left, low), (tan_beta, tan_alpha), scale),
+            (turns[0], turns[1], turns[2], turns[3]),
+            sun,
+        )
         return sun
 
     def _angles(self, vector: Floats, features: Floats) -> Floats:
@@ -204,11 +208,3 @@ def rotation_angles(parameters: Floats, spot: Floats) -> Floats:
     beta = np.arctan(across) - beta_0
     alpha = np.arctan(along / np.hypot(1.0, across)) - alpha_0
     return np.column_stack([alpha, beta])
-
-
-def _turned_back(tangent: Floats, offset: float) -> tuple[Floats, Floats]:
-    """Sine and cosine of ``arctan(tangent) - offset``, radians."""
-    cosine = 1.0 / np.sqrt(1.0 + tangent * tangent)
-    sine = tangent * cosine
-    s, c = float(np.sin(offset)), float(np.cos(offset))
-    return sine * c - cosine * s, cosine * c + sine * s

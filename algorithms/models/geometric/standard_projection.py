@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar, Self
 
-from algorithms.angles import sun_from_tangents
+import numpy as np
+
 from algorithms.calibration.calibrated import CalibratedModel, Columns
 from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
 from algorithms.models.nominal_projection import (
     POSITIONS,
     nominal_projection,
-    nominal_tangents,
     require_projection,
 )
 
@@ -106,7 +106,11 @@ class StandardProjection(CalibratedModel):
 
     def answer(self, features: Floats, context: Columns) -> Floats:
         """Directions (N, 3) of features (N, 2)."""
+        from algorithms.models.geometric.projection_kernel import projected  # noqa: PLC0415 - Numba
+
         del context
-        return sun_from_tangents(
-            nominal_tangents(features, self.focal_length_mm, self.unit_mm, self.centre)
-        )
+        sun = np.empty((len(features), 3))
+        centre = (float(self.centre[0]), float(self.centre[1]))
+        scale = float(self.unit_mm) / float(self.focal_length_mm)
+        projected(features[:, 0], features[:, 1], centre, scale, sun)
+        return sun

@@ -9,7 +9,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from algorithms.angles import angles_from_sun, sun_from_angles
+from algorithms.angles import angles_from_sun
 from algorithms.calibration.blocks import best, folds, splits
 from algorithms.calibration.calibrated import CalibratedModel, Columns
 from algorithms.calibration.conditioning import WORST_CONDITION
@@ -40,6 +40,7 @@ from algorithms.models.nominal_projection import (
     nominal_tangents,
     require_projection,
 )
+from algorithms.models.non_physical.regression_axes import sun_from_target
 
 MAX_DEGREE = 15
 
@@ -195,9 +196,15 @@ class BlendedPolynomials(CalibratedModel):
 
     def answer(self, features: Floats, context: Columns) -> Floats:
         """Directions (N, 3) of features (N, 2)."""
+        from algorithms.models.lut.table_kernel import corrected_along_rows  # noqa: PLC0415 - Numba
+
         del context
+        angles = np.empty((len(features), 2), order="F")
+        first = (float(self.alpha_axis_.start), float(self.alpha_axis_.interval))
+        scaling = (float(self.beta_middle_deg_), float(self.beta_half_range_deg_))
         nominal = self._nominal_deg(features)
-        return sun_from_angles(nominal + self.interpolated(nominal))
+        corrected_along_rows(nominal, self.coefficients_deg_, first, scaling, angles)
+        return sun_from_target(angles, "angle")
 
     def _chosen(
         self, nominal: Floats, errors: Floats, sun: Floats
@@ -247,16 +254,6 @@ class BlendedPolynomials(CalibratedModel):
         self.alpha_axis_ = alpha
         self.beta_middle_deg_, self.beta_half_range_deg_ = _scaling(nominal)
         self.coefficients_deg_ = solution.reshape(alpha.nodes, terms, 2)
-
-    def interpolated(self, nominal: Floats) -> Floats:
-        """(N, 2) errors at nominal angles, blended between the rows, degrees."""
-        row, weight = self.alpha_axis_.cells(nominal[:, 0])
-        scaled = (nominal[:, 1] - self.beta_middle_deg_) / self.beta_half_range_deg_
-        blend = weight[:, None, None]
-        rows = self.coefficients_deg_
-        coefficients = (1 - blend) * rows[row] + blend * rows[row + 1]
-        moved = np.moveaxis(coefficients, 1, 0)
-        return np.asarray(chebyshev.chebval(scaled[:, None], moved, tensor=False))
 
     def _nominal_deg(self, features: Floats) -> Floats:
         tangents = nominal_tangents(features, self.focal_length_mm, self.unit_mm, self.centre)

@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from algorithms.angles import angles_from_sun, sun_from_angles
+from algorithms.angles import angles_from_sun
 from algorithms.calibration.blocks import best, folds, splits
 from algorithms.calibration.calibrated import CalibratedModel, Columns
 from algorithms.calibration.hull import spacing
@@ -32,6 +32,7 @@ from algorithms.models.nominal_projection import (
     nominal_tangents,
     require_projection,
 )
+from algorithms.models.non_physical.regression_axes import sun_from_target
 
 
 @dataclass
@@ -169,9 +170,15 @@ class ErrorTable(CalibratedModel):
 
     def answer(self, features: Floats, context: Columns) -> Floats:
         """Directions (N, 3) of features (N, 2)."""
+        from algorithms.models.lut.table_kernel import corrected  # noqa: PLC0415 - Numba
+
         del context
+        angles = np.empty((len(features), 2), order="F")
+        alpha, beta = self.alpha_axis_, self.beta_axis_
+        starts = (float(alpha.start), float(beta.start))
         nominal = self._nominal_deg(features)
-        return sun_from_angles(nominal + self.interpolated(nominal))
+        corrected(nominal, self.table_deg_, starts, float(alpha.interval), angles)
+        return sun_from_target(angles, "angle")
 
     def _chosen(self, nominal: Floats, errors: Floats, sun: Floats) -> tuple[float, float]:
         """Smoothing that leaves the smallest error on samples left out, and that error.
@@ -199,16 +206,6 @@ class ErrorTable(CalibratedModel):
         nodes = solve_table(design, roughness, smoothing, errors, self.about.name)
         self.alpha_axis_, self.beta_axis_ = alpha, beta
         self.table_deg_ = nodes.reshape(alpha.nodes, beta.nodes, 2)
-
-    def interpolated(self, nominal: Floats) -> Floats:
-        """(N, 2) errors at nominal angles, bilinear between the nodes, degrees."""
-        i, u = self.alpha_axis_.cells(nominal[:, 0])
-        j, v = self.beta_axis_.cells(nominal[:, 1])
-        u, v = u[:, None], v[:, None]
-        table = self.table_deg_
-        lower = (1 - v) * table[i, j] + v * table[i, j + 1]
-        upper = (1 - v) * table[i + 1, j] + v * table[i + 1, j + 1]
-        return np.asarray((1 - u) * lower + u * upper)
 
     def _nominal_deg(self, features: Floats) -> Floats:
         tangents = nominal_tangents(features, self.focal_length_mm, self.unit_mm, self.centre)

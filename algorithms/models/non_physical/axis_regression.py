@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from algorithms.calibration.blocks import folds_along
+from algorithms.calibration.blocks import between_poses, folds_along
 from algorithms.calibration.orders import chosen, errors_of_orders
 from algorithms.contract import Floats
 from algorithms.models.non_physical.regression_axes import (
@@ -82,12 +82,14 @@ def fit_axes(
     wanted = target_from_sun(sun, target)
     size, validated = sizes[0], None
     if len(sizes) > 1:
+        middles = (between_poses(sun, features) - middle) / half
         errors = [
             errors_of_orders(
                 terms(scaled[:, column], sizes[-1]),
                 list(sizes),
                 wanted[:, [axis]],
                 folds_along(scaled[:, column]),
+                terms(middles[:, column], sizes[-1]),
             )
             for axis, column in AXES
         ]

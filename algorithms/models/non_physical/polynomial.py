@@ -9,7 +9,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from algorithms.calibration.blocks import folds
+from algorithms.calibration.blocks import between_poses, folds
 from algorithms.calibration.calibrated import CalibratedModel, Columns
 from algorithms.calibration.orders import chosen, errors_of_orders
 from algorithms.calibration.quality import Setting
@@ -286,7 +286,9 @@ class SurfacePolynomial(CalibratedModel):
             require_samples(len(features), 4, by, "three terms and one sample left out")
             design = _surface_terms(scaled, MAX_DEGREE)
             sizes = [_terms(n) for n in range(1, MAX_DEGREE + 1) if _terms(n) < len(features)]
-            choice = chosen(errors_of_orders(design, sizes, wanted, folds(sun)), by)
+            between = _surface_terms((between_poses(sun, features) - middle) / half, MAX_DEGREE)
+            errors = errors_of_orders(design, sizes, wanted, folds(sun), between)
+            choice = chosen(errors, by)
             degree, validated = choice.order + 1, in_degrees(choice.rms, self.target)
         require_samples(len(features), _terms(degree), by, f"total degree {degree}")
         design = _surface_terms(scaled, degree)

@@ -66,7 +66,7 @@ class AssembledFaces(FacesModel):
     dark_ : ndarray, shape (K,)
         Signal of each face in the dark; 0 where no sample left it so.
     noise_ : ndarray, shape (K,)
-        Standard deviation of each face's residuals.
+        Standard deviation of each face's readings, without what the light's strength does to all.
     parameters_ : tuple of Parameter
         Gains, tilts, response and the slopes of the lamp's light, with standard errors.
     condition_ : float
@@ -86,7 +86,8 @@ class AssembledFaces(FacesModel):
     Implements: model:assem (Radan2019), on the ground: installation errors found by
     Levenberg-Marquardt. The survey gives no equations since every sensor has its own; for faces
     these are a normal and a response each, the response a cubic as eq:kellycos is, with
-    coefficients of its own (ours).
+    coefficients of its own (ours). The light may flicker: residuals are weighed by the likeliest
+    spread of its strength, which the faces of a sample share, and noise of each face.
 
     Shapes: signals (N, K), in any common unit, to unit vectors (N, 3).
 
@@ -94,7 +95,7 @@ class AssembledFaces(FacesModel):
     direction open, and outside the cone. Albedo is taken for Sun. fit raises UnusableDataError
     where a face is lit by fewer than 12 samples, or they do not settle its six numbers.
 
-    Cost: some ten steps of 30 operations a face and 60 a sample; the fit, some ten passes of
+    Cost: some ten steps of 30 operations a face and 60 a sample; the fit, some twenty passes of
     seven over the samples a face.
 
     References

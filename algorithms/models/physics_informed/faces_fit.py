@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Literal
 
 import numpy as np
 
 from algorithms.calibration.conditioning import WORST_CONDITION
 from algorithms.calibration.quality import Parameter
 from algorithms.contract import Floats, UnusableDataError
+from algorithms.models.physics_informed.faces_weighing import Weighing
 
 FEWEST_LIT = 12
 """Samples that must light a face."""
@@ -17,6 +19,10 @@ DARK_COSINE = -0.1
 """Nominal cosine below which a face is surely dark, by more than any error of mounting."""
 
 _MAX_EVALUATIONS = 100
+#: Fits with the weights that the one before shows; the third changes nothing to speak of.
+_ROUNDS = 3
+#: Relative change at which the last of them stops, and those before it.
+_PRECISION, _ON_THE_WAY = 1e-15, 1e-6
 _STEP = 1e-6
 #: Coefficients of a response: of 1, c, c^2 and c^3.
 _POWERS = 4
@@ -30,7 +36,8 @@ class FacesFit:
 
     f is a cubic, ``f(1) = 1``, the same for all faces or one each; ``L = 1 + u . s`` is how even
     the light was over the turntable's poses, which no face can tell from its own tilt but all
-    together can.
+    together can. What the light's strength does from pose to pose beside that, all faces of a
+    sample share: it is weighed out (`Weighing`), not taken for noise of each.
 
     Attributes
     ----------
@@ -99,23 +106,34 @@ class FacesFit:
             [np.ones(faces), np.zeros(2 * faces), np.zeros(3 * shapes), np.zeros(_SLOPES)]
         )
 
-        def residuals(vector: Floats) -> Floats:
-            off = self._modelled(*self._split(vector, shapes)) - self._light
-            return np.asarray(off[self._used])
+        method: Literal["lm", "trf"] = "lm" if self._used.sum() >= len(start) else "trf"
+        weighing = Weighing.even(self._used)
+        # where the numbers are only just settled, the lamp's strength cannot be told from them
+        rounds = _ROUNDS if self._used.sum() > 2 * (len(start) + len(self.sun)) else 1
+        for number in range(rounds):
 
-        def jacobian(vector: Floats) -> Floats:
-            return self._derivatives(vector, shapes)[self._used]
+            def residuals(vector: Floats, weighing: Weighing = weighing) -> Floats:
+                off = self._modelled(*self._split(vector, shapes)) - self._light
+                return weighing.weighed(off)[self._used]
 
-        solution = least_squares(
-            residuals,
-            start,
-            jac=jacobian,
-            method="lm" if self._used.sum() >= len(start) else "trf",
-            ftol=1e-15,
-            xtol=1e-15,
-            gtol=1e-15,
-            max_nfev=_MAX_EVALUATIONS,
-        )
+            def jacobian(vector: Floats, weighing: Weighing = weighing) -> Floats:
+                return weighing.weighed(self._derivatives(vector, shapes))[self._used]
+
+            tolerance = _PRECISION if number + 1 == rounds else _ON_THE_WAY
+            solution = least_squares(
+                residuals,
+                start,
+                jac=jacobian,
+                method=method,
+                ftol=tolerance,
+                xtol=tolerance,
+                gtol=tolerance,
+                max_nfev=_MAX_EVALUATIONS,
+            )
+            start = solution.x
+            modelled = self._modelled(*self._split(start, shapes))
+            if number + 1 < rounds:
+                weighing = Weighing.of(modelled, self._light - modelled, self._used, len(start))
         derivatives = jacobian(solution.x)
         lengths = np.linalg.norm(derivatives, axis=0)
         values = np.linalg.svd(derivatives / np.where(lengths > 0, lengths, 1.0), compute_uv=False)
@@ -127,12 +145,12 @@ class FacesFit:
         freedom = max(int(self._used.sum()) - len(start), 1)
         covariance = np.linalg.inv(derivatives.T @ derivatives) * (2.0 * solution.cost / freedom)
         deviations = np.sqrt(np.diag(covariance))
-        gains, tilts, shape, slopes = self._split(solution.x, shapes)
+        gains, tilts, shape, _ = self._split(solution.x, shapes)
         self.normals = self._tilted(tilts)
         self.responses = (self._size * gains)[:, None] * coefficients(shape)
-        off = np.where(self._used, self._modelled(gains, tilts, shape, slopes) - self._light, 0.0)
-        share = freedom / float(self._used.sum())
-        self.noise = self._size * np.sqrt((off**2).sum(axis=0) / self._used.sum(axis=0) / share)
+        self.noise = (
+            self._size * Weighing.of(modelled, self._light - modelled, self._used, len(start)).noise
+        )
         self.condition = float(values[0] / values[-1])
         self.parameters = self._named(solution.x, deviations, shapes)
         return self

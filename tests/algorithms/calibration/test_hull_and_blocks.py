@@ -127,6 +127,10 @@ def test_the_best_is_the_first_of_the_smallest():
         best([1], refuse, "test")
 
 
+#: No places between poses: errors on samples left out as they are.
+NOWHERE = np.empty((0, 9))
+
+
 def test_errors_of_nested_orders_are_those_of_one_fit_each():
     rng = np.random.default_rng(8)
     x = rng.uniform(-1, 1, 120)
@@ -134,7 +138,7 @@ def test_errors_of_nested_orders_are_those_of_one_fit_each():
     wanted = np.stack([np.sin(3 * x), x**3], axis=1) + rng.normal(0, 0.05, (120, 2))
     fold = np.arange(120) % 5
     sizes = [2, 3, 5, 9]
-    found = errors_of_orders(design, sizes, wanted, fold)
+    found = errors_of_orders(design, sizes, wanted, fold, NOWHERE)
     for size, error in zip(sizes, found, strict=True):
         total = 0.0
         for number in range(5):
@@ -147,7 +151,7 @@ def test_errors_of_nested_orders_are_those_of_one_fit_each():
 def test_orders_that_samples_leave_open_are_not_chosen():
     x = np.repeat([-1.0, -0.3, 0.4, 1.0], 10)  # four places settle a cubic and no more
     design = np.polynomial.chebyshev.chebvander(x, 6)
-    found = errors_of_orders(design, [2, 3, 5], np.sin(x)[:, None], np.arange(40) % 5)
+    found = errors_of_orders(design, [2, 3, 5], np.sin(x)[:, None], np.arange(40) % 5, design)
     assert np.isfinite(found).tolist() == [True, True, False]
     with pytest.raises(UnusableDataError, match="test needs more samples"):
         chosen(np.array([np.inf, np.inf]), "test")

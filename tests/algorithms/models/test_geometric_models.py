@@ -11,6 +11,7 @@ from algorithms.angles import separation_deg, sun_from_angles, sun_from_rotation
 from algorithms.contract import FeatureKind, SensorGeometry
 from algorithms.models.geometric.least_squares import LeastSquaresGeometry, rotation_angles
 from algorithms.models.geometric.multisensor_fusion import SixFaces
+from algorithms.models.geometric.pinhole import BuiltPinhole
 from algorithms.models.geometric.standard_projection import StandardProjection
 
 FACES = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
@@ -214,3 +215,21 @@ def test_basic_refuses_faces_that_are_no_cube(faces):
 def test_parameters_out_of_range_are_named(model, wrong, named):
     with pytest.raises(ValueError, match=named):
         model(**wrong)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("of_features", [0.0, 0.05], ids=["turntable", "pixels"])
+@pytest.mark.parametrize("make", [LeastSquaresGeometry, BuiltPinhole])
+def test_intervals_hold_the_truth_as_often_as_they_say(make, of_features, geometry, coverage_of):
+    """The truth is what a pinhole 0.1 mm too long, turned and off its centre gives noiseless."""
+    angles = turntable(steps=7)
+    sun = sun_from_rotations(angles)
+    focal, pitch = geometry.focal_length_mm + 0.1, geometry.pixel_pitch_mm
+    if make is BuiltPinhole:
+        head = sun @ rotation_about(2, 1.5) @ rotation_about(0, 0.7)
+    else:  # its offsets are a turntable's zeros
+        head = sun_from_rotations(angles + np.array([0.7, -1.1]))
+    spots = pinhole(head, focal, pitch, (203.0, 141.0))
+    model = make.for_sensor(geometry, FeatureKind.SPOT).fit(spots, sun)
+    assert model.quality_.residual_rms_deg < 1e-9
+    assert 0.93 <= coverage_of(model, spots, sun, model.vector_.copy(), of_features) <= 0.97

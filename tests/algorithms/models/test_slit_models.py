@@ -98,11 +98,12 @@ def test_a_noiseless_sensor_is_inverted_and_its_numbers_found(name):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("of_features", [0.0, 0.05], ids=["turntable", "pixels"])
 @pytest.mark.parametrize("name", BUILT)
-def test_intervals_hold_the_truth_as_often_as_they_say(name, coverage_of):
+def test_intervals_hold_the_truth_as_often_as_they_say(name, of_features, coverage_of):
     sun = field(50.0, 7)
     spots, truth = spots_of(name, sun)
-    assert 0.93 <= coverage_of(BUILT[name][0], spots, sun, truth) <= 0.97
+    assert 0.93 <= coverage_of(BUILT[name][0], spots, sun, truth, of_features) <= 0.97
 
 
 @pytest.mark.parametrize("glass", [(), GLASS])

@@ -1,0 +1,173 @@
+"""Settings that models choose from their calibration beside the best fixed ones in hindsight.
+
+``python -m benchmark.assessment.selection [dataset ...]``. Of every data set at nominal and every
+model that chooses settings and fits it: the error of the test split with the settings chosen, over
+the smallest of all fixed ones. A choice that sees the calibration alone cannot always be the best;
+it should not be far off.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from algorithms.angles import separation_deg
+from algorithms.calibration.calibrated import CalibratedModel
+from algorithms.calibration.quality import Setting
+from algorithms.contract import Extractor, Floats, UnusableDataError
+from algorithms.models.lut.blended_polynomials import DEGREES
+from algorithms.models.lut.error_tables import SMOOTHINGS
+from algorithms.models.non_physical.fourier_balance import MAX_HARMONICS
+from algorithms.models.non_physical.polynomial import MAX_DEGREE
+from algorithms.models.non_physical.signal_polynomial import MAX_DEGREE as MAX_SIGNAL_DEGREE
+from algorithms.pipeline import extracted
+from benchmark.contract import Cell, Preset
+from benchmark.plan.combinations import cells
+from benchmark.plan.parts import installed
+
+WORST = 1.1
+"""Error with chosen settings over that of the best fixed ones, which a choice should keep to."""
+
+NOMINAL = "nominal"
+#: Samples of the calibration that an extractor must find something in.
+_FOUND = 0.9
+
+_DEGREES = tuple({"degree": degree} for degree in range(1, MAX_DEGREE + 1))
+
+SETTINGS: Mapping[str, tuple[Mapping[str, float], ...]] = {
+    "fourier-balance": tuple({"harmonics": n} for n in range(1, MAX_HARMONICS + 1)),
+    "lut": tuple({"smoothing": weight} for weight in SMOOTHINGS),
+    "lut-polynomial": tuple(
+        {"degree": degree, "smoothing": weight} for degree in DEGREES for weight in SMOOTHINGS
+    ),
+    "polynomial-1d": _DEGREES,
+    "polynomial-2d": _DEGREES,
+    "polynomial-signals": tuple({"degree": n} for n in range(1, MAX_SIGNAL_DEGREE + 1)),
+}
+"""Every fixed setting of each model that chooses."""
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A model's choice on one data set.
+
+    Attributes
+    ----------
+    dataset, extractor, model : str
+        Of what.
+    chosen, best : mapping
+        Settings that it chose, and those with the smallest error on the test split.
+    chosen_deg, best_deg : float
+        Root mean square errors with them, over samples that all settings answer.
+    """
+
+    dataset: str
+    extractor: str
+    model: str
+    chosen: Mapping[str, Setting]
+    best: Mapping[str, float]
+    chosen_deg: float
+    best_deg: float
+
+    @property
+    def ratio(self) -> float:
+        """Error with the chosen settings over that with the best ones."""
+        return self.chosen_deg / self.best_deg
+
+
+@dataclass(frozen=True)
+class Known:
+    """Features (n, F) and Suns (n, 3) of both splits."""
+
+    features: Floats
+    sun: Floats
+    asked: Floats
+    true: Floats
+
+
+def choices(datasets: Sequence[str] | None = None) -> Iterator[Choice]:
+    """Give the choice of every model on every data set named (None: all), in sorted order."""
+    parts = installed()
+    planned: dict[tuple[str, str], list[Cell]] = {}
+    for cell in cells(datasets, NOMINAL, None, list(SETTINGS)):
+        planned.setdefault((cell.dataset, cell.model), []).append(cell)
+    seen: dict[tuple[str, str], Known | None] = {}
+    for (dataset, model), suiting in planned.items():
+        preset = parts.preset(dataset)
+        for cell in suiting:
+            place = dataset, cell.extractor
+            if place not in seen:
+                seen[place] = known(preset, parts.extractor(cell.extractor))
+            told = seen[place]
+            if told is None:
+                continue
+            extractor = parts.extractor(cell.extractor)
+            made = parts.model(model).for_sensor(preset.geometry, extractor.about.kind)
+            if not isinstance(made, CalibratedModel):
+                continue
+            found = chosen_and_best(made, SETTINGS[model], told)
+            if found is not None:
+                yield Choice(dataset, cell.extractor, model, *found)
+                break
+
+
+def known(preset: Preset, extractor: type[Extractor]) -> Known | None:
+    """Return what an extractor finds at nominal; None where that is too little to compare."""
+    made = extractor.for_sensor(preset.geometry)
+    splits = [preset.generate(NOMINAL, split) for split in ("calibration", "test")]
+    told, asked = (extracted(made, split.observations, split.origin_px) for split in splits)
+    if np.isfinite(told).all(axis=1).mean() < _FOUND:
+        return None
+    return Known(told, splits[0].sun, asked, splits[1].sun)
+
+
+def chosen_and_best(
+    model: CalibratedModel, settings: Sequence[Mapping[str, float]], told: Known
+) -> tuple[Mapping[str, Setting], Mapping[str, float], float, float] | None:
+    """Chosen settings, the best of `settings`, and their errors; None where the choice is refused.
+
+    Fixed settings that the samples do not settle are left out.
+    """
+    try:
+        fitted = model.fit(told.features, told.sun)
+    except UnusableDataError:
+        return None
+    chosen = dict(fitted.quality_.settings)
+    tried, answers = [], [fitted.predict(told.asked)]
+    for fixed in settings:
+        try:
+            given: dict[str, Any] = dict(fixed)
+            other = replace(model, **given).fit(told.features, told.sun)
+        except UnusableDataError:
+            continue
+        tried.append(fixed)
+        answers.append(other.predict(told.asked))
+    if not tried:
+        return None
+    errors = np.stack([separation_deg(answer, told.true) for answer in answers])
+    both = np.isfinite(errors).all(axis=0)
+    sizes = np.sqrt(np.mean(errors[:, both] ** 2, axis=1))
+    best = int(np.argmin(sizes[1:]))
+    return chosen, tried[best], float(sizes[0]), float(sizes[1 + best])
+
+
+def main(names: Sequence[str]) -> int:
+    """Write a line a choice; 1 where one is worse than `WORST`."""
+    far = 0
+    for choice in choices(names or None):
+        far += choice.ratio > WORST
+        sys.stdout.write(
+            f"{choice.dataset} {choice.extractor} {choice.model} {choice.ratio:.3f} "
+            f"{dict(choice.chosen)} {choice.chosen_deg:.4g} {dict(choice.best)} "
+            f"{choice.best_deg:.4g}\n"
+        )
+        sys.stdout.flush()
+    return int(far > 0)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
