@@ -134,6 +134,7 @@ class SpotList(Extractor):
 
         UnsuitableDesignError where its light is no spots, or its whole mask is seen at once.
         """
+        geometry.require(*cls.about.needs, by=cls.about.name)
         design = design_pattern(geometry, cls.about.name)
         return cls(
             apertures_px=design["apertures_px"],
@@ -142,7 +143,7 @@ class SpotList(Extractor):
         )
 
     def extract(self, observations: ArrayLike) -> Floats:
-        """Lists of spots (N, 3 spots) in frames (N, H, W); ValueError on wrong input."""
+        """Spots (N, 3 spots), three columns each, of frames (N, H, W); ValueError if wrong."""
         from algorithms.extractors.frames.multi_spot import spots_kernel  # noqa: PLC0415 - Numba, at first use
 
         frames = as_frames(observations)

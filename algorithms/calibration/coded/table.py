@@ -7,8 +7,8 @@ from functools import lru_cache
 
 import numpy as np
 
+from algorithms.calibration.coded.identity_kernel import Code, Indices
 from algorithms.contract import Floats
-from algorithms.models.multiplex.code_kernel import Code, Indices
 
 #: A spacing has the errors of two spots.
 _TWO = math.sqrt(2.0)
@@ -37,7 +37,7 @@ def code_of(
     Returns
     -------
     code : Code
-        As `algorithms.models.multiplex.code_kernel` says.
+        As `algorithms.calibration.coded.identity_kernel` says.
     order : ndarray of int, shape (A,)
         The aperture that each place of the tables is.
     """

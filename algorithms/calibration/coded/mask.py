@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple, Self
@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from algorithms.angles import tangents_from_sun
 from algorithms.calibration.calibrated import Columns
+from algorithms.calibration.coded.places import offsets_of, turn_of
 from algorithms.calibration.forward import ForwardModel
 from algorithms.contract import (
     FeatureKind,
@@ -23,7 +24,6 @@ from algorithms.contract import (
     UnusableDataError,
 )
 from algorithms.inputs import as_features, require_positive
-from algorithms.models.multiplex.aperture_places import offsets_of, turn_of
 from algorithms.spot_lists import SPOT_COLUMNS, detector_size_px, spots_listed
 
 NEEDS = (
@@ -36,6 +36,7 @@ NEEDS = (
 
 Apertures = tuple[tuple[float, float, float], ...]
 Layers = tuple[tuple[float, float], ...]
+Search = Callable[..., None]
 
 #: Angular diameter of the Sun, rad.
 _SOLAR_DIAMETER = 0.0093
@@ -87,36 +88,7 @@ class _Drawn(NamedTuple):
 class CodedMask(ForwardModel):
     """What the models of coded masks share: a subclass writes `about` and `search`.
 
-    Parameters
-    ----------
-    apertures_px : tuple of (x, y, width)
-        The mask's apertures, px from its middle; four at least.
-    spots : int
-        Length of the lists, at least 3.
-    focal_length_mm, pixel_pitch_mm : float
-        Nominal distance from mask to detector, and of two pixels; positive.
-    centre_px : tuple of two float
-        Where the boresight meets the detector.
-    size_px : tuple of two float
-        Width and height of the detector.
-    layers : tuple of (thickness mm, index)
-        Cover glass.
-    tolerance_px : float
-        Largest distance of a spot from its aperture's place along an axis; below half of what
-        tells two spacings apart.
-    size_tolerance : float or None
-        Largest relative error of an aperture's width as told by its light; None where sizes are
-        no code.
-    agreeing, clear : int
-        Spots that must agree, at least 3; faults (spots unexplained, apertures dark) that every
-        other place must have more, at least 1.
-    share : float
-        Of the spots, and of the apertures in view, that must agree, in (0, 1].
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
+    Parameters and attributes stand there.
     """
 
     apertures_px: Apertures = field(repr=False)
@@ -191,7 +163,7 @@ class CodedMask(ForwardModel):
         )
 
     @abstractmethod
-    def search(self) -> object:
+    def search(self) -> Search:
         """Return the kernel that looks for the place of fewest faults."""
         ...
 
@@ -200,12 +172,7 @@ class CodedMask(ForwardModel):
         return SPOT_COLUMNS * self.spots
 
     def read(self, features: ArrayLike) -> CodeReading:
-        """Read the code of lists of spots (N, 3 K), by the drawing before it is fitted.
-
-        Examples
-        --------
-        See the models.
-        """
+        """Read the code of lists of spots (N, 3 K), by the drawing before it is fitted."""
         found = as_features(features, self.columns(), self.about.name)
         return self._read(found, self._places())
 
@@ -305,10 +272,10 @@ class CodedMask(ForwardModel):
         return np.asarray(turned + self.offsets_)
 
     def _read(self, features: Floats, places: Floats) -> CodeReading:
-        from algorithms.models.multiplex import (  # noqa: PLC0415 - Numba, at first use
-            code_kernel,
-            code_table,
+        from algorithms.calibration.coded import (  # noqa: PLC0415 - Numba, at first use
+            identity_kernel,
             joint_kernel,
+            table,
         )
 
         lists = np.array(features, dtype=np.float64, order="C").reshape(
@@ -320,27 +287,27 @@ class CodedMask(ForwardModel):
         lists[:, :, 2] = np.log(np.where(lit, lists[:, :, 2], 1.0)) / 2.0
         drawn = self._drawn
         size = math.inf if self.size_tolerance is None else self.size_tolerance
-        code, order = code_table.code_of(places, drawn.widths, drawn.reach, drawn.tolerance, size)
+        code, order = table.code_of(places, drawn.widths, drawn.reach, drawn.tolerance, size)
         counts = lit.sum(axis=1)
         found = np.empty((len(lists), 3))
         faults, verdicts = np.empty((2, len(lists)), dtype=np.int64)
         partners = np.empty(lists.shape[:2], dtype=np.int64)
         self.search()(lists, counts, code, drawn.view, self.share, found, faults)
         rules = (self.agreeing, self.share, self.clear)
-        code_kernel.decide(
+        identity_kernel.decide(
             lists, counts, code, drawn.view, rules, found, faults, partners, verdicts
         )
         apertures = np.where(partners >= 0, order[partners], -1)
         displacement = found[:, :2].copy()
         joint_kernel.joint(lists, places, apertures, _WORST, self.agreeing, displacement)
-        return CodeReading(displacement, apertures, verdicts == code_kernel.SEVERAL)
+        return CodeReading(displacement, apertures, verdicts == identity_kernel.SEVERAL)
 
     @cached_property
     def _drawn(self) -> _Drawn:
-        from algorithms.models.multiplex import code_table  # noqa: PLC0415 - Numba, at first use
+        from algorithms.calibration.coded import table  # noqa: PLC0415 - Numba, at first use
 
         rows = np.array(self.apertures_px)
-        least, most = code_table.neighbours_px(rows[:, :2])
+        least, most = table.neighbours_px(rows[:, :2])
         focal = self.focal_length_mm / self.pixel_pitch_mm
         rim, sun = rows[:, 2].max() / 2.0 + _RIM_PX, _SOLAR_DIAMETER * focal / 2.0
         return _Drawn(

@@ -2,12 +2,12 @@
 
 A hypothesis is a displacement of the mask on the detector. It explains a spot that falls where it
 has an aperture; its faults are the spots it leaves unexplained and the apertures in view that it
-finds dark. What is handed around, as `algorithms.models.multiplex.code_table` makes it:
+finds dark. What is handed around, as `algorithms.calibration.coded.table` makes it:
 
 - spots (K, 3): x and y px, logarithm of the width that their light stands for;
-- code: places (A, 3) of the apertures and logarithm of their width, in the order of y; the cells
-  (R, C) with the aperture in each, their corner, number a px and tolerances; and the table of spacings:
-  where each cell's pairs start, the pairs, and reach, cell, tolerance and cells a side;
+- code: places (A, 3) of the apertures and logarithm of their width, in the order of y; cells (R, C)
+  with the aperture in each, their corner, number a px, tolerances; and the table of spacings: where
+  each cell's pairs start, the pairs, and reach, cell, tolerance and cells a side;
 - room: hypotheses (H, 3), each displacement x and y and logarithm of light's width over the
   apertures'; how many spots they leave (H,); the aperture of each spot (K,);
 - view: width and height of the detector, boresight x and y, focal length, and how far a spot's rim
@@ -39,7 +39,7 @@ _HIGH = 1
 
 
 @compiled
-def _leave(
+def _leave(  # noqa: PLR0917 - Numba takes no keyword-only ones
     spots: Floats, count: int, room: Room, number: int, most: int, slack: int, code: Code
 ) -> None:
     """Write how many spots each of the first `number` hypotheses leaves unexplained.
@@ -95,14 +95,15 @@ def _partners(spots: Floats, count: int, at: Floats, code: Code, partners: Indic
 
 
 @compiled
-def _dark(count: int, at: Floats, most: int, code: Code, view: Floats, partners: Indices) -> int:
+def _dark(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    count: int, at: Floats, most: int, code: Code, view: Floats, partners: Indices
+) -> int:
     """Apertures well in view of which no spot is seen; stops after more than `most`."""
     places = code[0]
     slope = ((at[0] - view[2]) ** 2 + (at[1] - view[3]) ** 2) / view[4] ** 2
     margin = view[5] + view[6] * (1.0 + slope)
     dark = 0
-    first = 0
-    last = places.shape[0]
+    first, last = 0, places.shape[0]
     while first < last:  # the first that is not above the view
         middle = (first + last) // 2
         if places[middle, 1] + at[1] < margin:
@@ -112,18 +113,14 @@ def _dark(count: int, at: Floats, most: int, code: Code, view: Floats, partners:
     for a in range(first, places.shape[0]):
         if places[a, 1] + at[1] > view[1] - 1 - margin:
             break
-        x = places[a, 0] + at[0]
-        if x < margin or x > view[0] - 1 - margin:
+        if not margin <= places[a, 0] + at[0] <= view[0] - 1 - margin:
             continue
         seen = False
         for s in range(count):
-            if partners[s] == a:
-                seen = True
-                break
-        if not seen:
-            dark += 1
-            if dark > most:
-                break
+            seen |= partners[s] == a
+        dark += not seen
+        if dark > most:
+            break
     return dark
 
 
@@ -159,7 +156,7 @@ def _named(  # noqa: PLR0917 - Numba takes no keyword-only ones
             for axis in range(3):
                 here = spots[i, axis] - places[a, axis]
                 there = spots[j, axis] - places[b, axis]
-                fits &= abs(there - here) <= (table[2] if axis < 2 else 2.0 * grid[4])  # noqa: PLR2004
+                fits &= abs(there - here) <= (table[2] if axis < 2 else 2.0 * grid[4])
                 trials[number, axis] = 0.5 * (here + there)
             if fits:
                 number += 1
@@ -331,7 +328,7 @@ def _paired(spots: Floats, count: int, own: Indices, most: int, reach: float) ->
 
 
 @compiled
-def _rivalled(
+def _rivalled(  # noqa: PLR0917 - Numba takes no keyword-only ones
     spots: Floats, count: int, own: Indices, most: int, code: Code, view: Floats, room: Room
 ) -> bool:
     """Whether another place has at most `most` faults, or may have.
