@@ -42,8 +42,11 @@ Search = Callable[..., None]
 _SOLAR_DIAMETER = 0.0093
 #: Spacings are looked up as far as this times the largest distance to a nearest neighbour.
 _REACH = 1.5
-#: Widths of neighbours that differ by less are no code.
-_ONE_SIZE = 0.05
+#: Power of its width that a hole's light goes with, above a fraction of its own peak: 2 for shadows,
+#: more where diffraction gathers light, as behind holes near the Fresnel number of 1.
+_LIGHT_POWER = 2.5
+#: Widths of neighbours that differ by less, or less often, are no code.
+_ONE_SIZE, _OFTEN = 0.1, 0.2
 #: How far a spot reaches beyond its aperture, px, beside the Sun's image.
 _RIM_PX = 2.0
 #: Spots beyond so many times the median distance from the median disagree: 5 deviations.
@@ -284,7 +287,7 @@ class CodedMask(ForwardModel):
         lit = lists[:, :, 2] > 0
         if (lit[:, 1:] > lit[:, :-1]).any():
             raise ValueError(f"{self.about.name}: spots without light must come last in a list")
-        lists[:, :, 2] = np.log(np.where(lit, lists[:, :, 2], 1.0)) / 2.0
+        lists[:, :, 2] = np.log(np.where(lit, lists[:, :, 2], 1.0)) / _LIGHT_POWER
         drawn = self._drawn
         size = math.inf if self.size_tolerance is None else self.size_tolerance
         code, order = table.code_of(places, drawn.widths, drawn.reach, drawn.tolerance, size)
@@ -320,11 +323,10 @@ class CodedMask(ForwardModel):
 
 
 def _size_tolerance(rows: Floats) -> float | None:
-    """Half the least difference of neighbours' widths; None where most have neighbours alike."""
+    """Half the least step of neighbours' widths; None where few have such steps."""
     from scipy.spatial import KDTree  # noqa: PLC0415 - SciPy, where a mask is made only
 
     nearest = np.asarray(KDTree(rows[:, :2]).query(rows[:, :2], k=2)[1])[:, 1]
     ratio = np.abs(np.log(rows[:, 2] / rows[nearest, 2]))
-    if np.median(ratio) < _ONE_SIZE:
-        return None
-    return round(float(ratio[ratio >= _ONE_SIZE].min()) / 2.0, 6)
+    steps = ratio[ratio > _ONE_SIZE]
+    return round(float(steps.min()) / 2.0, 6) if len(steps) > _OFTEN * len(rows) else None

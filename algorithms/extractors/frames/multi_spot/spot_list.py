@@ -26,8 +26,9 @@ from algorithms.inputs import as_frames, require_positive
 from algorithms.spot_lists import SPOT_COLUMNS, spot_columns, spots_listed
 
 #: Pixels of a spot above the threshold, over those of its aperture: the least of the smallest,
-#: the most of the largest with the Sun's image, which grows with incidence.
-_AREAS = (0.4, 6.0)
+#: which may gather its light, the most of the largest with the Sun's image, which grows with
+#: incidence.
+_AREAS = (0.15, 6.0)
 _LEAST_PIXELS = 4.0
 #: Spots of the frame's edge are not kept.
 _NONE_CUT = np.empty((0, 3))
@@ -64,10 +65,11 @@ class SpotList(Extractor):
     Implements: alg:BCTM (fe:bctm) in every segment of a frame, as the coded sensors of Wei2013,
     Wei2014, Wang2015, Wei2017, Zhang2021 and Zhang2022a use it: ``I' = max(I - mu I_max, 0)``,
     ``x = sum(x I') / sum(I')``. mu counts from the background, the median of every so many
-    pixels, and I_max is a brightness that rows of half a spot reach, so that hot pixels do not set
-    it: ours. Segments are sets of touching pixels; those at the frame's edge, and those of less
-    than 0.4 of the smallest aperture's area or far more than the largest's with the Sun's image,
-    are left out.
+    pixels. Segments are sets of touching pixels above mu of a brightness that rows of half a spot
+    reach; then I_max is each spot's own, the mean of its brightest quarter, so that light goes as
+    the aperture's area, and a hot pixel sets neither: ours. Segments at the frame's edge, and those
+    of less than 0.15 of the smallest aperture's area or far more than the largest's with the Sun's
+    image, are left out.
 
     Shapes: frames (N, H, W), any unit, to ``(x_px, y_px, light)`` of each spot (N, 3 spots), in
     the order their first pixels are read, pixel centres at integers, light the sum of I'; zeros
@@ -144,7 +146,10 @@ class SpotList(Extractor):
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Spots (N, 3 spots), three columns each, of frames (N, H, W); ValueError if wrong."""
-        from algorithms.extractors.frames.multi_spot import spots_kernel  # noqa: PLC0415 - Numba, at first use
+        from algorithms.extractors.frames.multi_spot import (  # noqa: PLC0415 - Numba, at first use
+            own_threshold_kernel,
+            spots_kernel,
+        )
 
         frames = as_frames(observations)
         count, height, width = frames.shape
@@ -159,12 +164,17 @@ class SpotList(Extractor):
         spots_kernel.segment(
             frames, levels.maxima, levels.threshold, least, most, seen, counts, cuts, cut_counts
         )
+        listed = np.ascontiguousarray(seen[:, :, [0, 1, 3]])
+        counts = np.maximum(counts, 0)
+        own_threshold_kernel.own_threshold(
+            frames, levels.floor, levels.threshold, self.threshold, least, most, counts, listed
+        )
         found = np.zeros((count, self.spots, SPOT_COLUMNS))
-        for row, spots, number in zip(found, seen, counts.tolist(), strict=True):
-            kept = np.arange(max(number, 0))
+        for row, spots, number in zip(found, listed, counts.tolist(), strict=True):
+            kept = np.arange(number)
             if number > self.spots:  # the brightest, in their order
-                kept = np.sort(np.argsort(-spots[:number, 3], kind="stable")[: self.spots])
-            row[: len(kept)] = spots[kept][:, [0, 1, 3]]
+                kept = np.sort(np.argsort(-spots[:number, 2], kind="stable")[: self.spots])
+            row[: len(kept)] = spots[kept]
         rows = found.reshape(count, -1)
-        rows[counts <= 0] = np.nan
+        rows[counts == 0] = np.nan
         return rows
