@@ -36,6 +36,12 @@ PYRAMID = tuple(
 )
 DIAL = {"code_bits": 5, "code_cell_mm": 0.15, "fine_period_mm": 0.3}
 LINE_PIXELS = 60
+#: Rulers of slits over lines of pixels of 0.05 mm: places, mm.
+RULED_PIXELS = 98
+RULERS = {
+    "reticle": tuple(0.2 * (k - 3.5) for k in range(8)),
+    "vernier": tuple(0.16 * (k - 5.5) for k in range(12) if k not in {3, 8}),
+}
 #: A mask larger than its detector of 100 x 100 px, no part of it like another.
 CODED = tuple(
     (0.3 * i + 0.06 * x, 0.3 * j + 0.06 * y, 0.05)
@@ -84,6 +90,16 @@ OWN_DESIGN = {
         "apertures": WIDE_HOLES,
         "focal_length_mm": 0.5,
         "aperture_width_mm": 0.05,
+    },
+    **{
+        name: {
+            "pixel_pitch_mm": 0.05,
+            "centre_px": ((RULED_PIXELS - 1) / 2.0,) * 2,
+            "line_axes": ("y", "x"),
+            "line_pixels": RULED_PIXELS,
+            "slits": tuple((place, 0.0, 0.08) for place in places),
+        }
+        for name, places in RULERS.items()
     },
     "coded-spacing": {"centre_px": (49.5, 49.5), "apertures": CODED},
     "coded-correlation": {"centre_px": (49.5, 49.5), "apertures": CODED},
@@ -275,6 +291,19 @@ def _spot_lists(geometry: SensorGeometry, tangents: Floats) -> Floats:
     return lists.reshape(len(lists), -1)
 
 
+def _ruled(geometry: SensorGeometry, tangents: Floats) -> Floats:
+    """Light of equal slits on each line of pixels, for each of the Sun's tangents (x, y)."""
+    places, _, widths = np.array(geometry.slits).T
+    at = geometry.pixel_pitch_mm * (np.arange(geometry.line_pixels) - geometry.centre_px[0])
+    lines = []
+    for axis in geometry.line_axes:
+        shift = geometry.focal_length_mm * tangents[:, 0 if axis == "x" else 1]
+        away = np.abs(at - shift[:, None, None] - places[:, None])
+        lit = (widths[0] / 2.0 - away) / geometry.pixel_pitch_mm + 0.5
+        lines.append(np.clip(lit, 0.0, 1.0).sum(axis=1))
+    return np.hstack(lines)
+
+
 #: Makers of samples, by an implementation's name where it needs its own, else by observation.
 OWN_SAMPLES: dict[str, Callable[[], NDArray[Any]]] = {
     "bscm": _black_suns,
@@ -327,6 +356,8 @@ def calibration_for(geometry: SensorGeometry, field: Floats) -> Callable[..., Ca
             return Calibration(scale * np.column_stack([tan_beta, tan_alpha]), field)
         if kind is FeatureKind.SPOTS:
             return Calibration(_spot_lists(geometry, np.column_stack([tan_beta, tan_alpha])), field)
+        if kind is FeatureKind.SIGNALS and geometry.line_pixels is not None:
+            return Calibration(_ruled(geometry, np.column_stack([tan_beta, tan_alpha])), field)
         if kind is FeatureKind.SIGNALS and geometry.code_bits is not None:
             return Calibration(
                 _dial_signals(geometry, np.column_stack([tan_beta, tan_alpha])), field

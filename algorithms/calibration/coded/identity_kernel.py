@@ -374,9 +374,9 @@ def decide(  # noqa: PLR0917 - Numba takes no keyword-only ones
     """Keep of the best hypotheses those that nothing rivals.
 
     `rules`: spots a place must explain; share of the spots, and of the apertures in view, that it
-    must; faults that every other place must have more. `found` (N, 3) and `faults` (N,) are a
-    search's. `partners` (N, K) receives the aperture of each spot, -1 for none; `verdicts` (N,)
-    what is said of the list.
+    must; how many times its faults and one every other place must have. `found` (N, 3) and `faults`
+    (N,) are a search's. `partners` (N, K) receives the aperture of each spot, -1 for none;
+    `verdicts` (N,) what is said of the list.
     """
     agreeing, share, clear = rules
     room = _room(lists, code)
@@ -391,7 +391,7 @@ def decide(  # noqa: PLR0917 - Numba takes no keyword-only ones
         verdicts[k] = READ
         if explained < max(float(agreeing), share * count, share * lit):
             verdicts[k] = NOTHING
-        elif _rivalled(spots, count, own, faults[k] + clear - 1, code, view, room):
+        elif _rivalled(spots, count, own, clear * (faults[k] + 1) - 1, code, view, room):
             verdicts[k] = SEVERAL
         if verdicts[k] != READ:
             own[:] = -1

@@ -42,8 +42,8 @@ Search = Callable[..., None]
 _SOLAR_DIAMETER = 0.0093
 #: Spacings are looked up as far as this times the largest distance to a nearest neighbour.
 _REACH = 1.5
-#: Power of its width that a hole's light goes with, above a fraction of its own peak: 2 for shadows,
-#: more where diffraction gathers light, as behind holes near the Fresnel number of 1.
+#: Power of its width that a hole's light goes with, above a fraction of its own peak: 2 for
+#: shadows, more where diffraction gathers light, as behind holes near the Fresnel number of 1.
 _LIGHT_POWER = 2.5
 #: Widths of neighbours that differ by less, or less often, are no code.
 _ONE_SIZE, _OFTEN = 0.1, 0.2
@@ -104,7 +104,7 @@ class CodedMask(ForwardModel):
     tolerance_px: float = 0.5
     size_tolerance: float | None = None
     agreeing: int = 3
-    clear: int = 3
+    clear: int = 2
     share: float = 0.5
 
     turn_: float = field(init=False, repr=False, compare=False)

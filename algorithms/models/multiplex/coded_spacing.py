@@ -39,8 +39,9 @@ class CodedSpacing(CodedMask):
     agreeing : int
         Spots that must agree on a place, at least 3.
     clear : int
-        Faults (spots unexplained, apertures in view that are dark) that every other place must
-        have more, at least 1. A spot beside its place makes two.
+        Every other place must have so many times the faults (spots unexplained, apertures in view
+        that are dark) and one, at least 1: where faults happen, one says less. A spot beside its
+        place makes two.
     share : float
         Of the spots, and of the apertures in view, that must agree, in (0, 1].
     extrapolation : float
@@ -76,10 +77,10 @@ class CodedSpacing(CodedMask):
     placed obliquely without symmetry (Wei2017). Here a table holds the pairs of neighbouring
     apertures by their spacing (x, y), in cells of the tolerance; the rarest of the spacings seen
     name places of the mask, and the place with the fewest faults is looked at again.
-    The place is kept if nothing rivals it: every other place must have `clear` faults more, which
-    is decided exactly, not among those tried. Then ``D = sum(p_i - a_i - o_i) / n`` over the n
-    spots that agree is the least-squares displacement, and so direction, of all of them: parallel
-    light moves every spot alike. Spots far from the median are left out. o_i are offsets of the
+    The place is kept if nothing rivals it: f its faults, every other place must have at least
+    ``clear (f + 1)``, which is decided exactly, not among those tried. Then ``D = sum(p_i - a_i -
+    o_i) / n`` over the n spots that agree is the least-squares displacement, and so direction, of
+    all of them: parallel light moves every spot alike. Spots far from the median are left out. o_i are offsets of the
     built apertures, predicted from how spots of one frame lie to each other (best linear unbiased;
     no error of the turntable enters); focal length, centre, turns and tilts are fitted to D by
     least squares of the angles, through the cover glass.

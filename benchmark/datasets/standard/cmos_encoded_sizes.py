@@ -37,8 +37,8 @@ PRESET = many_spots(
         "instead: 256 px of 10 um show one whole group wherever the Sun is if groups are 1.2 mm "
         "apart, h = 4.5 mm. Spacings are 0.46 mm + 20 um times half the sub-field's number; of "
         "each pair of numbers the odd one has a hole of 0.15 mm, the even one of 0.105 mm "
-        "(Fresnel number 1.1), times the root of 1/cos of incidence to a tenth. Foil and tolerances "
-        "as cmos-encoded."
+        "(Fresnel number 1.1), times the root of 1/cos of incidence to a tenth. Foil and "
+        "tolerances as cmos-encoded."
     ),
     known={"subfields": 13},
 )
