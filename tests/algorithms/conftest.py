@@ -37,10 +37,9 @@ PYRAMID = tuple(
 DIAL = {"code_bits": 5, "code_cell_mm": 0.15, "fine_period_mm": 0.3}
 LINE_PIXELS = 60
 #: Rulers of slits over lines of pixels of 0.05 mm: places, mm.
-RULED_PIXELS = 98
 RULERS = {
-    "reticle": tuple(0.2 * (k - 3.5) for k in range(8)),
-    "vernier": tuple(0.16 * (k - 5.5) for k in range(12) if k not in {3, 8}),
+    "reticle": tuple(0.2 * (k - 2.5) for k in range(6)),
+    "vernier": tuple(0.16 * (k - 3.5) for k in range(8) if k not in {2, 4}),
 }
 #: A mask larger than its detector of 100 x 100 px, no part of it like another.
 CODED = tuple(
@@ -85,18 +84,15 @@ OWN_DESIGN = {
         "slits": ((-3.0, 45.0, 0.1), (0.0, 0.0, 0.1), (3.0, 45.0, 0.1)),
     },
     "camera": {"lens_distortion": (-0.1, 0.02)},
-    "spot-list": {
-        "centre_px": (22.5, 19.5),
-        "apertures": WIDE_HOLES,
-        "focal_length_mm": 0.5,
-        "aperture_width_mm": 0.05,
-    },
+    "spot-list": {"centre_px": (22.5, 19.5), "focal_length_mm": 0.5, "aperture_width_mm": 0.05}
+    | {"apertures": WIDE_HOLES},
     **{
         name: {
+            "focal_length_mm": 1.0,
             "pixel_pitch_mm": 0.05,
-            "centre_px": ((RULED_PIXELS - 1) / 2.0,) * 2,
+            "centre_px": (29.5, 29.5),
             "line_axes": ("y", "x"),
-            "line_pixels": RULED_PIXELS,
+            "line_pixels": LINE_PIXELS,
             "slits": tuple((place, 0.0, 0.08) for place in places),
         }
         for name, places in RULERS.items()

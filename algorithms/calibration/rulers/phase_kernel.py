@@ -12,6 +12,8 @@ from algorithms.contract import Floats
 
 #: Share of one slit's light by which the best place must beat the next.
 _CLEAR = 0.4
+#: Least share of their mean light that each slit has.
+_LIT = 0.3
 
 
 @compiled
@@ -37,6 +39,15 @@ def _phase(line: Floats, start: float, end: float, wave: Floats) -> tuple[float,
         cosine += share * line[n] * wave[n, 0]
         sine += share * line[n] * wave[n, 1]
     return cosine, sine
+
+
+@compiled
+def _all_lit(sums: Floats, slits: Floats, reach: float, place: float, mean: float) -> bool:
+    """Whether each slit at a place has a share of their mean light: none is off the line."""
+    for slit in slits:
+        if not _between(sums, slit + place - reach, slit + place + reach) >= _LIT * mean:
+            return False
+    return True
 
 
 @compiled
@@ -73,7 +84,8 @@ def correlate(  # noqa: PLR0917 - Numba takes no keyword-only ones
             elif light > second:
                 second = light
             shift += period
-        if not best - second >= _CLEAR * best / len(slits):
+        mean = best / len(slits)
+        if not (best - second >= _CLEAR * mean and _all_lit(sums, slits, half, place, mean)):
             continue
         cosine, sine = _phase(line, slits[0] - half + place, slits[-1] + half + place, wave)
         if not math.hypot(cosine, sine) >= least * best:
@@ -124,7 +136,10 @@ def read_vernier(  # noqa: PLR0917 - Numba takes no keyword-only ones
             if abs(low + step - place) > half:
                 rival = max(rival, scores[step])
         total = _between(sums, slits[0] - half + place, slits[-1] + half + place)
-        if not (best > 0.0 and best - rival >= _CLEAR * total / len(slits)):
+        mean = total / len(slits)
+        if not (best > 0.0 and best - rival >= _CLEAR * mean):
+            continue
+        if not _all_lit(sums, slits, half, place, mean):
             continue
         cosine = 0.0
         sine = 0.0

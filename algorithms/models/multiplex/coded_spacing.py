@@ -80,10 +80,10 @@ class CodedSpacing(CodedMask):
     The place is kept if nothing rivals it: f its faults, every other place must have at least
     ``clear (f + 1)``, which is decided exactly, not among those tried. Then ``D = sum(p_i - a_i -
     o_i) / n`` over the n spots that agree is the least-squares displacement, and so direction, of
-    all of them: parallel light moves every spot alike. Spots far from the median are left out. o_i are offsets of the
-    built apertures, predicted from how spots of one frame lie to each other (best linear unbiased;
-    no error of the turntable enters); focal length, centre, turns and tilts are fitted to D by
-    least squares of the angles, through the cover glass.
+    all of them: parallel light moves every spot alike. Spots far from the median are left out. o_i
+    are offsets of the built apertures, predicted from how spots of one frame lie to each other
+    (best linear unbiased; no error of the turntable enters); focal length, centre, turns and tilts
+    are fitted to D by least squares of the angles, through the cover glass.
 
     Shapes: lists ``(x_px, y_px, light)`` of spots (N, 3 K), light 0 and last for none, to unit
     vectors (N, 3). No row leans on another: lost in space, in one frame.

@@ -84,7 +84,8 @@ class ReticlePhase(DeflectedSlits):
     unit vectors (N, 3).
 
     Failure: a NaN row for a NaN feature row, outside the cone of calibrated directions, where no
-    place of the reticle has most light by 0.4 of a slit's, and where the phase has no contrast.
+    place of the reticle has most light by 0.4 of a slit's, where a slit has less than 0.3 of their
+    mean light, as beyond the end of a line, and where the phase has no contrast.
     fit raises UnusableDataError below 6 samples, and where they do not settle the parameters.
 
     Cost: 12 operations a pixel.
