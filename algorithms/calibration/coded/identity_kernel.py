@@ -126,7 +126,7 @@ def _dark(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 @compiled
 def _near(spots: Floats, i: int, j: int, reach: float) -> bool:
-    return abs(spots[j, 0] - spots[i, 0]) <= reach and abs(spots[j, 1] - spots[i, 1]) <= reach
+    return bool(abs(spots[j, 0] - spots[i, 0]) <= reach and abs(spots[j, 1] - spots[i, 1]) <= reach)
 
 
 @compiled

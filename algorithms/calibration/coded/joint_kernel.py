@@ -46,13 +46,13 @@ def joint(  # noqa: PLR0917 - Numba takes no keyword-only ones
         for m in range(n):
             room[2, m] = math.hypot(room[0, m] - x, room[1, m] - y)
         reach = worst * max(np.median(room[2, :n]), _LEAST_PX)
-        x, y, kept, n = 0.0, 0.0, 0, 0
+        across, along, kept, n = 0.0, 0.0, 0, 0
         for s in range(lists.shape[1]):
             if own[s] < 0:
                 continue
             if room[2, n] <= reach:
-                x += room[0, n]
-                y += room[1, n]
+                across += room[0, n]
+                along += room[1, n]
                 kept += 1
             else:
                 own[s] = -1
@@ -60,5 +60,5 @@ def joint(  # noqa: PLR0917 - Numba takes no keyword-only ones
         if kept < agreeing:
             own[:] = -1
             continue
-        found[k, 0] = x / kept
-        found[k, 1] = y / kept
+        found[k, 0] = across / kept
+        found[k, 1] = along / kept

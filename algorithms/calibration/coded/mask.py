@@ -51,6 +51,8 @@ _ONE_SIZE, _OFTEN = 0.1, 0.2
 _RIM_PX = 2.0
 #: Spots beyond so many times the median distance from the median disagree: 5 deviations.
 _WORST = 4.2
+#: How far a sensor may be tilted and off its design: the field of view ends as much later.
+_ASTRAY_DEG = 2.0
 #: Turns of a mask that a calibration looks for where the drawing's is not it, degrees.
 _TURNS = tuple(sign * step / 4.0 for step in range(1, 13) for sign in (1, -1))
 #: Share of the calibration samples whose code must be read.
@@ -103,6 +105,7 @@ class CodedMask(ForwardModel):
     layers: Layers = ()
     tolerance_px: float = 0.5
     size_tolerance: float | None = None
+    half_fov_deg: float | None = None
     agreeing: int = 3
     clear: int = 2
     share: float = 0.5
@@ -131,6 +134,8 @@ class CodedMask(ForwardModel):
         for name in ("spots", "agreeing"):
             if getattr(self, name) < 3:
                 raise ValueError(f"{by}: {name} must be 3 or more; got {getattr(self, name)!r}")
+        if self.half_fov_deg is not None and not 0.0 < self.half_fov_deg < 90.0:
+            raise ValueError(f"{by}: half_fov_deg must be in (0, 90); got {self.half_fov_deg!r}")
         if not 0.0 < self.share <= 1.0:
             raise ValueError(f"{by}: share must be in (0, 1]; got {self.share!r}")
         if self.size_tolerance is not None:
@@ -163,6 +168,7 @@ class CodedMask(ForwardModel):
             size_px=detector_size_px(geometry, cls.about.name),
             layers=geometry.cover_glass or (),
             size_tolerance=_size_tolerance(rows),
+            half_fov_deg=geometry.half_fov_deg,
         )
 
     @abstractmethod
@@ -303,6 +309,11 @@ class CodedMask(ForwardModel):
         apertures = np.where(partners >= 0, order[partners], -1)
         displacement = found[:, :2].copy()
         joint_kernel.joint(lists, places, apertures, _WORST, self.agreeing, displacement)
+        if self.half_fov_deg is not None:
+            edge = math.tan(math.radians(min(self.half_fov_deg + _ASTRAY_DEG, 89.0)))
+            off = np.abs(displacement - np.array(self.centre_px)).max(axis=1)
+            beyond = off > edge * self.focal_length_mm / self.pixel_pitch_mm
+            displacement[beyond], apertures[beyond] = np.nan, -1
         return CodeReading(displacement, apertures, verdicts == identity_kernel.SEVERAL)
 
     @cached_property

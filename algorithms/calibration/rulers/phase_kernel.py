@@ -95,6 +95,41 @@ def correlate(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
+def _code(sums: Floats, slits: Floats, gaps: Floats, reach: float, shift: float) -> float:
+    """Light of the slits less that of as many gaps: of the mean of them."""
+    light = 0.0
+    for slit in slits:
+        light += _between(sums, slit + shift - reach, slit + shift + reach)
+    dark = 0.0
+    for gap in gaps:
+        dark += _between(sums, gap + shift - reach, gap + shift + reach)
+    return light - dark
+
+
+@compiled
+def _coded_place(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    sums: Floats,
+    slits: Floats,
+    gaps: Floats,
+    period: float,
+    low: float,
+    high: float,
+    scores: Floats,
+) -> tuple[float, float, float]:
+    """Most light that the code has at a whole step from `low`, that of its rivals, and where."""
+    steps = min(int(high - low) + 1, len(scores))
+    best, rival, place = -math.inf, -math.inf, math.nan
+    for step in range(steps):
+        scores[step] = _code(sums, slits, gaps, 0.25 * period, low + step)
+        if scores[step] > best:
+            best, place = scores[step], low + step
+    for step in range(steps):
+        if abs(low + step - place) > 0.5 * period:
+            rival = max(rival, scores[step])
+    return best, rival, place
+
+
+@compiled
 def read_vernier(  # noqa: PLR0917 - Numba takes no keyword-only ones
     lines: Floats,
     slits: Floats,
@@ -117,6 +152,8 @@ def read_vernier(  # noqa: PLR0917 - Numba takes no keyword-only ones
     size = lines.shape[1]
     sums, scores = np.empty(size + 1), np.empty(size + 1)
     turn = 2.0 * math.pi / mark
+    # where each slit would be among the marks at zero shift
+    gains = np.column_stack((np.cos(turn * slits), np.sin(turn * slits)))
     for r in range(lines.shape[0]):
         line = lines[r]
         shifts[r] = math.nan
@@ -125,16 +162,7 @@ def read_vernier(  # noqa: PLR0917 - Numba takes no keyword-only ones
             sums[n + 1] = sums[n] + line[n]
         low = -0.5 - slits[0] + half
         high = size - 0.5 - slits[-1] - half
-        steps = min(int(high - low) + 1, len(scores))
-        best, place = -math.inf, math.nan
-        for step in range(steps):
-            scores[step] = _code(sums, slits, gaps, 0.25 * period, low + step)
-            if scores[step] > best:
-                best, place = scores[step], low + step
-        rival = -math.inf
-        for step in range(steps):
-            if abs(low + step - place) > half:
-                rival = max(rival, scores[step])
+        best, rival, place = _coded_place(sums, slits, gaps, period, low, high, scores)
         total = _between(sums, slits[0] - half + place, slits[-1] + half + place)
         mean = total / len(slits)
         if not (best > 0.0 and best - rival >= _CLEAR * mean):
@@ -143,28 +171,15 @@ def read_vernier(  # noqa: PLR0917 - Numba takes no keyword-only ones
             continue
         cosine = 0.0
         sine = 0.0
-        for slit in slits:
-            start = slit + place - half
+        for k in range(len(slits)):
+            start = slits[k] + place - half
             c, s = _phase(line, start, start + period, wave)
-            back = turn * slit  # where the slit would be among the marks at zero shift
-            cosine += c * math.cos(back) + s * math.sin(back)
-            sine += s * math.cos(back) - c * math.sin(back)
+            cosine += c * gains[k, 0] + s * gains[k, 1]
+            sine += s * gains[k, 0] - c * gains[k, 1]
         if not math.hypot(cosine, sine) >= least * total:
             continue
         off = math.atan2(sine, cosine) / turn - place
         shifts[r] = place + off - mark * math.floor(off / mark + 0.5)
-
-
-@compiled
-def _code(sums: Floats, slits: Floats, gaps: Floats, reach: float, shift: float) -> float:
-    """Light of the slits less that of as many gaps: of the mean of them."""
-    light = 0.0
-    for slit in slits:
-        light += _between(sums, slit + shift - reach, slit + shift + reach)
-    dark = 0.0
-    for gap in gaps:
-        dark += _between(sums, gap + shift - reach, gap + shift + reach)
-    return light - dark
 
 
 def waves(size: int, period: float) -> NDArray[np.float64]:

@@ -36,6 +36,9 @@ class CodedSpacing(CodedMask):
     size_tolerance : float or None
         Largest relative error of an aperture's width as told by its spot's light, positive; None
         where sizes are no code.
+    half_fov_deg : float or None
+        Edge of the field of view, in (0, 90): a place more than 2 degrees beyond it along an axis
+        is no answer. None for no such edge.
     agreeing : int
         Spots that must agree on a place, at least 3.
     clear : int
@@ -88,10 +91,10 @@ class CodedSpacing(CodedMask):
     Shapes: lists ``(x_px, y_px, light)`` of spots (N, 3 K), light 0 and last for none, to unit
     vectors (N, 3). No row leans on another: lost in space, in one frame.
 
-    Failure: a NaN row for a NaN feature row, outside the cone of calibrated directions, where
-    fewer than `agreeing` spots agree, and where another place explains the spots nearly as well
-    (`read` says ``ambiguous``). fit raises UnusableDataError where the code is read in less than
-    half of the samples, and below 4 samples; ValueError for a list with a gap.
+    Failure: a NaN row for a NaN feature row, outside the cone of calibrated directions, beyond the
+    field of view, where fewer than `agreeing` spots agree, and where another place explains the
+    spots nearly as well (`read` says ``ambiguous``). fit raises UnusableDataError where the code is
+    read in less than half of the samples, and below 4 samples; ValueError for a list with a gap.
 
     Cost: 3 to 20 us a sample, for a mask of a thousand apertures as for one of a hundred.
 

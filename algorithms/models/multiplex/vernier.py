@@ -87,8 +87,8 @@ class OpticalVernier(DeflectedSlits):
 
     Failure: a NaN row for a NaN feature row, outside the cone of calibrated directions, where no
     place shows the code by 0.4 of a slit's light more than all others, where a slit has less than
-    0.3 of their mean light, and where the phase has no contrast. fit raises UnusableDataError below 6 samples, and where they do not settle the
-    parameters.
+    0.3 of their mean light, and where the phase has no contrast. fit raises UnusableDataError below
+    6 samples, and where they do not settle the parameters.
 
     Cost: 20 operations a slit and place, a place a pixel: some 20 000 of 16 slits on 100 pixels.
 

@@ -192,12 +192,12 @@ def test_a_mask_without_a_code_is_not_read(cls):
 
 @pytest.mark.parametrize("cls", MODELS)
 def test_sizes_are_a_code(cls):
-    """Columns that widths alone tell apart, any three in a row; light goes as w to the 2.5."""
+    """Columns that widths alone tell apart, any two side by side; light goes as w to the 2.5."""
     near, number = places_px(), np.arange(243)
     column, across = number // 3 % 9, number % 3 == 1
     near[across, 0] -= 1.2 * column[across]
-    wide = np.array([0, 0, 0, 1, 0, 1, 1, 1, 0], dtype=bool)[column] & across
-    widths = np.where(wide, 0.07, 0.05)
+    step = np.array([0, 0, 1, 1, 2, 2, 0, 2, 1])[column] * across
+    widths = 0.04 * 1.4**step
     holes = np.column_stack([near * PITCH_MM, widths]).round(6)
     geometry = design(tuple(map(tuple, holes.tolist())))
     displaced = cast(field(60, 38.0))
