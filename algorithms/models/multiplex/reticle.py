@@ -43,14 +43,14 @@ class ReticlePhase(DeflectedSlits):
         raster without gaps.
     cover_glass : tuple of (float, float)
         Thickness mm and index of each plate between slits and lines.
+    extrapolation : float
+        How far past the cone of calibrated directions answers may go, in radians, from 0 up;
+        infinity for anywhere.
     line_pixels : int
         Pixels of a line, positive.
     smallest_contrast : float
         Length of the phase over the light, in [0, 1), below which it says nothing;
         a half-open reticle gives 0.64 less what diffraction and the Sun's width take.
-    extrapolation : float
-        How far past the cone of calibrated directions answers may go, in radians, from 0 up;
-        infinity for anywhere.
 
     Attributes
     ----------

@@ -43,14 +43,14 @@ class OpticalVernier(DeflectedSlits):
         raster, some left out.
     cover_glass : tuple of (float, float)
         Thickness mm and index of each plate between slits and lines.
+    extrapolation : float
+        How far past the cone of calibrated directions answers may go, in radians, from 0 up;
+        infinity for anywhere.
     line_pixels : int
         Pixels of a line, positive.
     smallest_contrast : float
         Length of the phase over the light, in [0, 1), below which it says nothing;
         light without a pattern has none.
-    extrapolation : float
-        How far past the cone of calibrated directions answers may go, in radians, from 0 up;
-        infinity for anywhere.
 
     Attributes
     ----------
