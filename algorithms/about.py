@@ -30,6 +30,7 @@ class FeatureKind(StrEnum):
     """What an extractor's columns mean, and so which models can read them."""
 
     SPOT = "spot"  # (x_px, y_px): one spot, detector coordinates
+    SPOTS = "spots"  # (x_px, y_px, light) of each of many spots; light 0, and 0, 0, for none
     BALANCE = "balance"  # (s_a, s_b): x and y balances in [-1, 1]
     SIGNALS = "signals"  # one normalised signal a detector element
 

@@ -235,7 +235,7 @@ def checked(extractor: Extractor, features: Floats, count: int) -> Floats:
 def in_detector_coordinates(
     features: Floats, kind: FeatureKind, origin_px: ArrayLike | None
 ) -> Floats:
-    """Spots moved by their windows' origins; other kinds of features unchanged.
+    """Spots, one or many, moved by their windows' origins; other kinds of features unchanged.
 
     Parameters
     ----------
@@ -261,9 +261,13 @@ def in_detector_coordinates(
     >>> in_detector_coordinates(np.array([[1.5, 2.0]]), FeatureKind.SPOT, [[100, 200]])
     array([[101.5, 202. ]])
     """
-    if origin_px is None or kind is not FeatureKind.SPOT:
+    if origin_px is None or kind not in {FeatureKind.SPOT, FeatureKind.SPOTS}:
         return features
     origin = np.asarray(origin_px, dtype=np.float64)
-    if origin.shape != features.shape:
-        raise ValueError(f"origin_px must have shape {features.shape}; got {origin.shape}")
-    return features + origin
+    if origin.shape != (len(features), 2):
+        raise ValueError(f"origin_px must have shape {(len(features), 2)}; got {origin.shape}")
+    if kind is FeatureKind.SPOT:
+        return features + origin
+    moved = features.reshape(len(features), -1, 3).copy()
+    moved[:, :, :2] += np.where(moved[:, :, 2:] > 0, origin[:, None], 0.0)
+    return moved.reshape(features.shape)

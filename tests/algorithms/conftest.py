@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import sys
 from collections.abc import Callable
@@ -18,6 +19,7 @@ from algorithms.angles import sun_from_angles
 from algorithms.calibration.parametric import tangent_axes
 from algorithms.context import CONTEXT
 from algorithms.contract import FeatureKind, Observation, SensorGeometry
+from algorithms.spot_lists import spots_listed
 
 Floats = NDArray[np.float64]
 
@@ -34,7 +36,23 @@ PYRAMID = tuple(
 )
 DIAL = {"code_bits": 5, "code_cell_mm": 0.15, "fine_period_mm": 0.3}
 LINE_PIXELS = 60
+#: Rulers of slits over lines of pixels of 0.05 mm: places, mm.
+RULERS = {
+    "reticle": tuple(0.2 * (k - 2.5) for k in range(6)),
+    "vernier": tuple(0.16 * (k - 3.5) for k in range(8) if k not in {2, 4}),
+}
+#: A mask larger than its detector of 100 x 100 px, no part of it like another.
+CODED = tuple(
+    (0.3 * i + 0.06 * x, 0.3 * j + 0.06 * y, 0.05)
+    for (i, j), (x, y) in zip(
+        itertools.product(range(-7, 8), repeat=2),
+        np.random.default_rng(12).uniform(-1.0, 1.0, (225, 2)).tolist(),
+        strict=True,
+    )
+)
 HOLES = ((-0.08, -0.06, 0.05), (0.08, -0.05, 0.05), (-0.07, 0.07, 0.05), (0.09, 0.06, 0.05))
+#: A mask of which 46 x 40 px show these four.
+WIDE_HOLES = (*HOLES, (-0.6, -0.6, 0.05), (0.6, 0.6, 0.05))
 PYRAMIDS = {
     "angular-loss",
     "assembled-faces",
@@ -67,6 +85,21 @@ OWN_DESIGN = {
         "slits": ((-3.0, 45.0, 0.1), (0.0, 0.0, 0.1), (3.0, 45.0, 0.1)),
     },
     "camera": {"lens_distortion": (-0.1, 0.02)},
+    "spot-list": {"centre_px": (22.5, 19.5), "focal_length_mm": 0.5, "aperture_width_mm": 0.05}
+    | {"apertures": WIDE_HOLES},
+    **{
+        name: {
+            "focal_length_mm": 1.0,
+            "pixel_pitch_mm": 0.05,
+            "centre_px": (29.5, 29.5),
+            "line_axes": ("y", "x"),
+            "line_pixels": LINE_PIXELS,
+            "slits": tuple((place, 0.0, 0.08) for place in places),
+        }
+        for name, places in RULERS.items()
+    },
+    "coded-spacing": {"centre_px": (49.5, 49.5), "apertures": CODED},
+    "coded-correlation": {"centre_px": (49.5, 49.5), "apertures": CODED},
 }
 #: Middle and spread of numbers that a context holds.
 USUAL = {"temperature_K": (298.0, 30.0), "illumination": (1.0, 0.03), "time_s": (500.0, 500.0)}
@@ -243,6 +276,31 @@ def _dial_signals(geometry: SensorGeometry, tangents: Floats) -> Floats:
     return np.column_stack(parts).astype(np.float64)
 
 
+def _spot_lists(geometry: SensorGeometry, tangents: Floats) -> Floats:
+    """Spots of a mask well on its detector, for each of the Sun's tangents (x, y)."""
+    middle, holes = np.array(geometry.centre_px), np.array(geometry.apertures)[:, :2]
+    lists = np.zeros((len(tangents), spots_listed(geometry, "suite"), 3))
+    for row, tangent in zip(lists, tangents, strict=True):
+        spots = middle + (holes + geometry.focal_length_mm * tangent) / geometry.pixel_pitch_mm
+        seen = spots[(np.abs(spots - middle) < middle - 4.0).all(axis=1)]
+        row[: len(seen), :2] = seen
+        row[: len(seen), 2] = 1000.0
+    return lists.reshape(len(lists), -1)
+
+
+def _ruled(geometry: SensorGeometry, tangents: Floats) -> Floats:
+    """Light of equal slits on each line of pixels, for each of the Sun's tangents (x, y)."""
+    places, _, widths = np.array(geometry.slits).T
+    at = geometry.pixel_pitch_mm * (np.arange(geometry.line_pixels) - geometry.centre_px[0])
+    lines = []
+    for axis in geometry.line_axes:
+        shift = geometry.focal_length_mm * tangents[:, 0 if axis == "x" else 1]
+        away = np.abs(at - shift[:, None, None] - places[:, None])
+        lit = (widths[0] / 2.0 - away) / geometry.pixel_pitch_mm + 0.5
+        lines.append(np.clip(lit, 0.0, 1.0).sum(axis=1))
+    return np.hstack(lines)
+
+
 #: Makers of samples, by an implementation's name where it needs its own, else by observation.
 OWN_SAMPLES: dict[str, Callable[[], NDArray[Any]]] = {
     "bscm": _black_suns,
@@ -260,7 +318,7 @@ def observations_for(geometry: SensorGeometry) -> Callable[[Any], NDArray[Any]]:
     def make(extractor: Any) -> NDArray[Any]:
         if extractor.about.name == "tm":  # its template is the sensor's aperture
             return _squares(geometry)
-        if extractor.about.name in MULTI_SPOT:
+        if extractor.about.name in MULTI_SPOT | {"spot-list"}:
             return _many_spots(geometry)
         if make_own := OWN_SAMPLES.get(
             extractor.about.name, OWN_SAMPLES.get(extractor.about.observation)
@@ -293,6 +351,10 @@ def calibration_for(geometry: SensorGeometry, field: Floats) -> Callable[..., Ca
         if kind is FeatureKind.BALANCE:
             scale = 2 * geometry.focal_length_mm / geometry.aperture_width_mm
             return Calibration(scale * np.column_stack([tan_beta, tan_alpha]), field)
+        if kind is FeatureKind.SPOTS:
+            return Calibration(_spot_lists(geometry, np.column_stack([tan_beta, tan_alpha])), field)
+        if kind is FeatureKind.SIGNALS and geometry.line_pixels is not None:
+            return Calibration(_ruled(geometry, np.column_stack([tan_beta, tan_alpha])), field)
         if kind is FeatureKind.SIGNALS and geometry.code_bits is not None:
             return Calibration(
                 _dial_signals(geometry, np.column_stack([tan_beta, tan_alpha])), field

@@ -1,0 +1,42 @@
+"""`cmos-encoded-oblique`: a CMOS array under seven groups of holes placed obliquely."""
+
+from __future__ import annotations
+
+from benchmark.datasets.conditions.cone import ConeField
+from benchmark.datasets.conditions.many_spots import behind, many_spots
+from benchmark.datasets.conditions.pixel_arrays import cmos
+from benchmark.simulator.masks.coded_groups import oblique_coded
+
+_ORDERS = (
+    (2, 0, 3, 1, 4),
+    (0, 2, 4, 1, 3),
+    (1, 4, 2, 0, 3),
+    (3, 1, 0, 4, 2),
+    (4, 2, 0, 3, 1),
+    (1, 3, 0, 2, 4),
+    (3, 0, 4, 2, 1),
+)
+_MASK = oblique_coded(_ORDERS, pitch_mm=1.86, cell_mm=0.14, diameter_mm=0.066, thickness_mm=0.01)
+
+PRESET = many_spots(
+    name="cmos-encoded-oblique",
+    version=1,
+    detector="CMOS",
+    mask="Encoded",
+    # light gathers behind such holes to about twice the open light: a shorter exposure
+    sensor=behind(_MASK, 1.8, cmos(272, 0.01, sunlit_e=13_000.0), widest_deg=55.0),
+    diameter_mm=0.066,
+    half_fov_deg=50.0,
+    directions=ConeField(50.0, calibration_samples=150, test_samples=150),
+    follows=("Wei2017",),
+    description=(
+        "Seven sub-fields over a cone of 100 deg, each with a group of holes placed obliquely and "
+        "without symmetry (Wei2017): the counts are the study's, its dimensions are not in what "
+        "was mapped, and neither is the code. Its detector reads out sums over rows and over "
+        "columns; here the whole frame is read. Round numbers instead: groups of five holes of "
+        "0.066 mm, Fresnel number 1.1, no two in a row or a column of cells of 0.14 mm that widen "
+        "to one side, each group in another order. Groups are 1.86 mm apart, seven discs that "
+        "cover the cone at h = 1.8 mm, and 272 px of 10 um show one whole wherever the Sun is. "
+        "Foil and tolerances as cmos-encoded."
+    ),
+)
