@@ -32,6 +32,12 @@ function source(text) {
   return /^https?:\/\//.test(text) ? h("a", { href: text, rel: "noreferrer" }, new URL(text).hostname) : text;
 }
 
+/** "data set error", or why there is none. */
+function measured(score) {
+  if (score.rms_deg !== null) return `${score.dataset} ${Number(score.rms_deg.toPrecision(3))} deg`;
+  return `${score.dataset} ${score.status === null ? "not measured yet" : "without an error"}`;
+}
+
 function provenance(detail) {
   const values = detail.attributes;
   const cell = (label, ...content) => h("td", { role: "cell", "data-label": label }, h("span", {}, ...content));
@@ -45,10 +51,14 @@ function provenance(detail) {
         cell("Basis", h("span", { class: "basis", title: BASES[v.basis] }, v.basis)),
         cell("Source", source(v.source)),
         cell("Note", v.note ?? ""))))),
-    detail.pipelines.length > 0 && h("div", {}, h("p", {}, "Runs here as"),
+    h("p", {}, known(detail.reported_accuracy_deg)
+      ? `Accuracy that the study reports of its own sensor: ${detail.reported_accuracy_deg} deg.`
+      : "No accuracy is known that the study reports of its own sensor."),
+    detail.pipelines.length > 0 && h("div", {}, h("p", {}, "Runs here, with the error measured on each simulated sensor, as"),
       h("ul", {}, detail.pipelines.slice(0, 12).map((p) => h("li", {},
-        `${p.detector} · ${p.mask} · ${p.extractor} → ${p.model}`,
-        p.datasets.length ? ` on ${p.datasets.join(", ")}` : " (no data set of its architecture yet)"))),
+        `${p.detector} · ${p.mask} · ${p.extractor} → ${p.model}: ${p.scores.map(measured).join(", ")}`,
+        ...Object.entries(p.assumed).map(([part, rule]) => h("p", { class: "note" },
+          `${ATTRIBUTE_NAMES[part] ?? part} ${p.basis[part]}: ${rule}`))))),
       copyable(`sunatlas run ${detail.key} --format json`, `the command that runs ${detail.key}`)),
     detail.gaps.length > 0 && h("div", {}, h("p", {}, "Not run here"),
       h("ul", {}, detail.gaps.map((g) => h("li", {}, `${ATTRIBUTE_NAMES[g.attribute] ?? g.attribute}${known(g.value) ? ` ${g.value}` : ""}: ${g.reason}`)))));

@@ -90,12 +90,6 @@ def incompatible(
     return sorted(found)
 
 
-def architectures(*, parts: Parts | None = None) -> frozenset[tuple[str, str]]:
-    """Return the (detector, mask) pairs that the datasets simulate."""
-    presets = (parts or installed()).presets.values()
-    return frozenset((preset.detector, preset.mask) for preset in presets)
-
-
 def scorable(*, parts: Parts | None = None) -> Plan:
     """Return what can be scored on each architecture: what a study's resolution is made from.
 
@@ -112,12 +106,6 @@ def scorable(*, parts: Parts | None = None) -> Plan:
             pair = extractor.about.name, model.about.name
             pairs[pair] = (*pairs.get(pair, ()), preset.name)
     return found
-
-
-def datasets_for(detector: str, mask: str, *, parts: Parts | None = None) -> tuple[str, ...]:
-    """Names of the datasets of an architecture, sorted; empty where it is not simulated."""
-    presets = (parts or installed()).presets.values()
-    return tuple(sorted(p.name for p in presets if (p.detector, p.mask) == (detector, mask)))
 
 
 @dataclass(frozen=True)

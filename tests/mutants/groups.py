@@ -111,8 +111,11 @@ GROUPS: Mapping[str, Group] = {
             "registry/flows.py": _in("registry", "registry_order", "flows"),
             "registry/taxonomy.py": _in("registry", "registry_order", "registry_taxonomy"),
             "registry/studies.py": _in("registry", "registry_order", "registry_studies"),
-            "registry/resolution.py": _in("registry", "registry_order", "resolution"),
-            "registry/catalogue.py": _in("registry", "resolution"),
+            "registry/resolution.py": _in("registry", "resolution", "resolution_sensors"),
+            "registry/fitting.py": _in("registry", "resolution"),
+            "registry/sensors.py": _in("registry", "resolution_sensors"),
+            "registry/plan.py": _in("registry", "resolution_sensors"),
+            "registry/catalogue.py": _in("registry", "catalogue", "resolution"),
             "registry/*": _in(
                 "registry",
                 "recommendation_measured",

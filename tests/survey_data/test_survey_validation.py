@@ -284,31 +284,6 @@ def test_a_kind_of_a_printed_label_agrees_with_it_and_another_label_s_does_not(
     assert located(copy.found("attributes.csv"), row, "value")
 
 
-def test_values_say_where_they_are_from(copy: Any) -> None:
-    rows = copy.rows("attributes")
-    for basis, column in (("abstract", "source"), ("inferred", "note"), ("survey-text", "source")):
-        row = next(i for i, c in enumerate(rows, 1) if c[3] == basis)
-        copy.set("attributes", row, column, "")
-        assert located(copy.found("attributes.csv"), row, column)
-
-
-def test_a_study_stands_for_one_of_its_methods_at_least(copy: Any) -> None:
-    rows = copy.rows("roles")
-    at = [i for i, c in enumerate(rows, 1) if c[0] == "Faizullin2017"]
-    for row in at:
-        copy.set("roles", row, "role", "compared")
-    assert not copy.found("roles.csv")  # ECM, whose role is not known, is left
-    copy.edit(
-        "roles", lambda r: r.append(["Faizullin2017", "model", "ECM", "compared", "title", "", "x"])
-    )
-    assert any("compared every model" in p.message for p in copy.found("roles.csv"))
-
-
-def test_sensors_of_a_study_use_all_its_detectors_and_masks(copy: Any) -> None:
-    copy.set("architectures", 3, "mask", "N-Slit")  # PVA + N-Slit, and no maskless sensor
-    assert any("'Maskless' on none" in p.message for p in copy.found("architectures.csv"))
-
-
 def test_doi_and_year_syntax_are_checked(copy: Any) -> None:
     dois = ["doi:10.1109/x", "https://doi.org/10.1109/x", "11.1109/x", "10.1109/", "10.1109/a b"]
     years = ["1999", "14", "20l4", "2014.5", "03000"]

@@ -229,3 +229,35 @@ def test_a_file_that_is_no_table_of_studies_is_refused(copy, tmp_path, content):
     assert shown.exit_code == 1
     assert shown.stderr.count("\n") == 1
     assert detectors(copy, "Chang2008") == detectors(OURS, "Chang2008")
+
+
+def test_a_bibliography_is_shown_and_then_taken_over(copy, tmp_path):
+    bib = tmp_path / "refs.bib"
+    bib.write_text("@article{Fan2017, author={Q. Fan}, title={A title}, year={2017}}\n", "utf-8")
+    before = (copy / "studies.csv").read_bytes()
+    shown = survey("import", "--bibliography", bib, "--data", copy)
+    assert shown.exit_code == 0
+    assert "Nothing written; --apply writes 3 cells and 1 identities." in shown.stdout
+    assert (copy / "studies.csv").read_bytes() == before
+    plan = json.loads(
+        survey("import", "--bibliography", bib, "--data", copy, "--format", "json").stdout
+    )
+    assert [d["column"] for d in plan["differences"]] == ["title", "authors", "type"]
+    assert len(plan["missing"]) == 128
+    assert "written." in survey("import", "--bibliography", bib, "--data", copy, "--apply").stdout
+    again = survey("import", "--bibliography", bib, "--data", copy, "--apply")
+    assert "Nothing written." in again.stdout
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        (),
+        ("table.csv", "--bibliography", "refs.bib"),
+        ("--bibliography", "refs.bib", "--sheet", "a"),
+    ],
+)
+def test_an_import_is_of_one_thing(arguments):
+    shown = survey("import", *arguments)
+    assert shown.exit_code == 2
+    assert shown.stdout == ""

@@ -133,6 +133,7 @@ def test_an_unknown_name_raises_with_the_nearest(parts, argument, given, nearest
 
 
 def test_architectures_and_their_datasets(parts):
-    assert plan.architectures(parts=parts) == {("PD", "Maskless")}
-    assert plan.datasets_for("PD", "Maskless", parts=parts) == ("fake-diodes",)
-    assert plan.datasets_for("CMOS", "Maskless", parts=parts) == ()
+    found = plan.scorable(parts=parts)
+    assert set(found) == {("PD", "Maskless")}
+    planned = {(cell.extractor, cell.model) for cell in plan.cells(parts=parts)}
+    assert found["PD", "Maskless"] == dict.fromkeys(planned, ("fake-diodes",))
