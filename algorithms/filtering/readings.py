@@ -7,7 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
-from algorithms.calibration.blocks import folds
+from algorithms.calibration.blocks import between_poses, folds
 from algorithms.calibration.orders import chosen, errors_of_orders
 from algorithms.calibration.quality import Setting
 from algorithms.contract import Floats, UnusableDataError
@@ -194,11 +194,11 @@ class SpotReadings:
         warmth = known[:, 6] - middle
         beta, alpha = sun[:, 0] / sun[:, 2], sun[:, 1] / sun[:, 2]
         powers = [(order - j, j) for order in range(_HIGHEST + 1) for j in range(order + 1)]
-        columns = [warmth, warmth * beta, warmth * alpha]
-        columns += [beta**i * alpha**j for i, j in powers]
         sizes = [3 + (order + 1) * (order + 2) // 2 for order in range(1, _HIGHEST + 1)]
-        design = np.column_stack(columns)
-        errors = errors_of_orders(design, sizes, spots, folds(sun))
+        at = np.column_stack([beta, alpha, warmth])
+        design = _spot_terms(at, powers)
+        between = _spot_terms(between_poses(sun, at), powers)
+        errors = errors_of_orders(design, sizes, spots, folds(sun), between)
         size = sizes[chosen(errors, by).order]
         solved, singular = _least_squares(design[:, :size], spots)
         if not singular[-1] > _SMALLEST * singular[0]:
@@ -208,6 +208,13 @@ class SpotReadings:
             )
         found = np.asarray(powers[: size - 3], dtype=np.float64)
         return cls(found, solved[3:].copy(), solved[:3].copy(), middle)
+
+
+def _spot_terms(at: Floats, powers: list[tuple[int, int]]) -> Floats:
+    """(n, 3 + powers) terms of spots at the two tangents of the Sun and the warmth (n, 3)."""
+    beta, alpha, warmth = at.T
+    columns = [warmth, warmth * beta, warmth * alpha]
+    return np.column_stack([*columns, *(beta**i * alpha**j for i, j in powers)])
 
 
 def earth_columns(sun: Floats, nadir: Floats, normal: Floats) -> Floats:

@@ -44,7 +44,7 @@ def in_orbit(
     *,
     name: str,
     version: int,
-    drawn_as: int,
+    drawn_as: int | None = None,
     ground: Preset,
     setups: Mapping[str, Condition],
     attitude: Attitude,

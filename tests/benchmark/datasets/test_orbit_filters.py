@@ -83,9 +83,11 @@ def test_a_version_drawn_as_another_has_its_observations(flown) -> None:
     assert not np.array_equal(own.observations, samples.observations[:50])
 
 
-def test_every_filter_is_planned_on_both_flights_and_nowhere_else() -> None:
+def test_every_filter_is_planned_on_every_flight_and_nowhere_else() -> None:
+    flights = [d for d in datasets.names() if "rate_deg_s" in datasets.get(d).context_columns]
+    assert {"pd-orbit", "ccd-orbit"} <= set(flights)
     planned = {(c.dataset, c.model) for c in cells(models=list(FILTERS))}
-    assert planned == {(d, m) for d in ("pd-orbit", "ccd-orbit") for m in FILTERS}
+    assert planned == {(d, m) for d in flights for m in FILTERS}
     assert {FILTERS[n].about.taxonomy for n in ("assembly-drift", "consider-kalman")} == {
         "ACM",
         "ECM/Noise",
@@ -107,7 +109,9 @@ def test_in_eclipse_no_sun_is_invented_and_in_sunlight_single_samples_are_beaten
         still.fit(calibration.observations, calibration.sun)
         error = separation_deg(found, test.sun)
         single = separation_deg(still.predict(test.observations), test.sun)
-        assert rms(error[~eclipse]) < 0.5 * rms(single[~eclipse]), condition
+        # without the Earth's light a single sample is nearly as good as its noise lets it be
+        share = 0.5 if condition == "nominal" else 1.0
+        assert rms(error[~eclipse]) < share * rms(single[~eclipse]), condition
 
 
 def test_dead_reckoning_through_eclipse_is_as_good_as_it_says(flown) -> None:
