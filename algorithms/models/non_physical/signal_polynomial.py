@@ -10,7 +10,7 @@ from typing import ClassVar, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from algorithms.calibration.blocks import between_poses, folds
+from algorithms.calibration.blocks import folds
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.faces_model import FacesModel
 from algorithms.calibration.orders import chosen, errors_of_orders
@@ -177,8 +177,8 @@ class SignalPolynomial(FacesModel):
         sizes = [int((degrees <= n).sum()) for n in range(1, most + 1)]
         degree, validated = most, None
         if self.degree is None:
-            middles = _scaled(between_poses(sun, features), middle, half)
-            between = _terms(middles, kept_powers)
+            # faces go dark between poses, where the middle of two readings is no reading at all
+            between = design[:0]
             choice = chosen(errors_of_orders(design, sizes, sun, folds(sun), between), by)
             degree, validated = choice.order + 1, float(np.degrees(choice.rms))
         size = sizes[degree - 1]

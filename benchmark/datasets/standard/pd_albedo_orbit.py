@@ -17,7 +17,7 @@ _FLOWN = in_orbit(
     setups=photodiodes_aloft(_GROUND, PHOTODIODES),
     attitude=Tumble(24.0, nutation_deg=24.0, precession_deg_s=0.2531, inertia_ratio=0.75),
     step_s=30.0,
-    follows=("Soken2023", "Sozen2021"),
+    follows=(),
     description=(
         "The four photodiodes of qpd-maskless-pyramid flown on a sun-synchronous orbit of 600 km, "
         "on a satellite whose nutation takes the Sun from the boresight to 48 deg and back in 24 "
