@@ -57,7 +57,7 @@ hits = sum(sum(one.cache_hits.values()) for one in stats)
 misses = sum(sum(one.cache_misses.values()) for one in stats)
 print(json.dumps([hits, misses]))
 """
-    assert run(ahead, tmp_path) == "2\n"  # a data set and an extractor
+    assert run(ahead, tmp_path) == "3\n"  # a data set, an extractor and a model
     hits, misses = json.loads(run(later, tmp_path))
     assert hits > 3
     assert misses == 0
