@@ -72,6 +72,8 @@ _SERIES_OF: Mapping[Observation, tuple[str, ...]] = MappingProxyType(
 _READINGS_OF: Mapping[FeatureKind, tuple[str, ...]] = MappingProxyType(
     {FeatureKind.BALANCE: ("quadrants",), FeatureKind.SIGNALS: ("faces",)}
 )
+#: What is no estimate of a place: lists of spots, readings of pixels.
+_UNMEASURED = frozenset({FeatureKind.SPOTS, FeatureKind.SIGNALS})
 
 
 @dataclass(frozen=True, order=True)
@@ -143,6 +145,8 @@ def _series_names(extractor: type[Extractor]) -> tuple[str, ...]:
         return _FRAMES_OF[extractor.about.taxonomy]
     if extractor.about.observation is Observation.CURRENTS:
         return _READINGS_OF.get(extractor.about.kind, ())
+    if extractor.about.kind in _UNMEASURED:
+        return ()
     return _SERIES_OF[extractor.about.observation]
 
 
