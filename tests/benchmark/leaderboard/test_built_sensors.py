@@ -41,17 +41,24 @@ def test_accuracy_is_ten_to_sixty_times_worse_than_precision() -> None:
 
     Of the middle of the data sets; single ones are out on either side, which are counted.
     """
-    ratios = [row["p997_deg"] / row["repeatability_deg"] for row in leaders().values()]
+    answered = [row for row in leaders().values() if row["repeatability_deg"] is not None]
+    assert len(answered) >= 0.9 * len(leaders())  # a filter gives no two answers to one pose
+    ratios = [row["p997_deg"] / row["repeatability_deg"] for row in answered]
     assert 10.0 <= median(ratios) <= 60.0
     assert sum(10.0 <= ratio <= 60.0 for ratio in ratios) >= len(ratios) / 2
 
 
 def test_errors_are_not_below_what_the_calibration_is_wrong_by() -> None:
-    """Best ones come near the bench's 0.016 deg, of one bench that was drawn within it."""
+    """Best ones come near the bench's 0.016 deg, of one bench that was drawn within it.
+
+    A bench is wrong about two axes at random: one in ten is three times better than it should be.
+    """
+    shares = []
     for row in leaders().values():
         preset = datasets.get(row["dataset"])
-        error = preset.reference_error_deg(row["condition"])
-        assert row["rms_deg"] > error / 3.0
+        shares.append(row["rms_deg"] / preset.reference_error_deg(row["condition"]))
+    assert sum(share < 1.0 / 3.0 for share in shares) <= len(shares) / 10
+    assert median(shares) > 0.5
 
 
 def growth(row: Mapping[str, Any]) -> float:

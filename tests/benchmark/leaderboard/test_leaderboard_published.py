@@ -48,9 +48,18 @@ def rms(store, **where):
 
 
 def beaten(store):
-    """Rows that lie below the Cramer-Rao bound by more than chance allows."""
+    """Rows that lie below the Cramer-Rao bound by more than chance allows.
+
+    It bounds what a single sample tells: filters, which know those before, are not held to it.
+    """
+    models = installed().models
+    filters = {name for name, model in models.items() if getattr(model, "sequential", False)}
     # a single sample has a ratio but no standard error, and so says nothing here
-    scored = [row for row in store.query(status="ok") if row["over_bound_se"] is not None]
+    scored = [
+        row
+        for row in store.query(status="ok")
+        if row["over_bound_se"] is not None and row["model"] not in filters
+    ]
     assert scored
     return [
         (row["dataset"], row["condition"], row["extractor"], row["model"], row["over_bound"])
@@ -74,7 +83,7 @@ def test_the_record_is_of_the_code_as_it_is(published):
 
 
 def test_it_is_small_and_holds_nothing_that_can_be_derived():
-    assert sum(path.stat().st_size for path in files()) < 2e6
+    assert sum(path.stat().st_size for path in files()) < 2.5e6
     tables = {f"scores/{cell.dataset}.csv" for cell in plan.cells()}
     names = {path.relative_to(PUBLISHED).as_posix() for path in files()}
     assert names == {
