@@ -7,15 +7,8 @@ from benchmark.datasets.conditions.many_spots import behind, many_spots
 from benchmark.datasets.conditions.pixel_arrays import cmos
 from benchmark.simulator.masks.coded_groups import oblique_coded
 
-_ORDERS = (
-    (2, 0, 3, 1, 4),
-    (0, 2, 4, 1, 3),
-    (1, 4, 2, 0, 3),
-    (3, 1, 0, 4, 2),
-    (4, 2, 0, 3, 1),
-    (1, 3, 0, 2, 4),
-    (3, 0, 4, 2, 1),
-)
+_WORDS = ("20314", "02413", "14203", "31042", "42031", "13024", "30421")
+_ORDERS = tuple(tuple(int(place) for place in word) for word in _WORDS)
 _MASK = oblique_coded(_ORDERS, pitch_mm=1.86, cell_mm=0.14, diameter_mm=0.066, thickness_mm=0.01)
 
 PRESET = many_spots(

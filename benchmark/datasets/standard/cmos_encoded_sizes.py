@@ -8,16 +8,9 @@ from benchmark.datasets.fields import AngleField
 from benchmark.simulator.masks.coded import subfield_pitch_mm
 from benchmark.simulator.masks.coded_groups import spacing_and_size_coded
 
-_MASK = spacing_and_size_coded(
-    13,
-    pitch_mm=subfield_pitch_mm(13, 60.0, 4.5),
-    narrow_mm=0.105,
-    wide_mm=0.15,
-    first_mm=0.46,
-    step_mm=0.02,
-    focal_length_mm=4.5,
-    thickness_mm=0.01,
-)
+_GROUP = {"narrow_mm": 0.105, "wide_mm": 0.15, "first_mm": 0.46, "step_mm": 0.02}
+_PLACES = {"pitch_mm": subfield_pitch_mm(13, 60.0, 4.5), "focal_length_mm": 4.5}
+_MASK = spacing_and_size_coded(13, **_GROUP, **_PLACES, thickness_mm=0.01)
 
 PRESET = many_spots(
     name="cmos-encoded-sizes",

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from fractions import Fraction
+from itertools import pairwise
 from pathlib import Path
 from urllib.parse import urlsplit
 from urllib.request import urlopen
@@ -9,6 +12,7 @@ from urllib.request import urlopen
 import pytest
 from playwright.sync_api import Route, expect
 
+from registry.studies import facts
 from tests.api.page.visiting import NARROW, PATIENCE_MS, Visit, get_json, tab_to
 
 pytestmark = pytest.mark.slow
@@ -76,9 +80,9 @@ def test_a_click_on_a_node_requires_its_value_and_another_takes_it_back(wide: Vi
         wide.settle()
 
 
-def test_fractional_counts_of_the_page_are_those_of_the_service(wide: Visit) -> None:
+def test_fractional_counts_of_the_page_share_each_study_among_its_paths(wide: Visit) -> None:
+    """Once for each combination of its groups; the survey's charts count compared methods, too."""
     page = wide.go("/?counting=fractional&view=table")
-    flow = get_json(f"{wide.address}/v1/flows/cross-analysis?counting=fractional&grouped=true")
     drawn = page.evaluate(
         """async () => {
             const data = await import('/page/flow_data.js');
@@ -93,11 +97,25 @@ def test_fractional_counts_of_the_page_are_those_of_the_service(wide: Visit) -> 
             return data.fractional(data.grouped(all, words), answer.paths, words);
         }"""
     )
+    group, combinations = facts().taxonomy.category, {}
+    for path in get_json(f"{wide.address}/v1/recommendations?limit=500")["paths"]:
+        values = (
+            *(f"{level}:{path[level]}" for level in ("task", "detector", "mask")),
+            f"model_category:{group('model', path['model'])}",
+            f"extractor_family:{group('extractor', path['extractor'])}",
+        )
+        for key in path["studies"]:
+            combinations.setdefault(key, set()).add(values)
+    nodes, links = Counter(), Counter()
+    for shares in combinations.values():
+        for values in shares:
+            nodes.update(dict.fromkeys(values, Fraction(1, len(shares))))
+            links.update(dict.fromkeys(pairwise(values), Fraction(1, len(shares))))
     assert {n["id"]: n["amount"] for n in drawn["nodes"]} == pytest.approx(
-        {n["id"]: n["count"] for n in flow["nodes"]}
+        {name: float(amount) for name, amount in nodes.items()}
     )
     assert {(k["source"], k["target"]): k["value"] for k in drawn["links"]} == pytest.approx(
-        {(k["source"], k["target"]): k["value"] for k in flow["links"]}
+        {ends: float(amount) for ends, amount in links.items()}
     )
 
 
