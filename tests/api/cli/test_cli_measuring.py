@@ -1,11 +1,13 @@
 """`sunatlas run`, `benchmark` and `leaderboard`: measured once, read afterwards, checked."""
 
 import csv
+import importlib
 import io
 import json
 import re
 import shutil
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from typer.testing import CliRunner
@@ -22,7 +24,7 @@ from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import times
 from benchmark.running.run import RunInterruptedError, stale
 from registry.catalogue import catalogue
-from registry.resolution import resolve
+from registry.resolution import Gap, Resolution, resolve
 
 CHEAP = ("--dataset", "pd-maskless-cube", "--condition", "nominal", "--model", "basic")
 
@@ -111,6 +113,20 @@ def test_the_formats_say_the_same(unpublished):
 
 
 @pytest.mark.slow
+def test_a_study_of_which_nothing_runs_says_why_and_fails(unpublished, monkeypatch):
+    """None of today's: the resolution is a stand-in."""
+    nothing = Resolution("Allgeier2009", "none", (), (Gap("model", "Basic", "not there"),))
+    known = SimpleNamespace(resolutions={"Allgeier2009": nothing})
+    module = importlib.import_module("api.cli.commands.run")
+    monkeypatch.setattr(module, "knowledge", lambda: known)
+    shown = sunatlas("run", "Allgeier2009", "--format", "json")
+    assert shown.exit_code == 1
+    found = json.loads(shown.stdout)
+    assert found["scores"] == []
+    assert found["gaps"]
+    assert "nothing of" in shown.stderr
+
+
 def test_something_of_every_study_runs():
     assert json.loads(sunatlas("studies", "--state", "none", "--format", "json").stdout) == []
 
