@@ -25,7 +25,7 @@ from algorithms.models.non_physical.fourier_balance import MAX_HARMONICS
 from algorithms.models.non_physical.polynomial import MAX_DEGREE
 from algorithms.models.non_physical.signal_polynomial import MAX_DEGREE as MAX_SIGNAL_DEGREE
 from algorithms.pipeline import extracted
-from benchmark.contract import Cell, Preset
+from benchmark.contract import Cell, Preset, UnknownNameError
 from benchmark.plan.combinations import cells
 from benchmark.plan.parts import installed
 
@@ -170,4 +170,7 @@ def main(names: Sequence[str]) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    try:
+        sys.exit(main(sys.argv[1:]))
+    except UnknownNameError as error:
+        sys.exit(f"{__spec__.name if __spec__ else sys.argv[0]}: {error}")
