@@ -1,52 +1,46 @@
-"""Measured performance as the registry sees it: rows handed in by whoever measured."""
+"""Measured performance as the registry sees it: pipelines handed in by whoever measured."""
 
 from __future__ import annotations
 
-import dataclasses
 import math
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+
+from registry.requirements import Requirements
 
 _NUMBERS = (
-    *("rms_deg", "bound_deg", "over_bound", "half_fov_deg", "latency_us"),
+    *("rms_deg", "bound_deg", "over_bound", "repeatability_deg"),
     *("availability", "false_sun"),
 )
 
-Route = tuple[str, str, str, str]  # (detector, mask, extractor value, model value)
-
 
 @dataclass(frozen=True)
-class Measured:
-    """The score of one pipeline on one dataset under one condition.
+class Score:
+    """The score of one pipeline under one condition of a data set.
 
     Numbers are None where not measured; NaN and infinities are taken as None.
 
     Attributes
     ----------
-    half_fov_deg
-        Half the field of view of the dataset.
     availability, false_sun
         Answered shares of the samples whose direction is observable, and of the others.
     available
-        Whether it answers often enough to be judged by its error.
+        Whether it answers often enough to be judged by its error over the whole field.
+    cones
+        Half angle of a cone about the boresight, in degrees and ascending, and the RMS error over
+        it; None where it does not answer often enough in all of the cone.
     """
 
-    dataset: str
     condition: str
-    detector: str
-    mask: str
-    extractor: str
-    extractor_taxonomy: str
-    model: str
-    model_taxonomy: str
     rms_deg: float | None
     bound_deg: float | None = None
     over_bound: float | None = None
-    half_fov_deg: float | None = None
-    latency_us: float | None = None
+    repeatability_deg: float | None = None
     availability: float | None = None
     false_sun: float | None = None
     available: bool = True
+    cones: tuple[tuple[float, float | None], ...] = ()
 
     def __post_init__(self) -> None:
         for name in _NUMBERS:
@@ -54,51 +48,156 @@ class Measured:
             if value is not None and not math.isfinite(value):
                 object.__setattr__(self, name, None)
 
+    def over(self, half_field_deg: float | None) -> tuple[float | None, float]:
+        """Return the half field that an error holds over, and the error; infinite where none does.
+
+        The field is the narrowest cone with an error that holds the one asked for, or the whole
+        field of the data set, given as None: where no field is asked for, and where no cone has
+        an error, too few samples being in it, but the whole field is wide enough.
+        """
+        if half_field_deg is not None:
+            for half, error in self.cones:
+                if half >= half_field_deg and error is not None:
+                    return half, error
+            if not self.cones or self.cones[-1][0] < half_field_deg:
+                return None, math.inf
+        if not self.available or self.rms_deg is None:
+            return None, math.inf
+        return None, self.rms_deg
+
     def to_dict(self) -> dict[str, object]:
-        """Return the row as in the HTTP answer."""
+        """Return the score as in the HTTP answer."""
+        return {name: getattr(self, name) for name in ("condition", *_NUMBERS)}
+
+
+@dataclass(frozen=True)
+class Judged:
+    """What a pipeline is judged by: its largest error over the field and conditions asked for.
+
+    Attributes
+    ----------
+    error_deg
+        Infinite where it does not answer often enough, or does not have the field.
+    condition
+        Where that error was measured.
+    field_deg
+        Full field that it holds over.
+    """
+
+    error_deg: float
+    condition: str
+    field_deg: float | None
+
+
+@dataclass(frozen=True)
+class Measured:
+    """One pipeline on one data set, under all of its conditions.
+
+    Attributes
+    ----------
+    extractor_taxonomy, stages
+        Values of the taxonomy: the extractor's; those of the compensations, if any, and of the
+        model, which is last.
+    half_fov_deg
+        Half the field of view of the data set.
+    nominal
+        Score under the first condition of the data set.
+    hazards
+        What a sensor may have to survive (`registry.requirements.HAZARDS`) -> the scores under
+        the conditions of this data set that try it. One without a condition is absent.
+    unit_rms_deg
+        Errors of further units of the sensor, under the first condition.
+    """
+
+    dataset: str
+    detector: str
+    mask: str
+    extractor: str
+    extractor_taxonomy: str
+    model: str
+    stages: tuple[str, ...]
+    nominal: Score
+    hazards: Mapping[str, tuple[Score, ...]] = field(default_factory=dict, hash=False)
+    half_fov_deg: float | None = None
+    latency_us: float | None = None
+    unit_rms_deg: tuple[float, ...] = ()
+
+    def judged(self, hazards: Iterable[str] = (), half_field_deg: float | None = None) -> Judged:
+        """Return the largest error, nominal and under every hazard, over a field.
+
+        A hazard that no condition tries has no error here: ask `tried` first.
+        """
+        scores = [self.nominal, *(s for name in hazards for s in self.hazards.get(name, ()))]
+        worst: tuple[float | None, float] = scores[0].over(half_field_deg)
+        condition = scores[0].condition
+        for score in scores[1:]:
+            found = score.over(half_field_deg)
+            if found[1] > worst[1]:
+                worst, condition = found, score.condition
+        half = self.half_fov_deg if worst[0] is None else worst[0]
+        return Judged(worst[1], condition, None if half is None else 2 * half)
+
+    def tried(self, hazard: str) -> bool:
+        """Say whether a condition of the data set tries a hazard."""
+        return bool(self.hazards.get(hazard))
+
+    def availability(self, hazards: Iterable[str] = ()) -> float | None:
+        """Return the least answered share, nominal and under every hazard; None if one is unknown.
+
+        A refused run answers nothing.
+        """
+        scores = [self.nominal, *(s for name in hazards for s in self.hazards.get(name, ()))]
+        shares = [0.0 if s.rms_deg is None else s.availability for s in scores]
+        known = [share for share in shares if share is not None]
+        return min(known) if len(known) == len(shares) else None
+
+    def to_dict(self, requirements: Requirements) -> dict[str, object]:
+        """Return the pipeline as in the HTTP answer, judged by the requirements."""
+        judged = self.judged(requirements.survive, requirements.half_field_deg)
+        units = [e for e in (self.nominal.rms_deg, *self.unit_rms_deg) if e is not None]
         return {
             "dataset": self.dataset,
-            "condition": self.condition,
             "extractor": self.extractor,
             "model": self.model,
-            "rms_deg": self.rms_deg,
-            "bound_deg": self.bound_deg,
-            "over_bound": self.over_bound,
-            "half_fov_deg": self.half_fov_deg,
+            "error_deg": _finite(judged.error_deg),
+            "condition": judged.condition,
+            "field_deg": judged.field_deg if math.isfinite(judged.error_deg) else None,
+            "nominal_deg": _finite(self.nominal.over(requirements.half_field_deg)[1]),
+            "nominal": self.nominal.to_dict(),
+            "conditions": {
+                score.condition: _finite(score.over(requirements.half_field_deg)[1])
+                for name in requirements.survive
+                for score in self.hazards.get(name, ())
+            },
+            "fov_deg": None if self.half_fov_deg is None else 2 * self.half_fov_deg,
+            "availability": self.availability(requirements.survive),
             "latency_us": self.latency_us,
-            "availability": self.availability,
-            "false_sun": self.false_sun,
+            "units": {"count": len(units), "least_deg": min(units), "largest_deg": max(units)}
+            if units
+            else None,
         }
 
 
-class Measurements:
-    """Rows by route, best first; build once and hand in many times.
+def _finite(number: float) -> float | None:
+    return number if math.isfinite(number) else None
 
-    Best is the most accurate; those that do not answer often enough come behind all others.
+
+class Measurements:
+    """Pipelines that were measured; build once and hand in many times.
 
     Parameters
     ----------
     rows : iterable of Measured
-        Rows without an RMS error (failed runs) are left out.
+        Those that failed under the first condition are left out.
     """
 
     def __init__(self, rows: Iterable[Measured] = ()) -> None:
-        by_route: dict[Route, list[tuple[bool, float, Measured]]] = {}
-        for row in rows:
-            if row.rms_deg is not None:
-                route = (row.detector, row.mask, row.extractor_taxonomy, row.model_taxonomy)
-                by_route.setdefault(route, []).append((not row.available, row.rms_deg, row))
-        self._by_route: dict[Route, tuple[Measured, ...]] = {}
-        for route, found in by_route.items():
-            found.sort(key=lambda item: (*item[:2], _identity(item[2])))
-            self._by_route[route] = tuple(row for *_, row in found)
-
-    def on(self, route: Route) -> tuple[Measured, ...]:
-        """Return the rows of a route, best first."""
-        return self._by_route.get(route, ())
-
-
-def _identity(row: Measured) -> tuple[str, ...]:
-    return tuple(
-        str(getattr(row, f.name)) for f in dataclasses.fields(row) if f.name not in _NUMBERS
-    )
+        kept = [row for row in rows if row.nominal.rms_deg is not None]
+        kept.sort(key=lambda r: (r.dataset, r.extractor, r.model))
+        self.rows: tuple[Measured, ...] = tuple(kept)
+        by: dict[tuple[str, str], list[Measured]] = {}
+        for row in kept:
+            by.setdefault((row.detector, row.mask), []).append(row)
+        self.by_architecture: Mapping[tuple[str, str], tuple[Measured, ...]] = MappingProxyType(
+            {pair: tuple(found) for pair, found in by.items()}
+        )

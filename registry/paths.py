@@ -1,25 +1,22 @@
 """The table of paths: every task > detector > mask > model > extractor that studies took.
 
-Built once from the facts. Study sets are integers, one bit a study, so that meeting a requirement
-is an intersection and a count.
+Built once from the facts. Study sets are integers, one bit a study.
 """
 
 from __future__ import annotations
 
 import itertools
-import math
 import weakref
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple, TypeVar
 
+from registry.designs import Design
 from registry.flows import LeftOut, Link, Node
-from registry.measured import Measured, Measurements, Route
-from registry.requirements import LIMITS, Requirements
+from registry.judging import Question
+from registry.ranking import Place
 from registry.studies import Facts, Study
-from registry.taxonomy import ATTRIBUTES
 
 PATH_LEVELS = ("task", "detector", "mask", "model", "extractor")
-STUDY_ATTRIBUTES = tuple(a for a in ATTRIBUTES if a not in PATH_LEVELS)
 
 _MOST_KEPT = 4096
 
@@ -27,21 +24,19 @@ Key = TypeVar("Key")
 Made = TypeVar("Made")
 
 
-class Answer(NamedTuple):
-    """One path that meets the requirements, its studies as bits, and on what evidence.
+class StudyPath(NamedTuple):
+    """A path that studies behind an answer took; ``studies`` are those that meet it."""
 
-    ``architecture``, ``with_model`` and ``studies`` are the studies that took the path as far as
-    its mask, its model, and all along, each less those that do not meet the requirements;
-    ``backing`` is the product of their numbers.
-    """
+    task: str
+    detector: str
+    mask: str
+    model: str
+    extractor: str
+    studies: tuple[str, ...]
 
-    path: int
-    architecture: int
-    with_model: int
-    studies: int
-    backing: int
-    measured: Measured | None
-    basis: tuple[tuple[str, str], ...]  # (limit, "measured" | "stated")
+    def to_dict(self) -> dict[str, object]:
+        """Return the path as in the HTTP answer."""
+        return {**self._asdict(), "studies": list(self.studies)}
 
 
 class PathTable:
@@ -55,41 +50,28 @@ class PathTable:
     def __init__(self, facts: Facts) -> None:
         self.taxonomy = facts.taxonomy
         self.keys = facts.keys
-        self.everyone = (1 << len(self.keys)) - 1
-        self.having: dict[tuple[str, str], int] = {}
         took: dict[tuple[str, ...], int] = {}
         missing: dict[str, list[str]] = {}
-        self.numbers: dict[str, tuple[float | None, ...]] = {
-            "max_error_deg": tuple(s.number("accuracy_deg") for s in facts.studies.values()),
-            "min_fov_deg": tuple(s.number("fov_deg") for s in facts.studies.values()),
-            "max_latency_us": (None,) * len(self.keys),  # no study's latency is in the mapping
-        }
         for at, study in enumerate(facts.studies.values()):
             bit = 1 << at
-            for attribute in ATTRIBUTES:
-                for value in study.of(attribute):
-                    self.having[attribute, value] = self.having.get((attribute, value), 0) | bit
             for level in PATH_LEVELS:
                 if not study.of(level):
                     missing.setdefault(level, []).append(study.key)
             for path in _paths_of(study):
-                for end in range(3, len(PATH_LEVELS) + 1):
-                    took[path[:end]] = took.get(path[:end], 0) | bit
+                took[path] = took.get(path, 0) | bit
         order = [{v: i for i, v in enumerate(self.taxonomy.values(a))} for a in PATH_LEVELS]
         self.paths: tuple[tuple[str, ...], ...] = tuple(
-            sorted(
-                (path for path in took if len(path) == len(PATH_LEVELS)),
-                key=lambda path: [order[i][v] for i, v in enumerate(path)],
-            )
+            sorted(took, key=lambda path: [order[i][v] for i, v in enumerate(path)])
         )
-        self.all_paths = (1 << len(self.paths)) - 1
-        self.sets = [(took[p[:3]], took[p[:4]], took[p]) for p in self.paths]
-        self.routes: list[Route] = [(p[1], p[2], p[4], p[3]) for p in self.paths]
+        self.sets = tuple(took[path] for path in self.paths)
+        self._on: dict[tuple[str, str, str], list[int]] = {}
+        for at, (_, detector, mask, _, extractor) in enumerate(self.paths):
+            self._on.setdefault((detector, mask, extractor), []).append(at)
+        # Paths of a design, found when it is first asked for.
+        self._paths_of: weakref.WeakKeyDictionary[Design, tuple[int, ...]] = (
+            weakref.WeakKeyDictionary()
+        )
         self._lay_out(order)
-        self.through: dict[tuple[str, str], int] = {}
-        for at, path in enumerate(self.paths):
-            for step in zip(PATH_LEVELS, path, strict=True):
-                self.through[step] = self.through.get(step, 0) | 1 << at
         self.left_out = tuple(
             LeftOut(lv, tuple(missing[lv])) for lv in PATH_LEVELS if lv in missing
         )
@@ -154,85 +136,61 @@ class PathTable:
             _keep(self._links_of, (at, bits), found)
         return found
 
-    def meeting(self, requirements: Requirements, measurements: Measurements) -> list[Answer]:
-        """Return the paths that meet `requirements`, in taxonomy order.
+    def taken(self, question: Question, places: Iterable[Place]) -> dict[int, int]:
+        """Return the paths that lead to the designs of an answer, each with its studies (bits).
 
-        A limit is judged on the path's measured rows; on the studies' stated numbers for what no
-        row measures. What is neither measured nor stated does not meet a limit.
+        A study counts that meets what is asked; where a design is not measured, one whose stated
+        numbers keep the limits.
         """
-        studies = self.meeting_studies(requirements)
-        limits = [
-            (name, bound) for name in LIMITS if (bound := requirements.limit(name)) is not None
-        ]
-        stated = {name: self.stated_within(name, bound) for name, bound in limits}
-        answers = []
-        for at in positions(self.meeting_paths(requirements)):
-            architecture, with_model, taken = self.sets[at]
-            if not taken & studies:
-                continue
-            for row in measurements.on(self.routes[at]) or (None,):
-                kept = studies
-                basis: list[tuple[str, str]] = []
-                for name, bound in limits:
-                    number = None if row is None else measured_number(name, row)
-                    if number is None:
-                        kept &= stated[name]
-                        basis.append((name, "stated"))
-                    elif within(name, number, bound):
-                        basis.append((name, "measured"))
-                    else:
-                        kept = 0
-                        break
-                if taken & kept:
-                    sets = (architecture & kept, with_model & kept, taken & kept)
-                    backing = sets[0].bit_count() * sets[1].bit_count() * sets[2].bit_count()
-                    answers.append(Answer(at, *sets, backing, row, tuple(basis)))
-                    break
-        return answers
-
-    def meeting_paths(self, requirements: Requirements) -> int:
-        """Return the paths (bits) whose own values are asked for and not excluded."""
-        kept = self.all_paths
-        for attribute in PATH_LEVELS:
-            if attribute in requirements.include:
-                kept &= self.any_path(attribute, requirements.include[attribute])
-            if attribute in requirements.exclude:
-                kept &= ~self.any_path(attribute, requirements.exclude[attribute])
-        return kept
-
-    def meeting_studies(self, requirements: Requirements) -> int:
-        """Return the studies (bits) whose error and accuracy are asked for and not excluded."""
-        kept = self.everyone
-        for attribute in STUDY_ATTRIBUTES:
-            if attribute in requirements.include:
-                kept &= self.any_study(attribute, requirements.include[attribute])
-            if attribute in requirements.exclude:
-                kept &= ~self.any_study(attribute, requirements.exclude[attribute])
-        return kept
-
-    def any_path(self, attribute: str, values: Iterable[str]) -> int:
-        """Return the paths (bits) through one of the values or their kinds."""
-        found = 0
-        for value in values:
-            for kind in self.taxonomy.kinds(attribute, value):
-                found |= self.through.get((attribute, kind), 0)
+        include, exclude = question.asked.include, question.asked.exclude
+        tasks = set(include.get("task", self.taxonomy.values("task")))
+        tasks -= set(exclude.get("task", ()))
+        found: dict[int, int] = {}
+        for place, designs in places:
+            for kept in designs:
+                if not kept.design.taken:
+                    continue
+                meeting = place.studies if kept.row else place.stated
+                for at in self._of(kept.design):
+                    studies = self.sets[at] & meeting
+                    if studies and self.paths[at][0] in tasks:
+                        found[at] = found.get(at, 0) | studies
         return found
 
-    def any_study(self, attribute: str, values: Iterable[str]) -> int:
-        """Return the studies (bits) having one of the values or their kinds."""
-        found = 0
-        for value in values:
-            for kind in self.taxonomy.kinds(attribute, value):
-                found |= self.having.get((attribute, kind), 0)
+    def _of(self, design: Design) -> tuple[int, ...]:
+        found = self._paths_of.get(design)
+        if found is None:
+            on = self._on.get((*design.architecture, design.extractor), ())
+            kinds = self.taxonomy.kinds
+            found = self._paths_of[design] = tuple(
+                at
+                for at in on
+                if not set(kinds("model", self.paths[at][3])).isdisjoint(design.stages)
+            )
         return found
 
-    def stated_within(self, limit: str, bound: float) -> int:
-        """Return the studies (bits) whose stated number keeps a limit."""
-        found = 0
-        for at, number in enumerate(self.numbers[limit]):
-            if number is not None and within(limit, number, bound):
-                found |= 1 << at
-        return found
+    def study_paths(self, taken: Mapping[int, int]) -> tuple[StudyPath, ...]:
+        """Return paths with their studies, in the order of the taxonomy."""
+        return tuple(
+            StudyPath(task, detector, mask, model, extractor, self.studies(taken[at]))
+            for at in sorted(taken)
+            for task, detector, mask, model, extractor in (self.paths[at],)
+            for task, detector, mask, model, extractor in (self.paths[at],)
+        )
+
+    def narrowed(self, taken: Mapping[int, int]) -> tuple[tuple[Node, ...], tuple[Link, ...]]:
+        """Return nodes and links of paths, with the studies that took them."""
+        node_bits = [0] * len(self.nodes)
+        link_bits = [0] * len(self.links)
+        for at, studies in taken.items():
+            for node in self.nodes_on[at]:
+                node_bits[node] |= studies
+            for link in self.links_on[at]:
+                link_bits[link] |= studies
+        return (
+            tuple(self.node(at, bits) for at, bits in enumerate(node_bits) if bits),
+            tuple(self.link(at, bits) for at, bits in enumerate(link_bits) if bits),
+        )
 
 
 def _paths_of(study: Study) -> Iterator[tuple[str, ...]]:
@@ -266,20 +224,3 @@ def positions(bits: int) -> Iterator[int]:
         lowest = bits & -bits
         yield lowest.bit_length() - 1
         bits ^= lowest
-
-
-def measured_number(limit: str, row: Measured) -> float | None:
-    """Return what a row measured of the quantity a limit is about.
-
-    Of a pipeline that does not answer often enough the error keeps no limit: it is infinite.
-    """
-    if limit == "max_error_deg":
-        return row.rms_deg if row.available else math.inf
-    if limit == "min_fov_deg":
-        return None if row.half_fov_deg is None else 2 * row.half_fov_deg
-    return row.latency_us
-
-
-def within(limit: str, number: float, bound: float) -> bool:
-    """Return whether a number keeps a limit; a bound itself does."""
-    return number >= bound if limit.startswith("min_") else number <= bound

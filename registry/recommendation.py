@@ -1,38 +1,35 @@
-"""Which sensor and which calibration: the paths studies took, ranked for given requirements.
+"""Which sensor to build, and how to calibrate it: an answer in two levels.
 
-Literature support and measured performance stay two columns. Rank goes by literature support,
-ties by the measured error; the Pareto set says which paths nothing beats in both.
-
-Support of a path is the geometric mean of three numbers of distinct studies: those with its task,
-detector and mask (the architecture), those of them that also used its model, and those of them
-that also used its extractor, the whole path. Each step counts alike, so a path that one study took
-on a well-backed architecture stands above one that nobody came near, and an architecture whose
-studies agree on model and extractor stands above one as large whose studies scatter.
+Architectures (a detector behind a mask) that meet the requirements, and on each its calibrations:
+an extractor, compensations, a model. Three kinds of evidence stay apart: what the survey's text
+advises, what studies proposed, and what is measured here. Where they disagree, the answer says so.
 """
 
 from __future__ import annotations
 
-import operator
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
-from types import MappingProxyType
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 
 from registry import studies as registered
+from registry.contradiction import against_advice, against_literature, regret_words
+from registry.designs import DesignTable, Kept, design_table
 from registry.flows import LeftOut, Link, Node
+from registry.judging import KeptPlace, Question
 from registry.measured import Measured, Measurements
-from registry.paths import Answer, PathTable, measured_number, path_table
+from registry.paths import PathTable, StudyPath, path_table
+from registry.ranking import SORTS, Place, Sort, pareto, ranked, regret, support
 from registry.relaxation import Blocked, Relaxation, explain
-from registry.requirements import LIMITS, Requirements
+from registry.requirements import Requirements
 from registry.studies import Facts
-from registry.taxonomy import InvalidValueError
+from registry.taxonomy import InvalidValueError, unknown_name
 
 __all__ = [
+    "Architecture",
     "Blocked",
-    "Literature",
+    "Calibration",
     "Measured",
     "Measurements",
     "Recommendation",
-    "RecommendedPath",
     "Relaxation",
     "Requirements",
     "recommend",
@@ -40,63 +37,83 @@ __all__ = [
 
 
 @dataclass(frozen=True)
-class Literature:
-    """How the literature backs a path: numbers of distinct studies meeting the requirements."""
+class Calibration:
+    """A calibration on an architecture, with its evidence.
 
-    studies: int  # the whole path
-    with_model: int  # task, detector, mask, model
-    architecture: int  # task, detector, mask
+    ``studies`` extract features so and stand for the stages; ``with_model`` counts those that
+    stand for the stages, ``backing`` is the support (`registry.ranking.support`). ``measured`` is
+    its best measured pipeline that meets the requirements, ``others`` the data sets that it is
+    measured on beside that one's.
+    """
 
-    @property
-    def support(self) -> float:
-        """The geometric mean of the three."""
-        return float((self.studies * self.with_model * self.architecture) ** (1 / 3))
+    rank: int
+    extractor: str
+    compensations: tuple[str, ...]
+    model: str
+    advised: tuple[str, ...]
+    studies: tuple[str, ...]
+    with_model: int
+    backing: float
+    measured: Mapping[str, object] | None
+    others: tuple[Mapping[str, object], ...]
+    basis: Mapping[str, str]
 
-    def to_dict(self) -> dict[str, float]:
-        """Return the counts and the support, rounded to 4 decimals."""
+    def to_dict(self) -> dict[str, object]:
+        """Return the calibration as in the HTTP answer."""
         return {
-            "studies": self.studies,
+            "rank": self.rank,
+            "extractor": self.extractor,
+            "compensations": list(self.compensations),
+            "model": self.model,
+            "advised": list(self.advised),
+            "studies": list(self.studies),
             "with_model": self.with_model,
-            "architecture": self.architecture,
-            "support": round(self.support, 4),
+            "support": round(self.backing, 4),
+            "measured": self.measured,
+            "other_datasets": list(self.others),
+            "basis": dict(self.basis),
         }
 
 
 @dataclass(frozen=True)
-class RecommendedPath:
-    """One ranked path. ``basis`` says on what each numeric requirement was judged.
+class Architecture:
+    """An architecture with its evidence, and its calibrations, best first.
 
-    ``measured`` is the most accurate measured row that meets the numeric requirements, None if
-    the path has not been measured. ``pareto``: no other path has at least its support and at
-    least its measured performance, and one of them better; an unmeasured path counts as worst.
+    ``tasks`` are those its studies had, or it is advised for: their number, and whether it is;
+    ``advice`` is the survey's for what is asked. ``best`` errs least of all its calibrations.
+    ``count`` calibrations meet the requirements, ``calibrations`` are the first of them.
     """
 
     rank: int
-    task: str
     detector: str
     mask: str
-    model: str
-    extractor: str
+    tasks: Mapping[str, tuple[int, bool]]
+    advice: tuple[Mapping[str, str], ...]
     studies: tuple[str, ...]
-    literature: Literature
-    measured: Measured | None
-    basis: Mapping[str, str] = field(hash=False)
+    best: Calibration
     pareto: bool
+    contradiction: str | None
+    count: int
+    calibrations: tuple[Calibration, ...]
 
     def to_dict(self) -> dict[str, object]:
-        """Return the path as in the HTTP answer."""
+        """Return the architecture as in the HTTP answer."""
         return {
             "rank": self.rank,
-            "task": self.task,
             "detector": self.detector,
             "mask": self.mask,
-            "model": self.model,
-            "extractor": self.extractor,
+            "tasks": [
+                {"task": task, "studies": n, "advised": advised}
+                for task, (n, advised) in self.tasks.items()
+            ],
+            "advised": bool(self.advice),
+            "advice": [dict(advice) for advice in self.advice],
             "studies": list(self.studies),
-            "literature": self.literature.to_dict(),
-            "measured": None if self.measured is None else self.measured.to_dict(),
-            "basis": dict(self.basis),
+            "best": self.best.to_dict(),
             "pareto": self.pareto,
+            "contradiction": self.contradiction,
+            "count": self.count,
+            "calibrations": [calibration.to_dict() for calibration in self.calibrations],
         }
 
 
@@ -104,14 +121,23 @@ class RecommendedPath:
 class Recommendation:
     """The answer to requirements.
 
-    ``count`` paths meet them; ``paths`` are the first of them, best first. Nodes and links show
-    all of them with the studies that took them. ``left_out`` lists the studies on no path for
-    want of a value, whatever is required. ``blocked`` explains an empty answer.
+    ``count`` architectures meet them; ``architectures`` are the first of them, best first.
+    ``contradictions`` say where measurement contradicts the survey's advice, ``regret`` by how
+    much the first calibration named errs more than the best one measured. ``untried`` maps a
+    hazard asked for to the architectures that no data set tries it on. Paths, nodes and links
+    show the studies behind the answer; ``left_out`` lists the studies on no path for want of a
+    value, whatever is required. ``blocked`` explains an empty answer.
     """
 
     requirements: Requirements
+    sort: Sort
     count: int
-    paths: tuple[RecommendedPath, ...]
+    designs: int
+    architectures: tuple[Architecture, ...]
+    contradictions: tuple[str, ...]
+    regret: Mapping[str, object] | None
+    untried: Mapping[str, tuple[tuple[str, str], ...]]
+    paths: tuple[StudyPath, ...]
     nodes: tuple[Node, ...]
     links: tuple[Link, ...]
     left_out: tuple[LeftOut, ...]
@@ -121,7 +147,16 @@ class Recommendation:
         """Return the recommendation as in the HTTP answer."""
         return {
             "requirements": self.requirements.to_dict(),
+            "sort": self.sort,
             "count": self.count,
+            "designs": self.designs,
+            "architectures": [architecture.to_dict() for architecture in self.architectures],
+            "contradictions": list(self.contradictions),
+            "regret": self.regret,
+            "untried": {
+                hazard: [{"detector": d, "mask": m} for d, m in pairs]
+                for hazard, pairs in self.untried.items()
+            },
             "paths": [path.to_dict() for path in self.paths],
             "nodes": [node.to_dict() for node in self.nodes],
             "links": [link.to_dict() for link in self.links],
@@ -134,131 +169,148 @@ def recommend(
     requirements: Requirements | Mapping[str, object] | None = None,
     measured: Measurements | Iterable[Measured] = (),
     *,
+    sort: Sort = "advice",
     limit: int | None = None,
+    calibrations: int | None = None,
     facts: Facts | None = None,
 ) -> Recommendation:
-    """Rank the paths task > detector > mask > model > extractor that meet the requirements.
+    """Rank the architectures that meet the requirements, and on each its calibrations.
 
     Parameters
     ----------
     requirements : Requirements or mapping, optional
         A mapping takes the names of `registry.requirements.PARAMETERS`; none asks nothing.
     measured : Measurements or iterable of Measured
-        Scores, of one condition if they are to be compared. Hand in `Measurements` where many
-        questions are asked of the same rows.
-    limit : int, optional
-        The most paths to return; `count`, nodes and links tell of all.
+        What was measured. Hand in `Measurements` where many questions are asked of the same.
+    sort : {"advice", "support", "measured"}
+        By which evidence first (`registry.ranking.ranked`).
+    limit, calibrations : int, optional
+        The most architectures to return, and calibrations of each; counts, nodes and links tell
+        of all.
     facts : Facts, optional
         The survey's by default.
 
     Raises
     ------
     InvalidValueError
-        For an unknown parameter, a value outside the taxonomy, an impossible limit.
+        For an unknown parameter or order, a value outside the taxonomy, an impossible limit.
     """
-    if limit is not None and limit < 1:
-        raise InvalidValueError("limit", limit, "a whole number of at least 1")
-    table = path_table(facts or registered.facts())
+    for name, most in (("limit", limit), ("calibrations", calibrations)):
+        if most is not None and most < 1:
+            raise InvalidValueError(name, most, "a whole number of at least 1")
+    if sort not in SORTS:
+        raise unknown_name("sort", sort, SORTS)
+    known = facts or registered.facts()
     if isinstance(requirements, Requirements):
-        requirements.check(table.taxonomy)
+        requirements.check(known.taxonomy, known.properties)
         asked = requirements
     else:
-        asked = Requirements.parse(requirements or {}, table.taxonomy)
+        asked = Requirements.parse(requirements or {}, known.taxonomy, known.properties)
     rows = measured if isinstance(measured, Measurements) else Measurements(measured)
-    answers = table.meeting(asked, rows)
-    ranked = sorted(answers, key=_rank)
-    best = _pareto(ranked, asked)
-    nodes, links = _narrowed(table, answers)
+    table = design_table(known, rows)
+    question = Question(table, asked)
+    places = ranked(question.places(), sort)
+    paths = path_table(known)
+    taken = paths.taken(question, places)
+    nodes, links = paths.narrowed(taken)
+    beaten = pareto(places)
+    lost = regret(places)
     return Recommendation(
         requirements=asked,
-        count=len(ranked),
-        paths=tuple(
-            _path(table, answer, rank, rank - 1 in best)
-            for rank, answer in enumerate(ranked[:limit], start=1)
+        sort=sort,
+        count=len(places),
+        designs=sum(len(designs) for _, designs in places),
+        architectures=tuple(
+            _architecture(at, place, question, paths, calibrations, pareto=at in beaten)
+            for at, place in enumerate(places[:limit])
         ),
+        contradictions=against_advice(places, asked.include.get("task", ())),
+        regret=None
+        if lost is None
+        else {
+            "first_deg": _or_none(lost.first),
+            "best_deg": lost.best.error_deg,
+            "ratio": lost.ratio,
+            "sentence": regret_words(lost),
+        },
+        untried=_untried(table, asked),
+        paths=paths.study_paths(taken),
         nodes=nodes,
         links=links,
-        left_out=table.left_out,
-        blocked=None if ranked else explain(table, asked, rows),
+        left_out=paths.left_out,
+        blocked=None if places else explain(table, asked),
     )
 
 
-def _rank(answer: Answer) -> tuple[int, float, int]:
-    error = float("inf")
-    if answer.measured is not None:
-        number = measured_number("max_error_deg", answer.measured)
-        error = error if number is None else number
-    return (-answer.backing, error, answer.path)
+def _or_none(kept: Kept) -> float | None:
+    return None if kept.error_deg == float("inf") else kept.error_deg
 
 
-def _pareto(ranked: Sequence[Answer], requirements: Requirements) -> frozenset[int]:
-    """Return the positions of the paths that none beats in support and the measured quantities.
-
-    The quantities are those with a limit; the error if there is none.
-    """
-    quantities = [name for name in LIMITS if requirements.limit(name) is not None] or [
-        "max_error_deg"
-    ]
-    costs = [_costs(answer, quantities) for answer in ranked]
-    # In sorted order whatever beats a point stands before it; and if that is beaten itself, then
-    # by something that beats the point too. So the front found so far is all there is to compare.
-    front: list[tuple[float, ...]] = []
-    for point in sorted(set(costs)):
-        for other in front:
-            if all(map(operator.le, other, point)):
-                break
-        else:
-            front.append(point)
-    best = set(front)
-    return frozenset(at for at, point in enumerate(costs) if point in best)
-
-
-def _costs(answer: Answer, quantities: Sequence[str]) -> tuple[float, ...]:
-    """Return what is to be small: support negated, then each quantity, infinite if unmeasured."""
-    costs = [float(-answer.backing)]
-    for name in quantities:
-        number = None if answer.measured is None else measured_number(name, answer.measured)
-        if number is None:
-            costs.append(float("inf"))
-        else:
-            costs.append(-number if name.startswith("min_") else number)
-    return tuple(costs)
-
-
-def _path(table: PathTable, answer: Answer, rank: int, pareto: bool) -> RecommendedPath:
-    task, detector, mask, model, extractor = table.paths[answer.path]
-    return RecommendedPath(
-        rank=rank,
-        task=task,
+def _architecture(
+    at: int,
+    found: Place,
+    question: Question,
+    paths: PathTable,
+    most: int | None,
+    *,
+    pareto: bool,
+) -> Architecture:
+    place, designs = found
+    best = designs.index(place.best)
+    detector, mask = place.place.architecture
+    advised = [a.value for a in place.place.advice if a.requirement == "task"]
+    tasks = {
+        task: ((bits & place.studies).bit_count(), task in advised)
+        for task, bits in {**dict.fromkeys(advised, 0), **place.place.tasks}.items()
+    }
+    return Architecture(
+        rank=at + 1,
         detector=detector,
         mask=mask,
-        model=model,
-        extractor=extractor,
-        studies=table.studies(answer.studies),
-        literature=Literature(
-            answer.studies.bit_count(),
-            answer.with_model.bit_count(),
-            answer.architecture.bit_count(),
-        ),
-        measured=answer.measured,
-        basis=MappingProxyType(dict(answer.basis)),
+        tasks={task: both for task, both in tasks.items() if any(both)},
+        advice=tuple(advice.to_dict() for advice in place.advice),
+        studies=paths.studies(place.studies),
+        best=_calibration(best, designs[best], place, question, paths),
         pareto=pareto,
+        contradiction=against_literature(place, designs),
+        count=len(designs),
+        calibrations=tuple(
+            _calibration(i, kept, place, question, paths) for i, kept in enumerate(designs[:most])
+        ),
     )
 
 
-def _narrowed(
-    table: PathTable, answers: Sequence[Answer]
-) -> tuple[tuple[Node, ...], tuple[Link, ...]]:
-    """Return nodes and links of the paths found, with the studies that took them."""
-    node_bits = [0] * len(table.nodes)
-    link_bits = [0] * len(table.links)
-    for answer in answers:
-        studies = answer.studies
-        for at in table.nodes_on[answer.path]:
-            node_bits[at] |= studies
-        for at in table.links_on[answer.path]:
-            link_bits[at] |= studies
-    return (
-        tuple(table.node(at, bits) for at, bits in enumerate(node_bits) if bits),
-        tuple(table.link(at, bits) for at, bits in enumerate(link_bits) if bits),
+def _calibration(
+    at: int, kept: Kept, place: KeptPlace, question: Question, paths: PathTable
+) -> Calibration:
+    design, asked, judged = kept.design, question.asked, question.judged
+    others: dict[str, Measured] = {}
+    for row in design.rows:
+        if kept.row is not None and row.dataset != kept.row.dataset:
+            known = others.get(row.dataset)
+            if known is None or judged[row].error_deg < judged[known].error_deg:
+                others[row.dataset] = row
+    return Calibration(
+        rank=at + 1,
+        extractor=design.extractor,
+        compensations=design.stages[:-1],
+        model=design.model,
+        advised=tuple(advice.id for advice in design.advice),
+        studies=paths.studies(place.taken(kept)),
+        with_model=place.with_model(kept).bit_count(),
+        backing=support(kept, place),
+        measured=None if kept.row is None else kept.row.to_dict(asked),
+        others=tuple(row.to_dict(asked) for row in others.values()),
+        basis=question.basis(place.place, kept),
     )
+
+
+def _untried(table: DesignTable, asked: Requirements) -> dict[str, tuple[tuple[str, str], ...]]:
+    return {
+        hazard: tuple(
+            place.architecture
+            for place in table.places
+            if not any(row.tried(hazard) for design in place.designs for row in design.rows)
+        )
+        for hazard in asked.survive
+    }

@@ -1,22 +1,18 @@
-"""Why no path meets the requirements, and the least that must give way."""
+"""Why nothing meets the requirements, and the least that must give way."""
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from registry.measured import Measurements
-from registry.paths import (
-    PATH_LEVELS,
-    PathTable,
-    measured_number,
-    positions,
-    within,
-)
-from registry.requirements import EXCLUDE, LIMITS, Requirements
-from registry.taxonomy import ATTRIBUTES
+from registry.designs import DesignTable
+from registry.judging import OF_STUDIES, Question
+from registry.measured import Measured
+from registry.paths import positions
+from registry.requirements import EXCLUDE, LIMITS, LISTS, Requirements
 
 MOST_CHANGES = 5
 """Changes of value offered for one categorical constraint."""
@@ -27,7 +23,7 @@ MOST_SETS = 10
 
 @dataclass(frozen=True)
 class Relaxation:
-    """A change of the requirements that gives paths, and how many.
+    """A change of the requirements that gives architectures, and how many.
 
     ``drop`` maps each constraint dropped to what it asked; ``change`` maps a constraint to what it
     would ask instead. One of them is empty.
@@ -35,7 +31,14 @@ class Relaxation:
 
     drop: Mapping[str, tuple[str, ...] | float]
     change: Mapping[str, tuple[str, ...] | float]
-    paths: int
+    architectures: int
+
+    @property
+    def words(self) -> str:
+        """What to do, in words."""
+        if self.drop:
+            return "drop " + " and ".join(in_words(*item) for item in self.drop.items())
+        return "ask instead for " + " and ".join(in_words(*item) for item in self.change.items())
 
     @property
     def constraint(self) -> str:
@@ -57,18 +60,20 @@ class Relaxation:
             "drop" if self.drop else "change": {
                 n: list(v) if isinstance(v, tuple) else v for n, v in asked.items()
             },
-            "paths": self.paths,
+            "architectures": self.architectures,
+            "words": self.words,
         }
 
 
 @dataclass(frozen=True)
 class Blocked:
-    """The constraint that killed every path.
+    """The constraint that killed every design.
 
-    ``constraints`` is the smallest set whose removal gives paths again; of several as small the
-    one that gives most, then the first in the order of `registry.requirements.PARAMETERS`. It is
-    empty only if there are no paths at all. ``relaxations`` lists every set as small and, where
-    one constraint alone is to blame, the values it could ask instead.
+    ``constraints`` is the smallest set whose removal gives architectures again; of several as
+    small the one that gives most, then the first in the order of
+    `registry.requirements.PARAMETERS`. It is empty only if there are no designs at all.
+    ``relaxations`` lists every set as small and, where one constraint alone is to blame, the
+    values it could ask instead.
     """
 
     constraints: tuple[str, ...]
@@ -89,149 +94,249 @@ class Blocked:
         }
 
 
-def explain(table: PathTable, requirements: Requirements, measurements: Measurements) -> Blocked:
-    """Return what blocks `requirements`, which no path meets."""
+def explain(table: DesignTable, requirements: Requirements) -> Blocked:
+    """Return what blocks `requirements`, which nothing meets."""
     names = requirements.names
-    broken = set(_broken(table, requirements, measurements, names))
+    broken = _broken(Question(table, requirements), names)
     if not broken:
-        return Blocked((), "no study has a value at every level of a path", ())
+        return Blocked((), "no study has an architecture, and nothing is measured", ())
     fewest = min(bits.bit_count() for bits in broken)
     smallest = sorted(bits for bits in broken if bits.bit_count() == fewest)
     drops = []
     for bits in smallest:
         dropped = tuple(names[at] for at in positions(bits))
-        paths = len(table.meeting(requirements.without(*dropped), measurements))
-        drops.append(Relaxation({n: _asked(requirements, n) for n in dropped}, {}, paths))
-    drops.sort(key=lambda r: (-r.paths, [names.index(n) for n in r.drop]))
+        found = _count(table, requirements.without(*dropped))
+        drops.append(Relaxation({n: _asked(requirements, n) for n in dropped}, {}, found))
+    drops.sort(key=lambda r: (-r.architectures, [names.index(n) for n in r.drop]))
     changes: list[Relaxation] = []
     if fewest == 1:
         for relaxation in drops:
             (name,) = relaxation.drop
-            changes += _changes(table, requirements, measurements, name)
-    changes.sort(key=lambda r: -r.paths)
+            changes += _changes(table, requirements, name)
+    changes.sort(key=lambda r: -r.architectures)
     first = tuple(drops[0].drop)
-    asked = " and ".join(f"{n} = {_shown(_asked(requirements, n))}" for n in first)
+    asked = " and ".join(in_words(n, _asked(requirements, n)) for n in first)
     others = len(names) - len(first)
     detail = (
-        f"no path meets {asked}{' beside the other requirements' if others else ''}; without "
-        f"{'it' if len(first) == 1 else 'them'} {drops[0].paths} would"
+        f"nothing meets {asked}{' beside the other requirements' if others else ''}; without "
+        f"{'it' if len(first) == 1 else 'them'} {drops[0].architectures} "
+        f"architecture{'s' * (drops[0].architectures != 1)} would"
     )
-    unmeasured = [n for n in first if n in LIMITS and not _has_evidence(table, measurements, n)]
-    if unmeasured:
-        detail += f". Nothing measured or stated tells of {' or '.join(unmeasured)}"
+    unknown = [n for n in first if not _has_evidence(table, requirements, n)]
+    if unknown:
+        words = " or ".join(in_words(n, _asked(requirements, n)) for n in unknown)
+        detail += f". Nothing measured or stated tells of {words}"
     return Blocked(first, detail, (*drops[:MOST_SETS], *changes))
 
 
-def _broken(
-    table: PathTable,
-    requirements: Requirements,
-    measurements: Measurements,
-    names: tuple[str, ...],
-) -> Iterator[int]:
-    """Yield, for every way to take a path, the requirements it breaks as bits over `names`.
+_WORDS = {
+    "max_error_deg": "an error of at most {:g} deg",
+    "min_fov_deg": "a full field of view of at least {:g} deg",
+    "min_availability": "an answer to at least {:g} of the samples",
+    "max_latency_us": "at most {:g} us a sample",
+}
 
-    A way is a path, one of its studies, and one of its measured rows if there are any: a path
-    meets a subset of the requirements exactly if one of its ways breaks none of them.
+
+def in_words(name: str, asked: tuple[str, ...] | float) -> str:
+    """Return a requirement in words, with the values that the reader gave."""
+    if not isinstance(asked, tuple):
+        return _WORDS[name].format(asked)
+    if name == "survive":
+        return f"surviving {' and '.join(asked)}"
+    if name == "properties":
+        return f"an extractor with {' and '.join(asked)}"
+    values = " or ".join(asked)
+    if name.startswith(EXCLUDE):
+        return f"no {name.removeprefix(EXCLUDE)} {values}"
+    return f"{name} {values}"
+
+
+_TOGETHER = ("max_error_deg", "min_fov_deg", "survive", "min_availability")
+"""Limits of which one changes how another is judged: an error holds over a field and conditions."""
+
+
+def _broken(question: Question, names: tuple[str, ...]) -> frozenset[int]:
+    """Return, of every way to a design, the requirements it breaks as bits over `names`.
+
+    A way is a design, one of its measured pipelines if there are any, and one of the studies of
+    its architecture, or the survey's advice: a design meets a subset of the requirements exactly
+    if one of its ways breaks none of them. Where requirements are judged together, a way is also
+    a choice of those that are given up.
     """
     bit = {name: 1 << at for at, name in enumerate(names)}
-    sets: dict[str, int] = {}  # constraint -> the paths, or studies, that keep it
-    for attribute in ATTRIBUTES:
-        find = table.any_path if attribute in PATH_LEVELS else table.any_study
-        if attribute in bit:
-            sets[attribute] = find(attribute, requirements.include[attribute])
-        if EXCLUDE + attribute in bit:
-            sets[EXCLUDE + attribute] = ~find(attribute, requirements.exclude[attribute])
-    on_path = [n for n in sets if n.removeprefix(EXCLUDE) in PATH_LEVELS]
-    on_study = [n for n in sets if n not in on_path]
-    limits = [(n, bound) for n in LIMITS if (bound := requirements.limit(n)) is not None]
-    stated = {n: table.stated_within(n, bound) for n, bound in limits}
-    by_study = [
-        sum(bit[n] for n in on_study if not sets[n] >> at & 1) for at in range(len(table.keys))
-    ]
-    for at in range(len(table.paths)):
-        by_path = sum(bit[n] for n in on_path if not sets[n] >> at & 1)
-        rows = measurements.on(table.routes[at]) or (None,)
-        for study in positions(table.sets[at][2]):
-            for row in rows:
-                by_limit = 0
-                for name, bound in limits:
-                    number = None if row is None else measured_number(name, row)
-                    kept = (
-                        bool(stated[name] >> study & 1)
-                        if number is None
-                        else within(name, number, bound)
+    by_study = _broken_by_studies(question, names, bit)
+    by_row = _broken_by_rows(question, bit)
+    included = [n for n in OF_STUDIES if n in question.asked.include]
+    found: set[int] = set()
+    for place in question.table.places:
+        by_place = sum(bit[n] for n in question.broken_by_place(place))
+        ways = {bits for at in positions(place.studies) for bits in by_study[at]}
+        unadvised = [n for n in included if not question.advised(place, [n])]
+        # Advice speaks for what is asked for; of what is excluded only studies tell.
+        if len(unadvised) < len(included):
+            ways.add(sum(bit[n] for n in unadvised))
+        if not place.studies:
+            ways.add(sum(bit[n] for n in included))
+        for design in place.designs:
+            by_design = by_place | sum(bit[n] for n in question.broken_by_design(design))
+            for row in design.rows:
+                found.update(by_design | limit | way for limit in by_row[row] for way in ways)
+            if not design.rows:
+                for at in positions(design.taken):
+                    by_limit = sum(
+                        bit[n] for n in question.limits if not question.stated(n) >> at & 1
                     )
-                    by_limit |= 0 if kept else bit[name]
-                yield by_path | by_study[study] | by_limit
+                    found.update(by_design | by_limit | way for way in by_study[at])
+    return frozenset(found)
 
 
-def _changes(
-    table: PathTable, requirements: Requirements, measurements: Measurements, name: str
-) -> list[Relaxation]:
-    """Return the values one constraint could ask instead, each with the paths it gives."""
+def _broken_by_rows(question: Question, bit: Mapping[str, int]) -> dict[Measured, set[int]]:
+    """Return the sets of limits that each measured pipeline breaks, by what is given up."""
+    asked = question.asked
+    alone = asked.without(*(n for n in asked.names if n not in _TOGETHER))
+    found: dict[Measured, set[int]] = {}
+    for size in range(len(alone.names) + 1):
+        for dropped in itertools.combinations(alone.names, size):
+            given_up = sum(bit[n] for n in dropped)
+            kept = Question(question.table, alone.without(*dropped))
+            for row in kept.judged:
+                known = found.setdefault(row, set())
+                if any(given_up & bits == bits for bits in known):
+                    continue  # less is enough
+                if not kept.broken_limits(row):
+                    known.add(given_up)
+    if asked.max_latency_us is not None:
+        for row, sets in found.items():
+            if "max_latency_us" in question.broken_limits(row):
+                found[row] = {bits | bit["max_latency_us"] for bits in sets}
+    return found
+
+
+def _broken_by_studies(
+    question: Question, names: tuple[str, ...], bit: Mapping[str, int]
+) -> list[set[int]]:
+    """Return, of each study, the sets that it breaks of what is asked of studies.
+
+    A task asked for and one excluded are judged together: one of its tasks must be asked for and
+    not excluded.
+    """
+    asked = [n for n in names if n.removeprefix(EXCLUDE) in OF_STUDIES]
+    tasks = [n for n in asked if n.removeprefix(EXCLUDE) == "task"]
+    everyone = range(len(question.table.facts.keys))
+    alone = [n for n in asked if n not in tasks]
+    broken = [0 for _ in everyone]
+    for name in alone:
+        meeting = Question(question.table, _only(question.asked, [name])).studies
+        for at in everyone:
+            broken[at] |= 0 if meeting >> at & 1 else bit[name]
+    found: list[set[int]] = [set() for _ in everyone]
+    for size in range(len(tasks) + 1):
+        for dropped in itertools.combinations(tasks, size):
+            kept = [n for n in tasks if n not in dropped]
+            meeting = Question(question.table, _only(question.asked, kept)).studies
+            given_up = sum(bit[n] for n in dropped)
+            for at in everyone:
+                if meeting >> at & 1 and not any(b & given_up == b for b in found[at]):
+                    found[at].add(given_up)
+    return [{bits | broken[at] for bits in found[at]} for at in everyone]
+
+
+def _only(requirements: Requirements, names: Collection[str]) -> Requirements:
+    """Return some of the requirements alone."""
+    return requirements.without(*(other for other in requirements.names if other not in names))
+
+
+def _count(table: DesignTable, requirements: Requirements) -> int:
+    return len(Question(table, requirements).places())
+
+
+def _changes(table: DesignTable, requirements: Requirements, name: str) -> list[Relaxation]:
+    """Return the values one constraint could ask instead, each with what it gives."""
     candidates: list[tuple[str, ...] | float]
+    asked = _asked(requirements, name)
     if name in LIMITS:
-        nearest = _nearest_limit(table, requirements.without(name), measurements, name)
+        nearest = _nearest_limit(table, requirements.without(name), name)
         candidates = [] if nearest is None else [nearest]
-    elif name.startswith(EXCLUDE):
-        excluded = requirements.exclude[name.removeprefix(EXCLUDE)]
-        candidates = [tuple(v for v in excluded if v != w) for w in excluded]
+    elif name.startswith(EXCLUDE) or name in LISTS:
+        assert isinstance(asked, tuple)  # noqa: S101 - only limits are numbers
+        candidates = [tuple(v for v in asked if v != w) for w in asked]
         candidates = [kept for kept in candidates if kept]  # none left is dropping it
     else:
-        candidates = [(v,) for v in table.taxonomy.values(name)]
+        candidates = [(v,) for v in table.facts.taxonomy.values(name)]
     changes = []
     for value in candidates:
-        paths = len(table.meeting(requirements.changed(name, value), measurements))
-        if paths:
-            changes.append(Relaxation({}, MappingProxyType({name: value}), paths))
-    changes.sort(key=lambda r: -r.paths)
+        found = _count(table, requirements.changed(name, value))
+        if found:
+            changes.append(Relaxation({}, MappingProxyType({name: value}), found))
+    changes.sort(key=lambda r: -r.architectures)
     return changes[:MOST_CHANGES]
 
 
-def _nearest_limit(
-    table: PathTable, requirements: Requirements, measurements: Measurements, limit: str
-) -> float | None:
-    """Return the strictest bound on `limit` that the paths meeting all else keep; None if none."""
+def _nearest_limit(table: DesignTable, requirements: Requirements, limit: str) -> float | None:
+    """Return the strictest bound on `limit` that is kept by what meets all else; None if none."""
+    if limit == "min_fov_deg":
+        return _widest(table, requirements)
+    question = Question(table, requirements)
     numbers: list[float] = []
-    studies = table.meeting_studies(requirements)
-    others = [(n, bound) for n in LIMITS if (bound := requirements.limit(n)) is not None]
-    stated = {n: table.stated_within(n, bound) for n, bound in others}
-    for at in positions(table.meeting_paths(requirements)):
-        for row in measurements.on(table.routes[at]) or (None,):
-            kept = table.sets[at][2] & studies
-            for name, bound in others:
-                number = None if row is None else measured_number(name, row)
-                if number is None:
-                    kept &= stated[name]
-                elif not within(name, number, bound):
-                    kept = 0
-            if not kept:
-                continue
-            number = None if row is None else measured_number(limit, row)
-            if number is not None:
-                numbers += [number] if math.isfinite(number) else []
-            else:
-                told = (table.numbers[limit][study] for study in positions(kept))
-                numbers += [n for n in told if n is not None]
+    for place in question.places():
+        for kept in place.designs:
+            rows = [r for r in kept.design.rows if not question.broken_limits(r)]
+            for row in rows:
+                number = _number(question, row, limit)
+                if number is not None and math.isfinite(number) and number > 0:
+                    numbers.append(number)
+            if not kept.design.rows and limit == "max_error_deg":
+                stated = dict(table.stated["accuracy_deg"])
+                numbers += [stated[at] for at in positions(place.taken(kept)) if at in stated]
     if not numbers:
         return None
     return max(numbers) if limit.startswith("min_") else min(numbers)
 
 
-def _has_evidence(table: PathTable, measurements: Measurements, limit: str) -> bool:
-    return any(number is not None for number in table.numbers[limit]) or any(
-        measured_number(limit, row) is not None
-        for route in table.routes
-        for row in measurements.on(route)
-    )
+def _number(question: Question, row: Measured, limit: str) -> float | None:
+    if limit == "max_error_deg":
+        return question.judged[row].error_deg
+    if limit == "min_availability":
+        return row.availability(question.asked.survive)
+    return row.latency_us
+
+
+def _widest(table: DesignTable, requirements: Requirements) -> float | None:
+    """Return the widest field that something has which meets all else over that field."""
+    halves = {
+        half
+        for place in table.places
+        for design in place.designs
+        for row in design.rows
+        for half, error in row.nominal.cones
+        if error is not None
+    }
+    stated = {number for _, number in table.stated["fov_deg"]}
+    for full in sorted({2 * half for half in halves} | stated, reverse=True):
+        if _count(table, requirements.changed("min_fov_deg", full)):
+            return full
+    return None
+
+
+def _has_evidence(table: DesignTable, requirements: Requirements, name: str) -> bool:
+    """Say whether anything measured or stated tells of a requirement at all."""
+    rows = [row for place in table.places for design in place.designs for row in design.rows]
+    if name == "max_latency_us":
+        return any(row.latency_us is not None for row in rows)
+    if name == "min_availability":
+        return bool(rows)
+    if name == "survive":
+        return all(any(row.tried(hazard) for row in rows) for hazard in requirements.survive)
+    if name == "max_error_deg":
+        return bool(rows or table.stated["accuracy_deg"])
+    if name == "min_fov_deg":
+        return bool(rows or table.stated["fov_deg"])
+    return True
 
 
 def _asked(requirements: Requirements, name: str) -> tuple[str, ...] | float:
+    """Return what is asked of one of the requirements' own names."""
     asked = requirements.asked(name)
     if asked is None:
-        raise ValueError(f"{name} asks nothing")
+        raise KeyError(name)
     return asked
-
-
-def _shown(value: tuple[str, ...] | float) -> str:
-    return " or ".join(value) if isinstance(value, tuple) else f"{value:g}"

@@ -14,6 +14,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Protocol
 
 import survey_data
+from registry.advice import Advice
 from registry.taxonomy import (
     NUMERIC_ATTRIBUTES,
     Taxonomy,
@@ -173,6 +174,9 @@ class Facts:
     studies: Mapping[str, Study]
     taxonomy: Taxonomy
     defaults: tuple[Default, ...] = ()
+    advice: tuple[Advice, ...] = ()
+    properties: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
+    """Property of the survey's assessment -> value of an extractor -> its mark, 0 to 2."""
 
     @cached_property
     def keys(self) -> tuple[str, ...]:
@@ -222,6 +226,21 @@ class Tables(Protocol):
     @property
     def defaults(self) -> pd.DataFrame:
         """One row a rule of what stands in an empty cell."""
+        ...
+
+    @property
+    def advice(self) -> pd.DataFrame:
+        """One row a sensor or calibration that the survey's text advises."""
+        ...
+
+    @property
+    def feature_assessment(self) -> pd.DataFrame:
+        """One row a mark of an extractor for a property."""
+        ...
+
+    @property
+    def aliases(self) -> pd.DataFrame:
+        """One row another name of a value."""
         ...
 
 
@@ -305,7 +324,32 @@ def facts_from(tables: Tables) -> Facts:
         raise ValueError(
             f"attributes of studies not in the table of studies: {', '.join(strangers)}"
         )
-    return Facts(MappingProxyType(found), taxonomy, tuple(map(_default, _rows(tables.defaults))))
+    return Facts(
+        MappingProxyType(found),
+        taxonomy,
+        tuple(map(_default, _rows(tables.defaults))),
+        tuple(map(_advice, _rows(tables.advice))),
+        _properties(tables, taxonomy),
+    )
+
+
+def _properties(tables: Tables, taxonomy: Taxonomy) -> Mapping[str, Mapping[str, int]]:
+    """Return the marks by property; of several methods under one value the best counts."""
+    values = {value: value for value in taxonomy.values("extractor")}
+    for row in _rows(tables.aliases):
+        if row["attribute"] == "extractor":
+            values[row["alias"]] = row["value"]
+    found: dict[str, dict[str, int]] = {}
+    for row in _rows(tables.feature_assessment):
+        marks = found.setdefault(row["property"], {})
+        value = values[row["extractor"]]
+        marks[value] = max(int(float(row["score"])), marks.get(value, 0))
+    return MappingProxyType({name: MappingProxyType(marks) for name, marks in found.items()})
+
+
+def _advice(row: Mapping[str, str]) -> Advice:
+    named = ("id", "requirement", "value", "detector", "mask", "model_category", "extractor")
+    return Advice(*(row[name] for name in (*named, "survey_section", "note")))
 
 
 def _default(row: Mapping[str, str]) -> Default:

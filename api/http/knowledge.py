@@ -9,7 +9,6 @@ from collections.abc import Mapping
 from functools import cached_property
 
 from api.http.measurements import Measurements
-from api.http.models import words
 from registry.catalogue import Catalogue, catalogue
 from registry.measured import Measurements as Measured
 from registry.resolution import Resolution, resolve_all
@@ -51,12 +50,9 @@ class Knowledge:
         return resolve_all(scorable(), catalogue=self.catalogue, facts=self.facts)
 
     @cached_property
-    def _measured(self) -> Mapping[str, Measured]:
-        return {name: Measured(self.measurements.comparable(name)) for name in words.conditions()}
-
-    def measured_in(self, condition: str) -> Measured:
-        """Return what is measured in a condition, as recommendations take it."""
-        return self._measured[condition]
+    def measured(self) -> Measured:
+        """What is measured of every pipeline, as recommendations take it."""
+        return Measured(self.measurements.pipelines(self.catalogue))
 
     def load_all(self) -> None:
         """Load everything now, so that no request has to wait for it.
@@ -67,5 +63,5 @@ class Knowledge:
             Where a file of facts or of published results cannot be read.
         """
         _ = self.resolutions, self.measurements.scores, self.measurements.times
-        _ = self._measured, self.measurements.leaderboard, self.measurements.cards
+        _ = self.measured, self.measurements.leaderboard, self.measurements.cards
         _ = self.measurements.sweeps, self.measurements.assessment

@@ -10,6 +10,7 @@ from api.http.models import words
 from api.http.models.base import OpenShape, Question, Shape
 from api.http.models.flows import LeftOut, Link, Node
 from api.http.models.parameters import LARGEST_PAGE, NUMBER, WHOLE, Several, several
+from registry.ranking import Sort
 
 
 def _wanted(attribute: str) -> Any:
@@ -29,7 +30,13 @@ class Requirements(Question):
     model_config = ConfigDict(
         json_schema_extra={
             "examples": [
-                {"task": ["Accuracy"], "detector": ["CMOS"], "mask": ["Single-Ap."], "limit": 1}
+                {
+                    "task": ["Accuracy"],
+                    "detector": ["CMOS"],
+                    "mask": ["Single-Ap."],
+                    "limit": 1,
+                    "calibrations": 1,
+                }
             ]
         }
     )
@@ -53,13 +60,15 @@ class Requirements(Question):
         None,
         gt=0,
         le=180,
-        description="RMS error at most this, in degrees: measured in the condition, or stated.",
+        description="RMS error at most this, in degrees, over the field asked for and all it shall "
+        "survive: measured; stated where nothing is measured.",
     )
     min_fov_deg: Number = Field(
         None,
         gt=0,
         le=360,
-        description="Full field of view at least this, in degrees: measured, or stated.",
+        description="Full field of view at least this, in degrees: measured; stated where nothing "
+        "is measured.",
     )
     max_latency_us: Number = Field(
         None,
@@ -67,15 +76,32 @@ class Requirements(Question):
         le=1e12,
         description="Extraction and prediction of one sample at most this, in microseconds.",
     )
-    condition: words.Condition = Field(
-        "nominal",
-        description="Condition of the data sets in which measured performance is read.",
+    min_availability: Number = Field(
+        None,
+        gt=0,
+        le=1,
+        description="Answered share of the samples at least this, nominal and surviving: measured.",
+    )
+    survive: Several[words.Hazard] = several(
+        "Only designs that a data set tries under each of these, and that answer often enough "
+        "under them, within the largest error if one is asked for."
+    )
+    properties: Several[words.Property] = several(
+        "Only extractors that have all of these in the survey's assessment, in part at least."
+    )
+    sort: Sort = Field(
+        "advice",
+        description="What comes first: what the survey advises, then what most studies back, then "
+        "what errs least (advice); what most studies back (support); what errs least (measured).",
     )
     limit: Annotated[int, WHOLE] = Field(
         20,
         ge=1,
         le=LARGEST_PAGE,
-        description="Paths to return; `count`, nodes and links tell of all.",
+        description="Architectures to return; `count`, paths, nodes and links tell of all.",
+    )
+    calibrations: Annotated[int, WHOLE] = Field(
+        5, ge=1, le=LARGEST_PAGE, description="Calibrations to return of each architecture."
     )
 
 
@@ -85,64 +111,157 @@ class RequirementsBody(Requirements, strict=True):
     model_config = ConfigDict(
         json_schema_extra={
             "examples": [
-                {"task": ["Accuracy"], "mask": ["Encoded"], "exclude_detector": ["CCD"], "limit": 1}
+                {
+                    "task": ["Accuracy"],
+                    "mask": ["Encoded"],
+                    "exclude_detector": ["CCD"],
+                    "limit": 1,
+                    "calibrations": 1,
+                }
             ]
         }
     )
 
 
-class Measured(Shape):
-    """The best measured pipeline of a path, in the condition asked for."""
+class Nominal(Shape):
+    """The score under the first condition of the data set, over its whole field."""
 
-    dataset: str
     condition: str
-    extractor: str
-    model: str
     rms_deg: float | None
     bound_deg: float | None
     over_bound: float | None
-    half_fov_deg: float | None
-    latency_us: float | None = Field(
-        description="Of one sample on this machine, microseconds; null where it is not timed."
-    )
+    repeatability_deg: float | None
     availability: float | None = Field(
         description="Answered share of the samples whose direction is observable."
     )
     false_sun: float | None = Field(description="Answered share of the other samples.")
 
 
-class Literature(Shape):
-    """How the literature backs a path: numbers of distinct studies that meet the requirements."""
+class Units(Shape):
+    """Errors over units of the sensor that were measured, the first among them."""
 
-    studies: int = Field(description="Of the whole path.")
-    with_model: int = Field(description="Of task, detector, mask and model.")
-    architecture: int = Field(description="Of task, detector and mask.")
-    support: float = Field(description="Geometric mean of the three.")
+    count: int
+    least_deg: float
+    largest_deg: float
+
+
+class Measured(Shape):
+    """A pipeline on a data set, judged over the field and the conditions asked for."""
+
+    dataset: str
+    extractor: str
+    model: str
+    error_deg: float | None = Field(
+        description="What it is judged by: its largest error, nominal and under all it shall "
+        "survive; null where it answers too seldom."
+    )
+    condition: str = Field(description="Where that was measured.")
+    field_deg: float | None = Field(description="Full field that the error holds over.")
+    nominal_deg: float | None = Field(description="The error of the first condition alone.")
+    nominal: Nominal
+    conditions: dict[str, float | None] = Field(
+        description="Errors under what it shall survive, by condition."
+    )
+    fov_deg: float | None = Field(description="Full field of view of the data set.")
+    availability: float | None = Field(description="Least answered share of all these.")
+    latency_us: float | None = Field(
+        description="Of one sample on this machine, microseconds; null where it is not timed."
+    )
+    units: Units | None
+
+
+class Calibration(Shape):
+    """An extractor, compensations and a model, as values of the taxonomy, with their evidence."""
+
+    rank: int
+    extractor: str
+    compensations: list[str]
+    model: str
+    advised: list[str] = Field(description="The survey's advice that names it.")
+    studies: list[str] = Field(description="Studies that stand for it; empty: in no study.")
+    with_model: int = Field(description="Studies that stand for its compensations and model.")
+    support: float = Field(
+        description="Geometric mean of the architecture's studies, `with_model` and `studies`."
+    )
+    measured: Measured | None = Field(description="Its best pipeline that meets the requirements.")
+    other_datasets: list[Measured] = Field(description="Its best on each other data set.")
+    basis: dict[str, Literal["measured", "stated", "studies", "advised", "assessed"]] = Field(
+        description="On what each requirement was judged."
+    )
+
+
+class Task(Shape):
+    """A task of an architecture."""
+
+    task: str
+    studies: int
+    advised: bool
+
+
+class Advice(Shape):
+    """A piece of the survey's advice."""
+
+    id: str
+    requirement: str
+    value: str
+    model_category: str
+    extractor: str
+    section: str
+    note: str
+
+
+class Architecture(Shape):
+    """A detector behind a mask, with its evidence, and its calibrations, best first."""
+
+    rank: int
+    detector: str
+    mask: str
+    tasks: list[Task]
+    advised: bool = Field(description="Whether the survey advises it for what is asked.")
+    advice: list[Advice]
+    studies: list[str]
+    best: Calibration = Field(description="The calibration that errs least.")
+    pareto: bool = Field(description="Whether none has more studies and a smaller error.")
+    contradiction: str | None = Field(
+        description="Where the best measured calibration is not what most studies stand for."
+    )
+    count: int = Field(description="Calibrations that meet the requirements.")
+    calibrations: list[Calibration]
+
+
+class Regret(Shape):
+    """By how much the first calibration named errs more than the best one measured."""
+
+    first_deg: float | None
+    best_deg: float
+    ratio: float | None
+    sentence: str
+
+
+class Pair(Shape):
+    """A detector behind a mask."""
+
+    detector: str
+    mask: str
 
 
 class Path(Shape):
-    """A way from a task to a calibrated sensor."""
+    """A way that studies behind the answer took."""
 
-    rank: int
     task: str
     detector: str
     mask: str
     model: str
     extractor: str
     studies: list[str]
-    literature: Literature
-    measured: Measured | None
-    basis: dict[str, Literal["measured", "stated"]] = Field(
-        description="On what each numeric requirement was judged."
-    )
-    pareto: bool = Field(description="Whether no path is better in literature and measurement.")
 
 
 class Relaxation(OpenShape):
-    """A change of the requirements that leaves paths."""
+    """A change of the requirements that leaves architectures."""
 
     constraint: str
-    paths: int
+    architectures: int
+    words: str
 
 
 class Blocked(Shape):
@@ -154,10 +273,20 @@ class Blocked(Shape):
 
 
 class Recommendations(Shape):
-    """Ranked paths for a set of requirements, and the flow of the studies behind them."""
+    """Architectures for a set of requirements, their calibrations, and the studies behind them."""
 
     requirements: dict[str, Any]
-    count: int = Field(description="Paths that meet the requirements, beyond `limit` too.")
+    sort: str
+    count: int = Field(description="Architectures that meet the requirements, beyond `limit` too.")
+    designs: int = Field(description="Their calibrations, all together.")
+    architectures: list[Architecture]
+    contradictions: list[str] = Field(
+        description="Where an architecture that the survey does not advise does better."
+    )
+    regret: Regret | None
+    untried: dict[str, list[Pair]] = Field(
+        description="Architectures that no data set tries under what they shall survive."
+    )
     paths: list[Path]
     nodes: list[Node]
     links: list[Link]

@@ -11,6 +11,7 @@ from benchmark.reference.series import SWEEPS
 from benchmark.sweeps.plan import SERIES
 from registry.catalogue import catalogue
 from registry.flows import CHARTS
+from registry.requirements import HAZARDS
 from registry.studies import facts
 
 
@@ -50,6 +51,9 @@ Detector = Annotated[str, OneOf(_values_of("detector"))]
 Mask = Annotated[str, OneOf(_values_of("mask"))]
 Model = Annotated[str, OneOf(_values_of("model"))]
 Extractor = Annotated[str, OneOf(_values_of("extractor"))]
+
+Hazard = Annotated[str, OneOf(lambda: tuple(HAZARDS))]
+Property = Annotated[str, OneOf(lambda: tuple(facts().properties))]
 
 StudyKey = Annotated[str, OneOf(lambda: facts().keys)]
 Chart = Annotated[str, OneOf(lambda: tuple(CHARTS))]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Body, Query
@@ -11,17 +11,19 @@ from api.http.answers import Answer, AnswerRoute
 from api.http.dependencies import NO_PARAMETERS, Known
 from api.http.knowledge import Knowledge
 from api.http.models.recommendations import Recommendations, Requirements, RequirementsBody
-from registry.recommendation import Recommendation
 from registry.recommendation import recommend as ranked
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
-COLUMNS = ("rank", "task", "detector", "mask", "model", "extractor", "studies", "pareto")
+COLUMNS = (
+    *("rank", "detector", "mask", "advised", "studies", "pareto", "calibration"),
+    *("extractor", "compensations", "model", "calibration_studies", "support"),
+)
 DESCRIPTION = (
-    "Paths task > detector > mask > model > extractor that studies took and that meet the "
-    "requirements, best backed first, with the measured performance beside. Values of one "
-    "attribute are alternatives; different attributes must all hold. An empty answer names "
-    "the constraint that blocks it and the relaxations that would help. As CSV: the paths."
+    "Which sensor: detector and mask. How to calibrate it: extractor, compensations, model. Three "
+    "kinds of evidence stay apart: what the survey advises, what studies proposed, what is "
+    "measured here. Values of one attribute are alternatives; all else must hold. An empty answer "
+    "names what blocks it and what would help. As CSV: a row a calibration."
 )
 
 
@@ -49,14 +51,28 @@ async def recommend(known: Known, body: Annotated[RequirementsBody, Body()]) -> 
 
 
 def _answer(requirements: Requirements, known: Knowledge) -> Answer:
-    measured = known.measured_in(requirements.condition)
-    asked = requirements.model_dump(exclude={"limit", "condition"})
-    found = ranked(asked, measured, limit=requirements.limit, facts=known.facts)
-    return Answer(found.to_dict(), COLUMNS, lambda: _rows(found))
+    asked = requirements.model_dump(exclude={"limit", "calibrations", "sort"})
+    found = ranked(
+        asked,
+        known.measured,
+        sort=requirements.sort,
+        limit=requirements.limit,
+        calibrations=requirements.calibrations,
+        facts=known.facts,
+    )
+    document = found.to_dict()
+    return Answer(document, COLUMNS, lambda: list(rows(document)))
 
 
-def _rows(found: Recommendation) -> Sequence[Mapping[str, Any]]:
-    """Return the paths as rows; a path that is not measured has empty measured cells."""
-    nothing: dict[str, Any] = {}
-    rows = [path.to_dict() for path in found.paths]
-    return [{**row, "measured": row["measured"] or nothing} for row in rows]
+def rows(document: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
+    """Yield a row a calibration of an answer; what is not measured has empty measured cells."""
+    for architecture in document["architectures"]:
+        for calibration in architecture["calibrations"]:
+            yield {
+                **{name: architecture[name] for name in COLUMNS[:6]},
+                "calibration": calibration["rank"],
+                **{name: calibration[name] for name in ("extractor", "compensations", "model")},
+                "calibration_studies": calibration["studies"],
+                "support": calibration["support"],
+                "measured": calibration["measured"] or {},
+            }

@@ -1,0 +1,166 @@
+"""Where measurement contradicts advice or literature: sentences, with the numbers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from registry.advice import Advice
+from registry.designs import Kept
+from registry.judging import KeptPlace
+from registry.measured import Measured
+from registry.ranking import Place, Regret
+
+LEAST_RATIO = 1.1
+"""Errors nearer to each other than this contradict nothing."""
+
+
+def design_words(kept: Kept) -> str:
+    """Return a calibration in words: extractor, stages."""
+    return " > ".join((kept.design.extractor, *kept.design.stages))
+
+
+def architecture_words(place: KeptPlace) -> str:
+    """Return an architecture in words."""
+    return " + ".join(place.place.architecture)
+
+
+def against_literature(place: KeptPlace, designs: Sequence[Kept]) -> str | None:
+    """Say that what most studies stand for on an architecture is not what errs least there.
+
+    Parameters
+    ----------
+    place : KeptPlace
+    designs : sequence of Kept
+        Its calibrations.
+    """
+    backed = [k for k in designs if k.design.taken and k.row and place.taken(k)]
+    best = place.best
+    if not backed or not math.isfinite(best.error_deg):
+        return None
+    usual = max(backed, key=lambda kept: (place.taken(kept).bit_count(), -kept.error_deg))
+    if usual.error_deg < LEAST_RATIO * best.error_deg:
+        return None
+    many = place.taken(usual).bit_count()
+    who = f"{many} {'studies stand' if many > 1 else 'study stands'} for {design_words(usual)}"
+    others = place.taken(best).bit_count()
+    tried = f"{others} {'studies' if others > 1 else 'study'}" if others else "no study"
+    return (
+        f"{who}, measured {_error(usual)}; {design_words(best)}, which {tried} stands for, "
+        f"reaches {_error(best)}{_times(usual, best)}"
+    )
+
+
+def against_advice(places: Sequence[Place], tasks: Sequence[str]) -> tuple[str, ...]:
+    """Say where an architecture that is not advised does better at a task than those advised.
+
+    Of the tasks, accuracy, precision and field of view are measured here: by the error over the
+    field and conditions asked for, by the repeatability, by the field itself.
+
+    Parameters
+    ----------
+    places : sequence of Place
+    tasks : sequence of str
+        Those asked for; none means all.
+    """
+    found = []
+    for task, number, unit in (
+        ("Accuracy", _least_error, "deg"),
+        ("Precision", _repeatability, "deg of repeatability"),
+        ("FOV", _field, "deg of field"),
+    ):
+        if tasks and task not in tasks:
+            continue
+        advised: list[tuple[float, KeptPlace, Kept]] = []
+        others: list[tuple[float, KeptPlace, Kept]] = []
+        for place, _ in places:
+            # By error the least is known.
+            designs = place.designs[:1] if number is _least_error else place.designs
+            values = [(value, kept) for kept in designs if (value := number(kept)) is not None]
+            if not values:
+                continue
+            value, kept = min(values, key=lambda pair: pair[0])
+            (advised if _advises(place.advice, task) else others).append((value, place, kept))
+        if not advised or not others:
+            continue
+        first, other = (min(side, key=lambda item: item[0]) for side in (advised, others))
+        if abs(first[0]) == abs(other[0]) or first[0] <= other[0]:
+            continue
+        ratio = first[0] / other[0] if first[0] > 0 else other[0] / first[0]
+        if ratio < LEAST_RATIO:
+            continue
+        named = ", ".join(architecture_words(item[1]) for item in advised)
+        found.append(
+            f"The survey advises {named} for {task}; the best of them measured here, "
+            f"{_where(first)}, reaches {abs(first[0]):.3g} {unit}; {_where(other)}, which it does "
+            f"not advise for that, {abs(other[0]):.3g}"
+        )
+    return tuple(found)
+
+
+def regret_words(regret: Regret) -> str:
+    """Say by how much the first calibration named errs more than the best one measured."""
+    first, best = regret.first, regret.best
+    if first is best:
+        return "the first calibration named is the best one measured that meets the requirements"
+    named = f"{design_words(best)} on {' + '.join(best.design.architecture)}"
+    if not math.isfinite(first.error_deg):
+        why = "is not measured" if first.row is None else "answers too seldom to be judged"
+        beside = f"the best one measured, {named}, errs {_error(best)}"
+        return f"the first calibration named {why}; {beside}"
+    return (
+        f"the first calibration named errs {_error(first)}; the best one measured that meets the "
+        f"requirements, {named}, {_error(best)}{_times(first, best)}"
+    )
+
+
+def _advises(advice: Sequence[Advice], task: str) -> bool:
+    return any(a.requirement == "task" and a.value == task for a in advice)
+
+
+def _where(item: tuple[float, KeptPlace, Kept]) -> str:
+    _, place, kept = item
+    row = kept.row
+    return f"{architecture_words(place)} ({'' if row is None else _pipeline(row)})"
+
+
+def _pipeline(row: Measured) -> str:
+    return f"{row.extractor} > {row.model} on {row.dataset}"
+
+
+def _error(kept: Kept) -> str:
+    judged = kept.judged
+    if not math.isfinite(judged.error_deg):
+        nominal = None if kept.row is None else kept.row.nominal
+        if nominal is None or nominal.rms_deg is None or nominal.availability is None:
+            return "without an error over the field and conditions asked for"
+        return (
+            f"{nominal.rms_deg:.3g} deg where it answers, {100 * nominal.availability:.0f} % of "
+            "the samples: too seldom"
+        )
+    over = "" if judged.field_deg is None else f" over {judged.field_deg:g} deg"
+    return f"{judged.error_deg:.3g} deg{over}"
+
+
+def _times(worse: Kept, better: Kept) -> str:
+    if not math.isfinite(worse.error_deg):
+        return ""
+    return f", {worse.error_deg / better.error_deg:.3g} times less"
+
+
+def _least_error(kept: Kept) -> float | None:
+    return kept.error_deg if math.isfinite(kept.error_deg) else None
+
+
+def _repeatability(kept: Kept) -> float | None:
+    """Return the spread of answers to one pose; none is an answer in steps, which says nothing."""
+    if kept.row is None or math.isinf(kept.error_deg):
+        return None
+    return kept.row.nominal.repeatability_deg or None
+
+
+def _field(kept: Kept) -> float | None:
+    """Return the field, negated: the largest is the best."""
+    if kept.row is None or kept.row.half_fov_deg is None or math.isinf(kept.error_deg):
+        return None
+    return -2 * kept.row.half_fov_deg

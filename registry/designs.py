@@ -1,0 +1,336 @@
+"""Every design there is evidence of: an architecture with a calibration, its studies, its scores.
+
+An architecture is a detector behind a mask. A calibration on it is an extractor and the stages
+that follow, compensations and the model last, as values of the taxonomy: implementations of the
+same values are one design, scored as often as there are of them and of data sets.
+
+Built once from the facts and what was measured. Study sets are integers, one bit a study.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+import weakref
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from registry.advice import Advice
+from registry.measured import Judged, Measured, Measurements
+from registry.plan import Architecture
+from registry.studies import Facts, Study
+from registry.taxonomy import NO_IMPLEMENTATION_STATED, Taxonomy
+
+COMPENSATIONS = "Physics-Informed"
+"""The category of models that compensate: beside them a study may state no other."""
+
+_MOST_KEPT = 64
+
+Stages = tuple[str, ...]
+
+NOTHING = Judged(math.inf, "", None)
+"""What is not measured."""
+
+
+@dataclass(frozen=True, eq=False)
+class Design:
+    """A calibration on an architecture.
+
+    ``with_model`` are the studies (bits) that stand for its stages on the architecture, ``taken``
+    those of them that extract features as it does.
+    """
+
+    architecture: Architecture
+    extractor: str
+    stages: Stages
+    with_model: int
+    taken: int
+    rows: tuple[Measured, ...]
+    advice: tuple[Advice, ...]
+
+    @cached_property
+    def advised(self) -> bool:
+        """Whether the survey advises it by name."""
+        return bool(self.advice)
+
+    @property
+    def model(self) -> str:
+        """The model, behind all compensations."""
+        return self.stages[-1]
+
+    @cached_property
+    def stated(self) -> bool:
+        """Whether it names an extractor and a model: studies need not state one."""
+        return NO_IMPLEMENTATION_STATED not in (self.extractor, *self.stages)
+
+
+@dataclass(frozen=True, eq=False)
+class Kept:
+    """A design and its best measured pipeline; None, erring without limit, if none is measured."""
+
+    design: Design
+    row: Measured | None
+    judged: Judged
+
+    @cached_property
+    def error_deg(self) -> float:
+        """The error it is judged by; infinite where there is none."""
+        return self.judged.error_deg
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Limits that decide which of a design's pipelines is judged, and how."""
+
+    hazards: tuple[str, ...] = ()
+    half_field_deg: float | None = None
+    min_availability: float | None = None
+    max_latency_us: float | None = None
+
+    def broken(self, row: Measured, judged: Judged) -> list[str]:
+        """Return the names of those that a pipeline breaks."""
+        broken = []
+        half = self.half_field_deg
+        if half is not None and math.isinf(row.nominal.over(half)[1]):
+            broken.append("min_fov_deg")
+        tried = all(map(row.tried, self.hazards))
+        if self.hazards and (not tried or math.isinf(judged.error_deg)):
+            broken.append("survive")
+        if self.min_availability is not None:
+            share = row.availability(self.hazards)
+            if share is None or share < self.min_availability:
+                broken.append("min_availability")
+        took = math.inf if row.latency_us is None else row.latency_us
+        if self.max_latency_us is not None and took > self.max_latency_us:
+            broken.append("max_latency_us")
+        return broken
+
+
+@dataclass(frozen=True, eq=False)
+class Place:
+    """An architecture: its studies (bits), its designs, and the advice that means it."""
+
+    architecture: Architecture
+    studies: int
+    designs: tuple[Design, ...]
+    advice: tuple[Advice, ...]
+    tasks: Mapping[str, int]  # task -> studies with it, as bits
+
+    @cached_property
+    def unmeasured(self) -> tuple[Design, ...]:
+        """Designs that studies stand for and nothing measures."""
+        return tuple(design for design in self.designs if not design.rows)
+
+
+class DesignTable:
+    """Places with their designs, in the order of the taxonomy.
+
+    Parameters
+    ----------
+    facts : Facts
+    measurements : Measurements
+    """
+
+    def __init__(self, facts: Facts, measurements: Measurements) -> None:
+        self.facts = facts
+        self.having = _having(facts)
+        self.stated = {
+            attribute: tuple(
+                (at, number)
+                for at, study in enumerate(facts.studies.values())
+                if (number := study.number(attribute)) is not None
+            )
+            for attribute in ("accuracy_deg", "fov_deg")
+        }
+        order = {
+            attribute: {v: i for i, v in enumerate(facts.taxonomy.values(attribute))}
+            for attribute in ("detector", "mask", "extractor", "model")
+        }
+        studies: dict[Architecture, dict[int, Study]] = {}
+        for at, study in enumerate(facts.studies.values()):
+            for architecture in study.architectures:
+                studies.setdefault(architecture, {})[at] = study
+        architectures = sorted(
+            {*studies, *measurements.by_architecture},
+            key=lambda pair: (order["detector"][pair[0]], order["mask"][pair[1]]),
+        )
+        self.places = tuple(
+            self._place(
+                architecture,
+                studies.get(architecture, {}),
+                measurements.by_architecture.get(architecture, ()),
+                order,
+            )
+            for architecture in architectures
+        )
+        self._judged: dict[tuple[Stages, float | None], dict[Measured, Judged]] = {}
+        self._best: dict[Limits, tuple[tuple[Kept, ...], ...]] = {}
+
+    def judged(
+        self, hazards: tuple[str, ...], half_field_deg: float | None
+    ) -> Mapping[Measured, Judged]:
+        """Return what every measured pipeline is judged by; kept for the next question."""
+        asked = (hazards, half_field_deg)
+        found = self._judged.get(asked)
+        if found is None:
+            if len(self._judged) >= _MOST_KEPT:
+                self._judged.clear()
+            found = self._judged[asked] = {
+                row: row.judged(hazards, half_field_deg)
+                for place in self.places
+                for design in place.designs
+                for row in design.rows
+            }
+        return found
+
+    def best(self, limits: Limits) -> tuple[tuple[Kept, ...], ...]:
+        """Return, of each place, what keeps the limits: measured designs, the least error first.
+
+        Of each design the pipeline that errs least of those that keep them.
+        """
+        found = self._best.get(limits)
+        if found is None:
+            if len(self._best) >= _MOST_KEPT:
+                self._best.clear()
+            judged = self.judged(limits.hazards, limits.half_field_deg)
+            found = self._best[limits] = tuple(
+                tuple(sorted(_least(place, limits, judged), key=lambda kept: kept.error_deg))
+                for place in self.places
+            )
+        return found
+
+    def _place(
+        self,
+        architecture: Architecture,
+        studies: Mapping[int, Study],
+        rows: Iterable[Measured],
+        order: Mapping[str, Mapping[str, int]],
+    ) -> Place:
+        taxonomy = self.facts.taxonomy
+        advice = tuple(a for a in self.facts.advice if a.means(architecture))
+        measured: dict[tuple[str, Stages], list[Measured]] = {}
+        for row in rows:
+            measured.setdefault((row.extractor_taxonomy, row.stages), []).append(row)
+        uses = [_Use(at, study, taxonomy) for at, study in studies.items()]
+        found = {key: _sets(uses, *key) for key in measured}
+        stated = (
+            (use, *pair) for use in uses for pair in itertools.product(use.extractors, use.models)
+        )
+        for use, extractor, model in stated:
+            if not any(
+                taken >> use.at & 1 and key[0] == extractor and _within(taxonomy, model, key[1])
+                for key, (_, taken) in found.items()
+            ):
+                found[extractor, (model,)] = _sets(uses, extractor, (model,))
+        designs = [
+            Design(
+                architecture,
+                extractor,
+                stages,
+                *found[extractor, stages],
+                tuple(measured.get((extractor, stages), ())),
+                tuple(a for a in advice if a.names(*_named(taxonomy, extractor, stages))),
+            )
+            for extractor, stages in sorted(
+                found,
+                key=lambda key: (order["extractor"][key[0]], [order["model"][s] for s in key[1]]),
+            )
+        ]
+        everyone = sum(1 << at for at in studies)
+        return Place(
+            architecture,
+            everyone,
+            tuple(designs),
+            advice,
+            {
+                task: both
+                for task in taxonomy.values("task")
+                if (both := everyone & self.having.get(("task", task), 0))
+            },
+        )
+
+
+def _least(place: Place, limits: Limits, judged: Mapping[Measured, Judged]) -> Iterator[Kept]:
+    for design in place.designs:
+        rows = [row for row in design.rows if not limits.broken(row, judged[row])]
+        if rows:
+            row = min(rows, key=lambda row: judged[row].error_deg)
+            yield Kept(design, row, judged[row])
+
+
+@dataclass
+class _Use:
+    """What a study stands for: its methods, and all that they mean."""
+
+    at: int
+    study: Study
+    taxonomy: Taxonomy
+    extractors: tuple[str, ...] = field(init=False)
+    models: tuple[str, ...] = field(init=False)
+    kinds: frozenset[str] = field(init=False)
+    bare: bool = field(init=False)  # compensations, and no model behind them
+
+    def __post_init__(self) -> None:
+        self.extractors = self.study.supported("extractor")
+        self.models = self.study.supported("model")
+        kinds = (self.taxonomy.kinds("model", model) for model in self.models)
+        self.kinds = frozenset(itertools.chain.from_iterable(kinds))
+        self.bare = all(
+            self.taxonomy.category("model", model) == COMPENSATIONS for model in self.models
+        )
+
+    def stands_for(self, stages: Stages) -> bool:
+        """Say whether the study stands for all stages; for the last if it states no model."""
+        *compensations, model = stages
+        if not all(stage in self.kinds for stage in compensations):
+            return False
+        return model in self.kinds or bool(compensations and self.bare)
+
+
+def _sets(uses: Iterable[_Use], extractor: str, stages: Stages) -> tuple[int, int]:
+    """Return the studies that stand for the stages, and for the extractor too."""
+    with_model = taken = 0
+    for use in uses:
+        if use.stands_for(stages):
+            with_model |= 1 << use.at
+            taken |= (extractor in use.extractors) << use.at
+    return with_model, taken
+
+
+def _within(taxonomy: Taxonomy, model: str, stages: Stages) -> bool:
+    return not set(taxonomy.kinds("model", model)).isdisjoint(stages)
+
+
+def _named(
+    taxonomy: Taxonomy, extractor: str, stages: Stages
+) -> tuple[tuple[str, str], frozenset[str]]:
+    """Return what advice may call an extractor, and the categories of its stages."""
+    return (
+        (extractor, taxonomy.category("extractor", extractor)),
+        frozenset(taxonomy.category("model", stage) for stage in stages),
+    )
+
+
+def _having(facts: Facts) -> dict[tuple[str, str], int]:
+    """Return the studies (bits) that have each value of what is asked of studies alone."""
+    having: dict[tuple[str, str], int] = {}
+    for at, study in enumerate(facts.studies.values()):
+        for attribute in ("task", "error", "accuracy"):
+            for value in study.of(attribute):
+                having[attribute, value] = having.get((attribute, value), 0) | 1 << at
+    return having
+
+
+_TABLES: weakref.WeakKeyDictionary[Facts, weakref.WeakKeyDictionary[Measurements, DesignTable]] = (
+    weakref.WeakKeyDictionary()
+)
+
+
+def design_table(facts: Facts, measurements: Measurements) -> DesignTable:
+    """Return the designs of these facts and measurements, gathered at the first call."""
+    tables = _TABLES.setdefault(facts, weakref.WeakKeyDictionary())
+    table = tables.get(measurements)
+    if table is None:
+        table = tables[measurements] = DesignTable(facts, measurements)
+    return table
