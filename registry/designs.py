@@ -92,7 +92,7 @@ class Limits:
         """Return the names of those that a pipeline breaks."""
         broken = []
         half = self.half_field_deg
-        if half is not None and math.isinf(row.nominal.over(half)[1]):
+        if half is not None and math.isinf(row.over(row.nominal, half).error_deg):
             broken.append("min_fov_deg")
         tried = all(map(row.tried, self.hazards))
         if self.hazards and (not tried or math.isinf(judged.error_deg)):

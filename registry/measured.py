@@ -48,23 +48,6 @@ class Score:
             if value is not None and not math.isfinite(value):
                 object.__setattr__(self, name, None)
 
-    def over(self, half_field_deg: float | None) -> tuple[float | None, float]:
-        """Return the half field that an error holds over, and the error; infinite where none does.
-
-        The field is the narrowest cone with an error that holds the one asked for, or the whole
-        field of the data set, given as None: where no field is asked for, and where no cone has
-        an error, too few samples being in it, but the whole field is wide enough.
-        """
-        if half_field_deg is not None:
-            for half, error in self.cones:
-                if half >= half_field_deg and error is not None:
-                    return half, error
-            if not self.cones or self.cones[-1][0] < half_field_deg:
-                return None, math.inf
-        if not self.available or self.rms_deg is None:
-            return None, math.inf
-        return None, self.rms_deg
-
     def to_dict(self) -> dict[str, object]:
         """Return the score as in the HTTP answer."""
         return {name: getattr(self, name) for name in ("condition", *_NUMBERS)}
@@ -127,15 +110,31 @@ class Measured:
 
         A hazard that no condition tries has no error here: ask `tried` first.
         """
-        scores = [self.nominal, *(s for name in hazards for s in self.hazards.get(name, ()))]
-        worst: tuple[float | None, float] = scores[0].over(half_field_deg)
-        condition = scores[0].condition
-        for score in scores[1:]:
-            found = score.over(half_field_deg)
-            if found[1] > worst[1]:
-                worst, condition = found, score.condition
-        half = self.half_fov_deg if worst[0] is None else worst[0]
-        return Judged(worst[1], condition, None if half is None else 2 * half)
+        worst = self.over(self.nominal, half_field_deg)
+        for name in hazards:
+            for score in self.hazards.get(name, ()):
+                found = self.over(score, half_field_deg)
+                if found.error_deg > worst.error_deg:
+                    worst = found
+        return worst
+
+    def over(self, score: Score, half_field_deg: float | None = None) -> Judged:
+        """Return the error under one condition over a field; infinite where there is none.
+
+        The field is the narrowest cone with an error that holds the one asked for, or the whole
+        field of the data set: where no field is asked for, and where no cone has an error, too
+        few samples being in it, but the whole field is wide enough.
+        """
+        if half_field_deg is not None:
+            for half, error in score.cones:
+                if half >= half_field_deg and error is not None:
+                    return Judged(error, score.condition, 2 * half)
+        whole = self.half_fov_deg
+        field_deg = None if whole is None else 2 * whole
+        wide = half_field_deg is None or (whole is not None and whole >= half_field_deg)
+        if not wide or not score.available or score.rms_deg is None:
+            return Judged(math.inf, score.condition, field_deg)
+        return Judged(score.rms_deg, score.condition, field_deg)
 
     def tried(self, hazard: str) -> bool:
         """Say whether a condition of the data set tries a hazard."""
@@ -162,10 +161,10 @@ class Measured:
             "error_deg": _finite(judged.error_deg),
             "condition": judged.condition,
             "field_deg": judged.field_deg if math.isfinite(judged.error_deg) else None,
-            "nominal_deg": _finite(self.nominal.over(requirements.half_field_deg)[1]),
+            "nominal_deg": _finite(self.over(self.nominal, requirements.half_field_deg).error_deg),
             "nominal": self.nominal.to_dict(),
             "conditions": {
-                score.condition: _finite(score.over(requirements.half_field_deg)[1])
+                score.condition: _finite(self.over(score, requirements.half_field_deg).error_deg)
                 for name in requirements.survive
                 for score in self.hazards.get(name, ())
             },

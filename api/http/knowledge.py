@@ -52,7 +52,7 @@ class Knowledge:
     @cached_property
     def measured(self) -> Measured:
         """What is measured of every pipeline, as recommendations take it."""
-        return Measured(self.measurements.pipelines(self.catalogue))
+        return Measured(self.measurements.pipelines)
 
     def load_all(self) -> None:
         """Load everything now, so that no request has to wait for it.

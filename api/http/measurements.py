@@ -2,27 +2,20 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from benchmark.datasets.hazards import hazards
 from benchmark.datasets.pins import Pin
 from benchmark.leaderboard.board import build
-from benchmark.metrics.rings import EDGES_DEG, field_error
-from benchmark.metrics.score import is_available
+from benchmark.results.pipelines import pipelines
 from benchmark.results.store import PUBLISHED, Store
-from registry.fitting import stages
-from registry.measured import Measured, Score
+from registry.measured import Measured
 
 if TYPE_CHECKING:
     from benchmark.datasets import Preset
     from benchmark.running.times import Place, Time
-    from registry.catalogue import Catalogue
-
-_PLAIN = tuple(f.name for f in dataclasses.fields(Score) if f.name not in {"available", "cones"})
 
 Row = Mapping[str, Any]
 
@@ -69,50 +62,11 @@ class Measurements:
 
         return times.times_of_code(self.times_directory)
 
-    def pipelines(self, catalogue: Catalogue) -> list[Measured]:
-        """Return what is measured of every pipeline on every data set, for recommendations.
-
-        Parameters
-        ----------
-        catalogue : says what compensations and model a pipeline's name stands for
-        """
-        by: dict[tuple[str, str, str], dict[tuple[str, int], Row]] = {}
-        for row in self._every_unit:
-            pipeline = (row["dataset"], row["extractor"], row["model"])
-            by.setdefault(pipeline, {})[row["condition"], row["unit"]] = row
-        known = {name: stages(scored) for name, scored in catalogue.models.items()}
-        found = []
-        for (dataset, extractor, model), rows in by.items():
-            conditions = self.presets[dataset].conditions if dataset in self.presets else ()
-            first = rows.get((conditions[0], 0)) if conditions else None
-            if first is None or model not in known:
-                continue
-            time = self.times.get((dataset, extractor, model))
-            tried = hazards(conditions)
-            found.append(
-                Measured(
-                    dataset=dataset,
-                    detector=first["detector"],
-                    mask=first["mask"],
-                    extractor=extractor,
-                    extractor_taxonomy=first["extractor_taxonomy"],
-                    model=model,
-                    stages=known[model],
-                    nominal=_score(first),
-                    hazards={
-                        hazard: tuple(_score(rows[name, 0]) for name in names if (name, 0) in rows)
-                        for hazard, names in tried.items()
-                    },
-                    half_fov_deg=first["half_fov_deg"],
-                    latency_us=time.latency_us if time else None,
-                    unit_rms_deg=tuple(
-                        row["rms_deg"]
-                        for (condition, unit), row in sorted(rows.items())
-                        if condition == conditions[0] and unit and row["rms_deg"] is not None
-                    ),
-                )
-            )
-        return found
+    @cached_property
+    def pipelines(self) -> list[Measured]:
+        """What is measured of every pipeline on every data set, for recommendations."""
+        latency = {place: time.latency_us for place, time in self.times.items()}
+        return pipelines(self._every_unit, latency)
 
     @cached_property
     def leaderboard(self) -> Mapping[str, Any]:
@@ -224,17 +178,3 @@ class Measurements:
             if dataset is None or board["name"] == dataset
             for row in board.get("rows", ())
         ]
-
-
-def _score(row: Row) -> Score:
-    """Return a score as recommendations take it; without an error where the run was refused."""
-    half = row["half_fov_deg"]
-    cones: list[tuple[float, float | None]] = []
-    if half is not None:
-        # The last ring may reach beyond the field; all its samples lie within.
-        for edge in EDGES_DEG[1:]:
-            cones.append((min(float(edge), half), field_error(row, edge)))
-            if edge >= half:
-                break
-    plain: dict[str, Any] = {name: row[name] for name in _PLAIN}
-    return Score(**plain, available=is_available(row), cones=tuple(cones))
