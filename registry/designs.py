@@ -219,8 +219,10 @@ class DesignTable:
         )
         for use, extractor, model in stated:
             if not any(
-                taken >> use.at & 1 and key[0] == extractor and _within(taxonomy, model, key[1])
-                for key, (_, taken) in found.items()
+                found[key][1] >> use.at & 1
+                and key[0] == extractor
+                and _within(taxonomy, model, key[1])
+                for key in measured
             ):
                 found[extractor, (model,)] = _sets(uses, extractor, (model,))
         designs = [

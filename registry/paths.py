@@ -175,7 +175,6 @@ class PathTable:
             StudyPath(task, detector, mask, model, extractor, self.studies(taken[at]))
             for at in sorted(taken)
             for task, detector, mask, model, extractor in (self.paths[at],)
-            for task, detector, mask, model, extractor in (self.paths[at],)
         )
 
     def narrowed(self, taken: Mapping[int, int]) -> tuple[tuple[Node, ...], tuple[Link, ...]]:

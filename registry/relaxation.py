@@ -73,7 +73,7 @@ class Blocked:
     small the one that gives most, then the first in the order of
     `registry.requirements.PARAMETERS`. It is empty only if there are no designs at all.
     ``relaxations`` lists every set as small and, where one constraint alone is to blame, the
-    values it could ask instead.
+    values it could ask instead; of the field of view whenever it is asked.
     """
 
     constraints: tuple[str, ...]
@@ -108,11 +108,11 @@ def explain(table: DesignTable, requirements: Requirements) -> Blocked:
         found = _count(table, requirements.without(*dropped))
         drops.append(Relaxation({n: _asked(requirements, n) for n in dropped}, {}, found))
     drops.sort(key=lambda r: (-r.architectures, [names.index(n) for n in r.drop]))
-    changes: list[Relaxation] = []
-    if fewest == 1:
-        for relaxation in drops:
-            (name,) = relaxation.drop
-            changes += _changes(table, requirements, name)
+    changed = [name for relaxation in drops for name in relaxation.drop] if fewest == 1 else []
+    if "min_fov_deg" in names and "min_fov_deg" not in changed:
+        # Over a narrower field the error is less; over none in particular it is the whole field's.
+        changed.append("min_fov_deg")
+    changes = [one for name in changed for one in _changes(table, requirements, name)]
     changes.sort(key=lambda r: -r.architectures)
     first = tuple(drops[0].drop)
     asked = " and ".join(in_words(n, _asked(requirements, n)) for n in first)
@@ -308,8 +308,8 @@ def _widest(table: DesignTable, requirements: Requirements) -> float | None:
         for place in table.places
         for design in place.designs
         for row in design.rows
-        for half, error in row.nominal.cones
-        if error is not None
+        for half in (row.half_fov_deg, *(h for h, error in row.nominal.cones if error is not None))
+        if half is not None
     }
     stated = {number for _, number in table.stated["fov_deg"]}
     for full in sorted({2 * half for half in halves} | stated, reverse=True):

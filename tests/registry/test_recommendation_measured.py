@@ -1,17 +1,18 @@
-"""Recommendations where something was measured: limits, ranks and trade-offs case by case."""
+"""Recommendations where something was measured: limits, hazards, orders and sentences."""
 
 import math
 from collections.abc import Callable, Mapping
 
 import pytest
+from scores import pipeline
 
 from registry import paths
-from registry.measured import Measured, Measurements
-from registry.recommendation import recommend
+from registry.measured import Measured, Measurements, Score
+from registry.recommendation import Architecture, Recommendation, recommend
 from registry.studies import Facts
 
 Rows = list[Mapping[str, list[str]]]
-PATH = {
+STUDY = {
     "task": ["Cost"],
     "detector": ["CMOS"],
     "mask": ["Slit"],
@@ -20,161 +21,249 @@ PATH = {
 }
 
 
-def score(**changed: object) -> Measured:
-    row: dict[str, object] = {
-        "dataset": "d",
-        "condition": "nominal",
-        "detector": "CMOS",
-        "mask": "Slit",
-        "extractor": "bctm",
-        "extractor_taxonomy": "BCTM",
-        "model": "spm",
-        "model_taxonomy": "SPM",
-        "rms_deg": 0.1,
-        "half_fov_deg": 60.0,
-    }
-    return Measured(**{**row, **changed})  # type: ignore[arg-type]
-
-
 def one_study(facts_of: Callable[[Rows], Facts], **numbers: str) -> Facts:
-    return facts_of([{**PATH, **{a: [n] for a, n in numbers.items()}}])
+    return facts_of([{**STUDY, **{a: [n] for a, n in numbers.items()}}])
+
+
+def by_mask(facts_of: Callable[[Rows], Facts], *masks: str) -> Facts:
+    """A study a mask, all else alike."""
+    return facts_of([{**STUDY, "mask": [mask]} for mask in masks])
+
+
+def only(answer: Recommendation) -> Architecture:
+    (architecture,) = answer.architectures
+    return architecture
+
+
+def error_of(place: Architecture) -> object:
+    return place.best.measured and place.best.measured["error_deg"]
+
+
+def masks_of(answer: Recommendation) -> list[str]:
+    return [a.mask for a in answer.architectures]
 
 
 def test_a_measurement_outranks_what_the_study_states(facts_of: Callable[[Rows], Facts]) -> None:
     facts = one_study(facts_of, accuracy_deg="0.01")
     ask = {"max_error_deg": 0.05}
-    assert recommend(ask, facts=facts).paths[0].basis == {"max_error_deg": "stated"}
-    assert recommend(ask, [score()], facts=facts).count == 0
-    (path,) = recommend(ask, [score(rms_deg=0.04)], facts=facts).paths
-    assert path.basis == {"max_error_deg": "measured"}
-    assert path.measured == score(rms_deg=0.04)
-
-
-def test_a_quantity_not_measured_is_judged_on_what_is_stated(
-    facts_of: Callable[[Rows], Facts],
-) -> None:
-    facts = one_study(facts_of, fov_deg="100")
-    ask = {"max_error_deg": 0.2, "min_fov_deg": 90}
-    (path,) = recommend(ask, [score(half_fov_deg=None)], facts=facts).paths
-    assert path.basis == {"max_error_deg": "measured", "min_fov_deg": "stated"}
+    assert only(recommend(ask, facts=facts)).best.basis == {"max_error_deg": "stated"}
+    assert recommend(ask, [pipeline()], facts=facts).count == 0
+    found = only(recommend(ask, [pipeline(rms_deg=0.04)], facts=facts))
+    assert found.best.basis == {"max_error_deg": "measured"}
+    assert error_of(found) == 0.04
 
 
 def test_min_fov_is_the_full_field_of_view(facts_of: Callable[[Rows], Facts]) -> None:
     facts = one_study(facts_of)
-    assert recommend({"min_fov_deg": 120}, [score()], facts=facts).count == 1
-    assert recommend({"min_fov_deg": 120.1}, [score()], facts=facts).count == 0
+    assert recommend({"min_fov_deg": 120}, [pipeline()], facts=facts).count == 1
+    assert recommend({"min_fov_deg": 120.1}, [pipeline()], facts=facts).count == 0
 
 
-def test_the_most_accurate_row_that_meets_all_limits_is_shown(
+def test_an_error_is_that_of_the_narrowest_cone_that_holds_the_field(
     facts_of: Callable[[Rows], Facts],
 ) -> None:
-    rows = [score(dataset="narrow", rms_deg=0.01, half_fov_deg=10.0), score(dataset="wide")]
     facts = one_study(facts_of)
-    assert recommend({}, rows, facts=facts).paths[0].measured == rows[0]
-    assert recommend({"min_fov_deg": 90}, rows, facts=facts).paths[0].measured == rows[1]
+    row = pipeline(rms_deg=0.5, cones=((10.0, 0.01), (30.0, 0.02), (60.0, 0.4)))
+    for asked, error, field in (
+        (None, 0.5, 120.0),
+        (5.0, 0.01, 20.0),
+        (20.0, 0.01, 20.0),
+        (21.0, 0.02, 60.0),
+        (61.0, 0.4, 120.0),
+    ):
+        best = only(recommend({"min_fov_deg": asked}, [row], facts=facts)).best.measured
+        assert best is not None
+        assert (best["error_deg"], best["field_deg"]) == (error, field)
+    ask = {"min_fov_deg": 60.0, "max_error_deg": 0.02}
+    assert recommend(ask, [row], facts=facts).count == 1
+    assert recommend({**ask, "min_fov_deg": 70.0}, [row], facts=facts).count == 0
+
+
+def test_a_cone_without_an_error_gives_way_to_a_wider_one(
+    facts_of: Callable[[Rows], Facts],
+) -> None:
+    facts = one_study(facts_of)
+    row = pipeline(rms_deg=0.5, cones=((10.0, None), (30.0, 0.02), (60.0, None)))
+    found = only(recommend({"min_fov_deg": 10.0}, [row], facts=facts)).best.measured
+    assert found is not None
+    assert (found["error_deg"], found["field_deg"]) == (0.02, 60.0)
+    wide = only(recommend({"min_fov_deg": 90.0}, [row], facts=facts)).best.measured
+    assert wide is not None
+    assert (wide["error_deg"], wide["field_deg"]) == (0.5, 120.0)
+
+
+def worse(rms_deg: float | None, **more: object) -> tuple[Score, ...]:
+    return (Score("bad", rms_deg, **more),)  # type: ignore[arg-type]
+
+
+def test_a_pipeline_is_judged_by_its_worst_condition_of_those_asked_for(
+    facts_of: Callable[[Rows], Facts],
+) -> None:
+    facts = one_study(facts_of)
+    row = pipeline(hazards={"albedo": worse(0.9), "spin": worse(0.05)})
+    for survive, error, condition in (
+        ([], 0.1, "nominal"),
+        (["spin"], 0.1, "nominal"),
+        (["albedo"], 0.9, "bad"),
+        (["spin", "albedo"], 0.9, "bad"),
+    ):
+        best = only(recommend({"survive": survive}, [row], facts=facts)).best.measured
+        assert best is not None
+        assert (best["error_deg"], best["condition"], best["nominal_deg"]) == (
+            error, condition, 0.1,
+        )  # fmt: skip
+    ask = {"survive": "albedo", "max_error_deg": 0.5}
+    answer = recommend(ask, [row], facts=facts)
+    assert answer.blocked is not None
+    assert answer.blocked.constraints == ("max_error_deg",)
+    assert {tuple(r.drop) for r in answer.blocked.relaxations if r.drop} == {
+        ("max_error_deg",), ("survive",),
+    }  # fmt: skip
+
+
+def test_what_no_condition_tries_does_not_survive_it_and_the_answer_says_so(
+    facts_of: Callable[[Rows], Facts],
+) -> None:
+    facts = by_mask(facts_of, "Slit", "Lens")
+    rows = [pipeline(hazards={"albedo": worse(0.2)}), pipeline(dataset="e", mask="Lens")]
+    answer = recommend({"survive": "albedo"}, rows, facts=facts)
+    assert masks_of(answer) == ["Slit"]
+    assert answer.untried == {"albedo": (("CMOS", "Lens"),)}
+
+
+@pytest.mark.parametrize("broken", [worse(None), worse(0.2, available=False)])
+def test_a_refused_or_seldom_answered_condition_is_not_survived(
+    facts_of: Callable[[Rows], Facts], broken: tuple[Score, ...]
+) -> None:
+    row = pipeline(hazards={"spin": broken})
+    facts = one_study(facts_of)
+    assert recommend({"survive": "spin"}, [row], facts=facts).count == 0
+    assert recommend({}, [row], facts=facts).count == 1
+
+
+def test_availability_is_the_least_over_the_conditions_asked_for(
+    facts_of: Callable[[Rows], Facts],
+) -> None:
+    facts = one_study(facts_of)
+    row = pipeline(availability=0.99, hazards={"spin": worse(0.2, availability=0.96)})
+    for ask, met in (
+        ({"min_availability": 0.99}, 1),
+        ({"min_availability": 0.995}, 0),
+        ({"min_availability": 0.96, "survive": "spin"}, 1),
+        ({"min_availability": 0.97, "survive": "spin"}, 0),
+    ):
+        assert recommend(ask, [row], facts=facts).count == met
+
+
+def test_the_pipeline_that_errs_least_of_those_that_keep_the_limits_is_shown(
+    facts_of: Callable[[Rows], Facts],
+) -> None:
+    rows = [
+        pipeline(dataset="narrow", rms_deg=0.01, half_fov_deg=10.0),
+        pipeline(dataset="wide"),
+    ]
+    facts = one_study(facts_of)
+    for ask, shown, other in (({}, "narrow", "wide"), ({"min_fov_deg": 90}, "wide", "narrow")):
+        best = only(recommend(ask, rows, facts=facts)).best
+        assert best.measured is not None
+        assert best.measured["dataset"] == shown
+        assert [one["dataset"] for one in best.others] == [other]
 
 
 def test_failed_runs_and_numbers_that_are_none_do_not_count(
     facts_of: Callable[[Rows], Facts],
 ) -> None:
     facts = one_study(facts_of)
-    failed = [score(rms_deg=None), score(rms_deg=math.nan)]
-    assert recommend({}, failed, facts=facts).paths[0].measured is None
-    assert score(over_bound=math.inf).over_bound is None
+    failed = [pipeline(rms_deg=None), pipeline(model="b", rms_deg=math.nan)]
+    assert only(recommend({}, failed, facts=facts)).best.measured is None
+    assert Score("nominal", 1.0, over_bound=math.inf).over_bound is None
 
 
-def by_mask(facts_of: Callable[[Rows], Facts], *masks: str) -> Facts:
-    """A study a mask, all else alike: paths of equal support."""
-    return facts_of([{**PATH, "mask": [mask]} for mask in masks])
-
-
-@pytest.mark.parametrize(
-    ("ask", "unbeaten"),
-    [
-        ({}, ["Slit"]),
-        ({"max_error_deg": 1.0}, ["Slit"]),
-        ({"min_fov_deg": 50.0}, ["Encoded", "Lens"]),
-        ({"min_fov_deg": 50.0, "max_error_deg": 1.0}, ["Slit", "Encoded"]),
-        ({"max_latency_us": 50.0}, ["Lens"]),
-        ({"max_latency_us": 50.0, "min_fov_deg": 50.0}, ["Lens"]),
-        ({"max_latency_us": 50.0, "max_error_deg": 1.0}, ["Slit", "Encoded", "Lens"]),
-    ],
-)
-def test_the_pareto_set_is_of_the_quantities_asked_for(
-    facts_of: Callable[[Rows], Facts], ask: dict[str, float], unbeaten: list[str]
-) -> None:
-    """Small errors and latencies, wide fields: each path is best at something else."""
-    rows = [
-        score(mask="Slit", rms_deg=0.1, half_fov_deg=30.0, latency_us=40.0),
-        score(mask="Encoded", rms_deg=0.2, half_fov_deg=60.0, latency_us=30.0),
-        score(mask="Lens", rms_deg=0.3, half_fov_deg=60.0, latency_us=20.0),
-    ]
-    answer = recommend(ask, rows, facts=by_mask(facts_of, "Lens", "Encoded", "Slit"))
-    assert [path.mask for path in answer.paths] == ["Slit", "Encoded", "Lens"]
-    assert sorted(path.mask for path in answer.paths if path.pareto) == sorted(unbeaten)
-
-
-def test_an_unmeasured_path_is_worst_but_for_its_support(
-    facts_of: Callable[[Rows], Facts],
-) -> None:
-    rows = [score(mask="Slit")]
-    facts = by_mask(facts_of, "Lens", "Slit", "Encoded")
-    found = {path.mask: (path.rank, path.pareto) for path in recommend({}, rows, facts=facts).paths}
-    assert found["Slit"] == (1, True)
-    assert found["Lens"][1] is found["Encoded"][1] is False
-    backed = by_mask(facts_of, "Lens", "Slit", "Lens")
-    found = {p.mask: (p.rank, p.pareto) for p in recommend({}, rows, facts=backed).paths}
-    assert found == {"Lens": (1, True), "Slit": (2, True)}
-
-
-def test_equals_stand_in_the_order_of_the_taxonomy(
-    survey: Facts, facts_of: Callable[[Rows], Facts]
-) -> None:
-    facts = by_mask(facts_of, *reversed(survey.taxonomy.values("mask")))
-    answer = recommend({}, facts=facts)
-    assert [path.mask for path in answer.paths] == list(survey.taxonomy.values("mask"))
-    assert [node.value for node in answer.nodes if node.level == "mask"] == list(
-        survey.taxonomy.values("mask")
-    )
-    assert [link.target for link in answer.links if link.source == "detector:CMOS"] == [
-        f"mask:{mask}" for mask in survey.taxonomy.values("mask")
-    ]
-    levels = [node.level for node in answer.nodes]
-    assert list(dict.fromkeys(levels)) == ["task", "detector", "mask", "model", "extractor"]
-    (detector,) = (node for node in answer.nodes if node.level == "detector")
-    assert detector.count == len(detector.studies) == len(facts.studies)
-    assert detector.studies == tuple(facts.studies)
-
-
-def test_what_seldom_answers_keeps_no_limit_of_error_and_ranks_behind(
+def test_what_seldom_answers_keeps_no_limit_of_error_and_is_last_by_what_is_measured(
     facts_of: Callable[[Rows], Facts],
 ) -> None:
     facts = by_mask(facts_of, "Slit", "Lens")
-    silent = score(mask="Slit", rms_deg=0.001, available=False)
-    rows = [silent, score(mask="Lens", rms_deg=5.0)]
-    assert [path.mask for path in recommend({}, rows, facts=facts).paths] == ["Lens", "Slit"]
-    assert recommend({}, [silent], facts=facts).paths[0].mask == "Slit"  # of equals the first
-    answer = recommend({"max_error_deg": 6.0}, rows, facts=facts)
-    assert [path.mask for path in answer.paths] == ["Lens"]
-    assert recommend({"min_fov_deg": 90.0}, rows, facts=facts).count == 2
-    # and beside a row that does answer, it is that one which is shown
-    answering = score(mask="Slit", rms_deg=0.4)
-    (path,) = recommend({}, [silent, answering], facts=by_mask(facts_of, "Slit")).paths
-    assert path.measured == answering
+    silent = pipeline(rms_deg=0.001, available=False, availability=0.7)
+    rows = [silent, pipeline(dataset="e", mask="Lens", rms_deg=5.0)]
+    assert masks_of(recommend({}, rows, sort="measured", facts=facts)) == ["Lens", "Slit"]
+    assert masks_of(recommend({"max_error_deg": 6.0}, rows, facts=facts)) == ["Lens"]
+    assert only(recommend({"mask": "Slit"}, rows, facts=facts)).best.measured is not None
+    answering = pipeline(dataset="f", rms_deg=0.4)
+    best = only(recommend({}, [silent, answering], facts=one_study(facts_of))).best
+    assert best.measured is not None
+    assert best.measured["dataset"] == "f"
 
 
-def test_rows_of_a_route_are_best_first_and_equals_by_name() -> None:
-    rows = [
-        score(dataset="c", rms_deg=0.2),
-        score(dataset="b", rms_deg=0.2),
-        score(dataset="a", rms_deg=0.001, available=False),
-        score(dataset="d", rms_deg=0.1),
-        score(dataset="e", mask="Lens"),
+def test_the_best_calibration_is_shown_where_no_study_used_it(
+    facts_of: Callable[[Rows], Facts],
+) -> None:
+    """Studies stand for one calibration; another, which nobody published, errs less."""
+    facts = facts_of([STUDY, STUDY])
+    rows = [pipeline(), pipeline(model="lut", stages=("LUT",), rms_deg=0.02)]
+    place = only(recommend({}, rows, facts=facts))
+    assert [(c.model, c.studies) for c in place.calibrations] == [
+        ("SPM", ("S0", "S1")),
+        ("LUT", ()),
     ]
-    for order in (rows, rows[::-1]):
-        found = Measurements(order).on(("CMOS", "Slit", "BCTM", "SPM"))
-        assert [row.dataset for row in found] == ["d", "b", "c", "a"]
-    assert Measurements(rows).on(("CMOS", "Slit", "SPM", "BCTM")) == ()
+    assert place.best.model == "LUT"
+    assert place.contradiction == (
+        "2 studies stand for BCTM > SPM, measured 0.1 deg over 120 deg; BCTM > LUT, which no "
+        "study stands for, reaches 0.02 deg over 120 deg, 5 times less"
+    )
+    first = recommend({}, rows, facts=facts).regret
+    assert first is not None
+    assert first["ratio"] == 5.0
+    assert "5 times less" in str(first["sentence"])
+    turned = only(recommend({}, rows, sort="measured", facts=facts))
+    assert [c.model for c in turned.calibrations] == ["LUT", "SPM"]
+
+
+def test_errors_that_hardly_differ_contradict_nothing(facts_of: Callable[[Rows], Facts]) -> None:
+    rows = [pipeline(), pipeline(model="lut", stages=("LUT",), rms_deg=0.092)]
+    assert only(recommend({}, rows, facts=one_study(facts_of))).contradiction is None
+
+
+def test_an_architecture_that_is_not_advised_but_better_is_said(survey: Facts) -> None:
+    rows = [
+        pipeline(mask="Encoded", rms_deg=0.02),
+        pipeline(dataset="e", mask="Lens", rms_deg=0.01),
+    ]
+    (said,) = recommend({"task": "Accuracy"}, rows, facts=survey).contradictions
+    assert "CMOS + Encoded" in said
+    assert "0.02 deg" in said
+    assert said.endswith("CMOS + Lens (bctm > spm on e), which it does not advise for that, 0.01")
+    better = [pipeline(mask="Encoded", rms_deg=0.005), rows[1]]
+    assert recommend({"task": "Accuracy"}, better, facts=survey).contradictions == ()
+    assert recommend({"task": "Cost"}, rows, facts=survey).contradictions == ()
+
+
+def test_compensations_are_stages_that_a_study_stands_for_without_a_model(
+    facts_of: Callable[[Rows], Facts],
+) -> None:
+    facts = facts_of([{**STUDY, "model": ["OCM"]}, STUDY, {**STUDY, "model": ["OCM", "LUT"]}])
+    place = only(recommend({}, [pipeline(model="glass>spm", stages=("OCM", "SPM"))], facts=facts))
+    of = {(c.compensations, c.model): c.studies for c in place.calibrations}
+    assert of == {(("OCM",), "SPM"): ("S0",), ((), "SPM"): ("S1",), ((), "OCM"): ("S0", "S2"),
+                  ((), "LUT"): ("S2",)}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("asked", "unbeaten"),
+    [({}, ["Slit"]), ({"survive": "albedo"}, ["Encoded"]), ({"min_fov_deg": 90.0}, ["Encoded"])],
+)
+def test_the_pareto_set_is_of_the_error_asked_for(
+    facts_of: Callable[[Rows], Facts], asked: dict[str, object], unbeaten: list[str]
+) -> None:
+    rows = [
+        pipeline(half_fov_deg=30.0, hazards={"albedo": worse(3.0)}),
+        pipeline(dataset="e", mask="Encoded", rms_deg=0.2, hazards={"albedo": worse(0.3)}),
+        pipeline(dataset="f", mask="Lens", rms_deg=0.3, hazards={"albedo": worse(0.4)}),
+    ]
+    facts = by_mask(facts_of, "Lens", "Encoded", "Slit")
+    answer = recommend(asked, rows, facts=facts)
+    assert [a.mask for a in answer.architectures if a.pareto] == unbeaten
+    backed = recommend(asked, rows, facts=by_mask(facts_of, "Lens", "Encoded", "Slit", "Lens"))
+    assert {a.mask for a in backed.architectures if a.pareto} == {*unbeaten, "Lens"}
 
 
 @pytest.mark.parametrize(
@@ -199,23 +288,46 @@ def test_a_stated_number_keeps_a_limit_that_it_equals(
 def test_a_measured_number_keeps_a_limit_that_it_equals(
     facts_of: Callable[[Rows], Facts],
 ) -> None:
-    facts, row = one_study(facts_of), score(rms_deg=0.25, half_fov_deg=30.0, latency_us=8.0)
-    for limit, at, worse in (
+    facts = one_study(facts_of)
+    row = pipeline(rms_deg=0.25, half_fov_deg=30.0, latency_us=8.0, availability=0.97)
+    for limit, at, beyond in (
         ("max_error_deg", 0.25, 0.2499),
         ("min_fov_deg", 60.0, 60.1),
         ("max_latency_us", 8.0, 7.9),
+        ("min_availability", 0.97, 0.971),
     ):
-        (path,) = recommend({limit: at}, [row], facts=facts).paths
-        assert path.basis == {limit: "measured"}
-        assert recommend({limit: worse}, [row], facts=facts).count == 0
+        assert only(recommend({limit: at}, [row], facts=facts)).best.basis == {limit: "measured"}
+        assert recommend({limit: beyond}, [row], facts=facts).count == 0
+
+
+def test_a_score_says_its_bound_its_answers_and_its_spread_over_units() -> None:
+    row = pipeline(bound_deg=0.05, over_bound=2.0, latency_us=3.0, unit_rms_deg=(0.3, 0.05))
+    (place,) = recommend({}, [row], sort="measured", limit=1).architectures
+    assert place.best.measured is not None
+    assert place.best.measured["units"] == {"count": 3, "least_deg": 0.05, "largest_deg": 0.3}
+    assert place.best.measured["latency_us"] == 3.0
+    nominal = place.best.measured["nominal"]
+    assert isinstance(nominal, dict)
+    assert (nominal["bound_deg"], nominal["over_bound"]) == (0.05, 2.0)
+
+
+def test_pipelines_of_an_architecture_are_in_the_order_of_their_names() -> None:
+    rows = [
+        pipeline(dataset="c"),
+        pipeline(dataset="a", extractor="z"),
+        pipeline(dataset="a", rms_deg=None),
+        pipeline(dataset="e", mask="Lens"),
+    ]
+    for order in (rows, rows[::-1]):
+        found = Measurements(order).by_architecture["CMOS", "Slit"]
+        assert [(row.dataset, row.extractor) for row in found] == [("a", "z"), ("c", "bctm")]
 
 
 def test_support_is_said_to_four_decimals(facts_of: Callable[[Rows], Facts]) -> None:
-    facts = facts_of([PATH, {**PATH, "extractor": ["BCM"]}, {**PATH, "model": ["LUT"]}])
-    path = recommend({}, facts=facts).paths[0]
-    assert path.literature.to_dict() == {
-        "studies": 1, "with_model": 2, "architecture": 3, "support": 1.8171,
-    }  # fmt: skip
+    facts = facts_of([STUDY, {**STUDY, "extractor": ["BCM"]}, {**STUDY, "model": ["LUT"]}])
+    first = only(recommend({}, facts=facts)).calibrations[0].to_dict()
+    assert first["support"] == 1.8171  # of 3 studies, 2 and 1
+    assert first["with_model"] == 2
 
 
 def test_sets_and_nodes_made_once_are_kept_but_never_many(
@@ -229,3 +341,17 @@ def test_sets_and_nodes_made_once_are_kept_but_never_many(
         assert kept[name] == number
         sizes.append(len(kept))
     assert sizes == [1, 2, 1, 2, 1]
+
+
+def test_what_was_judged_for_one_question_does_not_tell_for_another(
+    facts_of: Callable[[Rows], Facts], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Answers are the same whatever was asked before, and however much is kept."""
+    facts = one_study(facts_of)
+    rows: list[Measured] = [pipeline(hazards={"albedo": worse(0.9)}), pipeline(extractor="b")]
+    asks = [{}, {"survive": ["albedo"]}, {"min_fov_deg": 30.0}, {"max_latency_us": 1.0}]
+    fresh = [recommend(ask, list(rows), facts=facts).to_dict() for ask in asks]
+    monkeypatch.setattr("registry.designs._MOST_KEPT", 2)
+    kept = Measurements(rows)
+    for _ in range(2):
+        assert [recommend(ask, kept, facts=facts).to_dict() for ask in asks] == fresh

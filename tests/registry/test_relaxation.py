@@ -1,16 +1,17 @@
-"""Why no path meets what is asked, and the least that must give way, case by case."""
+"""Why nothing meets what is asked, and the least that must give way, case by case."""
 
 from collections.abc import Callable, Mapping
 
 import pytest
+from scores import pipeline
 
-from registry.measured import Measured
+from registry.measured import Score
 from registry.recommendation import Recommendation, recommend
 from registry.relaxation import MOST_CHANGES, Blocked
 from registry.studies import Facts
 
 Rows = list[Mapping[str, list[str]]]
-PATH = {
+STUDY = {
     "task": ["Cost"],
     "detector": ["CMOS"],
     "mask": ["Slit"],
@@ -23,22 +24,30 @@ def test_a_limit_nothing_tells_of_says_so(survey: Facts) -> None:
     answer = recommend({"task": "Accuracy", "max_latency_us": 5}, facts=survey)
     assert answer.blocked is not None
     assert answer.blocked.constraint == "max_latency_us"
-    assert "Nothing measured or stated tells of max_latency_us" in answer.blocked.detail
+    assert answer.blocked.detail.endswith(
+        "Nothing measured or stated tells of at most 5 us a sample"
+    )
 
 
 def test_an_impossible_question_names_the_constraint_and_ways_out(survey: Facts) -> None:
     ask = {"task": ["Accuracy"], "detector": ["Event"], "mask": ["V-Slit"]}
     answer = recommend(ask, facts=survey).to_dict()
-    assert answer["paths"] == answer["nodes"] == answer["links"] == []
+    assert answer["paths"] == answer["nodes"] == answer["links"] == answer["architectures"] == []
     blocked = answer["blocked"]
     assert isinstance(blocked, dict)
     assert blocked["constraint"] == "mask"
-    assert {"constraint": "mask", "drop": {"mask": ["V-Slit"]}, "paths": 1} in blocked[
-        "relaxations"
-    ]
-    assert {"constraint": "mask", "change": {"mask": ["L-Slit"]}, "paths": 1} in blocked[
-        "relaxations"
-    ]
+    assert {
+        "constraint": "mask",
+        "drop": {"mask": ["V-Slit"]},
+        "architectures": 1,
+        "words": "drop mask V-Slit",
+    } in blocked["relaxations"]
+    assert {
+        "constraint": "mask",
+        "change": {"mask": ["L-Slit"]},
+        "architectures": 1,
+        "words": "ask instead for mask L-Slit",
+    } in blocked["relaxations"]
 
 
 def test_no_studies_is_no_one_constraints_fault(facts_of: Callable[[Rows], Facts]) -> None:
@@ -48,13 +57,8 @@ def test_no_studies_is_no_one_constraints_fault(facts_of: Callable[[Rows], Facts
     assert answer.blocked.relaxations == ()
 
 
-def score(**changed: object) -> Measured:
-    row: dict[str, object] = {
-        "dataset": "d", "condition": "nominal", "detector": "CMOS", "mask": "Slit",
-        "extractor": "bctm", "extractor_taxonomy": "BCTM", "model": "spm",
-        "model_taxonomy": "SPM", "rms_deg": 0.2, "half_fov_deg": 30.0, "latency_us": 8.0,
-    }  # fmt: skip
-    return Measured(**{**row, **changed})  # type: ignore[arg-type]
+#: An error, a field and a time that the questions below are beyond.
+MEASURED: Mapping[str, object] = {"rms_deg": 0.2, "half_fov_deg": 30.0, "latency_us": 8.0}
 
 
 def blocked_of(answer: Recommendation) -> Blocked:
@@ -64,7 +68,7 @@ def blocked_of(answer: Recommendation) -> Blocked:
 
 
 def changes(blocked: Blocked) -> list[tuple[dict[str, object], int]]:
-    return [(dict(one.change), one.paths) for one in blocked.relaxations if one.change]
+    return [(dict(one.change), one.architectures) for one in blocked.relaxations if one.change]
 
 
 @pytest.mark.parametrize(
@@ -85,7 +89,12 @@ def changes(blocked: Blocked) -> list[tuple[dict[str, object], int]]:
         # what is stated counts where nothing was measured, and there alone
         ({"max_error_deg": 0.1}, {"accuracy_deg": "0.15"}, [], 0.15),
         ({"max_error_deg": 0.1}, {"accuracy_deg": "0.15"}, [{}], 0.2),
-        ({"min_fov_deg": 200.0}, {"fov_deg": "120"}, [{"half_fov_deg": None}], 120.0),
+        (
+            {"min_fov_deg": 200.0},
+            {"fov_deg": "120"},
+            [{"dataset": "e", "half_fov_deg": None}],
+            None,
+        ),
         # a pipeline that seldom answers has no error that could be asked for
         ({"max_error_deg": 0.1}, {}, [{"available": False}, {"rms_deg": 0.9}], 0.9),
         ({"max_error_deg": 0.1}, {}, [{"available": False}], None),
@@ -99,8 +108,8 @@ def test_a_limit_in_the_way_is_offered_at_the_strictest_that_is_kept(
     rows: list[dict[str, object]],
     offered: float | None,
 ) -> None:
-    facts = facts_of([{**PATH, **{name: [number] for name, number in numbers.items()}}])
-    measured = [score(**row) for row in rows]
+    facts = facts_of([{**STUDY, **{name: [number] for name, number in numbers.items()}}])
+    measured = [pipeline(**{**MEASURED, "model": str(at), **row}) for at, row in enumerate(rows)]
     blocked = blocked_of(recommend(asked, measured, facts=facts))
     name = next(iter(asked))
     assert blocked.constraints == (name,)
@@ -114,9 +123,9 @@ def test_a_limit_is_offered_of_the_studies_that_keep_the_others(
     """The most accurate is too narrow: what it states is no way out."""
     facts = facts_of(
         [
-            {**PATH, "accuracy_deg": ["0.01"], "fov_deg": ["60"]},
-            {**PATH, "accuracy_deg": ["0.5"], "fov_deg": ["120"]},
-            {**PATH, "accuracy_deg": ["0.7"], "fov_deg": ["140"]},
+            {**STUDY, "accuracy_deg": ["0.01"], "fov_deg": ["60"]},
+            {**STUDY, "accuracy_deg": ["0.5"], "fov_deg": ["120"]},
+            {**STUDY, "accuracy_deg": ["0.7"], "fov_deg": ["140"]},
         ]
     )
     blocked = blocked_of(recommend({"max_error_deg": 0.1, "min_fov_deg": 120.0}, facts=facts))
@@ -126,56 +135,120 @@ def test_a_limit_is_offered_of_the_studies_that_keep_the_others(
     assert len(changes(blocked)) == 2
 
 
-def test_other_values_are_offered_by_how_many_paths_they_give_and_five_at_most(
+def test_other_values_are_offered_by_how_many_they_give_and_five_at_most(
     survey: Facts, facts_of: Callable[[Rows], Facts]
 ) -> None:
     masks = [mask for mask in survey.taxonomy.values("mask") if mask != "Lens"]
-    extractors = ["BCTM", "BCM", "Direct"]
-    table = [{**PATH, "mask": [mask]} for mask in masks]
-    table += [{**PATH, "mask": [masks[3]], "extractor": [one]} for one in extractors]
-    table += [{**PATH, "mask": [masks[-1]], "extractor": ["Direct"]}]
+    table = [{**STUDY, "mask": [mask]} for mask in masks]
+    table += [{**STUDY, "mask": [masks[3]], "detector": [one]} for one in ("CCD", "PDA")]
+    table += [{**STUDY, "mask": [masks[-1]], "detector": ["CCD"]}]
     blocked = blocked_of(recommend({"mask": "Lens"}, facts=facts_of(table)))
-    found = [(change["mask"], paths) for change, paths in changes(blocked)]
+    found = [(change["mask"], number) for change, number in changes(blocked)]
     assert found[:2] == [((masks[3],), 3), ((masks[-1],), 2)]
-    assert [paths for _, paths in found] == [3, 2, 1, 1, 1]
+    assert [number for _, number in found] == [3, 2, 1, 1, 1]
     assert len(found) == MOST_CHANGES == 5
-    assert blocked.relaxations[0].paths == len(masks) + 3
-    assert blocked.detail == f"no path meets mask = Lens; without it {len(masks) + 3} would"
+    every = len(masks) + 3
+    assert blocked.relaxations[0].architectures == every
+    assert blocked.detail == (f"nothing meets mask Lens; without it {every} architectures would")
 
 
 def test_values_excluded_are_offered_back_one_by_one(
     facts_of: Callable[[Rows], Facts],
 ) -> None:
     facts = facts_of(
-        [PATH, {**PATH, "mask": ["Lens"]}, {**PATH, "mask": ["Lens"], "model": ["LUT"]}]
+        [STUDY, {**STUDY, "mask": ["Lens"]}, {**STUDY, "mask": ["Lens"], "detector": ["CCD"]}]
     )
     blocked = blocked_of(recommend({"exclude_mask": ["Slit", "Lens"]}, facts=facts))
     assert changes(blocked) == [
         ({"exclude_mask": ("Slit",)}, 2),
         ({"exclude_mask": ("Lens",)}, 1),
     ]
-    assert blocked.detail == "no path meets exclude_mask = Slit or Lens; without it 3 would"
-    alone = blocked_of(recommend({"exclude_detector": "CMOS"}, facts=facts))
-    assert changes(alone) == []  # none left to exclude is dropping it
-    assert [one.to_dict() for one in alone.relaxations] == [
-        {"constraint": "exclude_detector", "drop": {"exclude_detector": ["CMOS"]}, "paths": 3}
+    assert blocked.detail == "nothing meets no mask Slit or Lens; without it 3 architectures would"
+    ask = {"exclude_detector": ["CMOS"], "exclude_mask": ["Slit"], "detector": ["CMOS", "CCD"]}
+    alone = blocked_of(recommend({**ask, "mask": "Slit"}, facts=facts))
+    assert {"exclude_mask": ()} not in [change for change, _ in changes(alone)]
+    only = blocked_of(recommend({"exclude_detector": ["CMOS", "CCD"]}, facts=facts))
+    assert [one.words for one in only.relaxations] == [
+        "drop no detector CMOS or CCD",
+        "ask instead for no detector CCD",
+        "ask instead for no detector CMOS",
     ]
+
+
+def test_hazards_and_properties_are_offered_less_one(
+    survey: Facts, facts_of: Callable[[Rows], Facts]
+) -> None:
+    bad = (Score("bad", 0.3),)
+    row = pipeline(hazards={"albedo": bad, "spin": (Score("spinning", None),)})
+    facts = facts_of([STUDY])
+    blocked = blocked_of(recommend({"survive": ["albedo", "spin"]}, [row], facts=facts))
+    assert blocked.detail == (
+        "nothing meets surviving albedo and spin; without it 1 architecture would"
+    )
+    assert changes(blocked) == [({"survive": ("albedo",)}, 1)]
+    untried = blocked_of(recommend({"survive": ["glare"]}, [row], facts=facts))
+    assert untried.detail.endswith("Nothing measured or stated tells of surviving glare")
+    marks = survey.properties
+    names = [n for n in marks if not marks[n].get("FEIC", 0)][:1]
+    names += [n for n in marks if marks[n].get("FEIC", 0)][:1]
+    ask = {"extractor": "FEIC", "properties": names}
+    blocked = blocked_of(recommend(ask, facts=survey))
+    assert {"properties": (names[1],)} in [change for change, _ in changes(blocked)]
+
+
+def test_a_hazard_and_an_error_that_exclude_each_other_are_each_a_way_out(
+    facts_of: Callable[[Rows], Facts],
+) -> None:
+    """An error is judged under the hazards asked for: either may give way, and by how much."""
+    row = pipeline(rms_deg=0.1, hazards={"albedo": (Score("albedo", 0.8),)})
+    ask = {"max_error_deg": 0.2, "survive": "albedo"}
+    blocked = blocked_of(recommend(ask, [row], facts=facts_of([STUDY])))
+    assert [one.to_dict() for one in blocked.relaxations] == [
+        {
+            "constraint": "max_error_deg",
+            "drop": {"max_error_deg": 0.2},
+            "architectures": 1,
+            "words": "drop an error of at most 0.2 deg",
+        },
+        {
+            "constraint": "survive",
+            "drop": {"survive": ["albedo"]},
+            "architectures": 1,
+            "words": "drop surviving albedo",
+        },
+        {
+            "constraint": "max_error_deg",
+            "change": {"max_error_deg": 0.8},
+            "architectures": 1,
+            "words": "ask instead for an error of at most 0.8 deg",
+        },
+    ]
+
+
+def test_an_error_is_offered_at_the_field_that_keeps_it(
+    facts_of: Callable[[Rows], Facts],
+) -> None:
+    row = pipeline(rms_deg=0.5, cones=((20.0, 0.01), (30.0, 0.05), (60.0, 0.5)))
+    ask = {"max_error_deg": 0.1, "min_fov_deg": 100.0}
+    blocked = blocked_of(recommend(ask, [row], facts=facts_of([STUDY])))
+    assert ({"min_fov_deg": 60.0}, 1) in changes(blocked)
+    assert ({"max_error_deg": 0.5}, 1) in changes(blocked)
 
 
 def test_of_several_ways_out_the_one_that_gives_most_is_first(
     facts_of: Callable[[Rows], Facts],
 ) -> None:
     facts = facts_of(
-        [PATH, {**PATH, "detector": ["PD"], "mask": ["Lens"]}, {**PATH, "mask": ["Encoded"]}]
+        [STUDY, {**STUDY, "detector": ["PD"], "mask": ["Lens"]}, {**STUDY, "mask": ["Encoded"]}]
     )
     blocked = blocked_of(recommend({"detector": "CMOS", "mask": "Lens"}, facts=facts))
     assert blocked.constraints == ("mask",)
-    assert [(one.constraint, one.paths) for one in blocked.relaxations[:2]] == [
+    assert [(one.constraint, one.architectures) for one in blocked.relaxations[:2]] == [
         ("mask", 2),
         ("detector", 1),
     ]
     assert blocked.detail == (
-        "no path meets mask = Lens beside the other requirements; without it 2 would"
+        "nothing meets mask Lens beside the other requirements; without it 2 architectures would"
     )
 
 
@@ -183,18 +256,19 @@ def test_two_that_must_go_together_are_named_together(
     facts_of: Callable[[Rows], Facts],
 ) -> None:
     ask = {"detector": "PD", "mask": "Lens", "max_error_deg": 0.25, "task": "Cost"}
-    facts = facts_of([{**PATH, "accuracy_deg": ["0.25"]}])
+    facts = facts_of([{**STUDY, "accuracy_deg": ["0.25"]}])
     blocked = blocked_of(recommend(ask, facts=facts))
     assert blocked.constraint == "detector + mask"
     assert blocked.detail == (
-        "no path meets detector = PD and mask = Lens beside the other requirements; "
-        "without them 1 would"
+        "nothing meets detector PD and mask Lens beside the other requirements; "
+        "without them 1 architecture would"
     )
     assert [one.to_dict() for one in blocked.relaxations] == [
         {
             "constraint": "detector + mask",
             "drop": {"detector": ["PD"], "mask": ["Lens"]},
-            "paths": 1,
+            "architectures": 1,
+            "words": "drop detector PD and mask Lens",
         }
     ]
 
@@ -203,12 +277,14 @@ def test_what_nothing_tells_of_is_said_of_that_alone(
     facts_of: Callable[[Rows], Facts],
 ) -> None:
     hint = ". Nothing measured or stated tells of "
-    plain = facts_of([PATH])
+    plain = facts_of([STUDY])
     both = blocked_of(recommend({"max_error_deg": 1.0, "min_fov_deg": 10.0}, facts=plain))
-    assert both.detail.endswith(f"would{hint}max_error_deg or min_fov_deg")
-    stated = facts_of([{**PATH, "accuracy_deg": ["2"]}])
+    assert both.detail.endswith(
+        f"would{hint}an error of at most 1 deg or a full field of view of at least 10 deg"
+    )
+    stated = facts_of([{**STUDY, "accuracy_deg": ["2"]}])
     assert hint not in blocked_of(recommend({"max_error_deg": 1.0}, facts=stated)).detail
-    rows = [score(rms_deg=2.0)]
+    rows = [pipeline(rms_deg=2.0)]
     assert hint not in blocked_of(recommend({"max_error_deg": 1.0}, rows, facts=plain)).detail
     assert hint in blocked_of(recommend({"max_error_deg": 1.0}, facts=plain)).detail
     assert hint not in blocked_of(recommend({"mask": "Lens"}, facts=plain)).detail

@@ -11,12 +11,16 @@ from registry.taxonomy import InvalidValueError
 
 
 def test_requirements_are_given_back_as_they_can_be_given_again(survey: Facts) -> None:
+    one = next(iter(survey.properties))
     ask = {"task": "Cost", "exclude_mask": ["Lens", "Slit"], "max_error_deg": 2, "model": []}
-    answer = recommend(ask, facts=survey)
+    answer = recommend({**ask, "properties": one, "survive": []}, facts=survey)
     echo = answer.to_dict()["requirements"]
-    assert echo == {"task": ["Cost"], "exclude_mask": ["Lens", "Slit"], "max_error_deg": 2.0}
+    assert echo == {
+        "task": ["Cost"], "exclude_mask": ["Lens", "Slit"], "max_error_deg": 2.0,
+        "properties": [one],
+    }  # fmt: skip
     assert isinstance(echo, dict)
-    assert recommend(echo, facts=survey).paths == answer.paths
+    assert recommend(echo, facts=survey) == answer
 
 
 @pytest.mark.parametrize(
@@ -33,6 +37,10 @@ def test_requirements_are_given_back_as_they_can_be_given_again(survey: Facts) -
         ({"max_error_deg": "0.1"}, "a positive number of degrees; got '0.1'"),
         ({"max_latency_us": True}, "a positive number of microseconds; got True"),
         ({"min_fov_deg": 361}, "at most 360; got 361"),
+        ({"min_availability": 1.01}, "got 1.01"),
+        ({"survive": "albdo"}, "survive: .*did you mean 'albedo'"),
+        ({"properties": ["Robustnes"]}, "properties: "),
+        ({"survive": 3}, "a list of them; got 3"),
     ],
 )
 def test_wrong_requirements_name_what_was_expected(
@@ -45,8 +53,13 @@ def test_wrong_requirements_name_what_was_expected(
 def test_requirements_built_by_hand_are_checked_too(survey: Facts) -> None:
     with pytest.raises(InvalidValueError, match="did you mean 'CMOS'"):
         recommend(Requirements(include={"detector": ("CMOZ",)}), facts=survey)
-    with pytest.raises(InvalidValueError, match="at least 1"):
-        recommend({}, limit=0, facts=survey)
+    with pytest.raises(InvalidValueError, match="did you mean 'albedo'"):
+        recommend(Requirements(survive=("albedoo",)), facts=survey)
+    for wrong in ({"limit": 0}, {"calibrations": 0}):
+        with pytest.raises(InvalidValueError, match="at least 1"):
+            recommend({}, facts=survey, **wrong)
+    with pytest.raises(InvalidValueError, match=r"sort: .*did you mean 'support'"):
+        recommend({}, sort="suport", facts=survey)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("name", LIMITS)
@@ -64,6 +77,7 @@ def test_a_limit_is_a_positive_finite_number(survey: Facts, name: str, wrong: ob
         ("min_fov_deg", 0.5),
         ("min_fov_deg", 360),
         ("max_latency_us", 361.0),
+        ("min_availability", 1.0),
     ],
 )
 def test_a_limit_at_the_end_of_its_range_is_taken_as_it_is(
@@ -72,8 +86,7 @@ def test_a_limit_at_the_end_of_its_range_is_taken_as_it_is(
     asked = Requirements.parse({name: bound}, survey.taxonomy)
     assert asked.to_dict() == {name: float(bound)}
     assert isinstance(asked.limit(name), float)
-    others = set(LIMITS) - {name}
-    assert [asked.limit(other) for other in others] == [None, None]
+    assert {asked.limit(other) for other in set(LIMITS) - {name}} == {None}
 
 
 def test_the_field_of_view_ends_at_the_whole_turn(survey: Facts) -> None:
@@ -91,11 +104,13 @@ def test_values_are_asked_once_each_in_the_order_given(survey: Facts) -> None:
         "model": None,
         "max_latency_us": None,
         "detector": "CMOS",
+        "survive": ("spin", "albedo", "spin"),
     }
     asked = Requirements.parse(ask, survey.taxonomy)
     assert dict(asked.include) == {"mask": ("Slit", "Lens"), "detector": ("CMOS",)}
     assert dict(asked.exclude) == {"task": ("Cost",)}
-    assert asked.names == ("detector", "mask", "exclude_task")  # as they are reported
+    assert asked.survive == ("spin", "albedo")
+    assert asked.names == ("detector", "mask", "exclude_task", "survive")  # as they are reported
 
 
 def test_what_is_left_out_or_changed_leaves_the_rest(survey: Facts) -> None:
@@ -110,6 +125,8 @@ def test_what_is_left_out_or_changed_leaves_the_rest(survey: Facts) -> None:
     assert asked.changed("mask", ("Encoded",)).to_dict()["mask"] == ["Encoded"]
     assert asked.changed("mask", ("Encoded",)).exclude == asked.exclude
     assert asked.changed("max_error_deg", 2.0).limit("max_error_deg") == 2.0
+    assert asked.changed("survive", ("spin",)).names[-1] == "survive"
+    assert asked.changed("survive", ("spin",)).without("survive") == asked
 
 
 def test_attributes_named_by_hand_are_checked_on_both_sides(survey: Facts) -> None:

@@ -1,7 +1,7 @@
 """The question that is hardest to explain, beside a plain one.
 
 ``python -m tests.speed.recommendations``. Every parameter is asked and nothing is met. Looking at
-all subsets of 17 requirements would take 131072 answers; explaining must cost no more than a few
+all subsets of 20 requirements would take a million answers; explaining must cost no more than a few
 hundred.
 """
 
@@ -11,7 +11,7 @@ import sys
 from collections.abc import Mapping, Sequence
 
 from registry.recommendation import recommend
-from registry.requirements import PARAMETERS
+from registry.requirements import ATTRIBUTES, EXCLUDE, HAZARDS
 from registry.studies import Facts, facts
 from tests.speed import comparing
 from tests.speed.comparing import Subject
@@ -23,12 +23,17 @@ _REPEATS = 5
 
 def worst_question(known: Facts) -> Mapping[str, object]:
     """Return requirements that exclude and include everything and ask for the impossible."""
-    asked: dict[str, object] = {
-        name: list(known.taxonomy.values(name.removeprefix("exclude_")))
-        for name in PARAMETERS
-        if not name.startswith(("max_", "min_"))
+    values = {name: list(known.taxonomy.values(name)) for name in ATTRIBUTES}
+    return {
+        **values,
+        **{EXCLUDE + name: every for name, every in values.items()},
+        "max_error_deg": 1e-9,
+        "min_fov_deg": 360.0,
+        "min_availability": 1.0,
+        "max_latency_us": 1e-9,
+        "survive": list(HAZARDS),
+        "properties": list(known.properties),
     }
-    return asked | {"max_error_deg": 1e-9, "min_fov_deg": 360.0, "max_latency_us": 1e-9}
 
 
 def subjects() -> list[Subject]:
