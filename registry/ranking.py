@@ -36,15 +36,16 @@ def ranked(places: Sequence[KeptPlace], sort: Sort) -> list[Place]:
     """Return architectures and their calibrations, best first; equals in the order they came.
 
     By advice: what the survey advises, then what most studies back, then what errs least. By
-    support, or by what is measured: that first. What is not measured errs without limit, and a
-    calibration without an extractor or model of its own comes last.
+    support, or by what is measured: that first. What is not measured errs without limit. A
+    calibration whose extractor or model has no name in the taxonomy comes last, but by what is
+    measured.
     """
     found: list[tuple[tuple[float, ...], Place]] = []
     for place in places:
         designs = sorted(
             place.designs,
             key=lambda kept: (
-                not kept.design.stated,
+                sort != "measured" and not kept.design.stated,
                 *_key(sort, kept.design.advised, support(kept, place), kept.error_deg),
             ),
         )

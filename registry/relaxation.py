@@ -8,7 +8,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from registry.designs import DesignTable
+from registry.designs import DesignTable, Limits
 from registry.judging import OF_STUDIES, Question
 from registry.measured import Measured
 from registry.paths import positions
@@ -303,19 +303,41 @@ def _number(question: Question, row: Measured, limit: str) -> float | None:
 
 def _widest(table: DesignTable, requirements: Requirements) -> float | None:
     """Return the widest field that something has which meets all else over that field."""
-    halves = {
-        half
-        for place in table.places
-        for design in place.designs
-        for row in design.rows
-        for half in (row.half_fov_deg, *(h for h, error in row.nominal.cones if error is not None))
-        if half is not None
-    }
-    stated = {number for _, number in table.stated["fov_deg"]}
-    for full in sorted({2 * half for half in halves} | stated, reverse=True):
-        if _count(table, requirements.changed("min_fov_deg", full)):
-            return full
-    return None
+    widest = 0.0
+    # What is judged over the field is left to the rows.
+    rest = Question(table, requirements.without(*_TOGETHER))
+    for place in rest.places():
+        for kept in place.designs:
+            for row in kept.design.rows:
+                widest = max(widest, _widest_of(row, requirements, widest))
+    stated = dict(table.stated["fov_deg"])
+    for place in Question(table, requirements).places():
+        for kept in place.designs:
+            if kept.row is None:
+                fields = [stated[at] for at in positions(place.taken(kept)) if at in stated]
+                widest = max(widest, *fields, 0.0)
+    return widest or None
+
+
+def _widest_of(row: Measured, requirements: Requirements, beyond: float) -> float:
+    """Return the widest field wider than another over which a pipeline meets all; 0 if none."""
+    halves = {half for half, error in row.nominal.cones if error is not None}
+    if row.half_fov_deg is not None:
+        halves.add(row.half_fov_deg)
+    largest = math.inf if requirements.max_error_deg is None else requirements.max_error_deg
+    for half in sorted(halves, reverse=True):
+        if 2.0 * half <= beyond:
+            break
+        judged = row.judged(requirements.survive, half)
+        limits = Limits(
+            requirements.survive,
+            half,
+            requirements.min_availability,
+            requirements.max_latency_us,
+        )
+        if judged.error_deg <= largest and not limits.broken(row, judged):
+            return 2.0 * half
+    return 0.0
 
 
 def _has_evidence(table: DesignTable, requirements: Requirements, name: str) -> bool:

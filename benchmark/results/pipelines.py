@@ -58,8 +58,9 @@ def pipelines(
                 stages=known[model],
                 nominal=_score(first),
                 hazards={
-                    hazard: tuple(_score(scores[name, 0]) for name in names if (name, 0) in scores)
+                    hazard: tuple(_score(scores[name, 0]) for name in names)
                     for hazard, names in hazards(conditions[dataset]).items()
+                    if all((name, 0) in scores for name in names)
                 },
                 half_fov_deg=first["half_fov_deg"],
                 latency_us=(latency_us or {}).get(place),

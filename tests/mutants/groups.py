@@ -121,6 +121,7 @@ GROUPS: Mapping[str, Group] = {
                 "recommendation_measured",
                 "relaxation",
                 "requirements",
+                "recommendation_survey",
                 "recommendation",
             ),
         },

@@ -212,46 +212,70 @@ def test_cards_name_conditions_and_published_bounds(measured):
     assert cards["pd-maskless-cube"]["bounds"] == {}
 
 
-def test_recommendations_carry_what_is_measured_in_the_condition(measured):
-    query = "detector=CMOS&mask=Single-Ap.&model=SPM&extractor=BCTM"
-    nominal = measured.get(f"/v1/recommendations?{query}").json()["paths"]
-    assert nominal
-    for path in nominal:
-        assert path["measured"] == {
-            "dataset": CMOS,
+DESIGN = "detector=CMOS&mask=Single-Ap.&model=SPM&extractor=BCTM"
+
+
+def test_recommendations_carry_what_is_measured(measured):
+    (place,) = measured.get(f"/v1/recommendations?{DESIGN}").json()["architectures"]
+    (calibration,) = place["calibrations"]
+    assert place["best"] == calibration
+    assert calibration["other_datasets"] == []
+    assert calibration["measured"] == {
+        "dataset": CMOS,
+        "extractor": "bctm",
+        "model": "spm",
+        "error_deg": 0.02,
+        "condition": "nominal",
+        "field_deg": 120.0,
+        "nominal_deg": 0.02,
+        "nominal": {
             "condition": "nominal",
-            "extractor": "bctm",
-            "model": "spm",
             "rms_deg": 0.02,
             "bound_deg": 0.001,
             "over_bound": pytest.approx(20.0),
-            "half_fov_deg": 60.0,
-            "latency_us": 5.0,
+            "repeatability_deg": 0.25,
             "availability": 1.0,
             "false_sun": None,
-        }
-    other = measured.get(f"/v1/recommendations?{query}&condition=misaligned").json()["paths"]
-    assert {path["measured"]["rms_deg"] for path in other} == {2.0}
-    hot = measured.get(f"/v1/recommendations?{query}&condition=hot").json()["paths"]
-    assert all(path["measured"] is None for path in hot)
+        },
+        "conditions": {},
+        "fov_deg": 120.0,
+        "availability": 1.0,
+        "latency_us": 5.0,
+        "units": {"count": 5, "least_deg": 0.009, "largest_deg": 0.03},
+    }
+
+
+def test_what_a_sensor_shall_survive_is_judged_by_the_worst(measured):
+    (place,) = measured.get(f"/v1/recommendations?{DESIGN}&survive=misalignment").json()[
+        "architectures"
+    ]
+    found = place["best"]["measured"]
+    assert (found["error_deg"], found["condition"], found["nominal_deg"]) == (
+        2.0, "misaligned", 0.02,
+    )  # fmt: skip
+    assert found["conditions"] == {"misaligned": 2.0}
+    assert place["best"]["basis"]["survive"] == "measured"
+    hot = measured.get(f"/v1/recommendations?{DESIGN}&survive=albedo").json()
+    assert hot["count"] == 0
+    assert {"detector": "CMOS", "mask": "Single-Ap."} in hot["untried"]["albedo"]
 
 
 def test_measured_columns_of_the_csv_are_empty_where_nothing_is_measured(measured):
-    rows = measured.table("/v1/recommendations?detector=CMOS&limit=500")
-    paths = measured.get("/v1/recommendations?detector=CMOS&limit=500").json()["paths"]
-    assert len(rows) == len(paths)
-    assert any(path["measured"] for path in paths)
-    assert not all(path["measured"] for path in paths)
-    for row, path in zip(rows, paths, strict=True):
-        rms = path["measured"]["rms_deg"] if path["measured"] else None
-        assert row["measured_rms_deg"] == ("" if rms is None else str(rms))
-        assert row["literature_studies"] == str(path["literature"]["studies"])
-        assert row["studies"] == "; ".join(path["studies"])
+    query = "detector=CMOS&limit=500&calibrations=500"
+    rows = measured.table(f"/v1/recommendations?{query}")
+    found = measured.get(f"/v1/recommendations?{query}").json()["architectures"]
+    calibrations = [one for place in found for one in place["calibrations"]]
+    assert len(rows) == len(calibrations)
+    assert any(one["measured"] for one in calibrations)
+    assert not all(one["measured"] for one in calibrations)
+    for row, one in zip(rows, calibrations, strict=True):
+        error = one["measured"]["error_deg"] if one["measured"] else None
+        assert row["measured_error_deg"] == ("" if error is None else str(error))
+        assert row["calibration_studies"] == "; ".join(one["studies"])
         assert "measured" not in row
 
 
 def test_limits_are_judged_on_what_is_measured(measured):
-    query = "detector=CMOS&mask=Single-Ap.&model=SPM&extractor=BCTM"
     for limit, met in [
         ("max_error_deg=0.02", True),
         ("max_error_deg=0.019", False),
@@ -260,7 +284,7 @@ def test_limits_are_judged_on_what_is_measured(measured):
         ("min_fov_deg=120", True),
         ("min_fov_deg=121", False),
     ]:
-        answer = measured.get(f"/v1/recommendations?{query}&{limit}").json()
+        answer = measured.get(f"/v1/recommendations?{DESIGN}&{limit}").json()
         assert (answer["count"] > 0) is met, limit
         assert (answer["blocked"] is None) is met
 
@@ -286,7 +310,10 @@ def test_where_nothing_is_published_the_rest_is_served(unmeasured):
 def test_an_error_of_too_few_answers_keeps_no_limit(measured):
     query = "detector=CMOS&mask=Single-Ap.&model=SPM&extractor=TM"
     answer = measured.get(f"/v1/recommendations?{query}").json()
-    assert {path["measured"]["availability"] for path in answer["paths"]} == {0.94}
+    (place,) = answer["architectures"]
+    assert place["best"]["measured"]["availability"] == 0.94
+    assert place["best"]["measured"]["error_deg"] is None
+    assert place["best"]["measured"]["nominal"]["rms_deg"] == 0.005
     limited = measured.get(f"/v1/recommendations?{query}&max_error_deg=0.01").json()
     assert limited["count"] == 0
 

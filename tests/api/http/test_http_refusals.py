@@ -183,7 +183,9 @@ def test_a_body_that_is_not_json_is_a_400(atlas, content):
         {"max_error_deg": True},
         {"max_error_deg": -1},
         {"limit": 1.5},
-        {"condition": ["nominal"]},
+        {"survive": ["nominal"]},
+        {"sort": "best"},
+        {"calibrations": 0},
         {"task": ["\ud800"]},
     ],
 )

@@ -1,0 +1,299 @@
+"""What it costs to follow an answer: its first calibration beside the best one by brute force.
+
+``python -m benchmark.assessment.regret [number] [seed]``. Requirement sets are drawn: tasks,
+exclusions, limits of error and field, hazards, availability. Of each, every stored pipeline is
+looked at for the one that errs least of those that meet all, from the stored rows alone, without
+what answers. By measurement the answer must name it first; in its usual order the answer must say
+by how much its first calibration errs more. The exit status is 1 unless it always does.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from statistics import median
+from typing import Any
+
+import numpy as np
+
+from benchmark import datasets
+from benchmark.datasets.hazards import hazards
+from benchmark.metrics.rings import EDGES_DEG, field_error
+from benchmark.metrics.score import AVAILABLE
+from benchmark.results.pipelines import pipelines
+from benchmark.results.store import Store
+from registry.catalogue import catalogue
+from registry.fitting import stages
+from registry.measured import Measurements
+from registry.ranking import Sort
+from registry.recommendation import Recommendation, recommend
+from registry.requirements import EXCLUDE, HAZARDS
+from registry.studies import Facts, facts
+
+Row = Mapping[str, Any]
+Asked = Mapping[str, Any]
+Place = tuple[str, str, str]
+
+NUMBER = 100
+SEED = 20
+#: What may be asked: its share of the sets, and the most values of it.
+_DRAWN = (
+    *(("task", 0.5, 2), ("error", 0.15, 2), ("model", 0.1, 3), ("exclude_task", 0.1, 2)),
+    *(("exclude_detector", 0.3, 3), ("exclude_mask", 0.3, 3)),
+    *(("exclude_model", 0.3, 5), ("exclude_extractor", 0.3, 5)),
+)
+#: Relative difference of two numbers that are the same one.
+_SAME = 1e-12
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """An answer to drawn requirements, beside the best of the stored pipelines that meet them.
+
+    Attributes
+    ----------
+    asked
+        The requirements.
+    best_deg
+        Least error by brute force; infinite where no measured pipeline meets them.
+    first_deg, told
+        By order of the answer: what the first calibration named errs (infinite where it is not
+        measured or answers too seldom), and the ratio of the two that the answer tells.
+    """
+
+    asked: Asked
+    best_deg: float
+    first_deg: Mapping[Sort, float]
+    told: Mapping[Sort, float | None]
+
+    @property
+    def kept(self) -> bool:
+        """Whether the best is named first by measurement, and the usual answer tells its regret."""
+        if not math.isclose(self.first_deg["measured"], self.best_deg, rel_tol=_SAME):
+            return False
+        told = self.told["advice"]
+        if math.isinf(self.first_deg["advice"]):
+            return told is None
+        ratio = self.first_deg["advice"] / self.best_deg
+        return told is not None and math.isclose(told, ratio, rel_tol=_SAME)
+
+
+def drawn_requirements(number: int, seed: int, known: Facts) -> Iterator[Asked]:
+    """Yield requirement sets: each kind of requirement is in some of them.
+
+    Parameters
+    ----------
+    number, seed
+        How many, and of which draw.
+    known
+        For the values there are.
+    """
+    rng = np.random.default_rng(seed)
+    for _ in range(number):
+        asked: dict[str, Any] = {
+            name: _some(rng, known.taxonomy.values(name.removeprefix(EXCLUDE)), most)
+            for name, share, most in _DRAWN
+            if rng.random() < share
+        }
+        if rng.random() < 0.4:
+            asked["max_error_deg"] = float(10.0 ** rng.uniform(-2.0, 1.0))
+        if rng.random() < 0.4:
+            asked["min_fov_deg"] = float(rng.uniform(20.0, 140.0))
+        if rng.random() < 0.4:
+            asked["survive"] = _some(rng, HAZARDS, 2)
+        if rng.random() < 0.2:
+            asked["min_availability"] = float(rng.uniform(0.9, 1.0))
+        yield asked
+
+
+def _some(rng: np.random.Generator, values: Iterable[str], most: int) -> list[str]:
+    every = list(values)
+    return sorted(rng.choice(every, rng.integers(1, most + 1), replace=False).tolist())
+
+
+def pipelines_of(rows: Iterable[Row]) -> dict[Place, dict[str, Row]]:
+    """Return stored rows of one unit by condition, of every pipeline."""
+    table: dict[Place, dict[str, Row]] = {}
+    for row in rows:
+        place = (row["dataset"], row["extractor"], row["model"])
+        table.setdefault(place, {})[row["condition"]] = row
+    return table
+
+
+def errors(table: Mapping[Place, Mapping[str, Row]], asked: Asked, known: Facts) -> Iterator[float]:
+    """Yield the error of every stored pipeline that meets requirements.
+
+    Parameters
+    ----------
+    table
+        Rows of the standard unit by condition, by pipeline.
+    asked
+        Names and values of `registry.requirements.PARAMETERS`, without latency and properties.
+    known
+        Studies and advice: what is asked of studies, they or advice meet.
+    """
+    models = {name: stages(model) for name, model in catalogue().models.items()}
+    places: dict[tuple[str, str], bool] = {}
+    for (dataset, _, model), by_condition in table.items():
+        conditions = datasets.get(dataset).conditions
+        first = by_condition.get(conditions[0])
+        if first is None or first["rms_deg"] is None:
+            continue
+        pair = (first["detector"], first["mask"])
+        if pair not in places:
+            places[pair] = _has_what_is_asked(pair, asked, known)
+        has = {
+            "detector": {pair[0]},
+            "mask": {pair[1]},
+            "extractor": {first["extractor_taxonomy"]},
+            "model": set(models[model]),
+        }
+        if not places[pair] or any(_refuses(asked, n, v, known) for n, v in has.items()):
+            continue
+        tried = hazards(conditions)
+        if any(hazard not in tried for hazard in asked.get("survive", ())):
+            continue
+        names = [conditions[0], *(n for h in asked.get("survive", ()) for n in tried[h])]
+        if any(name not in by_condition for name in names):
+            continue
+        error = _judged([by_condition[name] for name in names], asked)
+        if error is not None:
+            yield error
+
+
+def _has_what_is_asked(pair: tuple[str, str], asked: Asked, known: Facts) -> bool:
+    """Say whether a study of an architecture, or advice, has the tasks and errors asked for."""
+    there = [s for s in known.studies.values() if pair in s.architectures]
+    wanted = {name: set(asked[name]) for name in ("task", "error") if name in asked}
+    out = set(asked.get(EXCLUDE + "task", ()))
+    if not wanted and not (out and there):
+        return True
+    for study in there:
+        tasks = set(study.of("task"))
+        left = (tasks - out) & wanted.get("task", tasks)
+        if (left or (not tasks and "task" not in wanted)) and (
+            "error" not in wanted or wanted["error"] & set(study.of("error"))
+        ):
+            return True
+    return bool(wanted) and all(
+        any(a.means(pair) and a.requirement == name and a.value in values for a in known.advice)
+        for name, values in wanted.items()
+    )
+
+
+def _refuses(asked: Asked, name: str, has: set[str], known: Facts) -> bool:
+    def every(values: Iterable[str]) -> set[str]:
+        return {kind for value in values for kind in known.taxonomy.kinds(name, value)}
+
+    return bool(
+        (name in asked and not has & every(asked[name]))
+        or has & every(asked.get(EXCLUDE + name, ()))
+    )
+
+
+def _judged(rows: Sequence[Row], asked: Asked) -> float | None:
+    """Return the largest error over conditions, the first first; None if a limit is broken."""
+    field = asked.get("min_fov_deg")
+    found = [_over(row, field) for row in rows]
+    if (field is not None and math.isinf(found[0])) or (
+        asked.get("survive") and math.isinf(max(found))
+    ):
+        return None
+    least = asked.get("min_availability")
+    if least is not None and any(
+        (row["availability"] if row["rms_deg"] is not None else 0.0) < least for row in rows
+    ):
+        return None
+    largest = asked.get("max_error_deg")
+    return None if largest is not None and max(found) > largest else max(found)
+
+
+def _over(row: Row, field: float | None) -> float:
+    """Return the error over the narrowest cone that holds a field, else over the whole one."""
+    half = row["half_fov_deg"]
+    if field is not None:
+        if half is None or 2.0 * half < field:
+            return math.inf
+        for edge in (int(e) for e in EDGES_DEG[1:]):
+            if 2.0 * min(edge, half) >= field and (error := field_error(row, edge)) is not None:
+                return error
+            if edge >= half:
+                break
+    answered = row["availability"]
+    if row["rms_deg"] is None or answered is None or answered < AVAILABLE:
+        return math.inf
+    return float(row["rms_deg"])
+
+
+def regrets(store: Store, number: int = NUMBER, seed: int = SEED) -> Iterator[Drawn]:
+    """Yield the answers to drawn requirements, beside the best by brute force.
+
+    Parameters
+    ----------
+    store
+        Of stored scores.
+    number, seed
+        Of requirement sets.
+    """
+    known = facts()
+    standard = pipelines_of(store.rows())
+    measured = Measurements(pipelines(store.rows(unit=None)))
+    for asked in drawn_requirements(number, seed, known):
+        best = min(errors(standard, asked, known), default=math.inf)
+        orders: tuple[Sort, ...] = ("measured", "advice")
+        answers = {sort: recommend(asked, measured, sort=sort, facts=known) for sort in orders}
+        yield Drawn(
+            asked,
+            best,
+            {sort: _first(answer) for sort, answer in answers.items()},
+            {sort: answer.regret and answer.regret["ratio"] for sort, answer in answers.items()},  # type: ignore[misc]
+        )
+
+
+def _first(answer: Recommendation) -> float:
+    """Return what the first calibration named errs; infinite if nothing is measured of it."""
+    if not answer.architectures:
+        return math.inf
+    measured = answer.architectures[0].calibrations[0].measured
+    error = None if measured is None else measured["error_deg"]
+    return float(error) if isinstance(error, float) else math.inf
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Print what was found, and return the exit status."""
+    given = sys.argv[1:] if arguments is None else list(arguments)
+    number, seed = (*map(int, given), *(NUMBER, SEED)[len(given) :])
+    found = list(regrets(Store(), number, seed))
+    met = [one for one in found if math.isfinite(one.best_deg)]
+    first = sum(one.first_deg["measured"] == one.best_deg for one in met)
+    known = [one.told["advice"] for one in met if one.told["advice"] is not None]
+    broken = [one for one in found if not one.kept]
+    told = _spread([ratio for ratio in known if ratio > 1.0])
+    usual = (
+        f"sort=advice: the first calibration named is the best one in {known.count(1.0)}, is not "
+        f"measured or answers too seldom in {len(met) - len(known)}; the others err {told}"
+    )
+    lines = [
+        f"{number} requirement sets (seed {seed}): {len(met)} are met by a measured pipeline",
+        f"sort=measured: the first calibration named is the best one in {first} of {len(met)}",
+        usual,
+        f"the answer tells another regret than brute force finds in {len(broken)} of {number}",
+        *(
+            f"  {dict(one.asked)}: {one.first_deg}, best {one.best_deg}, told {one.told}"
+            for one in broken
+        ),
+    ]
+    sys.stdout.write("\n".join(lines) + "\n")
+    return 1 if broken else 0
+
+
+def _spread(ratios: Sequence[float]) -> str:
+    if not ratios:
+        return "no more"
+    return f"{min(ratios):.3g} to {max(ratios):.3g} times as much (median {median(ratios):.3g})"
+
+
+if __name__ == "__main__":
+    sys.exit(main())
