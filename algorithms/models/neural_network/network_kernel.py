@@ -110,19 +110,14 @@ def network_values(
     out : ndarray, shape (N, O)
         Overwritten.
     """
-    everything = 0
-    for width in widths:
-        everything += width
+    everything, outputs = np.sum(widths), widths[-1]
     units = np.empty((everything, _BLOCK))
-    outputs = widths[-1]
     for start in range(0, len(inputs), _BLOCK):
         size = min(_BLOCK, len(inputs) - start)
         part = units[:, :size]
         _forward(inputs[start : start + size], weights, widths, kinds, part)
         for output in range(outputs):
-            row = part[everything - outputs + output]
-            for i in range(size):
-                out[start + i, output] = row[i]
+            out[start : start + size, output] = part[everything - outputs + output]
 
 
 @compiled
@@ -182,9 +177,7 @@ def network_derivatives(
     inputs: Floats, weights: Floats, widths: Layers, kinds: Layers, out: Floats
 ) -> None:
     """Write derivatives (N, O, P) of outputs by weights into `out`, as `network_values`."""
-    everything = 0
-    for width in widths:
-        everything += width
+    everything = np.sum(widths)
     units, slopes = np.empty((everything, _BLOCK)), np.empty((everything, _BLOCK))
     for start in range(0, len(inputs), _BLOCK):
         size = min(_BLOCK, len(inputs) - start)
@@ -257,9 +250,8 @@ def _normal_equations(  # noqa: PLR0917 - Numba takes no keyword-only ones
         _forward(inputs[start : start + size], weights, widths, kinds, seen)
         for output in range(outputs):
             _derivatives(seen, output, weights, widths, kinds, falling, rows[:size, output])
-            for i in range(size):
-                found = seen[everything - outputs + output, i]
-                errors[i, output] = found - wanted[start + i, output]
+            found = seen[everything - outputs + output]
+            errors[:size, output] = found - wanted[start : start + size, output]
         rows[size:] = 0.0
         errors[size:] = 0.0
         for first in range(0, size * outputs, _ROWS):
@@ -296,8 +288,7 @@ def solved(normal: Floats, added: float, wanted: Floats, factor: Floats, out: Fl
         if not pivot > 0.0:
             return False
         root = np.sqrt(pivot)
-        for q in range(p, count):
-            factor[p, q] /= root
+        factor[p, p:] /= root
         out[p] /= root
         for r in range(p + 1, count):
             share = factor[p, r]
@@ -384,10 +375,7 @@ def train(  # noqa: PLR0917 - Numba takes no keyword-only ones
     taken : int
         Steps to those weights.
     """
-    everything = 0
-    for width in widths:
-        everything += width
-    units = np.empty((everything, _BLOCK))
+    units = np.empty((np.sum(widths), _BLOCK))
     here, trial = weights.copy(), np.empty(len(weights))
     cost = _mean_square(inputs, wanted, here, widths, kinds, units)
     best = _mean_square(held_inputs, held_wanted, here, widths, kinds, units)
