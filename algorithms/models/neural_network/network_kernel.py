@@ -22,7 +22,7 @@ LINEAR, LOG_SIGMOID, TANH = 0, 1, 2
 _BLOCK = 64
 """Samples whose activations stay in the first cache; inner loops run along them."""
 _ROWS = 32
-"""Rows of derivatives that are held at a time; a multiple of four."""
+"""Rows of derivatives that stay in the first cache; a multiple of eight that divides a block."""
 _FARTHEST = 32.0
 """Sums beyond are taken for this: both functions are flat there to 2e-14."""
 _SHARE, _SQUARINGS = 1.0 / 128.0, 7
@@ -43,25 +43,27 @@ def _respond(sums: Floats, kind: int) -> None:
     if kind == LINEAR:
         return
     units, size = sums.shape
+    scale = 2.0 if kind == TANH else 1.0
+    shares, powers = np.empty(size), np.empty(size)
     for unit in range(units):
         row = sums[unit]
         for i in range(size):
-            x = row[i]
-            if kind == TANH:
-                x = 2.0 * x
+            x = scale * row[i]
             # NaN passes both comparisons, as it would not minimum and maximum
             if x > _FARTHEST:  # noqa: PLR1730
                 x = _FARTHEST
             if x < -_FARTHEST:  # noqa: PLR1730
                 x = -_FARTHEST
-            x = -x * _SHARE
-            power = _SERIES[0]
-            for term in range(1, 13):
-                power = power * x + _SERIES[term]
-            for _ in range(_SQUARINGS):
-                power = power * power
-            sigmoid = 1.0 / (1.0 + power)
-            row[i] = 2.0 * sigmoid - 1.0 if kind == TANH else sigmoid
+            shares[i] = -x * _SHARE
+        powers[:] = _SERIES[0]
+        # term by term for all samples: the compiler takes several at a time
+        for term in range(1, 13):
+            for i in range(size):
+                powers[i] = powers[i] * shares[i] + _SERIES[term]
+        for _ in range(_SQUARINGS):
+            powers *= powers
+        for i in range(size):
+            row[i] = scale * (1.0 / (1.0 + powers[i])) - (scale - 1.0)
 
 
 @compiled
@@ -108,59 +110,66 @@ def network_values(
     out : ndarray, shape (N, O)
         Overwritten.
     """
-    everything = 0
-    for width in widths:
-        everything += width
+    everything, outputs = np.sum(widths), widths[-1]
     units = np.empty((everything, _BLOCK))
-    outputs = widths[-1]
     for start in range(0, len(inputs), _BLOCK):
         size = min(_BLOCK, len(inputs) - start)
         part = units[:, :size]
         _forward(inputs[start : start + size], weights, widths, kinds, part)
         for output in range(outputs):
-            row = part[everything - outputs + output]
-            for i in range(size):
-                out[start + i, output] = row[i]
+            out[start : start + size, output] = part[everything - outputs + output]
 
 
 @compiled
-def _derivative_row(  # noqa: PLR0917 - Numba takes no keyword-only ones
+def _lean(slope: Floats, answer: Floats, kind: int) -> None:
+    """Multiply (b,) by how steep units of this kind are at their answers (b,)."""
+    if kind == TANH:
+        for i in range(len(slope)):
+            slope[i] *= 1.0 - answer[i] * answer[i]
+    elif kind == LOG_SIGMOID:
+        for i in range(len(slope)):
+            slope[i] *= answer[i] * (1.0 - answer[i])
+
+
+@compiled
+def _derivatives(  # noqa: PLR0917 - Numba takes no keyword-only ones
     units: Floats,
-    sample: int,
     output: int,
     weights: Floats,
     widths: Layers,
     kinds: Layers,
     slopes: Floats,
-    row: Floats,
+    rows: Floats,
 ) -> None:
-    """Derive one output of one sample by all weights (P,): the chain rule backwards."""
-    layers = len(kinds)
+    """Derive one output of samples by all weights, rows (b, P): the chain rule backwards.
+
+    `units` and `slopes` (sum of widths, b): answers, and derivatives by what they are answers to.
+    """
     at, before = len(weights), len(slopes)
-    for layer in range(layers - 1, -1, -1):
+    slopes[before - widths[-1] :] = 0.0
+    slopes[before - widths[-1] + output] = 1.0
+    for layer in range(len(kinds) - 1, -1, -1):
         width, sources = widths[layer + 1], widths[layer]
         last_at, last = at, before
         at -= width * (sources + 1)
         before -= width
         below = before - sources
         for unit in range(width):
-            answer = units[before + unit, sample]
-            if layer == layers - 1:
-                slope = 1.0 if unit == output else 0.0
-            else:
-                slope = 0.0
-                above = widths[layer + 2]
-                for target in range(above):
-                    slope += slopes[last + target] * weights[last_at + target * (width + 1) + unit]
-            if kinds[layer] == TANH:
-                slope *= 1.0 - answer * answer
-            elif kinds[layer] == LOG_SIGMOID:
-                slope *= answer * (1.0 - answer)
-            slopes[before + unit] = slope
+            slope = slopes[before + unit]
+            if last < len(slopes):
+                slope[:] = 0.0
+                for target in range(widths[layer + 2]):
+                    above = slopes[last + target]
+                    weight = weights[last_at + target * (width + 1) + unit]
+                    for i in range(len(slope)):
+                        slope[i] += above[i] * weight
+            _lean(slope, units[before + unit], kinds[layer])
             place = at + unit * (sources + 1)
             for source in range(sources):
-                row[place + source] = slope * units[below + source, sample]
-            row[place + sources] = slope
+                seen = units[below + source]
+                for i in range(len(slope)):
+                    rows[i, place + source] = slope[i] * seen[i]
+            rows[:, place + sources] = slope
 
 
 @compiled
@@ -168,18 +177,15 @@ def network_derivatives(
     inputs: Floats, weights: Floats, widths: Layers, kinds: Layers, out: Floats
 ) -> None:
     """Write derivatives (N, O, P) of outputs by weights into `out`, as `network_values`."""
-    everything = 0
-    for width in widths:
-        everything += width
-    units, slopes = np.empty((everything, _BLOCK)), np.empty(everything)
+    everything = np.sum(widths)
+    units, slopes = np.empty((everything, _BLOCK)), np.empty((everything, _BLOCK))
     for start in range(0, len(inputs), _BLOCK):
         size = min(_BLOCK, len(inputs) - start)
-        _forward(inputs[start : start + size], weights, widths, kinds, units[:, :size])
-        for i in range(size):
-            for output in range(widths[-1]):
-                _derivative_row(
-                    units, i, output, weights, widths, kinds, slopes, out[start + i, output]
-                )
+        seen, falling = units[:, :size], slopes[:, :size]
+        _forward(inputs[start : start + size], weights, widths, kinds, seen)
+        for output in range(widths[-1]):
+            rows = out[start : start + size, output]
+            _derivatives(seen, output, weights, widths, kinds, falling, rows)
 
 
 @compiled
@@ -200,6 +206,26 @@ def _mean_square(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
+def _add_products(normal: Floats, gradient: Floats, rows: Floats, errors: Floats) -> None:
+    """Add products of rows (R, P) to the upper triangle (P, P), and with their errors (P,)."""
+    for p in range(len(gradient)):
+        line, total = normal[p, p:], gradient[p]
+        for r in range(0, len(errors), 8):
+            a, b, c, d = rows[r, p], rows[r + 1, p], rows[r + 2, p], rows[r + 3, p]
+            e, f, g, h = rows[r + 4, p], rows[r + 5, p], rows[r + 6, p], rows[r + 7, p]
+            total += a * errors[r] + b * errors[r + 1] + c * errors[r + 2] + d * errors[r + 3]
+            total += e * errors[r + 4] + f * errors[r + 5] + g * errors[r + 6] + h * errors[r + 7]
+            # sliced one by one: contiguous for the compiler
+            one, two, three, four = rows[r, p:], rows[r + 1, p:], rows[r + 2, p:], rows[r + 3, p:]
+            five, six = rows[r + 4, p:], rows[r + 5, p:]
+            seven, eight = rows[r + 6, p:], rows[r + 7, p:]
+            for q in range(len(line)):
+                more = line[q] + (a * one[q] + b * two[q] + c * three[q] + d * four[q])
+                line[q] = more + (e * five[q] + f * six[q] + g * seven[q] + h * eight[q])
+        gradient[p] = total
+
+
+@compiled
 def _normal_equations(  # noqa: PLR0917 - Numba takes no keyword-only ones
     inputs: Floats,
     wanted: Floats,
@@ -214,40 +240,23 @@ def _normal_equations(  # noqa: PLR0917 - Numba takes no keyword-only ones
     count, outputs, everything = len(weights), wanted.shape[1], len(units)
     normal[:] = 0.0
     gradient[:] = 0.0
-    rows, errors = np.zeros((_ROWS, count)), np.zeros(_ROWS)
-    slopes = np.empty(everything)
-    held = 0
+    # sample by sample, output by output
+    rows, errors = np.zeros((_BLOCK, outputs, count)), np.zeros((_BLOCK, outputs))
+    listed, off = rows.reshape(-1, count), errors.reshape(-1)
+    slopes = np.empty((everything, _BLOCK))
     for start in range(0, len(inputs), _BLOCK):
         size = min(_BLOCK, len(inputs) - start)
-        _forward(inputs[start : start + size], weights, widths, kinds, units[:, :size])
-        for i in range(size):
-            for output in range(outputs):
-                _derivative_row(units, i, output, weights, widths, kinds, slopes, rows[held])
-                errors[held] = units[everything - outputs + output, i] - wanted[start + i, output]
-                held += 1
-                last = start + i == len(inputs) - 1 and output == outputs - 1
-                if held < _ROWS and not last:
-                    continue
-                rows[held:] = 0.0
-                errors[held:] = 0.0
-                for r in range(0, _ROWS, 4):
-                    for p in range(count):
-                        a, b, c, d = rows[r, p], rows[r + 1, p], rows[r + 2, p], rows[r + 3, p]
-                        gradient[p] += (
-                            a * errors[r]
-                            + b * errors[r + 1]
-                            + c * errors[r + 2]
-                            + d * errors[r + 3]
-                        )
-                        line = normal[p]
-                        for q in range(p, count):
-                            line[q] += (
-                                a * rows[r, q]
-                                + b * rows[r + 1, q]
-                                + c * rows[r + 2, q]
-                                + d * rows[r + 3, q]
-                            )
-                held = 0
+        seen, falling = units[:, :size], slopes[:, :size]
+        _forward(inputs[start : start + size], weights, widths, kinds, seen)
+        for output in range(outputs):
+            _derivatives(seen, output, weights, widths, kinds, falling, rows[:size, output])
+            found = seen[everything - outputs + output]
+            errors[:size, output] = found - wanted[start : start + size, output]
+        rows[size:] = 0.0
+        errors[size:] = 0.0
+        for first in range(0, size * outputs, _ROWS):
+            part = slice(first, first + _ROWS)
+            _add_products(normal, gradient, listed[part], off[part])
     gradient /= len(inputs)
     normal /= len(inputs)
 
@@ -271,8 +280,7 @@ def solved(normal: Floats, added: float, wanted: Floats, factor: Floats, out: Fl
     """
     count = len(wanted)
     for p in range(count):
-        for q in range(p, count):
-            factor[p, q] = normal[p, q]
+        factor[p, p:] = normal[p, p:]
         factor[p, p] += added
         out[p] = wanted[p]
     for p in range(count):
@@ -280,13 +288,14 @@ def solved(normal: Floats, added: float, wanted: Floats, factor: Floats, out: Fl
         if not pivot > 0.0:
             return False
         root = np.sqrt(pivot)
-        for q in range(p, count):
-            factor[p, q] /= root
+        factor[p, p:] /= root
         out[p] /= root
         for r in range(p + 1, count):
             share = factor[p, r]
-            for q in range(r, count):
-                factor[r, q] -= share * factor[p, q]
+            # sliced: contiguous for the compiler
+            line, above = factor[r, r:], factor[p, r:]
+            for q in range(len(line)):
+                line[q] -= share * above[q]
             out[r] -= share * out[p]
     for p in range(count - 1, -1, -1):
         value = out[p]
@@ -348,34 +357,25 @@ def train(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
     Parameters
     ----------
-    inputs, wanted : ndarray, shapes (n, F) and (n, O)
-        Samples that are fitted.
-    held_inputs, held_wanted : ndarray, shapes (m, F) and (m, O)
-        Samples that say when to stop.
+    inputs, wanted, held_inputs, held_wanted : ndarray, shapes (n, F), (n, O), (m, F) and (m, O)
+        Samples that are fitted, and those that say when to stop.
     weights : ndarray, shape (P,)
         Where to start; overwritten by the best.
     widths, kinds
         As `network_values`.
-    steps : int
-        Most steps.
-    patience : int
-        Steps without a better error on the samples held out after which it stops.
+    steps, patience : int
+        Most steps, and those without a better error on the samples held out after which it stops.
     goal : float
         Mean square error on the samples held out that is good enough.
 
     Returns
     -------
-    held : float
-        Mean square error of the weights left, on the samples held out, outputs added.
-    fitted : float
-        The same on the samples fitted.
+    held, fitted : float
+        Mean square errors of the weights left on both, outputs added.
     taken : int
         Steps to those weights.
     """
-    everything = 0
-    for width in widths:
-        everything += width
-    units = np.empty((everything, _BLOCK))
+    units = np.empty((np.sum(widths), _BLOCK))
     here, trial = weights.copy(), np.empty(len(weights))
     cost = _mean_square(inputs, wanted, here, widths, kinds, units)
     best = _mean_square(held_inputs, held_wanted, here, widths, kinds, units)

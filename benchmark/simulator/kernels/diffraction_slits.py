@@ -70,7 +70,9 @@ def _blended_row(out: Floats, slits: Slits, number: float, shares: Three) -> Non
 
 
 @compiled
-def _means(out: Floats, row: Floats, scale: Four, cells: Complex, weight: float) -> None:
+def _means(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    out: Floats, row: Floats, scale: Four, cells: Complex, weight: float, work: Floats
+) -> None:
     """Add a pattern's means over cells, times a weight.
 
     Parameters
@@ -84,31 +86,34 @@ def _means(out: Floats, row: Floats, scale: Four, cells: Complex, weight: float)
         the pattern is bent: half the second derivative of the landing point over J squared.
     cells
         Edge of the first, seen from the slit's middle, and their size.
+    weight
+        Of the means.
+    work
+        (2, M + 1 or more), overwritten.
     """
     half, gap, per, bend = scale
     start, size = cells
-    middle = row.shape[0] // 2
-    before = 0.0
-    for i in range(-1, out.shape[0]):
-        place = start + (i + 1) * size
-        if 2.0 * bend * place > 1.0:
-            # no light from so far out: it would have to come in below the horizon
-            place = 0.5 / bend
+    values, places = work[0], work[1]
+    last = row.shape[0] - 1
+    middle = last // 2
+    horizon = 0.5 / bend if bend != 0.0 else 0.0
+    # in three loops: the look-up cannot be vectorised, the arithmetic can
+    for i in range(out.shape[0] + 1):
+        place = start + i * size
+        # no light from so far out: it would have to come in below the horizon
+        place = horizon if 2.0 * bend * place > 1.0 else place
         # far away patterns keep their shape in direction cosines; edges stay where they are
         place -= bend * place * place
-        value = min(max(place, -gap), gap)
-        steps = (place - value) / half * per + middle
-        if steps <= 0.0:
-            value += half * row[0]
-        elif steps >= 2.0 * middle:
-            value += half * row[2 * middle]
-        else:
-            cell = int(steps)
-            below = row[cell]
-            value += half * (below + (steps - cell) * (row[cell + 1] - below))
-        if i >= 0:
-            out[i] += weight * (value - before) / size
-        before = value
+        values[i] = min(max(place, -gap), gap)
+        steps = np.true_divide(place - values[i], half) * per + middle
+        places[i] = min(max(steps, 0.0), 2.0 * middle)
+    for i in range(out.shape[0] + 1):
+        cell = int(places[i])
+        below = row[cell]
+        share = (places[i] - cell) * (row[min(cell + 1, last)] - below)
+        values[i] += half * (below + share)
+    for i in range(out.shape[0]):
+        out[i] += np.true_divide(weight * (values[i + 1] - values[i]), size)
 
 
 @compiled
@@ -154,6 +159,7 @@ def _products(
     across, along = np.zeros((count, columns)), np.zeros((count, rows))
     all_x = np.empty(2 * widths[0][0].shape[2] - 1)
     all_y = np.empty(2 * widths[1][0].shape[2] - 1)
+    work = np.empty((2, max(rows, columns) + 1))
     far_x = max(abs(x0), abs(columns * cell - x0)) + wide + abs(shear)
     far_y = max(abs(y0), abs(rows * cell - y0)) + high
     far_x += abs(bend_x) * far_x * far_x
@@ -177,13 +183,20 @@ def _products(
         for j in range(strips):
             k = m * strips + j
             up = disc[j, 0, 1]
-            _means(along[k], row_y, scale_y, (-y0 - high * up, cell), share * light)
+            _means(along[k], row_y, scale_y, (-y0 - high * up, cell), share * light, work)
             for i in range(disc.shape[1]):
                 right = wide * disc[j, i, 0] + shear * up
-                _means(across[k], row_x, scale_x, (-x0 - right, cell), disc[j, i, 2])
+                _means(across[k], row_x, scale_x, (-x0 - right, cell), disc[j, i, 2], work)
     for row in range(rows):
         line = out[row]
-        for k in range(count):
+        # four at a time, one after another: what is added to stays at hand
+        for k in range(0, count - 3, 4):
+            a, b, c, d = along[k, row], along[k + 1, row], along[k + 2, row], along[k + 3, row]
+            one, two, three, four = across[k], across[k + 1], across[k + 2], across[k + 3]
+            for column in range(columns):
+                more = line[column] + a * one[column] + b * two[column]
+                line[column] = more + c * three[column] + d * four[column]
+        for k in range(count - count % 4, count):
             here, there = along[k, row], across[k]
             for column in range(columns):
                 line[column] += here * there[column]
