@@ -82,14 +82,16 @@ def _architecture(architecture: Mapping[str, Any]) -> Iterator[str]:
 
 def _advised(advice: Sequence[Mapping[str, Any]]) -> str:
     """Return what the survey advises an architecture for, how calibrated, and in which section."""
+    if not advice:
+        return "no, not for what is asked"
     found: dict[str, list[str]] = {}
     for one in advice:
-        kind = "" if one["requirement"] == "task" else f"{one['requirement']} "
+        kind = "" if one["requirement"] == "task" else "class "
         how = ", ".join(filter(None, (one["model_category"], one["extractor"])))
-        found.setdefault(f"{kind}{one['value']} ({one['section']})", []).append(how)
+        found.setdefault(f"{kind}{one['value']}", []).append(how)
     ways = {what: " or ".join(filter(None, how)) for what, how in found.items()}
     said = "; ".join(f"{what}: {how}" if how else what for what, how in ways.items())
-    return said or "no, not for what is asked"
+    return f"{said} (in {', '.join(dict.fromkeys(one['section'] for one in advice))})"
 
 
 def _proposed(studies: Sequence[str]) -> str:

@@ -17,7 +17,7 @@ export const LIMIT_NAMES = {
 
 export const LIST_NAMES = {
   survive: { name: "Shall survive", words: "shall survive", subject: "surviving" },
-  properties: { name: "Extraction is", words: "extraction", subject: "properties of the extraction" },
+  properties: { name: "Extractor assessed", words: "extractor assessed as", subject: "properties of the extractor" },
 };
 
 /** What a sensor may have to survive, as the service names it, and in words. */

@@ -208,7 +208,9 @@ def test_nothing_overflows_a_narrow_screen(narrow: Visit, path: str) -> None:
     if page.locator(".study details summary").count():
         page.locator(".study details summary").first.click()
         expect(page.locator(".provenance table").first).to_be_visible()
-    assert page.evaluate("document.documentElement.scrollWidth") <= NARROW[0]
+    for width in (NARROW[0], 720, 960):
+        page.set_viewport_size({"width": width, "height": NARROW[1]})
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
     assert narrow.complaints == []
 
 
