@@ -106,11 +106,11 @@ def test_a_query_passes_the_functions_listed_from_http_to_answer() -> None:
     def ask() -> None:
         answer = asyncio.run(asked("task=Accuracy&min_fov_deg=61"))
         assert answer.status_code == 200
-        assert answer.json()["paths"]
+        assert answer.json()["architectures"]
 
     asyncio.run(asked("task=Cost"))  # facts and measurements are loaded by the first query
     landmarks = [
-        "registry/recommendation.py: recommend",
+        "registry/judging.py: Question.places",
         "api/http/answers.py: Answer.representation",
         "api/http/representations.py: Representation.respond",
     ]

@@ -2,8 +2,11 @@
 
 import { byId, copyable, h } from "./dom.js";
 import { address, saveCsv } from "./service.js";
-import { ATTRIBUTES, LIMITS, measuredCondition, requirements, set, setLimit, setRequirements, state } from "./state.js";
-import { ATTRIBUTE_NAMES, LIMIT_NAMES, plural } from "./wording.js";
+import { ATTRIBUTES, LIMITS, LISTS, question, requirements, set, setLimit, setListed, setRequirements, show, state } from "./state.js";
+import { ATTRIBUTE_NAMES, LIMIT_NAMES, limitText, LIST_NAMES, plural, quoted, sentence, studiesCount } from "./wording.js";
+
+/** Architectures and calibrations of an answer that is handed on. */
+const MOST = { limit: 500, calibrations: 500 };
 
 function chip(label, spoken, remove, not) {
   return h("button", {
@@ -35,46 +38,76 @@ export function showQuestion(vocabulary) {
     }
   }
   for (const limit of LIMITS) {
-    const { words, unit } = LIMIT_NAMES[limit];
     if (state.limits[limit] === "") continue;
-    const label = `${state.limits[limit]} ${unit}`.replace(" °", "°");
+    const { words } = LIMIT_NAMES[limit];
+    const label = limitText(limit, state.limits[limit]);
     clauses.push([`${words} `, chip(label, `${words} ${label}`, () => setLimit(limit, ""))]);
+  }
+  for (const list of LISTS) {
+    const { words } = LIST_NAMES[list];
+    if (!state.lists[list].length) continue;
+    clauses.push([`${words} `, ...between(state.lists[list].map((value) =>
+      chip(value, `${words} ${value}`, () => setListed(list, value, false))), "and")]);
   }
   byId("question").replaceChildren(clauses.length
     ? h("p", { class: "question" }, "Asked for: ", clauses.map((clause, i) => [clause, i < clauses.length - 1 ? ", " : "."]))
-    : h("p", { class: "muted" }, "Nothing is required yet: every path of the survey is shown. Choose requirements, or select a value in the flow."));
+    : h("p", { class: "muted" }, "Nothing is required yet: every architecture is shown. Choose requirements, or select a value in the flow."));
 }
 
 /** studies: how many are mapped in all. */
 export function showSummary(answer, studies) {
-  const used = new Set(answer.nodes.flatMap((n) => n.studies));
-  const measured = answer.paths.filter((p) => p.measured).length;
-  byId("summary").replaceChildren(
-    h("strong", {}, plural(answer.count, "path")), " from ",
-    h("strong", {}, plural(used.size, "study", "studies")), ` of ${studies} mapped; `,
-    h("strong", {}, String(measured)), answer.count > answer.paths.length
-      ? ` of the first ${answer.paths.length} measured here.` : " of them measured here.");
-  const asked = requirements();
-  const url = address("/v1/recommendations", { ...asked, condition: measuredCondition(), limit: 500 });
+  const backing = new Set(answer.architectures.flatMap((a) => a.studies));
+  const measured = answer.architectures.filter((a) => a.best.measured).length;
+  byId("summary").replaceChildren(...(answer.count === 0 ? [h("strong", {}, "0 architectures"), " meet all that is asked."] : [
+    h("strong", {}, plural(answer.count, "architecture")), " with ",
+    h("strong", {}, plural(answer.designs, "calibration")), ", proposed by ",
+    h("strong", {}, studiesCount(backing.size)), ` of ${studies} mapped; `,
+    h("strong", {}, String(measured)), " of the architectures measured here."]));
+  const url = address("/v1/recommendations", { ...question(), ...MOST });
   byId("answer-links").replaceChildren(
     h("a", { href: url }, "This answer as JSON"),
     h("button", { type: "button", onclick: () => saveCsv(url, "recommendations.csv") }, "as CSV"),
-    copyable(commandLine(measuredCondition() ? { ...asked, condition: measuredCondition() } : asked), "the command line of this answer"));
+    copyable(commandLine(question()), "the command line of this answer"));
 }
 
 /** The same question to the command line. */
 export function commandLine(asked) {
-  const quoted = (v) => (/^[\w.+-]+$/.test(v) ? v : `'${v}'`);
-  const options = Object.entries(asked).flatMap(([name, value]) =>
+  const options = Object.entries(asked).filter(([, value]) => value !== null).flatMap(([name, value]) =>
     [value].flat().map((v) => `--${name.replaceAll("_", "-")} ${quoted(v)}`));
   return ["sunatlas recommend", ...options].join(" ");
+}
+
+/** Where the kinds of evidence disagree, what the order costs, and what nobody has tried. */
+export function showFindings(answer) {
+  const { contradictions, regret, untried } = answer;
+  const best = regret?.ratio === 1;
+  byId("findings").replaceChildren(...[
+    ...contradictions.map((text) => finding("Measurement against advice", sentence(text))),
+    regret && finding(best ? "What this order costs: nothing" : "What this order costs", sentence(regret.sentence),
+      !best && h("button", { type: "button", onclick: () => {
+        show({ sort: "measured" });
+        byId("architectures").focus();
+      } }, "Order by measurement")),
+    ...Object.entries(untried).filter(([, pairs]) => pairs.length).map(([hazard, pairs]) => notTried(hazard, pairs)),
+  ].filter(Boolean));
+}
+
+const finding = (title, ...content) => h("div", { class: "finding" }, h("h2", {}, title), h("p", {}, ...content.flatMap((c) => [c, " "])));
+
+function notTried(hazard, pairs) {
+  const named = pairs.map(({ detector, mask }) => `${detector} + ${mask}`).join(", ");
+  const title = `Not tried: ${hazard}`;
+  const lead = `No data set tries ${hazard} on `;
+  if (pairs.length <= 4) return finding(title, `${lead}${named}; they are left out.`);
+  return h("div", { class: "finding" }, h("h2", {}, title),
+    h("details", { class: "flow-links" }, h("summary", {}, `${lead}${plural(pairs.length, "architecture")}; they are left out.`), h("p", {}, `${named}.`)));
 }
 
 /** Why nothing is left, and what would leave something. */
 export function showBlocked(blocked, relax) {
   byId("blocked").replaceChildren(...(blocked ? [h("div", { class: "notice" },
-    h("p", {}, h("strong", {}, "No path meets these requirements. "), `${blocked.detail.charAt(0).toUpperCase()}${blocked.detail.slice(1)}.`),
-    h("p", {}, "The constraint that leaves nothing: ", h("code", { class: "culprit" }, blocked.constraint || "none: no study has a value at every level")),
+    h("p", {}, h("strong", {}, "No architecture meets these requirements. "), sentence(blocked.detail)),
+    h("p", {}, "What leaves nothing: ", h("code", { class: "culprit" }, blocked.constraint || "there are no designs at all")),
     blocked.relaxations.length > 0 && h("p", { id: "relax-title" }, "What would leave something:"),
     blocked.relaxations.length > 0 && h("div", { class: "relaxations", role: "group", "aria-labelledby": "relax-title" },
       blocked.relaxations.map((r) => h("button", {
@@ -83,24 +116,7 @@ export function showBlocked(blocked, relax) {
           relax(r);
           byId("answer").focus();
         },
-      }, `${relaxationWords(r)} → ${plural(r.paths, "path")}`))))] : []));
-}
-
-/** One constraint of a relaxation in words; asked: the values or the bound. */
-function constraintWords(constraint, asked, verb) {
-  const limit = LIMIT_NAMES[constraint];
-  if (limit) return `${limit.words} ${asked} ${limit.unit}`.replace(" °", "°");
-  const excluded = constraint.startsWith("exclude_");
-  const attribute = constraint.replace("exclude_", "");
-  const subject = `${(ATTRIBUTE_NAMES[attribute] ?? attribute).toLowerCase()} ${[asked].flat().join(" or ")}`;
-  if (excluded) return `${verb === "change" ? "only " : ""}the exclusion of ${subject}`;
-  return subject;
-}
-
-function relaxationWords({ drop, change }) {
-  const verb = drop ? "drop" : "change";
-  const words = Object.entries(drop ?? change ?? {}).map(([c, asked]) => constraintWords(c, asked, verb));
-  return `${verb === "drop" ? "Drop" : "Ask instead for"} ${words.join(" and ")}`;
+      }, `${sentence(r.words).slice(0, -1)} → ${plural(r.architectures, "architecture")}`))))] : []));
 }
 
 /** The requirements with a relaxation applied. */

@@ -4,7 +4,7 @@ import { byId, choice, h, problemNotice, segmented } from "./dom.js";
 import { attributeOf, fractional, grouped, rings, withAmounts } from "./flow_data.js";
 import { drawSankey, drawSunburst, erase, labelRoom } from "./flow_diagram.js";
 import { address, getJson } from "./service.js";
-import { ATTRIBUTES, LIMITS, set, show, standing, state } from "./state.js";
+import { ATTRIBUTES, LIMITS, LISTS, set, show, standing, state } from "./state.js";
 import { amount, ATTRIBUTE_NAMES, plural } from "./wording.js";
 
 export const CROSS = ["task", "detector", "mask", "model", "extractor"];
@@ -42,17 +42,15 @@ const wanting = (left) => left.map((l) => `${plural(l.count, "study", "studies")
 function noteOf(flow, answer, studies) {
   const parts = [];
   if (state.chart === "cross-analysis") {
-    parts.push("Studies on the paths of the answer, from task to feature extractor. Select a value to require it.");
+    parts.push("Studies behind the architectures of the answer, from task to feature extractor. Select a value to require it.");
     if (answer.left_out?.length) {
       parts.push(`On no path for want of a known value: ${wanting(answer.left_out)}.`);
     }
-    if (state.counting === "fractional" && answer.count > answer.paths.length) {
-      parts.push(`Counted over the first ${answer.paths.length} of ${answer.count} paths.`);
-    }
   } else {
     parts.push("Studies that have the required values.");
-    const unheeded = ATTRIBUTES.some((a) => state.exclude[a].length) || LIMITS.some((l) => state.limits[l] !== "");
-    if (unheeded) parts.push("Excluded values and limits apply to the cross-analysis only, not to this chart.");
+    const unheeded = ATTRIBUTES.some((a) => state.exclude[a].length) || LIMITS.some((l) => state.limits[l] !== "")
+      || LISTS.some((l) => state.lists[l].length);
+    if (unheeded) parts.push("Excluded values, limits and what it shall survive apply to the cross-analysis only, not to this chart.");
     if (flow.left_out?.length) parts.push(`Not drawn for want of a known value: ${wanting(flow.left_out)}.`);
   }
   parts.push(state.counting === "fractional"

@@ -73,7 +73,7 @@ function bar(row, scale) {
 }
 
 function sorted(rows) {
-  const { sort, order } = state;
+  const { board_sort: sort, board_order: order } = state;
   const sign = order === "descending" ? -1 : 1;
   const missing = (x) => x === null || x === undefined || x === "" || Number.isNaN(x);
   return [...rows].sort((a, b) => {
@@ -84,13 +84,13 @@ function sorted(rows) {
 }
 
 function heading(column) {
-  const active = state.sort === column.field;
+  const active = state.board_sort === column.field;
   return h("th", {
     scope: "col", role: "columnheader", class: !column.text && "number", title: column.title,
-    "aria-sort": active ? state.order : null,
+    "aria-sort": active ? state.board_order : null,
   }, h("button", {
     type: "button", "data-sort": column.field,
-    onclick: () => show({ sort: column.field, order: active && state.order === "ascending" ? "descending" : "ascending" }),
+    onclick: () => show({ board_sort: column.field, board_order: active && state.board_order === "ascending" ? "descending" : "ascending" }),
   }, column.name));
 }
 
@@ -208,7 +208,7 @@ function draw() {
       field !== WHOLE && rows[0].half_fov_deg !== null && rows[0].half_fov_deg < Number(field) && h("span", {}, `The sensor’s own field ends at ${degrees(rows[0].half_fov_deg)}`),
       field === WHOLE && !ranged && h("span", {}, "Ranks of this condition rest on one unit of the sensor"),
       shownColumns.includes(TIME) && h("span", {}, "Time: over that of a reference on the same observations")),
-    h("div", { class: "sort-narrow" }, choice("Sort by", "sort-narrow", shownColumns.map((c) => [c.field, c.name]), state.sort, (sort) => show({ sort, order: "ascending" }))),
+    h("div", { class: "sort-narrow" }, choice("Sort by", "sort-narrow", shownColumns.map((c) => [c.field, c.name]), state.board_sort, (field) => show({ board_sort: field, board_order: "ascending" }))),
     h("table", { class: "stacks board", role: "table", "aria-labelledby": "leaderboard-title" },
       h("thead", { role: "rowgroup" }, h("tr", { role: "row" }, shownColumns.map(heading),
         h("th", { scope: "col", role: "columnheader" }, SCALE, scale && h("span", { class: "scale-head", "aria-hidden": true },
@@ -233,8 +233,8 @@ export function resort() {
   const focused = document.activeElement?.dataset?.sort;
   draw();
   if (focused) byId("board-body").querySelector(`[data-sort="${focused}"]`)?.focus();
-  const column = columns().find((c) => c.field === state.sort);
-  byId("board-status").textContent = `Sorted by ${column?.name ?? state.sort}, ${state.order}.`;
+  const column = columns().find((c) => c.field === state.board_sort);
+  byId("board-status").textContent = `Sorted by ${column?.name ?? state.board_sort}, ${state.board_order}.`;
 }
 
 export async function showLeaderboard(datasets) {

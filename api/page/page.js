@@ -1,21 +1,22 @@
 /* The page: asks the service, hands what it says to the parts, follows the state. */
 
-import { relax, showBlocked, showQuestion, showSummary } from "./answer.js";
+import { relax, showBlocked, showFindings, showQuestion, showSummary } from "./answer.js";
+import { showArchitectures, showSort } from "./architectures.js";
 import { byId, h, problemNotice } from "./dom.js";
 import { CROSS, showFlow, showFlowControls } from "./flow.js";
 import { resort, showLeaderboard } from "./leaderboard.js";
-import { showPaths, showPathsControls } from "./paths.js";
 import { buildRequirements, updateRequirements } from "./requirements.js";
 import { address, getAll, getJson } from "./service.js";
-import { ATTRIBUTES, measuredCondition, onChange, requirements, state } from "./state.js";
+import { ATTRIBUTES, onChange, question } from "./state.js";
 import { Vocabulary } from "./wording.js";
 
-const MOST_PATHS = 500;
+const ASKED = { limit: 500, calibrations: 5 }; // an opened row asks for more calibrations
+const BODIES = ["architectures-body", "flow-body"];
 const known = { vocabulary: null, studies: new Map(), datasets: [] };
 let answer = null;
 let asking = null;
 
-/** Values of each attribute that occur in the answer: by path for the chain, by study for the rest. */
+/** Values of each attribute that occur in the answer: in its architectures and on its studies' paths. */
 function present(of) {
   const found = Object.fromEntries(ATTRIBUTES.map((a) => [a, new Set()]));
   for (const node of of.nodes) {
@@ -24,7 +25,15 @@ function present(of) {
       for (const a of ["accuracy", "error"]) known.studies.get(key)?.values[a]?.forEach((v) => found[a].add(v));
     }
   }
-  return of.nodes.length ? found : null;
+  for (const { detector, mask, calibrations, best } of of.architectures) {
+    found.detector.add(detector);
+    found.mask.add(mask);
+    for (const { extractor, compensations, model } of [...calibrations, best]) {
+      found.extractor.add(extractor);
+      [...compensations, model].forEach((stage) => found.model.add(stage));
+    }
+  }
+  return of.count ? found : null;
 }
 
 async function ask() {
@@ -33,25 +42,26 @@ async function ask() {
   const { signal } = asking;
   showQuestion(known.vocabulary);
   updateRequirements(null);
-  for (const id of ["flow-body", "paths-body"]) {
+  for (const id of BODIES) {
     byId(id).setAttribute("aria-busy", "true");
     byId(id).classList.add("stale");
   }
   try {
-    answer = await getJson(address("/v1/recommendations", { ...requirements(), condition: measuredCondition(), limit: MOST_PATHS }), signal);
+    answer = await getJson(address("/v1/recommendations", { ...question(), ...ASKED }), signal);
     showSummary(answer, known.studies.size);
+    showFindings(answer);
     showBlocked(answer.blocked, relax);
     updateRequirements(present(answer));
-    showPaths(answer, known.studies, true);
-    byId("paths-body").classList.remove("stale");
+    showArchitectures(answer, known.studies, true);
+    byId("architectures-body").classList.remove("stale");
     await showFlow(answer, known.vocabulary, known.studies.size, signal);
   } catch (problem) {
     if (problem.name === "AbortError") return;
     answer = null;
     byId("summary").textContent = "";
-    byId("answer-links").replaceChildren();
+    for (const id of ["answer-links", "findings"]) byId(id).replaceChildren();
     byId("blocked").replaceChildren(problemNotice(problem, ask));
-    for (const id of ["flow-body", "paths-body"]) {
+    for (const id of BODIES) {
       byId(id).replaceChildren(h("p", { class: "muted" }, "Nothing to show: the question was not answered."));
       byId(id).removeAttribute("aria-busy");
       byId(id).classList.remove("stale");
@@ -67,23 +77,24 @@ const BOARD = ["dataset", "board_condition", "board_field"];
 const FLOW = ["chart", "counting", "detail", "view"];
 const any = (changed, names) => names.some((n) => changed.has(n));
 
+/** Make controls anew; the keyboard stays where it was. */
+function renewed(make) {
+  const { name, id } = document.activeElement ?? {};
+  make();
+  const again = name ? document.querySelector(`.controls [name="${name}"]:checked`) : id === "chart" && byId("chart");
+  again?.focus?.();
+}
+
 function follow(changed) {
-  if (any(changed, FLOW)) {
-    const focused = document.activeElement;
-    showFlowControls();
-    // The controls are new elements; the keyboard stays where it was.
-    const again = focused?.name
-      ? byId("flow-controls").querySelector(`[name="${focused.name}"]:checked`)
-      : focused?.id === "chart" && byId("chart");
-    again?.focus?.();
-  }
-  if (any(changed, ["requirements", "condition"])) ask();
+  if (any(changed, FLOW)) renewed(showFlowControls);
+  if (changed.has("sort")) renewed(showSort);
+  if (any(changed, ["requirements", "sort"])) ask();
   else if (any(changed, FLOW)) redrawFlow();
   if (any(changed, BOARD)) {
     const focused = document.activeElement?.id;
     showLeaderboard(known.datasets);
     if (["dataset", "board-condition", "board-field"].includes(focused)) byId(focused)?.focus();
-  } else if (any(changed, ["sort", "order"])) resort();
+  } else if (any(changed, ["board_sort", "board_order"])) resort();
 }
 
 function countValues(studies) {
@@ -105,9 +116,10 @@ async function showProvenance() {
 }
 
 async function start() {
-  for (const id of ["flow-body", "paths-body"]) byId(id).replaceChildren(h("p", { class: "loading" }, "Loading…"));
+  for (const id of BODIES) byId(id).replaceChildren(h("p", { class: "loading" }, "Loading…"));
   byId("blocked").replaceChildren();
   showFlowControls();
+  showSort();
   try {
     const [taxonomy, studies] = await Promise.all([
       getJson("/v1/taxonomy"), getAll("/v1/studies", { limit: 500 }),
@@ -116,7 +128,7 @@ async function start() {
     known.studies = new Map(studies.map((s) => [s.key, s]));
     buildRequirements(known.vocabulary, countValues(studies));
   } catch (problem) {
-    for (const id of ["requirements-form", "flow-body", "paths-body"]) {
+    for (const id of ["requirements-form", ...BODIES]) {
       byId(id).replaceChildren(h("p", { class: "muted" }, "Not loaded."));
       byId(id).removeAttribute("aria-busy");
     }
@@ -127,8 +139,6 @@ async function start() {
   showProvenance().catch(() => { byId("provenance").textContent = "The survey states 128 studies and cites 129 keys."; });
   const board = getAll("/v1/datasets", { limit: 500 }).then((datasets) => {
     known.datasets = datasets;
-    const conditions = [...new Set(["nominal", ...datasets.flatMap((d) => d.conditions)])];
-    showPathsControls(conditions);
     return showLeaderboard(datasets);
   }).catch((problem) => {
     byId("board-body").removeAttribute("aria-busy");

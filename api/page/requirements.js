@@ -1,8 +1,9 @@
-/* The panel of requirements: every value can be required or excluded, limits are numbers. */
+/* The panel of requirements: values can be required or excluded, limits are numbers, and of hazards
+   and properties all that are chosen must hold. */
 
 import { byId, h } from "./dom.js";
-import { ATTRIBUTES, LIMITS, reset, set, setLimit, standing, state } from "./state.js";
-import { ATTRIBUTE_NAMES, LIMIT_NAMES } from "./wording.js";
+import { ATTRIBUTES, LIMITS, required, reset, set, setLimit, setListed, standing, state } from "./state.js";
+import { ATTRIBUTE_NAMES, HAZARDS, inUnit, LIMIT_NAMES, LIST_NAMES, ofUnit, PROPERTIES } from "./wording.js";
 
 const OPEN_AT_FIRST = new Set(["task", "detector"]);
 const updates = []; // one function an element that shows the state
@@ -62,16 +63,39 @@ function group(attribute, vocabulary, counts) {
 function limit(name) {
   const words = LIMIT_NAMES[name];
   const input = h("input", {
-    type: "number", id: name, min: "0", step: "any", inputmode: "decimal", placeholder: "any",
+    type: "number", id: name, min: "0", max: words.smaller, step: "any", inputmode: "decimal", placeholder: "any",
     onchange: () => {
-      if (input.checkValidity() && input.value !== state.limits[name]) setLimit(name, input.value);
+      const text = ofUnit(name, input.value);
+      if (input.checkValidity() && text !== state.limits[name]) setLimit(name, text);
       else input.reportValidity();
     },
   });
   updates.push(() => {
-    if (document.activeElement !== input || input.value === "") input.value = state.limits[name];
+    if (document.activeElement !== input || input.value === "") input.value = inUnit(name, state.limits[name]);
   });
   return h("label", { for: name }, words.name, input, h("span", { class: "unit" }, words.unit));
+}
+
+/** A group of which all that is chosen must hold; entries: [[value, words], ...] */
+function listGroup(list, entries) {
+  const chosen = h("span", { class: "chosen" });
+  updates.push(() => {
+    const asked = state.lists[list];
+    chosen.textContent = asked.length ? asked.join(", ") : "nothing asked";
+    chosen.classList.toggle("set", asked.length > 0);
+  });
+  const item = ([value, words]) => {
+    const button = h("button", {
+      type: "button", class: "facet-include", "data-list": list, "data-value": value, title: words || null,
+      "aria-label": `${LIST_NAMES[list].name} ${value}${words ? `: ${words}` : ""}`,
+      onclick: () => setListed(list, value, !state.lists[list].includes(value)),
+    }, h("b", {}, value), words && h("span", { class: "name" }, words));
+    updates.push(() => button.setAttribute("aria-pressed", String(state.lists[list].includes(value))));
+    return h("li", { class: "facet" }, button);
+  };
+  return h("details", { class: "group", open: state.lists[list].length > 0, "data-group": list },
+    h("summary", {}, LIST_NAMES[list].name, chosen),
+    h("ul", { class: "facets" }, entries.map(item)));
 }
 
 /** Build the panel once; counts: Map "attribute:value" -> number of studies. */
@@ -80,7 +104,8 @@ export function buildRequirements(vocabulary, counts) {
   form.addEventListener("submit", (event) => event.preventDefault());
   const limits = h("details", { class: "group", open: true }, h("summary", {}, "Limits"),
     h("div", { class: "limits" }, LIMITS.map(limit)));
-  form.replaceChildren(limits, ...ATTRIBUTES.map((a) => group(a, vocabulary, counts)));
+  form.replaceChildren(limits, listGroup("survive", Object.entries(HAZARDS)),
+    ...ATTRIBUTES.map((a) => group(a, vocabulary, counts)), listGroup("properties", PROPERTIES.map((p) => [p])));
   form.removeAttribute("aria-busy");
   byId("reset").addEventListener("click", () => {
     reset();
@@ -91,7 +116,5 @@ export function buildRequirements(vocabulary, counts) {
 /** Show the state; present: attribute -> Set of the values that occur in the answer, or null. */
 export function updateRequirements(present) {
   for (const update of updates) update(present);
-  const asked = ATTRIBUTES.some((a) => state.include[a].length || state.exclude[a].length)
-    || LIMITS.some((l) => state.limits[l] !== "");
-  byId("reset").disabled = !asked;
+  byId("reset").disabled = !required();
 }

@@ -1,10 +1,12 @@
 /* What is asked and what is shown, kept in the address so that an answer can be shared. */
 
 export const ATTRIBUTES = ["task", "accuracy", "error", "detector", "mask", "model", "extractor"];
-export const LIMITS = ["max_error_deg", "min_fov_deg", "max_latency_us"];
+export const LIMITS = ["max_error_deg", "min_fov_deg", "min_availability", "max_latency_us"];
+/** Of which all that is asked must hold: hazards, properties of the survey's assessment. */
+export const LISTS = ["survive", "properties"];
 const VIEW = {
-  chart: "cross-analysis", counting: "studies", detail: "grouped", view: "diagram",
-  condition: "nominal", dataset: "", board_condition: "", board_field: "", sort: "rank", order: "ascending",
+  sort: "advice", chart: "cross-analysis", counting: "studies", detail: "grouped", view: "diagram",
+  dataset: "", board_condition: "", board_field: "", board_sort: "rank", board_order: "ascending",
 };
 
 const listeners = new Set();
@@ -12,17 +14,18 @@ export const state = read(location.search);
 
 function read(search) {
   const parameters = new URLSearchParams(search);
-  const found = { include: {}, exclude: {}, limits: {}, ...VIEW };
+  const found = { include: {}, exclude: {}, limits: {}, lists: {}, ...VIEW };
   for (const attribute of ATTRIBUTES) {
     found.include[attribute] = [...new Set(parameters.getAll(attribute))];
     found.exclude[attribute] = [...new Set(parameters.getAll(`exclude_${attribute}`))];
   }
   for (const limit of LIMITS) found.limits[limit] = parameters.get(limit) ?? "";
+  for (const list of LISTS) found.lists[list] = [...new Set(parameters.getAll(list))];
   for (const name of Object.keys(VIEW)) found[name] = parameters.get(name) || VIEW[name];
   return found;
 }
 
-/** The requirements as the service's query parameters. */
+/** The requirements, without the order of the answer, as the service's query parameters. */
 export function requirements(of = state) {
   const query = {};
   for (const attribute of ATTRIBUTES) {
@@ -30,6 +33,7 @@ export function requirements(of = state) {
     if (of.exclude[attribute].length) query[`exclude_${attribute}`] = of.exclude[attribute];
   }
   for (const limit of LIMITS) if (of.limits[limit] !== "") query[limit] = of.limits[limit];
+  for (const list of LISTS) if (of.lists[list].length) query[list] = of.lists[list];
   return query;
 }
 
@@ -70,6 +74,13 @@ export function set(attribute, values, standing) {
   tell(["requirements"], true);
 }
 
+/** Ask for one value of a list, or no longer. */
+export function setListed(list, value, wanted) {
+  const others = state.lists[list].filter((v) => v !== value);
+  state.lists[list] = wanted ? [...others, value] : others;
+  tell(["requirements"], true);
+}
+
 export function standing(attribute, value) {
   if (state.include[attribute].includes(value)) return "include";
   return state.exclude[attribute].includes(value) ? "exclude" : null;
@@ -87,6 +98,7 @@ export function setRequirements(query) {
     state.exclude[attribute] = [query[`exclude_${attribute}`] ?? []].flat();
   }
   for (const limit of LIMITS) state.limits[limit] = String([query[limit] ?? ""].flat()[0] ?? "");
+  for (const list of LISTS) state.lists[list] = [query[list] ?? []].flat();
   tell(["requirements"], true);
 }
 
@@ -94,9 +106,12 @@ export function reset() {
   setRequirements({});
 }
 
-/** The condition to ask for; the service's own choice where it is the usual one. */
-export function measuredCondition() {
-  return state.condition === VIEW.condition ? null : state.condition;
+/** Whether anything is required. */
+export const required = () => Object.keys(requirements()).length > 0;
+
+/** Requirements and order as the service's query parameters; the usual order is not named. */
+export function question() {
+  return { ...requirements(), sort: state.sort === VIEW.sort ? null : state.sort };
 }
 
 addEventListener("popstate", () => {

@@ -7,10 +7,48 @@ export const ATTRIBUTE_NAMES = {
   accuracy_deg: "Published accuracy", fov_deg: "Field of view",
 };
 
+/** A unit that is not the service's own is so many times smaller: a share of 0.95 is 95 %. */
 export const LIMIT_NAMES = {
-  max_error_deg: { name: "Error at most", unit: "°", words: "error at most" },
-  min_fov_deg: { name: "Field of view at least", unit: "°", words: "field of view at least" },
-  max_latency_us: { name: "Latency at most", unit: "µs", words: "latency at most" },
+  max_error_deg: { name: "Error at most", unit: "°", words: "error at most", subject: "error" },
+  min_fov_deg: { name: "Field of view at least", unit: "°", words: "field of view at least", subject: "field of view" },
+  min_availability: { name: "Answered at least", unit: "%", words: "answered at least", subject: "answered share", smaller: 100 },
+  max_latency_us: { name: "Latency at most", unit: "µs", words: "latency at most", subject: "latency" },
+};
+
+export const LIST_NAMES = {
+  survive: { name: "Shall survive", words: "shall survive", subject: "surviving" },
+  properties: { name: "Extractor assessed", words: "extractor assessed as", subject: "properties of the extractor" },
+};
+
+/** What a sensor may have to survive, as the service names it, and in words. */
+export const HAZARDS = {
+  albedo: "Earth's albedo, with clouds",
+  "missing-apertures": "closed or dirty apertures",
+  ageing: "end of life, dead pixels",
+  temperature: "hot and cold",
+  misalignment: "turned or shifted in its mount",
+  glare: "glare, ghosts, stray light",
+  saturation: "over-exposure",
+  spin: "turning during the exposure",
+  noise: "ten times the noise",
+};
+
+/** Properties of the survey's assessment of extractors, in the order of its table. */
+export const PROPERTIES = [
+  "Computationally light", "No pre-processing", "Algorithmically simple", "Pinhole Mask", "Slit Mask",
+  "Other Mask", "CMOS Detector", "CCD Detector", "Other Detector", "Feature profile agnostic",
+  "Feature pattern agnostic", "Multi-feature", "Feature tracking", "Blooming features",
+  "Resolution scaling", "Sub-pixel resolution", "High precision", "Feature location agnostic",
+  "Robust to noise", "Noise level agnostic", "Robust to missing features",
+];
+
+/** What an answer is ordered by first. */
+export const SORTS = [["advice", "Advice"], ["support", "Studies"], ["measured", "Measurement"]];
+
+/** On what a requirement was judged. */
+export const JUDGED_ON = {
+  measured: "what is measured here", stated: "what studies state", studies: "its studies",
+  advised: "the survey's advice", assessed: "the survey's assessment",
 };
 
 export const BASES = {
@@ -40,10 +78,32 @@ export function number(value, digits = 3) {
 }
 
 export const degrees = (value) => (number(value) === "–" ? "–" : `${number(value)}°`);
+/** A field of view: 60°, where an error would be 60.0°. */
+export const wide = (value) => `${Number(value.toPrecision(4))}°`;
 export const times = (value) => (number(value) === "–" ? "–" : `${number(value)}×`);
+
+/** A limit of the service in the unit of the page; what is no number, as it stands. */
+export function inUnit(name, text) {
+  const { smaller = 1 } = LIMIT_NAMES[name];
+  return smaller === 1 || text === "" || Number.isNaN(Number(text)) ? text : String(Number((text * smaller).toPrecision(12)));
+}
+
+/** A limit as it is typed, in the unit of the service. */
+export function ofUnit(name, text) {
+  const { smaller = 1 } = LIMIT_NAMES[name];
+  return smaller === 1 || text === "" ? text : String(Number((text / smaller).toPrecision(12)));
+}
+
+/** A limit with its unit. */
+export const limitText = (name, text) => `${inUnit(name, text)} ${LIMIT_NAMES[name].unit}`.replace(" °", "°");
+/** A word of a command line. */
+export const quoted = (word) => (/^[\w.+-]+$/.test(word) ? word : `'${word}'`);
+export const sentence = (text) => `${text.charAt(0).toUpperCase()}${text.slice(1)}.`;
+
 /** A count, or a sum of fractions of studies. */
 export const amount = (value) => (Number.isInteger(value) ? String(value) : value.toFixed(1));
 export const plural = (n, one, many = `${one}s`) => `${n} ${n === 1 ? one : many}`;
+export const studiesCount = (n) => plural(n, "study", "studies");
 export const percent = (fraction) => {
   if (fraction === null || fraction === undefined) return "–";
   return fraction === 1 ? "100 %" : `${(Math.floor(fraction * 1000) / 10).toFixed(1)} %`;

@@ -1,28 +1,29 @@
-"""`sunatlas recommend`: ranked ways from a task to a calibrated sensor."""
+"""`sunatlas recommend`: which sensor to build, and how to calibrate it."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Annotated, Any
+import sys
+from enum import StrEnum
+from typing import Annotated
 
 import typer
 
-from api.cli import attributes
+from api.cli import architectures, attributes
 from api.cli.asking import ask
-from api.cli.tables import Format, FormatOption, emit
+from api.cli.tables import Format, FormatOption, emit, emit_json
 from api.http.routers.recommendations import recommendations
+from api.http.tables import flattened
+from registry.requirements import HAZARDS
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
-COLUMNS = (
-    *("rank", "task", "detector", "mask", "model", "extractor"),
-    *("studies", "support", "rms_deg", "over_bound", "pareto"),
-)
-CSV_COLUMNS = (
-    *COLUMNS,
-    *("keys", "measured_dataset", "measured_condition", "measured_extractor", "measured_model"),
-    *("bound_deg", "half_fov_deg", "latency_us"),
-)
+
+class Sort(StrEnum):
+    """Which evidence an answer is ordered by first (`registry.ranking.SORTS`)."""
+
+    ADVICE = "advice"
+    SUPPORT = "support"
+    MEASURED = "measured"
 
 
 @app.command()
@@ -49,19 +50,39 @@ def recommend(
     max_latency_us: Annotated[
         float | None, typer.Option(help="Longest time a sample, microseconds.")
     ] = None,
-    condition: Annotated[
-        str | None, typer.Option(help="Condition of the measured columns; nominal by default.")
+    min_availability: Annotated[
+        float | None, typer.Option(help="Smallest answered share of the samples, above 0 to 1.")
     ] = None,
-    limit: Annotated[int, typer.Option(min=1, max=500, help="Paths to print at most.")] = 20,
+    survive: Annotated[
+        list[str] | None,
+        typer.Option(help=f"Has to survive this: {', '.join(HAZARDS)}; may be repeated."),
+    ] = None,
+    properties: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Extractor has this property in the survey's assessment, such as 'Robust to "
+            "noise'; may be repeated."
+        ),
+    ] = None,
+    sort: Annotated[Sort, typer.Option(help="Which evidence comes first.")] = Sort.ADVICE,
+    limit: Annotated[
+        int, typer.Option(min=1, max=500, help="Architectures to print at most.")
+    ] = 20,
+    calibrations: Annotated[
+        int, typer.Option(min=1, max=500, help="Calibrations of each to print at most.")
+    ] = 5,
     form: FormatOption = Format.TABLE,
 ) -> None:
     """Rank the sensors and calibrations that meet requirements.
 
-    Literature and measurement stay apart: how many studies took a path, and what its best
-    pipeline achieved on our data. Paths that no other beats in both are marked pareto. Where
-    nothing is left, the requirement that rules everything out is named, exit code 0.
+    Architectures (detector + mask), and on each its calibrations (extractor > compensations >
+    model). Three kinds of evidence stay apart: what the survey's text advises, what studies
+    proposed, and what is measured here: the largest error, nominal and under all it shall survive,
+    with the full field it holds over. Said, too: where measurement is against advice or
+    literature, and what following the order costs. Where nothing is left, the requirement that
+    rules everything out is named with what would help, exit code 0.
     """
-    document = ask(
+    answer = ask(
         recommendations,
         {
             "task": task,
@@ -80,40 +101,23 @@ def recommend(
             "exclude_accuracy": exclude_accuracy,
             "max_error_deg": max_error_deg,
             "min_fov_deg": min_fov_deg,
+            "min_availability": min_availability,
             "max_latency_us": max_latency_us,
-            "condition": condition,
+            "survive": survive,
+            "properties": properties,
+            "sort": sort.value,
             "limit": limit,
+            "calibrations": calibrations,
         },
-    ).document
-    paths = document["paths"]
-    title = f"{len(paths)} of {document['count']} paths"
-    columns = CSV_COLUMNS if form is Format.CSV else COLUMNS
-    emit([_row(path) for path in paths], columns, form, document=document, title=title)
-    if document["blocked"] and form is not Format.JSON:
-        _explain(document["blocked"])
-
-
-def _row(path: Mapping[str, Any]) -> dict[str, Any]:
-    measured = path["measured"] or {}
-    named = ("dataset", "condition", "extractor", "model")
-    return {
-        **{name: path[name] for name in ("rank", "task", "detector", "mask", "model", "extractor")},
-        "studies": path["literature"]["studies"],
-        "support": path["literature"]["support"],
-        **{name: measured.get(name) for name in ("rms_deg", "over_bound", "bound_deg")},
-        **{name: measured.get(name) for name in ("half_fov_deg", "latency_us")},
-        **{f"measured_{name}": measured.get(name) for name in named},
-        "pareto": path["pareto"],
-        "keys": path["studies"],
-    }
-
-
-def _explain(blocked: Mapping[str, Any]) -> None:
-    typer.echo(f"nothing is left: {blocked['constraint']}: {blocked['detail']}", err=True)
-    for relaxation in blocked["relaxations"]:
-        others = {k: v for k, v in relaxation.items() if k not in {"constraint", "paths"}}
-        change = ", ".join(f"{name} {value}" for name, value in others.items())
-        typer.echo(
-            f"  {relaxation['constraint']}: {change or 'drop'}: {relaxation['paths']} paths",
-            err=True,
-        )
+    )
+    if form is Format.JSON:
+        emit_json(answer.document)
+        return
+    if form is Format.CSV:
+        rows = [flattened(row) for row in answer.rows()]
+        columns = dict.fromkeys((*answer.columns, *(name for row in rows for name in row)))
+        emit(rows, tuple(columns), form)
+    else:
+        sys.stdout.write(architectures.text(answer.document))
+    if answer.document["blocked"]:
+        typer.echo(architectures.explanation(answer.document["blocked"]), err=True)

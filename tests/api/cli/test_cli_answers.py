@@ -1,4 +1,4 @@
-"""`sunatlas studies`, `recommend` and `dataset`: the same answers in every format."""
+"""`sunatlas studies` and `dataset`: the same answers in every format."""
 
 import csv
 import io
@@ -84,35 +84,6 @@ def test_a_state_is_what_pipelines_and_gaps_say(state):
         assert bool(study["pipelines"]) == (state != "none")
         if state != "none":
             assert bool(study["gaps"]) == (state == "partial")
-
-
-def test_recommendations_keep_the_requirements():
-    found = answer("recommend", "--task", "Accuracy", "--exclude-mask", "Slit", "--limit", 500)
-    assert found["count"] == len(found["paths"]) > 0
-    assert {path["task"] for path in found["paths"]} == {"Accuracy"}
-    assert "Slit" not in {path["mask"] for path in found["paths"]}
-    assert all(path["studies"] for path in found["paths"])
-    assert [path["rank"] for path in found["paths"]] == list(range(1, found["count"] + 1))
-    rows = table("recommend", "--task", "Accuracy", "--exclude-mask", "Slit", "--limit", 500)
-    assert [row["keys"].split("; ") for row in rows] == [p["studies"] for p in found["paths"]]
-
-
-def test_limit_shortens_the_paths_and_not_the_count():
-    every = answer("recommend", "--task", "Accuracy", "--limit", 500)
-    few = answer("recommend", "--task", "Accuracy", "--limit", 3)
-    assert few["count"] == every["count"]
-    assert few["paths"] == every["paths"][:3]
-
-
-def test_what_cannot_be_met_names_the_requirement_that_rules_it_out():
-    impossible = ("recommend", "--detector", "Event", "--max-error-deg", "1e-9")
-    found = answer(*impossible)
-    assert found["count"] == 0
-    assert found["paths"] == []
-    assert found["blocked"]["constraint"]
-    shown = sunatlas(*impossible)
-    assert shown.exit_code == 0
-    assert f"nothing is left: {found['blocked']['constraint']}" in shown.stderr
 
 
 @pytest.mark.slow

@@ -95,7 +95,7 @@ def test_version_is_the_project_s():
         (["recommend", "--task", "Acuracy"], "did you mean 'Accuracy'?"),
         (["recommend", "--exclude-mask", "Slitt"], "did you mean 'Slit'?"),
         (["recommend", "--max-error-deg", "-1"], "--max-error-deg"),
-        (["recommend", "--condition", "nominall"], "did you mean 'nominal'?"),
+        (["recommend", "--survive", "albdo"], "--survive: no 'albdo'; did you mean 'albedo'?"),
         (["run", "Chang208"], "did you mean 'Chang2008'?"),
         (["run"], "study"),
         (["run", "Chang2008", "--workers", "0"], "--workers"),

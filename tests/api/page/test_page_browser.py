@@ -36,9 +36,9 @@ def test_every_chart_draws_without_complaint_and_without_another_host(wide: Visi
     assert "script-src 'self';" in policy  # no inline script, no evaluation of text
 
 
-def test_a_requirement_narrows_flow_paths_and_address_together(wide: Visit) -> None:
+def test_a_requirement_narrows_flow_architectures_and_address_together(wide: Visit) -> None:
     page = wide.go()
-    nodes, paths = wide.flow_nodes(), wide.paths()
+    nodes, architectures = wide.flow_nodes(), wide.architectures()
     page.locator('.facet-include[data-attribute="detector"][data-value="CMOS"]').click()
     wide.settle()
     assert wide.query() == {"detector": ["CMOS"]}
@@ -46,27 +46,33 @@ def test_a_requirement_narrows_flow_paths_and_address_together(wide: Visit) -> N
     assert {n for n in narrowed if n.startswith("detector:")} == {"detector:CMOS"}
     assert narrowed < nodes
     answer = get_json(f"{wide.address}/v1/recommendations?detector=CMOS&limit=500")
-    assert wide.paths() == answer["count"] < paths
-    page.get_by_role("button", name=f"Show all {answer['count']} paths").click()
-    shown = page.locator(".path").all_inner_texts()
-    assert len(shown) == answer["count"]
-    for text, path in zip(shown, answer["paths"], strict=True):
-        assert all(path[level] in text for level in ("task", "mask", "model", "extractor"))
+    assert wide.architectures() == answer["count"] < architectures
+    shown = page.locator(".architecture .design > strong").all_inner_texts()
+    assert shown == [f"CMOS + {found['mask']}" for found in answer["architectures"]]
     page.go_back()
     wide.settle()
-    assert wide.paths() == paths
+    assert wide.architectures() == architectures
+    button = page.get_by_role("button", name=f"Show all {architectures} architectures")
+    button.click()
+    assert page.locator(".architecture").count() == architectures
+    assert page.evaluate("document.activeElement.className") == "expand"
     assert wide.flow_nodes() == nodes
 
 
 def test_a_shared_address_asks_the_same_question(wide: Visit) -> None:
-    page = wide.go("/?task=Accuracy&exclude_mask=Lens&max_error_deg=0.1&chart=error&view=table")
+    page = wide.go(
+        "/?task=Accuracy&exclude_mask=Lens&max_error_deg=0.1&min_availability=0.97"
+        "&survive=noise&properties=Robust%20to%20noise&chart=error&view=table"
+    )
     question = page.locator("#question").inner_text()
-    for part in ("Accuracy", "Lens", "0.1°"):
+    for part in ("Accuracy", "Lens", "0.1°", "97 %", "noise", "Robust to noise"):
         assert part in question
     answer = get_json(
         f"{wide.address}/v1/recommendations?task=Accuracy&exclude_mask=Lens&max_error_deg=0.1"
+        "&min_availability=0.97&survive=noise&properties=Robust%20to%20noise"
     )
-    assert wide.paths() == answer["count"]
+    assert wide.architectures() == answer["count"] > 0
+    assert page.locator("#min_availability").input_value() == "97"
     assert page.locator("#chart").input_value() == "error"
     assert page.locator(".level-list").is_visible()
 
@@ -119,35 +125,6 @@ def test_fractional_counts_of_the_page_share_each_study_among_its_paths(wide: Vi
     )
 
 
-def test_evidence_of_a_path_names_studies_with_their_basis(wide: Visit) -> None:
-    page = wide.go("/?task=Accuracy&view=table")
-    page.locator(".expand").first.click()
-    answer = get_json(f"{wide.address}/v1/recommendations?task=Accuracy&limit=1")
-    keys = answer["paths"][0]["studies"]
-    assert page.locator(".study").count() == len(keys)
-    page.locator(".study details summary").first.click()
-    table = page.locator(".provenance table").first
-    expect(table).to_be_visible()
-    study = get_json(f"{wide.address}/v1/studies/{keys[0]}")
-    text = table.inner_text()
-    for row in study["attributes"]:
-        assert row["basis"] in text
-        assert row["value"] is None or row["value"] in text
-
-
-def test_no_match_names_the_constraint_and_a_relaxation_leads_out(wide: Visit) -> None:
-    asked = "detector=Event&mask=Lens"
-    page = wide.go(f"/?{asked}&view=table")
-    blocked = get_json(f"{wide.address}/v1/recommendations?{asked}")["blocked"]
-    assert page.locator("#blocked .culprit").inner_text() == blocked["constraint"]
-    buttons = page.locator(".relaxation")
-    assert buttons.count() == len(blocked["relaxations"])
-    buttons.first.click()
-    wide.settle()
-    assert wide.paths() == blocked["relaxations"][0]["paths"]
-    assert page.locator("#blocked .culprit").count() == 0
-
-
 def test_a_refusal_is_shown_as_the_service_words_it(wide: Visit) -> None:
     page = wide.go("/?detector=CMOSS")
     alert = page.get_by_role("alert").inner_text()
@@ -177,10 +154,10 @@ def test_the_keyboard_alone_requires_a_value_opens_evidence_and_sorts(wide: Visi
     assert wide.query()["task"] == ["Cost"]
     focused = "document.activeElement.getAttribute('aria-pressed')"
     assert page.evaluate(focused) == "true", "the focus stays on the value"
-    tab_to(page, ".paths .expand")
+    tab_to(page, ".architectures .expand")
     page.keyboard.press("Enter")
     assert page.evaluate("document.activeElement.getAttribute('aria-expanded')") == "true"
-    assert page.locator(".study").first.is_visible()
+    assert page.locator(".calibration").first.is_visible()
     tab_to(page, '[data-sort="availability"]')
     page.keyboard.press("Enter")
     page.keyboard.press("Enter")  # the focus stays on the heading: a second press turns the order
@@ -210,21 +187,30 @@ def test_a_server_that_is_gone_is_said_and_asked_again(wide: Visit) -> None:
     page.get_by_role("button", name="Try again").click()
     wide.settle()
     answer = get_json(f"{wide.address}/v1/recommendations?task=Cost")
-    assert wide.paths() == answer["count"]
+    assert wide.architectures() == answer["count"]
     assert page.get_by_role("alert").count() == 0
 
 
 @pytest.mark.parametrize(
-    "path", ["/?task=Accuracy", "/?view=table&detail=all", "/?detector=Event&mask=Lens"]
+    "path",
+    [
+        "/?task=Accuracy",
+        "/?view=table&detail=all&survive=albedo&sort=measured",
+        "/?detector=Event&mask=Lens&survive=spin&min_availability=0.95",
+    ],
 )
 def test_nothing_overflows_a_narrow_screen(narrow: Visit, path: str) -> None:
     page = narrow.go(path)
     for button in page.locator(".expand").all()[:2]:
         button.click()
+    for summary in page.locator(".evidence > details:visible > summary").all():
+        summary.click()
     if page.locator(".study details summary").count():
         page.locator(".study details summary").first.click()
         expect(page.locator(".provenance table").first).to_be_visible()
-    assert page.evaluate("document.documentElement.scrollWidth") <= NARROW[0]
+    for width in (NARROW[0], 720, 960):
+        page.set_viewport_size({"width": width, "height": NARROW[1]})
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
     assert narrow.complaints == []
 
 

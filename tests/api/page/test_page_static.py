@@ -6,6 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from registry.ranking import SORTS
+from registry.requirements import HAZARDS, LIMITS, LISTS
+from registry.studies import facts
+
 PAGE = Path(__file__).parents[3] / "api" / "page"
 MODULES = sorted(PAGE.glob("*.js"))
 STYLES = sorted(PAGE.glob("*.css"))
@@ -82,6 +86,27 @@ def test_every_element_looked_up_by_id_is_made_somewhere(index: Tags) -> None:
     wanted = set(re.findall(r"byId\(\"([\w-]+)\"\)", code))
     assert len(wanted) > 10
     assert wanted <= made
+
+
+def _constant(module: str, name: str) -> str:
+    """Source of a constant: from its bracket to the line that closes it."""
+    text = (PAGE / module).read_text(encoding="utf-8")
+    found = re.search(rf"const {name} = [\[{{](.*?)[\]}}];$", text, re.MULTILINE | re.DOTALL)
+    assert found is not None
+    return found[1]
+
+
+def test_the_page_asks_for_all_that_the_service_takes_in_its_words() -> None:
+    hazards = re.findall(r'^  "?([\w-]+)"?: "', _constant("wording.js", "HAZARDS"), re.MULTILINE)
+    assert hazards == list(HAZARDS)
+    assert re.findall(r'"([^"]+)"', _constant("wording.js", "PROPERTIES")) == list(
+        facts().properties
+    )
+    assert re.findall(r'\["(\w+)"', _constant("wording.js", "SORTS")) == list(SORTS)
+    assert set(re.findall(r'"(\w+)"', _constant("state.js", "LIMITS"))) == set(LIMITS)
+    assert re.findall(r'"(\w+)"', _constant("state.js", "LISTS")) == list(LISTS)
+    named = re.findall(r"^  (\w+): \{", _constant("wording.js", "LIMIT_NAMES"), re.MULTILINE)
+    assert set(named) == set(LIMITS)
 
 
 def test_nothing_is_loaded_from_elsewhere() -> None:

@@ -51,8 +51,8 @@ class Visit:
         assert drawn is not None
         return set(drawn.split("|"))
 
-    def paths(self) -> int:
-        """Number of paths that the summary states."""
+    def architectures(self) -> int:
+        """Number of architectures that the summary states."""
         return int(self.page.locator("#summary strong").first.inner_text().split()[0])
 
 

@@ -1,0 +1,177 @@
+"""An answer in two levels as text of 80 columns: architectures, then calibrations of each."""
+
+from __future__ import annotations
+
+import itertools
+import textwrap
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+WIDTH = 80
+ORDERS = {
+    "advice": "what the survey advises first",
+    "support": "what most studies proposed first",
+    "measured": "what errs least first",
+}
+_LABEL = 13  # columns before the text of a labelled paragraph
+_CELLS = (4, 28, 8, 8, 28)  # columns of the table of calibrations
+_HEADINGS = ("", "calibration", "advised", "studies", "measured, deg")
+_INDENT = "    "
+
+
+def text(document: Mapping[str, Any]) -> str:
+    """Return the architectures of an answer with their three kinds of evidence, as lines."""
+    return "\n".join(itertools.chain(_head(document), _body(document))) + "\n"
+
+
+def explanation(blocked: Mapping[str, Any]) -> str:
+    """Return why nothing is left, and what would leave something, as lines."""
+    lines = _wrapped(f"nothing is left: {blocked['constraint']}: {blocked['detail']}", "", "  ")
+    for relaxation in blocked["relaxations"]:
+        found = _many(relaxation["architectures"], "architecture")
+        lines += _wrapped(f"{relaxation['words']}: {found}", "  - ", "    ")
+    return "\n".join(lines)
+
+
+def _head(document: Mapping[str, Any]) -> Iterator[str]:
+    shown, count = len(document["architectures"]), document["count"]
+    first = "" if shown == count else f"first {shown} of "
+    yield from _wrapped(
+        f"{first}{_many(count, 'architecture')}, {_many(document['designs'], 'calibration')} in "
+        f"all; {ORDERS[document['sort']]}"
+    )
+    for sentence in document["contradictions"]:
+        yield from _paragraph("against", sentence)
+    if document["regret"] is not None:
+        yield from _paragraph("this order", document["regret"]["sentence"])
+    for hazard, pairs in document["untried"].items():
+        if pairs:
+            named = ", ".join(f"{pair['detector']} + {pair['mask']}" for pair in pairs)
+            yield from _paragraph("not tried", f"{hazard}, by no data set of {named}")
+
+
+def _body(document: Mapping[str, Any]) -> Iterator[str]:
+    for architecture in document["architectures"]:
+        yield ""
+        pareto = ", which none beats in both studies and error" if architecture["pareto"] else ""
+        name = f"{architecture['detector']} + {architecture['mask']}"
+        yield from _wrapped(f"{architecture['rank']:<3} {name}{pareto}", "", _INDENT)
+        yield from _architecture(architecture)
+
+
+def _architecture(architecture: Mapping[str, Any]) -> Iterator[str]:
+    tasks = [
+        f"{task['task']}{' (advised)' if task['advised'] else ''} {task['studies']}"
+        for task in architecture["tasks"]
+    ]
+    if tasks:
+        yield from _paragraph("tasks", ", ".join(tasks))
+    yield from _paragraph("advised", _advised(architecture["advice"]))
+    yield from _paragraph("proposed", _proposed(architecture["studies"]))
+    yield from _paragraph("measured", _measured(architecture["best"]))
+    if architecture["contradiction"]:
+        yield from _paragraph("against", architecture["contradiction"])
+    calibrations = architecture["calibrations"]
+    yield from _row(_HEADINGS)
+    for calibration in calibrations:
+        yield from _row(_calibration(calibration, architecture["advice"]))
+    rest = architecture["count"] - len(calibrations)
+    if rest:
+        yield f"{_INDENT}... and {rest} more"
+
+
+def _advised(advice: Sequence[Mapping[str, Any]]) -> str:
+    """Return what the survey advises an architecture for, how calibrated, and in which section."""
+    if not advice:
+        return "no, not for what is asked"
+    found: dict[str, list[str]] = {}
+    for one in advice:
+        kind = "" if one["requirement"] == "task" else "class "
+        how = ", ".join(filter(None, (one["model_category"], one["extractor"])))
+        found.setdefault(f"{kind}{one['value']}", []).append(how)
+    ways = {what: " or ".join(filter(None, how)) for what, how in found.items()}
+    said = "; ".join(f"{what}: {how}" if how else what for what, how in ways.items())
+    return f"{said} (in {', '.join(dict.fromkeys(one['section'] for one in advice))})"
+
+
+def _proposed(studies: Sequence[str]) -> str:
+    if not studies:
+        return "by no study that meets the requirements"
+    return f"by {_many(len(studies), 'study', 'studies')}: {', '.join(studies)}"
+
+
+def _measured(best: Mapping[str, Any]) -> str:
+    """Return what the best calibration of an architecture achieves, and where."""
+    measured = best["measured"]
+    if measured is None:
+        return "no"
+    nominal, units = measured["nominal"], measured["units"]
+    parts = [f"{_over(measured, ' deg')} ({measured['dataset']}, {measured['condition']})"]
+    if measured["error_deg"] != nominal["rms_deg"]:
+        parts.append(f"nominal {nominal['rms_deg']:.3g} deg")
+    if nominal["over_bound"] is not None:
+        ratio = nominal["over_bound"]
+        times = f"{ratio:.0f}" if ratio >= 1000 else f"{ratio:.3g}"
+        parts.append(f"{times} times the bound {nominal['bound_deg']:.3g} deg")
+    if measured["availability"] is not None:
+        parts.append(f"answers {100 * measured['availability']:.4g} %")
+    if units is not None and units["count"] > 1:
+        spread = f"{units['least_deg']:.3g} to {units['largest_deg']:.3g} deg"
+        parts.append(f"{units['count']} units {spread}")
+    return f"{_way(best)}: {'; '.join(parts)}"
+
+
+def _calibration(
+    calibration: Mapping[str, Any], advice: Sequence[Mapping[str, Any]]
+) -> tuple[str, ...]:
+    for_what = {one["id"] for one in advice}.intersection(calibration["advised"])
+    measured = calibration["measured"]
+    where = "no" if measured is None else _over(measured, "")
+    if measured is not None and measured["condition"] != measured["nominal"]["condition"]:
+        where = f"{where}, {measured['condition']}"
+    return (
+        str(calibration["rank"]),
+        _way(calibration),
+        "yes" if for_what else "no",
+        str(len(calibration["studies"])) if calibration["studies"] else "none",
+        where,
+    )
+
+
+def _over(measured: Mapping[str, Any], unit: str) -> str:
+    """Return the error a pipeline is judged by, with the field it holds over."""
+    if measured["error_deg"] is None:
+        return "answers too seldom"
+    field = measured["field_deg"]
+    over = "all directions" if field is None else f"{field:g}{unit}"
+    return f"{measured['error_deg']:.3g}{unit} over {over}"
+
+
+def _way(calibration: Mapping[str, Any]) -> str:
+    parts = (calibration["extractor"], *calibration["compensations"], calibration["model"])
+    return " > ".join(parts)
+
+
+def _many(number: int, one: str, several: str | None = None) -> str:
+    return f"{number} {one if number == 1 else several or one + 's'}"
+
+
+def _wrapped(words: str, first: str = "", then: str = "") -> list[str]:
+    return textwrap.wrap(
+        words, WIDTH, initial_indent=first, subsequent_indent=then, break_on_hyphens=False
+    )
+
+
+def _paragraph(label: str, words: str) -> list[str]:
+    return _wrapped(words, f"{_INDENT}{label}".ljust(_LABEL + 2), " " * (_LABEL + 2))
+
+
+def _row(cells: Sequence[str]) -> Iterator[str]:
+    """Yield the lines of a row of the table of calibrations, each cell wrapped in its column."""
+    columns = [
+        textwrap.wrap(cell, width - 1, break_on_hyphens=False) or [""]
+        for cell, width in zip(cells, _CELLS, strict=True)
+    ]
+    for parts in itertools.zip_longest(*columns, fillvalue=""):
+        line = "".join(part.ljust(width) for part, width in zip(parts, _CELLS, strict=True))
+        yield f"{_INDENT}{line}".rstrip()

@@ -1,0 +1,131 @@
+/* The second level of the answer: how to calibrate an architecture, and the evidence of each way. */
+
+import { byId, copyable, h, problemNotice } from "./dom.js";
+import { advisedContent, below, evidenceCell, KINDS, measuredContent, proposedContent, scoreAddress } from "./evidence.js";
+import { address, getJson } from "./service.js";
+import { question, show, standing } from "./state.js";
+import { studyEntry } from "./studies.js";
+import { ATTRIBUTE_NAMES, degrees, JUDGED_ON, LIMIT_NAMES, LIST_NAMES, plural, quoted, sentence, studiesCount, wide } from "./wording.js";
+
+const NAMED = 4; // studies that a row names
+
+/** Extractor, compensations, model. */
+export function pathway({ extractor, compensations, model }) {
+  const asked = (attribute, name) => standing(attribute, name) === "include" && "asked";
+  return h("ol", { class: "pathway" },
+    h("li", {}, h("span", { class: asked("extractor", extractor) }, extractor)),
+    [...compensations, model].map((stage) => h("li", {}, h("span", { class: asked("model", stage) }, stage))));
+}
+
+/** On what each requirement was judged: "error, field of view on what is measured here". */
+function judgedOn(basis) {
+  const names = { ...LIMIT_NAMES, ...LIST_NAMES };
+  const by = new Map();
+  for (const [name, on] of Object.entries(basis)) {
+    by.set(on, [...by.get(on) ?? [], names[name]?.subject ?? ATTRIBUTE_NAMES[name].toLowerCase()]);
+  }
+  return [...by].map(([on, subjects]) => `${subjects.join(", ")} on ${JUDGED_ON[on]}`).join("; ");
+}
+
+function elsewhere(others) {
+  return others.length > 0 && below("also ", others.map((m, i) => [i > 0 && "; ", `${m.dataset} `,
+    h("a", { href: scoreAddress(m) }, m.error_deg === null ? "answers too seldom" : degrees(m.error_deg)),
+    m.error_deg !== null && m.field_deg !== null && ` over ${wide(m.field_deg)}`]));
+}
+
+function calibrationRow(calibration, architecture, judged) {
+  const { rank, measured, studies, advised } = calibration;
+  const advice = architecture.advice.filter((a) => advised.includes(a.id));
+  return h("tr", { role: "row", class: "calibration" },
+    h("td", { role: "cell", class: "rank" }, String(rank)),
+    h("td", { role: "cell", class: "design" }, pathway(calibration),
+      measured && below(`${measured.extractor} → ${measured.model}`),
+      rank === architecture.best.rank && measured && h("span", { class: "pareto-mark" }, "errs least"),
+      judged && below(`judged: ${judged}`)),
+    evidenceCell("advised", advisedContent(advice)),
+    evidenceCell("proposed", proposedContent(studies, NAMED)),
+    evidenceCell("measured", measuredContent(measured), elsewhere(calibration.other_datasets)));
+}
+
+function calibrationTable(architecture) {
+  const { calibrations, best } = architecture;
+  const listed = calibrations.some((c) => c.rank === best.rank) ? calibrations : [...calibrations, best];
+  const judged = listed.map((c) => judgedOn(c.basis));
+  const alike = judged.every((words) => words === judged[0]);
+  return [alike && judged[0] && h("p", { class: "muted note" }, `Judged: ${judged[0]}.`),
+    h("table", { class: "stacks calibrations", role: "table", "aria-label": `Calibrations of ${architecture.detector} + ${architecture.mask}` },
+      h("thead", { role: "rowgroup" }, h("tr", { role: "row" },
+        [["rank", "Rank"], ["design", "Extractor → model"], ...KINDS.map(([kind, label]) => [`kind ${kind}`, label])].map(([kind, label]) =>
+          h("th", { scope: "col", role: "columnheader", class: kind }, label)))),
+      h("tbody", { role: "rowgroup" }, listed.map((c, i) => calibrationRow(c, architecture, !alike && judged[i]))))];
+}
+
+/** The calibrations at hand, and a way to all of them. */
+function calibrations(architecture) {
+  const { detector, mask, count } = architecture;
+  const place = h("div", { class: "calibrations-body" }, calibrationTable(architecture));
+  if (architecture.calibrations.length === count) return place;
+  const button = h("button", {
+    type: "button", class: "more",
+    onclick: async () => {
+      button.disabled = true;
+      try {
+        const asked = address("/v1/recommendations", { ...question(), detector, mask, limit: 500, calibrations: 500 });
+        const found = (await getJson(asked)).architectures.find((a) => a.detector === detector && a.mask === mask);
+        place.replaceChildren(h("div", {}, calibrationTable({ ...architecture, calibrations: found.calibrations })));
+      } catch (problem) {
+        button.disabled = false;
+        place.querySelector(".notice")?.remove();
+        place.append(problemNotice(problem));
+      }
+    },
+  }, `Show all ${count} calibrations`);
+  place.append(button);
+  return place;
+}
+
+/** What the survey's text advises in full: models and extractors by name. */
+function adviceList(advice) {
+  const by = new Map();
+  for (const a of advice) {
+    const what = `${a.requirement === "task" ? a.value : `class ${a.value}`}`;
+    const how = [a.model_category && `${a.model_category} model`, a.extractor].filter(Boolean).join(", ") || "whatever the calibration";
+    const known = by.get(what) ?? { how: [], notes: new Set() };
+    known.how.push(how);
+    if (a.note) known.notes.add(a.note);
+    by.set(what, known);
+  }
+  return h("ul", { class: "plain-list" }, [...by].map(([what, { how, notes }]) => h("li", {},
+    h("strong", {}, what), `: ${how.join("; or ")}`, notes.size > 0 && h("span", { class: "muted" }, ` (${[...notes].join("; ")})`))));
+}
+
+function studyList(keys, studies) {
+  const disclosure = h("details", { class: "flow-links" }, h("summary", {}, `${studiesCount(keys.length)} proposed it, with the basis of each value`));
+  disclosure.addEventListener("toggle", () => disclosure.append(
+    h("ul", { class: "study-list" }, keys.map((key) => studyEntry(key, studies.get(key))))), { once: true });
+  return disclosure;
+}
+
+function measureAgain({ measured }, studies, keys) {
+  const key = keys.find((k) => studies.get(k)?.state !== "none");
+  return h("div", { class: "note plain-list" },
+    measured && h("p", {}, "Measure the best again: ",
+      copyable(`sunatlas benchmark --dataset ${measured.dataset} --extractor ${measured.extractor} --model ${quoted(measured.model)}`, "the command that measures the best calibration"), " ",
+      h("button", { type: "button", class: "linklike", onclick: () => {
+        show({ dataset: measured.dataset, board_condition: measured.condition });
+        byId("leaderboard").focus();
+        byId("leaderboard").scrollIntoView();
+      } }, "Show in the leaderboard")),
+    key && h("p", {}, "Run a study: ", copyable(`sunatlas run ${key} --format json`, `the command that runs ${key}`)));
+}
+
+/** What a row of an architecture opens to. */
+export function openedRow(architecture, studies) {
+  const { advice, contradiction, best, count, detector, mask, studies: keys } = architecture;
+  return h("div", { class: "evidence" },
+    contradiction && h("p", { class: "contradiction" }, h("strong", {}, "Measurement against literature: "), sentence(contradiction)),
+    h("div", {}, h("h3", {}, `${plural(count, "calibration")} of ${detector} + ${mask}`), calibrations(architecture)),
+    advice.length > 0 && h("div", {}, h("h3", {}, "What the survey advises it for, and how calibrated"), adviceList(advice)),
+    keys.length > 0 && studyList(keys, studies),
+    measureAgain(best, studies, keys));
+}
