@@ -7,23 +7,28 @@ that other tables can be handed in.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Protocol
 
-import survey_data
 from registry.advice import Advice
+from registry.survey_tables import Tables, rows_of
 from registry.taxonomy import (
     NUMERIC_ATTRIBUTES,
+    InvalidValueError,
     Taxonomy,
     TaxonomyEntry,
     unknown_name,
 )
+from survey_data import recorded_facts
+from survey_data.numerals import decimal
+from survey_data.texts import load_texts
 
-if TYPE_CHECKING:
-    import pandas as pd
+
+class FactsError(ValueError):
+    """The survey's tables can be read and do not fit each other; the message says where."""
+
 
 METHODS = ("model", "extractor")
 """Attributes whose values a study proposes, or only compares against."""
@@ -190,64 +195,29 @@ class Facts:
         return self.studies[key]
 
 
-class Tables(Protocol):
-    """The tables read here, as `survey_data.load` gives them."""
-
-    @property
-    def studies(self) -> pd.DataFrame:
-        """One row a study."""
-        ...
-
-    @property
-    def attributes(self) -> pd.DataFrame:
-        """One row a value."""
-        ...
-
-    @property
-    def taxonomy(self) -> pd.DataFrame:
-        """One row a value of the vocabulary."""
-        ...
-
-    @property
-    def model_families(self) -> pd.DataFrame:
-        """One row a model: whether it is calibrated on the ground or in operation."""
-        ...
-
-    @property
-    def roles(self) -> pd.DataFrame:
-        """One row a method of a study that it proposed or only compared."""
-        ...
-
-    @property
-    def architectures(self) -> pd.DataFrame:
-        """One row a sensor of a study whose detectors and masks do not all go together."""
-        ...
-
-    @property
-    def defaults(self) -> pd.DataFrame:
-        """One row a rule of what stands in an empty cell."""
-        ...
-
-    @property
-    def advice(self) -> pd.DataFrame:
-        """One row a sensor or calibration that the survey's text advises."""
-        ...
-
-    @property
-    def feature_assessment(self) -> pd.DataFrame:
-        """One row a mark of an extractor for a property."""
-        ...
-
-    @property
-    def aliases(self) -> pd.DataFrame:
-        """One row another name of a value."""
-        ...
+_TABLES = (
+    *("studies", "attributes", "taxonomy", "model_families", "roles", "architectures"),
+    *("defaults", "advice", "feature_assessment", "aliases"),
+)
 
 
 @lru_cache(maxsize=1)
 def facts() -> Facts:
-    """Return the survey's studies and taxonomy, read once."""
-    return facts_from(survey_data.load())
+    """Return the survey's studies and taxonomy, read once.
+
+    Raises
+    ------
+    SurveyDataError
+        The tables are not as commands wrote them, or cannot be read; names file, row and column.
+    FactsError
+        They contradict each other.
+    """
+    recorded_facts.require_unchanged()
+    tables = load_texts(_TABLES)
+    try:
+        return facts_from(tables)
+    except (LookupError, ValueError) as error:
+        raise FactsError(f"the tables contradict each other: {error}") from error
 
 
 def studies() -> Mapping[str, Study]:
@@ -266,7 +236,7 @@ def facts_from(tables: Tables) -> Facts:
     Raises InvalidValueError for a value outside the taxonomy and ValueError for attributes of a
     study that is not in the table of studies.
     """
-    rings = {("model", row["model"]): row["calibration"] for row in _rows(tables.model_families)}
+    rings = {("model", row["model"]): row["calibration"] for row in rows_of(tables.model_families)}
     taxonomy = Taxonomy(
         TaxonomyEntry(
             attribute=row["attribute"],
@@ -276,29 +246,31 @@ def facts_from(tables: Tables) -> Facts:
             section=row["survey_section"],
             calibration=rings.get((row["attribute"], row["value"]), ""),
         )
-        for row in _rows(tables.taxonomy)
+        for row in rows_of(tables.taxonomy)
     )
     stated: dict[str, dict[str, list[AttributeValue]]] = {}
     unknown: dict[str, dict[str, str]] = {}
-    for row in _rows(tables.attributes):
+    for row in rows_of(tables.attributes):
         key, attribute, value = row["study"], row["attribute"], row["value"]
         if value == "":
             unknown.setdefault(key, {})[attribute] = row["note"]
             continue
-        if attribute not in NUMERIC_ATTRIBUTES:
+        if attribute in NUMERIC_ATTRIBUTES:
+            _require_number(key, attribute, value)
+        else:
             taxonomy.require(attribute, value, parameter=f"{key} {attribute}")
         cell = AttributeValue(value, row["basis"], row["source"], row["note"])
         stated.setdefault(key, {}).setdefault(attribute, []).append(cell)
     roles: dict[str, dict[tuple[str, str], MethodRole]] = {}
-    for row in _rows(tables.roles):
+    for row in rows_of(tables.roles):
         role = MethodRole(row["role"], row["basis"], row["source"], row["note"])
         roles.setdefault(row["study"], {})[row["attribute"], row["value"]] = role
     combined: dict[str, tuple[tuple[str, str], ...]] = {}
-    for row in _rows(tables.architectures):
+    for row in rows_of(tables.architectures):
         pair = (row["detector"], row["mask"])
         combined[row["study"]] = (*combined.get(row["study"], ()), pair)
     found: dict[str, Study] = {}
-    for row in _rows(tables.studies):
+    for row in rows_of(tables.studies):
         key = row["key"]
         if key in found:
             raise ValueError(f"study {key!r} stands twice in the table of studies")
@@ -327,20 +299,28 @@ def facts_from(tables: Tables) -> Facts:
     return Facts(
         MappingProxyType(found),
         taxonomy,
-        tuple(map(_default, _rows(tables.defaults))),
-        tuple(map(_advice, _rows(tables.advice))),
+        tuple(map(_default, rows_of(tables.defaults))),
+        tuple(map(_advice, rows_of(tables.advice))),
         _properties(tables, taxonomy),
     )
+
+
+def _require_number(key: str, attribute: str, value: str) -> None:
+    """Raise InvalidValueError for a numeric cell that is no finite number, spelt plainly."""
+    try:
+        decimal(value)
+    except ValueError as error:
+        raise InvalidValueError(f"{key} {attribute}", value, "a number in degrees") from error
 
 
 def _properties(tables: Tables, taxonomy: Taxonomy) -> Mapping[str, Mapping[str, int]]:
     """Return the marks by property; of several methods under one value the best counts."""
     values = {value: value for value in taxonomy.values("extractor")}
-    for row in _rows(tables.aliases):
+    for row in rows_of(tables.aliases):
         if row["attribute"] == "extractor":
             values[row["alias"]] = row["value"]
     found: dict[str, dict[str, int]] = {}
-    for row in _rows(tables.feature_assessment):
+    for row in rows_of(tables.feature_assessment):
         marks = found.setdefault(row["property"], {})
         value = values[row["extractor"]]
         marks[value] = max(int(float(row["score"])), marks.get(value, 0))
@@ -357,11 +337,3 @@ def _default(row: Mapping[str, str]) -> Default:
     return Default(
         *(row["id"], row["attribute"], conditions, row["value"], row["survey_section"], row["rule"])
     )
-
-
-def _rows(frame: pd.DataFrame) -> Iterable[dict[str, str]]:
-    """Rows as text; an empty cell is ""."""
-    filled = frame.astype(object).where(frame.notna(), "")
-    columns = [str(column) for column in filled.columns]
-    for row in filled.itertuples(index=False, name=None):
-        yield {column: str(cell) for column, cell in zip(columns, row, strict=True)}

@@ -8,9 +8,17 @@ from pathlib import Path
 
 import pandas as pd
 
-from survey_data.csv_reading import Records, read_records
-from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name, table_names
+from survey_data.csv_reading import Records
+from survey_data.descriptor import (
+    DATA_DIRECTORY,
+    column_types,
+    file_name,
+    primary_key,
+    table_names,
+)
+from survey_data.numerals import decimal, integer
 from survey_data.problems import Problem, SurveyDataError
+from survey_data.whole_records import read_whole_records
 
 FIRST_ROW = 2  # the header is row 1, and the tables keep one record a line
 
@@ -58,27 +66,44 @@ def load(directory: str | Path | None = None) -> SurveyTables:
     Returns
     -------
     SurveyTables
-        The frames. Form and types are checked here, meaning by `validate`.
+        The frames. Form, types and keys are checked here, meaning by `validate`.
 
     Raises
     ------
     SurveyDataError
-        A file is missing or broken, or a cell is not of its column's type; names file, row and
-        column.
+        A file is missing or broken, a table has no rows or a key twice, or a cell is not of its
+        column's type; names file, row and column.
     """
     folder = DATA_DIRECTORY if directory is None else Path(directory)
     frames: dict[str, pd.DataFrame] = {}
     problems: list[Problem] = []
     for table in table_names():
-        records = read_records(folder / file_name(table), list(column_types(table)))
+        records = read_whole_records(folder / file_name(table), list(column_types(table)))
         problems += records.problems
         if not records.problems:
             frame, flaws = typed_frame(table, records)
             frames[table] = frame
-            problems += flaws
+            problems += flaws or _without_use(table, records)
     if problems:
         raise SurveyDataError(tuple(problems))
     return SurveyTables(**frames)
+
+
+def _without_use(table: str, records: Records) -> list[Problem]:
+    """Name a table without rows, and rows whose key stands twice: nothing can be told of them."""
+    if not records.rows:
+        return [Problem(file_name(table), 1, None, "the table has a header and no rows")]
+    names = primary_key(table)
+    at = [records.header.index(name) for name in names]
+    seen: dict[tuple[str, ...], int] = {}
+    problems = []
+    for row, cells in records.rows:
+        key = tuple(cells[k] for k in at)
+        first = seen.setdefault(key, row)
+        if first != row:
+            said = f"{' '.join(key)!r} stands in row {first} already"
+            problems.append(Problem(file_name(table), row, names[0], said))
+    return problems
 
 
 def typed_frame(table: str, records: Records) -> tuple[pd.DataFrame, list[Problem]]:
@@ -109,8 +134,8 @@ def _truth(text: str) -> bool:
 
 _CONVERSIONS: dict[str, tuple[Callable[[str], object], str]] = {
     "string": (str, "str"),
-    "integer": (int, "Int64"),
-    "year": (int, "Int64"),
-    "number": (float, "float64"),
+    "integer": (integer, "Int64"),
+    "year": (integer, "Int64"),
+    "number": (decimal, "float64"),
     "boolean": (_truth, "boolean"),
 }

@@ -1,24 +1,27 @@
 """Writing files and directories whole or not at all.
 
-Everything is made beside its place and renamed into it: who reads meanwhile sees the earlier
-content or the new one, and a process that is killed leaves no half of either.
+Everything is made beside its place and put into it in one step: who reads meanwhile sees the
+earlier content or the new one, never neither, and a process that is killed leaves no half of
+either. What it was making is removed by the next that writes there (`survey_data.leftovers`).
 """
 
 from __future__ import annotations
 
 import os
-import shutil
-import tempfile
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
+
+from survey_data.exchange import exchange
+from survey_data.leftovers import remove_leftovers, scratch_directory, scratch_file
+from survey_data.locks import held_in_turn
 
 
 def replace_file(path: Path, content: str | bytes) -> bool:
     """Write a file whole or not at all; on return it survives a power cut.
 
-    Directories above it are made. An earlier file keeps its permissions, a new one may be read
-    by everybody.
+    Directories above it are made. An earlier file keeps its permissions, a new one has those that
+    the umask leaves.
 
     Parameters
     ----------
@@ -31,35 +34,52 @@ def replace_file(path: Path, content: str | bytes) -> bool:
     -------
     bool
         Whether the content changed; a file that holds it already is not written.
+
+    Raises
+    ------
+    OSError
+        Where it cannot be written; names the file.
     """
     wanted = content.encode() if isinstance(content, str) else content
     known = path.is_file()
     if known and path.read_bytes() == wanted:
+        remove_leftovers(path.parent, path.name)
         return False
     path.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-    scratch = Path(name)
-    try:
-        with os.fdopen(handle, "wb") as file:
+    with naming(path), scratch_file(path) as scratch:
+        with scratch.open("wb") as file:
             file.write(wanted)
             file.flush()
             os.fsync(file.fileno())
-        scratch.chmod(path.stat().st_mode & 0o777 if known else 0o644)
+        if known:
+            scratch.chmod(path.stat().st_mode & 0o777)
         scratch.replace(path)
-    except BaseException:
-        scratch.unlink(missing_ok=True)
-        raise
     return True
+
+
+@contextmanager
+def naming(path: Path) -> Iterator[None]:
+    """Let errors of the file system that name no file, as of a full disk, name this one."""
+    try:
+        yield
+    except OSError as error:
+        if error.errno is None or error.filename is not None:
+            raise
+        raise OSError(error.errno, error.strerror, str(path)) from error
 
 
 @contextmanager
 def replacing(*targets: Path) -> Iterator[tuple[Path, ...]]:
     """Make files and directories elsewhere; they take their places when the block ends.
 
+    Each takes its place in one step (`survey_data.exchange`); of several, a kill may leave the
+    first ones new and the last ones old, each whole. Where the file system cannot exchange two
+    directories, an earlier directory stays where it is and its files are replaced one at a time:
+    a kill may then leave new files among old ones, which checksums tell and the next run mends.
+
     An error in the block leaves the targets as they are, and so does one in putting the new ones
-    in place: what had been there is put back. Where even that fails, the error names the hidden
-    directory beside the targets in which the earlier content lies; there it is found as well
-    after a kill between two renames.
+    in place: what had been there is put back. Another process that replaces the first target
+    waits (`survey_data.locks`).
 
     Parameters
     ----------
@@ -70,27 +90,71 @@ def replacing(*targets: Path) -> Iterator[tuple[Path, ...]]:
     ------
     tuple of Path
         For each target the path to make it at.
+
+    Raises
+    ------
+    OSError
+        Where it cannot be written; one that names no file, as of a full disk, names the first
+        target.
     """
     # Beside the targets: a rename is only atomic within a file system.
     first = targets[0]
-    scratch = Path(tempfile.mkdtemp(dir=first.parent, prefix=f".{first.name}."))
-    made, before = scratch / "made", scratch / "before"
-    try:
+    with naming(first), held_in_turn(first), scratch_directory(first) as scratch:
+        made, before = scratch / "made", scratch / "before"
         made.mkdir()
         before.mkdir()
         new = tuple(made / target.name for target in targets)
         yield new
         with ExitStack() as undo:
             for path, target in zip(new, targets, strict=True):
-                earlier = before / target.name
-                if os.path.lexists(target):
-                    target.rename(earlier)
-                    undo.callback(earlier.rename, target)
-                path.rename(target)
-                undo.callback(target.rename, path)
+                _put(path, target, before / target.name, undo)
             undo.pop_all()
-    except BaseException:
-        if not any(before.iterdir()):
-            shutil.rmtree(scratch)
-        raise
-    shutil.rmtree(scratch)
+
+
+def _put(path: Path, target: Path, before: Path, undo: ExitStack) -> None:
+    """Put what was made into its place."""
+    if not os.path.lexists(target):
+        path.rename(target)
+        undo.callback(target.rename, path)
+    elif exchange(path, target):
+        undo.callback(exchange, path, target)
+    elif _is_directory(path) and _is_directory(target):
+        _put_within(path, target, before, undo)
+    else:
+        _put_file(path, target, before, undo)
+
+
+def _put_within(made: Path, target: Path, before: Path, undo: ExitStack) -> None:
+    """Give a directory the content of another, an entry at a time."""
+    before.mkdir()
+    wanted = {path.name: path for path in made.iterdir()}
+    for name in sorted(wanted):
+        path, place = wanted[name], target / name
+        if not os.path.lexists(place):
+            path.rename(place)
+            undo.callback(place.rename, path)
+        elif _is_directory(path) and _is_directory(place):
+            _put_within(path, place, before / name, undo)
+        else:
+            _put_file(path, place, before / name, undo)
+    for place in sorted(target.iterdir()):
+        if place.name not in wanted:
+            place.rename(before / place.name)
+            undo.callback((before / place.name).rename, place)
+
+
+def _put_file(path: Path, place: Path, before: Path, undo: ExitStack) -> None:
+    """Put a file over another, which stays in reach; only a directory has to leave first."""
+    if _is_directory(path) or _is_directory(place):
+        place.rename(before)
+        undo.callback(before.rename, place)
+        path.rename(place)
+        undo.callback(place.rename, path)
+        return
+    os.link(place, before, follow_symlinks=False)
+    path.replace(place)
+    undo.callback(before.replace, place)
+
+
+def _is_directory(path: Path) -> bool:
+    return path.is_dir() and not path.is_symlink()

@@ -7,9 +7,10 @@ import importlib
 import json
 import math
 import os
-import tempfile
+import re
 from collections.abc import Mapping
 from pathlib import Path
+from threading import get_ident
 from typing import Any, cast
 
 import numpy as np
@@ -157,14 +158,38 @@ def save(pipeline: Pipeline, path: str | Path, geometry: SensorGeometry | None =
     """
     text = json.dumps(document(pipeline, geometry), indent=1, allow_nan=False) + "\n"
     target = Path(path)
-    handle, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")
+    _remove_leftovers(target)
+    scratch = target.with_name(f".{target.name}.{os.getpid()}-{get_ident():x}.saving")
     try:
-        with os.fdopen(handle, "w", encoding="utf-8") as file:
-            file.write(text)
-        Path(name).replace(target)
-    except BaseException:
-        Path(name).unlink(missing_ok=True)
-        raise
+        scratch.write_text(text, encoding="utf-8")
+        scratch.replace(target)
+    except OSError as error:
+        if error.errno is None or error.filename is not None:
+            raise
+        raise OSError(error.errno, error.strerror, str(target)) from error  # as of a full disk
+    finally:
+        scratch.unlink(missing_ok=True)
+
+
+def _remove_leftovers(target: Path) -> None:
+    """Remove what killed processes left half written of a file."""
+    named = re.compile(rf"\.{re.escape(target.name)}\.(\d+)-[0-9a-f]+\.saving")
+    for path in target.parent.iterdir() if target.parent.is_dir() else ():
+        found = named.fullmatch(path.name)
+        if found and not _lives(int(found[1])):
+            path.unlink(missing_ok=True)
+
+
+def _lives(process: int) -> bool:
+    if os.name != "posix":
+        return True  # there the question itself would end it
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except OSError:  # another user's
+        return True
+    return True
 
 
 def load(path: str | Path) -> Pipeline:

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from survey_data.file_bytes import FileRefusedError, read_bytes
 from survey_data.problems import SurveyImportError
 
 #: Fields that name where a work is published, first of these that is there.
@@ -50,11 +51,11 @@ def read_bibliography(path: str | Path) -> tuple[Entry, ...]:
     """
     where = Path(path)
     try:
-        if where.stat().st_size > _MOST_BYTES:
-            raise SurveyImportError(f"{where.name} is too large for a bibliography")
-        text = where.read_text(encoding="utf-8-sig")
-    except OSError as error:
-        raise SurveyImportError(f"cannot read {where}: {error.strerror or error}") from error
+        text = read_bytes(where, _MOST_BYTES).decode("utf-8-sig")
+    except FileNotFoundError as error:
+        raise SurveyImportError(f"cannot read {where}: {error.strerror}") from error
+    except FileRefusedError as error:
+        raise SurveyImportError(f"cannot read {where}: {error.reason}") from error
     except UnicodeDecodeError as error:
         raise SurveyImportError(f"{where.name} is not UTF-8 text") from error
     found = _items(text) if "\\bibitem" in text else _records(text)

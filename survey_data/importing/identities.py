@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
+from contextlib import nullcontext
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
@@ -15,7 +16,7 @@ from survey_data.csv_writing import csv_text
 from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name
 from survey_data.importing.bibliography import Entry, read_bibliography
 from survey_data.importing.text_similarity import normalise, similarity
-from survey_data.importing.writing import write_valid
+from survey_data.importing.writing import held_tables, write_valid
 from survey_data.tables import SurveyTables, load
 
 _TABLE = "studies"
@@ -110,11 +111,13 @@ def import_bibliography(
         Our own tables cannot be read.
     """
     folder = DATA_DIRECTORY if directory is None else Path(directory)
-    plan = plan_identities(load(folder), read_bibliography(path), Path(path).name)
-    if not apply or not (plan.edits or plan.settled):
-        return plan
-    write_valid(folder, _TABLE, _edited(folder, plan))
-    return replace(plan, written=len(plan.edits))
+    entries = read_bibliography(path)
+    with held_tables(folder) if apply else nullcontext():
+        plan = plan_identities(load(folder), entries, Path(path).name)
+        if not apply or not (plan.edits or plan.settled):
+            return plan
+        write_valid(folder, _TABLE, _edited(folder, plan))
+        return replace(plan, written=len(plan.edits))
 
 
 def plan_identities(

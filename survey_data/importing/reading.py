@@ -3,27 +3,24 @@
 from __future__ import annotations
 
 import csv
-import datetime as dt
 import io
-import struct
-import warnings
-import zipfile
-import zlib
 from collections.abc import Sequence
 from pathlib import Path
 
 import pandas as pd
 
+from survey_data.file_bytes import FileRefusedError, read_bytes
+from survey_data.importing.workbooks import LARGEST_CELLS, LARGEST_ROWS, Row, read_workbook
 from survey_data.problems import SurveyImportError
 
 _DELIMITERS = (",", ";", "\t", "|")
 _ZIP_MAGIC = b"PK\x03\x04"
 _OLD_EXCEL_MAGIC = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
 _WORKBOOK_SUFFIXES = {".xlsx", ".xlsm"}
-_LARGEST_BYTES = 200_000_000
-_LARGEST_ROWS = 100_000
-
-Row = tuple[int, list[str]]
+_LARGEST_BYTES = 30_000_000
+_LONGEST_LINE = 1_000_000
+#: What a spreadsheet writes where a formula fails; read as text it would pass for "not stated".
+_ERRORS = frozenset({"#N/A", "#VALUE!", "#REF!", "#DIV/0!", "#NAME?", "#NUM!", "#NULL!"})
 
 
 def read_table(path: str | Path, sheet: str | None = None) -> pd.DataFrame:
@@ -52,11 +49,11 @@ def read_table(path: str | Path, sheet: str | None = None) -> pd.DataFrame:
     """
     path = Path(path)
     try:
-        if path.stat().st_size > _LARGEST_BYTES:
-            raise SurveyImportError(f"{path.name} is larger than {_LARGEST_BYTES} bytes")
-        data = path.read_bytes()
-    except OSError as error:
-        raise SurveyImportError(f"cannot read {path}: {error.strerror or error}") from error
+        data = read_bytes(path, _LARGEST_BYTES)
+    except FileNotFoundError as error:
+        raise SurveyImportError(f"cannot read {path}: {error.strerror}") from error
+    except FileRefusedError as error:
+        raise SurveyImportError(f"cannot read {path}: {error.reason}") from error
     if not data.strip():
         raise SurveyImportError(f"{path.name} is empty; expected a header and rows", row=1)
     named_workbook = path.suffix.lower() in _WORKBOOK_SUFFIXES
@@ -69,7 +66,7 @@ def read_table(path: str | Path, sheet: str | None = None) -> pd.DataFrame:
             else f"{path.name} is a zip archive or workbook, not CSV; a workbook ends in .xlsx"
         )
     if named_workbook:
-        rows = _read_workbook(path.name, data, sheet)
+        rows = read_workbook(path.name, data, sheet)
     elif sheet is not None:
         raise SurveyImportError(f"{path.name} is no workbook and has no sheet {sheet!r}")
     else:
@@ -96,12 +93,18 @@ def _decode(name: str, data: bytes) -> str:
 
 def _read_text(text: str) -> list[Row]:
     header = next((line for line in text.splitlines() if line.strip()), "")
-    delimiter = max(_DELIMITERS, key=lambda mark: len(next(csv.reader([header], delimiter=mark))))
+    if len(header) > _LONGEST_LINE:
+        raise SurveyImportError(f"the header is longer than {_LONGEST_LINE} characters", row=1)
+    delimiter = max(_DELIMITERS, key=lambda mark: _columns(header, mark))
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True)
     rows: list[Row] = []
     start = 1
+    count = 0
     try:
         for cells in reader:
+            count += len(cells)
+            if count > LARGEST_CELLS:
+                raise SurveyImportError(f"more than {LARGEST_CELLS} cells", row=start)
             rows.append((start, cells))
             start = reader.line_num + 1
     except csv.Error as error:
@@ -109,62 +112,24 @@ def _read_text(text: str) -> list[Row]:
     return rows
 
 
-def _read_workbook(name: str, data: bytes, sheet: str | None) -> list[Row]:
-    # openpyxl raises whatever a mangled part of the archive leads it to.
-    mangled = (
-        zipfile.BadZipFile,
-        zlib.error,
-        struct.error,
-        OSError,
-        EOFError,
-        LookupError,
-        ValueError,
-        TypeError,
-        AttributeError,
-        SyntaxError,  # XML parse errors
-        NotImplementedError,
-        RuntimeError,  # encrypted members
-    )
+def _columns(header: str, delimiter: str) -> int:
     try:
-        with zipfile.ZipFile(io.BytesIO(data)) as archive:
-            unpacked = sum(member.file_size for member in archive.infolist())
-        sheets = _read_sheets(data) if unpacked <= _LARGEST_BYTES else None
-    except mangled as error:
-        raise SurveyImportError(f"{name} is not a readable XLSX workbook: {error}") from error
-    if sheets is None:
-        raise SurveyImportError(f"{name} unpacks to more than {_LARGEST_BYTES} bytes")
-    if sheet is not None:
-        if sheet not in sheets:
-            raise SurveyImportError(f"{name} has no sheet {sheet!r}; it has {', '.join(sheets)}")
-        return sheets[sheet]
-    return next((rows for rows in sheets.values() if any(any(cells) for _, cells in rows)), [])
+        return len(next(csv.reader([header], delimiter=delimiter)))
+    except csv.Error:  # a field beyond the limit, which reading the rows names
+        return 0
 
 
-def _read_sheets(data: bytes) -> dict[str, list[Row]]:
-    from openpyxl import load_workbook  # noqa: PLC0415 - most calls read CSV and need no openpyxl
-
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # styles and validations openpyxl drops are of no concern
-        workbook = load_workbook(io.BytesIO(data), data_only=True, read_only=False)
-    return {
-        sheet.title: [
-            (number, [_cell_text(cell) for cell in cells])
-            for number, cells in enumerate(
-                sheet.iter_rows(values_only=True, max_row=min(sheet.max_row, _LARGEST_ROWS + 1)), 1
-            )
-        ]
-        for sheet in workbook.worksheets
-    }
-
-
-def _cell_text(cell: object) -> str:
-    if cell is None:
-        return ""
-    if isinstance(cell, float) and cell.is_integer():
-        return str(int(cell))
-    if isinstance(cell, dt.datetime):
-        return cell.date().isoformat() if cell.time() == dt.time() else cell.isoformat()
-    return str(cell)
+def _require_words(rows: Sequence[Row], header: list[str]) -> None:
+    """Refuse cells that state that something went wrong where the table was made."""
+    for number, cells in rows:
+        for place, cell in enumerate(cells):
+            column = header[place] if place < len(header) else None
+            if "\ufffd" in cell:
+                said = f"{cell[:80]!r} holds U+FFFD, a letter that was lost"
+                raise SurveyImportError(said, row=number, column=column)
+            if cell in _ERRORS:
+                said = f"{cell} is an error of a spreadsheet and no value"
+                raise SurveyImportError(said, row=number, column=column)
 
 
 def _as_frame(name: str, rows: Sequence[Row]) -> pd.DataFrame:
@@ -172,12 +137,13 @@ def _as_frame(name: str, rows: Sequence[Row]) -> pd.DataFrame:
     filled = [(number, cells) for number, cells in filled if any(cells)]
     if not filled:
         raise SurveyImportError(f"{name} is empty; expected a header and rows", row=1)
-    if len(filled) > _LARGEST_ROWS:
-        raise SurveyImportError(f"{name} has more than {_LARGEST_ROWS} rows")
+    if len(filled) > LARGEST_ROWS:
+        raise SurveyImportError(f"{name} has more than {LARGEST_ROWS} rows")
     (header_row, header), *body = filled
     while header and not header[-1]:
         header.pop()
     _check_header(header, header_row)
+    _require_words(filled, header)
     if not body:
         raise SurveyImportError(f"{name} has a header and no rows", row=header_row + 1)
     for number, cells in body:

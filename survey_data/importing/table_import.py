@@ -18,7 +18,7 @@ from survey_data.importing.plan import (
     require_readable,
 )
 from survey_data.importing.reading import read_table
-from survey_data.importing.writing import write_valid
+from survey_data.importing.writing import held_tables, write_valid
 from survey_data.problems import SurveyImportError
 from survey_data.tables import SurveyTables, load
 
@@ -62,11 +62,18 @@ def import_table(
     SurveyDataError
         Our own tables cannot be read.
     """
-    tables = load(directory)
     frame = read_table(path, sheet)
-    mapping = match_columns(tables, frame, overrides)
-    plan = plan_import(tables, frame, mapping, source=Path(path).name)
-    return apply_import(directory, plan) if apply else plan
+
+    def compared() -> ImportPlan:
+        tables = load(directory)
+        mapping = match_columns(tables, frame, overrides)
+        return plan_import(tables, frame, mapping, source=Path(path).name)
+
+    if not apply:
+        return compared()
+    folder = DATA_DIRECTORY if directory is None else Path(directory)
+    with held_tables(folder):
+        return _applied(folder, compared())
 
 
 def apply_import(directory: str | Path | None, plan: ImportPlan) -> ImportPlan:
@@ -94,8 +101,14 @@ def apply_import(directory: str | Path | None, plan: ImportPlan) -> ImportPlan:
         The plan has errors, our tables have changed since, they would be invalid, or the file
         cannot be written; nothing has been written.
     """
-    require_readable(plan)
     folder = DATA_DIRECTORY if directory is None else Path(directory)
+    with held_tables(folder):
+        return _applied(folder, plan)
+
+
+def _applied(folder: Path, plan: ImportPlan) -> ImportPlan:
+    """Write a plan's edits into tables that this process holds."""
+    require_readable(plan)
     tables = load(folder)
     _require_fresh(tables, plan)
     if not plan.edits:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import pandas as pd
@@ -18,11 +19,17 @@ _NOT_STATED = {"", "na", "n a", "nan", "unknown", "not stated", "not reported", 
 _DEGREES = {"deg": 1.0, "arcmin": 1 / 60, "arcsec": 1 / 3600}
 _UNIT = r"deg(?:ree)?s?|°|arc-?\s?min(?:ute)?s?|'|′|arc-?\s?sec(?:ond)?s?|\"|″|''"
 _ANGLE = re.compile(
-    rf"[<≤>≥~≈=]*\s*(?P<half>±|\+/-|\+-)?\s*(?P<number>[0-9]+(?:[.,][0-9]+)?(?:e-?[0-9]+)?)"
+    rf"[~≈=]{{0,2}}\s*(?P<half>±|\+/-|\+-)?\s*(?P<number>[0-9]+(?:[.,][0-9]+)?(?:e-?[0-9]+)?)"
     rf"\s*(?P<unit>{_UNIT})?"
     rf"(?:\s*[x×]\s*(?P<second>[0-9]+(?:[.,][0-9]+)?)\s*(?:{_UNIT})?)?",
     re.IGNORECASE,
 )
+
+
+_INEQUALITY = re.compile(r"[<≤>≥]|[<>]=")
+#: Longer texts list no values: a cell of all 137 of them is shorter.
+_LONGEST = 5000
+_SHOWN = 80
 
 
 class UnreadableValueError(ValueError):
@@ -77,6 +84,11 @@ class ValueReader:
         UnreadableValueError
             A piece is no value of the attribute, or could be several.
         """
+        if len(text) > _LONGEST:
+            raise UnreadableValueError(
+                f"expected at most {_LONGEST} characters for {attribute}, got {len(text)}: "
+                f"{text[:_SHOWN]!r} ..."
+            )
         if not self._states_something(attribute, text):
             return []
         if self.is_numeric(attribute):
@@ -100,7 +112,7 @@ class ValueReader:
         return self._spellings[attribute].get(normalise(text), set())
 
     def _read_compound(self, attribute: str, piece: str, unit: str) -> list[ValueMatch]:
-        if attribute == "accuracy" and _ANGLE.fullmatch(piece):
+        if attribute == "accuracy" and (_ANGLE.fullmatch(piece) or _INEQUALITY.match(piece)):
             degrees = self._degrees(attribute, piece, unit)
             return [ValueMatch(attribute, piece, accuracy_class(self._tables, degrees), 1.0)]
         parts = _split(piece, r"[/&+]|\band\b")
@@ -151,9 +163,13 @@ class ValueReader:
         return ValueMatch(attribute, text, f"{degrees:.6g}", 1.0)
 
     def _degrees(self, attribute: str, text: str, unit: str) -> float:
+        if _INEQUALITY.match(text.strip()):
+            raise UnreadableValueError(
+                f"{text[:_SHOWN]!r} is a limit and no angle: {attribute} takes the angle itself"
+            )
         match = _ANGLE.fullmatch(text.strip())
         if match is None:
-            raise UnreadableValueError(f"expected an angle for {attribute}, got {text!r}")
+            raise UnreadableValueError(f"expected an angle for {attribute}, got {text[:_SHOWN]!r}")
         number = float(match["number"].replace(",", "."))
         second = match["second"]
         if second is not None and float(second.replace(",", ".")) != number:
@@ -185,9 +201,26 @@ def _unit_name(unit: str | None) -> str | None:
 
 
 def _split(text: str, mark: str) -> list[str]:
-    """Split at a mark that stands outside parentheses."""
-    outside = re.split(rf"(?:{mark})(?![^()]*\))", text)
-    return [piece.strip() for piece in outside if piece.strip()]
+    """Split at a mark that stands outside parentheses, in one pass over the text."""
+    pieces = [""]
+    for inside, part in _parenthesised(text):
+        if inside:
+            pieces[-1] += part
+            continue
+        first, *rest = re.split(f"(?:{mark})", part)
+        pieces[-1] += first
+        pieces += rest
+    return [piece.strip() for piece in pieces if piece.strip()]
+
+
+def _parenthesised(text: str) -> Iterator[tuple[bool, str]]:
+    """Yield (whether in parentheses, part); a parenthesis that is never closed encloses nothing."""
+    at = 0
+    for found in re.finditer(r"\([^()]*\)", text):
+        yield False, text[at : found.start()]
+        yield True, found[0]
+        at = found.end()
+    yield False, text[at:]
 
 
 def _rows(frame: pd.DataFrame) -> list[dict[str, str]]:

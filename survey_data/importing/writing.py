@@ -3,13 +3,35 @@
 from __future__ import annotations
 
 import shutil
-import tempfile
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 from survey_data.descriptor import DESCRIPTOR_FILE, file_name, table_names
+from survey_data.file_bytes import FileRefusedError
+from survey_data.leftovers import temporary_directory
+from survey_data.locks import held_in_turn
+from survey_data.manifest import write_recorded
 from survey_data.problems import SurveyImportError
 from survey_data.validation.validate import validate
-from survey_data.whole_files import replace_file
+
+
+@contextmanager
+def held_tables(folder: Path) -> Iterator[None]:
+    """Hold the tables from reading to writing; who else would write waits, and reads what is new.
+
+    Raises
+    ------
+    SurveyImportError
+        Nothing can be written there.
+    """
+    with ExitStack() as stack:
+        try:
+            with suppress(FileNotFoundError):  # reading says that there are no tables
+                stack.enter_context(held_in_turn(folder / "tables"))
+        except OSError as error:
+            raise _unwritable(folder, error) from error
+        yield
 
 
 def write_valid(folder: Path, table: str, text: str) -> None:
@@ -22,16 +44,22 @@ def write_valid(folder: Path, table: str, text: str) -> None:
     """
     try:
         _require_valid(folder, table, text)
-        replace_file(folder / file_name(table), text)
+        write_recorded(folder, {file_name(table): text})
+    except FileRefusedError as error:
+        raise SurveyImportError(str(error)) from error
     except OSError as error:
-        raise SurveyImportError(f"cannot write in {folder}: {error.strerror or error}") from error
+        raise _unwritable(folder, error) from error
+
+
+def _unwritable(folder: Path, error: OSError) -> SurveyImportError:
+    return SurveyImportError(f"cannot write in {folder}: {error.strerror or error}")
 
 
 def _require_valid(folder: Path, table: str, text: str) -> None:
-    with tempfile.TemporaryDirectory() as scratch:
+    with temporary_directory() as scratch:
         for name in (DESCRIPTOR_FILE, *map(file_name, table_names())):
-            shutil.copyfile(folder / name, Path(scratch) / name)
-        (Path(scratch) / file_name(table)).write_text(text, encoding="utf-8", newline="")
+            shutil.copyfile(folder / name, scratch / name)
+        (scratch / file_name(table)).write_text(text, encoding="utf-8", newline="")
         problems = validate(scratch)
     if problems:
         raise SurveyImportError(

@@ -7,14 +7,13 @@ Three passes, each over what the pass before found sound: the form of every file
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import frictionless
 
-from survey_data.csv_reading import Records, read_records
+from survey_data.csv_reading import Records
 from survey_data.descriptor import (
     DATA_DIRECTORY,
     DESCRIPTOR_FILE,
@@ -24,9 +23,12 @@ from survey_data.descriptor import (
     primary_key,
     table_names,
 )
+from survey_data.file_bytes import FileRefusedError
+from survey_data.json_reading import read_json
 from survey_data.problems import Problem
 from survey_data.tables import typed_frame
 from survey_data.validation.rules import check_rules
+from survey_data.whole_records import read_whole_records
 
 
 def validate(directory: str | Path | None = None) -> list[Problem]:
@@ -54,8 +56,12 @@ def validate(directory: str | Path | None = None) -> list[Problem]:
     problems = _check_descriptor(folder)
     sound: dict[str, Records] = {}
     for table in table_names():
-        records = read_records(folder / file_name(table), list(column_types(table)))
+        records = read_whole_records(folder / file_name(table), list(column_types(table)))
         problems += records.problems
+        if not records.problems and not records.rows:
+            problems.append(
+                Problem(file_name(table), 1, None, "the table has a header and no rows")
+            )
         if not records.problems:
             sound[table] = records
     problems += _check_schema(sound)
@@ -71,15 +77,11 @@ def validate(directory: str | Path | None = None) -> list[Problem]:
 def _check_descriptor(folder: Path) -> list[Problem]:
     path = folder / DESCRIPTOR_FILE
     try:
-        found = json.loads(path.read_bytes())
+        found = read_json(path)
     except FileNotFoundError:
         return [Problem(DESCRIPTOR_FILE, None, None, "the file is missing")]
-    except OSError:
-        return [Problem(DESCRIPTOR_FILE, None, None, "the file cannot be read")]
-    except json.JSONDecodeError as error:
-        return [Problem(DESCRIPTOR_FILE, error.lineno, None, f"broken JSON: {error.msg}")]
-    except (ValueError, RecursionError):
-        return [Problem(DESCRIPTOR_FILE, None, None, "broken JSON: cannot be decoded")]
+    except FileRefusedError as error:
+        return [Problem(DESCRIPTOR_FILE, error.line, None, error.reason)]
     ours, theirs = dict(_leaves(descriptor(), "")), dict(_leaves(found, ""))
     places = [
         place

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import threading
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,8 @@ import pytest
 
 import survey_data
 from survey_data import SurveyImportError, import_table, load, validate
+from survey_data.importing import table_import
+from survey_data.importing.writing import held_tables
 
 
 def offer(copy: Any, text: str) -> Path:
@@ -87,6 +90,29 @@ def test_only_the_cells_taken_over_change(copy: Any) -> None:
     assert rest == [row for row in before if (row[0], row[1]) not in touched]
     others = set(copy.directory.iterdir())
     assert {path.name for path in others if path.suffix not in {".csv", ".json"}} == {"theirs.txt"}
+
+
+def test_who_imports_while_another_writes_reads_what_that_one_wrote(copy: Any) -> None:
+    """Both are kept: the second compares after it has waited, not before."""
+    ours = import_table(offer(copy, "Key,Mask\nAlvi2014,Lens\n"), copy.directory)
+    theirs = copy.directory / "others.txt"
+    theirs.write_text("Key,Error\nAlvi2014,Alignment\n", encoding="utf-8")
+    applied = threading.Event()
+
+    def other() -> None:
+        assert import_table(theirs, copy.directory, apply=True).written == 1
+        applied.set()
+
+    waiting = threading.Thread(target=other)
+    with held_tables(copy.directory):
+        waiting.start()
+        assert not applied.wait(0.5)
+        table_import._applied(copy.directory, ours)
+    waiting.join(60)
+    assert applied.is_set()
+    assert [row[2] for row in cell(copy, "Alvi2014", "mask")] == ["Lens"]
+    assert [row[2] for row in cell(copy, "Alvi2014", "error")] == ["Alignment"]
+    assert not list(copy.directory.glob(".*")), "the lock went with its holder"
 
 
 def test_applying_twice_changes_nothing_the_second_time(copy: Any) -> None:

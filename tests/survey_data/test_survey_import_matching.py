@@ -117,7 +117,7 @@ def test_an_impossible_mapping_is_refused(
         ("accuracy", "5 arcsec", ["UFSS"]),
         ("accuracy_deg", "0.05", ["0.05"]),
         ("accuracy_deg", "0,05", ["0.05"]),
-        ("accuracy_deg", "< 0.1 deg", ["0.1"]),
+        ("accuracy_deg", "~ 0.1 deg", ["0.1"]),
         ("accuracy_deg", "±0.1°", ["0.1"]),
         ("accuracy_deg", "3 arcmin", ["0.05"]),
         ("accuracy_deg", "36″", ["0.01"]),

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import errno
+import itertools
 import os
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 import survey_data
+from survey_data import whole_files
 from survey_data.whole_files import replace_file, replacing
 
 ROOT = Path(survey_data.__file__).parent.parent
@@ -40,7 +44,9 @@ def test_a_new_file_may_be_read_by_all_and_an_earlier_one_keeps_its_permissions(
 ) -> None:
     path = tmp_path / "file"
     replace_file(path, "first")
-    assert path.stat().st_mode & 0o777 == 0o644
+    umask = os.umask(0)
+    os.umask(umask)
+    assert path.stat().st_mode & 0o777 == 0o666 & ~umask
     path.chmod(0o640)
     replace_file(path, "second")
     assert path.stat().st_mode & 0o777 == 0o640
@@ -171,58 +177,118 @@ def test_an_error_while_making_leaves_what_was_there(earlier: Path) -> None:
     assert untouched(earlier)
 
 
-@pytest.mark.parametrize("failing", [1, 2, 3, 4])
-def test_whichever_rename_fails_everything_is_put_back(
-    failing: int, earlier: Path, monkeypatch: pytest.MonkeyPatch
+#: What puts new things in place, and how many of its steps `renew` takes on `earlier`.
+WAYS = [("exchange", 2), ("one at a time", 3)]
+STEPS = [(way, step) for way, steps in WAYS for step in range(1, steps + 1)]
+
+
+def counted(
+    way: str, act: Callable[[int], None], patch: Callable[[object, str, object], None]
 ) -> None:
-    rename, calls = Path.rename, []
+    """Call `act` with its number before every step that puts something in its place."""
+    calls = itertools.count(1)
 
-    def refused_once(self: Path, target: Path) -> Path:
-        calls.append(target)
-        if len(calls) == failing:
+    def counting(step):
+        def stepping(one, other):
+            act(next(calls))
+            return step(one, other)
+
+        return stepping
+
+    if way == "exchange":
+        patch(whole_files, "exchange", counting(whole_files.exchange))
+    else:
+        patch(whole_files, "exchange", lambda _one, _other: False)
+        patch(Path, "rename", counting(Path.rename))
+        patch(Path, "replace", counting(Path.replace))
+
+
+@pytest.mark.parametrize(("way", "failing"), STEPS)
+def test_whichever_step_fails_everything_is_put_back(
+    way: str, failing: int, earlier: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(step: int) -> None:
+        if step == failing:
             raise PermissionError(13, "Permission denied")
-        return rename(self, target)
 
-    monkeypatch.setattr(Path, "rename", refused_once)
+    counted(way, refuse, monkeypatch.setattr)
     with pytest.raises(PermissionError):
         renew(earlier)
     assert untouched(earlier)
 
 
-def test_what_cannot_be_put_back_is_kept_and_named(
+def test_a_file_system_without_an_exchange_gives_the_same(
     earlier: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    rename, calls = Path.rename, []
+    """Nested directories, an entry of another kind, and one that is no longer wanted."""
+    monkeypatch.setattr(whole_files, "exchange", lambda _one, _other: False)
+    for name in ("deep/kept", "deep/gone", "was-directory/inside"):
+        (earlier / "out" / name).parent.mkdir(exist_ok=True)
+        (earlier / "out" / name).write_text("old")
+    with replacing(earlier / "out") as (out,):
+        (out / "deep").mkdir(parents=True)
+        (out / "deep" / "kept").write_text("new")
+        (out / "was-directory").write_text("new")
+    found = {p.relative_to(earlier): p.read_text() for p in earlier.rglob("*") if p.is_file()}
+    assert found == {
+        Path("out.zip"): "old zip",
+        Path("out/deep/kept"): "new",
+        Path("out/was-directory"): "new",
+    }
 
-    def refused_from_the_second_on(self: Path, target: Path) -> Path:
-        calls.append(target)
-        if len(calls) > 1:
-            raise PermissionError(13, "Permission denied", str(self), None, str(target))
-        return rename(self, target)
 
-    monkeypatch.setattr(Path, "rename", refused_from_the_second_on)
-    with pytest.raises(PermissionError) as caught:
-        renew(earlier)
-    assert (Path(caught.value.filename) / "held").read_text() == "old"
-
-
-@pytest.mark.parametrize("rename", [1, 2, 3, 4])
-def test_a_kill_at_any_rename_loses_nothing_of_what_was_there(rename: int, earlier: Path) -> None:
+@pytest.mark.parametrize(("way", "step"), [(way, s) for way, n in WAYS for s in range(1, n + 2)])
+def test_a_kill_at_any_step_leaves_an_out_and_the_next_run_nothing_else(
+    way: str, step: int, earlier: Path
+) -> None:
     code = (
         "import os, sys; from pathlib import Path\n"
-        "from survey_data.whole_files import replacing\n"
-        "rename, calls = Path.rename, []\n"
-        "def killing(self, target):\n"
-        "    calls.append(target)\n"
-        "    if len(calls) == int(sys.argv[2]): os._exit(9)\n"
-        "    return rename(self, target)\n"
-        "Path.rename = killing\n"
-        "here = Path(sys.argv[1])\n"
-        "with replacing(here / 'out', here / 'out.zip') as (out, zipped):\n"
-        "    out.mkdir(); (out / 'new').write_text('new'); zipped.write_text('new zip')\n"
+        "sys.path.insert(0, 'tests/survey_data')\n"
+        "import shutil, test_whole_files as tests\n"
+        "here, way, last = Path(sys.argv[1]), sys.argv[2], int(sys.argv[3])\n"
+        "tests.counted(way, lambda step: os._exit(9) if step == last else None, setattr)\n"
+        "shutil.rmtree = lambda *_, **__: os._exit(9)\n"  # a step later: all is in place
+        "tests.renew(here)\n"
     )
-    killed(code, earlier, rename)
-    found = {path.read_text() for path in earlier.rglob("*") if path.is_file()}
-    assert {"old", "old zip"} <= found
-    visible = earlier / "out"
-    assert not visible.exists() or names(visible) in (["held"], ["new"]), "never a half of it"
+    killed(code, earlier, way, step)
+    held = names(earlier / "out")
+    assert held in (
+        [["held"], ["new"]] if way == "exchange" else [["held"], ["held", "new"], ["new"]]
+    )
+    assert (earlier / "out.zip").read_text() in ("old zip", "new zip")
+    assert len(names(earlier)) == 4, "the killed run left its scratch directory and its lock"
+    renew(earlier)
+    assert names(earlier) == ["out", "out.zip"]
+    assert names(earlier / "out") == ["new"]
+    assert (earlier / "out.zip").read_text() == "new zip"
+
+
+def test_a_new_file_has_the_permissions_that_the_umask_leaves(tmp_path: Path) -> None:
+    code = (
+        "import os, sys; from pathlib import Path\n"
+        "from survey_data.whole_files import replace_file, replacing\n"
+        "os.umask(0o077)\n"
+        "here = Path(sys.argv[1])\n"
+        "replace_file(here / 'deep' / 'file', 'mine')\n"
+        "with replacing(here / 'out') as (out,): out.mkdir(); (out / 'held').write_text('mine')\n"
+        "os._exit(9)\n"
+    )
+    killed(code, tmp_path)
+    found = {str(p.relative_to(tmp_path)): p.stat().st_mode & 0o777 for p in tmp_path.rglob("*")}
+    assert found == {"deep": 0o700, "deep/file": 0o600, "out": 0o700, "out/held": 0o600}
+
+
+def test_a_full_disk_is_told_with_the_name_of_the_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(OSError, match="No space left") as caught:
+        replace_file(tmp_path / "file", "new")
+    assert caught.value.filename == str(tmp_path / "file")
+    with pytest.raises(OSError, match="No space left") as caught, replacing(tmp_path / "out"):
+        full()
+    assert caught.value.filename == str(tmp_path / "out")
+    assert names(tmp_path) == []

@@ -101,7 +101,7 @@ class TrigonometricPanels(FacesModel):
     >>> model = TrigonometricPanels(panels).fit(signals, sun)
     >>> np.linalg.norm(model.amplitudes_, axis=1).round(3)
     array([1. , 1.1, 0.9, 1. , 1.2, 1. ])
-    >>> model.predict([[0.6, 0.0, 0.0, 0.8, 0.0, 0.0]]).round(3)
+    >>> model.predict([[0.6, 0.0, 0.0, 0.8, 0.0, 0.0]]).round(3) + 0.0
     array([[ 0.6, -0.8,  0. ]])
     """
 

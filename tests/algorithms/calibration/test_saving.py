@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import math
+import os
+import subprocess
+import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -60,11 +65,27 @@ def test_nothing_half_written_is_left(calibrated, tmp_path, monkeypatch):
         save(unfitted, path)
     with pytest.raises(OSError, match="no-such"):
         save(pipeline, tmp_path / "no-such" / "calibration.json")
-    monkeypatch.setattr("os.fdopen", lambda *_, **__: (_ for _ in ()).throw(OSError("disc full")))
-    with pytest.raises(OSError, match="disc full"):
+
+    def full(*_: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(Path, "replace", full)
+    with pytest.raises(OSError, match="No space left on device") as caught:
         save(pipeline, path)
+    assert caught.value.filename == str(path)
     assert path.read_text() == "what was there"
     assert [entry.name for entry in tmp_path.iterdir()] == ["calibration.json"]
+
+
+def test_what_a_killed_process_left_goes_and_what_a_living_one_writes_stays(calibrated, tmp_path):
+    pipeline, _ = calibrated
+    dead = subprocess.Popen([sys.executable, "-c", ""])
+    dead.wait()
+    for process in (dead.pid, os.getpid()):
+        (tmp_path / f".calibration.json.{process}-1f.saving").write_text("half")
+    save(pipeline, tmp_path / "calibration.json")
+    left = f".calibration.json.{os.getpid()}-1f.saving"
+    assert sorted(entry.name for entry in tmp_path.iterdir()) == [left, "calibration.json"]
 
 
 @pytest.mark.parametrize(

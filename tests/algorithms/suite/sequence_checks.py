@@ -13,6 +13,7 @@ import model_checks
 import numpy as np
 import pytest
 from expectations import same
+from shared_fits import learnt
 
 from algorithms.angles import separation_deg
 from algorithms.contract import FeatureKind, UnusableDataError, parameters
@@ -41,13 +42,9 @@ def sequence_check(function):
     return function
 
 
-def fitted(model, cal):
-    return model.fit(cal.features, cal.sun, cal.context)
-
-
 @sequence_check
 def check_follows_the_sun_it_learnt(cls, model, cal):
-    found = fitted(model, cal).predict(cal.features, cal.context)
+    model, found = learnt(model, cal)
     assert found.shape == cal.sun.shape
     assert np.isnan(found[0]).all()  # one reading is no sequence yet
     np.testing.assert_allclose(np.linalg.norm(found[1:], axis=1), 1.0, atol=1e-14)
@@ -59,7 +56,7 @@ def check_follows_the_sun_it_learnt(cls, model, cal):
 
 @sequence_check
 def check_never_looks_ahead(cls, model, cal):
-    whole = fitted(model, cal).predict(cal.features, cal.context)
+    model, whole = learnt(model, cal)
     for stop in (1, 2, 3, 17, 90):
         part = cal.of(slice(stop))
         same(model.predict(part.features, part.context), whole[:stop])
@@ -67,7 +64,7 @@ def check_never_looks_ahead(cls, model, cal):
 
 @sequence_check
 def check_a_row_without_features_is_nan_and_the_next_is_answered(cls, model, cal):
-    fitted(model, cal)
+    model, _ = learnt(model, cal)
     for bad in (np.nan, np.inf):
         broken = cal.features.copy()
         broken[40:44, 0] = bad
@@ -80,7 +77,7 @@ def check_a_row_without_features_is_nan_and_the_next_is_answered(cls, model, cal
 @sequence_check
 def check_in_eclipse_no_sun_is_invented(cls, model, cal):
     """Whatever the features are; beneath the silence it goes on by dead reckoning, less sure."""
-    fitted(model, cal)
+    model, _ = learnt(model, cal)
     context = {name: column.copy() for name, column in cal.context.items()}
     context["eclipse"][60:90] = 1.0
     found = model.predict(cal.features, context)
@@ -96,7 +93,7 @@ def check_in_eclipse_no_sun_is_invented(cls, model, cal):
 @sequence_check
 def check_in_the_dark_no_sun_is_invented(cls, model, cal):
     """Faces without light are dark, whatever the context says."""
-    fitted(model, cal)
+    model, _ = learnt(model, cal)
     if cal.features.shape[1] == 2:  # a spot does not tell what made it
         return
     dark = cal.features.copy()
@@ -109,7 +106,7 @@ def check_in_the_dark_no_sun_is_invented(cls, model, cal):
 @sequence_check
 def check_a_series_begins_anew_where_time_does_not_go_on(cls, model, cal):
     """Back to the start, or past a gap: the same answers as alone."""
-    alone = fitted(model, cal).predict(cal.features, cal.context)
+    model, alone = learnt(model, cal)
     half = len(cal.sun) // 2
     later = cal.of(slice(half, None))
     again = model.predict(later.features, later.context)
@@ -124,14 +121,14 @@ def check_a_series_begins_anew_where_time_does_not_go_on(cls, model, cal):
 @sequence_check
 def check_samples_that_do_not_follow_each_other_are_not_answered(cls, model, cal):
     """The split `repeat` is of poses far apart, pass after pass: no sequence, no repeatability."""
-    fitted(model, cal)
+    model, _ = learnt(model, cal)
     poses = cal.of(np.tile(np.arange(5, len(cal.sun), 40), 3))
     assert np.isnan(model.predict(poses.features, poses.context)).all()
 
 
 @sequence_check
 def check_layouts_and_dtypes_agree(cls, model, cal):
-    expected = fitted(model, cal).predict(cal.features, cal.context)
+    model, expected = learnt(model, cal)
     for features in (np.asfortranarray(cal.features), cal.features.tolist()):
         same(model.predict(features, cal.context), expected)
 
@@ -149,16 +146,16 @@ def check_what_does_not_settle_it_is_refused(cls, model, cal):
 @sequence_check
 def check_a_calibration_in_another_order_is_the_same(cls, model, cal):
     """Samples are put in the order of time; repeated rows without features are left out."""
-    expected = fitted(model, cal).predict(cal.features, cal.context)
+    _, expected = learnt(model, cal)
     mixed = cal.of(np.random.default_rng(3).permutation(len(cal.sun)))
-    other = fitted(cls(**parameters(model)), mixed)
+    other = cls(**parameters(model)).fit(mixed.features, mixed.sun, mixed.context)
     same(other.predict(cal.features, cal.context), expected)
 
 
 @sequence_check
 def check_an_answer_has_a_deviation(cls, model, cal):
-    deviation = fitted(model, cal).deviation_deg(cal.features, cal.context)
-    found = model.predict(cal.features, cal.context)
+    model, found = learnt(model, cal)
+    deviation = model.deviation_deg(cal.features, cal.context)
     assert np.array_equal(np.isfinite(deviation), np.isfinite(found[:, 0]))
     assert (deviation[1:] > 0).all()
     assert deviation[1:].max() < 10.0

@@ -1,0 +1,45 @@
+"""The survey's tables as text, for who wants their words and not frames of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from types import SimpleNamespace
+
+from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name
+from survey_data.problems import Problem, SurveyDataError
+from survey_data.whole_records import read_whole_records
+
+Rows = Sequence[Mapping[str, str]]
+
+
+def load_texts(tables: Sequence[str], directory: Path = DATA_DIRECTORY) -> SimpleNamespace:
+    """Read tables as `survey_data.load` does, but every cell as it stands there.
+
+    That takes no pandas, which takes longer to import than all the tables to read.
+
+    Parameters
+    ----------
+    tables : names
+    directory : where the CSV files are
+
+    Returns
+    -------
+    namespace
+        A sequence of rows a table, each a mapping of its columns; an empty cell is "".
+
+    Raises
+    ------
+    SurveyDataError
+        A file is missing or broken; names file, row and column.
+    """
+    found: dict[str, Rows] = {}
+    problems: list[Problem] = []
+    for table in tables:
+        columns = list(column_types(table))
+        records = read_whole_records(directory / file_name(table), columns)
+        problems += records.problems
+        found[table] = [dict(zip(columns, cells, strict=True)) for _, cells in records.rows]
+    if problems:
+        raise SurveyDataError(tuple(problems))
+    return SimpleNamespace(**found)

@@ -1,0 +1,118 @@
+"""What a killed process leaves is removed by the next one; what a living one makes is not."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import survey_data
+from survey_data import leftovers
+from survey_data.leftovers import remove_leftovers, scratch_directory, temporary_directory
+from survey_data.whole_files import replace_file
+
+ROOT = Path(survey_data.__file__).parent.parent
+MAKING = """
+import os, sys
+from pathlib import Path
+from survey_data.leftovers import scratch_directory, scratch_file, temporary_directory
+here = Path(sys.argv[1])
+with scratch_directory(here / "out") as out, scratch_file(here / "table.csv") as file, \\
+        temporary_directory() as temporary:
+    for path in (out / "half", file, temporary / "half"):
+        path.write_text("half")
+    print("made", flush=True)
+    sys.stdin.read()
+    os._exit(9)
+"""
+
+
+def names(directory: Path) -> list[str]:
+    return sorted(entry.name for entry in directory.iterdir())
+
+
+@pytest.fixture
+def maker(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    """A process that is making two things in tmp_path and one among temporary files."""
+    (tmp_path / "temporary").mkdir()
+    monkeypatch.setenv("TMPDIR", str(tmp_path / "temporary"))
+    monkeypatch.setattr(leftovers.tempfile, "tempdir", None)
+    command = [sys.executable, "-c", MAKING, str(tmp_path)]
+    with subprocess.Popen(
+        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, cwd=ROOT, text=True
+    ) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "made\n"
+        yield process
+        process.kill()
+
+
+def test_leftovers_of_a_dead_process_are_removed_and_a_living_one_keeps_its_own(
+    tmp_path: Path, maker: subprocess.Popen[str]
+) -> None:
+    made = [name for name in names(tmp_path) if name != "temporary"]
+    assert len(made) == 2
+    assert all(f".{maker.pid}-" in name for name in made), "people see whose it is"
+    remove_leftovers(tmp_path)
+    with temporary_directory():
+        assert len(names(tmp_path / "temporary")) == 2
+    assert [name for name in names(tmp_path) if name != "temporary"] == made
+    maker.kill()
+    maker.wait()
+    remove_leftovers(tmp_path, "out")
+    assert [name[:10] for name in names(tmp_path)] == [".table.csv", "temporary"]
+    replace_file(tmp_path / "table.csv", "whole")
+    with temporary_directory() as mine:
+        assert names(tmp_path / "temporary") == [mine.name]
+    assert names(tmp_path) == ["table.csv", "temporary"]
+    assert names(tmp_path / "temporary") == []
+
+
+def test_a_write_of_what_is_there_already_removes_leftovers_too(
+    tmp_path: Path, maker: subprocess.Popen[str]
+) -> None:
+    (tmp_path / "table.csv").write_text("whole")
+    maker.kill()
+    maker.wait()
+    assert not replace_file(tmp_path / "table.csv", "whole")
+    assert [name[:5] for name in names(tmp_path)] == [".out.", "table", "tempo"]
+
+
+def test_what_merely_looks_alike_stays(tmp_path: Path) -> None:
+    kept = [".out", ".out.1-abc.sunatlas", "out.12-0123abcd.sunatlas", ".sunatlas"]
+    for name in kept:
+        (tmp_path / name).write_text("somebody's")
+    (tmp_path / ".out.12-0123abcd.sunatlas").write_text("left")
+    remove_leftovers(tmp_path)
+    assert names(tmp_path) == sorted(kept)
+    remove_leftovers(tmp_path / "missing")
+
+
+def test_one_whose_scratch_is_taken_before_it_is_locked_makes_another(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    real, taken = leftovers._locked, []
+
+    def late(path: Path, descriptor: int) -> int:
+        if not taken:
+            taken.append(path)
+            remove_leftovers(tmp_path)  # as another process does at this moment
+            assert not path.exists()
+        return real(path, descriptor)
+
+    monkeypatch.setattr(leftovers, "_locked", late)
+    with scratch_directory(tmp_path / "out") as path:
+        assert path.is_dir()
+        assert path != taken[0]
+        assert path.stat().st_mode & 0o777 == 0o700
+    assert names(tmp_path) == []
+
+
+def test_a_symbolic_link_is_not_followed(tmp_path: Path) -> None:
+    (tmp_path / "precious").mkdir()
+    (tmp_path / "precious" / "file").write_text("kept")
+    (tmp_path / ".out.12-0123abcd.sunatlas").symlink_to("precious")
+    remove_leftovers(tmp_path)
+    assert (tmp_path / "precious" / "file").read_text() == "kept"

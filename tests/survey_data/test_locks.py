@@ -1,0 +1,108 @@
+"""One process writes to a place at a time; a lock ends with its process and leaves no file."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+import pytest
+
+import survey_data
+from survey_data.locks import HeldError, held_alone, held_in_turn, lock_file
+
+ROOT = Path(survey_data.__file__).parent.parent
+HOLDING = """
+import sys
+from pathlib import Path
+from survey_data.locks import held_alone
+with held_alone(Path(sys.argv[1])):
+    print("held", flush=True)
+    sys.stdin.read()
+"""
+
+
+@pytest.fixture
+def place(tmp_path: Path) -> Path:
+    return tmp_path / "out"
+
+
+@pytest.fixture
+def holder(place: Path):
+    """A process that holds the place until its standard input ends."""
+    command = [sys.executable, "-c", HOLDING, str(place)]
+    with subprocess.Popen(
+        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, cwd=ROOT, text=True
+    ) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "held\n"
+        yield process
+        process.kill()
+
+
+def test_another_process_is_refused_in_a_sentence_that_names_the_first(
+    place: Path, holder: subprocess.Popen[str]
+) -> None:
+    expected = f"another process {holder.pid} is writing to {place}"
+    with pytest.raises(HeldError, match=expected), held_alone(place):
+        pytest.fail("two hold it")
+
+
+def test_a_killed_process_holds_nothing_and_its_lock_file_goes_with_the_next(
+    place: Path, holder: subprocess.Popen[str]
+) -> None:
+    holder.kill()
+    holder.wait()
+    assert lock_file(place).exists()
+    with held_alone(place):
+        pass
+    assert list(place.parent.iterdir()) == []
+
+
+def test_one_that_waits_says_for_whom_and_goes_on_when_the_first_has_ended(
+    place: Path, holder: subprocess.Popen[str], caplog: pytest.LogCaptureFixture
+) -> None:
+    entered = threading.Event()
+
+    def wait() -> None:
+        with held_in_turn(place):
+            entered.set()
+
+    waiting = threading.Thread(target=wait)
+    waiting.start()
+    assert not entered.wait(0.3)
+    assert holder.stdin is not None
+    holder.stdin.close()
+    waiting.join(60)
+    assert entered.is_set()
+    assert caplog.messages == [f"waiting for another process {holder.pid}, which writes to {place}"]
+    assert list(place.parent.iterdir()) == []
+
+
+def test_many_that_come_and_go_never_meet(place: Path) -> None:
+    """Each removes the file of the lock at its end: nobody may hold one without a name."""
+    inside: list[int] = []
+    met: list[int] = []
+
+    def work() -> None:
+        for _ in range(30):
+            with held_in_turn(place):
+                inside.append(1)
+                met.append(len(inside))
+                inside.pop()
+
+    threads = [threading.Thread(target=work) for _ in range(6)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(60)
+    assert met == [1] * 180
+    assert list(place.parent.iterdir()) == []
+
+
+def test_an_error_inside_releases(place: Path) -> None:
+    with pytest.raises(RuntimeError, match="inside"), held_alone(place):
+        raise RuntimeError("inside")
+    with held_alone(place):
+        pass
