@@ -1,0 +1,1 @@
+"""The survey's statements about algorithms as experiments with verdicts."""

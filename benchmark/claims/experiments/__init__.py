@@ -1,0 +1,1 @@
+"""One module a claim, by what is tested; shared parts beside them."""

@@ -1,0 +1,1 @@
+"""Extractors of frames, events and balances (C36 to C50)."""

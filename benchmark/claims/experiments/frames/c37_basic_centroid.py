@@ -1,0 +1,49 @@
+"""C37: the basic centroid beside the other methods of one spot, as noise grows (Chang2008).
+
+All see the same discs with noise from 0.5 to 20 % of the peak, dark level taken off; at more, most
+methods find nothing. Growth is the error at the highest noise over that at the lowest. That a
+background which is left draws the basic centroid to the frame's middle is no noise and not counted.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from algorithms.contract import Extractor
+from algorithms.extractors.frames.balance import DoubleBalance
+from algorithms.extractors.frames.centroid import (
+    BasicCentroid,
+    FilteredCentroid,
+    ThresholdedCentroid,
+)
+from algorithms.extractors.frames.peak import PixelMax
+from algorithms.extractors.frames.template import TemplateMatch
+from algorithms.extractors.frames.threshold_average import MultipleThresholdCentroid
+from benchmark.claims.benches import ratio
+from benchmark.claims.experiment import Sketch, Trial
+from benchmark.claims.experiments.frames.single_discs import NOISES, errors_px, shipped, single
+
+SKETCH = Sketch(log_across=True)
+
+METHODS: dict[str, type[Extractor]] = {
+    "bcm": BasicCentroid,
+    "bctm": ThresholdedCentroid,
+    "dbcm": DoubleBalance,
+    "mt-acm": MultipleThresholdCentroid,
+    "ifm": FilteredCentroid,
+    "tm": TemplateMatch,
+    "pm": PixelMax,
+}
+SHARES = NOISES[:6]
+
+
+def trial(number: int) -> Trial:
+    """Measure one draw of discs and noise."""
+    drawn = single("C37", number)
+    errors = errors_px(drawn, {name: shipped(m) for name, m in METHODS.items()}, SHARES)
+    growth = {name: ratio(along[-1], along[0]) for name, along in errors.items()}
+    others = float(np.nanmax([value for name, value in growth.items() if name != "bcm"]))
+    values = {"sub-pixel": errors["bcm"][0], "sensitive": ratio(growth["bcm"], others)}
+    # ifm's line lies upon bcm's
+    lines = {name: (SHARES, along) for name, along in errors.items() if name != "ifm"}
+    return Trial(values, lines)

@@ -1,0 +1,1 @@
+"""Extractors of profiles (C51 to C55)."""

@@ -1,0 +1,150 @@
+"""The claims with their verdicts: what the command line, HTTP and the docs tell."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from benchmark.claims.judgement import Judged, judged, verdict
+from benchmark.claims.outcomes import PUBLISHED, Outcome, read
+from benchmark.claims.rules import DIRECTORY, VERDICTS, Claim, Verdict, claims, rows_of
+
+EXPLANATIONS = DIRECTORY / "explanations.csv"
+
+
+class LedgerError(ValueError):
+    """An explanation that fits no verdict; the message names both."""
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One claim, as it came out.
+
+    Attributes
+    ----------
+    claim
+        What is said, and what decides it.
+    verdict
+        None where it was not measured.
+    rules, second
+        As measured, and by the second method; of the second one those rules that it measures.
+    explanation
+        Why it is not, or not wholly, so; empty where it is reproduced.
+    outcome
+        Numbers of every trial and lines of the plot; None where it was not measured.
+    """
+
+    claim: Claim
+    verdict: Verdict | None
+    rules: tuple[Judged, ...]
+    second: tuple[Judged, ...]
+    explanation: str
+    outcome: Outcome | None
+
+    @property
+    def agrees(self) -> bool | None:
+        """Whether the second method says of every rule what the first says; None without one."""
+        first = {rule.rule.name: rule.standing for rule in self.rules}
+        if not self.second:
+            return None
+        return all(first[rule.rule.name] == rule.standing for rule in self.second)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return it as plain JSON values; NaN is None."""
+        said = self.claim
+        return {
+            "id": said.id,
+            "section": said.section,
+            "study": said.study,
+            "statement": said.statement,
+            "verdict": self.verdict,
+            "explanation": self.explanation,
+            "measured_on": said.measured_on,
+            "trials": said.trials,
+            "replicate": said.replicate,
+            "rules": [_rule(rule) for rule in self.rules],
+            "second_method": said.second,
+            "second_agrees": self.agrees,
+            "second": [_rule(rule) for rule in self.second],
+        }
+
+
+def ledger(directory: Path = PUBLISHED, explanations: Path = EXPLANATIONS) -> tuple[Entry, ...]:
+    """Return every claim with its verdict, in the survey's order.
+
+    Raises
+    ------
+    LedgerError
+        Where an explanation was written for another verdict than the one that is measured.
+    """
+    outcomes, written = read(directory), _explanations(explanations)
+    if unknown := sorted(set(written) - set(claims())):
+        raise LedgerError(f"{explanations.name} explains no claim of the survey: {unknown}")
+    return tuple(
+        _entry(claim, outcomes.get(name), written.get(name, ("", "")))
+        for name, claim in claims().items()
+    )
+
+
+def tally(entries: Iterable[Entry]) -> dict[str, int]:
+    """Count the claims by verdict; "not measured" where there is such."""
+    counts = Counter(entry.verdict or "not measured" for entry in entries)
+    known = {name: counts[name] for name in VERDICTS}
+    return known | ({"not measured": counts["not measured"]} if counts["not measured"] else {})
+
+
+def unexplained(entries: Iterable[Entry]) -> tuple[str, ...]:
+    """Name the claims whose verdict needs an explanation and has none."""
+    return tuple(
+        entry.claim.id
+        for entry in entries
+        if entry.verdict in VERDICTS[1:] and not entry.explanation
+    )
+
+
+def _entry(claim: Claim, outcome: Outcome | None, written: tuple[str, str]) -> Entry:
+    about, said = written
+    if outcome is None:
+        untestable = about == "not testable here"
+        rules = tuple(judged(rule, ()) for rule in claim.rules)
+        return Entry(claim, "not testable here" if untestable else None, rules, (), said, None)
+    rules = tuple(judged(rule, outcome.values[rule.name]) for rule in claim.rules)
+    second = tuple(judged(claim.rule(name), values) for name, values in outcome.second.items())
+    found = verdict(rules)
+    if about and about != found:
+        raise LedgerError(
+            f"{claim.id} is explained as {about!r} and comes out as {found!r}: read the numbers "
+            f"and write its line in {EXPLANATIONS.name} anew"
+        )
+    return Entry(claim, found, rules, second, said, outcome)
+
+
+def _explanations(path: Path) -> Mapping[str, tuple[str, str]]:
+    found: dict[str, tuple[str, str]] = {}
+    for row in rows_of(path, ("claim", "verdict", "says")):
+        if row["claim"] in found:
+            raise LedgerError(f"{path.name}: claim {row['claim']} stands there twice")
+        found[row["claim"]] = row["verdict"], row["says"]
+    return found
+
+
+def _rule(one: Judged) -> dict[str, Any]:
+    return {
+        "rule": one.rule.name,
+        "statistic": one.rule.statistic,
+        "decides": str(one.rule),
+        "standing": one.standing,
+        "estimate": _number(one.estimate),
+        "low": _number(one.low),
+        "high": _number(one.high),
+        "trials": one.trials,
+        "timed": one.rule.timed,
+    }
+
+
+def _number(value: float) -> float | None:
+    return float(f"{value:.5g}") if math.isfinite(value) else None
