@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import io
 import re
 import threading
@@ -58,8 +59,22 @@ def _compact(svg: str) -> str:
     # once, where all text finds it
     svg = svg.replace(_FONT, "").replace("<g>", f'<g style="{_FONT.strip("; ")}">', 1)
     svg = re.sub(r"<[^>]*>", lambda tag: _few_digits(tag[0]), svg)  # not in texts
+    svg = _named_by_place(svg)
     return "".join(f"{line.strip()}\n" for line in svg.splitlines())
 
 
 def _few_digits(tag: str) -> str:
-    return re.sub(r"-?\d+\.\d{3,}", lambda found: f"{float(found[0]):.2f}", tag)
+    return re.sub(r"-?\d+\.\d{3,}", lambda found: f"{float(found[0]) + 0.0:z.2f}", tag)
+
+
+def _named_by_place(svg: str) -> str:
+    """Name what is defined by its place among definitions and by the title.
+
+    Matplotlib names it by a digest of all digits of its numbers, and the last ones differ between
+    processors. The title keeps names apart where a page holds several pictures.
+    """
+    of = hashlib.sha256(svg[svg.index("<title") : svg.index("</title")].encode()).hexdigest()[:6]
+    names = dict.fromkeys(re.findall(r'id="([A-Za-z][0-9a-f]{10})"', svg))
+    for number, name in enumerate(names):
+        svg = re.sub(rf"(?<=[\"#]){name}(?=[\")])", f"{name[0]}{of}-{number}", svg)
+    return svg

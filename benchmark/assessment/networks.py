@@ -73,7 +73,7 @@ class Measured:
 
 
 @dataclass(frozen=True)
-class _Part:
+class Part:
     """Features of a split, with the Suns and what else is known."""
 
     features: Floats
@@ -82,7 +82,8 @@ class _Part:
     lit: NDArray[np.bool_]
 
     @classmethod
-    def of(cls, preset: Preset, condition: str, split: str) -> _Part:
+    def of(cls, preset: Preset, condition: str, split: str) -> Part:
+        """Return a split of a data set, its signals read as they are."""
         samples = preset.generate(condition, split)
         features = extracted(
             DirectSignals.for_sensor(preset.geometry), samples.observations, samples.origin_px
@@ -92,32 +93,32 @@ class _Part:
         return cls(features, samples.sun, context, ~dark)
 
 
-Method = Callable[[SensorGeometry, _Part, _Part], Floats]
+Method = Callable[[SensorGeometry, Part, Part], Floats]
 
 
 def networked(seed: int = 0) -> Method:
     """Return the deep network of all signals, started from a seed."""
 
-    def directions(geometry: SensorGeometry, known: _Part, asked: _Part) -> Floats:
+    def directions(geometry: SensorGeometry, known: Part, asked: Part) -> Floats:
         model = replace(DeepSignals.for_sensor(geometry, FeatureKind.SIGNALS), seed=seed)
         return _answered(model, (), known, asked)
 
     return directions
 
 
-def behind_temperature(geometry: SensorGeometry, known: _Part, asked: _Part) -> Floats:
+def behind_temperature(geometry: SensorGeometry, known: Part, asked: Part) -> Floats:
     """Directions (N, 3) of the network behind the compensation of temperature."""
     stage = TemperatureDrift.for_sensor(geometry, FeatureKind.SIGNALS)
     model = DeepSignals.for_sensor(geometry, FeatureKind.SIGNALS)
     return _answered(model, (stage,), known, asked)
 
 
-def uncorrected(geometry: SensorGeometry, known: _Part, asked: _Part) -> Floats:
+def uncorrected(geometry: SensorGeometry, known: Part, asked: Part) -> Floats:
     """Directions (N, 3) of assembled faces, which know of no Earth."""
     return _answered(AssembledFaces.for_sensor(geometry, FeatureKind.SIGNALS), (), known, asked)
 
 
-def by_albedo_model(geometry: SensorGeometry, known: _Part, asked: _Part) -> Floats:
+def by_albedo_model(geometry: SensorGeometry, known: Part, asked: Part) -> Floats:
     """Directions (N, 3) of assembled faces, the Earth's light taken off as a model has it.
 
     The model is the simulator's own Earth, with its true reflectance, seen at the nadir that a
@@ -127,14 +128,14 @@ def by_albedo_model(geometry: SensorGeometry, known: _Part, asked: _Part) -> Flo
     normals = np.asarray(geometry.face_normals)
     earth = Earth()
 
-    def earthlight(sun: Floats, part: _Part) -> Floats:
+    def earthlight(sun: Floats, part: Part) -> Floats:
         nadir = np.asarray(part.context["nadir"], dtype=np.float64)
         found = np.zeros((len(sun), len(normals)))
         seen = part.lit & np.isfinite(sun).all(axis=1)
         found[seen] = earth.response(sun[seen], nadir[seen], normals, "kelly")
         return found
 
-    def freed(part: _Part, sun: Floats, full: Floats) -> _Part:
+    def freed(part: Part, sun: Floats, full: Floats) -> Part:
         return replace(part, features=part.features - full * earthlight(sun, part))
 
     lit_by_earth = earthlight(known.sun, known)
@@ -162,7 +163,7 @@ def orbits(
     """Put every method on orbits that it was not calibrated on, condition by condition."""
     preset = datasets.get(name)
     for condition in conditions:
-        known, asked = _parts(preset, condition)
+        known, asked = parts(preset, condition)
         for method, directions in METHODS.items():
             found = directions(preset.geometry, known, asked)
             yield _measured("orbits", condition, method, found, asked)
@@ -171,12 +172,12 @@ def orbits(
 def units(name: str = ALBEDO_ORBIT, others: Iterable[int] = UNITS) -> Iterator[Measured]:
     """Give a network of the standard unit on units it never saw, and their own networks there."""
     preset = datasets.get(name)
-    known, _ = _parts(preset, "nominal")
+    known, _ = parts(preset, "nominal")
     model = DeepSignals.for_sensor(preset.geometry, FeatureKind.SIGNALS)
     model.fit(known.features, known.sun)
     for unit in others:
         other = preset.as_unit(unit)
-        own, asked = _parts(other, "nominal")
+        own, asked = parts(other, "nominal")
         case = f"unit {unit}"
         found = model.predict(asked.features)
         yield _measured("units", case, "dnn of unit 0", found, asked)
@@ -188,7 +189,7 @@ def units(name: str = ALBEDO_ORBIT, others: Iterable[int] = UNITS) -> Iterator[M
 def seeds(name: str = ALBEDO_ORBIT, chosen: Iterable[int] = SEEDS) -> Iterator[Measured]:
     """Calibrate on the same samples from the weights of several seeds."""
     preset = datasets.get(name)
-    known, asked = _parts(preset, "nominal")
+    known, asked = parts(preset, "nominal")
     for seed in chosen:
         found = networked(seed)(preset.geometry, known, asked)
         yield _measured("seeds", f"seed {seed}", "dnn", found, asked)
@@ -210,7 +211,7 @@ def spans(
                 calibration=Span(0.0, round(days * 86_400.0 / step_s), step_s),
                 test=replace(flight.test, start_day=tested),
             )
-            known, asked = _parts(replace(preset, directions=flown), "nominal")
+            known, asked = parts(replace(preset, directions=flown), "nominal")
             for method in ("no correction", "dnn"):
                 found = METHODS[method](preset.geometry, known, asked)
                 yield _measured(
@@ -228,26 +229,27 @@ def fields(name: str = MANY_SPOTS, reach_deg: float = X_FOV_DEG) -> Iterator[Mea
     wider = AngleField(reach_deg, steps=15, test_samples=200)
     preset = replace(preset, directions=wider)
     extractor = MultipleCentroids.for_sensor(preset.geometry)
-    parts = []
+    split_parts = []
     for split in ("calibration", "test"):
         samples = preset.generate("nominal", split)
         found = extracted(extractor, samples.observations, samples.origin_px)
         inside = np.abs(tangents_from_sun(samples.sun)).max(axis=1) <= edge
-        parts.append((found, samples.sun, inside))
-    (found, sun, inside), (asked, truth, tested) = parts
+        split_parts.append((found, samples.sun, inside))
+    (found, sun, inside), (asked, truth, tested) = split_parts
     for mode, rows in (("S-FOV", inside), ("X-FOV", np.ones_like(inside))):
         model = AxisNetworks().fit(found[rows], sun[rows])
         answers = model.predict(asked)
         for where, chosen in (("all spots", tested), ("some spots", ~tested)):
-            part = _Part(asked[chosen], truth[chosen], {}, np.ones(int(chosen.sum()), dtype=bool))
+            part = Part(asked[chosen], truth[chosen], {}, np.ones(int(chosen.sum()), dtype=bool))
             yield _measured("fields", where, f"ann, {mode}", answers[chosen], part)
 
 
-def _parts(preset: Preset, condition: str) -> tuple[_Part, _Part]:
-    return _Part.of(preset, condition, "calibration"), _Part.of(preset, condition, "test")
+def parts(preset: Preset, condition: str) -> tuple[Part, Part]:
+    """Return what is calibrated on and what is tested on."""
+    return Part.of(preset, condition, "calibration"), Part.of(preset, condition, "test")
 
 
-def _answered(model: Model, stages: tuple[Compensation, ...], known: _Part, asked: _Part) -> Floats:
+def _answered(model: Model, stages: tuple[Compensation, ...], known: Part, asked: Part) -> Floats:
     features, wanted = known.features, asked.features
     for stage in stages:
         stage.fit(features, known.sun, known.context)
@@ -256,7 +258,7 @@ def _answered(model: Model, stages: tuple[Compensation, ...], known: _Part, aske
     return model.fit(features, known.sun, known.context).predict(wanted, asked.context)
 
 
-def _measured(question: str, case: str, method: str, found: Floats, asked: _Part) -> Measured:
+def _measured(question: str, case: str, method: str, found: Floats, asked: Part) -> Measured:
     off = separation_deg(found, asked.sun)[asked.lit]
     off_answered = off[np.isfinite(off)]
     none = len(off_answered) == 0

@@ -135,6 +135,7 @@ def export(
     _require_free(out, force=force)
     out.parent.mkdir(parents=True, exist_ok=True)
     with replacing(out) as (made,):
+        _require_free(out, force=force)  # again: this process may have waited for another
         made.mkdir()
         files: list[dict[str, Any]] = []
         total = len(chosen) * len(wanted)

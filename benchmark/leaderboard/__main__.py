@@ -8,11 +8,15 @@ from __future__ import annotations
 import sys
 
 from benchmark.leaderboard.update import update
-from benchmark.running.kernels import INTERRUPTED
+from benchmark.processes import call_to_end
+
+
+def main() -> int:
+    """Bring the record up to date; the process that started this one says how it ended."""
+    directory, workers = sys.argv[1:]
+    update(directory, int(workers))
+    return 0
+
 
 if __name__ == "__main__":
-    directory, workers = sys.argv[1:]
-    try:
-        update(directory, int(workers))
-    except KeyboardInterrupt:  # the process that started this one says so
-        sys.exit(INTERRUPTED)
+    call_to_end(main)

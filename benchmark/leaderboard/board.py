@@ -1,6 +1,8 @@
-"""The leaderboard: every pipeline on every dataset and condition, best first, against the bound.
+"""The leaderboard: every pipeline on every dataset and condition, against the bound.
 
-All of it follows from stored scores: `build` renders nothing and gives the same for the same rows.
+A board lists the best pipeline of each extractor first, which is what an engineer compares, and the
+others behind; both by rank. All of it follows from stored scores: `build` renders nothing and gives
+the same for the same rows.
 """
 
 from __future__ import annotations
@@ -12,7 +14,7 @@ from typing import Any
 from benchmark.contract import Cell
 from benchmark.datasets.realism import standing
 from benchmark.leaderboard.ranking import order, ranks, spreads
-from benchmark.leaderboard.scope import UNITS
+from benchmark.leaderboard.scope import UNITS, Studied, studies_of_pipelines
 from benchmark.metrics.rings import EDGES_DEG, field_error, widest_field
 from benchmark.metrics.score import METRIC_VERSION, is_available
 from benchmark.results.components import SCHEMA_VERSION
@@ -28,7 +30,10 @@ UNTIMED: Mapping[str, float | None] = {"latency_us": None, "time_ratio": None}
 
 
 def build(
-    rows: Iterable[Row], times: Times | None = None, swept: Iterable[Row] = ()
+    rows: Iterable[Row],
+    times: Times | None = None,
+    swept: Iterable[Row] = (),
+    studied: Studied | None = None,
 ) -> dict[str, Any]:
     """Rank stored rows within each dataset and condition.
 
@@ -40,6 +45,8 @@ def build(
         Of this machine; none by default.
     swept
         Rows of sweeps as `Store.swept` gives them.
+    studied
+        Mapped studies by the pipelines they used (`scope.studies_of_pipelines`); none by default.
 
     Returns
     -------
@@ -49,8 +56,10 @@ def build(
         ``mask``, ``idealisation`` (why it stands for no built sensor, null where it does),
         ``conditions`` (the nominal one first) and ``rows``. A row is the score row of
         the standard unit with ``rank`` (null where there is no error), ``tied`` (whether others
-        share it), the errors of all units ``unit_rms_deg`` and their range ``low_deg`` to
-        ``high_deg`` (null where one unit is scored), and times.
+        share it), ``best_of_extractor`` (whether no other pipeline of its extractor ranks before
+        it there), ``studies`` (keys of those that used it on such a sensor), the errors of all
+        units ``unit_rms_deg`` and their range ``low_deg`` to ``high_deg`` (null where one unit is
+        scored), and times.
     """
     every = list(rows)
     spread = spreads(every)
@@ -62,21 +71,24 @@ def build(
         for condition, group in groupby(of_dataset, key=lambda row: row["condition"]):
             conditions.append(condition)
             board = list(group)
+            ranked: list[dict[str, Any]] = []
             found = [spread.get(_cell(row)) for row in board]
             for row, known, (rank, tied) in zip(board, found, ranks(board, found), strict=True):
                 errors = list(known.errors_deg) if known else None
                 complete = known is not None and None not in known.errors_deg
-                listed.append(
+                ranked.append(
                     {
                         "rank": rank,
                         "tied": tied,
                         **row,
+                        "studies": list((studied or {}).get(_used(row), ())),
                         "unit_rms_deg": errors,
                         "low_deg": known.low_deg if known and complete else None,
                         "high_deg": known.high_deg if known and complete else None,
                         **_times(row, times),
                     }
                 )
+            listed += best_of_extractors_first(ranked)
         datasets.append(
             {
                 "name": name,
@@ -98,14 +110,38 @@ def build(
 
 
 def board_of(store: Store, times: Times | None = None) -> dict[str, Any]:
-    """Build the leaderboard of a store.
+    """Build the leaderboard of a store, with the studies that used its pipelines.
 
     Raises
     ------
     StoreError, ComponentsError
         For a file that cannot be read.
     """
-    return build(store.rows(unit=None), times, store.swept())
+    return build(store.rows(unit=None), times, store.swept(), studies_of_pipelines())
+
+
+def best_of_extractors_first(ranked: Iterable[Row]) -> list[dict[str, Any]]:
+    """Order the rows of one data set and condition as a board lists them.
+
+    Parameters
+    ----------
+    ranked
+        Rows with ``rank``, best first.
+
+    Returns
+    -------
+    list of dict
+        The rows with ``best_of_extractor``: first those that rank before all others of their
+        extractor, then the others, each part as it was.
+    """
+    seen: set[str] = set()
+    first: list[dict[str, Any]] = []
+    behind: list[dict[str, Any]] = []
+    for row in ranked:
+        best = row["rank"] is not None and row["extractor"] not in seen
+        seen.add(row["extractor"])
+        (first if best else behind).append({**row, "best_of_extractor": best})
+    return [*first, *behind]
 
 
 def at_field(rows: Iterable[Row], half_angle_deg: int) -> list[dict[str, Any]]:
@@ -133,10 +169,7 @@ def at_field(rows: Iterable[Row], half_angle_deg: int) -> list[dict[str, Any]]:
         for row in rows
     ]
     judged.sort(key=lambda row: (*_board(row), *_by_field(row)))
-    for _, group in groupby(judged, key=_board):
-        for place, row in enumerate(group, start=1):
-            row["rank"] = place if row["field_rms_deg"] is not None else None
-    return judged
+    return _ranked(judged, "field_rms_deg")
 
 
 def within_error(rows: Iterable[Row], largest_deg: float) -> list[dict[str, Any]]:
@@ -157,10 +190,18 @@ def within_error(rows: Iterable[Row], largest_deg: float) -> list[dict[str, Any]
         for row in rows
     ]
     judged.sort(key=lambda row: (*_board(row), -(row["widest_field_deg"] or 0), *_by_error(row)))
+    return _ranked(judged, "widest_field_deg")
+
+
+def _ranked(judged: Iterable[Row], by: str) -> list[dict[str, Any]]:
+    """Rank sorted rows within each board, none without a value of `by`."""
+    listed: list[dict[str, Any]] = []
     for _, group in groupby(judged, key=_board):
-        for place, row in enumerate(group, start=1):
-            row["rank"] = place if row["widest_field_deg"] is not None else None
-    return judged
+        listed += best_of_extractors_first(
+            {**row, "rank": place if row[by] is not None else None}
+            for place, row in enumerate(group, start=1)
+        )
+    return listed
 
 
 def _field(row: Row) -> float:
@@ -193,6 +234,10 @@ def _board(row: Row) -> tuple[str, bool, str]:
 
 def _cell(row: Row) -> Cell:
     return Cell(row["dataset"], row["condition"], row["extractor"], row["model"])
+
+
+def _used(row: Row) -> tuple[str, str, str, str]:
+    return row["detector"], row["mask"], row["extractor"], row["model"]
 
 
 def _times(row: Row, times: Times | None) -> Mapping[str, float | None]:

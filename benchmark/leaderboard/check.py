@@ -9,21 +9,24 @@ machine's numerical kernels and with those of an older processor.
 from __future__ import annotations
 
 import math
-import tempfile
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from benchmark.contract import Cell
+from benchmark.curves import run as curves
+from benchmark.curves.record import NAME as CURVES
 from benchmark.leaderboard import scope
 from benchmark.leaderboard.board import board_of
+from benchmark.leaderboard.consistency import contradictions
 from benchmark.leaderboard.pages import PAGE, page
 from benchmark.leaderboard.update import update
 from benchmark.metrics.rings import RINGS
 from benchmark.metrics.score import METRICS, RING_DIGITS, SIGNIFICANT_DIGITS
 from benchmark.plan.parts import Parts, installed
 from benchmark.progress import ProgressCallback
+from benchmark.results import recorded
 from benchmark.results.components import current
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.results.tables import Row
@@ -31,6 +34,8 @@ from benchmark.running import pinning
 from benchmark.running.kernels import update_with_older_kernels
 from benchmark.running.run import RunInterruptedError
 from benchmark.sweeps import run as sweeps
+from survey_data import recorded_facts
+from survey_data.leftovers import temporary_directory
 
 #: On the pinned environment scores are identical. Elsewhere another order of a sum changes last
 #: bits, which a fit may amplify a million times before it is refused.
@@ -91,8 +96,8 @@ def check(
     workers, progress
         As `benchmark.running.run.run`.
     stored_only
-        Leave out generating and measuring: only whether the record is of the code as it is, and
-        the page of the record.
+        Leave out generating and measuring: only whether the files agree with each other, with the
+        versions and sizes of the data sets and with the code as it is, and the page with them.
     kernels
         To measure with: ``native``, ``older`` or both.
     parts
@@ -109,7 +114,12 @@ def check(
     """
     store = Store(directory)
     known = parts or installed()
-    found = [*_outdated(store, known), *_derived(store)]
+    found = [
+        *_by_hand(store),
+        *(Difference(*told) for told in contradictions(store, known)),
+        *_outdated(store, known),
+        *_derived(store),
+    ]
     if stored_only:
         return found
     moved = list(_moved_heads(store, known))
@@ -117,9 +127,9 @@ def check(
         return [*moved, *found]
     try:
         for kind in kernels:
-            with tempfile.TemporaryDirectory() as temporary:
+            with temporary_directory() as temporary:
                 if kind == OLDER:
-                    update_with_older_kernels(Path(temporary), workers)
+                    update_with_older_kernels(temporary, workers)
                 else:
                     update(temporary, workers, progress, parts=parts)
                 found += compare(store, Store(temporary), kind)
@@ -196,6 +206,17 @@ def _counts(store: Store) -> dict[tuple[str, str], int]:
     return {place[:2]: pin.n for place, pin in store.pins().items() if place[2] == "test"}
 
 
+def _by_hand(store: Store) -> Iterator[Difference]:
+    """Name what no command wrote so, in the record and, for the published one, in the facts."""
+    published = store.directory == PUBLISHED
+    problems = recorded.changes(store.directory, required=published)
+    for problem in [*problems, *(recorded_facts.changes() if published else ())]:
+        places = [f"row {problem.row}"] if problem.row is not None else []
+        places += [problem.column] if problem.column is not None else []
+        should = f"as `{recorded.COMMAND}` has it" if not places else "as it was written"
+        yield Difference(problem.file, ", ".join(places) or "file", problem.message, should)
+
+
 def _moved_heads(store: Store, parts: Parts) -> Iterator[Difference]:
     """Find datasets whose first samples are not as pinned, in seconds."""
     components = current(parts, sweeps.series_digests())
@@ -249,6 +270,8 @@ def _outdated(store: Store, parts: Parts) -> Iterator[Difference]:
     for point, state in sweeps.unplanned(store.swept(), parts.extractors):
         told = ("absent", "planned") if state == "absent" else ("present", "not planned")
         yield Difference(store.sweeps_path.name, f"{point}/row", *told)
+    for leader, why in curves.behind(store.directory, parts):
+        yield Difference(CURVES, str(leader), why, "renewed by `python -m benchmark.curves`")
 
 
 def _is_used(name: str, store: Store) -> bool:

@@ -11,6 +11,8 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
+from benchmark.leaderboard import summaries
+from benchmark.leaderboard.architectures import architectures, first_boards
 from benchmark.leaderboard.scope import LEADING, UNITS
 from benchmark.results.tables import spelt, text_of
 from benchmark.sweeps import tables as sweep_tables
@@ -30,6 +32,8 @@ SHOWN = {
     "rank": "#",
     "extractor": "Extractor",
     "model": "Model",
+    "best_of_extractor": "Best of extractor",
+    "studies": "Studies",
     "rms_deg": "RMS (deg)",
     "units": f"{UNITS} units (deg)",
     "median_deg": "Median (deg)",
@@ -44,7 +48,12 @@ SHOWN = {
     "availability": "Answered",
     "false_sun": "False Suns",
 }
-_BEST = ("rank", "rms_deg", "units", "over_bound", "floor_deg", "repeatability_deg", *_SHARES)
+_BEST = (
+    *("best_of_extractor", "studies", "rank", "rms_deg", "units", "over_bound", "floor_deg"),
+    *("repeatability_deg", *_SHARES),
+)
+#: Pipelines that are not the best of their extractor are on the page down to this rank.
+_RANKS = 3
 
 LEGEND = (
     "Error is the angle between the predicted and the true direction of the Sun, over the test "
@@ -58,18 +67,16 @@ LEGEND = (
     "the standard deviation of answers to a pose held still. Pipelines that answer less than 95 % "
     f"rank behind all others. The first {LEADING} of a data set's nominal condition are scored on "
     f"{UNITS} units built alike: where their errors overlap those of the first of them they share "
-    "its rank, marked =."
+    "its rank, marked =. The best pipeline of each extractor stands first, the others "
+    "behind. Studies is the number of mapped studies that used a pipeline on such a sensor, or for "
+    "which it stands in where they do not state theirs."
 )
 
 
 def shown(column: str, row: Row) -> str:
     """Spell a column of a row for people: four significant digits, a dash for none."""
-    if column == "rank":
-        return "-" if row["rank"] is None else f"{row['rank']}{'=' if row['tied'] else ''}"
-    if column == "units":
-        if row["low_deg"] is None:
-            return "-"
-        return f"{_digits(row['low_deg'])} to {_digits(row['high_deg'])}"
+    if column in _SPELT:
+        return _SPELT[column](row)
     value = row[column]
     if value is None:
         return "-"
@@ -78,32 +85,60 @@ def shown(column: str, row: Row) -> str:
     return _digits(value) if isinstance(value, float) else str(value)
 
 
+def _rank(row: Row) -> str:
+    return "-" if row["rank"] is None else f"{row['rank']}{'=' if row['tied'] else ''}"
+
+
+def _units(row: Row) -> str:
+    if row["low_deg"] is None:
+        return "-"
+    return f"{_digits(row['low_deg'])} to {_digits(row['high_deg'])}"
+
+
+_SPELT: Mapping[str, Callable[[Row], str]] = {
+    "rank": _rank,
+    "units": _units,
+    "best_of_extractor": lambda row: "yes" if row["best_of_extractor"] else "-",
+    "studies": lambda row: str(len(row["studies"]) or "-"),
+}
+
+
 def _digits(value: float) -> str:
     return f"{value:#.4g}".rstrip(".")
 
 
 def page(board: Board) -> str:
-    """Write the best pipelines of each data set's first condition as one table in Markdown."""
+    """Write the best of each architecture, and of each extractor on each data set, in Markdown."""
     names = [SHOWN[column] for column in _BEST]
+    best = architectures(board)
     about = (
-        "The first three of each data set's first condition, and who shares their rank. All "
-        "pipelines and conditions: `sunatlas leaderboard render --out DIRECTORY`, or the page and "
-        "the API of `sunatlas serve`."
+        "Of each data set's first condition the best pipeline of each extractor; behind them the "
+        f"others of the first {_RANKS} ranks. All pipelines and conditions: `sunatlas leaderboard "
+        "render --out DIRECTORY`, or the page and the API of `sunatlas serve`."
     )
     lines = [
         "# Leaderboard",
         "",
         LEGEND,
         "",
+        "## By architecture",
+        "",
+        summaries.ARCHITECTURES,
+        "",
+        summaries.best_per_architecture_table(best),
+        "",
+        summaries.tally(best),
+        "",
+        "## By data set",
+        "",
         about,
         "",
         f"| Data set | Pipeline | {' | '.join(names)} |",
         "| --- | --- |" + " ---: |" * len(names),
     ]
-    for dataset in board["datasets"]:
-        first = dataset["conditions"][0]
-        for row in dataset["rows"]:
-            if row["condition"] == first and row["rank"] is not None and row["rank"] <= 3:
+    for dataset, rows in first_boards(board):
+        for row in rows:
+            if row["rank"] is not None and (row["best_of_extractor"] or row["rank"] <= _RANKS):
                 texts = (shown(column, row) for column in _BEST)
                 pipeline = f"{row['extractor']} + {row['model']}"
                 lines.append(f"| {dataset['name']} | {pipeline} | {' | '.join(texts)} |")
@@ -125,12 +160,15 @@ def _one_row_a_line(value: object) -> str:
 
 
 def to_csv(board: Board) -> str:
-    """Write every row and column as CSV; errors of the units joined by semicolons."""
+    """Write every row and column as CSV; lists joined by semicolons."""
     rows = [row for dataset in board["datasets"] for row in dataset["rows"]]
     leading = ("rank", "tied", "dataset", "condition", "extractor", "model")
     every = dict.fromkeys(column for row in rows for column in row)
     columns = [*leading, *(column for column in every if column not in leading)]
-    return text_of(columns, ({**row, "unit_rms_deg": _joined(row)} for row in rows))
+    joined = (
+        {**row, "unit_rms_deg": _joined(row), "studies": ";".join(row["studies"])} for row in rows
+    )
+    return text_of(columns, joined)
 
 
 def _joined(row: Row) -> str | None:
@@ -198,6 +236,7 @@ def _tables(board: Board) -> Iterator[tuple[Mapping[str, Any], list[dict[str, An
                             for name in ("dataset", "condition", "extractor", "model")
                         ),
                         "reason": row["reason"],
+                        "behind": not row["best_of_extractor"],
                         "columns": [(column, shown(column, row)) for column in SHOWN],
                     }
                     for row in rows

@@ -14,16 +14,20 @@ What another condition does to a pipeline far behind under the first one helps n
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
+from functools import cache
 from itertools import groupby
+from types import MappingProxyType
 from typing import Any
 
 from benchmark.contract import Cell
 from benchmark.leaderboard.ranking import order
 from benchmark.plan.combinations import cells, scorable
-from benchmark.plan.parts import Parts
+from benchmark.plan.parts import Parts, installed
 from registry.resolution import resolve_all
 
 Row = Mapping[str, Any]
+#: Keys of studies by detector, mask, extractor and model of a pipeline that they used.
+Studied = Mapping[tuple[str, str, str, str], tuple[str, ...]]
 
 #: Units that leading pipelines are scored on, the standard one among them.
 UNITS = 5
@@ -120,8 +124,22 @@ def studied_pipelines(parts: Parts) -> frozenset[tuple[str, str, str, str]]:
     Pipelines in which something stands in for what the study states count as well: they are what
     is shown for it.
     """
-    return frozenset(
-        (pipeline.detector, pipeline.mask, pipeline.extractor, pipeline.model)
-        for resolution in resolve_all(scorable(parts=parts)).values()
-        for pipeline in resolution.pipelines
-    )
+    return frozenset(_studies_of(parts))
+
+
+@cache
+def studies_of_pipelines() -> Studied:
+    """Return which mapped studies used each installed pipeline on its architecture, by their keys.
+
+    As `studied_pipelines` of what is installed; the keys are sorted.
+    """
+    return MappingProxyType(_studies_of(installed()))
+
+
+def _studies_of(parts: Parts) -> dict[tuple[str, str, str, str], tuple[str, ...]]:
+    found: dict[tuple[str, str, str, str], set[str]] = {}
+    for key, resolution in resolve_all(scorable(parts=parts)).items():
+        for pipeline in resolution.pipelines:
+            used = (pipeline.detector, pipeline.mask, pipeline.extractor, pipeline.model)
+            found.setdefault(used, set()).add(key)
+    return {used: tuple(sorted(keys)) for used, keys in found.items()}

@@ -14,6 +14,7 @@ from benchmark.leaderboard.board import board_of
 from benchmark.leaderboard.pages import PAGE, page
 from benchmark.plan.parts import Parts, installed
 from benchmark.progress import ProgressCallback
+from benchmark.results import recorded
 from benchmark.results.components import Components, current
 from benchmark.results.record import opened
 from benchmark.results.store import PUBLISHED, Store
@@ -22,7 +23,6 @@ from benchmark.running import pinning
 from benchmark.running.planned import FollowUp
 from benchmark.running.run import Summary, failures, measure_missing
 from benchmark.sweeps import run as sweeps
-from survey_data.whole_files import replace_file
 
 
 def update(
@@ -133,4 +133,4 @@ def _require_heads(store: Store, parts: Parts, components: Components) -> None:
 
 def write_page(store: Store) -> bool:
     """Write the page of the best pipelines beside the record; True when it changed."""
-    return replace_file(store.directory / PAGE, page(board_of(store)))
+    return recorded.write(store.directory, {PAGE: page(board_of(store))})

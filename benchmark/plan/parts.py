@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
 
 from algorithms.chain import Scored
 from algorithms.contract import Extractor
-from benchmark.contract import Preset, UnknownNameError
+from benchmark.contract import Cell, Preset, UnknownNameError
 
 
 @dataclass(frozen=True)
@@ -36,6 +36,15 @@ class Parts:
         if name not in self.models:
             raise UnknownNameError("model", name, self.models)
         return self.models[name]
+
+    def only(self, cells: Iterable[Cell]) -> Parts:
+        """Return the parts that these cells are made of; UnknownNameError for one that is none."""
+        wanted = list(cells)
+        return Parts(
+            {name: self.preset(name) for name in {cell.dataset for cell in wanted}},
+            {name: self.extractor(name) for name in {cell.extractor for cell in wanted}},
+            {name: self.model(name) for name in {cell.model for cell in wanted}},
+        )
 
 
 @cache

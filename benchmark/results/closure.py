@@ -10,6 +10,7 @@ from __future__ import annotations
 import ast
 import hashlib
 import importlib.util
+import os
 from collections.abc import Iterator
 from functools import lru_cache
 from pathlib import Path
@@ -75,20 +76,25 @@ def module_path(name: str) -> Path | None:
     """Source file of a module, found without importing it; None where there is none."""
     top, *rest = name.split(".")
     for root in _package_directories(top):
-        base = root.joinpath(*rest)
-        for candidate in (base / "__init__.py", base.with_suffix(".py")):
-            if candidate.is_file():
-                return candidate
+        base = "/".join([root, *rest])
+        for candidate in (f"{base}/__init__.py", f"{base}.py"):
+            if os.path.isfile(candidate):  # noqa: PTH113 - asked for 20 000 times a record
+                return _path(candidate)
     return None
 
 
-def _package_directories(top: str) -> list[Path]:
+def _package_directories(top: str) -> list[str]:
     spec = importlib.util.find_spec(top)
     if spec is None:
         return []
     if spec.submodule_search_locations is not None:
-        return [Path(location) for location in spec.submodule_search_locations]
-    return [Path(spec.origin).with_suffix("")] if spec.origin else []
+        return list(spec.submodule_search_locations)
+    return [spec.origin.removesuffix(".py")] if spec.origin else []
+
+
+@lru_cache(maxsize=1024)
+def _path(name: str) -> Path:
+    return Path(name)
 
 
 @lru_cache(maxsize=1024)

@@ -17,11 +17,16 @@ from benchmark.contract import Cell, Preset
 from benchmark.metrics.score import METRIC_VERSION
 from benchmark.plan.parts import Parts
 from benchmark.results.digests import dataset_digest, harness_digest, method_digest
+from survey_data.file_bytes import FileRefusedError
+from survey_data.json_reading import members, read_json, require_kind
 
 #: Layout of the stored files; raised when a field changes its meaning.
 SCHEMA_VERSION = 2
 #: Numbers of older metrics than this cannot be told apart from today's columns.
 OLDEST_METRIC = 2
+
+#: What a cell's key is made of, in order.
+KEYED = ("harness", "dataset", "extractor", "model")
 
 Facts = Mapping[str, Any]
 _KINDS = ("datasets", "extractors", "models", "series")
@@ -72,6 +77,13 @@ class Components:
                 self.digest("models", cell.model),
             )
         )
+
+    def changed(self, key: str, cell: Cell) -> tuple[str, ...]:
+        """Return which of `KEYED` are not as in a key that the cell had (`cell_key`)."""
+        before, now = (one.split("-") for one in (key, self.cell_key(cell)))
+        if len(before) != len(KEYED):  # of no layout that is known
+            return KEYED
+        return tuple(name for name, one, two in zip(KEYED, before, now, strict=True) if one != two)
 
     def point_key(self, series: str, extractor: str) -> str:
         """Return the same of a point of a sweep; what no series fits has the series `""`."""
@@ -142,31 +154,34 @@ class Components:
         ComponentsError
             For another layout, or a metric older than `OLDEST_METRIC` or newer than this one.
         """
-        if not path.is_file():
-            return cls()
         try:
-            held = json.loads(path.read_bytes())
-        except ValueError as error:
-            raise ComponentsError(f"{path}: not JSON ({error})") from error
+            held = read_json(path)
+        except FileNotFoundError:
+            return cls()
+        except FileRefusedError as error:
+            raise ComponentsError(str(error)) from error
         metric = held.get("metric") if isinstance(held, dict) else None
         if (
             not isinstance(held, dict)
             or held.get("schema") != SCHEMA_VERSION
             or not isinstance(metric, int)
+            or isinstance(metric, bool)
             or not OLDEST_METRIC <= metric <= METRIC_VERSION
         ):
             raise ComponentsError(
                 f"{path}: expected schema {SCHEMA_VERSION} and metric {METRIC_VERSION}; delete "
                 "the directory and run `sunatlas leaderboard update`"
             )
-        kinds: dict[str, Any] = {kind: held.get(kind) for kind in _KINDS}
-        for kind, facts in kinds.items():
-            if not isinstance(facts, dict) or not all(
-                isinstance(one, dict) and isinstance(one.get("digest"), str)
-                for one in facts.values()
-            ):
-                raise ComponentsError(f"{path}: expected an object of components in {kind!r}")
-        return cls(harness=str(held.get("harness", "")), **kinds, metric=metric)
+        try:
+            layout = {"schema": int, "metric": int, "harness": str, **dict.fromkeys(_KINDS, dict)}
+            members(held, path, layout)
+            kinds: dict[str, Any] = {kind: held[kind] for kind in _KINDS}
+            for kind, facts in kinds.items():
+                for name, one in facts.items():
+                    _require_facts(path, kind, name, one)
+        except FileRefusedError as error:
+            raise ComponentsError(str(error)) from error
+        return cls(harness=held["harness"], **kinds, metric=metric)
 
 
 def current(parts: Parts, series: Mapping[str, str] | None = None) -> Components:
@@ -186,6 +201,33 @@ def current(parts: Parts, series: Mapping[str, str] | None = None) -> Components
         models={name: _of_method(method) for name, method in parts.models.items()},
         series={name: {"digest": digest} for name, digest in (series or {}).items()},
     )
+
+
+#: What the file says of a component of each kind.
+_MEMBERS: Mapping[str, Mapping[str, type | tuple[type, ...]]] = {
+    "datasets": {
+        "version": int,
+        "detector": str,
+        "mask": str,
+        "half_fov_deg": (int, float, type(None)),
+        "digest": str,
+    },
+    "extractors": {"version": int, "taxonomy": str, "digest": str},
+    "models": {"version": int, "taxonomy": str, "digest": str},
+    "series": {"digest": str},
+}
+
+
+def _require_facts(path: Path, kind: str, name: str, facts: Any) -> None:
+    """Raise FileRefusedError, naming the component, for facts that are not of its kind."""
+    require_kind(facts, dict, path, f"{kind}/{name}")
+    expected = _MEMBERS[kind]
+    for member, types in expected.items():
+        if member not in facts:
+            raise FileRefusedError(path, f"{kind}/{name}: the member {member!r} is missing")
+        require_kind(facts[member], types, path, f"{kind}/{name}/{member}")
+    if unknown := sorted(facts.keys() - expected.keys()):
+        raise FileRefusedError(path, f"{kind}/{name}: unknown member {unknown[0]!r}")
 
 
 def _of_dataset(preset: Preset) -> Facts:

@@ -56,7 +56,18 @@ def method_digest(method: type[Extractor] | Scored) -> str:
 
 def harness_digest() -> str:
     """Digest of the code between data and numbers: how methods are run, what is computed."""
-    return _component([_syntax(name) for name in _HARNESS])
+    return modules_digest(*_HARNESS)
+
+
+def modules_digest(*names: str) -> str:
+    """Digest of the code of these modules themselves, not of what they import.
+
+    Raises
+    ------
+    FileNotFoundError
+        When one of them has no source file.
+    """
+    return _component([_syntax(name) for name in names])
 
 
 def _syntax(module: str) -> str:

@@ -6,18 +6,19 @@ from collections.abc import Iterable
 from dataclasses import asdict
 from pathlib import Path
 
+from benchmark.contract import SPLITS
 from benchmark.datasets.pins import Pin, Place
-from benchmark.results.tables import StoreError, number, read, text_of, whole, word
+from benchmark.results.tables import StoreError, above_zero, count, read, text_of, word
 
 _COLUMNS = {
     "dataset": word,
     "condition": word,
     "split": word,
-    "version": whole,
-    "n": whole,
-    "observable": whole,
-    "bound_deg": number,
-    "head_bound_deg": number,
+    "version": count,
+    "n": count,
+    "observable": count,
+    "bound_deg": above_zero,
+    "head_bound_deg": above_zero,
     "data_hash": word,
     "head_hash": word,
 }
@@ -37,7 +38,27 @@ def read_pins(path: Path) -> dict[Place, Pin]:
         if missing:
             raise StoreError(f"{path}, line {line}: expected a number in {', '.join(missing)}")
         pin = Pin(**row)
+        if said := _contradiction(pin):
+            raise StoreError(f"{path}, line {line}: {said}")
         if pin.place in found:
             raise StoreError(f"{path}, line {line}: {'/'.join(pin.place)} is there twice")
         found[pin.place] = pin
     return found
+
+
+def _contradiction(pin: Pin) -> str:
+    """Say in what a pin contradicts itself; empty for nothing."""
+    if pin.split not in SPLITS:
+        return f"expected a split of {', '.join(SPLITS)}, got {pin.split!r}"
+    if pin.split != "test":
+        told = [
+            name
+            for name in ("observable", "bound_deg", "head_bound_deg")
+            if getattr(pin, name) is not None
+        ]
+        return f"{told[0]} belongs to the split test alone" if told else ""
+    if pin.observable is None or pin.observable > pin.n:
+        return f"expected at most {pin.n} observable samples, got {pin.observable}"
+    if pin.bound_deg is not None and pin.observable == 0:
+        return "a bound and no observable samples contradict each other"
+    return ""

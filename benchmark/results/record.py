@@ -10,25 +10,33 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from filelock import FileLock, Timeout
-
 from benchmark.contract import Cell
 from benchmark.datasets.pins import Pin, Place
+from benchmark.results import recorded
 from benchmark.results.components import Components
 from benchmark.results.store import Store
 from benchmark.results.tables import Row, StoreError
-from survey_data.whole_files import replace_file
+from survey_data.leftovers import remove_leftovers
+from survey_data.locks import HeldError, held_alone
+from survey_data.whole_files import naming
 
 Point = tuple[str, str, str, str]  # (series, sweep, point, extractor)
 
 
-class StoreLockedError(RuntimeError):
+class StoreLockedError(HeldError):
     """Another runner is writing to the store."""
+
+    def __init__(self, holder: str, store: Path) -> None:
+        super().__init__(
+            holder,
+            store,
+            f"another runner ({holder}) is writing to {store}; wait for it or use another store",
+        )
 
 
 def _everything(_what: object) -> bool:
@@ -65,6 +73,22 @@ class Record:
             and self.scores[cell]["status"] != "failed"
         )
 
+    def outdated(self, cell: Cell, components: Components) -> tuple[str, ...]:
+        """Say why a cell's score is not of these components; empty where it is.
+
+        Returns
+        -------
+        tuple of str
+            ``("new",)`` without a score, ``("failed",)`` for one that failed, else those of
+            ``harness``, ``dataset``, ``extractor`` and ``model`` that have changed since.
+        """
+        if cell not in self._score_keys:
+            return ("new",)
+        changed = components.changed(self._score_keys[cell], cell)
+        if not changed and self.scores[cell]["status"] == "failed":
+            return ("failed",)
+        return changed
+
     def is_pinned(self, place: Place, components: Components) -> bool:
         """Say whether a split's pin is of these components."""
         return self._pin_keys.get(place) == components.digest("datasets", place[0])
@@ -100,7 +124,7 @@ class Record:
             return
         text = "".join(json.dumps(record, allow_nan=False) + "\n" for record in records)
         self.journal.parent.mkdir(parents=True, exist_ok=True)
-        with self.journal.open("ab") as file:
+        with naming(self.journal), self.journal.open("ab") as file:
             file.write(text.encode())
             file.flush()
             os.fsync(file.fileno())
@@ -205,6 +229,8 @@ def point_of(row: Mapping[str, Any]) -> Point:
 def opened(store: Store) -> Iterator[Record]:
     """Hold a store for writing; released by the system when the process ends, however it ends.
 
+    What killed runners left half written is removed.
+
     Raises
     ------
     StoreLockedError
@@ -214,18 +240,14 @@ def opened(store: Store) -> Iterator[Record]:
     """
     directory = store.work_directory
     directory.mkdir(parents=True, exist_ok=True)
-    # beside the lock: Windows lets nobody read a file that is locked
-    holder = directory / "holder"
-    try:
-        held = FileLock(directory / "lock").acquire(timeout=0)
-    except Timeout as error:
-        process = holder.read_text() if holder.is_file() else "unknown"
-        raise StoreLockedError(
-            f"another runner (process {process}) is writing to {store.directory}; wait for it or "
-            "use another store"
-        ) from error
-    with held:
-        replace_file(holder, str(os.getpid()))
+    with ExitStack() as stack:
+        try:
+            stack.enter_context(held_alone(directory / "store"))
+        except HeldError as error:
+            raise StoreLockedError(error.holder, store.directory) from error
+        for place in (store.directory, store.scores_directory, directory):
+            remove_leftovers(place)
+        recorded.require_unchanged(store.directory)
         record = Record(store)
         if record.journal.is_file():
             os.truncate(record.journal, len(_whole_lines(record.journal)))

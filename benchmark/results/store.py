@@ -6,6 +6,7 @@ A store is a directory:
 - ``sweeps.csv``: one row an extractor and point of a sweep (`benchmark.sweeps`).
 - ``pins.csv``: hash and bound of each generated split (`benchmark.results.pins`).
 - ``components.json``: facts and digests of what the numbers are of.
+- ``manifest.json``: digests of all these, by which a change by hand shows (`survey_data.manifest`).
 
 All depend on code and data only, never on time or machine. A running runner keeps its progress in
 ``.sunatlas/journal.jsonl`` (`benchmark.results.record`).
@@ -22,11 +23,24 @@ from typing import TYPE_CHECKING
 from benchmark.contract import Cell
 from benchmark.datasets.pins import Pin, Place
 from benchmark.metrics.score import METRICS
+from benchmark.results import recorded
 from benchmark.results.components import Components, ComponentsError, Facts
 from benchmark.results.pins import pins_text, read_pins
-from benchmark.results.tables import Reader, Row, StoreError, number, read, text_of, whole, word
+from benchmark.results.tables import (
+    Reader,
+    Row,
+    StoreError,
+    count,
+    number,
+    one_of,
+    read,
+    share,
+    size,
+    text_of,
+    word,
+)
+from survey_data.file_bytes import is_there
 from survey_data.nearest import nearest
-from survey_data.whole_files import replace_file
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -38,21 +52,17 @@ PUBLISHED = Path(__file__).parents[1] / "published"
 STATUSES = ("ok", "refused", "failed")
 
 
-def _status(text: str) -> str:
-    if text not in STATUSES:
-        raise ValueError(f"expected one of {', '.join(STATUSES)}, got {text!r}")
-    return text
-
-
 #: What a score says, beside which cell it is of.
 NUMBERS = ("status", *METRICS, "reason")
 _SCORE_COLUMNS: Mapping[str, Reader] = {
     "condition": word,
     "extractor": word,
     "model": word,
-    "unit": whole,
-    "status": _status,
-    **dict.fromkeys(METRICS, number),
+    "unit": count,
+    "status": one_of(*STATUSES),
+    **dict.fromkeys(METRICS, size),
+    **dict.fromkeys(("availability", "false_sun"), share),
+    **dict.fromkeys(("bias_alpha_deg", "bias_beta_deg"), number),
     "reason": str,
 }
 #: Columns of scores that came with metric 3.
@@ -67,11 +77,13 @@ _SWEEP_COLUMNS: Mapping[str, Reader] = {
     "sweep": str,
     "point": str,
     "extractor": word,
-    "status": _status,
+    "status": one_of(*STATUSES),
     "value": number,
-    "n": whole,
+    "n": count,
     "unit": str,
-    **dict.fromkeys(SWEPT, number),
+    **dict.fromkeys(SWEPT, size),
+    **dict.fromkeys(("found_fraction", "kept_fraction", "wrong_fraction"), share),
+    "bias": number,
     "reason": str,
 }
 
@@ -129,6 +141,9 @@ class Store:
         StoreError
             For a line that is no row of scores, or one that is there twice.
         """
+        folder = self.scores_directory
+        if is_there(folder) and not folder.is_dir():
+            raise StoreError(f"{folder}: expected a directory of tables")
         found: dict[Cell, Row] = {}
         for path in sorted(self.scores_directory.glob("*.csv")):
             for line, row in read(path, _SCORE_COLUMNS, _LATER):
@@ -164,7 +179,12 @@ class Store:
         """Return rows of sweeps in the order of the file; StoreError for a line that is none."""
         components = self.components()
         rows = []
+        seen: set[tuple[str, ...]] = set()
         for line, row in read(self.sweeps_path, _SWEEP_COLUMNS):
+            point = (row["series"], row["sweep"], row["point"], row["extractor"])
+            if point in seen:
+                raise StoreError(f"{self.sweeps_path}, line {line}: {point} is there twice")
+            seen.add(point)
             known = components.extractors.get(row["extractor"])
             if known is None:
                 raise StoreError(
@@ -245,14 +265,16 @@ class Store:
                 for cell in group
             ]
             tables[dataset] = text_of(list(_SCORE_COLUMNS), rows)
-        for name, text in tables.items():
-            replace_file(self.scores_directory / f"{name}.csv", text)
+        folder = self.scores_directory.name
+        contents: dict[str, str | None] = {
+            f"{folder}/{name}.csv": text for name, text in tables.items()
+        }
         for path in self.scores_directory.glob("*.csv"):
-            if path.stem not in tables:
-                path.unlink()
-        replace_file(self.pins_path, pins_text(pins))
-        replace_file(self.sweeps_path, text_of(list(_SWEEP_COLUMNS), swept))
-        replace_file(self.components_path, components.text())
+            contents.setdefault(f"{folder}/{path.name}", None)
+        contents[self.pins_path.name] = pins_text(pins)
+        contents[self.sweeps_path.name] = text_of(list(_SWEEP_COLUMNS), swept)
+        contents[self.components_path.name] = components.text()
+        recorded.write(self.directory, contents, start=True)
 
 
 def described(

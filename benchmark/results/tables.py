@@ -6,12 +6,15 @@ import csv
 import io
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from survey_data.csv_writing import csv_text
+from survey_data.file_bytes import FileRefusedError, read_text
+from survey_data.numerals import decimal, integer
 
 Row = dict[str, Any]
 Reader = Callable[[str], Any]
+_Number = TypeVar("_Number", int, float)
 
 
 class StoreError(ValueError):
@@ -19,13 +22,54 @@ class StoreError(ValueError):
 
 
 def number(text: str) -> float | None:
-    """Read a number, None from an empty cell; ValueError for anything else."""
-    return float(text) if text else None
+    """Read a finite number, None from an empty cell; ValueError for anything else."""
+    return decimal(text) if text else None
+
+
+def size(text: str) -> float | None:
+    """Read a number that is not negative, None from an empty cell; ValueError for others."""
+    return _within(number(text), 0.0)
+
+
+def above_zero(text: str) -> float | None:
+    """Read a number above 0, None from an empty cell; ValueError for anything else."""
+    found = number(text)
+    if found is not None and found <= 0.0:
+        raise ValueError(f"expected a number above 0, got {text!r}")
+    return found
+
+
+def share(text: str) -> float | None:
+    """Read a number from 0 to 1, None from an empty cell; ValueError for anything else."""
+    return _within(number(text), 0.0, 1.0)
 
 
 def whole(text: str) -> int | None:
     """Read a whole number, None from an empty cell; ValueError for anything else."""
-    return int(text) if text else None
+    return integer(text) if text else None
+
+
+def count(text: str) -> int | None:
+    """Read a whole number that is not negative, None from an empty cell; ValueError for others."""
+    return _within(whole(text), 0)
+
+
+def one_of(*words: str) -> Reader:
+    """Return a reader of one of these words; ValueError for any other."""
+
+    def known(text: str) -> str:
+        if text not in words:
+            raise ValueError(f"expected one of {', '.join(words)}, got {text!r}")
+        return text
+
+    return known
+
+
+def _within(found: _Number | None, least: float, most: float | None = None) -> _Number | None:
+    if found is not None and (found < least or (most is not None and found > most)):
+        limits = f"from {least:g} to {most:g}" if most is not None else f"of at least {least:g}"
+        raise ValueError(f"expected a number {limits}, got {found:g}")
+    return found
 
 
 def word(text: str) -> str:
@@ -67,14 +111,15 @@ def read(
     Raises
     ------
     StoreError
-        For another header, a line of other cells than columns, or a cell that cannot be read.
+        For what is no file of text, another header, a line of other cells than columns, a cell
+        that cannot be read, or a last line that is cut off.
     """
-    if not path.is_file():
-        return []
     try:
-        text = path.read_bytes().decode()
-    except UnicodeDecodeError as error:
-        raise StoreError(f"{path}: not text ({error})") from error
+        text = read_text(path)
+    except FileNotFoundError:
+        return []
+    except FileRefusedError as error:
+        raise StoreError(str(error)) from error
     lines = csv.reader(io.StringIO(text, newline=""), strict=True)
     found: list[tuple[int, Row]] = []
     try:
@@ -93,6 +138,8 @@ def read(
             found.append((lines.line_num, {**_row(cells, readers, where), **missing}))
     except csv.Error as error:
         raise StoreError(f"{path}, line {lines.line_num}: not CSV ({error})") from error
+    if not text.endswith("\n"):
+        raise StoreError(f"{path}, line {lines.line_num}: the last line is cut off")
     return found
 
 

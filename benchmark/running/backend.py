@@ -2,32 +2,25 @@
 
 from __future__ import annotations
 
-import os
-import platform
-import threading
 import time
-import warnings
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import ExitStack
-from functools import cache
-from importlib import import_module
-from importlib.util import find_spec
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import closing
+from functools import partial
 from types import MappingProxyType
 
-from joblib import Parallel, delayed, parallel_config
-
 from algorithms.extractors.frames.multi_spot.pattern_memory import shared_patterns
+from benchmark.running.cluster import connected
+from benchmark.running.durations import Took
 from benchmark.running.planned import FollowUp
 from benchmark.running.task import Task, TaskResult, measure
+from benchmark.running.workers import as_completed
 
 #: Tasks a worker takes at once when there is too little to give each a whole dataset.
 _BUNDLE = 4
 #: Datasets for every worker from which on each is done by one worker.
 _DATASETS_A_WORKER = 4
 
-
-class DaskMissingError(ImportError):
-    """A Dask scheduler was named and its client is not installed."""
+_Timed = tuple[Task, TaskResult, Took]
 
 
 def outcomes(
@@ -35,6 +28,7 @@ def outcomes(
     workers: int,
     scheduler: str | None = None,
     follow_ups: Mapping[str, FollowUp] = MappingProxyType({}),
+    took: Callable[[Task, Took], None] = lambda _task, _took: None,
 ) -> Iterator[TaskResult]:
     """Measure tasks and give each result as soon as it is there, in any order.
 
@@ -48,37 +42,46 @@ def outcomes(
         Address of a Dask scheduler, e.g. ``tcp://127.0.0.1:8786``; `workers` is not read then.
     follow_ups
         By data set, what is measured besides where one bundle is all of the data set's tasks.
+    took
+        Told of each task how long it took.
 
     Raises
     ------
-    DaskMissingError
-        When `scheduler` is given without the ``distributed`` package.
+    DaskMissingError, ClusterError, OtherCodeError
+        Where `scheduler` is given: as `benchmark.running.cluster`.
+    WorkerLostError
+        When worker processes were killed; of a cluster, one after another over the same tasks.
     """
+    for task, result, seconds in _timed(tasks, workers, scheduler, follow_ups):
+        took(task, seconds)
+        yield result
+
+
+def _timed(
+    tasks: Sequence[Task],
+    workers: int,
+    scheduler: str | None,
+    follow_ups: Mapping[str, FollowUp],
+) -> Iterator[_Timed]:
+    if scheduler is not None:
+        with connected(scheduler) as cluster:
+            yield from cluster.outcomes(
+                [
+                    (bundle, partial(_all_measured, bundle, follow_ups.get(bundle[0].preset.name)))
+                    for bundle in bundles(tasks, cluster.workers())
+                ]
+            )
+        return
     bundled = bundles(tasks, workers)
     following = [follow_ups.get(bundle[0].preset.name) for bundle in bundled]
-    if scheduler is None and (workers == 1 or len(tasks) == 1):
+    if workers == 1 or len(tasks) == 1:
         for bundle, follow_up in zip(bundled, following, strict=True):
             yield from _measured(bundle, follow_up)
         return
-    with ExitStack() as stack:
-        if scheduler is None:
-            stack.enter_context(parallel_config("loky", n_jobs=workers, inner_max_num_threads=1))
-        else:
-            _connect(stack, scheduler)
-        coordinator = (platform.node(), os.getpid())
-        parallel = Parallel(return_as="generator_unordered", batch_size=1, pre_dispatch="2*n_jobs")
-        measured = parallel(
-            delayed(_measure_for)(coordinator, bundle, follow_up)
-            for bundle, follow_up in zip(bundled, following, strict=True)
-        )
-        try:
-            for results in measured:
-                yield from results
-        finally:
-            with warnings.catch_warnings():
-                # joblib's advice on what was in flight: the runner has said what is kept
-                warnings.filterwarnings("ignore", ".*tasks which were still being processed.*")
-                measured.close()
+    pairs = zip(bundled, following, strict=True)
+    with closing(as_completed(_pair_measured, pairs, workers)) as measured:
+        for results in measured:
+            yield from results
 
 
 def bundles(tasks: Sequence[Task], workers: int = 1) -> list[list[Task]]:
@@ -108,42 +111,30 @@ def _place(task: Task) -> tuple[int, str]:
     return task.unit, task.condition
 
 
-def _measured(bundle: Sequence[Task], follow_up: FollowUp | None) -> Iterator[TaskResult]:
+def _measured(bundle: Sequence[Task], follow_up: FollowUp | None) -> Iterator[_Timed]:
     """Measure a bundle, then what follows from it."""
-    first = []
+    first, places = [], set()
+
+    def timed(task: Task) -> _Timed:
+        place = task.preset.name, *_place(task)
+        started = time.process_time()
+        result = measure(task)
+        seconds = time.process_time() - started
+        took = Took(len(task.models), int(place not in places), round(seconds, 3))
+        places.add(place)
+        return task, result, took
+
     with shared_patterns():
         for task in bundle:
-            first.append(measure(task))
-            yield first[-1]
-        yield from map(measure, follow_up.tasks(first) if follow_up else ())
+            outcome = timed(task)
+            first.append(outcome[1])
+            yield outcome
+        yield from map(timed, follow_up.tasks(first) if follow_up else ())
 
 
-def _measure_for(
-    coordinator: tuple[str, int], bundle: Sequence[Task], follow_up: FollowUp | None
-) -> list[TaskResult]:
-    """Measure in a worker process, which ends when the coordinator does, even by a kill."""
-    host, process = coordinator
-    if (host, os.getppid()) == (platform.node(), process):
-        _end_with(process)
+def _pair_measured(pair: tuple[Sequence[Task], FollowUp | None]) -> list[_Timed]:
+    return _all_measured(*pair)
+
+
+def _all_measured(bundle: Sequence[Task], follow_up: FollowUp | None) -> list[_Timed]:
     return list(_measured(bundle, follow_up))
-
-
-@cache
-def _end_with(parent: int) -> None:
-    def watch() -> None:
-        while os.getppid() == parent:
-            time.sleep(0.5)
-        os._exit(1)
-
-    threading.Thread(target=watch, daemon=True, name="end with the coordinator").start()
-
-
-def _connect(stack: ExitStack, scheduler: str) -> None:
-    if find_spec("distributed") is None:
-        raise DaskMissingError(
-            f"measuring on the Dask scheduler {scheduler} needs the package 'distributed'; "
-            "install it beside this one (pip install distributed) or leave the scheduler out"
-        )
-    distributed = import_module("distributed")
-    stack.enter_context(distributed.Client(scheduler))
-    stack.enter_context(parallel_config("dask", n_jobs=-1))

@@ -16,18 +16,21 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import cv2
 import numpy as np
+
+from benchmark.processes import INTERRUPTED, TERMINATED, for_coordinator
 
 #: What limits each library; read by it when it is loaded, so it takes a new process.
 OLDER: Mapping[str, str] = {
     "OPENBLAS_CORETYPE": "Haswell",
     "NPY_DISABLE_CPU_FEATURES": "",  # filled in by `older_environment`
     "NUMBA_CPU_NAME": "haswell",
-    "OPENCV_CPU_DISABLE": "AVX512-COMMON,AVX512-SKX,AVX512-CNL,AVX512-CLX,AVX512-ICL",
+    "OPENCV_CPU_DISABLE": "",  # filled in by `older_environment`, too
 }
 
-#: Exit code of a process that was broken off.
-INTERRUPTED = 130
+#: Numbers that OpenCV may give to features of a processor (CV_HARDWARE_MAX_FEATURE).
+OPENCV_FEATURES = 512
 
 
 class NoOlderKernelsError(RuntimeError):
@@ -50,7 +53,12 @@ def older_environment() -> dict[str, str]:
         raise NoOlderKernelsError(
             f"older kernels are those of x86-64; this machine is {platform.machine()}"
         )
-    return {**os.environ, **OLDER, "NPY_DISABLE_CPU_FEATURES": " ".join(_beyond_avx2())}
+    return {
+        **os.environ,
+        **OLDER,
+        "NPY_DISABLE_CPU_FEATURES": " ".join(_beyond_avx2()),
+        "OPENCV_CPU_DISABLE": ",".join(_beyond_avx2_in_opencv()),
+    }
 
 
 def update_with_older_kernels(directory: Path, workers: int) -> None:
@@ -73,9 +81,10 @@ def update_with_older_kernels(directory: Path, workers: int) -> None:
         When it was broken off.
     """
     call = [sys.executable, "-m", "benchmark.leaderboard", str(directory), str(workers)]
+    environment = {**older_environment(), **for_coordinator()}
     # this program with a directory and a number: nothing of it comes from outside
-    done = subprocess.run(call, env=older_environment(), check=False)  # noqa: S603
-    if done.returncode in (-signal.SIGINT, INTERRUPTED):
+    done = subprocess.run(call, env=environment, check=False)  # noqa: S603
+    if done.returncode in (-signal.SIGINT, INTERRUPTED, TERMINATED):
         raise KeyboardInterrupt
     if done.returncode != 0:
         raise OlderRunError(f"measuring with older kernels ended with code {done.returncode}")
@@ -86,3 +95,18 @@ def _beyond_avx2() -> list[str]:
     config: Any = np.show_config(mode="dicts")
     found: list[str] = config["SIMD Extensions"].get("found", [])
     return [name for name in found if name == "X86_V4" or name.startswith("AVX512")]
+
+
+def _beyond_avx2_in_opencv() -> list[str]:
+    """Names of what OpenCV found here and that came after AVX2; it complains of any other name."""
+    told = os.environ.get("OPENCV_CPU_DISABLE", "")  # switched off already, hence not found
+    return sorted({name for name in told.split(",") if name} | set(_found_by_opencv()))
+
+
+def _found_by_opencv() -> list[str]:
+    names = (
+        cv2.getHardwareFeatureName(number)
+        for number in range(OPENCV_FEATURES)
+        if cv2.checkHardwareSupport(number)
+    )
+    return [name for name in names if name.startswith("AVX512-")]

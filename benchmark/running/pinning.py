@@ -9,11 +9,9 @@ from __future__ import annotations
 
 import time
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from contextlib import nullcontext
+from contextlib import closing, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
-
-from joblib import Parallel, delayed
 
 from benchmark.contract import SPLITS, Preset, UnknownNameError
 from benchmark.datasets.pins import Pin, Place, alike
@@ -26,6 +24,7 @@ from benchmark.results.store import Store
 from benchmark.running.generated import generated_pins, rms_bound
 from benchmark.running.task import reason_of
 from benchmark.running.threads import one_thread
+from benchmark.running.workers import as_completed
 
 Condition = tuple[str, str]  # (dataset, condition)
 
@@ -306,14 +305,12 @@ def generated(
     wanted: list[tuple[Preset, str]], workers: int
 ) -> Iterator[tuple[Preset, str, tuple[Pin, ...], str]]:
     """Generate datasets under conditions: each with its pins, or why there are none."""
-    if workers == 1 or len(wanted) < 2:
-        yield from (_generate(preset, condition) for preset, condition in wanted)
-        return
-    parallel = Parallel(n_jobs=workers, return_as="generator_unordered", batch_size=1)
-    yield from parallel(delayed(_generate)(preset, condition) for preset, condition in wanted)
+    with closing(as_completed(_generate, wanted, workers if len(wanted) > 1 else 1)) as found:
+        yield from found
 
 
-def _generate(preset: Preset, condition: str) -> tuple[Preset, str, tuple[Pin, ...], str]:
+def _generate(wanted: tuple[Preset, str]) -> tuple[Preset, str, tuple[Pin, ...], str]:
+    preset, condition = wanted
     with one_thread():
         try:
             return preset, condition, generated_pins(preset, condition), ""

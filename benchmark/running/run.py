@@ -21,6 +21,7 @@ from benchmark.results.components import Components, current
 from benchmark.results.record import Record, opened
 from benchmark.results.store import Store
 from benchmark.running.backend import outcomes
+from benchmark.running.durations import Durations
 from benchmark.running.planned import FollowUp, cells_of, numbers_of, tasks_of
 from benchmark.running.task import TaskResult
 
@@ -80,8 +81,11 @@ def run(
         For a cell whose names are not installed.
     StoreLockedError
         When another runner writes to the store.
-    DaskMissingError
-        When a scheduler is given and ``distributed`` is not installed.
+    DaskMissingError, ClusterError, OtherCodeError
+        When a scheduler is given and ``distributed`` is not installed, the cluster cannot be
+        measured on, or has other code.
+    WorkerLostError
+        When worker processes were killed; what was measured is kept and not measured again.
     RunInterruptedError
         On Ctrl-C; what was measured is kept and not measured again.
     """
@@ -89,7 +93,7 @@ def run(
         raise ValueError(f"workers must be at least 1; got {workers}")
     started = time.perf_counter()
     parts = parts or installed()
-    wanted = _known(cells, parts)
+    wanted = known_cells(cells, parts)
     components = current(parts)
     with opened(store) as record:
         missing = measure_missing(
@@ -143,8 +147,12 @@ def measure_missing(
             counted = _Count(report, len(missing))
             for stage in filter(None, stages):
                 tasks = tasks_of(stage, parts, record.pins)
-                results = outcomes(tasks, workers, scheduler, follow_ups or {})
-                _keep_all(results, record, components, counted)
+                durations = Durations.read([record.store])
+                results = outcomes(tasks, workers, scheduler, follow_ups or {}, durations.add)
+                try:
+                    _keep_all(results, record, components, counted)
+                finally:
+                    durations.keep(record.store)
             done = counted.done
     return done
 
@@ -167,12 +175,15 @@ def stale(cells: Iterable[Cell], store: Store, *, parts: Parts | None = None) ->
         For a cell whose names are not installed.
     """
     known = parts or installed()
-    wanted = _known(cells, known)
-    record, components = Record(store), current(known)
+    wanted = known_cells(cells, known)
+    if not wanted:
+        return []
+    # digests of what nobody asks about would be most of the time
+    record, components = Record(store), current(known.only(wanted))
     return [cell for cell in wanted if not record.is_scored(cell, components)]
 
 
-def _known(cells: Iterable[Cell], parts: Parts) -> list[Cell]:
+def known_cells(cells: Iterable[Cell], parts: Parts) -> list[Cell]:
     """Cells once each, in order; UnknownNameError for one whose names are not installed."""
     wanted = sorted(set(cells))
     for cell in wanted:

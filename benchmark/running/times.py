@@ -7,8 +7,8 @@ with a digest of what it is of, so that only what has changed is timed again.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator, Sequence
-from contextlib import nullcontext
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import asdict, dataclass, replace
 from functools import partial
 from itertools import groupby
@@ -26,9 +26,10 @@ from benchmark.plan.combinations import cells
 from benchmark.plan.parts import Parts, installed
 from benchmark.progress import ProgressCallback, terminal_progress
 from benchmark.results.components import Components, current
-from benchmark.results.tables import number, read, text_of, word
+from benchmark.results.tables import StoreError, above_zero, read, text_of, word
 from benchmark.running.threads import one_thread
 from benchmark.running.timing import best_of, best_time
+from survey_data.locks import held_in_turn
 from survey_data.whole_files import replace_file
 
 #: Name of the file.
@@ -80,9 +81,9 @@ _COLUMNS = {
     "dataset": word,
     "extractor": word,
     "model": word,
-    "latency_us": number,
-    "time_ratio": number,
-    "extract_ratio": number,
+    "latency_us": above_zero,
+    "time_ratio": above_zero,
+    "extract_ratio": above_zero,
     "digest": word,
 }
 
@@ -95,8 +96,13 @@ def read_times(directory: Path) -> dict[Place, Time]:
     StoreError
         For a line that is no time.
     """
-    times = (Time(**row) for _, row in read(directory / TIMES, _COLUMNS))
-    return {time.pipeline: time for time in times}
+    found: dict[Place, Time] = {}
+    for line, row in read(directory / TIMES, _COLUMNS):
+        time = Time(**row)
+        if time.pipeline in found:
+            raise StoreError(f"{directory / TIMES}, line {line}: {time.pipeline} is there twice")
+        found[time.pipeline] = time
+    return found
 
 
 def times_of_code(
@@ -150,19 +156,42 @@ def update(
     components = current(known)
     first = {name: preset.conditions[0] for name, preset in known.presets.items()}
     planned = [cell for cell in cells(parts=known) if cell.condition == first[cell.dataset]]
-    kept = times_of_code(directory, known, components)
-    missing = [cell for cell in planned if _pipeline(cell) not in kept]
+    there = times_of_code(directory, known, components)
+    missing = [cell for cell in planned if _pipeline(cell) not in there]
     with terminal_progress() if progress is None else nullcontext(progress) as report:
         done = 0
         report(done, len(missing), "")
         for dataset, group in groupby(missing, key=lambda cell: cell.dataset):
-            for time in _timed(known, list(group)):
-                kept[time.pipeline] = replace(time, digest=_digest(time.pipeline, components))
-                done += 1
-            rows = [asdict(kept[pipeline]) for pipeline in sorted(kept)]
-            replace_file(directory / TIMES, text_of(list(_COLUMNS), rows))
+            timed = {
+                time.pipeline: replace(time, digest=_digest(time.pipeline, components))
+                for time in _timed(known, list(group))
+            }
+            done += len(timed)
+            with _held(directory):  # meanwhile another process may have written
+                _write(directory, times_of_code(directory, known, components) | timed)
             report(done, len(missing), dataset)
     return len(missing)
+
+
+def drop_outdated(directory: Path, parts: Parts, components: Components) -> int:
+    """Forget times of other code than there is; returns how many."""
+    with _held(directory):
+        there = read_times(directory)
+        kept = times_of_code(directory, parts, components)
+        if len(kept) < len(there):
+            _write(directory, kept)
+    return len(there) - len(kept)
+
+
+def _held(directory: Path) -> AbstractContextManager[None]:
+    """Hold the table of times."""
+    directory.mkdir(parents=True, exist_ok=True)
+    return held_in_turn(directory / TIMES)
+
+
+def _write(directory: Path, kept: Mapping[Place, Time]) -> None:
+    rows = [asdict(kept[pipeline]) for pipeline in sorted(kept)]
+    replace_file(directory / TIMES, text_of(list(_COLUMNS), rows))
 
 
 def reference(observations: NDArray[Any]) -> object:

@@ -10,13 +10,11 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import nullcontext
+from contextlib import closing, nullcontext
 from dataclasses import astuple, dataclass
 from itertools import groupby
 from pathlib import Path
 from typing import Any
-
-from joblib import Parallel, delayed, parallel_config
 
 from algorithms.contract import Extractor
 from algorithms.discovery import discover_extractors
@@ -28,6 +26,7 @@ from benchmark.results.digests import series_digest
 from benchmark.results.record import Record, opened, point_of
 from benchmark.results.store import PUBLISHED, SWEPT, Store
 from benchmark.results.tables import Row
+from benchmark.running.workers import as_completed
 from benchmark.sweeps.measure import measure, refused_row
 from benchmark.sweeps.plan import SERIES, Planned, Point, planned
 
@@ -214,9 +213,5 @@ def _bundles(missing: Sequence[Point], plan: Planned, extractors: Extractors) ->
 
 
 def _outcomes(bundles: Sequence[Work], workers: int) -> Iterator[list[Row]]:
-    if workers == 1 or len(bundles) < 2:
-        yield from map(measure, bundles)
-        return
-    with parallel_config("loky", n_jobs=workers, inner_max_num_threads=1):
-        parallel = Parallel(return_as="generator_unordered", batch_size=1)
-        yield from parallel(delayed(measure)(bundle) for bundle in bundles)
+    with closing(as_completed(measure, bundles, workers if len(bundles) > 1 else 1)) as found:
+        yield from found

@@ -8,6 +8,7 @@ import sys
 from benchmark.leaderboard.holding import table
 from benchmark.leaderboard.scope import compared
 from benchmark.plan.parts import installed
+from benchmark.processes import call_to_end
 from benchmark.progress import terminal_progress
 from benchmark.results.store import Store
 
@@ -32,4 +33,4 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    call_to_end(main)

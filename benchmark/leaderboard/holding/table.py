@@ -12,7 +12,17 @@ from benchmark.leaderboard.ranking import order
 from benchmark.metrics.score import stored
 from benchmark.plan.parts import Parts
 from benchmark.progress import ProgressCallback, silent
-from benchmark.results.tables import Reader, Row, number, read, text_of, whole, word
+from benchmark.results.tables import (
+    Reader,
+    Row,
+    StoreError,
+    count,
+    read,
+    size,
+    text_of,
+    word,
+)
+from survey_data.locks import held_alone
 from survey_data.whole_files import replace_file
 
 PATH = Path(__file__).with_name("held_back.csv")
@@ -24,17 +34,21 @@ _COLUMNS: Mapping[str, Reader] = {
     "condition": word,
     "extractor": word,
     "model": word,
-    "rms_deg": number,
-    "bound_deg": number,
-    "answered": whole,
-    "judged": whole,
-    **{f"{name}_deg": number for name in VARIANTS},
+    "rms_deg": size,
+    "bound_deg": size,
+    "answered": count,
+    "judged": count,
+    **{f"{name}_deg": size for name in VARIANTS},
 }
 
 
 def rows(path: Path = PATH) -> dict[str, Row]:
     """Return the table by data set; StoreError for a line that is none."""
-    return {row["dataset"]: row for _, row in read(path, _COLUMNS)}
+    found: dict[str, Row] = {}
+    for line, row in read(path, _COLUMNS):
+        if found.setdefault(row["dataset"], row) is not row:
+            raise StoreError(f"{path}, line {line}: {row['dataset']} is there twice")
+    return found
 
 
 def leaders(scores: Iterable[Mapping[str, Any]], conditions: Mapping[str, str]) -> dict[str, Row]:
@@ -79,13 +93,19 @@ def renew(
 
     The table is written after each, so that a call that is broken off is gone on with. Rows of
     data sets that nothing leads any more are dropped.
+
+    Raises
+    ------
+    HeldError
+        When another process renews the table.
     """
-    known = {name: row for name, row in rows(path).items() if name in leading}
-    wanted = [n for n in leading if n in only] if only is not None else behind(known, leading)
-    for done, name in enumerate(wanted):
-        progress(done, len(wanted), name)
-        known[name] = measured(leading[name], parts)
-        replace_file(path, text_of(list(_COLUMNS), [known[n] for n in sorted(known)]))
+    with held_alone(path):
+        known = {name: row for name, row in rows(path).items() if name in leading}
+        wanted = [n for n in leading if n in only] if only is not None else behind(known, leading)
+        for done, name in enumerate(wanted):
+            progress(done, len(wanted), name)
+            known[name] = measured(leading[name], parts)
+            replace_file(path, text_of(list(_COLUMNS), [known[n] for n in sorted(known)]))
     progress(len(wanted), len(wanted), "")
     return wanted
 

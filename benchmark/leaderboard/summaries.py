@@ -1,0 +1,124 @@
+"""What the leaderboard comes to, as Markdown: the best of each architecture, and the parts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from benchmark.leaderboard.architectures import STANDARD_ERRORS
+from benchmark.leaderboard.overview import ROLES, WITHIN, suffix
+
+Row = Mapping[str, Any]
+
+#: What the table of architectures shows, and how sure it is.
+ARCHITECTURES = (
+    "The best pipeline of each architecture - a detector and a mask - under the nominal condition, "
+    "of its data sets the one with the least error. × bound is the RMS error over the Cramer-Rao "
+    "bound, ± the standard error of that ratio. Other units are the least and the largest error "
+    "on sensors built alike other than the one that ranks are by. = marks a pipeline whose "
+    f"runner-up is not told apart: their ratios differ by no more than {STANDARD_ERRORS:g} "
+    "standard errors, or their errors on the units overlap; ahead says on how many of these units "
+    "it beats the runner-up. What errs far less, but answers too seldom to rank first, stands in "
+    "brackets with the share that it answers."
+)
+
+_HEADINGS = {
+    "architecture": "---",
+    "best pipeline": "---",
+    "data set": "---",
+    "RMS, deg": "---:",
+    "× bound": "---:",
+    "other units, deg": "---:",
+    "ahead": "---:",
+    "studies": "---:",
+}
+
+
+def best_per_architecture_table(rows: Iterable[Row]) -> str:
+    """Write the rows of `benchmark.leaderboard.architectures.architectures` as a table."""
+    return _table(_HEADINGS, map(_architecture, rows))
+
+
+def tally(rows: Sequence[Row]) -> str:
+    """Say in a sentence how near the bound the best pipelines come, and how many are ties."""
+    near = (
+        f"{sum((row['over_bound'] or limit + 1) <= limit for row in rows)} within {limit:g}"
+        for limit in WITHIN
+    )
+    ties = sum(row["tie"] for row in rows)
+    return f"Of {len(rows)} architectures {', '.join(near)} times the bound; {ties} ties."
+
+
+def overview_tables(document: Mapping[str, Any]) -> str:
+    """Write `benchmark.leaderboard.overview.overview` as a table a role; what it says stands above.
+
+    Shares come with the number of boards that they are of.
+    """
+    headings = {
+        "boards": "---:",
+        **{f"within {limit:g}": "---:" for limit in WITHIN},
+        "median × bound": "---:",
+        "leads": "---:",
+        f"{WITHIN[-1]:g} in reach": "---:",
+    }
+    parts = [document["says"]]
+    for role in ROLES:
+        rows = [part for part in document["parts"] if part["role"] == role]
+        if rows:
+            parts += [f"### By {role}", _table({role: "---", **headings}, map(_part, rows))]
+    return "\n\n".join(parts)
+
+
+def _architecture(row: Row) -> Sequence[str]:
+    if row["extractor"] is None:
+        return f"{row['detector']}, {row['mask']}", "none has an error", *["-"] * 6
+    ratio, error = row["over_bound"], row["over_bound_se"]
+    several = len(row["datasets"])
+    return (
+        f"{row['detector']}, {row['mask']}",
+        f"{row['extractor']} + {row['model']}{_finer(row)}",
+        row["dataset"] + (f" (of {several})" if several > 1 else ""),
+        f"{digits(row['rms_deg'])}{'=' if row['tie'] else ''}",
+        f"{digits(ratio)}{'' if error is None else f' ± {error:.2g}'}",
+        f"{digits(row['others_low_deg'])} to {digits(row['others_high_deg'])}"
+        if row["others_low_deg"] is not None
+        else "-",
+        f"{row['units_ahead']} of {row['units_compared']}" if row["units_compared"] else "-",
+        str(len(row["studies"]) or "-"),
+    )
+
+
+def _finer(row: Row) -> str:
+    """Name what errs far less than the best on the part of the samples that it answers."""
+    if row["finer_extractor"] is None:
+        return ""
+    return (
+        f" ({row['finer_extractor']} + {row['finer_model']}: {digits(row['finer_rms_deg'])} deg on "
+        f"the {100 * row['finer_availability']:.0f} % it answers)"
+    )
+
+
+def _part(part: Row) -> Sequence[str]:
+    return (
+        f"`{part['part']}`",
+        str(part["boards"]),
+        *(
+            f"{100 * part[f'share_{suffix(limit)}']:.0f} % ({part[f'within_{suffix(limit)}']})"
+            for limit in WITHIN
+        ),
+        digits(part["median_over_bound"]),
+        str(part["leads"]),
+        str(part["reachable_10"]),
+    )
+
+
+def digits(value: float | None) -> str:
+    """Spell a number in three significant digits; a dash for none."""
+    if value is None:
+        return "-"
+    return f"{value:.0f}" if 1000 <= value < 1e6 else f"{value:#.3g}".rstrip(".")
+
+
+def _table(headings: Mapping[str, str], rows: Iterable[Sequence[str]]) -> str:
+    lines: list[Iterable[str]] = [headings.keys(), headings.values(), *rows]
+    return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)

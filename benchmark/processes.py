@@ -1,0 +1,131 @@
+"""Processes that end as they should: with the process they work for, and tidily when told to.
+
+A process that is killed cannot end those that work for it. So each asks the system to be told when
+its coordinator ends (Linux's ``PR_SET_PDEATHSIG``), and elsewhere, or should that be missed, looks
+every half second. A request to terminate is taken as Ctrl-C is, so that what is half made goes.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from functools import cache
+from types import FrameType
+from typing import NoReturn
+
+from survey_data.locks import HeldError
+
+#: In the environment of a process that is to end with the one of this number.
+COORDINATOR = "SUNATLAS_COORDINATOR"
+#: Exit codes after Ctrl-C and after a request to terminate.
+INTERRUPTED, TERMINATED = 128 + signal.SIGINT, 128 + signal.SIGTERM
+_PR_SET_PDEATHSIG = 1
+_EVERY_S = 0.5
+
+
+#: Signals that told this process to end.
+_told: list[int] = []
+
+
+def terminate_as_interrupt() -> None:
+    """Let SIGTERM unwind this process as Ctrl-C does; `exit_code` tells them apart."""
+    signal.signal(signal.SIGTERM, _tell)
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # else it is to be ignored
+        signal.signal(signal.SIGINT, _tell)
+
+
+def was_told() -> bool:
+    """Say whether a signal told this process to end.
+
+    Whatever error ends it then is of that signal: some code makes another of a KeyboardInterrupt,
+    such as an ImportError where an extension module was being loaded.
+    """
+    return bool(_told)
+
+
+def exit_code() -> int:
+    """Return the exit code of a process that was broken off: 143 after SIGTERM, else 130."""
+    return 128 + _told[0] if _told else INTERRUPTED
+
+
+def _tell(number: int, _: FrameType | None) -> None:
+    _told.append(number)
+    raise KeyboardInterrupt
+
+
+def call_to_end(main: Callable[[], int]) -> NoReturn:
+    """Run a program to its end: as every `python -m` of the project does.
+
+    SIGTERM is as Ctrl-C, exit codes are those of `exit_code`; where another process writes
+    already, one line on standard error says so. Ends with the process that it works for.
+    """
+    end_with_coordinator()
+    terminate_as_interrupt()
+    try:
+        status = main()
+    except KeyboardInterrupt:
+        status = exit_code()
+    except HeldError as error:
+        sys.stderr.write(f"{error}\n")
+        status = 1
+    except Exception:
+        if not was_told():
+            raise
+        status = exit_code()
+    sys.exit(status)
+
+
+def for_coordinator() -> dict[str, str]:
+    """Return what to add to the environment of a process that is to end with this one."""
+    return {COORDINATOR: str(os.getpid())}
+
+
+def end_with_coordinator() -> None:
+    """Let this process end, tidily, with the one whose environment says that it works for it."""
+    number = os.environ.pop(COORDINATOR, "")
+    if number.isdecimal():
+        end_with(int(number), signal.SIGTERM)
+
+
+def end_with(coordinator: int, by: int = signal.SIGKILL) -> None:
+    """Let this process end when the process that started it does, or at once where it has.
+
+    Parameters
+    ----------
+    coordinator
+        Number of the process that started this one.
+    by
+        The signal that ends it.
+    """
+    _tell_at_death(by)
+    if os.getppid() != coordinator:  # it ended before this could be asked for
+        os.kill(os.getpid(), by)
+    _watch(coordinator, by)
+
+
+def work_for(coordinator: int) -> None:
+    """Begin as a worker: ends with its coordinator, which alone answers Ctrl-C."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    end_with(coordinator)
+
+
+def _tell_at_death(by: int) -> None:
+    if sys.platform == "linux":
+        with suppress(OSError, AttributeError):
+            ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, int(by), 0, 0, 0)
+
+
+@cache
+def _watch(coordinator: int, by: int) -> None:
+    def watch() -> None:
+        while os.getppid() == coordinator:
+            time.sleep(_EVERY_S)
+        os.kill(os.getpid(), by)
+
+    threading.Thread(target=watch, daemon=True, name="end with the coordinator").start()

@@ -1,0 +1,160 @@
+"""How long tasks took on this machine, so that a plan can say how long it will: never published.
+
+A row a task, in seconds of one processor. The first task of a data set, condition and unit that a
+worker does also makes the data; it is marked.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import asdict, dataclass, field
+from itertools import groupby
+from statistics import fmean, median
+from typing import NamedTuple
+
+from benchmark.contract import Cell
+from benchmark.results.store import Store
+from benchmark.results.tables import number, read, text_of, whole, word
+from benchmark.running.task import Task
+from survey_data.whole_files import replace_file
+
+#: Name of the file, beside a store's journal.
+DURATIONS = "durations.csv"
+
+_COLUMNS = {
+    "dataset": word,
+    "condition": word,
+    "unit": whole,
+    "extractor": word,
+    "models": whole,
+    "made_data": whole,
+    "seconds": number,
+}
+
+
+class Extracted(NamedTuple):
+    """What a task is of."""
+
+    dataset: str
+    condition: str
+    unit: int
+    extractor: str
+
+
+@dataclass(frozen=True)
+class Took:
+    """How long a task took.
+
+    Attributes
+    ----------
+    models
+        How many were scored.
+    made_data
+        1 where the data were made, too; else 0.
+    seconds
+        Of one processor.
+    """
+
+    models: int
+    made_data: int
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """How long measuring takes.
+
+    Attributes
+    ----------
+    seconds
+        Of one processor, for the tasks whose like was measured here.
+    tasks, unknown
+        How many tasks there are, and of how many nothing alike was measured here.
+    """
+
+    seconds: float
+    tasks: int
+    unknown: int
+
+
+@dataclass
+class Durations:
+    """What is known of how long tasks take, by task."""
+
+    known: dict[Extracted, Took] = field(default_factory=dict)
+
+    @classmethod
+    def read(cls, stores: Iterable[Store]) -> Durations:
+        """Return what stores have kept; of a task in several the last; StoreError for no table."""
+        found: dict[Extracted, Took] = {}
+        for store in stores:
+            for _, row in read(store.work_directory / DURATIONS, _COLUMNS):
+                task = Extracted(*(row.pop(name) for name in Extracted._fields))
+                found[task] = Took(**row)
+        return cls(found)
+
+    def add(self, task: Task, took: Took) -> None:
+        """Take in how long a task took."""
+        name = task.extractor.about.name
+        self.known[Extracted(task.preset.name, task.condition, task.unit, name)] = took
+
+    def keep(self, store: Store) -> None:
+        """Write all to a store's working directory."""
+        rows = [{**task._asdict(), **asdict(took)} for task, took in sorted(self.known.items())]
+        replace_file(store.work_directory / DURATIONS, text_of(list(_COLUMNS), rows))
+
+    def estimate(self, cells: Iterable[Cell]) -> Estimate:
+        """Say how long cells take: by the same task, else by its like on the same data set."""
+        tasks: dict[Extracted, int] = {}
+        for cell in cells:
+            task = Extracted(cell.dataset, cell.condition, cell.unit, cell.extractor)
+            tasks[task] = tasks.get(task, 0) + 1
+        seconds, unknown = 0.0, 0
+        for dataset, group in groupby(sorted(tasks), key=lambda task: task.dataset):
+            like = {task: took for task, took in self.known.items() if task.dataset == dataset}
+            if not like:
+                unknown += len(list(group))
+                continue
+            seconds += _of_dataset(list(group), tasks, like)
+        return Estimate(seconds, len(tasks), unknown)
+
+
+def _of_dataset(
+    wanted: list[Extracted], models: Mapping[Extracted, int], like: Mapping[Extracted, Took]
+) -> float:
+    """Return seconds of tasks on one data set, by what is known of it."""
+    alone = [took.seconds for took in like.values() if not took.made_data]
+    with_data = [took.seconds for took in like.values() if took.made_data]
+    usual = median(alone) if alone else 0.0
+    making = max(fmean(with_data) - usual, 0.0) if with_data else 0.0
+    total = making * len({task[:3] for task in wanted})
+    for task in wanted:
+        same = [
+            took
+            for other, took in like.items()
+            if not took.made_data and other.extractor == task.extractor
+        ]
+        exact = like.get(task)
+        if exact is not None and not exact.made_data:
+            same = [exact]
+        total += (
+            fmean(max(models[task] / took.models, 1.0) * took.seconds for took in same)
+            if (same)
+            else usual
+        )
+    return total
+
+
+def drop_unplanned(store: Store, planned: Collection[Cell]) -> int:
+    """Forget how long tasks took that no cell is of any more; returns how many."""
+    kept = Durations.read([store])
+    wanted = {(cell.dataset, cell.condition, cell.extractor) for cell in planned}
+    there = len(kept.known)
+    kept.known = {
+        task: took
+        for task, took in kept.known.items()
+        if (task.dataset, task.condition, task.extractor) in wanted
+    }
+    if len(kept.known) < there:
+        kept.keep(store)
+    return there - len(kept.known)

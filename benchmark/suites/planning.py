@@ -1,0 +1,84 @@
+"""What a run would measure, why, and how long that takes: nothing is measured to tell."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+from benchmark.contract import Cell
+from benchmark.plan.parts import Parts, installed
+from benchmark.results.components import current
+from benchmark.results.record import Record
+from benchmark.results.store import Store
+from benchmark.results.tables import Row
+from benchmark.running.durations import Durations, Estimate
+from benchmark.running.run import known_cells
+from benchmark.suites.selection import Suite
+
+NEW, FAILED = "new", "failed"
+
+
+@dataclass(frozen=True)
+class Planned:
+    """Cells, and what is to be done about them.
+
+    Attributes
+    ----------
+    cells
+        All that were asked for, in order.
+    missing
+        Those that no store holds as code and data now are, in order, each with the reasons:
+        ``new``, ``failed`` (before), or which of ``harness``, ``dataset``, ``extractor`` and
+        ``model`` changed.
+    estimate
+        How long measuring these takes.
+    """
+
+    cells: tuple[Cell, ...]
+    missing: Mapping[Cell, tuple[str, ...]]
+    estimate: Estimate
+
+
+def plan(cells: Iterable[Cell], stores: Sequence[Store], *, parts: Parts | None = None) -> Planned:
+    """Say which cells would be measured, and why.
+
+    Parameters
+    ----------
+    cells
+        What is wanted.
+    stores
+        Where scores are looked up; a reason is by the first that holds the cell.
+    parts
+        Datasets and implementations; what is installed by default.
+
+    Raises
+    ------
+    UnknownNameError
+        For a cell whose names are not installed.
+    StoreError, ComponentsError
+        For a file that cannot be read.
+    """
+    known = parts or installed()
+    wanted = known_cells(cells, known)
+    components = current(known)
+    records = [Record(store) for store in stores]
+    missing = {}
+    for cell in wanted:
+        reasons = [record.outdated(cell, components) for record in records]
+        if all(reasons):
+            missing[cell] = next((r for r in reasons if r != (NEW,)), (NEW,))
+    durations = Durations.read(stores)
+    return Planned(tuple(wanted), missing, durations.estimate(missing))
+
+
+def cells_of(suite: Suite, stores: Sequence[Store], *, parts: Parts | None = None) -> list[Cell]:
+    """Return a suite's cells by the scores that stores hold, of older code or not."""
+    return suite.select(held(stores), parts or installed())
+
+
+def held(stores: Sequence[Store]) -> dict[Cell, Row]:
+    """Return the scores of stores, of the first that holds a cell."""
+    found: dict[Cell, Row] = {}
+    for store in reversed(stores):
+        found |= Record(store).scores
+    return found

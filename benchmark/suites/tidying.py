@@ -1,0 +1,104 @@
+"""Dropping from a working store what no cell of today's code refers to."""
+
+from __future__ import annotations
+
+import shutil
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from benchmark.contract import Cell
+from benchmark.datasets.pins import Place
+from benchmark.plan.combinations import cells
+from benchmark.plan.parts import Parts, installed
+from benchmark.results.components import current
+from benchmark.results.record import opened
+from benchmark.results.store import Store
+from benchmark.running import durations, pinning, times
+from survey_data.leftovers import temporary_directory
+
+
+@dataclass(frozen=True)
+class Tidied:
+    """What was dropped.
+
+    Attributes
+    ----------
+    scores, pins, times
+        How many scores, pinned splits and measurements of time.
+    kept
+        Scores that stay.
+    freed
+        Bytes.
+    """
+
+    scores: int
+    pins: int
+    times: int
+    kept: int
+    freed: int
+
+
+def tidy(store: Store, *, parts: Parts | None = None) -> Tidied:
+    """Drop scores, pins and times of code or data that have changed or are gone.
+
+    Raises
+    ------
+    StoreLockedError
+        While a runner writes to the store.
+    StoreError, ComponentsError
+        For a file that cannot be read.
+    """
+    if not store.directory.is_dir():
+        return Tidied(0, 0, 0, 0, 0)
+    known = parts or installed()
+    components = current(known)
+    before = _size(store)
+    planned, places = frozenset(cells(parts=known)), frozenset(pinning.places(known))
+    with opened(store) as record:
+        there = len(record.scores), len(record.pins)
+
+        def is_current(cell: Cell) -> bool:
+            return replace(cell, unit=0) in planned and record.outdated(cell, components) in (
+                (),
+                ("failed",),
+            )
+
+        def is_pinned(place: Place) -> bool:
+            return place in places and record.is_pinned(place, components)
+
+        record.drop(scores=is_current, pins=is_pinned)
+        record.write(components)
+        dropped = times.drop_outdated(store.directory, known, components)
+        dropped += durations.drop_unplanned(store, planned)
+    return Tidied(
+        scores=there[0] - len(record.scores),
+        pins=there[1] - len(record.pins),
+        times=dropped,
+        kept=len(record.scores),
+        freed=before - _size(store),
+    )
+
+
+def would_tidy(store: Store, *, parts: Parts | None = None) -> Tidied:
+    """Say what `tidy` would drop: it is done to a copy."""
+    if not store.directory.is_dir():
+        return Tidied(0, 0, 0, 0, 0)
+    with temporary_directory() as temporary:
+        copy = Store(temporary)
+        for path in _files(store):
+            place = copy.directory / path.relative_to(store.directory)
+            place.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(path, place)
+        return tidy(copy, parts=parts)
+
+
+def _files(store: Store) -> list[Path]:
+    """List the files of a store: whatever else lies in its directory is nobody's garbage."""
+    top = [store.pins_path, store.sweeps_path, store.components_path]
+    top += [store.directory / times.TIMES, store.work_directory / durations.DURATIONS]
+    found = [*top, store.work_directory / "journal.jsonl", *store.scores_directory.glob("*.csv")]
+    return [path for path in found if path.is_file()]
+
+
+def _size(store: Store) -> int:
+    return sum(path.stat().st_size for path in _files(store))

@@ -1,0 +1,96 @@
+"""Cells drawn at random from the record, measured again from nothing, and held against it."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from benchmark.contract import Cell
+from benchmark.leaderboard.check import Difference, compare_scores
+from benchmark.plan.parts import Parts
+from benchmark.progress import ProgressCallback
+from benchmark.results.store import Store
+from benchmark.running.run import RunInterruptedError, run
+from survey_data.leftovers import temporary_directory
+
+
+@dataclass(frozen=True)
+class Verified:
+    """What came of measuring cells again.
+
+    Attributes
+    ----------
+    cells
+        That were, in order.
+    alike
+        How many of them have every digit of the record.
+    differences
+        Where the record does not hold: beyond what `benchmark.leaderboard.check` allows another
+        machine, or a score where there was none.
+    """
+
+    cells: tuple[Cell, ...]
+    alike: int
+    differences: tuple[Difference, ...]
+
+
+def drawn(cells: Iterable[Cell], sample: int, seed: int) -> list[Cell]:
+    """Draw `sample` of the cells, or all where there are fewer, in order.
+
+    Each cell's lot is a digest of the seed and its name: what else is in the record moves none.
+    """
+    if sample < 1:
+        raise ValueError(f"sample must be at least 1; got {sample}")
+
+    def lot(cell: Cell) -> bytes:
+        return hashlib.sha256(f"{seed} {cell}".encode()).digest()
+
+    return sorted(sorted(set(cells), key=lot)[:sample])
+
+
+def verify(
+    cells: Iterable[Cell],
+    record: Store,
+    workers: int = 1,
+    progress: ProgressCallback | None = None,
+    *,
+    scheduler: str | None = None,
+    parts: Parts | None = None,
+) -> Verified:
+    """Measure cells from nothing and compare them with the record.
+
+    Parameters
+    ----------
+    cells
+        Which; one that the record lacks is a difference.
+    record
+        That is verified; nothing is written to it.
+    workers, progress, scheduler, parts
+        As `benchmark.running.run.run`, as are the errors.
+
+    Raises
+    ------
+    RunInterruptedError
+        On Ctrl-C; nothing is kept.
+    """
+    wanted = sorted(set(cells))
+    try:
+        with temporary_directory() as temporary:
+            again = Store(temporary)
+            run(wanted, again, workers, progress, scheduler=scheduler, parts=parts)
+            measured, pins = again.scores(), again.pins()
+    except KeyboardInterrupt as interrupted:
+        raise RunInterruptedError(
+            "interrupted; verifying keeps nothing of what it measured"
+        ) from interrupted
+    stored = record.scores()
+    committed = {cell: stored[cell] for cell in wanted if cell in stored}
+    samples = {
+        place[:2]: pin.n for place, pin in {**pins, **record.pins()}.items() if place[2] == "test"
+    }
+    return Verified(
+        tuple(wanted),
+        sum(committed.get(cell) == measured[cell] for cell in wanted),
+        tuple(compare_scores(committed, measured, samples)),
+    )
