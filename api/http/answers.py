@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Coroutine, Mapping, Sequence
+from collections.abc import Callable, Collection, Coroutine, Mapping, Sequence
 from typing import Any, ClassVar, Protocol, cast
 
 from fastapi import Request, Response
@@ -10,11 +10,11 @@ from fastapi.responses import JSONResponse
 from fastapi.routing import APIRoute
 from pydantic_core import to_json
 
-from api.http.negotiation import CONTENT_TYPES, CSV, JSON, PNG, media_type
+from api.columns import csv_of, flat
+from api.http.negotiation import CONTENT_TYPES, CSV, JSON, PNG, wanted_type
 from api.http.pagination import Page
 from api.http.representations import Representation, RepresentationCache
 from api.http.requests import StrictRequest
-from api.http.tables import to_csv
 
 Row = Mapping[str, Any]
 
@@ -25,7 +25,7 @@ class Answer(JSONResponse):
     Parameters
     ----------
     document : the JSON object
-    columns : columns of the CSV that stand even without rows
+    columns : of the CSV, one of the tables of `api.columns`
     rows : gives the rows of the CSV
     link : value of the Link header, if any
     status_code : which FastAPI documents by its default
@@ -53,7 +53,8 @@ class Answer(JSONResponse):
 
     def representation(self, wanted: str) -> Representation:
         """Return the answer in a media type."""
-        body = to_csv(self.columns, self.rows()) if wanted == CSV else bytes(self.body)
+        table = wanted == CSV
+        body = csv_of(self.columns, self.rows()).encode() if table else bytes(self.body)
         return Representation(body, CONTENT_TYPES[wanted], self.links)
 
 
@@ -62,10 +63,28 @@ def listing(
     items: Sequence[Row],
     columns: Sequence[str],
     rows: Callable[[], Sequence[Row]] | None = None,
+    *,
+    fields: Collection[str] = (),
+    **more: Any,
 ) -> Answer:
-    """Return a page of a list as an answer; rows of the CSV are the items where left out."""
-    document = {"items": items, "total": shown.total, "next": shown.next}
-    return Answer(document, columns, rows or (lambda: items), shown.link)
+    """Return a page of a list as an answer.
+
+    Parameters
+    ----------
+    shown : the page
+    items : of the JSON
+    columns : of the table
+    rows : gives the rows of the CSV; the items where left out
+    fields : columns to which rows and items are narrowed; none of them where empty
+    more : members of the document beside the items
+    """
+    table = rows or (lambda: items)
+    if fields:
+        columns = tuple(name for name in columns if name in fields)
+        items = [flat(row, columns) for row in table()]
+        table = lambda: items  # noqa: E731
+    document = {"items": items, "total": shown.total, "next": shown.next, **more}
+    return Answer(document, columns, table, shown.link)
 
 
 class Picture(Response):
@@ -119,11 +138,12 @@ class AnswerRoute(StrictRoute):
 
         async def answer(request: Request) -> Response:
             kept: RepresentationCache = request.app.state.kept
-            wanted = media_type(request.headers.get("accept"), offered)
+            query: bytes = request.scope["query_string"]
+            wanted = wanted_type(query, request.headers.get("accept"), offered)
             if request.method != "GET":
                 made = cast("Kept", await compute(request))
                 return made.representation(wanted).respond(request, conditional=False)
-            asked = (request.scope["path"], request.scope["query_string"], wanted)
+            asked = (request.scope["path"], query, wanted)
             found = kept.get(asked)
             if found is None:
                 made = cast("Kept", await compute(request))

@@ -7,7 +7,7 @@ from typing import Annotated
 from fastapi import Depends, Query, Request
 
 from api.http.knowledge import Knowledge
-from api.http.models.base import NoParameters
+from api.http.models.base import NoParameters, OnlyFormat
 from api.http.negotiation import JSON, media_type
 
 
@@ -29,3 +29,6 @@ async def no_parameters(_query: Annotated[NoParameters, Query()]) -> None:
 Known = Annotated[Knowledge, Depends(knowledge)]
 JSON_ONLY = Depends(json_accepted)
 NO_PARAMETERS = Depends(no_parameters)
+TableOnly = Annotated[OnlyFormat, Query()]
+AS_ACCEPTED = OnlyFormat.model_construct()
+"""The query where none is given, as when a path function is called by another."""

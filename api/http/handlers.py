@@ -12,6 +12,7 @@ from starlette.exceptions import HTTPException
 
 from api.http.problems import Problem, Violation, respond
 from api.http.refusals import refusal
+from api.pages.serving import TWINS, refusal_page
 from survey_data.nearest import nearest
 
 
@@ -21,6 +22,8 @@ def install(app: FastAPI, routes: Sequence[APIRoute]) -> None:
     async def refused(request: Request, error: HTTPException) -> Response:
         if not isinstance(error, Problem):
             error = _of_framework(error, request, routes)
+            if _is_of_a_person(request):
+                return refusal_page(request, error)
         return respond(request, error)
 
     async def invalid(request: Request, error: RequestValidationError) -> Response:
@@ -35,11 +38,20 @@ def install(app: FastAPI, routes: Sequence[APIRoute]) -> None:
     app.exception_handler(Exception)(failed)
 
 
+def _is_of_a_person(request: Request) -> bool:
+    """Say whether a browser asks for a page: programs ask below /v1, and not for HTML."""
+    accepted = request.headers.get("accept", "")
+    return "text/html" in accepted and not request.scope["path"].startswith("/v1/")
+
+
 def _of_framework(error: HTTPException, request: Request, routes: Sequence[APIRoute]) -> Problem:
     """Return what Starlette refuses as a problem."""
     path: str = request.scope["path"]
     if error.status_code == HTTPStatus.NOT_FOUND:
-        near = nearest(path, {route.path for route in routes}, cutoff=0)
+        paths = {route.path for route in routes}
+        # Twins are other spellings of a page's address: not what somebody meant who mistyped it.
+        twins = {f"{page}{suffix}" for page in (*paths, "/answer") for suffix in TWINS}
+        near = nearest(path, paths - twins, cutoff=0)
         violation = Violation("path", path, "a path of /openapi.json", near)
         return Problem(404, "unknown-path", errors=[violation])
     if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED:

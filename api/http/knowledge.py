@@ -5,15 +5,21 @@ Loading is lazy, so that an application is there at once; `load_all` does it at 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 
+import survey_data
+from api.columns import ADVICE
 from api.http.measurements import Measurements
+from api.search.entries import entries
+from api.search.index import Index
 from registry.catalogue import Catalogue, catalogue
 from registry.measured import Measurements as Measured
 from registry.resolution import Resolution, resolve_all
 from registry.studies import Facts, facts
 from registry.taxonomy import Taxonomy
+from survey_data.descriptor import DATA_DIRECTORY
+from survey_data.manifest import digest
 
 
 class Knowledge:
@@ -31,6 +37,12 @@ class Knowledge:
     def facts(self) -> Facts:
         """Studies and taxonomy."""
         return facts()
+
+    @cached_property
+    def facts_digest(self) -> str | None:
+        """SHA-256 of the manifest of the facts, as they were when they were read."""
+        _ = self.facts
+        return digest(DATA_DIRECTORY)
 
     @property
     def taxonomy(self) -> Taxonomy:
@@ -54,6 +66,18 @@ class Knowledge:
         """What is measured of every pipeline, as recommendations take it."""
         return Measured(self.measurements.pipelines)
 
+    @cached_property
+    def advice(self) -> Sequence[Mapping[str, str]]:
+        """What the survey advises, and where it says errors are met; empty where it leaves open."""
+        table = survey_data.load().advice.rename(columns={"survey_section": "section"}).fillna("")
+        rows = table[list(ADVICE)].itertuples(index=False)
+        return [dict(zip(ADVICE, map(str, row), strict=True)) for row in rows]
+
+    @cached_property
+    def index(self) -> Index:
+        """What search finds."""
+        return Index(entries(self))
+
     def load_all(self) -> None:
         """Load everything now, so that no request has to wait for it.
 
@@ -64,4 +88,6 @@ class Knowledge:
         """
         _ = self.resolutions, self.measurements.scores, self.measurements.times
         _ = self.measured, self.measurements.leaderboard, self.measurements.cards
-        _ = self.measurements.sweeps, self.measurements.assessment
+        _ = self.measurements.sweeps, self.measurements.curves, self.measurements.assessment
+        _ = self.measurements.claims, self.index.find("warm")
+        _ = self.facts_digest, self.measurements.digest

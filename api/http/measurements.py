@@ -1,4 +1,4 @@
-"""The published measurements: scores, leaderboard, sweeps and the standard data sets."""
+"""The published measurements: scores, leaderboard, sweeps, curves, the standard data sets."""
 
 from __future__ import annotations
 
@@ -7,13 +7,18 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from benchmark.curves import record as curves
 from benchmark.datasets.pins import Pin
 from benchmark.leaderboard.board import build
+from benchmark.leaderboard.scope import Studied, studies_of_pipelines
+from benchmark.results import recorded
 from benchmark.results.pipelines import pipelines
 from benchmark.results.store import PUBLISHED, Store
 from registry.measured import Measured
+from survey_data import manifest
 
 if TYPE_CHECKING:
+    from benchmark.claims.ledger import Entry
     from benchmark.datasets import Preset
     from benchmark.running.times import Place, Time
 
@@ -35,8 +40,19 @@ class Measurements:
         self.times_directory = times_directory
 
     @cached_property
+    def _store(self) -> Store:
+        """The published files, which must be as commands wrote them."""
+        recorded.require_unchanged(self.directory, required=self.directory == PUBLISHED)
+        return Store(self.directory)
+
+    @cached_property
+    def digest(self) -> str | None:
+        """SHA-256 of the manifest of the published files; None where there is none."""
+        return manifest.digest(self._store.directory)
+
+    @cached_property
     def _every_unit(self) -> Sequence[Row]:
-        return Store(self.directory).rows(unit=None)
+        return self._store.rows(unit=None)
 
     @cached_property
     def scores(self) -> Sequence[Row]:
@@ -75,20 +91,42 @@ class Measurements:
             pipeline: {"latency_us": time.latency_us, "time_ratio": time.time_ratio}
             for pipeline, time in self.times.items()
         }
-        board = build(self._every_unit, times, self.sweeps)
+        board = build(self._every_unit, times, self.sweeps, self._studied)
         return board if board["datasets"] else {"schema": None, "datasets": []}
+
+    @property
+    def _studied(self) -> Studied:
+        """Studies by the pipelines they used; of nothing published, none, as that takes seconds."""
+        return studies_of_pipelines() if self._every_unit else {}
 
     @cached_property
     def sweeps(self) -> Sequence[Row]:
         """Rows of the sweeps on reference features, in order."""
-        return Store(self.directory).swept()
+        return self._store.swept()
+
+    @cached_property
+    def curves(self) -> Sequence[Row]:
+        """Learning curves of the leaders, by data set and place."""
+        return curves.shown(self._store.directory)
+
+    @cached_property
+    def curve_of(self) -> Mapping[tuple[str, ...], Row]:
+        """Learning curve by data set, extractor and model."""
+        return {(row["dataset"], row["extractor"], row["model"]): row for row in self.curves}
 
     @cached_property
     def assessment(self) -> Mapping[str, Any]:
         """The survey's assessment beside the measured one, with definitions and totals."""
         from benchmark.assessment import assess as assessment  # noqa: PLC0415 - imports every implementation
 
-        return assessment.document(assessment.assess(self.directory, times=self.times))
+        return assessment.document(assessment.assess(self._store.directory, times=self.times))
+
+    @cached_property
+    def claims(self) -> Mapping[str, Entry]:
+        """The survey's claims with their verdicts, by id."""
+        from benchmark.claims.ledger import ledger  # noqa: PLC0415 - SciPy's distributions
+
+        return {entry.claim.id: entry for entry in ledger(self._store.directory / "claims")}
 
     @cached_property
     def realism(self) -> Sequence[Row]:
@@ -108,7 +146,7 @@ class Measurements:
     @cached_property
     def pins(self) -> Mapping[tuple[str, str, str], Pin]:
         """Hashes and bounds of the published data by (data set, condition, split)."""
-        return Store(self.directory).pins()
+        return self._store.pins()
 
     @cached_property
     def cards(self) -> Sequence[Row]:

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from functools import lru_cache
+from urllib.parse import parse_qsl
 
 from api.http.problems import Problem, Violation
 
 JSON = "application/json"
 CSV = "text/csv"
 PNG = "image/png"
+FORMATS = {"json": JSON, "csv": CSV}
+"""What `format` in a query calls them."""
 CONTENT_TYPES = {JSON: "application/json", CSV: "text/csv; charset=utf-8; header=present"}
 
 _QUALITY = re.compile(r"(?:0(?:\.\d{0,3})?|1(?:\.0{0,3})?)\Z")
@@ -46,7 +50,8 @@ def _weight(media_type: str, accepted: Sequence[tuple[str, float]]) -> float:
     return 0.0
 
 
-def media_type(accept: str | None, offered: Sequence[str]) -> str:
+@lru_cache(256)
+def media_type(accept: str | None, offered: tuple[str, ...]) -> str:
     """Return the offered media type the client likes best; the first offered wins a tie.
 
     Raises
@@ -66,6 +71,30 @@ def media_type(accept: str | None, offered: Sequence[str]) -> str:
     return chosen
 
 
+def wanted_type(query: bytes, accept: str | None, offered: tuple[str, ...]) -> str:
+    """Return the offered media type that a request wants: `format` of its query, else `Accept`.
+
+    A `format` that is none, or is given twice, is for the parameters to refuse.
+
+    Raises
+    ------
+    Problem
+        406 where the client accepts none of those offered, or not the one that it asks for.
+    """
+    # A name may be percent-encoded.
+    if b"format" in query or b"%" in query:
+        pairs = parse_qsl(query.decode("latin-1"), keep_blank_values=True)
+        asked = [value for name, value in pairs if name == "format"]
+        form = FORMATS.get(asked[0]) if len(asked) == 1 else None
+        if form in offered:
+            if accept is not None and accept.strip() and _weight(form, preferences(accept)) <= 0.0:
+                error = Violation("format", asked[0], f"what Accept takes, which is {accept}")
+                raise Problem(406, "not-acceptable", errors=[error])
+            return form
+    return media_type(accept, offered)
+
+
+@lru_cache(256)
 def accepts_gzip(accept_encoding: str | None) -> bool:
     """Say whether the client takes gzip, and does not like the bare bytes better."""
     if not accept_encoding:

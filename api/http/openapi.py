@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import json
 from collections.abc import Sequence
 from typing import Any
@@ -17,7 +19,9 @@ from api.http.models.problems import ProblemDocument
 from api.http.negotiation import CSV, JSON
 from api.http.problems import MEDIA_TYPE, Problem
 from api.http.refusals import refusal, schemas
+from survey_data.csv_writing import csv_text
 
+LONGEST_TEXT = 160  # characters of a text in an example
 REFUSALS = {
     400: "A parameter that is not declared, or a request that cannot be read.",
     404: "No such thing; the nearest is named.",
@@ -46,7 +50,7 @@ def describe(app: FastAPI, routes: Sequence[APIRoute]) -> dict[str, Any]:
     own = ProblemDocument.model_json_schema(ref_template="#/components/schemas/{model}")
     components |= {**own.pop("$defs"), "ProblemDocument": own}
     for route in routes:
-        if isinstance(route, AnswerRoute):
+        if isinstance(route, AnswerRoute) and route.include_in_schema:
             for method in route.methods or ():
                 operation = document["paths"][route.path][method.lower()]
                 _complete(operation, route, app.state.knowledge)
@@ -71,14 +75,53 @@ def _complete(operation: dict[str, Any], route: APIRoute, known: Knowledge) -> N
         statuses |= {422}
     if route.response_class is Answer:
         success["headers"]["Link"] = LINK
-        answer = ask(route.endpoint, known, **example)
-        # Through bytes and back: the example is what travels, NaN as null included.
-        success["content"][JSON]["example"] = json.loads(answer.representation(JSON).body)
-        table = answer.representation(CSV).body.decode()
-        success["content"][CSV] = {"schema": {"type": "string"}, "example": table}
+        answer = _answered(route, known, example)
+        if answer is None:  # what it compares has not been measured
+            success["content"][CSV] = {"schema": {"type": "string"}}
+        else:
+            _give_example(success["content"], answer)
     refused = {str(status): _refused(status, route, example, known) for status in sorted(statuses)}
     same = {"304": NOT_MODIFIED} if "body" not in declared else {}
     operation["responses"] = {"200": success, **same, **refused}
+
+
+def _answered(route: APIRoute, known: Knowledge, example: dict[str, Any]) -> Answer | None:
+    try:
+        return ask(route.endpoint, known, **example)
+    except Problem:
+        return None
+
+
+def _give_example(content: dict[str, Any], answer: Answer) -> None:
+    """Add what is answered, shortened, and the columns of the table."""
+    # Through bytes and back: the example is what travels, NaN as null included.
+    whole = json.loads(answer.representation(JSON).body)
+    content[JSON]["example"] = shortened(whole)
+    table = answer.representation(CSV).body.decode()
+    table = _first_rows(table)
+    columns = ", ".join(table.partition("\n")[0].split(","))
+    described = {"type": "string", "description": f"Columns: {columns}."}
+    content[CSV] = {"schema": described, "example": table}
+
+
+def shortened(value: Any) -> Any:
+    """Return a document that keeps its shape and loses its length.
+
+    Of a list the first item stays, of a text as much as a line holds.
+    """
+    if isinstance(value, dict):
+        return {name: shortened(member) for name, member in value.items()}
+    if isinstance(value, list):
+        return [shortened(member) for member in value[:1]]
+    if isinstance(value, str) and len(value) > LONGEST_TEXT:
+        return value[: LONGEST_TEXT - 1] + "…"
+    return value
+
+
+def _first_rows(table: str) -> str:
+    """Return the header and the first record of a table."""
+    header, *rows = csv.reader(io.StringIO(table, newline=""))
+    return csv_text(header, rows[:1])
 
 
 def _example(route: APIRoute) -> dict[str, Any]:

@@ -1,17 +1,15 @@
-"""The page: static files of `api/page/`, and Plotly from the installed package."""
+"""Static files of the pages: those of `api/page/`."""
 
 from __future__ import annotations
 
 from functools import cache
 from importlib.resources import files
-from importlib.util import find_spec
 from pathlib import Path
 
 from api.http.problems import Problem, Violation
 from api.http.representations import Representation
 from survey_data.nearest import nearest
 
-PLOTLY = "plotly.min.js"
 CONTENT_TYPES = {
     ".css": "text/css; charset=utf-8",
     ".html": "text/html; charset=utf-8",
@@ -27,32 +25,15 @@ CONTENT_TYPES = {
 ALREADY_COMPRESSED = {".png", ".woff2", ".ico"}
 
 
-def plotly_bundle() -> Path:
-    """Return where the installed plotly package keeps its JavaScript, without importing it.
-
-    Raises
-    ------
-    FileNotFoundError
-        Where plotly is not installed or keeps it elsewhere.
-    """
-    spec = find_spec("plotly")
-    for place in (spec.submodule_search_locations or ()) if spec else ():
-        bundle = Path(place) / "package_data" / PLOTLY
-        if bundle.is_file():
-            return bundle
-    raise FileNotFoundError(f"no package_data/{PLOTLY} in the installed plotly package")
-
-
 @cache
 def page_files() -> dict[str, Path]:
     """Return the files of the page by the name they are served under: the only ones there are."""
     directory = Path(str(files("api") / "page"))
-    served = {
+    return {
         path.relative_to(directory).as_posix(): path
         for path in sorted(directory.rglob("*"))
         if path.is_file() and path.suffix in CONTENT_TYPES
     }
-    return {**served, PLOTLY: plotly_bundle()}
 
 
 @cache

@@ -11,10 +11,15 @@ from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 from urllib.parse import urlencode
 
-from api.http.models.base import Paged
+from api.cells import cell
+from api.columns import flat
+from api.http.models.base import Paged, Question
 from api.http.problems import Problem, Violation
 
 Row = TypeVar("Row")
+
+SHOWN_BY = {"limit", "cursor", "format", "fields"}
+"""Parameters that do not change which items a list has, or their order."""
 
 
 @dataclass(frozen=True)
@@ -36,11 +41,30 @@ class Page(Generic[Row]):
 
 
 def narrowed(
-    rows: Iterable[Mapping[str, Any]], query: Paged, names: Sequence[str]
+    rows: Iterable[Mapping[str, Any]], query: Question, names: Sequence[str]
 ) -> list[Mapping[str, Any]]:
     """Return the rows that have one of the wanted words of every field that is narrowed."""
     wanted = {name: words for name in names if (words := getattr(query, name))}
     return [row for row in rows if all(row[name] in words for name, words in wanted.items())]
+
+
+def ordered(rows: Sequence[Mapping[str, Any]], sort: str | None) -> list[Mapping[str, Any]]:
+    """Return rows by a column, or from its largest value down with "-" before its name.
+
+    Rows without a value (None, NaN, empty text) come last either way; equal ones keep their order.
+    """
+    if sort is None:
+        return list(rows)
+    name = sort.removeprefix("-")
+    values = [(flat(row, (name,))[name], row) for row in rows]
+    there = [pair for pair in values if cell(pair[0])]
+    missing = [row for value, row in values if not cell(value)]
+    there.sort(key=lambda pair: _key(pair[0]), reverse=sort != name)
+    return [row for _, row in there] + missing
+
+
+def _key(value: Any) -> Any:
+    return value.casefold() if isinstance(value, str) else value
 
 
 def page(rows: Sequence[Row], path: str, query: Paged) -> Page[Row]:
@@ -54,7 +78,7 @@ def page(rows: Sequence[Row], path: str, query: Paged) -> Page[Row]:
         400 where the cursor was not given out for this list.
     """
     asked = query.model_dump(exclude_defaults=True)
-    filters = {name: value for name, value in asked.items() if name not in {"limit", "cursor"}}
+    filters = {name: value for name, value in asked.items() if name not in SHOWN_BY}
     bound_to = hashlib.blake2b(f"{path}?{_encoded(filters)}".encode(), digest_size=6).hexdigest()
     start = 0 if query.cursor is None else _offset(query.cursor, bound_to)
     end = start + query.limit

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import signal
 import subprocess
 import threading
@@ -10,6 +11,8 @@ from collections.abc import Callable, Iterator, Sequence
 from types import FrameType
 
 from starlette.types import ASGIApp, Receive, Scope, Send
+
+from benchmark.processes import for_coordinator
 
 
 class Renewed:
@@ -49,22 +52,48 @@ def renewed_after(
     threading.Thread
         That waits for the command.
     """
+    with beside(command) as process:
+
+        def wait() -> None:
+            if process.wait() == 0:
+                service.app = renew()
+
+        waiting = threading.Thread(target=wait, name="renewal", daemon=True)
+        waiting.start()
+        try:
+            yield waiting
+        finally:
+            process.terminate()
+            waiting.join()
+
+
+@contextlib.contextmanager
+def beside(command: Sequence[str]) -> Iterator[subprocess.Popen[bytes]]:
+    """Run a command beside the service; it ends with the context.
+
+    What it prints is dropped, errors excepted.
+
+    Parameters
+    ----------
+    command : to run
+
+    Yields
+    ------
+    subprocess.Popen
+        Which runs it.
+    """
     process = subprocess.Popen(  # noqa: S603 - the caller's own program
-        command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL
+        command,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        env={**os.environ, **for_coordinator()},
     )
-
-    def wait() -> None:
-        if process.wait() == 0:
-            service.app = renew()
-
-    waiting = threading.Thread(target=wait, name="renewal", daemon=True)
-    waiting.start()
     try:
         with _ended_by_exception():
-            yield waiting
+            yield process
     finally:
         process.terminate()
-        waiting.join()
+        process.wait()
 
 
 @contextlib.contextmanager

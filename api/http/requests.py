@@ -8,12 +8,14 @@ from typing import Any, NoReturn
 from urllib.parse import parse_qsl
 
 from starlette.datastructures import QueryParams
-from starlette.requests import Request
+from starlette.requests import ClientDisconnect, Request
 
 from api.http.problems import Problem, Violation
 
 MOST_FIELDS = 500  # of one query
 LARGEST_BODY = 64 * 1024  # bytes; the longest sensible set of requirements is a twentieth of it
+
+LARGEST_READ = 16 * 2**20  # bytes of a refused body that are read
 
 
 class StrictQuery(QueryParams):
@@ -68,16 +70,25 @@ class StrictRequest(Request):
         if self._read is not None:
             return self._read
         self._require_json()
+        self._refuse_at_once()
         chunks: list[bytes] = []
         length = 0
-        async for chunk in self.stream():
-            length += len(chunk)
-            if length > LARGEST_BODY:
-                error = Violation(
-                    "body", f"{length} bytes or more", f"at most {LARGEST_BODY} bytes"
-                )
-                raise Problem(413, "content-too-large", errors=[error])
-            chunks.append(chunk)
+        try:
+            async for chunk in self.stream():
+                length += len(chunk)
+                # What is too long is read all the same, and thrown away: a connection closed on
+                # a client that is still sending would take the refusal with it.
+                if length > LARGEST_READ:
+                    break
+                if length <= LARGEST_BODY:
+                    chunks.append(chunk)
+        except ClientDisconnect as error:
+            violation = Violation("body", f"{length} bytes", "all that its length promised")
+            raise Problem(400, "incomplete-body", errors=[violation]) from error
+        if length > LARGEST_BODY:
+            came = f"{length} bytes or more"
+            violation = Violation("body", came, f"at most {LARGEST_BODY} bytes")
+            raise Problem(413, "content-too-large", errors=[violation])
         self._read = b"".join(chunks) or self._parsed(b"")  # which FastAPI would take for no body
         return self._read
 
@@ -100,6 +111,15 @@ class StrictRequest(Request):
             reason = "nested too deeply" if isinstance(error, RecursionError) else str(error)
             violation = Violation("body", None, f"JSON in UTF-8 ({reason})")
             raise Problem(400, "malformed-json", errors=[violation]) from error
+
+    def _refuse_at_once(self) -> None:
+        """Refuse a body that is too long before it is sent, where the client asks first."""
+        length = self.headers.get("content-length", "")
+        asks = self.headers.get("expect", "").lower() == "100-continue"
+        if asks and length.isascii() and length.isdigit() and int(length) > LARGEST_BODY:
+            error = Violation("body", f"{length} bytes", f"at most {LARGEST_BODY} bytes")
+            headers = {"Connection": "close"}
+            raise Problem(413, "content-too-large", errors=[error], headers=headers)
 
     def _require_json(self) -> None:
         content_type = self.headers.get("content-type")

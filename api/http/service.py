@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import gc
+import threading
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from importlib.metadata import PackageNotFoundError, version
@@ -18,7 +19,8 @@ from api.http import handlers, middleware
 from api.http.knowledge import Knowledge
 from api.http.openapi import describe
 from api.http.representations import RepresentationCache
-from api.http.routers import ROUTERS
+from api.http.routers import ROUTERS as SERVICE
+from api.pages.routers import ROUTERS as PAGES
 
 DESCRIPTION = (
     "Which sun sensor to build and how to calibrate it: the literature as data, its algorithms "
@@ -26,6 +28,7 @@ DESCRIPTION = (
     "`Link`), tables come as CSV for `Accept: text/csv`, every answer has a strong `ETag`, and "
     "every refusal is a problem document (RFC 9457) that names the nearest valid word."
 )
+ROUTERS = (*SERVICE, *PAGES)
 ROUTES = [route for router in ROUTERS for route in router.routes if isinstance(route, APIRoute)]
 
 
@@ -57,10 +60,13 @@ def create_app(knowledge: Knowledge | None = None) -> FastAPI:
     handlers.install(app, ROUTES)
     app.add_middleware(middleware.EveryResponse)
 
+    describing = threading.Lock()  # FastAPI's part of it is not for two threads at once
+
     def openapi() -> dict[str, Any]:
-        if app.openapi_schema is None:
-            app.openapi_schema = describe(app, ROUTES)
-        return app.openapi_schema
+        with describing:
+            if app.openapi_schema is None:
+                app.openapi_schema = describe(app, ROUTES)
+            return app.openapi_schema
 
     app.openapi = openapi  # type: ignore[method-assign]  # FastAPI's documented way to extend it
     return app
@@ -72,6 +78,8 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     # What is loaded now stays: the collector need not walk it again for every few answers.
     gc.collect()
     gc.freeze()
+    # Who asks for it first shall not wait for it, nor shall all others meanwhile.
+    threading.Thread(target=app.openapi, name="description", daemon=True).start()
     yield
     gc.unfreeze()
 

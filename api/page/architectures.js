@@ -2,11 +2,12 @@
 
 import { openedRow, pathway } from "./calibrations.js";
 import { byId, h, segmented } from "./dom.js";
+import { sensor } from "./drawings.js";
 import { advisedContent, below, evidenceCell, KINDS, measuredContent, notProposed, proposedContent } from "./evidence.js";
 import { show, standing, state } from "./state.js";
 import { plural, SORTS, studiesCount } from "./wording.js";
 
-const FIRST = 10;
+const FIRST = matchMedia("(max-width: 700px)").matches ? 4 : 10;
 const NAMED = 2; // studies that a row names
 
 let all = false; // whether rows beyond the first are shown
@@ -25,7 +26,7 @@ function tag({ task, studies, advised }) {
     h("span", { class: "visually-hidden" }, spoken.slice(task.length)));
 }
 
-const value = (attribute, name) => h("span", { class: standing(attribute, name) === "include" && "asked" }, name);
+const value = (attribute, name) => h("a", { class: `value${standing(attribute, name) === "include" ? " asked" : ""}`, href: `/${attribute}s/${encodeURIComponent(name)}` }, name);
 
 function row(architecture, known) {
   const { rank, detector, mask, tasks, advice, studies, best } = architecture;
@@ -40,12 +41,14 @@ function row(architecture, known) {
       expand.setAttribute("aria-expanded", String(!detail.hidden));
     },
   }, plural(architecture.count, "calibration"));
+  const page = h("a", { class: "note", href: `/architectures/${encodeURIComponent(detector)}/${encodeURIComponent(mask)}` }, "All of it");
   return [h("tr", { role: "row", class: "architecture" },
     h("td", { role: "cell", class: "rank" }, String(rank)),
     h("td", { role: "cell", class: "design" },
-      h("strong", {}, value("detector", detector), " + ", value("mask", mask)),
+      h("div", { class: "pictured" }, sensor(detector, mask),
+        h("strong", {}, value("detector", detector), " + ", value("mask", mask))),
       h("ul", { class: "tags" }, tasks.map(tag)),
-      h("div", { class: "marks" }, expand, architecture.contradiction && h("span", { class: "against", title: architecture.contradiction }, "literature contradicted"),
+      h("div", { class: "marks" }, expand, page, " ", architecture.contradiction && h("span", { class: "against", title: architecture.contradiction }, "literature contradicted"),
       architecture.pareto && h("span", { class: "pareto-mark", title: "None has more studies and a smaller error" }, "Pareto"))),
     evidenceCell("advised", advisedContent(advice)),
     evidenceCell("proposed", proposedContent(studies, NAMED)),

@@ -5,7 +5,7 @@ import { advisedContent, below, evidenceCell, KINDS, measuredContent, proposedCo
 import { address, getJson } from "./service.js";
 import { question, show, standing } from "./state.js";
 import { studyEntry } from "./studies.js";
-import { ATTRIBUTE_NAMES, degrees, JUDGED_ON, LIMIT_NAMES, LIST_NAMES, plural, quoted, sentence, studiesCount, wide } from "./wording.js";
+import { ATTRIBUTE_NAMES, degrees, JUDGED_ON, LIMIT_NAMES, LIST_NAMES, plural, quoted, sentence, studiesCount, wide, worded } from "./wording.js";
 
 const NAMED = 4; // studies that a row names
 
@@ -13,8 +13,8 @@ const NAMED = 4; // studies that a row names
 export function pathway({ extractor, compensations, model }) {
   const asked = (attribute, name) => standing(attribute, name) === "include" && "asked";
   return h("ol", { class: "pathway" },
-    h("li", {}, h("span", { class: asked("extractor", extractor) }, extractor)),
-    [...compensations, model].map((stage) => h("li", {}, h("span", { class: asked("model", stage) }, stage))));
+    h("li", {}, h("span", { class: asked("extractor", extractor) }, worded("extractor", extractor))),
+    [...compensations, model].map((stage) => h("li", {}, h("span", { class: asked("model", stage) }, worded("model", stage)))));
 }
 
 /** On what each requirement was judged: "error, field of view on what is measured here". */

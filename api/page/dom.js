@@ -18,6 +18,17 @@ export function h(tag, attributes = {}, ...children) {
   return element;
 }
 
+/** The same for an element of a drawing. */
+export function svg(tag, attributes = {}, ...children) {
+  const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (name.startsWith("on")) element.addEventListener(name.slice(2), value);
+    else element.setAttribute(name, String(value));
+  }
+  element.append(...children.flat(Infinity).filter(Boolean));
+  return element;
+}
+
 export const byId = (id) => document.getElementById(id);
 
 /** A row of radio buttons drawn as one control. options: [[value, label], ...] */

@@ -36,7 +36,7 @@ export function advisedContent(advice) {
   return [h("strong", {}, `for ${advisedFor(advice)}`), below("in ", [...new Set(advice.map((a) => a.section))].map((s, i) => [i > 0 && ", ", section(s)]))];
 }
 
-export const studyLink = (key) => h("a", { href: `/v1/studies/${encodeURIComponent(key)}` }, key);
+export const studyLink = (key) => h("a", { href: `/studies/${encodeURIComponent(key)}` }, key);
 
 /** Number of studies and the first of them. */
 export function proposedContent(keys, most) {

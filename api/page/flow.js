@@ -2,10 +2,10 @@
 
 import { byId, choice, h, problemNotice, segmented } from "./dom.js";
 import { attributeOf, fractional, grouped, rings, withAmounts } from "./flow_data.js";
-import { drawSankey, drawSunburst, erase, labelRoom } from "./flow_diagram.js";
+import { drawSankey, drawSunburst, labelRoom } from "./flow_diagram.js";
 import { address, getJson } from "./service.js";
 import { ATTRIBUTES, LIMITS, LISTS, set, show, standing, state } from "./state.js";
-import { amount, ATTRIBUTE_NAMES, plural } from "./wording.js";
+import { amount, ATTRIBUTE_NAMES, plural, worded } from "./wording.js";
 
 export const CROSS = ["task", "detector", "mask", "model", "extractor"];
 const CHARTS = [
@@ -91,7 +91,7 @@ function levelLists(flow, vocabulary) {
         "aria-label": `${node.name}: ${amount(node.amount)} ${state.counting === "fractional" ? "study shares" : "studies"}, require`,
         onclick: () => toggle(node, vocabulary),
       }, h("span", { class: "bar", css: { "--share": node.amount / most } }),
-      h("span", {}, node.value), h("span", { class: "count" }, amount(node.amount))));
+      h("span", {}, worded(node.level, node.value)), h("span", { class: "count" }, amount(node.amount))));
     })));
   }));
 }
@@ -105,9 +105,9 @@ function linkTable(flow) {
       h("table", { class: "plain" },
         h("thead", {}, h("tr", {}, ["From", "To", "Studies", "Keys"].map((t, i) => h("th", { scope: "col", class: i === 2 && "number" }, t)))),
         h("tbody", {}, links.map((l) => h("tr", {},
-          h("td", {}, node.get(l.source).value), h("td", {}, node.get(l.target).value),
+          [l.source, l.target].map((id) => h("td", {}, worded(node.get(id).level, node.get(id).value))),
           h("td", { class: "number" }, amount(l.value)),
-          h("td", { class: "note" }, l.studies.map((key, i) => [i > 0 && ", ", h("a", { href: `/v1/studies/${encodeURIComponent(key)}` }, key)]))))))));
+          h("td", { class: "note" }, l.studies.map((key, i) => [i > 0 && ", ", h("a", { href: `/studies/${encodeURIComponent(key)}` }, key)]))))))));
 }
 
 /** Draw the flow of an answer; a later call overtakes an earlier one. */
@@ -131,7 +131,7 @@ export async function showFlow(answer, vocabulary, studies, signal) {
       [...body.querySelectorAll("[data-node]")].find((b) => b.dataset.node === focused)?.focus();
       return;
     }
-    await diagram(body, flow, vocabulary, turn);
+    diagram(body, flow, vocabulary);
   } catch (problem) {
     if (problem.name === "AbortError" || turn !== drawing) return;
     if (!problem.title) problem.title = "The diagram could not be drawn";
@@ -146,17 +146,14 @@ export async function showFlow(answer, vocabulary, studies, signal) {
 }
 
 function clear(body, ...content) {
-  const old = body.querySelector(".diagram");
-  if (old) erase(old);
   body.replaceChildren(...content);
 }
 
-async function diagram(body, flow, vocabulary, turn) {
+function diagram(body, flow, vocabulary) {
   const round = state.chart === "model-sunburst";
   const description = `${CHARTS.find(([c]) => c === state.chart)[1]}: ${flow.levels.map(nameOf).join(", ")}. The same values stand in the table form.`;
   let picture = body.querySelector(round ? ".diagram.round" : ".diagram:not(.round)");
-  const kept = Boolean(picture);
-  if (!kept) {
+  if (!picture) {
     picture = h("div", { class: round ? "diagram round" : "diagram", role: "img" });
     clear(body,
       h("p", { class: "swipe", hidden: round }, "Scroll the diagram sideways, or choose “Table”."),
@@ -168,9 +165,8 @@ async function diagram(body, flow, vocabulary, turn) {
   heads.replaceChildren(...flow.levels.map((level, i) =>
     h("span", { css: { "--at": i / (flow.levels.length - 1) } }, nameOf(level))));
   heads.style.setProperty("--labels", `${labelRoom(flow)}px`);
-  if (round) await drawSunburst(picture, rings(flow, vocabulary));
-  else await drawSankey(picture, flow, (n) => isRequired(n, vocabulary), (n) => toggle(n, vocabulary));
-  if (turn !== drawing) return;
+  if (round) drawSunburst(picture, rings(flow, vocabulary));
+  else drawSankey(picture, flow, (n) => isRequired(n, vocabulary), (n) => toggle(n, vocabulary));
   picture.dataset.chart = state.chart;
   picture.dataset.nodes = flow.nodes.map((n) => n.id).join("|");
 }

@@ -1,12 +1,13 @@
 /* The leaderboard: every pipeline on a data set, against the physical bound. */
 
 import { byId, choice, copyable, h, problemNotice } from "./dom.js";
+import { judged } from "./judged.js";
 import { address, getAll, getJson, saveCsv } from "./service.js";
 import { show, state } from "./state.js";
-import { degrees, number, percent, plural, times } from "./wording.js";
+import { degrees, number, percent, plural, studiesCount, times } from "./wording.js";
 
 const RANK = { field: "rank", name: "Rank", write: (rank, row) => (rank === null ? "–" : `${rank}${row.tied ? "=" : ""}`), title: "By error; pipelines that answer less than 95 % come behind all others. 2= shares its rank: units built alike disagree" };
-const NAMES = [{ field: "extractor", name: "Extractor", text: true }, { field: "model", name: "Model", text: true }];
+const NAMES = [{ field: "extractor", name: "Extractor", text: true }, { field: "model", name: "Model", text: true, write: studies }];
 const ERROR = { field: "rms_deg", name: "RMS error", write: (value, row) => [degrees(value), units(row)] };
 const FLOOR = "Least accuracy: the bound with the unit unknown but for flat and dark readings, and the systematic error of the calibration’s reference. The Cramér–Rao bound limits precision: precision and accuracy are two numbers";
 const BOUND = {
@@ -20,6 +21,11 @@ const ANSWERED = {
 const TIME = { field: "time_ratio", name: "Time", write: times, title: "Time of extraction and prediction on this machine over that of a reference on the same observations" };
 const WHOLE = "";
 const FIELDS = [10, 20, 30, 40, 50, 60, 70, 90, 180];
+
+/** How many mapped studies used a pipeline on such a sensor. */
+function studies(row) {
+  return row.studies.length > 0 && h("div", { class: "below", title: `Used on such a sensor by ${row.studies.join(", ")}, or standing in for what they used` }, studiesCount(row.studies.length));
+}
 
 /** The columns that say something of what is shown. */
 function columns() {
@@ -72,8 +78,12 @@ function bar(row, scale) {
     limit !== null && h("i", { class: "limit", css: { "--at": limit } }));
 }
 
+/** Whether rows stand as the service lists them: the best of each extractor first, by rank. */
+const asListed = () => state.board_sort === RANK.field && state.board_order === "ascending";
+
 function sorted(rows) {
   const { board_sort: sort, board_order: order } = state;
+  if (asListed()) return rows;
   const sign = order === "descending" ? -1 : 1;
   const missing = (x) => x === null || x === undefined || x === "" || Number.isNaN(x);
   return [...rows].sort((a, b) => {
@@ -116,7 +126,7 @@ function tableRow(row, shownColumns, scale, i) {
   const failed = row.status !== "ok";
   const taxonomy = (field) => row[`${field}_taxonomy`] && row[`${field}_taxonomy`].toLowerCase() !== row[field].toLowerCase() && row[`${field}_taxonomy`];
   const cell = (c) => h("td", { role: "cell", "data-label": c.name, class: c.text ? "word" : c === RANK ? "number rank" : "number" },
-    c.text ? h("span", { title: taxonomy(c.field) || null }, row[c.field]) : c.write(row[c.field], row));
+    c.text ? [h("a", { class: "value", href: `/algorithms/${encodeURIComponent(row[c.field])}`, title: taxonomy(c.field) || null }, row[c.field]), c.write?.(row)] : c.write(row[c.field], row));
   const leading = shownColumns.filter((c) => c.text || c === RANK);
   const numbers = shownColumns.filter((c) => !leading.includes(c));
   return [h("tr", { role: "row", class: "score" },
@@ -188,11 +198,12 @@ function draw() {
     card?.setups?.[condition]?.description && h("p", {}, h("strong", {}, condition), `: ${card.setups[condition].description}`),
     h("p", { class: "bound-line" }, "Cramér–Rao bound: ", h("strong", {}, degrees(bound)), " RMS",
       floored && [" · with the unit unknown but for flat and dark readings ", h("strong", {}, degrees(floored.bound_unit_deg)), " · ", h("span", { title: FLOOR }, "accuracy floor "), h("strong", {}, degrees(floored.floor_deg))],
-      card && [` · version ${card.version}`, card.follows?.length > 0 && [" · follows ", card.follows.map((k, i) => [i > 0 && ", ", h("a", { href: `/v1/studies/${encodeURIComponent(k)}` }, k)])]]),
-    h("div", { class: "links" }, h("a", { href: url }, "JSON"),
+      card && [` · version ${card.version}`, card.follows?.length > 0 && [" · follows ", card.follows.map((k, i) => [i > 0 && ", ", h("a", { href: `/studies/${encodeURIComponent(k)}` }, k)])]]),
+    h("div", { class: "links" }, h("a", { href: `/datasets/${encodeURIComponent(dataset)}?condition=${encodeURIComponent(condition)}` }, "All of this data set"), h("a", { href: url }, "JSON"),
       h("button", { type: "button", onclick: () => saveCsv(url, `${dataset}-${condition}.csv`) }, "CSV"),
       card?.follows?.[0] && copyable(`sunatlas run ${card.follows[0]} --format json`, "the command that runs the study it follows")),
     card && cardOf(card, condition)));
+  byId("board-judged").replaceChildren(judged(shown));
   const body = byId("board-body");
   const listed = sorted(rows).slice(0, shown.all ? rows.length : FIRST);
   if (!rows.length) {
@@ -207,6 +218,7 @@ function draw() {
       field === WHOLE && ranged && h("span", {}, h("i", { class: "key-units" }), "range over five units built alike; = marks a rank that the range does not tell apart"),
       field !== WHOLE && rows[0].half_fov_deg !== null && rows[0].half_fov_deg < Number(field) && h("span", {}, `The sensor’s own field ends at ${degrees(rows[0].half_fov_deg)}`),
       field === WHOLE && !ranged && h("span", {}, "Ranks of this condition rest on one unit of the sensor"),
+      asListed() && h("span", {}, "The best pipeline of each extractor first, the others behind"),
       shownColumns.includes(TIME) && h("span", {}, "Time: over that of a reference on the same observations")),
     h("div", { class: "sort-narrow" }, choice("Sort by", "sort-narrow", shownColumns.map((c) => [c.field, c.name]), state.board_sort, (field) => show({ board_sort: field, board_order: "ascending" }))),
     h("table", { class: "stacks board", role: "table", "aria-labelledby": "leaderboard-title" },
@@ -237,6 +249,21 @@ export function resort() {
   byId("board-status").textContent = `Sorted by ${column?.name ?? state.board_sort}, ${state.board_order}.`;
 }
 
+let followed = { dataset: "", condition: "" };
+
+/**
+ * Let the board follow what is asked: unless one is chosen, that on which the first architecture
+ * of the answer was measured, under the condition it was judged by.
+ */
+export function followAnswer(answer, datasets) {
+  const measured = answer?.architectures.find((a) => a.best.measured)?.best.measured;
+  const next = measured ? { dataset: measured.dataset, condition: measured.condition } : { dataset: "", condition: "" };
+  const changed = next.dataset !== followed.dataset || next.condition !== followed.condition;
+  followed = next;
+  if (changed && datasets.length && shown && !state.dataset) showLeaderboard(datasets);
+  else if (shown) byId("board-judged").replaceChildren(judged(shown));
+}
+
 export async function showLeaderboard(datasets) {
   const mine = ++turn;
   const body = byId("board-body");
@@ -245,8 +272,9 @@ export async function showLeaderboard(datasets) {
     body.replaceChildren(h("p", { class: "notice" }, "This server has no data sets."));
     return;
   }
-  const card = datasets.find((d) => d.name === state.dataset) ?? datasets[0];
+  const card = datasets.find((d) => d.name === state.dataset) ?? datasets.find((d) => d.name === followed.dataset) ?? datasets[0];
   const condition = card.conditions.includes(state.board_condition) ? state.board_condition
+    : card.name === followed.dataset && !state.dataset ? followed.condition
     : card.conditions.includes("nominal") ? "nominal" : card.conditions[0];
   const field = FIELDS.includes(Number(state.board_field)) ? state.board_field : WHOLE;
   byId("board-controls").replaceChildren(

@@ -3,11 +3,13 @@
 import { relax, showBlocked, showFindings, showQuestion, showSummary } from "./answer.js";
 import { showArchitectures, showSort } from "./architectures.js";
 import { byId, h, problemNotice } from "./dom.js";
+import { clearDrawings, fetchDrawings, keepDrawings, showScatterControls } from "./drawings.js";
 import { CROSS, showFlow, showFlowControls } from "./flow.js";
-import { resort, showLeaderboard } from "./leaderboard.js";
+import { followAnswer, resort, showLeaderboard } from "./leaderboard.js";
 import { buildRequirements, updateRequirements } from "./requirements.js";
 import { address, getAll, getJson } from "./service.js";
 import { ATTRIBUTES, onChange, question } from "./state.js";
+import { explain, tips } from "./terms.js";
 import { Vocabulary } from "./wording.js";
 
 const ASKED = { limit: 500, calibrations: 5 }; // an opened row asks for more calibrations
@@ -15,6 +17,7 @@ const BODIES = ["architectures-body", "flow-body"];
 const known = { vocabulary: null, studies: new Map(), datasets: [] };
 let answer = null;
 let asking = null;
+let first = true; // the server has drawn the answer that the page came with
 
 /** Values of each attribute that occur in the answer: in its architectures and on its studies' paths. */
 function present(of) {
@@ -47,17 +50,24 @@ async function ask() {
     byId(id).classList.add("stale");
   }
   try {
+    const drawn = first ? null : fetchDrawings(signal);
     answer = await getJson(address("/v1/recommendations", { ...question(), ...ASKED }), signal);
+    await drawn;
+    first = false;
     showSummary(answer, known.studies.size);
     showFindings(answer);
     showBlocked(answer.blocked, relax);
     updateRequirements(present(answer));
     showArchitectures(answer, known.studies, true);
     byId("architectures-body").classList.remove("stale");
+    followAnswer(answer, known.datasets);
+    for (const id of ["findings", "architectures-body"]) explain(byId(id));
     await showFlow(answer, known.vocabulary, known.studies.size, signal);
   } catch (problem) {
     if (problem.name === "AbortError") return;
     answer = null;
+    first = false;
+    clearDrawings();
     byId("summary").textContent = "";
     for (const id of ["answer-links", "findings"]) byId(id).replaceChildren();
     byId("blocked").replaceChildren(problemNotice(problem, ask));
@@ -90,6 +100,10 @@ function follow(changed) {
   if (changed.has("sort")) renewed(showSort);
   if (any(changed, ["requirements", "sort"])) ask();
   else if (any(changed, FLOW)) redrawFlow();
+  if (changed.has("across")) {
+    renewed(showScatterControls);
+    if (!any(changed, ["requirements", "sort"])) fetchDrawings();
+  }
   if (any(changed, BOARD)) {
     const focused = document.activeElement?.id;
     showLeaderboard(known.datasets);
@@ -116,9 +130,12 @@ async function showProvenance() {
 }
 
 async function start() {
-  for (const id of BODIES) byId(id).replaceChildren(h("p", { class: "loading" }, "Loading…"));
+  // What the server has drawn stands until it can be followed.
+  for (const id of [...BODIES, "board-body"]) byId(id).setAttribute("aria-busy", "true");
+  if (first) keepDrawings();
   byId("blocked").replaceChildren();
   showFlowControls();
+  showScatterControls();
   showSort();
   try {
     const [taxonomy, studies] = await Promise.all([
@@ -137,15 +154,37 @@ async function start() {
   }
   onChange(follow);
   showProvenance().catch(() => { byId("provenance").textContent = "The survey states 128 studies and cites 129 keys."; });
-  const board = getAll("/v1/datasets", { limit: 500 }).then((datasets) => {
-    known.datasets = datasets;
-    return showLeaderboard(datasets);
-  }).catch((problem) => {
+  const asked = ask();
+  try {
+    known.datasets = await getAll("/v1/datasets", { limit: 500 });
+    await asked;
+    followAnswer(answer, known.datasets);
+    await showLeaderboard(known.datasets);
+    explain(byId("board-card"));
+  } catch (problem) {
     byId("board-body").removeAttribute("aria-busy");
     byId("board-body").replaceChildren(problemNotice(problem));
-  });
-  await Promise.all([ask(), board]);
-  document.addEventListener("themechange", redrawFlow);
+  }
 }
 
-start();
+/** On a phone the panel is closed at first: the answer comes before the controls. */
+function foldRequirements() {
+  const [panel, toggle] = [byId("requirements"), byId("requirements-toggle")];
+  toggle.hidden = false;
+  toggle.addEventListener("click", () => {
+    const open = panel.classList.toggle("open");
+    toggle.setAttribute("aria-expanded", String(open));
+    toggle.textContent = open ? "Close" : "Change";
+  });
+}
+
+foldRequirements();
+tips(document);
+start().finally(() => { document.documentElement.dataset.live = "true"; });
+
+let width = innerWidth;
+addEventListener("resize", () => {
+  if (innerWidth === width) return; // a phone's bars come and go
+  width = innerWidth;
+  redrawFlow();
+});

@@ -3,7 +3,7 @@
 
 import { byId, h } from "./dom.js";
 import { ATTRIBUTES, LIMITS, required, reset, set, setLimit, setListed, standing, state } from "./state.js";
-import { ATTRIBUTE_NAMES, HAZARDS, inUnit, LIMIT_NAMES, LIST_NAMES, ofUnit, PROPERTIES } from "./wording.js";
+import { ATTRIBUTE_NAMES, HAZARDS, inUnit, LIMIT_NAMES, LIST_NAMES, ofUnit, PROPERTIES, worded } from "./wording.js";
 
 const OPEN_AT_FIRST = new Set(["task", "detector"]);
 const updates = []; // one function an element that shows the state
@@ -15,7 +15,7 @@ function facet(attribute, entry, count) {
     type: "button", class: "facet-include", "aria-label": `${spoken}: require. ${count} studies`,
     "data-attribute": attribute, "data-value": value, title: name,
     onclick: () => set(attribute, value, standing(attribute, value) === "include" ? null : "include"),
-  }, h("b", {}, value), name !== value && h("span", { class: "name" }, name), h("span", { class: "count" }, String(count)));
+  }, h("b", {}, worded(attribute, value)), name !== value && h("span", { class: "name" }, name), h("span", { class: "count" }, String(count)));
   const exclude = h("button", {
     type: "button", class: "facet-exclude", "aria-label": `${spoken}: exclude`, title: `Exclude ${value}`,
     onclick: () => set(attribute, value, standing(attribute, value) === "exclude" ? null : "exclude"),

@@ -7,6 +7,7 @@ export const LISTS = ["survive", "properties"];
 const VIEW = {
   sort: "advice", chart: "cross-analysis", counting: "studies", detail: "grouped", view: "diagram",
   dataset: "", board_condition: "", board_field: "", board_sort: "rank", board_order: "ascending",
+  across: "field",
 };
 
 const listeners = new Set();
@@ -52,16 +53,16 @@ export function onChange(listener) {
   listeners.add(listener);
 }
 
-function tell(changed, push) {
-  if (push) history.pushState(null, "", search());
-  else history.replaceState(null, "", search());
+/** Every step is one that Back undoes. */
+function tell(changed) {
+  history.pushState(null, "", search());
   for (const listener of listeners) listener(new Set(changed));
 }
 
 /** Change how the answer is shown. */
 export function show(settings) {
   Object.assign(state, settings);
-  tell(Object.keys(settings), false);
+  tell(Object.keys(settings));
 }
 
 /** "include", "exclude" or null for one value; several values at once for a family. */
@@ -71,14 +72,14 @@ export function set(attribute, values, standing) {
     const others = state[where][attribute].filter((v) => !list.includes(v));
     state[where][attribute] = standing === where ? [...others, ...list] : others;
   }
-  tell(["requirements"], true);
+  tell(["requirements"]);
 }
 
 /** Ask for one value of a list, or no longer. */
 export function setListed(list, value, wanted) {
   const others = state.lists[list].filter((v) => v !== value);
   state.lists[list] = wanted ? [...others, value] : others;
-  tell(["requirements"], true);
+  tell(["requirements"]);
 }
 
 export function standing(attribute, value) {
@@ -88,7 +89,7 @@ export function standing(attribute, value) {
 
 export function setLimit(name, text) {
   state.limits[name] = text;
-  tell(["requirements"], true);
+  tell(["requirements"]);
 }
 
 /** Replace all requirements by those of a query. */
@@ -99,7 +100,7 @@ export function setRequirements(query) {
   }
   for (const limit of LIMITS) state.limits[limit] = String([query[limit] ?? ""].flat()[0] ?? "");
   for (const list of LISTS) state.lists[list] = [query[list] ?? []].flat();
-  tell(["requirements"], true);
+  tell(["requirements"]);
 }
 
 export function reset() {

@@ -17,11 +17,11 @@ function bibliography(study) {
 }
 
 function links(study) {
-  const record = `/v1/studies/${encodeURIComponent(study.key)}`;
+  const record = `/studies/${encodeURIComponent(study.key)}`;
   return h("p", { class: "links" },
     known(study.doi) && h("a", { href: `https://doi.org/${study.doi}`, rel: "noreferrer" }, `doi:${study.doi}`),
     !known(study.doi) && /^https?:/.test(study.url ?? "") && h("a", { href: study.url, rel: "noreferrer" }, "Record"),
-    h("a", { href: record }, "JSON"),
+    h("a", { href: record }, "All of it"),
     h("span", { class: "state", title: IDENTITIES[study.identity] }, `identity ${study.identity}`),
     h("span", { class: "state" }, STATES[study.state] ?? study.state));
 }
@@ -75,7 +75,7 @@ function evidence(key) {
 
 /** A study with its evidence behind a disclosure. */
 export function studyEntry(key, study) {
-  if (!study) return h("li", { class: "study" }, h("a", { href: `/v1/studies/${encodeURIComponent(key)}` }, key));
+  if (!study) return h("li", { class: "study" }, h("a", { href: `/studies/${encodeURIComponent(key)}` }, key));
   const disclosure = h("details", { class: "flow-links" }, h("summary", {}, `Basis of each value of ${key}`));
   disclosure.addEventListener("toggle", () => disclosure.append(evidence(key)), { once: true });
   return h("li", { class: "study" },

@@ -100,6 +100,13 @@ export const limitText = (name, text) => `${inUnit(name, text)} ${LIMIT_NAMES[na
 export const quoted = (word) => (/^[\w.+-]+$/.test(word) ? word : `'${word}'`);
 export const sentence = (text) => `${text.charAt(0).toUpperCase()}${text.slice(1)}.`;
 
+const WITHOUT = {
+  mask: "no mask", extractor: "no feature extraction", extractor_family: "no feature extraction",
+  model: "no calibration model", model_category: "no calibration model", error: "no error named",
+};
+/** A value as it is written: the survey's "None" says of what there is none. */
+export const worded = (attribute, value) => (value === "None" ? WITHOUT[attribute] ?? value : value);
+
 /** A count, or a sum of fractions of studies. */
 export const amount = (value) => (Number.isInteger(value) ? String(value) : value.toFixed(1));
 export const plural = (n, one, many = `${one}s`) => `${n} ${n === 1 ? one : many}`;

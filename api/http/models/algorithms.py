@@ -6,13 +6,24 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
-from api.http.models.base import Listing, Question, Shape
-from api.http.models.parameters import DEFAULT_PAGE, GIVEN, Cursor, Limit
+from api import columns
+from api.http.models.base import Listing, Shape, TableQuestion
+from api.http.models.parameters import (
+    DEFAULT_PAGE,
+    FIELDS,
+    GIVEN,
+    SORT,
+    Cursor,
+    Limit,
+    Several,
+    columns_of,
+    sorting,
+)
 
 Role = Literal["extractor", "model"]
 
 
-class AlgorithmsQuery(Question):
+class AlgorithmsQuery(TableQuestion):
     """Which implementations."""
 
     model_config = ConfigDict(json_schema_extra={"examples": [{"role": "extractor", "limit": 1}]})
@@ -20,6 +31,8 @@ class AlgorithmsQuery(Question):
     role: Annotated[Role | None, GIVEN] = Field(
         None, description="Only extractors, or only models."
     )
+    sort: Annotated[str | None, sorting(columns.ALGORITHMS), GIVEN] = SORT
+    fields: Several[Annotated[str, columns_of(columns.ALGORITHMS)]] = FIELDS
     limit: Limit = DEFAULT_PAGE
     cursor: Cursor = None
 

@@ -2,18 +2,30 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
-from api.http.models.base import Listing, OpenShape, Question, Shape
-from api.http.models.parameters import DEFAULT_PAGE, Cursor, Limit, Several, several
+from api import columns
+from api.http.models.base import Listing, OpenShape, Shape, TableQuestion
+from api.http.models.parameters import (
+    DEFAULT_PAGE,
+    FIELDS,
+    GIVEN,
+    SORT,
+    Cursor,
+    Limit,
+    Several,
+    columns_of,
+    several,
+    sorting,
+)
 from api.http.models.words import ExtractorName, MethodName, Series, SweepName
 
 Agreement = Literal["agrees", "near", "opposed", "not judged", "not measured"]
 
 
-class SweepsQuery(Question):
+class SweepsQuery(TableQuestion):
     """Which sweeps."""
 
     model_config = ConfigDict(
@@ -29,11 +41,13 @@ class SweepsQuery(Question):
     extractor: Several[ExtractorName] = several(
         "Only this extractor, by the name of its implementation."
     )
+    sort: Annotated[str | None, sorting(columns.SWEEPS), GIVEN] = SORT
+    fields: Several[Annotated[str, columns_of(columns.SWEEPS)]] = FIELDS
     limit: Limit = DEFAULT_PAGE
     cursor: Cursor = None
 
 
-class AssessmentQuery(Question):
+class AssessmentQuery(TableQuestion):
     """Which methods."""
 
     model_config = ConfigDict(json_schema_extra={"examples": [{"method": ["BCTM"]}]})

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+from typing import Annotated, Any, Literal, Protocol
 
 from pydantic import BaseModel, ConfigDict, Field
+
+from api.http.models.parameters import GIVEN
 
 
 class Shape(BaseModel):
@@ -34,6 +36,32 @@ class Question(BaseModel):
 
 class NoParameters(Question):
     """The query of an endpoint that takes none."""
+
+
+class TableQuestion(Question):
+    """The query of what can be had as a table."""
+
+    format: Annotated[Literal["json", "csv"] | None, GIVEN] = Field(
+        None,
+        description="What to answer in, as a link can say it; it has to be among what the Accept "
+        "header takes, if there is one. Left out, that header decides.",
+    )
+
+
+class OnlyFormat(TableQuestion):
+    """The query of a table that takes no other parameters."""
+
+    model_config = ConfigDict(json_schema_extra={"examples": [{}]})
+
+
+class Selected(Shape):
+    """What `fields` makes of a page: rows with these columns alone, nothing nested."""
+
+    model_config = ConfigDict(extra="allow")
+
+    items: list[dict[str, str | float | bool | list[Any] | dict[str, Any] | None]]
+    total: int = Field(description="Items of the whole list.")
+    next: str | None = Field(description="Cursor of the next page; null on the last.")
 
 
 class Paged(Protocol):

@@ -2,20 +2,34 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated, Any
 
 from pydantic import ConfigDict, Field
 
-from api.http.models.base import Listing, OpenShape, Question, Shape
-from api.http.models.parameters import DEFAULT_PAGE, Cursor, Limit, Several, several
+from api import columns
+from api.http.models.base import Listing, OpenShape, Shape, TableQuestion
+from api.http.models.parameters import (
+    DEFAULT_PAGE,
+    FIELDS,
+    GIVEN,
+    SORT,
+    Cursor,
+    Limit,
+    Several,
+    columns_of,
+    several,
+    sorting,
+)
 from api.http.models.words import DatasetName
 
 
-class DatasetsQuery(Question):
+class DatasetsQuery(TableQuestion):
     """Which page of the data sets."""
 
     model_config = ConfigDict(json_schema_extra={"examples": [{"limit": 1}]})
 
+    sort: Annotated[str | None, sorting(columns.DATASETS), GIVEN] = SORT
+    fields: Several[Annotated[str, columns_of(columns.DATASETS)]] = FIELDS
     limit: Limit = DEFAULT_PAGE
     cursor: Cursor = None
 
@@ -42,7 +56,7 @@ class Dataset(OpenShape):
     preview: str = Field(description="Where its picture is served.")
 
 
-class RealismQuery(Question):
+class RealismQuery(TableQuestion):
     """Which data sets."""
 
     model_config = ConfigDict(

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Literal
 
+from pydantic import Field
+
 from api.http.models.base import Shape
 
 
@@ -15,3 +17,9 @@ class Health(Shape):
     studies: int
     datasets: int
     scores: int
+    facts_sha256: str | None = Field(
+        description="Digest of the manifest of the facts that are served; null without one."
+    )
+    record_sha256: str | None = Field(
+        description="Digest of the manifest of the published record that is served; null without."
+    )

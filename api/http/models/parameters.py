@@ -15,6 +15,8 @@ from typing import Annotated, Any, TypeVar
 from pydantic import AfterValidator, Field, GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
+from api.columns import sortable
+
 LARGEST_PAGE = 500
 DEFAULT_PAGE = 200
 MOST_VALUES = 100  # of one parameter
@@ -93,12 +95,31 @@ def several(description: str) -> Any:
     return Field(default_factory=list, description=description)
 
 
+def sorting(columns: Sequence[str]) -> OneOf:
+    """Return the words of `sort`: columns that hold one value a row, also with "-" before."""
+    return OneOf(lambda: tuple(f"{sign}{c}" for c in sortable(columns) for sign in ("", "-")))
+
+
+def columns_of(columns: Sequence[str]) -> OneOf:
+    """Return the words of `fields`."""
+    return OneOf(lambda: tuple(columns))
+
+
 GIVEN = Spelt(".*")
 WHOLE = Whole(r"-?\d{1,18}")
 NUMBER = Spelt(r"-?\d+(?:\.\d+)?(?:[eE][+-]?\d+)?")
 Flag = Annotated[bool, Spelt("true|false")]
 
 Limit = Annotated[int, Field(ge=1, le=LARGEST_PAGE, description="Items on a page."), WHOLE]
+SORT = Field(
+    default=None,
+    description="Order by this column, or from its largest value down with - before it; rows "
+    "without a value come last, and equal ones keep the order of the list.",
+)
+FIELDS = several(
+    "Only these columns of the table, in its order. In JSON, too, an item then is a row of the "
+    "table, with nothing nested."
+)
 Cursor = Annotated[
     str | None,
     Field(

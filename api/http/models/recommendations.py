@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import ConfigDict, Field
 
 from api.http.models import words
-from api.http.models.base import OpenShape, Question, Shape
+from api.http.models.base import OpenShape, Question, Shape, TableQuestion
 from api.http.models.flows import LeftOut, Link, Node
 from api.http.models.parameters import LARGEST_PAGE, NUMBER, WHOLE, Several, several
 from registry.ranking import Sort
@@ -25,21 +25,7 @@ Number = Annotated[float | None, NUMBER]
 
 
 class Requirements(Question):
-    """What a sensor shall have, in a query."""
-
-    model_config = ConfigDict(
-        json_schema_extra={
-            "examples": [
-                {
-                    "task": ["Accuracy"],
-                    "detector": ["CMOS"],
-                    "mask": ["Single-Ap."],
-                    "limit": 1,
-                    "calibrations": 1,
-                }
-            ]
-        }
-    )
+    """What a sensor shall have."""
 
     task: Several[words.Task] = _wanted("task")
     error: Several[words.Error] = _wanted("error")
@@ -102,6 +88,24 @@ class Requirements(Question):
     )
     calibrations: Annotated[int, WHOLE] = Field(
         5, ge=1, le=LARGEST_PAGE, description="Calibrations to return of each architecture."
+    )
+
+
+class RequirementsQuery(Requirements, TableQuestion):
+    """What a sensor shall have, in a query."""
+
+    model_config = ConfigDict(
+        json_schema_extra={
+            "examples": [
+                {
+                    "task": ["Accuracy"],
+                    "detector": ["CMOS"],
+                    "mask": ["Single-Ap."],
+                    "limit": 1,
+                    "calibrations": 1,
+                }
+            ]
+        }
     )
 
 

@@ -6,24 +6,30 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
-from api.http.models.base import Listing, OpenShape, Question
+from api import columns
+from api.http.models.base import Listing, OpenShape, TableQuestion
 from api.http.models.parameters import (
     DEFAULT_PAGE,
+    FIELDS,
     GIVEN,
     NUMBER,
+    SORT,
     Cursor,
+    Flag,
     Limit,
     OneOf,
     Several,
+    columns_of,
     several,
+    sorting,
 )
 from api.http.models.words import Condition, DatasetName, ExtractorName, ModelName
 from benchmark.metrics.rings import EDGES_DEG
 
-FIELDS = tuple(str(edge) for edge in EDGES_DEG[1:])
+FIELD_EDGES = tuple(str(edge) for edge in EDGES_DEG[1:])
 
 
-class ScoresQuery(Question):
+class ScoresQuery(TableQuestion):
     """Which scores."""
 
     model_config = ConfigDict(json_schema_extra={"examples": [{"limit": 1}]})
@@ -34,11 +40,13 @@ class ScoresQuery(Question):
         "Only this extractor, by the name of its implementation."
     )
     model: Several[ModelName] = several("Only this model, by the name of its implementation.")
+    sort: Annotated[str | None, sorting(columns.RESULTS), GIVEN] = SORT
+    fields: Several[Annotated[str, columns_of(columns.RESULTS)]] = FIELDS
     limit: Limit = DEFAULT_PAGE
     cursor: Cursor = None
 
 
-class LeaderboardQuery(Question):
+class LeaderboardQuery(TableQuestion):
     """Which rows of a data set's leaderboard, and what they are ranked by."""
 
     model_config = ConfigDict(json_schema_extra={"examples": [{"limit": 1}]})
@@ -48,7 +56,15 @@ class LeaderboardQuery(Question):
         "Only this extractor, by the name of its implementation."
     )
     model: Several[ModelName] = several("Only this model, by the name of its implementation.")
-    field_deg: Annotated[str | None, OneOf(lambda: FIELDS), GIVEN] = Field(
+    best_of_extractor: Flag = Field(
+        default=False,
+        description="Only the pipeline of each extractor that ranks before its others.",
+    )
+    studied: Flag = Field(
+        default=False,
+        description="Only pipelines that mapped studies used on such a sensor.",
+    )
+    field_deg: Annotated[str | None, OneOf(lambda: FIELD_EDGES), GIVEN] = Field(
         None,
         description="Rank by the error within this angle of the boresight, degrees: rings of the "
         "field count by their solid angle, so that sensors compare at an equal field.",
@@ -60,6 +76,8 @@ class LeaderboardQuery(Question):
         description="Rank by the widest field in whose every ring the RMS error stays within "
         "this, degrees.",
     )
+    sort: Annotated[str | None, sorting(columns.LEADERBOARD), GIVEN] = SORT
+    fields: Several[Annotated[str, columns_of(columns.LEADERBOARD)]] = FIELDS
     limit: Limit = DEFAULT_PAGE
     cursor: Cursor = None
 
@@ -133,6 +151,14 @@ class LeaderboardRow(Score):
         "Pipelines that answer less than 95 % come behind all others; null without an error."
     )
     tied: bool = Field(description="Whether units built alike disagree, so that others share it.")
+    best_of_extractor: bool = Field(
+        description="Whether no other pipeline of its extractor ranks before it. These are listed "
+        "first, the others behind."
+    )
+    studies: list[str] = Field(
+        description="Mapped studies that used this pipeline on such a sensor, or for which it "
+        "stands in."
+    )
     unit_rms_deg: list[float | None] | None = Field(
         description="RMS error on each unit of the sensor, the standard one first; null where one "
         "unit is scored."
@@ -170,6 +196,6 @@ class Leaderboard(OpenShape):
 
 
 class LeaderboardRows(Listing):
-    """A page of a data set's leaderboard, best first within a condition."""
+    """A page of a data set's leaderboard, within a condition the best of each extractor first."""
 
     items: list[LeaderboardRow]

@@ -6,9 +6,22 @@ from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field
 
+from api import columns
 from api.http.models import words
-from api.http.models.base import Listing, Question, Shape
-from api.http.models.parameters import DEFAULT_PAGE, GIVEN, WHOLE, Cursor, Limit, Several, several
+from api.http.models.base import Listing, Shape, TableQuestion
+from api.http.models.parameters import (
+    DEFAULT_PAGE,
+    FIELDS,
+    GIVEN,
+    SORT,
+    WHOLE,
+    Cursor,
+    Limit,
+    Several,
+    columns_of,
+    several,
+    sorting,
+)
 from registry.sensors import Basis
 from registry.taxonomy import ATTRIBUTES
 
@@ -20,7 +33,7 @@ def _filter(attribute: str, more: str = "") -> Any:
     return several(f"{text} Different attributes must all match.")
 
 
-class StudyFilters(Question):
+class StudyFilters(TableQuestion):
     """Filters by the attributes of studies."""
 
     task: Several[words.Task] = _filter("task")
@@ -58,6 +71,8 @@ class StudiesQuery(StudyFilters):
         description="Only studies whose key, title, authors or venue have all these words, case "
         "aside.",
     )
+    sort: Annotated[str | None, sorting(columns.STUDIES), GIVEN] = SORT
+    fields: Several[Annotated[str, columns_of(columns.STUDIES)]] = FIELDS
     limit: Limit = DEFAULT_PAGE
     cursor: Cursor = None
 

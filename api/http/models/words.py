@@ -7,6 +7,7 @@ from functools import cache
 from typing import Annotated
 
 from api.http.models.parameters import OneOf
+from benchmark.claims.rules import VERDICTS
 from benchmark.reference.series import SWEEPS
 from benchmark.sweeps.plan import SERIES
 from registry.catalogue import catalogue
@@ -44,6 +45,14 @@ def assessed_methods() -> tuple[str, ...]:
     return tuple(dict.fromkeys(load().feature_assessment["extractor"]))
 
 
+@cache
+def claim_ids() -> tuple[str, ...]:
+    """Ids of the survey's claims."""
+    from survey_data import load  # noqa: PLC0415 - slow, as above
+
+    return tuple(load().claims["id"])
+
+
 Task = Annotated[str, OneOf(_values_of("task"))]
 Error = Annotated[str, OneOf(_values_of("error"))]
 Accuracy = Annotated[str, OneOf(_values_of("accuracy"))]
@@ -64,3 +73,5 @@ ModelName = Annotated[str, OneOf(lambda: tuple(catalogue().models))]
 MethodName = Annotated[str, OneOf(assessed_methods)]
 Series = Annotated[str, OneOf(lambda: tuple(SERIES))]
 SweepName = Annotated[str, OneOf(lambda: tuple(SWEEPS))]
+ClaimId = Annotated[str, OneOf(claim_ids)]
+ClaimVerdict = Annotated[str, OneOf(lambda: (*VERDICTS, "not measured"))]

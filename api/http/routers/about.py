@@ -1,4 +1,4 @@
-"""/healthz and /openapi.json: what the service says of itself."""
+"""/healthz, /metrics, /openapi.json and /docs: what the service says of itself."""
 
 from __future__ import annotations
 
@@ -11,7 +11,11 @@ from api.http.answers import StrictRoute
 from api.http.dependencies import JSON_ONLY, NO_PARAMETERS, Known
 from api.http.models.health import Health
 from api.http.negotiation import JSON
+from api.http.observation import exposition
+from api.http.reference import reference
 from api.http.representations import Representation, RepresentationCache
+
+EXPOSITION = "text/plain; version=0.0.4; charset=utf-8"
 
 router = APIRouter(route_class=StrictRoute, dependencies=[NO_PARAMETERS])
 
@@ -20,7 +24,10 @@ router = APIRouter(route_class=StrictRoute, dependencies=[NO_PARAMETERS])
     "/healthz", summary="State of the service", response_model=Health, dependencies=[JSON_ONLY]
 )
 async def health(request: Request, response: Response, known: Known) -> dict[str, Any]:
-    """Whether it answers, and with how much. It is asked anew each time and never stored."""
+    """Whether it answers, with how much, and of which facts and record (digests of manifests).
+
+    It is asked anew each time and never stored.
+    """
     response.headers["Cache-Control"] = "no-store"
     return {
         "status": "ok",
@@ -28,6 +35,8 @@ async def health(request: Request, response: Response, known: Known) -> dict[str
         "studies": len(known.facts.studies),
         "datasets": len(known.measurements.presets),
         "scores": len(known.measurements.scores),
+        "facts_sha256": known.facts_digest,
+        "record_sha256": known.measurements.digest,
     }
 
 
@@ -40,3 +49,23 @@ def openapi(request: Request) -> Response:
         found = Representation(to_json(request.app.openapi()), JSON, {"Vary": "Accept-Encoding"})
         kept.put("openapi", found)
     return found.respond(request)
+
+
+@router.get("/docs", include_in_schema=False)
+def docs(request: Request) -> Response:
+    """Give the API reference."""
+    kept: RepresentationCache = request.app.state.kept
+    found = kept.get("docs")
+    if found is None:
+        text = reference(request.app.openapi())
+        vary = {"Vary": "Accept-Encoding"}
+        found = Representation(text.encode(), "text/html; charset=utf-8", vary)
+        kept.put("docs", found)
+    return found.respond(request)
+
+
+@router.get("/metrics", include_in_schema=False)
+def metrics() -> Response:
+    """Give counts and times of requests to Prometheus (its text format)."""
+    headers = {"Cache-Control": "no-store"}
+    return Response(exposition(), headers=headers, media_type=EXPOSITION)

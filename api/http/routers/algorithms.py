@@ -6,17 +6,19 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query
 
+from api import columns
 from api.http.answers import Answer, AnswerRoute, listing
 from api.http.dependencies import Known
-from api.http.models.algorithms import Algorithm, Algorithms, AlgorithmsQuery
-from api.http.pagination import page
+from api.http.models.algorithms import Algorithms, AlgorithmsQuery
+from api.http.models.base import Selected
+from api.http.pagination import ordered, page
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
 
-@router.get("/algorithms", summary="The implementations", response_model=Algorithms)
+@router.get("/algorithms", summary="The implementations", response_model=Algorithms | Selected)
 async def algorithms(known: Known, query: Annotated[AlgorithmsQuery, Query()]) -> Answer:
     """Extractors and models, each with the value it implements and the studies it follows."""
-    shown = page(known.catalogue.listing(query.role), "/v1/algorithms", query)
-    items = [implementation.to_dict() for implementation in shown.items]
-    return listing(shown, items, tuple(Algorithm.model_fields))
+    found = [implementation.to_dict() for implementation in known.catalogue.listing(query.role)]
+    shown = page(ordered(found, query.sort), "/v1/algorithms", query)
+    return listing(shown, shown.items, columns.ALGORITHMS, fields=query.fields)

@@ -6,43 +6,46 @@ from typing import Annotated
 
 from fastapi import APIRouter, Path, Query
 
+from api import columns
 from api.http.answers import Answer, AnswerRoute, Picture, listing
-from api.http.dependencies import NO_PARAMETERS, Known
+from api.http.dependencies import AS_ACCEPTED, NO_PARAMETERS, Known, TableOnly
+from api.http.models.base import Selected
 from api.http.models.datasets import DatasetDetail, Datasets, DatasetsQuery
 from api.http.models.words import DatasetName
-from api.http.pagination import page
+from api.http.pagination import ordered, page
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
-
-COLUMNS = ("name", "version", "detector", "mask", "observation", "conditions")
-DATA_COLUMNS = ("condition", "split", "samples", "data_hash", "bound_deg")
 
 Name = Annotated[
     DatasetName, Path(description="Name of the data set.", examples=["cmos-single-aperture"])
 ]
 
 
-@router.get("/datasets", summary="The standard data sets", response_model=Datasets)
+@router.get("/datasets", summary="The standard data sets", response_model=Datasets | Selected)
 async def datasets(known: Known, query: Annotated[DatasetsQuery, Query()]) -> Answer:
     """Short cards of the simulated data sets every pipeline is scored on."""
-    shown = page(known.measurements.cards, "/v1/datasets", query)
-    return listing(shown, shown.items, COLUMNS)
+    cards = ordered(known.measurements.cards, query.sort)
+    shown = page(cards, "/v1/datasets", query)
+    return listing(shown, shown.items, columns.DATASETS, fields=query.fields)
 
 
 @router.get(
     "/datasets/{name}",
     summary="One data set",
     response_model=DatasetDetail,
-    dependencies=[NO_PARAMETERS],
 )
-async def dataset(known: Known, name: Name) -> Answer:
+async def dataset(
+    known: Known,
+    name: Name,
+    query: TableOnly = AS_ACCEPTED,  # noqa: ARG001 - the route has read it
+) -> Answer:
     """Its card: all that its numbers depend on, and what is published of them.
 
     That is geometry, conditions with every parameter, seeds, the bound of each condition, the hash
     of each split, and where its picture is. As CSV: the hashes and bounds.
     """
     card = known.measurements.card(name)
-    return Answer(card, DATA_COLUMNS, lambda: card["data"])
+    return Answer(card, columns.DATASET, lambda: card["data"])
 
 
 @router.get(

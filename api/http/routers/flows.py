@@ -6,6 +6,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Path, Query
 
+from api import columns
 from api.http.answers import Answer, AnswerRoute
 from api.http.dependencies import Known
 from api.http.models.flows import Flows, FlowsQuery
@@ -13,8 +14,6 @@ from api.http.models.words import Chart
 from registry.flows import chart as flows_of
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
-
-COLUMNS = ("source", "target", "value", "studies")
 
 
 @router.get("/flows/{chart}", summary="A decision flow", response_model=Flows)
@@ -31,4 +30,4 @@ async def flows(
     found = flows_of(
         chart, query.wanted(), query.counting, grouped=query.grouped, facts=known.facts
     )
-    return Answer(found.to_dict(), COLUMNS, lambda: [link.to_dict() for link in found.links])
+    return Answer(found.to_dict(), columns.FLOWS, lambda: [link.to_dict() for link in found.links])

@@ -1,4 +1,4 @@
-"""The page: its static files, and Plotly's."""
+"""Static files of the pages."""
 
 from __future__ import annotations
 
@@ -9,12 +9,6 @@ from api.http.dependencies import NO_PARAMETERS
 from api.http.page import page_file
 
 router = APIRouter(route_class=StrictRoute, include_in_schema=False)
-
-
-@router.get("/")
-async def index(request: Request) -> Response:
-    """Give the page; what stands in its query is for its script."""
-    return page_file("index.html").respond(request)
 
 
 @router.get("/page/{name:path}", dependencies=[NO_PARAMETERS])

@@ -7,17 +7,12 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query
 
+from api import columns
 from api.http.answers import Answer, AnswerRoute
 from api.http.dependencies import Known
 from api.http.models.datasets import BuiltSensor, Realism, RealismQuery
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
-
-COLUMNS = (
-    *("dataset", "rms_deg", "bound_deg", "repeatability_deg", "id", "name", "fov_full_deg"),
-    *("accuracy_deg", "accuracy_kind", "accuracy_rms_deg", "precision_deg", "basis"),
-    *("accuracy_ratio", "precision_ratio", "explanation", "source"),
-)
 
 
 @router.get("/realism", summary="Data sets beside built sensors", response_model=Realism)
@@ -33,7 +28,7 @@ async def realism(known: Known, query: Annotated[RealismQuery, Query()]) -> Answ
         for row in known.measurements.realism
         if not query.dataset or row["dataset"] in query.dataset
     ]
-    return Answer({"datasets": chosen}, COLUMNS, lambda: _rows(chosen))
+    return Answer({"datasets": chosen}, columns.REALISM, lambda: _rows(chosen))
 
 
 def _rows(chosen: list[Mapping[str, Any]]) -> list[Mapping[str, Any]]:

@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import APIRouter, Body, Query
 
+from api import columns
 from api.http.answers import Answer, AnswerRoute
-from api.http.dependencies import NO_PARAMETERS, Known
+from api.http.dependencies import AS_ACCEPTED, Known, TableOnly
 from api.http.knowledge import Knowledge
-from api.http.models.recommendations import Recommendations, Requirements, RequirementsBody
+from api.http.models.recommendations import (
+    Recommendations,
+    Requirements,
+    RequirementsBody,
+    RequirementsQuery,
+)
+from api.recommending import rows
 from registry.recommendation import recommend as ranked
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
-COLUMNS = (
-    *("rank", "detector", "mask", "advised", "studies", "pareto", "calibration"),
-    *("extractor", "compensations", "model", "calibration_studies", "support"),
-)
 DESCRIPTION = (
     "Which sensor: detector and mask. How to calibrate it: extractor, compensations, model. Three "
     "kinds of evidence stay apart: what the survey advises, what studies proposed, what is "
@@ -33,7 +35,7 @@ DESCRIPTION = (
     description=DESCRIPTION,
     response_model=Recommendations,
 )
-async def recommendations(known: Known, query: Annotated[Requirements, Query()]) -> Answer:
+async def recommendations(known: Known, query: Annotated[RequirementsQuery, Query()]) -> Answer:
     """Recommend for requirements in a query."""
     return _answer(query, known)
 
@@ -43,15 +45,18 @@ async def recommendations(known: Known, query: Annotated[Requirements, Query()])
     summary="Which sensor, which calibration (requirements in a body)",
     description=DESCRIPTION,
     response_model=Recommendations,
-    dependencies=[NO_PARAMETERS],
 )
-async def recommend(known: Known, body: Annotated[RequirementsBody, Body()]) -> Answer:
+async def recommend(
+    known: Known,
+    body: Annotated[RequirementsBody, Body()],
+    query: TableOnly = AS_ACCEPTED,  # noqa: ARG001 - the route has read it
+) -> Answer:
     """Recommend for requirements in a body."""
     return _answer(body, known)
 
 
 def _answer(requirements: Requirements, known: Knowledge) -> Answer:
-    asked = requirements.model_dump(exclude={"limit", "calibrations", "sort"})
+    asked = requirements.model_dump(exclude={"limit", "calibrations", "sort", "format"})
     found = ranked(
         asked,
         known.measured,
@@ -61,18 +66,4 @@ def _answer(requirements: Requirements, known: Knowledge) -> Answer:
         facts=known.facts,
     )
     document = found.to_dict()
-    return Answer(document, COLUMNS, lambda: list(rows(document)))
-
-
-def rows(document: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
-    """Yield a row a calibration of an answer; what is not measured has empty measured cells."""
-    for architecture in document["architectures"]:
-        for calibration in architecture["calibrations"]:
-            yield {
-                **{name: architecture[name] for name in COLUMNS[:6]},
-                "calibration": calibration["rank"],
-                **{name: calibration[name] for name in ("extractor", "compensations", "model")},
-                "calibration_studies": calibration["studies"],
-                "support": calibration["support"],
-                "measured": calibration["measured"] or {},
-            }
+    return Answer(document, columns.RECOMMENDATIONS, lambda: list(rows(document)))

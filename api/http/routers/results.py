@@ -6,22 +6,20 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query
 
+from api import columns
 from api.http.answers import Answer, AnswerRoute, listing
 from api.http.dependencies import Known
+from api.http.models.base import Selected
 from api.http.models.scores import Scores, ScoresQuery
-from api.http.pagination import narrowed, page
+from api.http.pagination import narrowed, ordered, page
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
-COLUMNS = (
-    *("dataset", "condition", "extractor", "model", "status", "rms_deg", "bound_deg"),
-    *("bound_unit_deg", "floor_deg"),
-)
 
-
-@router.get("/results", summary="The scores", response_model=Scores)
+@router.get("/results", summary="The scores", response_model=Scores | Selected)
 async def results(known: Known, query: Annotated[ScoresQuery, Query()]) -> Answer:
     """One row a data set, condition, extractor and model, failures included."""
     names = ("dataset", "condition", "extractor", "model")
-    shown = page(narrowed(known.measurements.scores, query, names), "/v1/results", query)
-    return listing(shown, shown.items, COLUMNS)
+    rows = ordered(narrowed(known.measurements.scores, query, names), query.sort)
+    shown = page(rows, "/v1/results", query)
+    return listing(shown, shown.items, columns.RESULTS, fields=query.fields)

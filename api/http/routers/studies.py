@@ -6,40 +6,32 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Path, Query
 
+from api import columns
 from api.http.answers import Answer, AnswerRoute, listing
-from api.http.dependencies import NO_PARAMETERS, Known
+from api.http.dependencies import AS_ACCEPTED, Known, TableOnly
 from api.http.knowledge import Knowledge
+from api.http.models.base import Selected
 from api.http.models.studies import Studies, StudiesQuery, StudyDetail
 from api.http.models.words import StudyKey
-from api.http.pagination import page
+from api.http.pagination import ordered, page
 from registry.resolution import RunnablePipeline
 from registry.studies import Study
-from registry.taxonomy import ATTRIBUTES, NUMERIC_ATTRIBUTES
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
-COLUMNS = (
-    *("key", "title", "authors", "year", "venue", "doi", "url", "identity", "state"),
-    *(*ATTRIBUTES, *NUMERIC_ATTRIBUTES),
-)
-DETAIL_COLUMNS = ("attribute", "value", "basis", "source", "note", "role")
 
-
-@router.get("/studies", summary="The mapped studies", response_model=Studies)
+@router.get("/studies", summary="The mapped studies", response_model=Studies | Selected)
 async def studies(known: Known, query: Annotated[StudiesQuery, Query()]) -> Answer:
     """Studies of the survey's mapping: 129, where it states 128. Filters narrow the list."""
     found = [study for study in known.facts.studies.values() if _is_wanted(study, query, known)]
-    shown = page(found, "/v1/studies", query)
-    items = [_row(study, known) for study in shown.items]
+    rows = ordered([_row(study, known) for study in found], query.sort)
+    shown = page(rows, "/v1/studies", query)
     return listing(
         shown,
-        items,
-        COLUMNS,
-        lambda: [
-            {name: value for name, value in item.items() if name not in {"values", "runs"}}
-            | item["values"]
-            for item in items
-        ],
+        shown.items,
+        columns.STUDIES,
+        lambda: [{**item, **item["values"]} for item in shown.items],
+        fields=query.fields,
     )
 
 
@@ -47,11 +39,11 @@ async def studies(known: Known, query: Annotated[StudiesQuery, Query()]) -> Answ
     "/studies/{key}",
     summary="One study",
     response_model=StudyDetail,
-    dependencies=[NO_PARAMETERS],
 )
 async def study(
     known: Known,
     key: Annotated[StudyKey, Path(description="Key of the study.", examples=["Chang2008"])],
+    query: TableOnly = AS_ACCEPTED,  # noqa: ARG001 - the route has read it
 ) -> Answer:
     """Every value of the mapping with its basis, and what of the study is scored.
 
@@ -72,7 +64,7 @@ async def study(
         ],
         "gaps": [gap.to_dict() for gap in resolution.gaps],
     }
-    return Answer(document, DETAIL_COLUMNS, lambda: document["attributes"])
+    return Answer(document, columns.STUDY, lambda: document["attributes"])
 
 
 def _row(study: Study, known: Knowledge) -> dict[str, Any]:

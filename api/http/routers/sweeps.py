@@ -6,17 +6,17 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query
 
+from api import columns
 from api.http.answers import Answer, AnswerRoute, listing
 from api.http.dependencies import Known
 from api.http.models.assessment import Sweeps, SweepsQuery
-from api.http.pagination import narrowed, page
+from api.http.models.base import Selected
+from api.http.pagination import narrowed, ordered, page
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
-COLUMNS = ("series", "sweep", "point", "extractor", "rms", "bound", "over_bound")
 
-
-@router.get("/sweeps", summary="Sweeps on reference features", response_model=Sweeps)
+@router.get("/sweeps", summary="Sweeps on reference features", response_model=Sweeps | Selected)
 async def sweeps(known: Known, query: Annotated[SweepsQuery, Query()]) -> Answer:
     """Error of every extractor over noise, feature size, sub-pixel phase and more.
 
@@ -24,5 +24,5 @@ async def sweeps(known: Known, query: Annotated[SweepsQuery, Query()]) -> Answer
     says why an extractor is not measured on a feature.
     """
     rows = narrowed(known.measurements.sweeps, query, ("series", "sweep", "extractor"))
-    shown = page(rows, "/v1/sweeps", query)
-    return listing(shown, shown.items, COLUMNS)
+    shown = page(ordered(rows, query.sort), "/v1/sweeps", query)
+    return listing(shown, shown.items, columns.SWEEPS, fields=query.fields)

@@ -4,22 +4,23 @@ from __future__ import annotations
 
 from fastapi import APIRouter
 
+from api import columns
 from api.http.answers import Answer, AnswerRoute
-from api.http.dependencies import NO_PARAMETERS, Known
+from api.http.dependencies import AS_ACCEPTED, Known, TableOnly
 from api.http.models.taxonomy import Taxonomy
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
-
-COLUMNS = ("attribute", "value", "name", "category", "section")
 
 
 @router.get(
     "/taxonomy",
     summary="The vocabulary",
     response_model=Taxonomy,
-    dependencies=[NO_PARAMETERS],
 )
-async def taxonomy(known: Known) -> Answer:
+async def taxonomy(
+    known: Known,
+    query: TableOnly = AS_ACCEPTED,  # noqa: ARG001 - the route has read it
+) -> Answer:
     """Every value that an attribute of a study may take.
 
     Each has its name, category and section of the survey. Other endpoints take these values as
@@ -28,7 +29,7 @@ async def taxonomy(known: Known) -> Answer:
     attributes = known.taxonomy.to_dict()
     return Answer(
         {"attributes": attributes},
-        COLUMNS,
+        columns.TAXONOMY,
         lambda: [
             {"attribute": attribute, **entry}
             for attribute, entries in attributes.items()

@@ -1,0 +1,85 @@
+"""Every figure by its name."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from api.figures import coordinates, matrix, publications, sunburst
+from api.figures.addresses import Addresses
+from api.figures.coordinates import coordinates_figure
+from api.figures.figure import Figure
+from api.figures.flow_figures import CHAINS, flow_figure
+from api.figures.matrix import matrix_figure
+from api.figures.publications import publications_figure
+from api.figures.sunburst import sunburst_figure
+from registry.flows import Where
+from registry.studies import Facts
+from registry.taxonomy import unknown_name
+
+_OTHERS = {
+    sunburst.NAME: (sunburst_figure, sunburst.TITLE, sunburst.CAPTION),
+    publications.NAME: (publications_figure, publications.TITLE, publications.CAPTION),
+    coordinates.NAME: (coordinates_figure, coordinates.TITLE, coordinates.CAPTION),
+}
+MATRIX = matrix.NAME
+
+TITLES: Mapping[str, tuple[str, str]] = MappingProxyType(
+    {
+        **{name: (chain.title, chain.caption) for name, chain in CHAINS.items()},
+        **{name: (title, caption) for name, (_, title, caption) in _OTHERS.items()},
+    }
+)
+"""The survey's figures: name -> title and caption."""
+
+LEVELS: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {
+        **{name: chain.levels for name, chain in CHAINS.items()},
+        sunburst.NAME: sunburst.LEVELS,
+        publications.NAME: ("year",),
+        coordinates.NAME: ("year", "detector", "mask", "accuracy"),
+    }
+)
+"""What each figure shows of a study."""
+
+
+def figure(
+    name: str,
+    facts: Facts,
+    where: Where | None = None,
+    page: str | None = None,
+) -> Figure:
+    """Return one of the survey's figures.
+
+    Parameters
+    ----------
+    name : of `TITLES`
+    facts : the studies
+    where : keeps some of them, as `registry.flows.flows` does
+    page : address of the figure's page, with its query; where rows of its table are linked to
+
+    Raises
+    ------
+    InvalidValueError
+        For a name, a level or a value that is not known.
+    """
+    if name not in TITLES:
+        raise unknown_name("figure", name, TITLES)
+    wanted = where or {}
+    addresses = Addresses(facts, page or f"/figures/{name}", wanted)
+    if name in CHAINS:
+        return flow_figure(name, facts, addresses, wanted)
+    return _OTHERS[name][0](facts, addresses, wanted)
+
+
+def evidence_map(
+    facts: Facts,
+    where: Where | None = None,
+    rows: str = matrix.ROWS,
+    columns: str = matrix.COLUMNS_OF,
+    page: str | None = None,
+) -> Figure:
+    """Return the matrix of studies by two attributes or levels; raises as `matrix_figure`."""
+    wanted = where or {}
+    addresses = Addresses(facts, page or f"/figures/{matrix.NAME}", wanted)
+    return matrix_figure(facts, addresses, wanted, rows, columns)

@@ -1,0 +1,174 @@
+"""The Sankey diagrams: error, performance, cross-analysis, its aggregate, and task."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+from api import columns as table_columns
+from api.figures import wording
+from api.figures.addresses import Addresses
+from api.figures.figure import Figure, in_words
+from api.figures.sankey_drawing import Mark, SankeyMarks, draw_sankey
+from registry.flows import Flows, Node, Where, flows
+from registry.studies import Facts
+
+
+@dataclass(frozen=True)
+class Chain:
+    """A Sankey diagram of the survey: its levels from left to right."""
+
+    title: str
+    levels: tuple[str, ...]
+    caption: str
+
+
+CHAINS: Mapping[str, Chain] = MappingProxyType(
+    {
+        "error": Chain(
+            "Errors",
+            ("error", "detector", "mask"),
+            "Which sources of error are addressed on which detector, behind which mask.",
+        ),
+        "performance": Chain(
+            "Performance",
+            ("accuracy", "mask", "model_category"),
+            "Which masks and kinds of calibration model reach which class of accuracy.",
+        ),
+        "cross-analysis": Chain(
+            "Cross-analysis",
+            ("task", "detector", "mask", "model", "extractor"),
+            "From what a study wants to improve, through its sensor, to its calibration.",
+        ),
+        "task": Chain(
+            "Tasks",
+            ("task", "detector", "mask"),
+            "Which sensors studies build for which task.",
+        ),
+        "aggregate": Chain(
+            "Cross-analysis, aggregated",
+            ("task", "detector", "mask", "model_category", "extractor_family"),
+            "The cross-analysis with models and extractors by their families.",
+        ),
+    }
+)
+"""The survey's errorsankey, perfsankey and casankey, and the two that its Tableau page adds."""
+
+_PINNED = ("accuracy",)  # from coarse to ultra fine, whatever crosses
+
+
+def flow_figure(name: str, facts: Facts, addresses: Addresses, where: Where) -> Figure:
+    """Return a Sankey diagram of the studies that meet `where`.
+
+    Parameters
+    ----------
+    name : of `CHAINS`
+    facts : the studies
+    addresses : where marks lead
+    where : as `registry.flows.flows` takes it
+
+    Raises
+    ------
+    InvalidValueError
+        As `registry.flows.flows`.
+    """
+    chain = CHAINS[name]
+    found = flows(chain.levels, where, facts=facts)
+    taxonomy = facts.taxonomy
+    nodes = {node.id: node for node in found.nodes}
+    rows: list[dict[str, object]] = []
+    marks: dict[str, Mark] = {}
+    for node in found.nodes:
+        said = wording.spelt(taxonomy, node.level, node.value)
+        title = f"{wording.LEVELS[node.level]} {said}: {wording.studies(node.count)}"
+        href = addresses.of(node.studies, {node.level: node.value}, len(rows))
+        marks[node.id] = Mark(title, href)
+        rows.append(_row(node, None, node.studies))
+    bands: dict[tuple[str, str], Mark] = {}
+    for link in found.links:
+        source, target = nodes[link.source], nodes[link.target]
+        ends = [wording.shown(end.level, end.value) for end in (source, target)]
+        title = f"{ends[0]} → {ends[1]}: {wording.studies(link.value)}"
+        given = {source.level: source.value, target.level: target.value}
+        href = addresses.of(link.studies, given, len(rows))
+        bands[link.source, link.target] = Mark(title, href)
+        rows.append(_row(source, target, link.studies))
+
+    linked = {node for ends in bands for node in ends}
+    columns = [
+        [n.id for n in found.nodes if n.level == level and n.id in linked] for level in chain.levels
+    ]
+    drawn = SankeyMarks(
+        columns=columns,
+        values={(link.source, link.target): link.value for link in found.links},
+        labels={
+            node.id: (wording.shown(node.level, node.value), wording.amount(node.count))
+            for node in found.nodes
+        },
+        colours={
+            node.id: taxonomy.values(node.level).index(node.value) % 8 + 1 for node in found.nodes
+        },
+        headings=[wording.LEVELS[level] for level in chain.levels],
+        pinned=[at for at, level in enumerate(chain.levels) if level in _PINNED],
+        nodes=marks,
+        bands=bands,
+    )
+    return Figure(
+        name=name,
+        title=chain.title,
+        caption=chain.caption,
+        text=_text(found, facts),
+        studies=len(found.studies),
+        left_out=found.left_out,
+        columns=table_columns.FIGURE_FLOWS,
+        rows=tuple(rows),
+        draw=lambda width: draw_sankey(drawn, width),
+    )
+
+
+def _row(node: Node, target: Node | None, studies: tuple[str, ...]) -> dict[str, object]:
+    """Return a row of the table: of a value, or of a flow from it to a value of the next level."""
+    return {
+        "level": node.level,
+        "value": node.value,
+        "name": node.name,
+        "next_level": "" if target is None else target.level,
+        "next_value": "" if target is None else target.value,
+        "next_name": "" if target is None else target.name,
+        "count": len(studies),
+        "studies": list(studies),
+    }
+
+
+def _text(found: Flows, facts: Facts) -> tuple[str, ...]:
+    """Return the most frequent value of each level and the widest flow between each two."""
+    heads = [wording.LEVELS[level].lower() for level in found.levels]
+    total = wording.studies(len(found.studies))
+    wide = "a band is as wide as the studies that have both values"
+    said = [f"Flow of {total} through {wording.listed(heads)}, left to right; {wide}."]
+    for level in found.levels:
+        nodes = [node for node in found.nodes if node.level == level]
+        if nodes:
+            most = max(nodes, key=lambda node: node.count)
+            value = wording.spelt(facts.taxonomy, level, most.value)
+            among = wording.plural(len(nodes), "value", "values")
+            said.append(
+                f"Most frequent {wording.LEVELS[level].lower()}: {value}, "
+                f"{wording.studies(most.count)}, among {among}."
+            )
+    values = {node.id: node for node in found.nodes}
+    for level in found.levels[:-1]:
+        links = [link for link in found.links if values[link.source].level == level]
+        if links:
+            widest = max(links, key=lambda link: link.value)
+            ends = [
+                wording.shown(values[end].level, values[end].value)
+                for end in (widest.source, widest.target)
+            ]
+            said.append(
+                f"Widest flow from {wording.LEVELS[level].lower()}: {ends[0]} to {ends[1]}, "
+                f"{wording.studies(widest.value)}."
+            )
+    missing = in_words(found.left_out, wording.LEVELS)
+    return (*said, missing) if missing else tuple(said)

@@ -1,0 +1,73 @@
+"""The guide's site as it is served: files of a directory that may be built while we serve."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from pathlib import Path
+
+from fastapi import Request, Response
+
+from api.guide import site
+from api.http.page import ALREADY_COMPRESSED, CONTENT_TYPES
+from api.http.problems import Problem, Violation
+from api.http.representations import Representation
+
+INDEX = "index.html"
+#: Seconds after which whoever waits for the guide asks again.
+PATIENCE_S = 3
+
+_WAITING = """<!doctype html>
+<html lang="en"><head><meta charset="utf-8"><title>The guide is being built</title>
+<meta name="viewport" content="width=device-width"><meta http-equiv="refresh" content="{again}">
+</head><body><h1>The guide is being built</h1>
+<p>This takes some seconds, once. The page loads again by itself; <a href="/">the atlas</a> is there
+meanwhile.</p></body></html>
+"""
+_MISSING = """<!doctype html>
+<html lang="en"><head><meta charset="utf-8"><title>The guide is not installed</title>
+<meta name="viewport" content="width=device-width"></head><body><h1>The guide is not installed</h1>
+<p>What builds it is an extra: <code>{install}</code>, then <code>sunatlas guide build</code>.
+<a href="/">The atlas</a> does without it.</p></body></html>
+"""
+
+
+def respond(request: Request, name: str) -> Response:
+    """Give a file of the guide; where it is not built yet, a page that says so and waits (503).
+
+    Parameters
+    ----------
+    request : asked
+    name : of the file, below /guide/; a directory stands for its index
+
+    Raises
+    ------
+    Problem
+        404 where the guide has no such file.
+    """
+    place = site.kept()
+    if place is None:
+        return _unavailable(_MISSING.format(install=site.INSTALL), {})
+    if not place.is_dir():
+        again = str(PATIENCE_S)
+        return _unavailable(_WAITING.format(again=again), {"Retry-After": again})
+    return _file(place, name or INDEX).respond(request)
+
+
+@lru_cache(maxsize=256)
+def _file(place: Path, name: str) -> Representation:
+    """Return a file of the site, read and compressed once; only what lies in it."""
+    path = place / name
+    known = path.suffix in CONTENT_TYPES and ".." not in Path(name).parts
+    if not (known and path.is_file() and path.resolve().is_relative_to(place.resolve())):
+        raise Problem(404, "unknown-file", errors=[Violation("file", name, "a file of the guide")])
+    return Representation(
+        path.read_bytes(),
+        CONTENT_TYPES[path.suffix],
+        {"Vary": "Accept-Encoding"},
+        compressible=path.suffix not in ALREADY_COMPRESSED,
+    )
+
+
+def _unavailable(text: str, headers: dict[str, str]) -> Response:
+    kept = {"Content-Type": "text/html; charset=utf-8", "Cache-Control": "no-store", **headers}
+    return Response(text, 503, headers=kept)

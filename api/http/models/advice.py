@@ -1,0 +1,80 @@
+"""What the survey advises, and how the survey and the scores came about."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import ConfigDict, Field
+
+from api import columns
+from api.http.models.base import Listing, Shape, TableQuestion
+from api.http.models.parameters import (
+    DEFAULT_PAGE,
+    FIELDS,
+    GIVEN,
+    SORT,
+    Cursor,
+    Limit,
+    Several,
+    columns_of,
+    several,
+    sorting,
+)
+from api.http.models.words import Detector, Mask
+
+Requirement = Literal["task", "accuracy", "error"]
+
+
+class AdviceQuery(TableQuestion):
+    """Which pieces of advice."""
+
+    model_config = ConfigDict(
+        json_schema_extra={"examples": [{"requirement": ["task"], "mask": ["Slit"], "limit": 1}]}
+    )
+
+    requirement: Several[Requirement] = several("Only advice for tasks, accuracies or errors.")
+    detector: Several[Detector] = several("Only advice that names this detector.")
+    mask: Several[Mask] = several("Only advice that names this mask.")
+    sort: Annotated[str | None, sorting(columns.ADVICE), GIVEN] = SORT
+    fields: Several[Annotated[str, columns_of(columns.ADVICE)]] = FIELDS
+    limit: Limit = DEFAULT_PAGE
+    cursor: Cursor = None
+
+
+class Advice(Shape):
+    """One piece of advice of the survey's text; what is empty it leaves open."""
+
+    id: str
+    requirement: Requirement = Field(
+        description="Of what: a task, a class of accuracy, or an error that is met there."
+    )
+    value: str = Field(description="Which one.")
+    detector: str
+    mask: str
+    model_category: str
+    extractor: str = Field(description="An extractor or a family of them.")
+    section: str = Field(description="Of the survey.")
+    note: str
+
+
+class Advices(Listing):
+    """A page of advice."""
+
+    items: list[Advice]
+
+
+class Statement(Shape):
+    """One sentence of a protocol."""
+
+    about: Literal["survey", "scores"]
+    kind: str
+    id: str
+    text: str
+    section: str = Field(description="Of the survey; empty for what is measured here.")
+
+
+class Protocol(Shape):
+    """How studies were found and chosen by the survey, and how scores come about here."""
+
+    survey: list[Statement]
+    scores: list[Statement]

@@ -1,0 +1,69 @@
+"""Figures of the survey."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import ConfigDict, Field
+
+from api.figures.catalogue import TITLES
+from api.figures.matrix import COLUMNS_OF, ROWS
+from api.http.models.base import Shape
+from api.http.models.flows import LeftOut
+from api.http.models.parameters import OneOf
+from api.http.models.studies import StudyFilters
+from registry.taxonomy import LEVELS
+
+FigureName = Annotated[str, OneOf(lambda: tuple(TITLES))]
+Level = Annotated[str, OneOf(lambda: LEVELS)]
+
+
+class FigureQuery(StudyFilters):
+    """Of which studies."""
+
+    model_config = ConfigDict(json_schema_extra={"examples": [{"detector": ["Event"]}]})
+
+
+class MatrixQuery(StudyFilters):
+    """Of which studies, by which two attributes or what their values imply."""
+
+    model_config = ConfigDict(
+        json_schema_extra={
+            "examples": [{"rows": "accuracy", "columns": "calibration", "detector": ["Event"]}]
+        }
+    )
+
+    rows: Level = Field(ROWS, description="Attribute of the rows.")
+    columns: Level = Field(
+        COLUMNS_OF, description="Attribute of the columns; the rows' own shows what goes together."
+    )
+
+
+class ListedFigure(Shape):
+    """A figure of the survey."""
+
+    figure: str
+    title: str
+    caption: str
+    levels: list[str] = Field(description="What it shows of a study.")
+
+
+class Figures(Shape):
+    """The survey's figures."""
+
+    items: list[ListedFigure]
+    studies: int = Field(description="Studies that there are figures of.")
+
+
+class Figure(Shape):
+    """A figure: what it shows in sentences, and the table behind it."""
+
+    figure: str
+    title: str
+    caption: str
+    text: list[str]
+    studies: int = Field(description="Studies that met the filters.")
+    options: dict[str, str]
+    left_out: list[LeftOut]
+    columns: list[str] = Field(description="Columns of the table and of the CSV, always these.")
+    rows: list[dict[str, str | int | float | list[str] | None]]

@@ -1,0 +1,41 @@
+"""/v1/advice and /v1/protocol: what the survey advises, and how all this came about."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Query
+
+from api import columns
+from api.http.answers import Answer, AnswerRoute, listing
+from api.http.dependencies import AS_ACCEPTED, Known, TableOnly
+from api.http.models.advice import AdviceQuery, Advices, Protocol
+from api.http.models.base import Selected
+from api.http.pagination import narrowed, ordered, page
+from api.protocol import protocol as told
+
+router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
+
+
+@router.get("/advice", summary="The survey's advice", response_model=Advices | Selected)
+async def advice(known: Known, query: Annotated[AdviceQuery, Query()]) -> Answer:
+    """Which sensor and calibration the survey's text advises, and for what.
+
+    Rows of errors say where an error is met, which is no advice to build.
+    """
+    found = narrowed(known.advice, query, ("requirement", "detector", "mask"))
+    shown = page(ordered(found, query.sort), "/v1/advice", query)
+    return listing(shown, shown.items, columns.ADVICE, fields=query.fields)
+
+
+@router.get("/protocol", summary="How studies and scores came about", response_model=Protocol)
+async def protocol(
+    known: Known,  # noqa: ARG001 - as every path function has it
+    query: TableOnly = AS_ACCEPTED,  # noqa: ARG001 - the route has read it
+) -> Answer:
+    """How the survey searched and chose its studies, and by what rules pipelines are scored here.
+
+    As CSV: a row a sentence.
+    """
+    document = told()
+    return Answer(document, columns.PROTOCOL, lambda: [*document["survey"], *document["scores"]])

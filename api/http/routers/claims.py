@@ -1,0 +1,74 @@
+"""/v1/claims: the survey's statements about algorithms, with verdicts."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Path, Query
+
+from api import columns
+from api.http.answers import Answer, AnswerRoute, listing
+from api.http.dependencies import AS_ACCEPTED, Known, TableOnly
+from api.http.models.base import Selected
+from api.http.models.claims import ClaimDetail, Claims, ClaimsQuery
+from api.http.models.words import ClaimId
+from api.http.pagination import ordered, page
+from benchmark.claims.ledger import Entry, tally
+
+router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
+
+
+@router.get("/claims", summary="The survey's claims, tried", response_model=Claims | Selected)
+async def claims(known: Known, query: Annotated[ClaimsQuery, Query()]) -> Answer:
+    """Every statement of the survey about algorithms, as an experiment with a verdict.
+
+    What decides was written down before anything was measured. As CSV: a row a claim.
+    """
+    found = [entry for entry in known.measurements.claims.values() if _is_wanted(entry, query)]
+    items = ordered([entry.to_dict() for entry in found], query.sort)
+    shown = page(items, "/v1/claims", query)
+    counts = tally(found)
+    return listing(shown, shown.items, columns.CLAIMS, fields=query.fields, tally=counts)
+
+
+@router.get(
+    "/claims/{id}",
+    summary="One claim",
+    response_model=ClaimDetail,
+)
+async def claim(
+    known: Known,
+    id: Annotated[ClaimId, Path(description="Id of the claim.", examples=["C04"])],  # noqa: A002 - the parameter's name
+    query: TableOnly = AS_ACCEPTED,  # noqa: ARG001 - the route has read it
+) -> Answer:
+    """One claim with its rules, the number of every trial and the lines of its plot.
+
+    As CSV: the rules.
+    """
+    document = detailed(known.measurements.claims[id])
+    second = {rule["rule"]: rule["standing"] for rule in document["second"]}
+    rows = [{**rule, "second_standing": second.get(rule["rule"])} for rule in document["rules"]]
+    return Answer(document, columns.CLAIM, lambda: rows)
+
+
+def detailed(entry: Entry) -> dict[str, Any]:
+    """Return a claim as `GET /v1/claims/{id}` tells it; NaN stands for none."""
+    outcome = entry.outcome
+    return {
+        **entry.to_dict(),
+        "how_to_test": entry.claim.how_to_test,
+        "values": dict(outcome.values) if outcome else {},
+        "second_values": dict(outcome.second) if outcome else {},
+        "across": entry.claim.across,
+        "up": entry.claim.up,
+        "lines": {name: asdict(line) for name, line in outcome.lines.items()} if outcome else {},
+    }
+
+
+def _is_wanted(entry: Entry, query: ClaimsQuery) -> bool:
+    if query.verdict and (entry.verdict or "not measured") not in query.verdict:
+        return False
+    said = entry.claim
+    text = f"{said.id} {said.section} {said.study} {said.statement}".casefold()
+    return query.q is None or all(word in text for word in query.q.casefold().split())

@@ -1,0 +1,46 @@
+"""/v1/compare: pipelines of a data set, or architectures, side by side."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Query
+
+from api import columns
+from api.comparing import compare_architectures, compare_pipelines
+from api.http.answers import Answer, AnswerRoute
+from api.http.dependencies import Known
+from api.http.knowledge import Knowledge
+from api.http.models.comparison import CompareQuery, Comparison
+from api.http.problems import Problem, Violation
+from registry.taxonomy import InvalidValueError
+
+router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
+
+
+@router.get("/compare", summary="Side by side", response_model=Comparison)
+async def compare(known: Known, query: Annotated[CompareQuery, Query()]) -> Answer:
+    """Two to four pipelines of a data set, or architectures, with all that tells them apart.
+
+    That is error, bound, availability, times, calibration poses, errors by condition and by angle,
+    and the studies behind each. As CSV: a row each, without errors by condition and angle.
+    """
+    try:
+        document = _compared(known, query)
+    except InvalidValueError as error:
+        came = None if error.value is None else str(error.value)
+        violation = Violation(error.parameter, came, error.expected, error.nearest)
+        raise Problem(400, "not-comparable", errors=[violation]) from error
+    return Answer(document, columns.COMPARISON, lambda: document["items"])
+
+
+def _compared(known: Knowledge, query: CompareQuery) -> dict[str, Any]:
+    if query.architecture:
+        for other in ("dataset", "pipeline", "condition"):
+            if given := getattr(query, other):
+                expected = "nothing beside `architecture`, which has data sets of its own"
+                raise InvalidValueError(other, str(given), expected)
+        return compare_architectures(known, query.architecture)
+    if query.dataset is None:
+        raise InvalidValueError("dataset", None, "a data set with its pipelines, or architectures")
+    return compare_pipelines(known, query.dataset, query.pipeline, query.condition)

@@ -1,0 +1,28 @@
+"""/v1/curves: learning curves of each data set's leaders."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Query
+
+from api import columns
+from api.http.answers import Answer, AnswerRoute, listing
+from api.http.dependencies import Known
+from api.http.models.base import Selected
+from api.http.models.curves import Curves, CurvesQuery
+from api.http.pagination import narrowed, ordered, page
+
+router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
+
+
+@router.get("/curves", summary="Learning curves of the leaders", response_model=Curves | Selected)
+async def curves(known: Known, query: Annotated[CurvesQuery, Query()]) -> Answer:
+    """Error against the number of calibration poses, of the three leaders of every data set.
+
+    Each is calibrated on random draws of growing subsets of the poses, on two units of the sensor,
+    and scored on the whole test split. As CSV: a row a pipeline, without the curve's points.
+    """
+    rows = narrowed(known.measurements.curves, query, ("dataset", "extractor", "model"))
+    shown = page(ordered(rows, query.sort), "/v1/curves", query)
+    return listing(shown, shown.items, columns.CURVES, fields=query.fields)

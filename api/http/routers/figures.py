@@ -1,0 +1,60 @@
+"""/v1/figures: the survey's figures, drawn from the studies as they are held now."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Path, Query
+
+from api import columns
+from api.figures.catalogue import LEVELS, TITLES, evidence_map
+from api.figures.catalogue import figure as drawn
+from api.figures.figure import Figure as Drawn
+from api.http.answers import Answer, AnswerRoute
+from api.http.dependencies import AS_ACCEPTED, Known, TableOnly
+from api.http.models.figures import Figure, FigureName, FigureQuery, Figures, MatrixQuery
+
+router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
+
+
+@router.get("/figures", summary="The survey's figures", response_model=Figures)
+async def figures(
+    known: Known,
+    query: TableOnly = AS_ACCEPTED,  # noqa: ARG001 - the route has read it
+) -> Answer:
+    """List the figures, each with what it shows of a study. The evidence map is `matrix`."""
+    items = [
+        {"figure": name, "title": title, "caption": caption, "levels": list(LEVELS[name])}
+        for name, (title, caption) in TITLES.items()
+    ]
+    document = {"items": items, "studies": len(known.facts.studies)}
+    return Answer(document, columns.FIGURES, lambda: items)
+
+
+@router.get("/figures/matrix", summary="Studies by two attributes", response_model=Figure)
+async def matrix(known: Known, query: Annotated[MatrixQuery, Query()]) -> Answer:
+    """Count the studies that have both values, and those pairs that no study has: an evidence map.
+
+    The rows are the pairs, those without a study too; pairs that cannot be (a model and another
+    category than its own) are left out.
+    """
+    return answered(evidence_map(known.facts, query.wanted(), query.rows, query.columns))
+
+
+@router.get("/figures/{figure}", summary="A figure of the survey", response_model=Figure)
+async def figure(
+    known: Known,
+    figure: Annotated[FigureName, Path(description="Which figure.", examples=["performance"])],
+    query: Annotated[FigureQuery, Query()],
+) -> Answer:
+    """Give what the figure shows in sentences and as a table, with the studies behind every mark.
+
+    A flow has a row a value and a row a pair of neighbouring values; the sunburst a row an arc;
+    publications a row a year or venue and part of its bar; parallel coordinates a row a sensor.
+    """
+    return answered(drawn(figure, known.facts, query.wanted()))
+
+
+def answered(found: Drawn) -> Answer:
+    """Return a figure as an answer."""
+    return Answer(found.to_dict(), found.columns, lambda: found.rows)

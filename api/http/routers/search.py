@@ -1,0 +1,32 @@
+"""/v1/search: everything that is told, by words."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Query
+
+from api import columns
+from api.http.answers import Answer, AnswerRoute, listing
+from api.http.dependencies import Known
+from api.http.models.search import SearchQuery, SearchResults
+from api.http.pagination import page
+
+router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
+
+
+@router.get("/search", summary="Search", response_model=SearchResults)
+async def search(known: Known, query: Annotated[SearchQuery, Query()]) -> Answer:
+    """Studies, algorithms, data sets, claims, attributes and words of the field, the best first.
+
+    What is called just so stands first, then what has every word asked for.
+    """
+    hits = known.index.find(query.q, query.kind)
+    ranked: list[dict[str, Any]] = []
+    for rank, hit in enumerate(hits, start=1):
+        entry = asdict(hit.entry)
+        told = {name: entry[name] for name in ("kind", "id", "title", "address")}
+        ranked.append({"rank": rank, **told, "excerpt": hit.excerpt, "score": hit.score})
+    shown = page(ranked, "/v1/search", query)
+    return listing(shown, shown.items, columns.SEARCH)

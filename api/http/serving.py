@@ -1,0 +1,36 @@
+"""The service as the processes of a server make it: each for itself, set up by the environment.
+
+`SUNATLAS_ACCESS_LOG` (any text) writes a line a request; `SUNATLAS_TIMES` names the directory of
+running times of this machine.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from fastapi import FastAPI
+
+from api.http.knowledge import Knowledge
+from api.http.measurements import Measurements
+from api.http.observation import log_requests
+from api.http.service import create_app
+
+ACCESS_LOG = "SUNATLAS_ACCESS_LOG"
+TIMES = "SUNATLAS_TIMES"
+
+
+def application(*, loaded: bool = False) -> FastAPI:
+    """Make the service with what is known now.
+
+    Parameters
+    ----------
+    loaded : whether to load everything at once; else at start-up
+    """
+    if os.environ.get(ACCESS_LOG):
+        log_requests()
+    times = os.environ.get(TIMES)
+    known = Knowledge(Measurements(times_directory=Path(times) if times else None))
+    if loaded:
+        known.load_all()
+    return create_app(known)

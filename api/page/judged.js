@@ -1,0 +1,58 @@
+/* How the board stands to what is asked: which limits its pipelines meet, which cannot be judged there. */
+
+import { h } from "./dom.js";
+import { state } from "./state.js";
+import { limitText, plural, wide } from "./wording.js";
+
+const share = (rows, met) => `${rows.filter(met).length} of ${plural(rows.length, "pipeline")}`;
+
+function error(rows, limit, card) {
+  const asked = Number(state.limits.min_fov_deg) || null;
+  const half = rows.find((r) => r.half_fov_deg !== null)?.half_fov_deg ?? null;
+  const over = asked && half !== null && asked < 2 * half
+    ? " (over the whole field here; the answer judges the part that is asked for)" : "";
+  const scored = rows.filter((r) => r.rms_deg !== null);
+  if (!scored.length) return `cannot be judged: nothing has an error on ${card.name} under this condition`;
+  return `${share(rows, (r) => r.rms_deg !== null && r.rms_deg <= limit)} err no more${over}`;
+}
+
+function field(rows, limit) {
+  const half = rows.find((r) => r.half_fov_deg !== null)?.half_fov_deg ?? null;
+  if (half === null) return "met: this sensor sees all directions";
+  return 2 * half >= limit ? `met: this sensor’s field is ${wide(2 * half)}` : `not met: this sensor’s field is ${wide(2 * half)}`;
+}
+
+function availability(rows, limit) {
+  const known = rows.filter((r) => r.availability !== null);
+  return known.length ? `${share(rows, (r) => r.availability !== null && r.availability >= limit)} answer that often`
+    : "cannot be judged: no pipeline has an answered share under this condition";
+}
+
+function latency(rows, limit) {
+  const timed = rows.filter((r) => r.latency_us !== null && r.latency_us !== undefined);
+  return timed.length ? `${share(rows, (r) => timed.includes(r) && r.latency_us <= limit)} are that quick`
+    : "cannot be judged: no pipeline has been timed on this machine";
+}
+
+const JUDGES = { max_error_deg: error, min_fov_deg: field, min_availability: availability, max_latency_us: latency };
+const WORDS = {
+  max_error_deg: "Error at most", min_fov_deg: "Field of view at least",
+  min_availability: "Answered at least", max_latency_us: "Latency at most",
+};
+
+/** A list of every limit asked for and how this board stands to it; nothing where none is. */
+export function judged({ rows, card, condition }) {
+  const limits = Object.keys(JUDGES).filter((name) => state.limits[name] !== "");
+  const hazards = state.lists.survive;
+  if (!limits.length && !hazards.length) return "";
+  return h("div", { class: "finding judged" }, h("h3", {}, `What is asked, on ${card.name} under “${condition}”`),
+    h("ul", { class: "bullets" },
+      limits.map((name) => h("li", {}, `${WORDS[name]} ${limitText(name, state.limits[name])}: ${JUDGES[name](rows, Number(state.limits[name]), card)}.`)),
+      hazards.map((hazard) => h("li", {}, `Shall survive ${hazard}: ${survived(hazard, condition, card)}.`))));
+}
+
+function survived(hazard, condition, card) {
+  if (condition.includes(hazard)) return "this is its condition";
+  const there = card.conditions.some((c) => c.includes(hazard));
+  return `cannot be judged under this condition, which does not try it; ${there ? "another condition of this data set does" : "of this data set no condition has its name"}`;
+}

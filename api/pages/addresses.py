@@ -1,0 +1,64 @@
+"""Where things are told: addresses of pages and of their twins."""
+
+from __future__ import annotations
+
+from urllib.parse import quote, urlencode
+
+KINDS = {"detector": "/detectors", "mask": "/masks"}
+"""Attributes whose values have a page of their own."""
+
+
+def study_page(key: str) -> str:
+    """Return the address of a study."""
+    return f"/studies/{quote(key, safe='')}"
+
+
+def algorithm_page(name: str) -> str:
+    """Return the address of an implementation."""
+    return f"/algorithms/{quote(name, safe='')}"
+
+
+def dataset_page(name: str, **asked: str) -> str:
+    """Return the address of a data set."""
+    return _asked(f"/datasets/{quote(name, safe='')}", asked)
+
+
+def claim_page(identifier: str) -> str:
+    """Return the address of a claim."""
+    return f"/claims/{quote(identifier, safe='')}"
+
+
+def architecture_page(detector: str, mask: str) -> str:
+    """Return the address of a detector behind a mask."""
+    return f"/architectures/{quote(detector, safe='')}/{quote(mask, safe='')}"
+
+
+def value_page(attribute: str, value: str) -> str:
+    """Return where a value of an attribute is told of: its page, or the studies that have it."""
+    if attribute in KINDS:
+        return f"{KINDS[attribute]}/{quote(value, safe='')}"
+    if attribute in {"model", "extractor"}:
+        return f"/algorithms#{anchor(attribute, value)}"
+    return _asked("/studies", {attribute: value})
+
+
+def anchor(attribute: str, value: str) -> str:
+    """Return an id of an element for a value: letters, digits and hyphens."""
+    kept = "".join(c if c.isalnum() else "-" for c in value)
+    return f"{attribute}-{kept}".lower()
+
+
+def twin(path: str, query: str, suffix: str) -> str:
+    """Return the address of a page's twin; that of "/" is called answer."""
+    return ("/answer" if path == "/" else path) + suffix + (f"?{query}" if query else "")
+
+
+def _asked(path: str, asked: dict[str, str]) -> str:
+    return f"{path}?{urlencode(asked)}" if asked else path
+
+
+GIVEN = (
+    *(study_page, algorithm_page, dataset_page, claim_page, architecture_page, value_page),
+    *(anchor, twin),
+)
+"""What templates are given."""

@@ -1,0 +1,127 @@
+"""/algorithms and /algorithms/{name}: what is implemented, and how well it does."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+from itertools import groupby
+from typing import Annotated, Any
+
+from fastapi import Path
+
+from api.http.answers import Answer
+from api.http.dependencies import Known
+from api.http.knowledge import Knowledge
+from api.http.models.algorithms import Algorithm, AlgorithmsQuery
+from api.http.models.parameters import OneOf
+from api.http.routers import algorithms as service
+from api.pages import boards
+from api.pages.charts.lines import Line, LineChart
+from api.pages.methods import told
+from api.pages.serving import PageRouter, View
+from api.pages.terms import named
+from registry.catalogue import Implementation, catalogue
+
+router = PageRouter()
+
+EVERY = 500
+SWEPT = (("noise", "peak SNR"), ("size", "feature size, px"), ("phase", "sub-pixel phase, px"))
+ROLES = {"extractor": "Feature extractors", "model": "Calibration models"}
+
+
+def _names() -> Sequence[str]:
+    return [implementation.name for implementation in catalogue().listing(None)]
+
+
+Name = Annotated[str, OneOf(_names), Path()]
+
+
+@router.page("/algorithms")
+async def algorithms(known: Known) -> View:
+    """Every implementation by role, family and value of the taxonomy, gaps included."""
+    answer = await service.algorithms(known, AlgorithmsQuery.model_validate({"limit": EVERY}))
+    every = known.catalogue.listing(None)
+    best = boards.best_of(known)
+    groups = [
+        {
+            "role": role,
+            "title": title,
+            "families": [
+                {"name": family, "values": [_value(role, e, every) for e in entries]}
+                for family, entries in groupby(
+                    known.taxonomy.to_dict()[role], key=lambda e: e["category"]
+                )
+            ],
+        }
+        for role, title in ROLES.items()
+    ]
+    return View("algorithms.html", answer, groups=groups, best=best)
+
+
+def _value(role: str, entry: Mapping[str, str], every: Sequence[Implementation]) -> dict[str, Any]:
+    found = [i for i in every if i.role == role and i.taxonomy == entry["value"]]
+    return {**entry, "name": named(entry["value"], role), "implementations": found}
+
+
+@router.page("/algorithms/{name}")
+async def algorithm(known: Known, name: Name) -> View:
+    """One implementation: equations, errors on reference features, field, ranks, an example."""
+    about = next(i for i in known.catalogue.listing(None) if i.name == name)
+    places = boards.places_of(known, about.role, name)
+    document = {**about.to_dict(), "ranks": places}
+    columns = (*Algorithm.model_fields, *boards.COLUMNS)
+    made: Any = (
+        known.catalogue.extractors[name]
+        if about.role == "extractor"
+        else known.catalogue.models[name]
+    )
+    return View(
+        "algorithm.html",
+        Answer(document, columns, lambda: [{**about.to_dict(), **place} for place in places]),
+        about=about,
+        stages=told(made),
+        places=places,
+        swept=_swept(known, name) if about.role == "extractor" else [],
+        field=boards.field_chart(places),
+        assessed=_assessed(known, name),
+        relatives=[
+            i
+            for i in known.catalogue.listing(None)
+            if i.taxonomy == about.taxonomy and i.role == about.role and i.name != name
+        ],
+    )
+
+
+def _swept(known: Knowledge, name: str) -> list[tuple[str, LineChart, str]]:
+    """Return a chart a sweep and series: the error on reference features with its bound."""
+    charts = []
+    for sweep, across in SWEPT:
+        by: dict[str, list[Mapping[str, Any]]] = defaultdict(list)
+        for row in known.measurements.sweeps:
+            if row["extractor"] == name and row["sweep"] == sweep and row["value"] is not None:
+                by[row["series"]].append(row)
+        for series, rows in by.items():
+            unit = rows[0]["unit"]
+            chart = LineChart(
+                [
+                    Line("error", [(row["value"], row["rms"] or None) for row in rows]),
+                    Line("bound", [(r["value"], r["bound"] or None) for r in rows], bound=True),
+                ],
+                across,
+                f"RMS error, {unit}",
+                f"Error of {name} against {across} on {series}, with its bound",
+                log_across=sweep != "phase",
+            )
+            if chart.drawn:
+                charts.append((f"Against {across.split(',')[0]}: {series}", chart, series))
+    return charts
+
+
+def _assessed(known: Knowledge, name: str) -> list[Mapping[str, Any]]:
+    """Return what the survey says this method can do, beside what was measured."""
+    return [
+        {**verdict, "method": method["method"]}
+        for method in known.measurements.assessment["methods"]
+        if name in method["extractors"]
+        for verdict in method["properties"]
+    ]

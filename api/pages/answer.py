@@ -1,0 +1,212 @@
+"""/: which sensor, which calibration; and /scatter, the picture of it by itself."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from fastapi import Request
+from pydantic import ValidationError
+
+from api.columns import RECOMMENDATIONS
+from api.http.answers import Answer
+from api.http.dependencies import Known
+from api.http.knowledge import Knowledge
+from api.http.models.recommendations import RequirementsQuery
+from api.http.problems import Problem
+from api.http.refusals import refusal
+from api.http.routers import recommendations as service
+from api.pages.addresses import architecture_page
+from api.pages.charts.scatter import Point, Scatter
+from api.pages.serving import PageRouter, View
+from api.pages.study import NAMES
+from registry.requirements import HAZARDS, LIMITS, LISTS
+from registry.taxonomy import ATTRIBUTES
+
+router = PageRouter()
+
+#: Names in the address that say how the answer is shown, for the page's script.
+SHOWN = (
+    *("chart", "counting", "detail", "view", "dataset", "board_condition", "board_field"),
+    *("board_sort", "board_order", "across", "rows"),
+)
+#: Names that the service takes and the page settles itself.
+PAGED = ("limit", "calibrations", "format", "fields")
+#: What errors are drawn against, and whether more of it is better.
+ACROSS = {"field": ("field of view, °", True), "poses": ("poses that its calibration needs", False)}
+FIRST, MOST = 10, 500
+BOARD_ROWS = 8
+SORTS = (("advice", "Advice"), ("support", "Studies"), ("measured", "Measurement"))
+KINDS = (
+    ("advised", "The survey advises it"),
+    ("proposed", "Studies proposed it"),
+    ("measured", "Measured here"),
+)
+LIMIT_WORDS = {
+    "max_error_deg": ("error at most", "°"),
+    "min_fov_deg": ("field of view at least", "°"),
+    "min_availability": ("answered share at least", ""),
+    "max_latency_us": ("latency at most", " µs"),
+}
+
+
+@router.page("/", twin="/answer")
+async def answer(known: Known, request: Request) -> View:
+    """Answer what the address asks, so that it reads without the page's script."""
+    fields = request.query_params.multi_items()
+    shown = {name: value for name, value in fields if name in SHOWN}
+    try:
+        asked = _asked(fields)
+    except Problem as problem:
+        view = View("answer.html", _nothing(), problem=problem.document("/"), **_parts(known))
+        view.status_code = problem.status_code
+        return view
+    told = await service.recommendations(known, asked)
+    document = told.document
+    best = _best_measured(document)
+    return View(
+        "answer.html",
+        told,
+        problem=None,
+        asked=asked,
+        clauses=_clauses(asked),
+        first=MOST if shown.get("rows") == "all" else FIRST,
+        scatter=_scatter(known, document, shown.get("across", "field")),
+        across=shown.get("across", "field"),
+        backing=len({key for a in document["architectures"] for key in a["studies"]}),
+        measured=sum(1 for a in document["architectures"] if a["best"]["measured"]),
+        best=best,
+        board=_board(known, best),
+        **_parts(known),
+    )
+
+
+@router.page("/scatter")
+async def scatter(known: Known, request: Request) -> View:
+    """Draw the scatter alone, for the page's script."""
+    fields = request.query_params.multi_items()
+    across = dict(fields).get("across", "field")
+    told = await service.recommendations(known, _asked(fields))
+    drawn = _scatter(known, told.document, across)
+    return View(
+        "scatter_alone.html",
+        told,
+        scatter=drawn,
+        across=across,
+        best=_best_measured(told.document),
+        sorts=SORTS,
+    )
+
+
+def _asked(fields: Sequence[tuple[str, str]]) -> RequirementsQuery:
+    """Return the requirements among the fields of a query; Problem where they are none."""
+    given: dict[str, Any] = {}
+    for name, value in fields:
+        if name in SHOWN:
+            continue
+        if name in PAGED:
+            raise Problem(400, "unknown-parameter", f"{name} cannot be asked for here")
+        if name in LIMITS or name == "sort":
+            given[name] = value
+        else:
+            given.setdefault(name, []).append(value)
+    try:
+        return RequirementsQuery.model_validate({**given, "limit": MOST})
+    except ValidationError as error:
+        errors = [{**found, "loc": ("query", *found["loc"])} for found in error.errors()]
+        raise refusal(errors, service.recommendations) from error
+
+
+def _nothing() -> Answer:
+    return Answer({"architectures": [], "count": 0}, RECOMMENDATIONS, list)
+
+
+def _parts(known: Knowledge) -> dict[str, Any]:
+    """Return what the page shows whatever is asked."""
+    taxonomy = known.taxonomy.to_dict()
+    return {
+        "mapped": len(known.facts.studies),
+        "taxonomy": {name: taxonomy[name] for name in ATTRIBUTES},
+        "names": NAMES,
+        "hazards": HAZARDS,
+        "properties": known.facts.properties,
+        "limits": LIMIT_WORDS,
+        "sorts": SORTS,
+        "kinds": KINDS,
+    }
+
+
+def _clauses(asked: RequirementsQuery) -> list[str]:
+    """Return what is asked, in words."""
+    given = asked.model_dump(exclude_defaults=True)
+    clauses = []
+    for name in ATTRIBUTES:
+        subject = NAMES[name].lower()
+        if given.get(name):
+            clauses.append(f"{subject} {' or '.join(given[name])}")
+        if given.get(f"exclude_{name}"):
+            clauses.append(f"{subject} not {' nor '.join(given[f'exclude_{name}'])}")
+    for name, (words, unit) in LIMIT_WORDS.items():
+        if name in given:
+            clauses.append(f"{words} {given[name]:g}{unit}")
+    for name, words in zip(LISTS, ("shall survive", "extractor assessed as"), strict=True):
+        if given.get(name):
+            clauses.append(f"{words} {' and '.join(given[name])}")
+    return clauses
+
+
+def _best_measured(document: Mapping[str, Any]) -> Mapping[str, Any] | None:
+    """Return the architecture whose best calibration errs least over its field."""
+    judged = [
+        a
+        for a in document["architectures"]
+        if a["best"]["measured"] and a["best"]["measured"]["error_deg"] is not None
+    ]
+    return min(judged, key=lambda a: a["best"]["measured"]["error_deg"], default=None)
+
+
+def _scatter(known: Knowledge, document: Mapping[str, Any], across: str) -> Scatter:
+    words, more = ACROSS.get(across, ACROSS["field"])
+    points: list[Point] = []
+    left_out: list[str] = []
+    for a in document["architectures"]:
+        measured = a["best"]["measured"]
+        if not measured or not measured["error_deg"]:
+            continue
+        place = tuple(measured[name] for name in ("dataset", "extractor", "model"))
+        if more:
+            value = measured["field_deg"] or measured["fov_deg"]
+        else:
+            value = known.measurements.curve_of.get(place, {}).get("needed_poses")
+        name = f"{a['detector']} + {a['mask']}"
+        if not value:
+            left_out.append(name)
+            continue
+        points.append(
+            Point(
+                name,
+                architecture_page(a["detector"], a["mask"]),
+                value,
+                measured["error_deg"],
+                measured["nominal"]["bound_deg"],
+            )
+        )
+    return Scatter(points, words, more, "°" if more else "poses", left_out)
+
+
+def _board(known: Knowledge, best: Mapping[str, Any] | None) -> dict[str, Any] | None:
+    """Return the first rows of the board that the best measured calibration stands on."""
+    if best is None:
+        return None
+    measured = best["best"]["measured"]
+    rows = [
+        row
+        for row in known.measurements.board_rows(measured["dataset"])
+        if row["condition"] == measured["condition"]
+    ]
+    return {
+        "dataset": measured["dataset"],
+        "condition": measured["condition"],
+        "rows": rows[:BOARD_ROWS],
+        "total": len(rows),
+    }

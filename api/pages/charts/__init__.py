@@ -1,0 +1,1 @@
+"""Charts as SVG in the page: they take its colours, print with it and need no script."""

@@ -1,0 +1,90 @@
+"""/claims and /claims/{id}: the survey's statements about algorithms, each with its trial."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any
+
+from fastapi import Path, Query
+
+from api.http.dependencies import Known
+from api.http.models.claims import ClaimsQuery
+from api.http.models.words import ClaimId
+from api.http.routers import claims as service
+from api.pages.charts.lines import Line, LineChart
+from api.pages.serving import PageRouter, View
+from benchmark.claims.ledger import tally
+
+router = PageRouter()
+
+EVERY = 500
+VERDICTS = {
+    "reproduced": "Measured, and it came out as said.",
+    "partly": "Some of what is said came out, some did not.",
+    "refuted": "Measured, and it came out otherwise: a finding, not a failure.",
+    "not testable here": "What it speaks of cannot be measured on simulated sensors.",
+    "not measured": "No trial has been run yet.",
+}
+STANDINGS = {"holds": "holds", "fails": "fails", "open": "open: the interval holds both"}
+
+
+@router.page("/claims")
+async def claims(known: Known, query: Annotated[ClaimsQuery, Query()]) -> View:
+    """Every claim that is wanted, with its verdict, and how many there are of each."""
+    answer = await service.claims(known, query.model_copy(update={"limit": EVERY}))
+    every = tally(known.measurements.claims.values())
+    return View("claims.html", answer, asked=query, verdicts=VERDICTS, every=every)
+
+
+@router.page("/claims/{id}")
+async def claim(known: Known, id: Annotated[ClaimId, Path()]) -> View:  # noqa: A002 - as the service
+    """One claim: what was said, what decides, what came out, and its plot."""
+    answer = await service.claim(known, id)
+    entries = known.measurements.claims
+    ids = list(entries)
+    at = ids.index(id)
+    said = answer.document["study"]
+    text = " ".join(str(answer.document[name]) for name in ("measured_on", "statement"))
+    return View(
+        "claim.html",
+        answer,
+        chart=_chart(answer.document),
+        verdicts=VERDICTS,
+        standings=STANDINGS,
+        studies=[key for key in known.facts.studies if key in said],
+        datasets=[name for name in known.measurements.presets if _names(text, name)],
+        algorithms=[i.name for i in known.catalogue.listing(None) if _names(text, i.name)],
+        before=ids[at - 1] if at else None,
+        after=ids[at + 1] if at + 1 < len(ids) else None,
+        entry=entries[id],
+    )
+
+
+def _names(text: str, name: str) -> bool:
+    """Say whether a text names something: as a word of its own, not as part of a longer name."""
+    cleaned = "".join(c if c.isalnum() or c == "-" else " " for c in text)
+    return f" {name} " in f" {cleaned} "
+
+
+def _chart(document: Mapping[str, Any]) -> LineChart:
+    lines = [
+        Line(
+            name,
+            list(zip(line["across"], line["median"], strict=True)),
+            list(zip(line["across"], line["low"], line["high"], strict=True)),
+        )
+        for name, line in document["lines"].items()
+    ]
+    across = document["across"] or ""
+    # What stands across may be words, such as conditions: those are told as a table.
+    drawn = [
+        line
+        for line in lines
+        if len(line.points) > 1 and all(isinstance(x, int | float) for x, _ in line.points)
+    ]
+    spread = [x for line in drawn for x, _ in line.points]
+    wide = bool(spread) and min(spread) > 0 and max(spread) / min(spread) > 20
+    return LineChart(
+        drawn, across, document["up"] or "", f"What was measured for claim {document['id']}",
+        log_across=wide,
+    )  # fmt: skip

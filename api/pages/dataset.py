@@ -1,0 +1,120 @@
+"""/datasets and /datasets/{name}: frames, card, board, error over the field, heat map."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Annotated, Any, Literal
+
+from fastapi import Path, Query
+from pydantic import Field
+
+from api.http.answers import Answer
+from api.http.dependencies import Known
+from api.http.knowledge import Knowledge
+from api.http.models import words
+from api.http.models.base import Question
+from api.http.models.datasets import DatasetsQuery
+from api.http.models.parameters import GIVEN
+from api.http.problems import Problem, Violation
+from api.http.routers import datasets as service
+from api.pages import boards
+from api.pages.charts.heat import heat_map
+from api.pages.charts.lines import Line, LineChart
+from api.pages.serving import PageRouter, View
+from benchmark.leaderboard.holding import sentences, table
+from survey_data.nearest import nearest
+
+router = PageRouter()
+
+EVERY = 500
+FIRST = 25  # rows of a board that are shown at first
+WARM = 20  # pipelines of the heat map
+BOARD_COLUMNS = (
+    *("dataset", "condition", "rank", "tied", "extractor", "model", "status", "rms_deg"),
+    *("bound_deg", "over_bound", "availability", "false_sun", "repeatability_deg", "low_deg"),
+    *("high_deg", "studies", "best_of_extractor"),
+)
+
+
+class BoardQuery(Question):
+    """Which board of a data set."""
+
+    condition: Annotated[words.Condition | None, GIVEN] = Field(
+        None, description="The first by default."
+    )
+    rows: Annotated[Literal["first", "all"] | None, GIVEN] = Field(
+        None, description="The first rows of the board, or all."
+    )
+
+
+@router.page("/datasets")
+async def datasets(known: Known) -> View:
+    """Every standard data set with its leader."""
+    answer = await service.datasets(known, DatasetsQuery.model_validate({"limit": EVERY}))
+    leaders: dict[str, Mapping[str, Any]] = {}
+    for row in boards.first_rows(known):
+        if row["rank"] == 1:
+            leaders.setdefault(row["dataset"], row)
+    return View("datasets.html", answer, leaders=leaders)
+
+
+@router.page("/datasets/{name}")
+async def dataset(
+    known: Known,
+    name: Annotated[words.DatasetName, Path()],
+    query: Annotated[BoardQuery, Query()],
+) -> View:
+    """One data set; its twins are its card with the board of the condition."""
+    card = known.measurements.card(name)
+    condition = query.condition or card["conditions"][0]
+    if condition not in card["conditions"]:
+        near = nearest(condition, card["conditions"])
+        expected = f"one of {', '.join(card['conditions'])}"
+        error = Violation("condition", condition, expected, near)
+        raise Problem(422, "invalid-value", errors=[error])
+    every = known.measurements.board_rows(name)
+    board = [row for row in every if row["condition"] == condition]
+    shown = board if query.rows == "all" else board[:FIRST]
+    document = {**card, "condition": condition, "board": board}
+    held = table.rows().get(name)
+    realism = next((r for r in known.measurements.realism if r["dataset"] == name), None)
+    return View(
+        "dataset.html",
+        Answer(document, BOARD_COLUMNS, lambda: board),
+        condition=condition,
+        shown=shown,
+        field=_field(board),
+        heat=heat_map(every, card["conditions"], condition, WARM),
+        curve=_curve(known, name),
+        held=sentences.verdict(held).sentence if held else None,
+        realism=realism,
+    )
+
+
+def _field(board: Sequence[Mapping[str, Any]]) -> LineChart:
+    best = [row for row in board if row["best_of_extractor"]][: boards.MOST_LINES]
+    named = [{**row, "name": f"{row['extractor']} → {row['model']}"} for row in best]
+    return boards.field_chart(named, "name")
+
+
+def _curve(known: Knowledge, name: str) -> LineChart:
+    rows = [row for row in known.measurements.curves if row["dataset"] == name]
+    lines = [
+        Line(
+            f"{row['extractor']} → {row['model']}",
+            [(point["poses"], point["middle_deg"]) for point in row["points"]],
+            [
+                (p["poses"], p["least_deg"], p["largest_deg"])
+                for p in row["points"]
+                if p["least_deg"]
+            ],
+        )
+        for row in rows
+    ]
+    return LineChart(
+        lines,
+        "poses of the calibration",
+        "RMS error, °",
+        f"Error of the leaders on {name} against the number of calibration poses",
+        log_across=True,
+    )

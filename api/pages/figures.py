@@ -1,0 +1,270 @@
+"""/figures: the survey's figures, drawn on the server, each with its table."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from importlib.resources import files
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Path, Query, Request, Response
+
+from api.figures import wording
+from api.figures.catalogue import MATRIX, evidence_map
+from api.figures.catalogue import figure as drawn
+from api.figures.figure import Figure, Row
+from api.figures.interactive import specification
+from api.figures.statements import number_of_studies, statements
+from api.http.answers import Handler, StrictRoute
+from api.http.dependencies import NO_PARAMETERS, Known
+from api.http.knowledge import Knowledge
+from api.http.models.figures import FigureName, FigureQuery, MatrixQuery
+from api.http.models.studies import StudyFilters
+from api.http.negotiation import media_type
+from api.http.representations import Representation, RepresentationCache
+from api.http.routers import figures as told
+from api.pages.numbers import degrees, wide
+from api.pages.serving import PageRouter, View
+from registry.taxonomy import ATTRIBUTES, LEVELS
+
+SVG = "image/svg+xml"
+PLOTLY = ".plotly.json"
+NOT_KNOWN = "not known"
+
+
+Cell = tuple[str, str, str]
+"""Heading, text, and what stands below it."""
+
+
+class DrawingRoute(StrictRoute):
+    """A route of a drawing, which is made once for each path and query."""
+
+    media_type = SVG
+
+    def get_route_handler(self) -> Handler:
+        """Return what handles a request."""
+        compute = super().get_route_handler()
+
+        async def answer(request: Request) -> Response:
+            media_type(request.headers.get("accept"), (self.media_type,))
+            kept: RepresentationCache = request.app.state.kept
+            asked = (request.scope["path"], request.scope["query_string"], self.media_type)
+            found = kept.get(asked)
+            if found is None:
+                body = bytes((await compute(request)).body)
+                charset = "; charset=utf-8" if self.media_type == SVG else ""
+                found = Representation(body, f"{self.media_type}{charset}")
+                kept.put(asked, found)
+            return found.respond(request)
+
+        return answer
+
+
+class SpecificationRoute(DrawingRoute):
+    """A route of a figure for Plotly."""
+
+    media_type = "application/json"
+
+
+router = PageRouter()
+drawings = APIRouter(route_class=DrawingRoute, include_in_schema=False)
+specifications = APIRouter(route_class=SpecificationRoute, include_in_schema=False)
+
+
+@router.page("/figures")
+async def figures(known: Known, _asked: Annotated[None, NO_PARAMETERS] = None) -> View:
+    """List the figures."""
+    answer = await told.figures(known)
+    return View("figures.html", answer, matrix=MATRIX, counted=number_of_studies())
+
+
+@router.page(f"/figures/{MATRIX}")
+async def matrix(known: Known, query: Annotated[MatrixQuery, Query()], request: Request) -> View:
+    """Studies by two attributes, gaps as visible as what is there."""
+    found = _matrix(known, query, request)
+    gaps: dict[str, list[str]] = {}
+    for row in found.rows:
+        if not row["count"]:
+            name = wording.shown(row["row_level"], row["row"])
+            gaps.setdefault(name, []).append(wording.shown(row["column_level"], row["column"]))
+    chosen = {"rows": query.rows, "columns": query.columns}
+    return _view(known, found, query, chosen=chosen, gaps=gaps)
+
+
+@router.page("/figures/{figure}")
+async def figure(
+    known: Known,
+    figure: Annotated[FigureName, Path()],
+    query: Annotated[FigureQuery, Query()],
+    request: Request,
+) -> View:
+    """One figure of the survey."""
+    found = drawn(figure, known.facts, query.wanted(), _page(request))
+    return _view(known, found, query, chosen={}, gaps={})
+
+
+@drawings.get(f"/figures/{MATRIX}.svg", response_class=Response)
+async def matrix_drawing(
+    known: Known, query: Annotated[MatrixQuery, Query()], request: Request
+) -> Response:
+    """Give the matrix as a drawing."""
+    return _document(_matrix(known, query, request))
+
+
+@drawings.get("/figures/{figure}.svg", response_class=Response)
+async def figure_drawing(
+    known: Known,
+    figure: Annotated[FigureName, Path()],
+    query: Annotated[FigureQuery, Query()],
+    request: Request,
+) -> Response:
+    """Give a figure as a drawing."""
+    return _document(drawn(figure, known.facts, query.wanted(), _page(request)))
+
+
+@specifications.get(f"/figures/{MATRIX}{PLOTLY}", response_class=Response)
+async def matrix_specification(
+    known: Known, query: Annotated[MatrixQuery, Query()], request: Request
+) -> Response:
+    """Give the matrix for Plotly."""
+    return Response(specification(_matrix(known, query, request)))
+
+
+@specifications.get(f"/figures/{{figure}}{PLOTLY}", response_class=Response)
+async def figure_specification(
+    known: Known, figure: Annotated[FigureName, Path()], query: Annotated[FigureQuery, Query()]
+) -> Response:
+    """Give a figure for Plotly."""
+    return Response(specification(drawn(figure, known.facts, query.wanted())))
+
+
+def _matrix(known: Knowledge, query: MatrixQuery, request: Request) -> Figure:
+    return evidence_map(known.facts, query.wanted(), query.rows, query.columns, _page(request))
+
+
+def _page(request: Request) -> str:
+    """Return the address of the page of what is asked for."""
+    path = request.scope["path"].removesuffix(".svg").removesuffix(PLOTLY)
+    query = request.scope["query_string"].decode("latin-1")
+    return f"{path}?{query}" if query else path
+
+
+def _view(
+    known: Knowledge,
+    found: Figure,
+    query: StudyFilters,
+    *,
+    chosen: Mapping[str, str],
+    gaps: Mapping[str, list[str]],
+) -> View:
+    cells = _CELLS.get(found.name, _flow_cells)
+    rows = [
+        (at, cells(row), row.get("count"), row["studies"])
+        for at, row in enumerate(found.rows)
+        if row["studies"]
+    ]
+    return View(
+        "figure.html",
+        told.answered(found),
+        figure=found,
+        abbreviations=_abbreviations(known, found),
+        rows=rows,
+        asked=query,
+        chosen=chosen,
+        gaps=gaps,
+        filters={name: known.taxonomy.to_dict()[name] for name in ATTRIBUTES},
+        names=wording.LEVELS,
+        levels=LEVELS,
+        statements=statements(found.name) if not query.wanted() else (),
+        counted=number_of_studies(),
+        mapped=len(known.facts.studies),
+    )
+
+
+_NAMED = (
+    *(("level", "value"), ("next_level", "next_value")),
+    *(("row_level", "row"), ("column_level", "column")),
+)
+
+
+def _abbreviations(known: Knowledge, found: Figure) -> list[tuple[str, str]]:
+    """Return the values that a figure writes short, with their names, in alphabetical order."""
+    met = {
+        (row[level], row[value])
+        for row in found.rows
+        for level, value in _NAMED
+        if row.get(level) and row.get(value)
+    }
+    met |= {
+        (level, row[level])
+        for row in found.rows
+        for level in ("detector", "mask", "accuracy", "model")
+        if row.get(level)
+    }
+    named = {
+        wording.shown(level, value): wording.named(known.taxonomy, level, value)
+        for level, value in met
+    }
+    return sorted((short, name) for short, name in named.items() if short != name)
+
+
+def _document(found: Figure) -> Response:
+    style = (files("api") / "page" / "figures.css").read_text(encoding="utf-8")
+    # What places a figure in a page says nothing to a drawing of its own.
+    drawing = found.drawings["wide"]
+    return Response(drawing.document(found.title, found.description, style))
+
+
+def _flow_cells(row: Row) -> list[Cell]:
+    end: Cell = ("To", "–", "")
+    if row["next_level"]:
+        shown = wording.shown(row["next_level"], row["next_value"])
+        end = ("To", shown, wording.LEVELS[row["next_level"]])
+    start = wording.shown(row["level"], row["value"])
+    return [("Value", start, wording.LEVELS[row["level"]]), end]
+
+
+def _model_cells(row: Row) -> list[Cell]:
+    level = row["level"]
+    within = row["model_category"] if level != "model_category" else ""
+    below = wording.LEVELS[level]
+    shown = wording.shown(level, row[level])
+    return [
+        ("Arc", shown, "" if row["name"] == shown else row["name"]),
+        ("Ring", below, ""),
+        ("Within", wording.shown("model_category", within) if within else "–", ""),
+    ]
+
+
+def _publication_cells(row: Row) -> list[Cell]:
+    value = row["value"] or "venue not known"
+    stack = "kind not known" if row["stack"] == "unknown" else row["stack"]
+    return [("Year or venue", value, ""), ("Part of the bar", stack, "")]
+
+
+def _sensor_cells(row: Row) -> list[Cell]:
+    named = [
+        (wording.LEVELS[level], wording.shown(level, row[level]) if row[level] else NOT_KNOWN, "")
+        for level in ("detector", "mask", "accuracy")
+    ]
+    return [
+        ("Year", str(row["year"] or NOT_KNOWN), ""),
+        *named,
+        ("Field of view", wide(row["fov_deg"]), ""),
+        ("Accuracy", degrees(row["accuracy_deg"]), ""),
+    ]
+
+
+def _matrix_cells(row: Row) -> list[Cell]:
+    return [
+        (wording.LEVELS[row[f"{side}_level"]], wording.shown(row[f"{side}_level"], row[side]), "")
+        for side in ("row", "column")
+    ]
+
+
+_CELLS: Mapping[str, Callable[[Row], list[Cell]]] = {
+    "models": _model_cells,
+    "publications": _publication_cells,
+    "coordinates": _sensor_cells,
+    MATRIX: _matrix_cells,
+}
+ROUTERS: tuple[Any, ...] = (drawings, specifications, router)

@@ -1,0 +1,30 @@
+"""/glossary: every term and abbreviation, and the words of the survey's taxonomy."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+
+from api.http.answers import Answer
+from api.http.dependencies import Known
+from api.pages.serving import PageRouter, View
+from api.pages.study import NAMES
+from api.pages.terms import glossary
+
+router = PageRouter()
+
+COLUMNS = ("term", "short", "meaning")
+
+
+@router.page("/glossary")
+async def words(known: Known) -> View:
+    """All terms in alphabetical order, and the taxonomy by attribute."""
+    terms = [asdict(term) for term in glossary().values()]
+    taxonomy = known.taxonomy.to_dict()
+    document = {"terms": terms, "taxonomy": taxonomy}
+    return View(
+        "glossary.html",
+        Answer(document, COLUMNS, lambda: terms),
+        terms=glossary().values(),
+        taxonomy=taxonomy,
+        names=NAMES,
+    )

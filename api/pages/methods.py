@@ -1,0 +1,95 @@
+"""What the code of an algorithm says of itself: its docstring in parts, as pages show it."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+from markupsafe import Markup
+
+_HEADING = re.compile(r"^(\w[\w ]+)\n-{3,}\n", re.MULTILINE)
+_LITERAL = re.compile(r"``([^`]+)``|`([^`]+)`")
+
+
+@dataclass(frozen=True)
+class Told:
+    """A docstring in parts; each text is paragraphs.
+
+    Attributes
+    ----------
+    name, module, cls : of the class
+    lead : what it does
+    equations : what it implements, with the survey's labels
+    notes : further notes, such as shapes, failure and cost
+    parameters : (name, type, text)
+    example : a session that runs as it stands
+    """
+
+    name: str
+    module: str
+    cls: str
+    lead: tuple[Markup, ...]
+    equations: tuple[Markup, ...]
+    notes: tuple[Markup, ...]
+    parameters: tuple[tuple[str, str, Markup], ...]
+    example: str
+
+
+@cache
+def told(implementation: Any) -> tuple[Told, ...]:
+    """Return what a class, or each stage of a chain, says of itself."""
+    stages = getattr(implementation, "stages", (implementation,))
+    return tuple(_told(stage) for stage in stages)
+
+
+def _told(cls: Any) -> Told:
+    lead, sections = _sections(inspect.getdoc(cls) or "")
+    notes = _paragraphs(sections.get("Notes", ""))
+    at = next((k for k, text in enumerate(notes) if text.startswith("Implements")), None)
+    # What follows the equations belongs to them, up to the paragraph that names shapes.
+    end = next((k for k, text in enumerate(notes) if text.startswith("Shapes")), len(notes))
+    equations = notes[at:end] if at is not None else []
+    rest = notes[:at] + notes[end:] if at is not None else notes
+    return Told(
+        name=cls.about.name,
+        module=cls.__module__,
+        cls=cls.__name__,
+        lead=tuple(map(marked, _paragraphs(lead))),
+        equations=tuple(map(marked, equations)),
+        notes=tuple(map(marked, rest)),
+        parameters=tuple(_parameters(sections.get("Parameters", ""))),
+        example=sections.get("Examples", "").strip(),
+    )
+
+
+def _sections(text: str) -> tuple[str, dict[str, str]]:
+    lead, *rest = _HEADING.split(text)
+    return lead, dict(zip(rest[::2], rest[1::2], strict=True))
+
+
+def _paragraphs(text: str) -> list[str]:
+    return [" ".join(part.split()) for part in re.split(r"\n\s*\n", text.strip()) if part.strip()]
+
+
+def marked(text: str) -> Markup:
+    """Return a text of a docstring, its literals as code."""
+    parts, at = [], 0
+    for found in _LITERAL.finditer(text):
+        parts.append(Markup.escape(text[at : found.start()]))
+        parts.append(Markup("<code>{}</code>").format(found.group(1) or found.group(2)))
+        at = found.end()
+    return Markup("").join([*parts, Markup.escape(text[at:])])
+
+
+def _parameters(text: str) -> list[tuple[str, str, Markup]]:
+    found: list[tuple[str, str, list[str]]] = []
+    for line in text.splitlines():
+        if line and not line[0].isspace():
+            name, _, kind = line.partition(" : ")
+            found.append((name, kind, []))
+        elif found:
+            found[-1][2].append(line.strip())
+    return [(name, kind, marked(" ".join(lines).strip())) for name, kind, lines in found]

@@ -1,0 +1,78 @@
+"""Numbers as pages write them: three significant digits, never an exponent, a dash for none."""
+
+from __future__ import annotations
+
+import math
+
+NOTHING = "–"
+
+
+def number(value: float | None, digits: int = 3) -> str:
+    """Return a number with so many significant digits."""
+    if value is None or not math.isfinite(value):
+        return NOTHING
+    if value == 0:
+        return "0"
+    decimals = max(0, digits - 1 - math.floor(math.log10(abs(value))))
+    return f"{value:.{min(decimals, 8)}f}"
+
+
+def degrees(value: float | None) -> str:
+    """Return an error in degrees."""
+    text = number(value)
+    return text if text == NOTHING else f"{text}°"
+
+
+def wide(value: float | None) -> str:
+    """Return a field of view: 60°, where an error would be 60.0°."""
+    return NOTHING if value is None else f"{value:.4g}°"
+
+
+def times(value: float | None) -> str:
+    """Return a ratio."""
+    text = number(value)
+    return text if text == NOTHING else f"{text}×"
+
+
+def percent(share: float | None) -> str:
+    """Return a share, rounded down: only what is whole is 100 %."""
+    if share is None or not math.isfinite(share):
+        return NOTHING
+    return "100 %" if share == 1 else f"{math.floor(share * 1000) / 10:.1f} %"
+
+
+def counted(count: int, one: str, many: str | None = None) -> str:
+    """Return a count with its noun: 1 study, 2 studies."""
+    return f"{count} {one if count == 1 else many or one + 's'}"
+
+
+def studied(count: int) -> str:
+    """Return a number of studies in words."""
+    return counted(count, "study", "studies")
+
+
+def upfirst(text: str) -> str:
+    """Return a text with a capital first letter, all others as they are."""
+    return f"{text[:1].upper()}{text[1:]}"
+
+
+def sentence(text: str) -> str:
+    """Return a text with a capital and a full stop."""
+    return f"{upfirst(text)}{'' if text.endswith(('.', '!', '?')) else '.'}"
+
+
+_UNITS = {"mm": "mm", "um": "µm", "px": "px", "deg": "°", "us": "µs"}
+
+
+def unit_name(name: str) -> str:
+    """Return a name with its unit in words: `focal_length_mm` is "Focal length, mm"."""
+    if name == "half_fov_deg":
+        return "Half of the field of view, °"
+    words, _, last = name.rpartition("_")
+    if last not in _UNITS:
+        return name.replace("_", " ").capitalize()
+    return f"{words.replace('_', ' ').capitalize()}, {_UNITS[last]}"
+
+
+GIVEN = (number, degrees, wide, times, percent, counted, studied, sentence, upfirst, unit_name)
+"""What templates are given as filters."""

@@ -1,0 +1,64 @@
+"""Jinja: the environment of all pages, and what every template can use."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cache
+from typing import Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+from api.pages import addresses, numbers, terms
+from api.pages.charts.sensors import sensor
+from api.pages.methods import marked
+
+NAVIGATION = (
+    ("/", "Answer"),
+    ("/studies", "Studies"),
+    ("/algorithms", "Algorithms"),
+    ("/datasets", "Data sets"),
+    ("/claims", "Claims"),
+    ("/figures", "Figures"),
+    ("/compare", "Compare"),
+    ("/search", "Search"),
+    ("/glossary", "Glossary"),
+    ("/guide", "Guide"),
+)
+"""Address and name of every part, in the order of the masthead."""
+
+
+@cache
+def environment() -> Environment:
+    """Return the environment; text is escaped, and a name that is not given is an error."""
+    made = Environment(
+        loader=PackageLoader("api.pages"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    made.globals.update(
+        navigation=NAVIGATION, sensor=sensor, glossary=terms.glossary(), **vars_of(addresses.GIVEN)
+    )
+    made.filters.update(marked=marked, **vars_of(numbers.GIVEN), **vars_of(terms.GIVEN))
+    return made
+
+
+def vars_of(functions: tuple[Any, ...]) -> dict[str, Any]:
+    """Return functions by name."""
+    return {function.__name__: function for function in functions}
+
+
+def render(template: str, context: Mapping[str, Any]) -> str:
+    """Return a page as HTML.
+
+    Parameters
+    ----------
+    template : file name in `templates/`
+    context : by name; `path` and `query` are what was asked for
+    """
+    part = next(
+        (at for at, _ in NAVIGATION[1:] if context["path"].startswith(at)),
+        "/" if context["path"] == "/" else "",
+    )
+    return environment().get_template(template).render(part=part, **context)

@@ -1,0 +1,28 @@
+"""The page kinds, one module each; a new one is added here."""
+
+from __future__ import annotations
+
+from api.pages import (
+    algorithm,
+    answer,
+    claim,
+    compare,
+    dataset,
+    figures,
+    glossary_page,
+    search,
+    sensors,
+    study,
+)
+
+ROUTERS = (
+    *(
+        kind.router
+        for kind in (
+            *(answer, study, algorithm, dataset, sensors, claim, compare, search),
+            glossary_page,
+        )
+    ),
+    *figures.ROUTERS,
+)
+"""Routers of every kind of page."""

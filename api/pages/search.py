@@ -1,0 +1,85 @@
+"""/search: everything that is told, by words."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from fastapi import Query
+from pydantic import Field
+
+from api.http.answers import Answer
+from api.http.dependencies import Known
+from api.http.models.base import Question
+from api.http.models.parameters import GIVEN, Several, several
+from api.pages import addresses
+from api.pages.serving import PageRouter, View
+from api.pages.terms import glossary
+from api.search.entries import KINDS
+from api.search.index import Entry
+from registry.taxonomy import ATTRIBUTES
+
+router = PageRouter()
+
+MOST = 60
+COLUMNS = ("kind", "id", "title", "excerpt", "score", "page")
+KIND_NAMES = {
+    "study": "Studies",
+    "algorithm": "Algorithms",
+    "dataset": "Data sets",
+    "claim": "Claims",
+    "attribute": "Attributes",
+    "word": "Words",
+}
+_PAGES = {
+    "study": addresses.study_page,
+    "algorithm": addresses.algorithm_page,
+    "dataset": addresses.dataset_page,
+    "claim": addresses.claim_page,
+}
+
+
+class SearchQuery(Question):
+    """What is looked for."""
+
+    q: Annotated[
+        str | None, Field(min_length=1, max_length=200, description="Words, in any order."), GIVEN
+    ] = None
+    kind: Several[str] = several("Only what is of one of these kinds.")
+
+
+@router.page("/search")
+async def search(known: Known, query: Annotated[SearchQuery, Query()]) -> View:
+    """Tell what is found, the best first."""
+    kinds = [kind for kind in query.kind or () if kind in KINDS]
+    hits = known.index.find(query.q, kinds) if query.q else []
+    items: list[dict[str, Any]] = [
+        {
+            "kind": hit.entry.kind,
+            "id": hit.entry.id,
+            "title": hit.entry.title,
+            "excerpt": hit.excerpt,
+            "score": hit.score,
+            "page": page_of(hit.entry),
+        }
+        for hit in hits[:MOST]
+    ]
+    document = {"q": query.q, "items": items, "total": len(hits)}
+    return View(
+        "search.html",
+        Answer(document, COLUMNS, lambda: items),
+        asked=query,
+        kinds=KIND_NAMES,
+    )
+
+
+def page_of(entry: Entry) -> str:
+    """Return the address of the page that tells of what was found."""
+    if entry.kind in _PAGES:
+        return _PAGES[entry.kind](entry.id)
+    attribute, _, value = entry.id.partition(": ")
+    if value and attribute in ATTRIBUTES:
+        return addresses.value_page(attribute, value)
+    if entry.kind == "attribute":
+        return f"/glossary#{addresses.anchor('attribute', entry.id)}"
+    term = glossary().get(entry.id)
+    return f"/glossary#{term.id}" if term else "/glossary"

@@ -1,0 +1,158 @@
+"""/detectors, /masks, /architectures/{detector}/{mask}: what is built, and what it reaches."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cache
+from typing import Annotated, Any
+
+from fastapi import Path
+
+from api.http.answers import Answer
+from api.http.dependencies import Known
+from api.http.knowledge import Knowledge
+from api.http.models import words
+from api.http.models.recommendations import RequirementsQuery
+from api.http.routers import recommendations as service
+from api.pages import boards
+from api.pages.serving import PageRouter, View
+from benchmark.leaderboard.architectures import architectures
+from registry.studies import Study
+
+router = PageRouter()
+
+OTHER = {"detector": "mask", "mask": "detector"}
+COLUMNS = ("value", "name", "category", "studies", "datasets", "best_deg", "best_dataset")
+ARCHITECTURE_COLUMNS = (
+    *("detector", "mask", "studies", "datasets", "dataset", "extractor", "model", "rms_deg"),
+    *("bound_deg", "over_bound", "half_fov_deg"),
+)
+MOST = 500
+
+
+def best_built(known: Knowledge) -> list[dict[str, Any]]:
+    """Return the best measured pipeline of every detector and mask that a data set has."""
+    return architectures(known.measurements.leaderboard)
+
+
+def _told(known: Knowledge, attribute: str, value: str) -> dict[str, Any]:
+    """Return a detector or a mask with its studies, its partners and the best of each."""
+    entry = next(e for e in known.taxonomy.to_dict()[attribute] if e["value"] == value)
+    studies = [s for s in known.facts.studies.values() if value in s.of(attribute)]
+    built = [row for row in best_built(known) if row[attribute] == value]
+    cards = [c for c in known.measurements.cards if c[attribute] == value]
+    measured = [row for row in built if row["rms_deg"] is not None]
+    best = min(measured, key=lambda row: row["rms_deg"], default=None)
+    return {
+        **entry,
+        "studies": [s.key for s in studies],
+        "datasets": [c["name"] for c in cards],
+        "best_deg": best and best["rms_deg"],
+        "best_dataset": best and best["dataset"],
+        "architectures": _pairs(studies, built, attribute, value),
+    }
+
+
+def _pairs(
+    studies: list[Study], built: list[dict[str, Any]], attribute: str, value: str
+) -> list[dict[str, Any]]:
+    """Return every partner, of studies or of data sets, with both."""
+    other = OTHER[attribute]
+    partners: dict[str, dict[str, Any]] = {}
+    for study in studies:
+        for pair in study.architectures:
+            both = dict(zip(("detector", "mask"), pair, strict=True))
+            if both[attribute] == value:
+                entry = partners.setdefault(both[other], {**both, "studies": [], "best": None})
+                entry["studies"].append(study.key)
+    for row in built:
+        both = {name: row[name] for name in OTHER}
+        entry = partners.setdefault(row[other], {**both, "studies": [], "best": None})
+        entry["best"] = row
+    return sorted(partners.values(), key=lambda e: -len(e["studies"]))
+
+
+def _every(known: Knowledge, attribute: str) -> Answer:
+    values = known.taxonomy.values(attribute)
+    told = [_told(known, attribute, value) for value in values]
+    return Answer(
+        {"attribute": attribute, "items": told},
+        COLUMNS,
+        lambda: [{name: row[name] for name in COLUMNS} for row in told],
+    )
+
+
+def _one(known: Knowledge, attribute: str, value: str) -> View:
+    document = {"attribute": attribute, **_told(known, attribute, value)}
+    rows = [
+        {
+            **{name: pair[name] for name in ("detector", "mask", "studies")},
+            **{name: (pair["best"] or {}).get(name) for name in ARCHITECTURE_COLUMNS[3:]},
+        }
+        for pair in document["architectures"]
+    ]
+    hardware = [h for h in _hardware().values() if getattr(h, attribute) == value]
+    return View(
+        "value.html", Answer(document, ARCHITECTURE_COLUMNS, lambda: rows), hardware=hardware
+    )
+
+
+@cache
+def _hardware() -> Mapping[str, Any]:
+    from survey_data.hardware import hardware  # noqa: PLC0415 - read when it is first shown
+
+    return hardware()
+
+
+@router.page("/detectors")
+async def detectors(known: Known) -> View:
+    """Every detector of the taxonomy."""
+    return View("values.html", _every(known, "detector"))
+
+
+@router.page("/masks")
+async def masks(known: Known) -> View:
+    """Every mask of the taxonomy."""
+    return View("values.html", _every(known, "mask"))
+
+
+@router.page("/detectors/{detector}")
+async def detector(known: Known, detector: Annotated[words.Detector, Path()]) -> View:
+    """One detector: studies, masks it stands behind, data sets, built sensors."""
+    return _one(known, "detector", detector)
+
+
+@router.page("/masks/{mask}")
+async def mask(known: Known, mask: Annotated[words.Mask, Path()]) -> View:
+    """One mask: studies, detectors behind it, data sets, built sensors."""
+    return _one(known, "mask", mask)
+
+
+@router.page("/architectures/{detector}/{mask}")
+async def architecture(
+    known: Known,
+    detector: Annotated[words.Detector, Path()],
+    mask: Annotated[words.Mask, Path()],
+) -> View:
+    """One architecture: advice, studies, data sets, and every calibration of it."""
+    given = {"detector": [detector], "mask": [mask], "limit": 1, "calibrations": MOST}
+    asked = RequirementsQuery.model_validate(given)
+    answer = await service.recommendations(known, asked)
+    found = answer.document["architectures"]
+    studies = [s.key for s in known.facts.studies.values() if (detector, mask) in s.architectures]
+    cards = [c for c in known.measurements.cards if (c["detector"], c["mask"]) == (detector, mask)]
+    leaders = [
+        dict(row, name=f"{row['extractor']} → {row['model']}, {row['dataset']}")
+        for card in cards
+        for row in boards.first_rows(known, card["name"])[:1]
+    ]
+    return View(
+        "architecture.html",
+        answer,
+        detector=detector,
+        mask=mask,
+        architecture=found[0] if found else None,
+        studies=studies,
+        cards=cards,
+        field=boards.field_chart(leaders, "name"),
+    )

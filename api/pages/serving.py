@@ -1,0 +1,135 @@
+"""Pages over HTTP: an address, the same address with `.json` and `.csv`, refusals as pages."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from http import HTTPStatus
+from typing import Any, ClassVar
+
+from fastapi import APIRouter, Request, Response
+from fastapi.exceptions import RequestValidationError
+
+from api.http.answers import Answer, Handler, StrictRoute
+from api.http.negotiation import CSV, JSON, media_type
+from api.http.problems import Problem
+from api.http.refusals import refusal
+from api.http.representations import Representation, RepresentationCache
+from api.pages.rendering import render
+
+HTML = "text/html"
+OFFERED = (HTML, JSON, CSV)
+TWINS: Mapping[str, str] = {".json": JSON, ".csv": CSV}
+
+Endpoint = Callable[..., Any]
+
+
+class View(Response):
+    """A page: what it tells, as a template shows it; as JSON and CSV what it tells.
+
+    Parameters
+    ----------
+    template : file name in `templates/`
+    told : the document, of which the twins are made; `told` in the template
+    context : what the template is given besides
+    """
+
+    media_type = HTML
+    offered: ClassVar = OFFERED
+
+    def __init__(self, template: str, told: Answer, /, **context: Any) -> None:
+        super().__init__()
+        self.template = template
+        self.told = told
+        self.context = context
+
+    def representation(self, wanted: str, path: str = "/", query: str = "") -> Representation:
+        """Return the page in a media type; `path` and `query` are what was asked for."""
+        if wanted != HTML:
+            return self.told.representation(wanted)
+        context = {"told": self.told.document, "path": path, "query": query, **self.context}
+        return page_bytes(render(self.template, context))
+
+
+def page_bytes(text: str) -> Representation:
+    """Return rendered HTML as it is sent."""
+    return Representation(text.encode(), "text/html; charset=utf-8")
+
+
+def refusal_page(request: Request, problem: Problem) -> Response:
+    """Return the page that tells a person of a refusal."""
+    path: str = request.scope["path"]
+    context = {"path": path, "query": "", "problem": problem.document(path)}
+    told = page_bytes(render("problem.html", context))
+    shown = told.respond(request, conditional=False)
+    shown.status_code = problem.status_code
+    shown.headers["Cache-Control"] = "no-store"
+    return shown
+
+
+class PageRoute(StrictRoute):
+    """A route of a page. Its path settles the representation where it ends in a twin's suffix."""
+
+    def get_route_handler(self) -> Handler:
+        """Return what handles a request."""
+        compute = super().get_route_handler()
+        twin = next((kind for suffix, kind in TWINS.items() if self.path.endswith(suffix)), None)
+
+        async def answer(request: Request) -> Response:
+            kept: RepresentationCache = request.app.state.kept
+            path, query = request.scope["path"], _filled(request.scope["query_string"])
+            request.scope["query_string"] = query
+            wanted = twin or media_type(request.headers.get("accept"), OFFERED)
+            asked = (path, query, wanted)
+            found = kept.get(asked)
+            if found is None:
+                try:
+                    made: View = await compute(request)  # type: ignore[assignment]
+                    found = made.representation(wanted, path, query.decode("latin-1"))
+                except (Problem, RequestValidationError) as error:
+                    if wanted != HTML:
+                        raise
+                    return refusal_page(request, _problem(error, request))
+                if made.status_code != HTTPStatus.OK:  # a page that tells of a refusal itself
+                    shown = found.respond(request, conditional=False)
+                    shown.status_code = made.status_code
+                    return shown
+                kept.put(asked, found)
+            return found.respond(request)
+
+        return answer
+
+
+def _filled(query: bytes) -> bytes:
+    """Return a query without its empty fields: a form sends those that nobody filled in."""
+    return b"&".join(field for field in query.split(b"&") if field.partition(b"=")[2])
+
+
+def _problem(error: Problem | RequestValidationError, request: Request) -> Problem:
+    if isinstance(error, Problem):
+        return error
+    return refusal(error.errors(), request.scope["endpoint"])
+
+
+class PageRouter(APIRouter):
+    """A router whose pages have twins."""
+
+    def __init__(self) -> None:
+        super().__init__(route_class=PageRoute, include_in_schema=False)
+
+    def page(self, path: str, twin: str | None = None) -> Callable[[Endpoint], Endpoint]:
+        """Offer a page at `path`, its twins at the same path with `.json` and `.csv`.
+
+        Parameters
+        ----------
+        path : as FastAPI takes it, such as "/studies/{key}"
+        twin : the twins' path without suffix, where `path` ("/") can take none
+        """
+
+        def register(endpoint: Endpoint) -> Endpoint:
+            # The twins first: a part of a path would take their suffix for its own.
+            for suffix in TWINS:
+                self.add_api_route((twin or path) + suffix, endpoint, response_class=View)
+            self.add_api_route(path, endpoint, response_class=View)
+            return endpoint
+
+        return register

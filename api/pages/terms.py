@@ -1,0 +1,123 @@
+"""Terms and their meaning: no abbreviation stands on a page without its meaning a tap away.
+
+`api.glossary` is the one place of terms; values of the taxonomy bring their own names.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from functools import cache
+
+from markupsafe import Markup
+
+from api.glossary import words
+from api.pages.addresses import anchor, value_page
+from registry.studies import facts
+from registry.taxonomy import ATTRIBUTES
+
+NONE = "None"
+WITHOUT = {
+    "mask": "no mask",
+    "extractor": "no feature extraction",
+    "model": "no calibration model",
+    "error": "no error named",
+}
+"""What the survey's "None" says of an attribute."""
+
+
+@dataclass(frozen=True)
+class Term:
+    """A word of the field.
+
+    Attributes
+    ----------
+    term : as it is written
+    short : its meaning in a few words
+    meaning : in a sentence or two
+    """
+
+    term: str
+    short: str
+    meaning: str
+
+    @property
+    def id(self) -> str:
+        """Id of its entry on the page."""
+        return anchor("term", self.term)
+
+
+@cache
+def glossary() -> dict[str, Term]:
+    """Return the terms by name, in alphabetical order."""
+    return {one.term: Term(one.term, one.name, one.meaning) for one in words()}
+
+
+@cache
+def _abbreviations() -> re.Pattern[str]:
+    """Return what finds terms in a text: those written with capitals, longest first."""
+    words = [term for term in glossary() if sum(c.isupper() for c in term) > 1]
+    words.sort(key=len, reverse=True)
+    return re.compile(rf"(?<![\w/-])(?:{'|'.join(map(re.escape, words))})(?![\w-])")
+
+
+def term(name: str, text: str | None = None) -> Markup:
+    """Return a term with its meaning as a tip, and a link to its entry; unknown names stand bare.
+
+    Parameters
+    ----------
+    name : of the glossary
+    text : what is written, the name by default
+    """
+    known = glossary().get(name)
+    if known is None:
+        return Markup.escape(text or name)
+    link = Markup('<a class="term" href="/glossary#{id}" title="{short}">{text}</a>')
+    return link.format(id=known.id, short=known.short, text=text or name)
+
+
+def explained(text: str) -> Markup:
+    """Return a text, each abbreviation's first place in it with its meaning."""
+    met: set[str] = set()
+    parts: list[Markup] = []
+    at = 0
+    for found in _abbreviations().finditer(text):
+        name = found.group()
+        if name in met:
+            continue
+        met.add(name)
+        parts += [Markup.escape(text[at : found.start()]), term(name)]
+        at = found.end()
+    return Markup("").join([*parts, Markup.escape(text[at:])])
+
+
+def shown(value: str, attribute: str) -> str:
+    """Return a value as it is written: the survey's "None" says of what there is none."""
+    return WITHOUT.get(attribute, value) if value == NONE else value
+
+
+def named(value: str, attribute: str) -> str:
+    """Return the name of a value, which stands for its abbreviation."""
+    if value == NONE:
+        return WITHOUT.get(attribute, value)
+    return facts().taxonomy.name(attribute, value)
+
+
+def named_here(value: str, attribute: str) -> str:
+    """Return the name of a value where it says more than the value does, else nothing."""
+    if attribute not in ATTRIBUTES or named(value, attribute) in {value, shown(value, attribute)}:
+        return ""
+    return named(value, attribute)
+
+
+def value(text: str, attribute: str) -> Markup:
+    """Return a value of an attribute with its name as a tip, and a link to where it is told of."""
+    if attribute not in ATTRIBUTES:
+        return Markup.escape(text)
+    link = Markup('<a class="value" href="{at}" title="{name}">{text}</a>')
+    at = value_page(attribute, text)
+    return link.format(at=at, name=named(text, attribute), text=shown(text, attribute))
+
+
+GIVEN = (term, explained, shown, named, named_here, value)
+"""What templates are given as filters."""

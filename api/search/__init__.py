@@ -1,0 +1,1 @@
+"""Full-text search over all that the atlas tells: `index.Index` of `entries.entries`."""

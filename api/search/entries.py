@@ -1,0 +1,129 @@
+"""What can be found: studies, algorithms, data sets, claims, attributes, words with a meaning."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Protocol
+from urllib.parse import quote
+
+import survey_data
+from api.glossary import words
+from api.search.index import Entry
+
+if TYPE_CHECKING:
+    from api.http.measurements import Measurements
+    from registry.catalogue import Catalogue
+    from registry.studies import Facts
+    from registry.taxonomy import Taxonomy
+
+KINDS = ("study", "algorithm", "dataset", "claim", "attribute", "word")
+"""In the order that breaks ties."""
+
+
+class Known(Protocol):
+    """What entries are made from: `api.http.knowledge.Knowledge`, which imports this module."""
+
+    @property
+    def facts(self) -> Facts:
+        """Studies and taxonomy."""
+
+    @property
+    def taxonomy(self) -> Taxonomy:
+        """The vocabulary."""
+
+    @property
+    def catalogue(self) -> Catalogue:
+        """The implementations."""
+
+    @property
+    def measurements(self) -> Measurements:
+        """What is measured."""
+
+
+def entries(known: Known) -> tuple[Entry, ...]:
+    """Return everything that is told, by kind and in the order its lists have."""
+    found = (_studies, _algorithms, _datasets, _claims, _attributes, _words)
+    return tuple(entry for of_kind in found for entry in of_kind(known))
+
+
+def _studies(known: Known) -> Iterator[Entry]:
+    for study in known.facts.studies.values():
+        values = [
+            _named(value, known.taxonomy.name(attribute, value))
+            for attribute in known.taxonomy.attributes
+            for value in study.of(attribute)
+        ]
+        yield Entry(
+            kind="study",
+            id=study.key,
+            title=study.title or study.key,
+            words=f"{study.authors}, {study.year or 'year unknown'}. {study.venue}",
+            text="; ".join(dict.fromkeys(values)),
+            address=f"/v1/studies/{quote(study.key, safe='')}",
+        )
+
+
+def _algorithms(known: Known) -> Iterator[Entry]:
+    for one in known.catalogue.listing():
+        attribute = "extractor" if one.role == "extractor" else "model"
+        values = {entry.value: entry.name for entry in known.taxonomy.entries(attribute)}
+        yield Entry(
+            kind="algorithm",
+            id=one.name,
+            title=f"{one.name} ({one.role})",
+            words=f"{one.taxonomy} {values.get(one.taxonomy, '')} {one.category or ''} "
+            f"{' '.join(one.labels)}",
+            text=f"{one.summary} {'; '.join(one.studies)}".strip(),
+        )
+
+
+def _datasets(known: Known) -> Iterator[Entry]:
+    for card in known.measurements.cards:
+        detector, mask = str(card["detector"]), str(card["mask"])
+        name = known.taxonomy.name
+        yield Entry(
+            kind="dataset",
+            id=card["name"],
+            title=f"{name('detector', detector)}, {name('mask', mask)}",
+            words=f"{detector} {mask} {card['observation']} {' '.join(card['conditions'])}",
+            text=str(card["description"]),
+            address=f"/v1/datasets/{quote(card['name'], safe='')}",
+        )
+
+
+def _claims(known: Known) -> Iterator[Entry]:
+    for entry in known.measurements.claims.values():
+        said = entry.claim
+        yield Entry(
+            kind="claim",
+            id=said.id,
+            title=said.statement,
+            words=f"{said.section} {said.study} {entry.verdict or 'not measured'}",
+            text=f"{said.how_to_test}. {said.measured_on}",
+            address=f"/v1/claims/{quote(said.id, safe='')}",
+        )
+
+
+def _attributes(_known: Known) -> Iterator[Entry]:
+    table = survey_data.load().attribute_definitions
+    columns = (table[name] for name in ("attribute", "name", "synonyms", "description"))
+    for attribute, name, synonyms, description in zip(*columns, strict=True):
+        yield Entry("attribute", attribute, name, synonyms, description, "/v1/taxonomy")
+
+
+def _words(known: Known) -> Iterator[Entry]:
+    for attribute in known.taxonomy.attributes:
+        for entry in known.taxonomy.entries(attribute):
+            yield Entry(
+                kind="word",
+                id=f"{attribute}: {entry.value}",
+                title=entry.name,
+                words=f"{entry.category} {entry.section}",
+                address="/v1/taxonomy",
+            )
+    for term in words():
+        yield Entry(kind="word", id=term.term, title=term.name, text=term.meaning)
+
+
+def _named(value: str, name: str) -> str:
+    return value if value == name else f"{name} ({value})"
