@@ -1,80 +1,82 @@
-"""An answer in two levels as text of 80 columns: architectures, then calibrations of each."""
+"""An answer in two levels as text: architectures, then calibrations of each."""
 
 from __future__ import annotations
 
 import itertools
-import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-WIDTH = 80
+from api.cli.tables import prose, table
+from registry.taxonomy import NO_IMPLEMENTATION_STATED as NONE
+
 ORDERS = {
     "advice": "what the survey advises first",
     "support": "what most studies proposed first",
     "measured": "what errs least first",
 }
+_NARROW = 30
 _LABEL = 13  # columns before the text of a labelled paragraph
-_CELLS = (4, 28, 8, 8, 28)  # columns of the table of calibrations
 _HEADINGS = ("", "calibration", "advised", "studies", "measured, deg")
+_DIRECT = "direct"
 _INDENT = "    "
 
 
-def text(document: Mapping[str, Any]) -> str:
+def text(document: Mapping[str, Any], width: int) -> str:
     """Return the architectures of an answer with their three kinds of evidence, as lines."""
-    return "\n".join(itertools.chain(_head(document), _body(document))) + "\n"
+    return "\n".join(itertools.chain(_head(document, width), _body(document, width))) + "\n"
 
 
-def explanation(blocked: Mapping[str, Any]) -> str:
+def explanation(blocked: Mapping[str, Any], width: int) -> str:
     """Return why nothing is left, and what would leave something, as lines."""
-    lines = _wrapped(f"nothing is left: {blocked['constraint']}: {blocked['detail']}", "", "  ")
+    lines = prose(f"nothing is left: {blocked['constraint']}: {blocked['detail']}", width, "  ")
     for relaxation in blocked["relaxations"]:
         found = _many(relaxation["architectures"], "architecture")
-        lines += _wrapped(f"{relaxation['words']}: {found}", "  - ", "    ")
+        lines += prose(f"{relaxation['words']}: {found}", width, "    ", "  - ")
     return "\n".join(lines)
 
 
-def _head(document: Mapping[str, Any]) -> Iterator[str]:
+def _head(document: Mapping[str, Any], width: int) -> Iterator[str]:
     shown, count = len(document["architectures"]), document["count"]
     first = "" if shown == count else f"first {shown} of "
-    yield from _wrapped(
+    yield from prose(
         f"{first}{_many(count, 'architecture')}, {_many(document['designs'], 'calibration')} in "
-        f"all; {ORDERS[document['sort']]}"
+        f"all; {ORDERS[document['sort']]}",
+        width,
     )
     for sentence in document["contradictions"]:
-        yield from _paragraph("against", sentence)
+        yield from _paragraph("against", sentence, width)
     if document["regret"] is not None:
-        yield from _paragraph("this order", document["regret"]["sentence"])
+        yield from _paragraph("this order", document["regret"]["sentence"], width)
     for hazard, pairs in document["untried"].items():
         if pairs:
             named = ", ".join(f"{pair['detector']} + {pair['mask']}" for pair in pairs)
-            yield from _paragraph("not tried", f"{hazard}, by no data set of {named}")
+            yield from _paragraph("not tried", f"{hazard}, by no data set of {named}", width)
 
 
-def _body(document: Mapping[str, Any]) -> Iterator[str]:
+def _body(document: Mapping[str, Any], width: int) -> Iterator[str]:
     for architecture in document["architectures"]:
         yield ""
         pareto = ", which none beats in both studies and error" if architecture["pareto"] else ""
         name = f"{architecture['detector']} + {architecture['mask']}"
-        yield from _wrapped(f"{architecture['rank']:<3} {name}{pareto}", "", _INDENT)
-        yield from _architecture(architecture)
+        yield from prose(f"{name}{pareto}", width, _INDENT, f"{architecture['rank']:<3} ")
+        yield from _architecture(architecture, width)
 
 
-def _architecture(architecture: Mapping[str, Any]) -> Iterator[str]:
+def _architecture(architecture: Mapping[str, Any], width: int) -> Iterator[str]:
     tasks = [
         f"{task['task']}{' (advised)' if task['advised'] else ''} {task['studies']}"
         for task in architecture["tasks"]
     ]
     if tasks:
-        yield from _paragraph("tasks", ", ".join(tasks))
-    yield from _paragraph("advised", _advised(architecture["advice"]))
-    yield from _paragraph("proposed", _proposed(architecture["studies"]))
-    yield from _paragraph("measured", _measured(architecture["best"]))
+        yield from _paragraph("tasks", ", ".join(tasks), width)
+    yield from _paragraph("advised", _advised(architecture["advice"]), width)
+    yield from _paragraph("proposed", _proposed(architecture["studies"]), width)
+    yield from _paragraph("measured", _measured(architecture["best"]), width)
     if architecture["contradiction"]:
-        yield from _paragraph("against", architecture["contradiction"])
+        yield from _paragraph("against", architecture["contradiction"], width)
     calibrations = architecture["calibrations"]
-    yield from _row(_HEADINGS)
-    for calibration in calibrations:
-        yield from _row(_calibration(calibration, architecture["advice"]))
+    rows = [_calibration(calibration, architecture["advice"]) for calibration in calibrations]
+    yield table(rows, _HEADINGS, width, _INDENT, rule=False)
     rest = architecture["count"] - len(calibrations)
     if rest:
         yield f"{_INDENT}... and {rest} more"
@@ -123,19 +125,20 @@ def _measured(best: Mapping[str, Any]) -> str:
 
 def _calibration(
     calibration: Mapping[str, Any], advice: Sequence[Mapping[str, Any]]
-) -> tuple[str, ...]:
+) -> dict[str, str]:
     for_what = {one["id"] for one in advice}.intersection(calibration["advised"])
     measured = calibration["measured"]
     where = "no" if measured is None else _over(measured, "")
     if measured is not None and measured["condition"] != measured["nominal"]["condition"]:
         where = f"{where}, {measured['condition']}"
-    return (
+    cells = (
         str(calibration["rank"]),
         _way(calibration),
         "yes" if for_what else "no",
         str(len(calibration["studies"])) if calibration["studies"] else "none",
         where,
     )
+    return dict(zip(_HEADINGS, cells, strict=True))
 
 
 def _over(measured: Mapping[str, Any], unit: str) -> str:
@@ -148,30 +151,23 @@ def _over(measured: Mapping[str, Any], unit: str) -> str:
 
 
 def _way(calibration: Mapping[str, Any]) -> str:
-    parts = (calibration["extractor"], *calibration["compensations"], calibration["model"])
-    return " > ".join(parts)
+    extractor, model = calibration["extractor"], calibration["model"]
+    stages = (*calibration["compensations"], "no model" if model == NONE else model)
+    return " > ".join((_unmapped(calibration) if extractor == NONE else extractor, *stages))
+
+
+def _unmapped(calibration: Mapping[str, Any]) -> str:
+    """Name what the survey has no extractor for: a method of ours, or signals taken as they are."""
+    ours = (calibration["measured"] or {}).get("extractor") or _DIRECT
+    return "no extraction" if ours.startswith(_DIRECT) else f"{ours} (ours)"
 
 
 def _many(number: int, one: str, several: str | None = None) -> str:
     return f"{number} {one if number == 1 else several or one + 's'}"
 
 
-def _wrapped(words: str, first: str = "", then: str = "") -> list[str]:
-    return textwrap.wrap(
-        words, WIDTH, initial_indent=first, subsequent_indent=then, break_on_hyphens=False
-    )
-
-
-def _paragraph(label: str, words: str) -> list[str]:
-    return _wrapped(words, f"{_INDENT}{label}".ljust(_LABEL + 2), " " * (_LABEL + 2))
-
-
-def _row(cells: Sequence[str]) -> Iterator[str]:
-    """Yield the lines of a row of the table of calibrations, each cell wrapped in its column."""
-    columns = [
-        textwrap.wrap(cell, width - 1, break_on_hyphens=False) or [""]
-        for cell, width in zip(cells, _CELLS, strict=True)
-    ]
-    for parts in itertools.zip_longest(*columns, fillvalue=""):
-        line = "".join(part.ljust(width) for part, width in zip(parts, _CELLS, strict=True))
-        yield f"{_INDENT}{line}".rstrip()
+def _paragraph(label: str, words: str, width: int) -> list[str]:
+    left = f"{_INDENT}{label}".ljust(_LABEL + 2)
+    if width < 2 * _NARROW:  # a column of labels leaves too little beside it
+        return prose(f"{label}: {words}", width, f"{_INDENT}  ", _INDENT)
+    return prose(words, width, " " * len(left), left)

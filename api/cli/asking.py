@@ -7,7 +7,7 @@ from functools import cache
 from typing import Any
 
 from api.cli.working import working_directory
-from api.cli.wrong_call import WrongCallError
+from api.cli.wrong_call import WrongCallError, unfit
 from api.http import asking
 from api.http.answers import Answer
 from api.http.knowledge import Knowledge
@@ -45,8 +45,24 @@ def knowledge() -> Knowledge:
     return Knowledge(Measurements(times_directory=working_directory()))
 
 
+#: What a person calls a part of a path, and the command that lists what it can be.
+_PARTS = {
+    "key": ("study", "sunatlas studies"),
+    "id": ("claim", "sunatlas claims"),
+    "name": ("data set", "sunatlas dataset list"),
+}
+_MOST = 12  # words that a refusal lists
+
+
 def _said(error: Violation, options: set[str]) -> str:
     name = error.parameter
-    what = f"--{name.replace('_', '-')}" if name in options else name
-    hint = f"did you mean {error.nearest!r}?" if error.nearest else f"expected {error.expected}"
-    return f"{what}: no {error.value!r}; {hint}"
+    if name in _PARTS and name not in options:
+        what, listed = _PARTS[name]
+        hint = f"did you mean {error.nearest!r}? " if error.nearest else ""
+        return f"no {what} {error.value!r}; {hint}`{listed}` lists them"
+    option = f"--{name.replace('_', '-')}" if name in options else name
+    expected = error.expected
+    words = expected.removeprefix("one of ").split(", ")
+    if expected.startswith("one of ") and len(words) > _MOST:
+        expected = f"one of {len(words)}, such as {words[0]} and {words[-1]}"
+    return f"{option}: {unfit(error.value, expected, error.nearest)}"

@@ -6,15 +6,23 @@ from typing import Annotated
 
 import typer
 
+from api.cli.completion import values
+
 
 def _option(attribute: str) -> typer.models.OptionInfo:
     text = f"Only with this {attribute}; may be repeated."
-    return typer.Option(f"--{attribute}", help=text, show_default=False)  # type: ignore[no-any-return]  # Typer types it Any
+    found: typer.models.OptionInfo = typer.Option(
+        f"--{attribute}", help=text, show_default=False, autocompletion=values(attribute)
+    )
+    return found
 
 
 def _excluded(attribute: str) -> typer.models.OptionInfo:
     text = f"Never this {attribute}; may be repeated."
-    return typer.Option(f"--exclude-{attribute}", help=text, show_default=False)  # type: ignore[no-any-return]  # Typer types it Any
+    found: typer.models.OptionInfo = typer.Option(
+        f"--exclude-{attribute}", help=text, show_default=False, autocompletion=values(attribute)
+    )
+    return found
 
 
 Task = Annotated[list[str] | None, _option("task")]

@@ -2,38 +2,60 @@
 
 Each command lives in its own module of `api.cli.commands`, imported only when it is asked for, so
 that `sunatlas --help` costs no more than Typer itself. What is known to go wrong ends here, in one
-line on stderr: exit code 2 for a wrong call, 1 for a refused or failed one, 130 after Ctrl-C. Known
-are errors of the file system and the classes of error this project defines; anything else is a
-mistake in a program, and ends with its traceback.
+line on stderr: exit code 2 for a wrong call, 1 for a refused or failed one, 130 after Ctrl-C, 143
+after a request to terminate (SIGTERM), which is handled as Ctrl-C is. Known are errors of the file
+system and the classes of error this project defines; anything else is a mistake in a program, and
+ends with its traceback.
 """
 
 from __future__ import annotations
 
+import contextlib
+import errno
 import importlib
+import io
 import os
 import sys
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 from typer.core import TyperCommand, TyperGroup
 
+from api.cli.completion import VARIABLE
+from benchmark.processes import (
+    INTERRUPTED,
+    end_with_coordinator,
+    exit_code,
+    terminate_as_interrupt,
+    was_told,
+)
+
 # name -> its line in `sunatlas --help`; the module is api.cli.commands.<name>.
 COMMANDS: dict[str, str] = {
-    "serve": "Serve the page and the HTTP interface.",
+    "serve": "Serve the page, the guide and the HTTP interface.",
     "survey": "Check the survey's tables, or import the authors' own.",
     "studies": "List the studies and how far each one runs, or show one.",
     "recommend": "Rank the sensors and calibrations that meet requirements.",
-    "run": "Run a study's pipelines on the data of its architecture.",
+    "plan": "Tell what of a suite is to be measured, and why.",
+    "run": "Run a study's pipelines, or a suite.",
+    "verify": "Measure published cells drawn at random again, and compare.",
+    "gc": "Drop from the working store what no cell refers to.",
     "benchmark": "Score pipelines on the standard datasets.",
     "leaderboard": "Show the leaderboard, bring it up to date or check it.",
+    "curves": "Show how many calibration poses the leaders need.",
     "assess": "Show the survey's scores of extractors beside measured ones.",
+    "claims": "Show the survey's claims about algorithms, with verdicts.",
     "dataset": "List, describe, export or verify the standard datasets.",
-    "deposit": "Build or verify the bundle an archive takes.",
+    "deposit": "Build, verify, upload or publish the bundle an archive takes.",
+    "guide": "Build the guide, the site that the service has at /guide.",
+    "get": "Answer an address of the HTTP interface without a server.",
+    "completion": "Print what lets a shell complete commands and names.",
     "compile": "Compile every kernel now instead of at its first call.",
 }
 DEBUG = "SUNATLAS_DEBUG"
-INTERRUPTED = 130
+_NO_ROOM = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EBADF})
 _OURS = frozenset({"algorithms", "api", "benchmark", "registry", "survey_data"})
 
 
@@ -53,27 +75,33 @@ class LazyCommands(TyperGroup):
     def main(self, args: Sequence[str] | None = None, *rest: Any, **extra: Any) -> Any:
         """Run, and turn what goes wrong into an exit code and one line on stderr."""
         extra["standalone_mode"] = False
+        _open_streams()
+        if os.environ.get(VARIABLE):
+            from typer._completion_classes import completion_init  # noqa: PLC0415 - as Typer does
+
+            completion_init()
         try:
             status = super().main(args, *rest, **extra)
-            sys.stdout.flush()
+            _flush()
         except typer.TyperException as error:
-            _stop(error, error.exit_code, error.format_message())
+            _refuse(error)
         except typer.Abort as error:
             _stop(error, 1, "aborted")
         except BrokenPipeError:
             # The reader has gone (`sunatlas studies | head`): nobody is left to be told.
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            _drop_output()
             sys.exit(1)
         except KeyboardInterrupt:
             status = INTERRUPTED
         except OSError as error:
-            where = f"{error.filename}: " if error.filename else ""
-            _stop(error, 1, f"{where}{error.strerror or error}")
+            _stop(error, 1, f"{_where(error)}{error.strerror or error}")
         except Exception as error:
-            if not is_known(error):
+            if not (is_known(error) or was_told()):
                 raise
             quoted = isinstance(error, LookupError) and error.args  # str() would quote the message
             _stop(error, 1, str(error.args[0] if quoted else error))
+        if status == INTERRUPTED:
+            status = exit_code()
         sys.exit(status if isinstance(status, int) else 0)
 
 
@@ -93,7 +121,63 @@ def load(name: str) -> Any:
     return command
 
 
+def _refuse(error: Any) -> None:
+    """End a wrong call: where nothing is asked, with what can be asked."""
+    context = getattr(error, "ctx", None)
+    if context is not None and error.message == "Missing command.":
+        typer.echo(context.get_help())
+        sys.exit(error.exit_code)
+    from api.cli.refusals import said  # noqa: PLC0415 - the help does without it
+
+    _stop(error, error.exit_code, said(error))
+
+
+def _open_streams() -> None:
+    """Let a stream that is closed refuse what is written to it, and one of few letters replace.
+
+    Python leaves None where a closed stream was (`sunatlas studies >&-`).
+    """
+    if sys.stderr is None:
+        sys.stderr = open(os.devnull, "w")  # noqa: SIM115, PTH123 - for as long as the process is
+    if sys.stdout is None:
+        _stop(OSError(), 1, "standard output is closed")
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper) and stream.errors == "strict":
+            stream.reconfigure(errors="replace")
+
+
+def _flush() -> None:
+    """Write what is still to be written; a failure is told as one of standard output."""
+    try:
+        sys.stdout.flush()
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        _drop_output()
+        raise OSError(error.errno, error.strerror, "standard output") from error
+
+
+def _where(error: OSError) -> str:
+    """Name the file of an error; what cannot be written and has no name is standard output."""
+    if error.filename:
+        path = Path(os.fsdecode(error.filename))
+        hidden = path.name.startswith(".") and path.suffix in {".lock", ".sunatlas"}
+        return f"cannot write in {path.parent}: " if hidden else f"{path}: "
+    if error.errno in _NO_ROOM:  # files that cannot be written are named where they are
+        _drop_output()
+        return "standard output: "
+    return ""
+
+
+def _drop_output() -> None:
+    """Let what cannot be written to standard output be forgotten, also when Python ends."""
+    with contextlib.suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
 def _stop(error: BaseException, code: int, message: str) -> None:
+    if was_told():  # then whatever went wrong did so because of that
+        sys.exit(exit_code())
     if os.environ.get(DEBUG):
         raise error
     typer.echo(f"sunatlas: {' '.join(message.split())}", err=True)
@@ -131,6 +215,8 @@ def sunatlas(
 
 def main() -> None:
     """Entry point of the console script."""
+    end_with_coordinator()
+    terminate_as_interrupt()
     typer.main.get_command(app).main(prog_name="sunatlas")
 
 

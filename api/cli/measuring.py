@@ -16,11 +16,13 @@ from typing import Annotated, Any
 
 import typer
 
+from api.cli import completion
 from api.cli.working import working_directory
 from benchmark.contract import Cell
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running.run import RunInterruptedError, run, stale
 from benchmark.running.times import times_of_code
+from benchmark.suites.selection import SUITES
 
 Row = dict[str, Any]
 
@@ -52,6 +54,27 @@ StoreOption = Annotated[
         show_default=False,
     ),
 ]
+SchedulerOption = Annotated[
+    str | None,
+    typer.Option(
+        help="Address of a Dask scheduler to measure on instead, such as tcp://127.0.0.1:8786; "
+        "needs the extra 'distributed'.",
+        show_default=False,
+    ),
+]
+SuiteOption = Annotated[
+    str | None,
+    typer.Option(
+        autocompletion=completion.one_of(*SUITES),
+        help=f"A suite: {'; '.join(f'{suite.name} ({suite.what})' for suite in SUITES.values())}.",
+        show_default=False,
+    ),
+]
+
+
+def stores_of(directory: Path | None) -> tuple[Store, Store]:
+    """Return the published results and the working store: where cells are looked up, in order."""
+    return Store(PUBLISHED), Store(working_directory(directory))
 
 
 @dataclass(frozen=True)
@@ -85,24 +108,26 @@ class Scored:
         }
 
 
-def scored(cells: Iterable[Cell], workers: int, directory: Path | None) -> Scored:
+def scored(
+    cells: Iterable[Cell], workers: int, directory: Path | None, scheduler: str | None = None
+) -> Scored:
     """Read what is known of the cells and measure the rest.
 
     Raises
     ------
     typer.Exit
         With 130 on Ctrl-C, after saying what is kept.
-    StoreLockedError, StoreError
+    StoreLockedError, StoreError, DaskMissingError, ClusterError, WorkerLostError
         As `benchmark.running.run.run`.
     """
     wanted = sorted(set(cells))
-    shipped, work = Store(PUBLISHED), Store(working_directory(directory))
+    shipped, work = stores_of(directory)
     elsewhere = stale(wanted, shipped)
     missing = stale(elsewhere, work)
     warnings: tuple[str, ...] = ()
     if missing:
         with interruptible():
-            warnings = run(missing, work, workers).warnings
+            warnings = run(missing, work, workers, scheduler=scheduler).warnings
     found = {**_rows(shipped, set(wanted) - set(elsewhere)), **_rows(work, set(elsewhere))}
     times = times_of_code(work.directory)
     for cell, row in found.items():
@@ -132,7 +157,7 @@ def interruptible() -> Iterator[None]:
 def _rows(store: Store, cells: set[Cell]) -> dict[Cell, Row]:
     if not cells:
         return {}
-    return {cell: row for row in store.rows() if (cell := _cell(row)) in cells}
+    return {cell: row for row in store.rows(unit=None) if (cell := _cell(row)) in cells}
 
 
 def _cell(row: Row) -> Cell:

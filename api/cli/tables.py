@@ -4,25 +4,26 @@ from __future__ import annotations
 
 import json
 import math
+import os
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from enum import StrEnum
 from typing import Annotated, Any
 
 import typer
-from rich.box import SIMPLE_HEAD
-from rich.console import Console
-from rich.table import Table
-from rich.text import Text
 
 from api.cells import cell, plain
-from survey_data.csv_writing import csv_text
+from api.cli.layout import Column, laid_out, wrapped
+from api.columns import csv_of
 
 Row = Mapping[str, Any]
 
 
-#: Characters of a line that goes to a file or a pipe: room for the widest table.
-WIDE = 240
+#: Characters of a line where nothing says how many there are.
+COLUMNS = 80
+NARROWEST = 20
+#: Prose in longer lines is hard to read.
+PROSE = 100
 
 
 class Format(StrEnum):
@@ -49,41 +50,106 @@ def emit(
     Parameters
     ----------
     rows : one mapping a row
-    columns : of the table and the CSV, in order; JSON has all members
-    form : how
+    columns : of the table and the CSV, in order; JSON has all members. Those that say which row it
+        is come first
+    form : how; a table leaves out columns that are empty in every row
     document : what JSON prints in place of the list of rows
     title : above the table
     """
     if form is Format.JSON:
         emit_json(list(rows) if document is None else document)
     elif form is Format.CSV:
-        cells = [[cell(row.get(name)) for name in columns] for row in rows]
-        sys.stdout.write(csv_text(columns, cells))
+        _write(csv_of(columns, rows))
     else:
-        table = Table(title=title, title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
-        for name in columns:
-            numeric = any(_numeric(row.get(name)) for row in rows)
-            # Words may wrap, and are never cut; a number over two lines is another number.
-            table.add_column(
-                name.replace("_", " "),
-                justify="right" if numeric else "left",
-                no_wrap=numeric,
-                overflow="fold",
-            )
-        for row in rows:
-            table.add_row(*(Text(_shown(row.get(name))) for name in columns))
-        console().print(table)
+        if title is not None:
+            say(title)
+        shown = [name for name in columns if not rows or any(_shown(row.get(name)) for row in rows)]
+        typer.echo(table(rows, shown, line_width(), bold=_styled()))
+
+
+def table(
+    rows: Sequence[Row],
+    columns: Sequence[str],
+    width: int,
+    indent: str = "",
+    *,
+    right: Collection[str] = (),
+    rule: bool = True,
+    bold: bool = False,
+) -> str:
+    """Return rows as lines of at most `width` characters: see `api.cli.layout`.
+
+    Parameters
+    ----------
+    rows, columns : as `emit`
+    width, indent : of every line
+    right : columns whose text is a number
+    rule : below the heading
+    bold : the heading
+    """
+    made = laid_out([_column(rows, name, name in right) for name in columns], width, indent)
+    heading = [typer.style(line, bold=True) for line in made.heading] if bold else made.heading
+    ruled = [indent + "-" * (made.width - len(indent))] if rule else []
+    return "\n".join([*heading, *ruled, *made.rows])
 
 
 def emit_json(document: Any) -> None:
     """Print a document as JSON; NaN and infinities, which JSON lacks, as null."""
-    sys.stdout.write(json.dumps(plain(document), indent=2, ensure_ascii=False) + "\n")
+    _write(json.dumps(plain(document), indent=2, ensure_ascii=False) + "\n")
 
 
-def console(*, stderr: bool = False) -> Console:
-    """Make a console on stdout or stderr; piped output is not cut to a terminal's width."""
-    found = Console(stderr=stderr, highlight=False, soft_wrap=False)
-    return found if found.is_terminal else Console(stderr=stderr, highlight=False, width=WIDE)
+def say(words: str, then: str = "") -> None:
+    """Print a sentence to stdout, wrapped; `then` stands before its second and further lines."""
+    typer.echo("\n".join(prose(words, line_width(), then)))
+
+
+def prose(words: str, width: int, then: str = "", first: str = "") -> list[str]:
+    """Return a sentence in lines, no longer than are read with ease.
+
+    Parameters
+    ----------
+    words : of the sentence
+    width : of a line
+    then : before the second and further lines
+    first : before the first, as long as `then`
+    """
+    lines = wrapped(words, min(width, PROSE) - len(then))
+    return [f"{then if place else first}{line}" for place, line in enumerate(lines)]
+
+
+def line_width() -> int:
+    """Return the characters of a line: $COLUMNS, else the terminal's, else 80.
+
+    Where stdout goes to a pager, the terminal is found by stderr or stdin.
+    """
+    given = os.environ.get("COLUMNS", "")
+    if given.isdecimal() and int(given) > 0:
+        return max(NARROWEST, int(given))
+    for stream in (sys.stdout, sys.stderr, sys.stdin):
+        try:
+            columns = os.get_terminal_size(stream.fileno()).columns
+        except (OSError, ValueError, AttributeError):
+            continue  # no terminal, or closed
+        if columns > 0:
+            return max(NARROWEST, columns)
+    return COLUMNS
+
+
+def _write(text: str) -> None:
+    """Print what programs read: UTF-8 with line feeds, whatever the terminal's encoding is."""
+    sys.stdout.flush()
+    sys.stdout.buffer.write(text.encode())
+    sys.stdout.buffer.flush()
+
+
+def _styled() -> bool:
+    return sys.stdout.isatty() and not os.environ.get("NO_COLOR")
+
+
+def _column(rows: Sequence[Row], name: str, right: bool) -> Column:
+    values = [row.get(name) for row in rows]
+    numeric = right or any(map(_numeric, values))
+    return Column(name.replace("_", " "), [_shown(value) for value in values], numeric)
 
 
 def _numeric(value: Any) -> bool:

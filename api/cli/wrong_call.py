@@ -9,3 +9,31 @@ class WrongCallError(typer.TyperException):
     """The call is wrong: exit code 2."""
 
     exit_code = 2
+
+
+def refused(name: str, value: object, expected: str, nearest: str | None = None) -> WrongCallError:
+    """Return the error of a value of an option.
+
+    Parameters
+    ----------
+    name : of the option, or of the parameter of the service that it stands for
+    value : what was given
+    expected : what would have been right, in words
+    nearest : the valid value most like it, if any
+    """
+    option = f"--{name.replace('_', '-')}"
+    return WrongCallError(f"{option}: {unfit(value, expected, nearest)}")
+
+
+def unfit(value: object, expected: str, nearest: str | None = None) -> str:
+    """Say that a value does not fit, and what would; parameters as of `refused`."""
+    text = f"{value:g}" if isinstance(value, float) else str(value)
+    try:
+        number = float(text)
+    except ValueError:
+        got = repr(text)
+    else:
+        got = f"{number:.15g}"
+    if nearest is not None:
+        return f"no {got}; did you mean {nearest!r}?"
+    return f"got {got}; expected {expected}"

@@ -6,12 +6,11 @@ from collections.abc import Mapping
 from typing import Annotated, Any
 
 import typer
-from rich.box import SIMPLE_HEAD
-from rich.table import Table
-from rich.text import Text
 
+from api.cli import completion
 from api.cli.asking import ask
-from api.cli.tables import Format, FormatOption, console, emit
+from api.cli.tables import Format, FormatOption, emit, say
+from api.columns import ASSESSMENT
 from api.http.routers.assessment import assessment
 from benchmark.assessment.definitions import DEFINITIONS
 
@@ -29,7 +28,10 @@ def assess(
     *,
     method: Annotated[
         list[str] | None,
-        typer.Option(help="Only this method of the table, a row a property; repeatable."),
+        typer.Option(
+            autocompletion=completion.methods,
+            help="Only this method of the table, a row a property; repeatable.",
+        ),
     ] = None,
     form: FormatOption = Format.TABLE,
 ) -> None:
@@ -44,28 +46,18 @@ def assess(
     answer = ask(assessment, {"method": method})
     document = answer.document
     if form is not Format.TABLE or method:
-        emit(answer.rows(), COLUMNS, form, document=document)
+        columns: tuple[str, ...] = COLUMNS if form is Format.TABLE else ASSESSMENT
+        emit(answer.rows(), columns, form, document=document)
         return
-    table = Table(
-        title="Survey, mark and measured, by property",
-        title_justify="left",
-        box=SIMPLE_HEAD,
-        padding=(0, 1, 0, 0),
-    )
-    table.add_column("method", no_wrap=True)
-    for number in range(1, len(DEFINITIONS) + 1):
-        table.add_column(str(number), no_wrap=True)
-    for mark in _MARKS.values():
-        table.add_column(mark, justify="right", no_wrap=True)
+    rows = []
     for row in document["methods"]:
-        cells = [_cell(verdict) for verdict in row["properties"]]
-        counts = [str(count) for count in row["counts"].values()]
-        table.add_row(*(Text(text) for text in (row["method"], *cells, *counts)))
-    out = console()
-    out.width = max(out.width, 150)  # a row broken over two lines cannot be compared
-    out.print(table)
+        cells = {str(n): _cell(found) for n, found in enumerate(row["properties"], start=1)}
+        counts = zip(_MARKS.values(), row["counts"].values(), strict=True)
+        rows.append({"method": row["method"], **cells, **dict(counts)})
+    shown = ("method", *map(str, range(1, len(DEFINITIONS) + 1)), *_MARKS.values())
+    emit(rows, shown, form, title="Survey, mark and measured, by property")
     for number, name in enumerate(DEFINITIONS, start=1):
-        typer.echo(f"{number:>2} {name}")
+        say(f"{number} {name}", "   ")
     totals = document["totals"]
     typer.echo("; ".join(f"{name}: {count}" for name, count in totals.items()), err=True)
 

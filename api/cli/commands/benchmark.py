@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Annotated
 
 import typer
 
-from api.cli.measuring import AVAILABLE_WORKERS, ManyWorkersOption, StoreOption, scored
+from api.cli import completion
+from api.cli.measuring import (
+    AVAILABLE_WORKERS,
+    ManyWorkersOption,
+    SchedulerOption,
+    StoreOption,
+    scored,
+)
 from api.cli.tables import Format, FormatOption, emit
-from benchmark.metrics.score import METRICS
-from benchmark.plan.combinations import cells, incompatible
+from api.columns import RESULTS
+from benchmark.plan.combinations import Incompatible, cells, incompatible
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
@@ -25,30 +33,39 @@ COLUMNS = (
         "status",
     ),
 )
-CSV_COLUMNS = (
-    *("dataset", "condition", "detector", "mask", "extractor", "model", "status", "reason"),
-    *("n_calibration", "n_test", "n_observable", *METRICS, "latency_us", "time_ratio"),
-)
 
 
 @app.command()
 def benchmark(
     *,
     dataset: Annotated[
-        list[str] | None, typer.Option(help="Only this data set; may be repeated.")
+        list[str] | None,
+        typer.Option(
+            autocompletion=completion.datasets, help="Only this data set; may be repeated."
+        ),
     ] = None,
     condition: Annotated[
-        list[str] | None, typer.Option(help="Only this condition; may be repeated.")
+        list[str] | None,
+        typer.Option(
+            autocompletion=completion.conditions, help="Only this condition; may be repeated."
+        ),
     ] = None,
     extractor: Annotated[
         list[str] | None,
-        typer.Option(help="Only this implementation of an extractor; may be repeated."),
+        typer.Option(
+            autocompletion=completion.extractors,
+            help="Only this implementation of an extractor; may be repeated.",
+        ),
     ] = None,
     model: Annotated[
         list[str] | None,
-        typer.Option(help="Only this implementation of a model; may be repeated."),
+        typer.Option(
+            autocompletion=completion.models,
+            help="Only this implementation of a model; may be repeated.",
+        ),
     ] = None,
     workers: ManyWorkersOption = AVAILABLE_WORKERS,
+    scheduler: SchedulerOption = None,
     store: StoreOption = None,
     form: FormatOption = Format.TABLE,
 ) -> None:
@@ -59,8 +76,12 @@ def benchmark(
     --store) and not measured again, also after the run was broken off.
     """
     planned = cells(dataset or None, condition or None, extractor or None, model or None)
-    result = scored(planned, workers, store)
-    columns = CSV_COLUMNS if form is Format.CSV else COLUMNS
+    if not planned:
+        refused = incompatible(dataset or None, extractor or None, model or None)
+        typer.echo(f"sunatlas: no compatible combination of these names{_why(refused)}", err=True)
+        raise typer.Exit(1)
+    result = scored(planned, workers, store, scheduler)
+    columns = RESULTS if form is Format.CSV else COLUMNS
     document = {"scores": result.rows, "sources": result.sources()}
     emit(result.rows, columns, form, document=document, title=f"{len(result.rows)} scores")
     for warning in result.warnings:
@@ -70,8 +91,12 @@ def benchmark(
         f"now; new results are kept in {result.directory}",
         err=True,
     )
-    if not planned:
-        refused = incompatible(dataset or None, extractor or None, model or None)
-        reason = f": {refused[0].reason}" if refused else ""
-        typer.echo(f"sunatlas: no compatible combination of these names{reason}", err=True)
-        raise typer.Exit(1)
+
+
+def _why(refused: Sequence[Incompatible]) -> str:
+    """Say why the first combination is none."""
+    if not refused:
+        return ""
+    first = refused[0]
+    names = " + ".join(name for name in (first.extractor, first.model) if name)
+    return f": {first.dataset}, {names}: {first.reason}"

@@ -7,10 +7,11 @@ from typing import Annotated
 
 import typer
 
+from api.cli import completion
 from api.cli.asking import ask, knowledge
 from api.cli.measuring import AVAILABLE_WORKERS, ManyWorkersOption
-from api.cli.tables import Format, FormatOption, emit
-from api.http.routers.realism import COLUMNS as BUILT_COLUMNS
+from api.cli.tables import Format, FormatOption, emit, say
+from api.columns import DATASET, DATASETS, REALISM
 from api.http.routers.realism import realism as besides_built
 from benchmark import datasets
 from benchmark.contract import UnknownNameError
@@ -34,14 +35,21 @@ PAIRS = ("detector", "mask", "studies", "datasets", "reason")
 FILES = ("file", "bytes")
 BUILT = ("dataset", "rms_deg", "id", "name", "accuracy_rms_deg", "accuracy_ratio", "explanation")
 
-NameArgument = Annotated[str, typer.Argument(help="Name of the data set.", show_default=False)]
+NameArgument = Annotated[
+    str,
+    typer.Argument(
+        autocompletion=completion.datasets, help="Name of the data set.", show_default=False
+    ),
+]
 
 
 @app.command("list")
 def listing(form: FormatOption = Format.TABLE) -> None:
     """List the data sets: what sensor each simulates, under which conditions."""
     cards = knowledge().measurements.cards
-    emit(cards, COLUMNS, form, title=f"{len(cards)} data sets")
+    emit(
+        cards, COLUMNS if form is Format.TABLE else DATASETS, form, title=f"{len(cards)} data sets"
+    )
     if form is Format.TABLE:
         typer.echo(f"{covered.coverage().sentence()} See `sunatlas dataset coverage`.", err=True)
 
@@ -55,9 +63,13 @@ def describe(name: NameArgument, form: FormatOption = Format.TABLE) -> None:
     datasets.get(name)  # refuses an unknown name with the nearest one
     card = knowledge().measurements.card(name)
     if form is Format.TABLE:
-        typer.echo(f"{card['name']} (version {card['version']}): {card['description']}")
-        typer.echo(f"{card['detector']}, {card['mask']}; gives {card['observation']}")
-        typer.echo(f"follows {', '.join(card['follows'])}\n")
+        say(f"{card['name']} (version {card['version']}): {card['description']}")
+        say(f"{card['detector']}, {card['mask']}; gives {card['observation']}")
+        say(f"follows {', '.join(card['follows']) or 'no study'}")
+        typer.echo()
+    if form is Format.CSV:
+        emit(card["data"], DATASET, form)
+        return
     rows = [
         {"condition": key, "bound_deg": card["bounds"].get(key), **setup}
         for key, setup in card["setups"].items()
@@ -72,7 +84,11 @@ def export(
     out: Annotated[Path, typer.Option(help="Directory to make.", show_default=False)],
     condition: Annotated[
         list[str] | None,
-        typer.Option(help="Only this condition; may be repeated.", show_default=False),
+        typer.Option(
+            autocompletion=completion.conditions,
+            help="Only this condition; may be repeated.",
+            show_default=False,
+        ),
     ] = None,
     split: Annotated[
         list[str] | None,
@@ -151,7 +167,11 @@ def realism(
     *,
     dataset: Annotated[
         list[str] | None,
-        typer.Option(help="Only this data set; may be repeated.", show_default=False),
+        typer.Option(
+            autocompletion=completion.datasets,
+            help="Only this data set; may be repeated.",
+            show_default=False,
+        ),
     ] = None,
     form: FormatOption = Format.TABLE,
 ) -> None:
@@ -162,7 +182,7 @@ def realism(
     differs by more than a factor of two; an idealisation says why it stands for no sensor.
     """
     answer = ask(besides_built, {"dataset": dataset})
-    shown = BUILT if form is Format.TABLE else BUILT_COLUMNS
+    shown = BUILT if form is Format.TABLE else REALISM
     emit(answer.rows(), shown, form, document=answer.document, title="Data sets and built sensors")
 
 
@@ -172,12 +192,18 @@ def preview(
     *,
     out: Annotated[Path, typer.Option(help="PNG file to write.", show_default=False)],
     condition: Annotated[
-        str | None, typer.Option(help="Under which condition; the first by default.")
+        str | None,
+        typer.Option(
+            autocompletion=completion.conditions,
+            help="Under which condition; the first by default.",
+        ),
     ] = None,
     overlay: Annotated[
         str | None,
         typer.Option(
-            metavar="EXTRACTOR", help="Draw frames with the places that this extractor finds."
+            metavar="EXTRACTOR",
+            autocompletion=completion.extractors,
+            help="Draw frames with the places that this extractor finds.",
         ),
     ] = None,
 ) -> None:
@@ -235,7 +261,12 @@ def albedo(
 def pin(
     names: Annotated[
         list[str] | None,
-        typer.Argument(metavar="[NAME]...", help="Data sets; all by default.", show_default=False),
+        typer.Argument(
+            autocompletion=completion.datasets,
+            metavar="[NAME]...",
+            help="Data sets; all by default.",
+            show_default=False,
+        ),
     ] = None,
     *,
     check: Annotated[

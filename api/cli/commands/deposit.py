@@ -2,17 +2,48 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from api.cli.tables import Format, FormatOption, emit
+from api.cli.wrong_call import WrongCallError
 from api.deposit import bundle as deposit
+from api.deposit.verification import verify as verified
+
+if TYPE_CHECKING:
+    from api.deposit.archives.contract import Archive
+    from api.deposit.archives.server import Server
 
 app = typer.Typer(
-    help="Build or verify the bundle an archive takes.", add_completion=False, rich_markup_mode=None
+    help="Build, verify, upload or publish the bundle an archive takes.",
+    add_completion=False,
+    rich_markup_mode=None,
 )
+
+
+class Interface(StrEnum):
+    """Of Zenodo's two."""
+
+    RECORDS = "records"
+    LEGACY = "legacy"
+
+
+BuiltBundle = Annotated[Path, typer.Option("--bundle", help="Directory of the bundle.")]
+InterfaceOption = Annotated[
+    Interface, typer.Option("--api", help="InvenioRDM's records interface, or the legacy one.")
+]
+ProductionOption = Annotated[
+    bool, typer.Option("--production", help="zenodo.org instead of its sandbox.")
+]
+ServerOption = Annotated[
+    str | None, typer.Option("--server", help="Another archive that runs InvenioRDM.")
+]
+_BUILT = Path("out/deposit")
 
 
 @app.command()
@@ -20,7 +51,7 @@ def build(
     *,
     out: Annotated[
         Path, typer.Option(help="Directory to make; an earlier bundle there is replaced.")
-    ] = Path("out/deposit"),
+    ] = _BUILT,
     form: FormatOption = Format.TABLE,
 ) -> None:
     """Build the bundle: the survey's tables and the published results, ready for an archive.
@@ -50,10 +81,118 @@ def verify(
 
     What does not hold is listed with its file, and the exit code is 1.
     """
-    wrong = deposit.verify(directory)
+    wrong = verified(directory)
     rows = [{"file": name, "problem": problem} for name, problem in wrong]
     if rows or form is not Format.TABLE:
         emit(rows, ("file", "problem"), form, title=f"{directory}: {len(rows)} problems")
     if rows:
         raise typer.Exit(1)
     typer.echo(f"{directory}: every checksum and every table holds", err=True)
+
+
+@app.command()
+def upload(
+    *,
+    bundle: BuiltBundle = _BUILT,
+    new_version: Annotated[
+        str | None,
+        typer.Option(metavar="RECORD_ID", help="Published record to make the next version of."),
+    ] = None,
+    draft: Annotated[
+        str | None,
+        typer.Option(metavar="RECORD_ID", help="Draft to go on with, instead of the last one."),
+    ] = None,
+    api: InterfaceOption = Interface.RECORDS,
+    production: ProductionOption = False,
+    server: ServerOption = None,
+    form: FormatOption = Format.TABLE,
+) -> None:
+    """Upload a bundle into a draft; nothing becomes public.
+
+    To Zenodo's sandbox, unless --production is given. The token is read from the environment:
+    ZENODO_SANDBOX_TOKEN, with --production ZENODO_TOKEN, with --server ARCHIVE_TOKEN. An upload
+    that was broken off goes on where it was: files that are there with the right checksum are not
+    sent again.
+    """
+    from api.deposit.archives import uploading  # noqa: PLC0415 - a tenth of a second: HTTP
+
+    if new_version is not None and draft is not None:
+        raise WrongCallError("--draft goes on with a draft, --new-version opens one: give one")
+    place = _server(production=production, server=server)
+    with _archive(place, api) as archive:
+        done = uploading.upload(
+            archive,
+            place.address,
+            bundle,
+            version_of=new_version,
+            draft=draft,
+            tell=lambda name, state: typer.echo(f"{state}: {name}", err=True),
+        )
+    rows = [{"file": name, "state": state} for name, state in done.files.items()]
+    document = {
+        "record": done.draft.id,
+        "page": done.draft.page,
+        "published": False,
+        "files": rows,
+        "left": list(done.left),
+    }
+    emit(rows, ("file", "state"), form, document=document, title=f"draft {done.draft.id}")
+    for name in done.left:
+        typer.echo(f"left as it was, though not of the bundle: {name}", err=True)
+    where = "" if place.address.endswith("sandbox.zenodo.org") else _where(place, production)
+    interface = "" if api is Interface.RECORDS else f" --api {api.value}"
+    typer.echo(
+        f"draft {done.draft.id}: {done.draft.page}\n"
+        "nothing is public; look at the draft, then: "
+        f"sunatlas deposit publish {done.draft.id} --bundle {bundle}{interface}{where}",
+        err=True,
+    )
+
+
+@app.command()
+def publish(
+    record_id: Annotated[
+        str, typer.Argument(help="Identifier of the draft, as upload told it.", show_default=False)
+    ],
+    *,
+    bundle: BuiltBundle = _BUILT,
+    api: InterfaceOption = Interface.RECORDS,
+    production: ProductionOption = False,
+    server: ServerOption = None,
+) -> None:
+    """Publish a draft, for good: a published record can be hidden by the archive only.
+
+    Refused unless the authors in CITATION.cff and in the draft are people with valid ORCID iDs and
+    the draft holds exactly the files of the bundle. Server and token as with upload.
+    """
+    from api.deposit.archives import publishing  # noqa: PLC0415 - as above
+
+    with _archive(_server(production=production, server=server), api) as archive:
+        done = publishing.publish(archive, record_id, bundle)
+    typer.echo(f"published {done.page}" + (f", DOI {done.doi}" if done.doi else ""))
+
+
+def _where(place: Server, production: bool) -> str:
+    return " --production" if production else f" --server {place.address}"
+
+
+def _server(*, production: bool, server: str | None) -> Server:
+    from api.deposit.archives.server import SANDBOX, ZENODO, server_at  # noqa: PLC0415
+
+    if production and server is not None:
+        raise WrongCallError("--production is zenodo.org, --server another archive: give one")
+    if server is not None:
+        return server_at(server)
+    return ZENODO if production else SANDBOX
+
+
+@contextmanager
+def _archive(place: Server, api: Interface) -> Iterator[Archive]:
+    from api.deposit.archives.depositions import DepositionsArchive  # noqa: PLC0415
+    from api.deposit.archives.records import RecordsArchive  # noqa: PLC0415
+    from api.deposit.archives.server import token_of  # noqa: PLC0415
+    from api.deposit.archives.transport import Transport  # noqa: PLC0415
+
+    kind = RecordsArchive if api is Interface.RECORDS else DepositionsArchive
+    with Transport(place, token_of(place)) as transport:
+        yield kind(transport)

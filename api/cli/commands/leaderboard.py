@@ -9,15 +9,18 @@ from typing import Annotated, Any
 
 import typer
 
+from api.cli import completion
+from api.cli.boards import architectures_text, overview_text
 from api.cli.measuring import (
     AVAILABLE_WORKERS,
     ManyWorkersOption,
     StoreOption,
     interruptible,
 )
-from api.cli.tables import Format, FormatOption, emit
+from api.cli.tables import Format, FormatOption, emit, line_width
 from api.cli.working import working_directory
 from api.cli.wrong_call import WrongCallError
+from api.columns import ARCHITECTURES, LEADERBOARD, PARTS
 from benchmark.contract import UnknownNameError
 from benchmark.leaderboard import check as checking
 from benchmark.leaderboard import pages
@@ -32,6 +35,7 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None)
 COLUMNS = (
     *("rank", "tied", "dataset", "condition", "extractor", "model", "rms_deg", "low_deg"),
     *("high_deg", "over_bound", "over_bound_unit", "floor_deg", "availability", "false_sun"),
+    *("best_of_extractor", "studies"),
 )
 FIELD_COLUMNS = (
     *("rank", "dataset", "condition", "extractor", "model", "field_deg", "field_rms_deg"),
@@ -63,13 +67,47 @@ class Kernels(StrEnum):
 def leaderboard(
     context: typer.Context,
     *,
+    overview: Annotated[
+        bool,
+        typer.Option(
+            "--overview", help="How near the bound each extractor and model comes, over data sets."
+        ),
+    ] = False,
+    detector: Annotated[
+        list[str] | None,
+        typer.Option(
+            autocompletion=completion.values("detector"),
+            help="Only architectures of this detector, also of --overview; may be repeated.",
+            show_default=False,
+        ),
+    ] = None,
+    mask: Annotated[
+        list[str] | None,
+        typer.Option(
+            autocompletion=completion.values("mask"),
+            help="Only architectures of this mask, also of --overview; may be repeated.",
+            show_default=False,
+        ),
+    ] = None,
+    each: Annotated[
+        bool, typer.Option("--each", help="The best pipelines of each data set.")
+    ] = False,
     dataset: Annotated[
         list[str] | None,
-        typer.Option(help="All pipelines of this data set; may be repeated.", show_default=False),
+        typer.Option(
+            autocompletion=completion.datasets,
+            help="All pipelines of this data set, the best of each extractor first; may be "
+            "repeated.",
+            show_default=False,
+        ),
     ] = None,
     condition: Annotated[
         list[str] | None,
-        typer.Option(help="Only this condition; may be repeated.", show_default=False),
+        typer.Option(
+            autocompletion=completion.conditions,
+            help="Only this condition, of --dataset or of each data set; may be repeated.",
+            show_default=False,
+        ),
     ] = None,
     field: Annotated[
         int | None,
@@ -109,8 +147,11 @@ def leaderboard(
 ) -> None:
     """Show the leaderboard, bring it up to date or check it.
 
-    Without a command the published results are shown: the best of each data set in its first
-    condition, or in those asked for, or all pipelines of a data set. With --field an error is
+    Without a command the published results are shown. Without options that is a screen: the best
+    pipeline of each architecture, how far it is from its bound, and how sure that is. --overview
+    says how near the bound each part of a pipeline comes across data sets, and how it aggregates.
+    --dataset lists all pipelines of a data set, --each the best of every data set, both in the
+    first condition or in those asked for. With --field an error is
     that over a part of the field, where rings count by their solid angle: the best of each data
     set then compare at an equal field. With --max-error they compare by the field they cover.
     With --check every committed number is compared with what the code gives now; a difference is
@@ -119,12 +160,21 @@ def leaderboard(
     if context.invoked_subcommand is not None:
         _require_no_options(context)
         return
+    listing = each or dataset or condition or field is not None or max_error is not None
+    if overview and (listing or check):
+        raise WrongCallError("--overview counts over data sets: it neither lists nor checks them")
+    if (detector or mask) and (listing or check):
+        raise WrongCallError("--detector and --mask narrow architectures and --overview alone")
     if check:
         _check(workers, form, (kernels or Kernels.BOTH).chosen, stored_only=stored)
     elif stored or kernels:
         raise WrongCallError(f"{'--stored' if stored else '--kernels'} goes with --check")
     elif field is not None and max_error is not None:
         raise WrongCallError("--field and --max-error are two questions; ask one at a time")
+    elif overview:
+        _overview({"detector": detector, "mask": mask}, form)
+    elif not listing:
+        _architectures({"detector": detector, "mask": mask}, form)
     else:
         _show(dataset or [], condition or [], field, max_error, form)
 
@@ -165,7 +215,9 @@ def update(workers: ManyWorkersOption = AVAILABLE_WORKERS) -> None:
 
 @app.command()
 def render(
-    out: Annotated[Path, typer.Option(help="Directory to write to.", show_default=False)],
+    out: Annotated[
+        Path, typer.Option(help="Directory to write to.", file_okay=False, show_default=False)
+    ],
 ) -> None:
     """Write the whole leaderboard as leaderboard.{json,csv,md,html} and sweeps.csv.
 
@@ -216,6 +268,37 @@ def _check(workers: int, form: Format, kernels: tuple[str, ...], *, stored_only:
     typer.echo(f"every published number holds: {how}", err=True)
 
 
+def _architectures(query: Mapping[str, list[str] | None], form: Format) -> None:
+    """Print the best pipeline of each architecture, as the service answers it."""
+    from api.cli.asking import ask  # noqa: PLC0415 - slow; measuring does without it
+    from api.http.models.parameters import LARGEST_PAGE  # noqa: PLC0415
+    from api.http.routers.leaderboard import architectures  # noqa: PLC0415
+
+    answer = ask(architectures, {**query, "limit": LARGEST_PAGE})
+    rows = answer.rows()
+    if not rows:
+        raise WrongCallError("nothing is published of such architectures")
+    if form is Format.TABLE:
+        typer.echo(architectures_text(rows, line_width()), nl=False)
+    else:
+        emit(rows, ARCHITECTURES, form, document=answer.document)
+
+
+def _overview(query: Mapping[str, list[str] | None], form: Format) -> None:
+    """Print how near the bound each part comes, as the service answers it."""
+    from api.cli.asking import ask  # noqa: PLC0415 - as above
+    from api.http.routers.leaderboard import overview  # noqa: PLC0415
+
+    answer = ask(overview, query)
+    rows = answer.rows()
+    if not rows:
+        raise WrongCallError("nothing is published of such architectures")
+    if form is Format.TABLE:
+        typer.echo(overview_text(answer.document, line_width()), nl=False)
+    else:
+        emit(rows, PARTS, form, document=answer.document)
+
+
 def _show(
     datasets: list[str],
     conditions: list[str],
@@ -248,10 +331,27 @@ def _show(
         chosen.sort(key=lambda row: (-(row[judged] or 0), row["rms_deg"] or 0.0))
     title = ", ".join(datasets) if datasets else "Best of each data set"
     document = {"items": chosen, "total": len(chosen)}
-    emit(chosen, columns, form, document=document, title=title)
+    if form is Format.TABLE:
+        _print_boards(chosen, columns, title, divided=bool(datasets))
+    else:
+        emit(chosen, LEADERBOARD, form, document=document)
     if not chosen:
         typer.echo("sunatlas: no pipeline has such an error there", err=True)
         raise typer.Exit(1)
+
+
+def _print_boards(rows: list[Row], columns: tuple[str, ...], title: str, *, divided: bool) -> None:
+    """Print rows for people: how many studies used a pipeline, and a table of the best alone."""
+    # The order says which are the best of their extractor.
+    shown = [name for name in columns if name != "best_of_extractor"]
+    counted = [{**row, "studies": len(row["studies"]) or None} for row in rows]
+    if not divided:
+        emit(counted, shown, Format.TABLE, title=title)
+        return
+    for best, named in ((True, "the best of each extractor"), (False, "the others")):
+        part = [row for row in counted if row["best_of_extractor"] is best]
+        if part:
+            emit(part, shown, Format.TABLE, title=f"{title}: {named}")
 
 
 def _judged(

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-import sys
+from collections.abc import Mapping
 from enum import StrEnum
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
-from api.cli import architectures, attributes
-from api.cli.asking import ask
-from api.cli.tables import Format, FormatOption, emit, emit_json
-from api.http.routers.recommendations import recommendations
-from api.http.tables import flattened
+from api.cli import architectures, attributes, completion
+from api.cli.prepared import measured
+from api.cli.tables import Format, FormatOption, emit, emit_json, line_width
+from api.cli.wrong_call import refused
+from api.columns import RECOMMENDATIONS
+from api.recommending import rows
+from registry.recommendation import recommend as ranked
 from registry.requirements import HAZARDS
+from registry.taxonomy import InvalidValueError
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
@@ -55,13 +58,17 @@ def recommend(
     ] = None,
     survive: Annotated[
         list[str] | None,
-        typer.Option(help=f"Has to survive this: {', '.join(HAZARDS)}; may be repeated."),
+        typer.Option(
+            autocompletion=completion.one_of(*HAZARDS),
+            help=f"Has to survive this: {', '.join(HAZARDS)}; may be repeated.",
+        ),
     ] = None,
     properties: Annotated[
         list[str] | None,
         typer.Option(
+            autocompletion=completion.properties,
             help="Extractor has this property in the survey's assessment, such as 'Robust to "
-            "noise'; may be repeated."
+            "noise'; may be repeated.",
         ),
     ] = None,
     sort: Annotated[Sort, typer.Option(help="Which evidence comes first.")] = Sort.ADVICE,
@@ -82,8 +89,7 @@ def recommend(
     literature, and what following the order costs. Where nothing is left, the requirement that
     rules everything out is named with what would help, exit code 0.
     """
-    answer = ask(
-        recommendations,
+    document = _document(
         {
             "task": task,
             "detector": detector,
@@ -105,19 +111,34 @@ def recommend(
             "max_latency_us": max_latency_us,
             "survive": survive,
             "properties": properties,
-            "sort": sort.value,
-            "limit": limit,
-            "calibrations": calibrations,
         },
+        sort,
+        limit,
+        calibrations,
     )
     if form is Format.JSON:
-        emit_json(answer.document)
+        emit_json(document)
         return
     if form is Format.CSV:
-        rows = [flattened(row) for row in answer.rows()]
-        columns = dict.fromkeys((*answer.columns, *(name for row in rows for name in row)))
-        emit(rows, tuple(columns), form)
+        emit(list(rows(document)), RECOMMENDATIONS, form)
     else:
-        sys.stdout.write(architectures.text(answer.document))
-    if answer.document["blocked"]:
-        typer.echo(architectures.explanation(answer.document["blocked"]), err=True)
+        typer.echo(architectures.text(document, line_width()), nl=False)
+    if document["blocked"]:
+        typer.echo(architectures.explanation(document["blocked"], line_width()), err=True)
+
+
+def _document(
+    asked: Mapping[str, list[str] | float | None], sort: Sort, limit: int, calibrations: int
+) -> dict[str, Any]:
+    """Answer as GET /v1/recommendations does, without the service: that takes a second to load."""
+    given = {name: value for name, value in asked.items() if value not in (None, [])}
+    try:
+        return ranked(
+            {name: sorted(set(v)) if isinstance(v, list) else v for name, v in given.items()},
+            measured(),
+            sort=sort.value,
+            limit=limit,
+            calibrations=calibrations,
+        ).to_dict()
+    except InvalidValueError as error:
+        raise refused(error.parameter, error.value, error.expected, error.nearest) from error

@@ -1,19 +1,33 @@
-"""`sunatlas run`: what a study did, run on the data of its architecture."""
+"""`sunatlas run`: what a study did, run on the data of its architecture, or a suite."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
+from api.cli import completion
 from api.cli.asking import ask, knowledge
-from api.cli.measuring import Scored, StoreOption, WorkersOption, scored
+from api.cli.commands import benchmark
+from api.cli.measuring import (
+    SchedulerOption,
+    Scored,
+    StoreOption,
+    SuiteOption,
+    WorkersOption,
+    scored,
+    stores_of,
+)
 from api.cli.tables import Format, FormatOption, emit
+from api.cli.wrong_call import WrongCallError
+from api.columns import RESULTS
 from api.http.routers import studies
 from benchmark.contract import Cell, UnknownNameError
-from benchmark.metrics.score import METRICS
 from benchmark.plan.combinations import cells
+from benchmark.suites.planning import cells_of
+from benchmark.suites.selection import suite as suite_named
 from registry.resolution import Resolution
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
@@ -30,24 +44,36 @@ COLUMNS = (
         "assumed",
     ),
 )
-CSV_COLUMNS = (
-    *("study", "dataset", "condition", "detector", "mask", "extractor", "model", "status"),
-    *("reason", "n_calibration", "n_test", "n_observable", *METRICS, "latency_us", "assumed"),
-)
+CSV_COLUMNS = ("study", *RESULTS, "assumed")
+
+#: A suite may hold other units than the standard one.
+SUITE_COLUMNS = ("unit", *benchmark.COLUMNS)
 
 
 @app.command()
 def run(
-    study: Annotated[str, typer.Argument(help="Key of the study, such as Chang2008.")],
+    study: Annotated[
+        str | None,
+        typer.Argument(
+            autocompletion=completion.studies,
+            help="Key of the study, such as Chang2008.",
+            show_default=False,
+        ),
+    ] = None,
     *,
+    suite: SuiteOption = None,
     condition: Annotated[
-        list[str] | None, typer.Option(help="Only this condition; may be repeated.")
+        list[str] | None,
+        typer.Option(
+            autocompletion=completion.conditions, help="Only this condition; may be repeated."
+        ),
     ] = None,
     workers: WorkersOption = 1,
+    scheduler: SchedulerOption = None,
     store: StoreOption = None,
     form: FormatOption = Format.TABLE,
 ) -> None:
-    """Run a study's pipelines on the data of its architecture.
+    """Run a study's pipelines, or a suite.
 
     Every pipeline that the study's mapping resolves to is scored on every data set of its detector
     and mask that it fits; assumed says what the study does not state, and by what rule it stands
@@ -58,17 +84,50 @@ def run(
     stderr, and in JSON under "gaps". Where nothing runs, the exit code is 1.
 
     Cells that the published results hold are read there. Others are measured into the working
-    store (see --store) and not measured again.
+    store (see --store) and not measured again, also after the run was broken off; `sunatlas plan`
+    tells which.
     """
+    if (study is None) == (suite is None):
+        raise WrongCallError("one of a study's key and --suite is to be given")
+    if study is None:
+        if condition:
+            raise WrongCallError("--condition goes with a study: a suite has its own")
+        _run_suite(str(suite), workers, scheduler, store, form)
+        return
     ask(studies.study, key=study)  # refuses an unknown key with the nearest one
     resolution = knowledge().resolutions[study]
     planned = _planned(resolution, condition)
-    result = scored(planned, workers, store)
+    result = scored(planned, workers, store, scheduler)
     rows = [{"study": study, **row, "assumed": planned[_cell(row)]} for row in result.rows]
     _print(study, resolution, rows, result, form)
     if not rows:
         typer.echo(f"sunatlas: nothing of {study} runs yet; its gaps are listed above", err=True)
         raise typer.Exit(1)
+
+
+def _run_suite(
+    name: str, workers: int, scheduler: str | None, directory: Path | None, form: Format
+) -> None:
+    """Score a suite's cells, and those that follow from their scores."""
+    chosen = suite_named(name)
+    stores = stores_of(directory)
+    planned = cells_of(chosen, stores)
+    result = scored(planned, workers, directory, scheduler)
+    measured = result.measured
+    while (now := cells_of(chosen, stores)) != planned:  # what follows from what was measured
+        planned = now
+        result = scored(planned, workers, directory, scheduler)
+        measured += result.measured
+    columns = RESULTS if form is Format.CSV else SUITE_COLUMNS
+    sources = {**result.sources(), "kept": result.kept - measured + result.measured}
+    sources["measured"] = measured
+    document = {"suite": name, "scores": result.rows, "sources": sources}
+    emit(result.rows, columns, form, document=document, title=f"{name}: {len(result.rows)} scores")
+    typer.echo(
+        f"{result.published} published, {sources['kept']} measured before, {measured} measured "
+        f"now; new results are kept in {result.directory}",
+        err=True,
+    )
 
 
 def _planned(resolution: Resolution, conditions: Sequence[str] | None) -> dict[Cell, list[str]]:

@@ -3,24 +3,30 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import socket
 import sys
+import tempfile
 from functools import partial
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 import uvicorn
-from fastapi import FastAPI
+from uvicorn.supervisors import Multiprocess
 
 from api.cli.working import working_directory
-from api.http.knowledge import Knowledge
-from api.http.measurements import Measurements
-from api.http.renewal import Renewed, renewed_after
-from api.http.service import create_app
+from api.cli.wrong_call import WrongCallError
+from api.guide import site
+from api.http import serving
+from api.http.connections import bounds
+from api.http.renewal import Renewed, beside, renewed_after
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
-_TIMES = (sys.executable, "-m", "api.cli.command_line", "leaderboard", "times", "--format", "json")
+_SUNATLAS = (sys.executable, "-m", "api.cli.command_line")
+_TIMES = (*_SUNATLAS, "leaderboard", "times", "--format", "json")
+_GUIDE = (*_SUNATLAS, "guide", "build", "--quiet")
+_QUIET: dict[str, Any] = {"log_level": "warning", "access_log": False}
 
 
 @app.command()
@@ -37,28 +43,57 @@ def serve(
             "serve the times as soon as they are there.",
         ),
     ] = False,
+    workers: Annotated[
+        int,
+        typer.Option(min=1, max=64, help="Processes that answer, each with all data loaded."),
+    ] = 1,
+    access_log: Annotated[
+        bool, typer.Option("--access-log", help="Print a JSON line a request.")
+    ] = False,
 ) -> None:
-    """Serve the page and the HTTP interface.
+    """Serve the page, the guide and the HTTP interface.
 
-    The page is at /, the API under /v1, its description at /openapi.json. Ctrl-C stops.
+    The page is at /, the guide at /guide, the API under /v1, its reference at /docs, its
+    description at /openapi.json, counts and times of requests for Prometheus at /metrics. A guide
+    that is not built yet is built meanwhile. Ctrl-C stops.
     """
+    if times and workers > 1:
+        raise WrongCallError("--times goes with one worker: time first, then serve with several")
+    os.environ[serving.TIMES] = str(working_directory())
+    os.environ[serving.ACCESS_LOG] = "1" if access_log else ""
     listener = listen(host, port)
     with listener, contextlib.ExitStack() as stack:
-        application = Renewed(_application())
-        config = uvicorn.Config(application, log_level="warning")
-        if times:
-            renew = partial(_application, loaded=True)
-            stack.enter_context(renewed_after(_TIMES, application, renew))
+        # Loaded before anything is served: damaged facts are refused in one sentence.
+        application = Renewed(serving.application(loaded=True))
+        guide = site.kept()
+        if guide is not None and not guide.is_dir():
+            stack.enter_context(beside(_GUIDE))
         typer.echo(f"Sun Sensor Atlas: {address(host, listener.getsockname()[1])} (Ctrl-C stops)")
+        sys.stdout.flush()  # who reads a pipe waits for the address
+        if workers > 1:
+            os.environ["PROMETHEUS_MULTIPROC_DIR"] = stack.enter_context(
+                tempfile.TemporaryDirectory(prefix="sunatlas-metrics-")
+            )
+            _serve_by_many(listener, workers)
+            return
+        config = uvicorn.Config(application, **_QUIET, **bounds())
+        if times:
+            renew = partial(serving.application, loaded=True)
+            stack.enter_context(renewed_after(_TIMES, application, renew))
         uvicorn.Server(config).run(sockets=[listener])
 
 
-def _application(*, loaded: bool = False) -> FastAPI:
-    """Make the service with what is known now, times of this machine included."""
-    known = Knowledge(Measurements(times_directory=working_directory()))
-    if loaded:
-        known.load_all()
-    return create_app(known)
+def _serve_by_many(listener: socket.socket, workers: int) -> None:
+    """Serve by several processes that share a listening socket, until a signal ends them."""
+    config = uvicorn.Config(
+        "api.http.serving:application",
+        factory=True,
+        workers=workers,
+        timeout_worker_healthcheck=60,  # loading takes seconds, and more on a busy machine
+        **_QUIET,
+        **bounds(),
+    )
+    Multiprocess(config, [listener]).run()
 
 
 def listen(host: str, port: int) -> socket.socket:

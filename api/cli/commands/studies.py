@@ -8,21 +8,18 @@ from typing import Annotated, Any
 
 import typer
 
-from api.cli import attributes
+from api.cli import attributes, completion
 from api.cli.asking import ask
-from api.cli.tables import Format, FormatOption, emit, emit_json
+from api.cli.tables import Format, FormatOption, emit, emit_json, say
 from api.cli.wrong_call import WrongCallError
+from api.columns import STUDIES, STUDY
 from api.http.models.parameters import LARGEST_PAGE
 from api.http.routers import studies as answers
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
 COLUMNS = ("key", "year", "state", "detector", "mask", "extractor", "model", "title")
-CSV_COLUMNS = (
-    *("key", "title", "authors", "year", "venue", "doi", "url", "identity", "state"),
-    *("task", "error", "accuracy", "detector", "mask", "model", "extractor"),
-    *("accuracy_deg", "fov_deg"),
-)
+DETAILS = ("attribute", "value", "role", "basis", "source", "note")
 
 
 class State(StrEnum):
@@ -36,7 +33,11 @@ class State(StrEnum):
 @app.command()
 def studies(
     key: Annotated[
-        str | None, typer.Argument(help="Show this study alone, with every value's basis.")
+        str | None,
+        typer.Argument(
+            autocompletion=completion.studies,
+            help="Show this study alone, with every value's basis.",
+        ),
     ] = None,
     *,
     task: attributes.Task = None,
@@ -86,7 +87,7 @@ def studies(
 def _list(filters: Mapping[str, Any], form: Format) -> None:
     found = ask(answers.studies, {**filters, "limit": LARGEST_PAGE}).document["items"]
     flat = [{**study, **study["values"]} for study in found]
-    columns = CSV_COLUMNS if form is Format.CSV else COLUMNS
+    columns = STUDIES if form is Format.CSV else COLUMNS
     emit(flat, columns, form, document=found, title=f"{len(found)} studies")
 
 
@@ -96,15 +97,18 @@ def _show(key: str, form: Format) -> None:
         emit_json(study)
         return
     if form is Format.TABLE:
-        typer.echo(f"{study['key']}: {study['title'] or 'title unknown'}")
+        say(f"{study['key']}: {study['title'] or 'title unknown'}")
         year = study["year"] or "year unknown"
-        typer.echo(f"{study['authors'] or 'authors unknown'}, {year}. {study['venue'] or ''}")
-        typer.echo(f"{study['doi'] or study['url'] or 'no DOI known'}; runs: {study['state']}\n")
-    emit(study["attributes"], answers.DETAIL_COLUMNS, form)
+        say(f"{study['authors'] or 'authors unknown'}, {year}. {study['venue'] or ''}")
+        say(f"{study['doi'] or study['url'] or 'no DOI known'}; runs: {study['state']}")
+        typer.echo()
+    emit(study["attributes"], STUDY if form is Format.CSV else DETAILS, form)
     if form is Format.TABLE:
         reported = study["reported_accuracy_deg"]
         said = "nothing is known" if reported is None else f"{reported:g} deg"
-        typer.echo(f"Accuracy that the study reports of its own sensor: {said}\n")
+        typer.echo()
+        say(f"Accuracy that the study reports of its own sensor: {said}")
+        typer.echo()
         pipelines = (*("detector", "mask", "extractor", "model", "measured here"), "assumed")
         emit(
             [
@@ -114,6 +118,7 @@ def _show(key: str, form: Format) -> None:
             *(pipelines, form),
             title=f"Runs: {len(study['pipelines'])}",
         )
+        typer.echo()
         gaps = ("attribute", "value", "reason")
         emit(study["gaps"], gaps, form, title=f"Gaps: {len(study['gaps'])}")
 

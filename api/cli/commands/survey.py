@@ -10,8 +10,9 @@ import typer
 
 import survey_data
 from api.cli.commands.survey_import import import_
-from api.cli.tables import Format, FormatOption, emit, emit_json
-from survey_data import FidelityReport, Problem
+from api.cli.tables import Format, FormatOption, emit, emit_json, say
+from survey_data import FidelityReport, Problem, recorded_facts
+from survey_data.descriptor import DATA_DIRECTORY
 
 app = typer.Typer(
     help="Check the survey's tables, or import the authors' own.",
@@ -43,7 +44,7 @@ def check(
     findings. Where a table has problems, each is named on stderr with file, row and column, and
     the exit code is 1.
     """
-    problems = survey_data.validate(data)
+    problems = [*survey_data.validate(data), *recorded_facts.changes(data or DATA_DIRECTORY)]
     if problems:
         _refuse(problems, form)
     report = survey_data.fidelity(survey_data.load(data))
@@ -64,8 +65,9 @@ def _refuse(problems: Sequence[Problem], form: Format) -> None:
 
 
 def _print(report: FidelityReport) -> None:
-    typer.echo(f"{report.studies} studies; the survey states {report.stated}.")
-    typer.echo(f"{report.explanation}\n")
+    say(f"{report.studies} studies; the survey states {report.stated}.")
+    say(report.explanation)
+    typer.echo()
     emit(
         [
             {"count": c.id, "held": c.held, "stated": c.stated, "explanation": c.explanation}
@@ -75,6 +77,7 @@ def _print(report: FidelityReport) -> None:
         Format.TABLE,
         title="Counts",
     )
+    typer.echo()
     bases = list(dict.fromkeys(basis for c in report.completeness for basis in c.by_basis))
     emit(
         [
@@ -90,6 +93,7 @@ def _print(report: FidelityReport) -> None:
         Format.TABLE,
         title="Studies with a known value, by its strongest basis",
     )
+    typer.echo()
     verdicts = ", ".join(f"{count} {verdict}" for verdict, count in report.verdicts.items())
     emit(
         [

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 import survey_data
-from api.cli.tables import Format, FormatOption, emit, emit_json
+from api.cli.tables import Format, FormatOption, emit, emit_json, say
 from api.cli.wrong_call import WrongCallError
 from survey_data import ImportPlan
 
@@ -89,9 +89,9 @@ def _bibliography(file: Path | None, data: Path | None, form: Format, *, apply: 
     if form is not Format.TABLE:
         return
     for key, reason in plan.left_aside:
-        typer.echo(f"left aside: {key}: {reason}")
+        say(f"left aside: {key}: {reason}")
     if plan.missing:
-        typer.echo(f"{len(plan.missing)} studies are not in it: {', '.join(plan.missing)}")
+        say(f"{len(plan.missing)} studies are not in it: {', '.join(plan.missing)}")
     what = f"{len(plan.edits)} cells and {len(plan.settled)} identities"
     if apply and (plan.edits or plan.settled):
         typer.echo(f"{what} written.")
@@ -120,7 +120,7 @@ def _print(plan: ImportPlan) -> None:
     columns = ("column", "target", "score", "name_score", "value_score", "how")
     emit(mapping["matches"], columns, Format.TABLE, title=f"Columns of {plan.source}")
     if mapping["ignored"]:
-        typer.echo(f"left aside: {', '.join(mapping['ignored'])}\n")
+        say(f"left aside: {', '.join(mapping['ignored'])}")
     cells = [d.to_dict() for d in (*plan.differences, *plan.confirmed)]
     emit(cells, CELLS, Format.TABLE, title=f"{len(cells)} cells that differ")
     listed = plan.to_dict()

@@ -1,0 +1,157 @@
+"""What the leaderboard comes to as text: architectures on a screen of 80 columns, and parts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from api.cli.tables import prose, table
+from benchmark.leaderboard.architectures import STANDARD_ERRORS
+from benchmark.leaderboard.overview import ROLES, WITHIN, suffix
+from benchmark.leaderboard.summaries import digits, tally
+from benchmark.metrics.score import AVAILABLE
+
+Row = Mapping[str, Any]
+
+WIDTH = 80
+_HEADINGS = ("architecture", "best pipeline", "deg", "", "bounds", "±", "others, deg")
+_NUMBERS = frozenset({"deg", "bounds", "±", "others, deg", "median", *map("{:g}".format, WITHIN)})
+_MORE = (
+    "More: --dataset NAME (all pipelines), --each (every data set), --overview (parts), --format "
+    "json (all numbers)."
+)
+_ARCHITECTURE = (17, 29)  # columns of names; numbers take the rest
+
+
+def architectures_text(rows: Sequence[Row], width: int = WIDTH) -> str:
+    """Return the best pipeline of each architecture, in lines of 80 characters one each."""
+    room = min(width, WIDTH)
+    lines = [
+        *prose(
+            "The best pipeline of each architecture (detector, mask): nominal condition, of its "
+            "data sets the one with the least RMS error. bounds: that over the Cramer-Rao bound, "
+            "± its standard error. others: errors on other units of the sensor. =: a tie, the "
+            f"runner-up is within {STANDARD_ERRORS:g} standard errors or overlaps on the units. "
+            f"{tally(rows)}",
+            room,
+        ),
+        "",
+    ]
+    cells = [_architecture(row) for row in rows]
+    if width < WIDTH:
+        named = [dict(zip(_HEADINGS, row, strict=True)) for row in cells]
+        lines.append(table(named, _HEADINGS, width, right=_NUMBERS))
+    else:
+        lines.append(_line(*_HEADINGS))
+        for row in cells:
+            lines += _line_of(row)
+    lines.append("")
+    for words in (_several(rows), _seldom(rows), _finer(rows), _MORE):
+        lines += prose(words, room)
+    return "\n".join(lines) + "\n"
+
+
+def overview_text(document: Mapping[str, Any], width: int = WIDTH) -> str:
+    """Return how near the bound each part of a pipeline comes as lines."""
+    lines = prose(document["says"], width)
+    for role in ROLES:
+        parts = [_part(part) for part in document["parts"] if part["role"] == role]
+        if parts:
+            lines += ["", table(parts, tuple(parts[0]), width, right=_NUMBERS)]
+    return "\n".join(lines) + "\n"
+
+
+def _architecture(row: Row) -> tuple[str, ...]:
+    """Return the cells of an architecture, in the order of `_HEADINGS`."""
+    name = f"{row['detector']} {row['mask']}"
+    if row["extractor"] is None:
+        return (name, "none has an error", "-", "", "-", "", "-")
+    pipeline = f"{row['extractor']}+{row['model'].replace(' + ', '+')}"
+    ratio, error = row["over_bound"], row["over_bound_se"]
+    low, high = row["others_low_deg"], row["others_high_deg"]
+    return (
+        name,
+        pipeline,
+        digits(row["rms_deg"]),
+        "=" if row["tie"] else "",
+        _ratio(ratio),
+        _percent(error, ratio),
+        "-" if low is None or high is None else f"{_short(low)}-{_short(high)}",
+    )
+
+
+def _line_of(cells: Sequence[str]) -> Iterator[str]:
+    name, pipeline, *numbers = cells
+    if len(name) >= _ARCHITECTURE[0] or len(pipeline) > _ARCHITECTURE[1]:
+        # A name is never cut; one that is too long has a line of its own.
+        yield from prose(f"{name} {pipeline}", WIDTH)
+        name, pipeline = "", ""
+    yield _line(name, pipeline, *numbers)
+
+
+def _line(*cells: str) -> str:
+    name, pipeline, error, tie, ratio, doubt, units = cells
+    wide, wider = _ARCHITECTURE
+    numbers = f"{error:>7}{tie:1} {ratio:>6} {doubt:>4} {units:>12}"
+    return f"{name:<{wide}}{pipeline:<{wider}}{numbers}".rstrip()
+
+
+def _ratio(value: float | None) -> str:
+    if value is None:
+        return "-"
+    return digits(value) if value < 1e5 else f"{value:.0e}".replace("+0", "")
+
+
+def _percent(error: float | None, of: float | None) -> str:
+    """Spell a standard error in parts of what it is of."""
+    if error is None or not of:
+        return ""
+    share = round(100 * error / of)
+    return f"{share or '<1'}%" if share < 100 else ">99%"
+
+
+def _short(value: float) -> str:
+    """Spell an error of a unit in at most six characters, thousandths where there are any."""
+    if value < 0.01:
+        return f"{value:.2g}"
+    return f"{value:.3f}" if value < 10 else f"{value:.1f}"
+
+
+def _several(rows: Sequence[Row]) -> str:
+    """Name the data set shown where there are several."""
+    named = [f"{row['dataset']} {len(row['datasets'])}" for row in rows if len(row["datasets"]) > 1]
+    return f"Data sets shown where there are several: {', '.join(named)}." if named else ""
+
+
+def _seldom(rows: Sequence[Row]) -> str:
+    """Name what answers too seldom and stands here for want of anything better."""
+    named = [
+        f"{row['detector']} {row['mask']} {100 * row['availability']:.0f} %"
+        for row in rows
+        if row["availability"] is not None and row["availability"] < AVAILABLE
+    ]
+    return f"Answers too seldom: {'; '.join(named)}." if named else ""
+
+
+def _finer(rows: Sequence[Row]) -> str:
+    """Name what errs far less than the best on the part of the samples that it answers."""
+    named = [
+        f"{row['detector']} {row['mask']} {digits(row['finer_rms_deg'])} deg "
+        f"({row['finer_extractor']}+{row['finer_model']}, "
+        f"{100 * row['finer_availability']:.0f} % answered)"
+        for row in rows
+        if row["finer_extractor"] is not None
+    ]
+    return f"Far finer where it answers: {'; '.join(named)}." if named else ""
+
+
+def _part(part: Row) -> dict[str, str | int]:
+    shares = {f"{limit:g}": f"{100 * part[f'share_{suffix(limit)}']:.0f} %" for limit in WITHIN}
+    return {
+        part["role"]: part["part"],
+        "boards": part["boards"],
+        **shares,
+        "median": _ratio(part["median_over_bound"]),
+        "leads": part["leads"],
+        "reach": part["reachable_10"],
+    }

@@ -1,0 +1,93 @@
+"""`sunatlas claims`: what the survey says of algorithms, and what came out when it was tried."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from api.cli import completion
+from api.cli.asking import ask
+from api.cli.tables import Format, FormatOption, emit, say
+from api.cli.wrong_call import WrongCallError
+from api.columns import CLAIM, CLAIMS
+from api.http.answers import Answer
+from api.http.routers import claims as endpoints
+from benchmark.claims.rules import VERDICTS
+
+app = typer.Typer(add_completion=False, rich_markup_mode=None)
+
+RULES = ("rule", "statistic", "decides", "estimate", "low", "high", "trials", "standing")
+
+
+@app.command()
+def claims(
+    claim: Annotated[
+        str | None,
+        typer.Argument(
+            autocompletion=completion.claims,
+            metavar="[ID]",
+            help="Only this claim, in full.",
+            show_default=False,
+        ),
+    ] = None,
+    *,
+    verdict: Annotated[
+        list[str] | None,
+        typer.Option(
+            autocompletion=completion.one_of(*VERDICTS),
+            help="Only this verdict, such as refuted; repeatable.",
+        ),
+    ] = None,
+    search: Annotated[
+        str | None,
+        typer.Option(help="Only claims that have these words.", show_default=False),
+    ] = None,
+    form: FormatOption = Format.TABLE,
+) -> None:
+    """Show the survey's claims about algorithms, with verdicts.
+
+    Each was tried on at least five units or seeds, by rules that were committed before anything
+    was measured: reproduced where all of them hold with 95 % confidence, partly where some do,
+    refuted where none does and one fails, not testable here where these trials cannot tell.
+    Nothing is measured now. With an ID: the rules with their numbers; JSON has every trial.
+    Method and plots: docs/claims.md.
+    """
+    if claim is not None:
+        if verdict or search:
+            raise WrongCallError("an ID stands alone; leave out --verdict and --search")
+        _one(ask(endpoints.claim, id=claim.upper()), form)
+        return
+    if search is not None and not search.strip():
+        raise WrongCallError("--search: got nothing; expected a word or several")
+    answer = ask(endpoints.claims, {"verdict": verdict, "q": search})
+    document = answer.document
+    if form is Format.CSV:
+        emit(answer.rows(), CLAIMS, form)
+        return
+    counts = ", ".join(f"{n} {name}" for name, n in document["tally"].items() if n)
+    emit(
+        [{**item, "claim": item["statement"]} for item in document["items"]],
+        ("id", "verdict", "claim", "study"),
+        form,
+        document=document,
+        title=f"{document['total']} claims: {counts or 'none'}",
+    )
+
+
+def _one(answer: Answer, form: Format) -> None:
+    document = answer.document
+    if form is not Format.TABLE:
+        emit(answer.rows(), CLAIM, form, document=document)
+        return
+    say(f"{document['id']} {document['statement']}", "    ")
+    by = f", {document['study']}" if document["study"] else ""
+    say(f"The survey, {document['section']}{by}.")
+    say(f"Tried on {document['measured_on']}; {document['trials']} {document['replicate']}s")
+    emit(document["rules"], RULES, form, title=f"Verdict: {document['verdict'] or 'not measured'}")
+    if document["second_method"]:
+        agreed = {True: "says the same", False: "does not say the same of every rule", None: "-"}
+        said = agreed[document["second_agrees"]]
+        say(f"Second method: {document['second_method']}: {said}")
+    if document["explanation"]:
+        say(document["explanation"])

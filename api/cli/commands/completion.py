@@ -1,0 +1,37 @@
+"""`sunatlas completion`: the script by which a shell completes its words."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import Annotated
+
+import typer
+
+from api.cli.completion import VARIABLE
+
+app = typer.Typer(add_completion=False, rich_markup_mode=None)
+
+
+class Shell(StrEnum):
+    """Shells that can complete."""
+
+    BASH = "bash"
+    ZSH = "zsh"
+    FISH = "fish"
+
+
+@app.command()
+def completion(
+    shell: Annotated[Shell, typer.Argument(help="Which shell.", show_default=False)],
+) -> None:
+    """Print what lets a shell complete commands and names.
+
+    Bash: `eval "$(sunatlas completion bash)"` in ~/.bashrc; zsh: the same with zsh in ~/.zshrc,
+    after compinit; fish: `sunatlas completion fish > ~/.config/fish/completions/sunatlas.fish`.
+    Completed are data sets, conditions, extractors, models, study keys, claims and the survey's
+    values.
+    """
+    from typer._completion_shared import get_completion_script  # noqa: PLC0415 - Typer has no public name for it
+
+    script = get_completion_script(prog_name="sunatlas", complete_var=VARIABLE, shell=shell.value)
+    typer.echo(script)

@@ -1,0 +1,116 @@
+"""`sunatlas get`: an address of the HTTP interface, answered in this process."""
+
+from __future__ import annotations
+
+import asyncio
+import csv
+import io
+import json
+import sys
+from collections.abc import Mapping
+from typing import Annotated, Any
+from urllib.parse import unquote
+
+import typer
+from starlette.types import ASGIApp
+
+from api.cli.tables import Format, FormatOption, emit
+from api.cli.wrong_call import WrongCallError
+
+app = typer.Typer(add_completion=False, rich_markup_mode=None)
+
+_ACCEPT = {Format.TABLE: b"text/csv", Format.CSV: b"text/csv", Format.JSON: b"application/json"}
+
+
+@app.command("get")
+def get(
+    address: Annotated[
+        str,
+        typer.Argument(help="Such as '/v1/flows/error?task=Accuracy'.", show_default=False),
+    ],
+    form: FormatOption = Format.TABLE,
+) -> None:
+    """Answer an address of the HTTP interface without a server.
+
+    JSON and CSV are byte for byte what the service answers; docs/http.md lists the addresses. For
+    what has no command of its own: /v1/taxonomy, /v1/algorithms, /v1/flows/error, /v1/sweeps,
+    /v1/search and others. A page of a long list says in its JSON where the next one is.
+    """
+    from api.cli.asking import knowledge  # noqa: PLC0415 - slow; the help does without it
+    from api.http.service import create_app  # noqa: PLC0415
+
+    path, _, query = address.partition("?")
+    if not path.startswith("/"):
+        path = f"/{path}"
+    status, body = asyncio.run(answered(create_app(knowledge()), path, query, _ACCEPT[form]))
+    if status != 200:
+        raise WrongCallError(f"{path}: {_why(body)}")
+    if form is Format.TABLE:
+        rows = csv.DictReader(io.StringIO(body.decode(), newline=""))
+        emit([_typed(row) for row in rows], tuple(rows.fieldnames or ()), form)
+        return
+    sys.stdout.flush()
+    sys.stdout.buffer.write(body if form is Format.CSV else body.rstrip(b"\n") + b"\n")
+    sys.stdout.buffer.flush()
+
+
+async def answered(service: ASGIApp, path: str, query: str, accept: bytes) -> tuple[int, bytes]:
+    """Return status and body of a GET that an ASGI application answers.
+
+    Parameters
+    ----------
+    service : the application
+    path, query : of the address, as they are written there
+    accept : media type
+    """
+    scope = {
+        "type": "http",
+        "asgi": {"version": "3.0"},
+        "http_version": "1.1",
+        "method": "GET",
+        "scheme": "http",
+        "path": unquote(path),
+        "raw_path": path.encode(),
+        "query_string": query.encode(),
+        "root_path": "",
+        "headers": [(b"host", b"localhost"), (b"accept", accept)],
+        "client": ("127.0.0.1", 0),
+        "server": ("localhost", 80),
+    }
+    status, body = 500, bytearray()
+
+    async def receive() -> Mapping[str, Any]:
+        return {"type": "http.request", "body": b"", "more_body": False}
+
+    async def send(message: Mapping[str, Any]) -> None:
+        nonlocal status
+        if message["type"] == "http.response.start":
+            status = message["status"]
+        else:
+            body.extend(message.get("body", b""))
+
+    await service(scope, receive, send)  # type: ignore[arg-type]  # ASGI's messages are mappings
+    return status, bytes(body)
+
+
+def _why(body: bytes) -> str:
+    """Return what a problem document says."""
+    try:
+        document = json.loads(body)
+    except ValueError:
+        return "not an address of this interface"
+    return str(document.get("detail") or document.get("title") or "refused")
+
+
+def _typed(row: Mapping[str, str]) -> dict[str, str | float | int]:
+    """Return cells that are numbers as numbers, so that they are aligned and rounded."""
+    return {name: _number(text) for name, text in row.items()}
+
+
+def _number(text: str) -> str | float | int:
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            continue
+    return text

@@ -1,0 +1,42 @@
+"""`sunatlas guide`: the site that the service has at /guide."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+app = typer.Typer(no_args_is_help=True, add_completion=False, rich_markup_mode=None)
+
+
+@app.callback()
+def guide() -> None:
+    """Build the guide, the site that the service has at /guide."""
+
+
+@app.command()
+def build(
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Directory to build into, which is replaced; else where it is served."),
+    ] = None,
+    *,
+    strict: Annotated[bool, typer.Option("--strict", help="Exit code 1 on a warning.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="Say nothing but warnings.")] = False,
+) -> None:
+    """Build the guide from the pages of docs/.
+
+    Without --out it goes to the user's cache, where `sunatlas serve` finds it; a guide of these
+    pages that is there already is left as it is. Nothing is fetched, neither now nor when it is
+    read. It needs the distribution's extra `guide`.
+    """
+    from api.guide import site  # noqa: PLC0415 - reads all pages
+
+    warnings = site.keep() if out is None else site.build(out)
+    for warning in warnings:
+        typer.echo(warning, err=True)
+    if not quiet:
+        typer.echo(f"{site.kept() if out is None else out}: {len(warnings)} warnings")
+    if strict and warnings:
+        raise typer.Exit(1)

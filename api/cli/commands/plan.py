@@ -1,0 +1,94 @@
+"""`sunatlas plan`: what of a suite is to be measured, why, and how long it takes."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import asdict
+from typing import Any
+
+import typer
+
+from api.cli.measuring import (
+    AVAILABLE_WORKERS,
+    ManyWorkersOption,
+    StoreOption,
+    SuiteOption,
+    stores_of,
+)
+from api.cli.tables import Format, FormatOption, emit
+from benchmark.contract import Cell
+from benchmark.running.durations import Estimate
+from benchmark.suites.planning import FAILED, NEW, Planned, cells_of
+from benchmark.suites.planning import plan as planned_of
+from benchmark.suites.selection import suite as suite_named
+
+app = typer.Typer(add_completion=False, rich_markup_mode=None)
+
+COLUMNS = ("why", "dataset", "cells")
+CSV_COLUMNS = ("dataset", "condition", "extractor", "model", "unit", "why")
+
+
+@app.command()
+def plan(
+    *,
+    suite: SuiteOption = "standard",
+    workers: ManyWorkersOption = AVAILABLE_WORKERS,
+    store: StoreOption = None,
+    form: FormatOption = Format.TABLE,
+) -> None:
+    """Tell what of a suite is to be measured, and why.
+
+    What `sunatlas run --suite` would measure, of standard where no suite is named: the cells that
+    neither the published results nor the working store hold as code and data now are. Why: new,
+    failed before, or what has changed of data set, extractor, model and harness (the code between
+    data and numbers); a comment changes nothing. How long it takes is by what its like took on
+    this machine, as runs keep it. Nothing is measured. JSON and CSV list every cell.
+    """
+    chosen = suite_named(str(suite))
+    stores = stores_of(store)
+    found = planned_of(cells_of(chosen, stores), stores)
+    rows: list[dict[str, Any]] = [
+        {**asdict(cell), "why": _why(cell, reasons)} for cell, reasons in found.missing.items()
+    ]
+    document = {
+        "suite": chosen.name,
+        "planned": len(found.cells),
+        "missing": rows,
+        "estimate": {**asdict(found.estimate), "workers": workers},
+    }
+    if form is Format.TABLE:
+        counted = Counter((row["why"], row["dataset"]) for row in rows)
+        table = [
+            {"why": why, "dataset": dataset, "cells": count}
+            for (why, dataset), count in sorted(counted.items())
+        ]
+        if table:
+            emit(table, COLUMNS, form, title=f"{chosen.name}: to be measured")
+    else:
+        emit(rows, CSV_COLUMNS, form, document=document)
+    typer.echo(f"{chosen.name}: {_summary(found, workers)}", err=True)
+
+
+def _why(cell: Cell, reasons: tuple[str, ...]) -> str:
+    """Spell the reasons: what has changed, by name."""
+    if reasons in ((NEW,), (FAILED,)):
+        return "new" if reasons == (NEW,) else "failed before"
+    named = {"dataset": "data set", "extractor": cell.extractor, "model": cell.model}
+    told = [
+        f"{what} {named[what]}" if what in ("extractor", "model") else named.get(what, what)
+        for what in reasons
+    ]
+    return f"{', '.join(told)} changed"
+
+
+def _summary(found: Planned, workers: int) -> str:
+    count = f"{len(found.missing)} of {len(found.cells)} cells to be measured"
+    return f"{count}; {_time(found.estimate, workers)}" if found.missing else count
+
+
+def _time(estimate: Estimate, workers: int) -> str:
+    if estimate.unknown == estimate.tasks:
+        return "how long that takes is known here once it has been run"
+    known = f"about {estimate.seconds / workers:.2g} s on {workers} workers"
+    rest = f", and {estimate.unknown} of {estimate.tasks} tasks whose like never ran here"
+    return known + (rest if estimate.unknown else "")
