@@ -6,32 +6,42 @@ tables, the published results and the version, so that building twice gives the 
 
 from __future__ import annotations
 
+import csv
 import json
 import os
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import survey_data
+from api.deposit.bibliography import FOLDER as BIBLIOGRAPHY
+from api.deposit.bibliography import bibtex, ris
+from api.deposit.citation import of_dataset
 from api.deposit.crate import CRATE, crate
+from api.deposit.database import DATABASE, write_database
+from api.deposit.frames import write_frames
 from api.deposit.identity import Identity, identity
-from api.deposit.package import NAME, package
+from api.deposit.package import DESCRIPTOR, NAME, package
+from api.deposit.parquet import write_parquet
 from api.deposit.readme import readme
-from api.deposit.tables import MeasuredTable, measured_tables, read_descriptor
+from api.deposit.tables import MeasuredTable, frames_table, measured_tables, read_descriptor
+from api.deposit.typed import typed_tables
+from benchmark import datasets
 from benchmark.datasets.checksums import (
     CHECKSUMS,
     ChecksumFileError,
     contents,
-    differences,
     read_checksums,
+    sha256,
     write_checksums,
 )
-from benchmark.results.store import PUBLISHED
+from benchmark.datasets.pins import Pin, Place
+from benchmark.progress import ProgressCallback, silent
+from benchmark.results.store import PUBLISHED, Store
 from survey_data.whole_files import replacing
 
-DESCRIPTOR = "datapackage.json"
 SURVEY = Path(survey_data.__file__).parent
 
 
@@ -54,7 +64,22 @@ class Bundle:
     files: tuple[str, ...]
 
 
-def build(out: Path, *, survey: Path = SURVEY, published: Path = PUBLISHED) -> Bundle:
+@dataclass(frozen=True)
+class _Sources:
+    survey: Path
+    measured: list[MeasuredTable]
+    frames: Sequence[str]
+    pins: Mapping[Place, Pin]
+
+
+def build(
+    out: Path,
+    *,
+    survey: Path = SURVEY,
+    published: Path = PUBLISHED,
+    frames: Sequence[str] | None = None,
+    progress: ProgressCallback = silent,
+) -> Bundle:
     """Build the bundle at `out` and its zip at `out`.zip, both or neither.
 
     Parameters
@@ -62,6 +87,8 @@ def build(out: Path, *, survey: Path = SURVEY, published: Path = PUBLISHED) -> B
     out : the directory to make; one that holds an earlier bundle is replaced
     survey : directory of the survey's tables and their datapackage.json
     published : directory of the published results
+    frames : data sets of which samples go along; all by default
+    progress : called as ``progress(done, total, what)`` while samples are made
 
     Raises
     ------
@@ -69,6 +96,8 @@ def build(out: Path, *, survey: Path = SURVEY, published: Path = PUBLISHED) -> B
         Where `out` holds anything but an earlier bundle, or the survey's tables have problems.
     FileNotFoundError
         Where there are no published results, or a licence is missing.
+    MissingLibraryError
+        Where pyarrow is not installed.
     ValueError
         Where a table cannot be read or has a column nothing is known of.
     """
@@ -83,72 +112,70 @@ def build(out: Path, *, survey: Path = SURVEY, published: Path = PUBLISHED) -> B
             "see `sunatlas survey check`"
         )
     who = identity()
-    measured = measured_tables(published)
+    sources = _Sources(
+        survey,
+        measured_tables(published),
+        datasets.names() if frames is None else frames,
+        Store(published).pins(),
+    )
     out.parent.mkdir(parents=True, exist_ok=True)
     with replacing(out, archive) as (bundle, zipped):
         bundle.mkdir()
-        _fill(bundle, who, survey, measured)
+        _fill(bundle, who, sources, progress)
         _pack(bundle, zipped, who)
     return Bundle(out, archive, tuple(contents(out)))
 
 
-def verify(directory: Path) -> list[tuple[str, str]]:
-    """Check a bundle: (file, what is wrong with it); empty where all holds.
-
-    Checksums first; where they hold, every table against the descriptor.
-
-    Raises
-    ------
-    DepositError
-        Where the directory is no bundle.
-    ChecksumFileError
-        Where the list of checksums cannot be read.
-    """
-    if not (directory / CHECKSUMS).is_file():
-        raise DepositError(f"{directory}: not a bundle, it has no {CHECKSUMS}")
-    wrong = differences(directory)
-    if wrong:
-        return wrong
-    if not (directory / DESCRIPTOR).is_file():
-        raise DepositError(f"{directory}: not a bundle, it has no {DESCRIPTOR}")
-    return _invalid(directory / DESCRIPTOR)
-
-
-def _invalid(descriptor: Path) -> list[tuple[str, str]]:
-    from frictionless import Package  # noqa: PLC0415 - a second that building does without
-
-    report = Package(str(descriptor)).validate()
-    found = [(DESCRIPTOR, error.message) for error in report.errors]
-    found += [(task.place, error.message) for task in report.tasks for error in task.errors]
-    return found
-
-
-def _fill(bundle: Path, who: Identity, survey: Path, measured: list[MeasuredTable]) -> None:
-    described = read_descriptor(survey / DESCRIPTOR)
+def _fill(bundle: Path, who: Identity, sources: _Sources, progress: ProgressCallback) -> None:
+    described = read_descriptor(sources.survey / DESCRIPTOR)
     for resource in described["resources"]:
         target = bundle / "survey" / resource["path"]
         target.parent.mkdir(parents=True, exist_ok=True)
-        target.write_bytes((survey / resource["path"]).read_bytes())
+        target.write_bytes((sources.survey / resource["path"]).read_bytes())
+    exported = write_frames(bundle, sources.frames, sources.pins, progress)
+    measured = [*sources.measured, *([frames_table(exported)] if exported else [])]
     for table in measured:
         _write(bundle / "benchmark" / f"{table.name}.csv", table.text)
-    descriptor = package(bundle, who, described, measured)
+    descriptor = package(bundle, who, described, measured, exported)
     _write_json(bundle / DESCRIPTOR, descriptor)
+    _write_other_forms(bundle, descriptor)
     _write(bundle / "LICENSE", who.code_licence)
-    _write(bundle / "survey" / "LICENSE", who.data_licence)
-    _write(bundle / "CITATION.cff", who.citation)
+    for folder in ("survey", BIBLIOGRAPHY):
+        _write(bundle / folder / "LICENSE", who.data_licence)
+    _write(bundle / "CITATION.cff", of_dataset(who.citation))
     _write(bundle / "README.md", readme(who, descriptor))
+    # The crate tells the checksum of every other file, so that a list of all comes after it, and
+    # neither of the two stands in the other's way: the list has the crate, the crate not the list.
+    files = {
+        name: ((bundle / name).stat().st_size, sha256(bundle / name)) for name in contents(bundle)
+    }
     resources = descriptor["resources"]
     _write_json(
         bundle / CRATE,
         crate(
             who,
-            {name: (bundle / name).stat().st_size for name in contents(bundle)},
+            files,
             {r["path"]: (r["title"], r["description"]) for r in resources},
-            {r["path"]: r["licenses"][0]["name"] for r in resources},
+            {name: _terms(name) for name in files},
             descriptor["keywords"],
         ),
     )
     write_checksums(bundle)
+
+
+def _write_other_forms(bundle: Path, descriptor: Mapping[str, Any]) -> None:
+    tables = typed_tables(bundle, descriptor)
+    for table in tables:
+        write_parquet(table, bundle / "parquet" / f"{table.name}.parquet")
+    write_database(tables, bundle / DATABASE)
+    with (bundle / "survey" / "studies.csv").open(encoding="utf-8", newline="") as file:
+        studies = list(csv.DictReader(file))
+    _write(bundle / BIBLIOGRAPHY / "studies.bib", bibtex(studies))
+    _write(bundle / BIBLIOGRAPHY / "studies.ris", ris(studies))
+
+
+def _terms(name: str) -> str:
+    return "CC-BY-4.0" if name.startswith(("survey/", f"{BIBLIOGRAPHY}/")) else "MIT"
 
 
 def _write(path: Path, text: str) -> None:

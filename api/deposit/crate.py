@@ -1,20 +1,37 @@
-"""The bundle's RO-Crate 1.1 metadata: the same files in the words of schema.org."""
+"""The bundle's RO-Crate 1.2 metadata: the same files in the words of schema.org."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from typing import Any
+from urllib.parse import quote
 
+from api.deposit.citation import Author
 from api.deposit.identity import Identity
 
 CRATE = "ro-crate-metadata.json"
+VERSION = "1.2"
+SPECIFICATION = f"https://w3id.org/ro/crate/{VERSION}"
 _MEDIA_TYPES = {
+    "": "text/plain",
+    ".bib": "application/x-bibtex",
+    ".cff": "application/yaml",
     ".csv": "text/csv",
     ".json": "application/json",
     ".md": "text/markdown",
-    ".cff": "application/yaml",
-    "": "text/plain",
+    ".npz": "application/zip",
+    ".parquet": "application/vnd.apache.parquet",
+    ".png": "image/png",
+    ".ris": "application/x-research-info-systems",
+    ".sqlite": "application/vnd.sqlite3",
     ".txt": "text/plain",
+}
+#: Names of files that no table's description gives one.
+_NAMES = {
+    "card.json": "Card of a data set: what the arrays are",
+    "calibration.npz": "Samples to calibrate with",
+    "test.npz": "Samples to test with",
+    "references.npz": "Flat and dark readings",
 }
 _LICENCES = {
     "MIT": ("https://spdx.org/licenses/MIT", "MIT License"),
@@ -25,9 +42,26 @@ _LICENCES = {
 }
 
 
+_KINDS = {
+    "LICENSE": "Terms of use.",
+    "CITATION.cff": "How to cite, in the Citation File Format.",
+    "README.md": "What lies in the bundle, how to read and check it.",
+    "datapackage.json": "Types, units, keys and meaning of every column (Data Package v2).",
+    "sun-sensor-atlas.sqlite": "Every table in one SQLite file, with keys.",
+    "studies.bib": "The identified studies as BibTeX.",
+    "studies.ris": "The identified studies as RIS.",
+    "card.json": "Card",
+    "checksums-sha256.txt": "Checksums",
+    "preview.png": "Picture",
+    "references.npz": "Flat and dark readings",
+    "calibration.csv": "Table of the calibration split",
+    "test.csv": "Table of the test split",
+}
+
+
 def crate(
     identity: Identity,
-    files: Mapping[str, int],
+    files: Mapping[str, tuple[int, str]],
     descriptions: Mapping[str, tuple[str, str]],
     licence_of: Mapping[str, str],
     keywords: Sequence[str],
@@ -37,17 +71,30 @@ def crate(
     Parameters
     ----------
     identity : of the project
-    files : size in bytes by path, every file of the bundle but this one and the checksums
+    files : size in bytes and SHA-256 by path, every file but this one and the list
+        of checksums
     descriptions : (name, description) by path, where there is one
-    licence_of : "MIT" or "CC-BY-4.0" by path, where a file has its own
+    licence_of : "MIT" or "CC-BY-4.0" by path
     keywords : of the bundle
     """
-    authors = [
-        {"@id": f"#author-{number}", "@type": "Organization", "name": name}
-        for number, name in enumerate(identity.authors, start=1)
-    ]
+    authors = [_author(author, n) for n, author in enumerate(identity.authors, start=1)]
+    affiliations = {
+        author.affiliation: {
+            "@id": _affiliation(author.affiliation),
+            "@type": "Organization",
+            "name": author.affiliation,
+        }
+        for author in identity.authors
+        if author.affiliation
+    }
     licences = [
-        {"@id": address, "@type": "CreativeWork", "name": name, "identifier": short}
+        {
+            "@id": address,
+            "@type": "CreativeWork",
+            "name": name,
+            "description": f"{name} ({short})",
+            "identifier": short,
+        }
         for short, (address, name) in _LICENCES.items()
     ]
     root = {
@@ -57,24 +104,23 @@ def crate(
         "description": identity.summary,
         "version": identity.version,
         "datePublished": identity.released.isoformat(),
-        "license": [_reference(licence) for licence in licences],
-        "author": [_reference(author) for author in authors],
+        "license": _one_or_all([_reference(licence) for licence in licences]),
+        "author": _one_or_all([_reference(author) for author in authors]),
         "keywords": ", ".join(keywords),
         "hasPart": [{"@id": path} for path in sorted(files)],
     }
     descriptor = {
         "@id": CRATE,
         "@type": "CreativeWork",
-        "conformsTo": {"@id": "https://w3id.org/ro/crate/1.1"},
+        "conformsTo": {"@id": SPECIFICATION},
         "about": {"@id": "./"},
     }
     parts = [
-        _file(path, size, descriptions.get(path), licence_of.get(path))
-        for path, size in sorted(files.items())
+        _file(path, files[path], descriptions.get(path), licence_of[path]) for path in sorted(files)
     ]
     return {
-        "@context": "https://w3id.org/ro/crate/1.1/context",
-        "@graph": [descriptor, root, *parts, *authors, *licences],
+        "@context": f"{SPECIFICATION}/context",
+        "@graph": [descriptor, root, *parts, *authors, *affiliations.values(), *licences],
     }
 
 
@@ -82,20 +128,55 @@ def _reference(entity: Mapping[str, Any]) -> dict[str, str]:
     return {"@id": entity["@id"]}
 
 
+def _author(author: Author, number: int) -> dict[str, Any]:
+    known = f"https://orcid.org/{author.orcid}" if author.orcid else f"#author-{number}"
+    if author.name:
+        return {"@id": known, "@type": "Organization", "name": author.name}
+    entity: dict[str, Any] = {
+        "@id": known,
+        "@type": "Person",
+        "name": author.title,
+        "familyName": author.family,
+        "givenName": author.given,
+    }
+    if author.affiliation:
+        entity["affiliation"] = {"@id": _affiliation(author.affiliation)}
+    return entity
+
+
+def _affiliation(name: str) -> str:
+    return f"#{quote(name.lower().replace(' ', '-'), safe='')}"
+
+
 def _file(
-    path: str, size: int, described: tuple[str, str] | None, licence: str | None
+    path: str, file: tuple[int, str], described: tuple[str, str] | None, licence: str
 ) -> dict[str, Any]:
     name = path.rpartition("/")[2]
     suffix = f".{name.rpartition('.')[2]}" if "." in name else ""
     entity: dict[str, Any] = {
         "@id": path,
         "@type": "File",
-        "name": described[0] if described else name,
+        "name": described[0] if described else _NAMES.get(name, name),
         "encodingFormat": _MEDIA_TYPES[suffix],
-        "contentSize": str(size),
+        "contentSize": str(file[0]),
+        "sha256": file[1],
+        "license": {"@id": _LICENCES[licence][0]},
     }
-    if described:
-        entity["description"] = described[1]
-    if licence is not None:
-        entity["license"] = {"@id": _LICENCES[licence][0]}
+    entity["description"] = described[1] if described else _described(path)
     return entity
+
+
+def _described(path: str) -> str:
+    """Say what a file is that is no resource of the data package."""
+    folder, _, rest = path.partition("/")
+    if folder == "parquet":
+        return f"The table {rest.removesuffix('.parquet')} as Parquet."
+    if folder == "frames":
+        dataset, _, name = rest.partition("/")
+        kind = _KINDS.get(name.rpartition("/")[2], "Part")
+        return f"{kind} of the samples of {dataset}."
+    return _KINDS.get(path.rpartition("/")[2], "Part of the bundle.")
+
+
+def _one_or_all(references: Sequence[dict[str, str]]) -> Any:
+    return references[0] if len(references) == 1 else list(references)

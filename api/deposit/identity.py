@@ -15,6 +15,9 @@ from functools import cache
 from importlib.metadata import Distribution, PackageNotFoundError, distribution
 from pathlib import Path
 
+from api.deposit.citation import Author
+from api.deposit.citation import authors as authors_of
+
 DISTRIBUTION = "sun-sensor-atlas"
 ROOT = Path(__file__).resolve().parents[2]
 _DATE = re.compile(r'^date-released:\s*"?(\d{4}-\d{2}-\d{2})"?\s*$', re.MULTILINE)
@@ -33,7 +36,7 @@ class Identity:
     title : name for people
     version : of the distribution
     summary : one sentence
-    authors : names
+    authors : as CITATION.cff names them
     released : date of this version
     citation : text of CITATION.cff (Citation File Format 1.2.0)
     code_licence, data_licence : texts, MIT and CC BY 4.0
@@ -42,7 +45,7 @@ class Identity:
     title: str
     version: str
     summary: str
-    authors: tuple[str, ...]
+    authors: tuple[Author, ...]
     released: date
     citation: str
     code_licence: str
@@ -59,16 +62,16 @@ def identity() -> Identity:
         Where a licence is not found.
     """
     number, summary, authors = _project()
-    path = ROOT / "CITATION.cff"
-    written = path.read_text("utf-8") if _checkout() and path.is_file() else None
+    written = _written("CITATION.cff")
     released = _released(written)
+    citation = written or generated_citation(number, summary, authors, released)
     return Identity(
         title="Sun Sensor Atlas",
         version=number,
         summary=summary,
-        authors=authors,
+        authors=authors_of(citation, "CITATION.cff"),
         released=released,
-        citation=written or generated_citation(number, summary, authors, released),
+        citation=citation,
         code_licence=_licence("LICENSE"),
         data_licence=_licence("survey_data/LICENSE"),
     )
@@ -135,12 +138,16 @@ def _released(citation: str | None) -> date:
 
 
 def _licence(name: str) -> str:
+    text = _written(name)
+    if text is None:
+        raise MissingFileError(f"no {name} at {ROOT} or in the metadata of {DISTRIBUTION}")
+    return text
+
+
+def _written(name: str) -> str | None:
     # survey_data/LICENSE is package data, beside this package in a checkout and in a wheel alike.
     path = ROOT / name
     if path.is_file() and (_checkout() or "/" in name):
         return path.read_text("utf-8")
     installed = _installed()
-    text = installed.read_text(f"licenses/{name}") if installed else None
-    if text is None:
-        raise MissingFileError(f"no {name} at {ROOT} or in the metadata of {DISTRIBUTION}")
-    return text
+    return installed.read_text(f"licenses/{name}") if installed else None

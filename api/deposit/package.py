@@ -6,10 +6,12 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from api.deposit.citation import Author
 from api.deposit.identity import Identity
 from api.deposit.tables import MeasuredTable
 from benchmark.datasets.checksums import sha256
 
+DESCRIPTOR = "datapackage.json"
 NAME = "sun-sensor-atlas"
 PROFILE = "https://datapackage.org/profiles/2.0/datapackage.json"
 CC_BY = {
@@ -25,8 +27,9 @@ def package(
     identity: Identity,
     survey: Mapping[str, Any],
     measured: Sequence[MeasuredTable],
+    exported: Sequence[Mapping[str, Any]] = (),
 ) -> dict[str, Any]:
-    """Describe the tables that lie in `directory`.
+    """Describe the tables and samples that lie in `directory`.
 
     Parameters
     ----------
@@ -34,6 +37,7 @@ def package(
     identity : of the project
     survey : the survey's own descriptor, paths relative to its directory
     measured : the measured tables
+    exported : of each file of samples dataset, condition, split, file, samples, samples_of
     """
     resources = [
         _located(directory, f"survey/{resource['path']}", {**resource, "licenses": [CC_BY]})
@@ -57,6 +61,7 @@ def package(
         )
         for table in measured
     ]
+    resources += [_of_samples(directory, row) for row in exported]
     return {
         "$schema": PROFILE,
         "name": NAME,
@@ -65,11 +70,38 @@ def package(
         "version": identity.version,
         "created": f"{identity.released.isoformat()}T00:00:00Z",
         "licenses": [CC_BY, MIT],
-        "contributors": survey.get("contributors")
-        or [{"title": author, "roles": ["author"]} for author in identity.authors],
+        "contributors": [
+            *(_contributor(author) for author in identity.authors),
+            *(c for c in survey.get("contributors", ()) if c["roles"] != ["compiler"]),
+        ],
         "sources": survey.get("sources", []),
         "keywords": survey.get("keywords", []),
         "resources": resources,
+    }
+
+
+def _contributor(author: Author) -> dict[str, Any]:
+    return {
+        "title": author.title,
+        **({"path": f"https://orcid.org/{author.orcid}"} if author.orcid else {}),
+        **({"organization": author.affiliation} if author.affiliation else {}),
+        "roles": ["author"],
+    }
+
+
+def _of_samples(directory: Path, row: Mapping[str, Any]) -> dict[str, Any]:
+    file = directory / row["file"]
+    return {
+        "name": f"frames-{row['dataset']}-{row['split']}",
+        "title": f"{row['dataset']}, {row['condition']}, {row['split']}",
+        "description": f"The first {row['samples']} of {row['samples_of']} samples; what the "
+        "arrays are stands in card.json of the data set.",
+        "path": row["file"],
+        "format": "npz",
+        "mediatype": "application/zip",
+        "licenses": [MIT],
+        "bytes": file.stat().st_size,
+        "hash": f"sha256:{sha256(file)}",
     }
 
 

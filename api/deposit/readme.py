@@ -1,48 +1,149 @@
-"""README.md of the bundle: what lies in it, how to check it, on what terms."""
+"""README.md of the bundle: what lies in it, how to read and check it, on what terms."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import Any
 
+from api.deposit.bibliography import FOLDER as BIBLIOGRAPHY
+from api.deposit.database import COLUMNS, DATABASE, TABLES
+from api.deposit.frames import FOLDER as FRAMES
+from api.deposit.frames import LEAST, ROOM, WHOLE
 from api.deposit.identity import Identity
 from benchmark.datasets.checksums import CHECKSUMS
+
+#: Runs in the bundle's directory with NumPy alone; a test runs it.
+EXAMPLE = """\
+import json
+import sqlite3
+from pathlib import Path
+
+import numpy as np
+
+# A sensor behind one hole, and what its data set says of itself.
+folder = Path("frames/cmos-single-aperture")
+card = json.loads((folder / "card.json").read_text("utf-8"))
+print(card["name"], card["version"], "-", card["arrays"]["observations"])
+
+
+def spots(split):
+    \"\"\"Centroids (x, y) of the spots in pixels, and unit vectors to the Sun.\"\"\"
+    with np.load(folder / "nominal" / f"{split}.npz") as samples:
+        frames, sun, first = (samples[n] for n in ("observations", "sun", "origin_px"))
+    light = np.clip(frames - np.median(frames, axis=(1, 2), keepdims=True), 0.0, None) ** 2
+    y, x = np.indices(light.shape[1:])
+    centre = [(light * axis).sum(axis=(1, 2)) / light.sum(axis=(1, 2)) for axis in (x, y)]
+    return np.column_stack(centre) + first, sun
+
+
+def terms(x, y):
+    powers = [(i, j) for i in range(4) for j in range(4 - i)]
+    return np.column_stack([x**i * y**j for i, j in powers])
+
+
+# Calibrate: angles tan(beta) = x/z and tan(alpha) = y/z as polynomials of the spot.
+seen, sun = spots("calibration")
+middle, scale = seen.mean(axis=0), seen.std(axis=0)
+fit = np.linalg.lstsq(terms(*((seen - middle) / scale).T), sun[:, :2] / sun[:, 2:], rcond=None)[0]
+
+# Test: the angle between what the fit says and where the Sun stood.
+seen, sun = spots("test")
+told = np.column_stack([terms(*((seen - middle) / scale).T) @ fit, np.ones(len(seen))])
+told /= np.linalg.norm(told, axis=1, keepdims=True)
+across, along = np.linalg.norm(np.cross(told, sun), axis=1), (told * sun).sum(axis=1)
+error = np.degrees(np.arctan2(across, along))
+print(f"error: {np.sqrt(np.mean(error**2)):.4f} deg over {len(error)} frames")
+
+# What the leaders of this data set reach on all of its test frames, from the database.
+with sqlite3.connect("sun-sensor-atlas.sqlite") as atlas:
+    for row in atlas.execute(
+        "SELECT rank, extractor, model, rms_deg FROM leaderboard "
+        "WHERE dataset = ? AND condition = 'nominal' ORDER BY rank LIMIT 3",
+        (card["name"],),
+    ):
+        print(*row)
+
+# Every data set's samples are read the same way.
+for path in sorted(Path("frames").glob("*/*/*.npz")):
+    if path.stem != "references":
+        with np.load(path) as samples:
+            print(path, samples["observations"].shape, samples["observations"].dtype)
+"""
 
 
 def readme(who: Identity, descriptor: Mapping[str, Any]) -> str:
     """Write the bundle's README from its datapackage.json."""
+    described = descriptor["resources"]
     tables = "".join(
         f"| `{r['path']}` | {r['title']} | {_cell(r['description'])} |\n"
-        for r in descriptor["resources"]
+        for r in described
+        if r.get("type") == "table"
     )
+    files = [r for r in described if r["path"].startswith(f"{FRAMES}/")]
     return f"""# {who.title} {who.version}
 
 {who.summary}
 
 Released {who.released.isoformat()}.
 
+## What lies here
+
+| place | what |
+|---|---|
+| `survey/`, `benchmark/` | every table as CSV, listed below |
+| `parquet/` | the same tables as Parquet, one file each |
+| `{DATABASE}` | the same tables in one SQLite file, with keys; in it `{TABLES}` and \
+`{COLUMNS}` say what each holds |
+| `{FRAMES}/<data set>/` | samples of the standard data sets: what a sensor reads, where the Sun \
+stood, the Cramer-Rao bound of each sample, flat and dark readings, a picture, a card |
+| `{BIBLIOGRAPHY}/` | the identified studies as BibTeX and RIS |
+| `datapackage.json` | types, units, keys and meaning of every column \
+([Data Package v2](https://datapackage.org)) |
+| `ro-crate-metadata.json` | every file in the words of schema.org \
+([RO-Crate 1.2](https://w3id.org/ro/crate/1.2)) |
+| `CITATION.cff` | how to cite |
+| `{CHECKSUMS}` | SHA-256 of every other file |
+
+## Reading
+
+In this directory, with Python and NumPy:
+
+```python
+{EXAMPLE}```
+
+In a browser: `datasette {DATABASE}`.
+
+## Samples
+
+Public measurements of sun sensors hardly exist; these are simulated, as the cards say. In
+`{FRAMES}/` lie {len(files)} files of arrays of {len(files) // 2} data sets: of each the nominal \
+condition, calibration
+and test split. Splits of up to {WHOLE >> 20} MiB are whole; where frames are so large that they are
+not, here are as many of the first as fill {ROOM >> 20} MiB, at least {LEAST}: to look at, not to \
+calibrate with, since
+they cover a strip of the field. `benchmark/frames.csv` says how many of how many. Other conditions,
+all samples and other units of each sensor: `sunatlas dataset export`; `benchmark/data.csv` has
+their hashes.
+
 ## Tables
 
-Types, units, keys and the meaning of every column are in `datapackage.json`
-([Data Package v2](https://datapackage.org)); an empty cell means that nothing is known.
+An empty cell means that nothing is known.
 
 | file | table | what it holds |
 |---|---|---|
 {tables}
-The other files: `ro-crate-metadata.json` ([RO-Crate 1.1](https://w3id.org/ro/crate/1.1)) says the
-same in the words of schema.org, `CITATION.cff` says how to cite, `{CHECKSUMS}` lists the SHA-256 of
-every other file.
-
 ## Checking
 
 ```sh
 sha256sum --check {CHECKSUMS}
 frictionless validate datapackage.json
+rocrate-validator validate --profile-identifier ro-crate-1.2 .
 ```
 
 ## Terms
 
-`survey/`: CC BY 4.0 (`survey/LICENSE`). Everything else: MIT (`LICENSE`).
+Facts, in `survey/` and `{BIBLIOGRAPHY}/`: CC BY 4.0 (`survey/LICENSE`). Everything else, which
+code measured or made: MIT (`LICENSE`).
 """
 
 

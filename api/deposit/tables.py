@@ -10,9 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from api.cells import cell
-from api.deposit import told
+from api.deposit import claims, told
 from api.deposit.fields import schema
 from benchmark import datasets
+from benchmark.claims.ledger import Entry, ledger
+from benchmark.curves import record as curves
 from benchmark.leaderboard.board import build
 from benchmark.results.store import Store
 from registry.catalogue import catalogue
@@ -86,8 +88,23 @@ def measured_tables(published: Path) -> list[MeasuredTable]:
         _leaderboard(scores, foreign),
         _pins(store),
         *([_sweeps(swept)] if swept else []),
+        *_curves(curves.shown(published), foreign),
         *_told(foreign),
+        *_claims(ledger(published / "claims")),
     ]
+
+
+def frames_table(rows: Sequence[Mapping[str, Any]]) -> MeasuredTable:
+    """Make the table of the samples that go along, a row a file of arrays."""
+    return _table(
+        "frames",
+        "Samples in this bundle",
+        "Which samples of the standard data sets lie in frames/: the first so many of each split, "
+        "or all, in the nominal condition. The code makes the others.",
+        rows,
+        primary=("dataset", "condition", "split"),
+        foreign={"dataset": ("datasets", "name")},
+    )
 
 
 def _told(foreign: Mapping[str, tuple[str, str]]) -> list[MeasuredTable]:
@@ -117,6 +134,37 @@ def _told(foreign: Mapping[str, tuple[str, str]]) -> list[MeasuredTable]:
             "Mapped studies of each year, and of each venue that is known.",
             told.published(),
             primary=("per", "year_or_venue"),
+        ),
+    ]
+
+
+def _claims(entries: Sequence[Entry]) -> list[MeasuredTable]:
+    """Make the tables of the survey's claims, as they came out."""
+    claimed = {"claim": ("claims", "id")}
+    return [
+        _table(
+            "claim_verdicts",
+            "Verdicts of the claims",
+            "Each of the survey's statements about algorithms, put to the test.",
+            claims.verdicts(entries),
+            primary=("claim",),
+            foreign=claimed,
+        ),
+        _table(
+            "claim_rules",
+            "Rules of the claims",
+            "What was decided before anything was measured, and what the trials say of it.",
+            claims.rules(entries),
+            primary=("claim", "rule"),
+            foreign=claimed,
+        ),
+        _table(
+            "claim_trials",
+            "Trials of the claims",
+            "The statistic of every rule in every trial.",
+            claims.trials(entries),
+            primary=("claim", "rule", "trial"),
+            foreign=claimed,
         ),
     ]
 
@@ -169,6 +217,38 @@ def _sweeps(rows: Sequence[Mapping[str, Any]]) -> MeasuredTable:
         primary=("series", "sweep", "point", "extractor"),
         foreign={"extractor": ("algorithms", "name")},
     )
+
+
+def _curves(
+    rows: Sequence[Mapping[str, Any]], foreign: Mapping[str, tuple[str, str]]
+) -> list[MeasuredTable]:
+    """Make the table of learning curves and that of their points; none where there are none."""
+    if not rows:
+        return []
+    points = [
+        {**{name: row[name] for name in _PIPELINE}, **point}
+        for row in rows
+        for point in row["points"]
+    ]
+    return [
+        _table(
+            "curves",
+            "Learning curves",
+            "How many calibration poses the leaders of each data set need to be within 10 % of "
+            "their floor.",
+            [{name: row[name] for name in row if name != "points"} for row in rows],
+            primary=_PIPELINE,
+            foreign=foreign,
+        ),
+        _table(
+            "curve_points",
+            "Points of the learning curves",
+            "Errors after so many calibration poses, over draws of poses and units of the sensor.",
+            points,
+            primary=(*_PIPELINE, "poses"),
+            foreign=foreign,
+        ),
+    ]
 
 
 def _algorithms() -> MeasuredTable:

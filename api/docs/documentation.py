@@ -1,8 +1,8 @@
-"""The generated parts of docs/: what the code knows of itself, written where people read it.
+"""The generated parts of docs/ and of the README: what the code knows, where people read it.
 
 A page holds prose and, between `<!-- generated: NAME -->` and `<!-- end: NAME -->`, parts that are
-made here. `python -m api.docs.documentation` renews them; `--check` names the pages that are
-behind.
+made here; blocks of the guide's pages are run, and stand with what they print. `python -m
+api.docs.documentation` renews all of it; `--check` names the pages that are behind.
 """
 
 from __future__ import annotations
@@ -10,10 +10,11 @@ from __future__ import annotations
 import argparse
 import re
 import sys
+import tempfile
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from api.docs import assessment, filters, limits, model_pages
+from api.docs import assessment, boards, claims, curves, filters, front, limits, model_pages
 from api.docs.export import export_example
 from api.docs.parts import (
     command_line,
@@ -26,12 +27,21 @@ from api.docs.parts import (
     models,
     resolutions,
 )
+from api.guide import dictionary, found, python_page, words
+from api.guide.blocks import rerun
+from benchmark.processes import call_to_end
+from survey_data.locks import held_in_turn
 from survey_data.whole_files import replace_file
 
 DIRECTORY = Path(__file__).resolve().parents[2] / "docs"
 
 Make = Callable[[], str]
 PAGES: Mapping[str, Mapping[str, Make]] = {
+    "../README.md": {
+        "findings": front.findings,
+        "tallies": front.tallies,
+        "architectures": front.table,
+    },
     "algorithms.md": {
         "extractors": extractors,
         "model-pages": model_pages.index,
@@ -39,10 +49,21 @@ PAGES: Mapping[str, Mapping[str, Make]] = {
         "missing": missing,
     },
     "datasets.md": {"coverage": coverage, "example": export_example, "datasets": datasets},
+    "leaderboard.md": {
+        "how-sure": boards.how_sure,
+        "architectures": boards.best_per_architecture_table,
+        "parts": boards.parts,
+    },
     "limits.md": {
         "standings": limits.standings,
         "contributions": limits.contributions,
         "sentences": limits.sentences,
+        "headlines": limits.headline_table,
+    },
+    "learning-curves.md": {
+        "counts": curves.counts,
+        "needed": curves.needed,
+        "unreached": curves.unreached,
     },
     "sweeps.md": {
         "features": assessment.features,
@@ -57,11 +78,34 @@ PAGES: Mapping[str, Mapping[str, Make]] = {
         "first-outcomes": assessment.first_outcomes,
         "values": assessment.values,
     },
+    "claims.md": {
+        "counts": claims.counts,
+        "verdicts": claims.verdicts,
+        "trials": claims.trials,
+    },
     "filters.md": {"errors": filters.errors},
     "survey.md": {"findings": findings, "resolutions": resolutions},
     "http.md": {"endpoints": http_examples},
     "command-line.md": {"help": command_line},
+    "guide/found.md": {
+        "findings": found.findings,
+        "held-back": found.held_back,
+        "poses": curves.counts,
+        "tallies": found.tallies,
+        "refuted": found.refuted,
+        "useful": found.useful,
+    },
+    "guide/glossary.md": {"terms": words.terms, "abbreviations": words.abbreviations},
+    "guide/data-dictionary.md": {
+        "facts": dictionary.facts,
+        "measurements": dictionary.measurements,
+    },
+    "guide/python.md": {"interface": python_page.interface},
 }
+#: Pages whose blocks are run, and what they print renewed.
+RUN = tuple(
+    f"guide/{page}.md" for page in ("tutorial", "scores", "add-an-algorithm", "add-a-data-set")
+)
 
 _PART = re.compile(
     r"(?P<opening><!-- generated: (?P<name>[a-z-]+) -->\n)"
@@ -82,7 +126,13 @@ def every_page(directory: Path = DIRECTORY) -> Mapping[str, Mapping[str, Make]]:
 
 def every_picture() -> Mapping[str, Make]:
     """Return what draws each picture."""
-    return {**assessment.PICTURES, **model_pages.pictures()}
+    return {
+        "answer.svg": front.picture,
+        **assessment.PICTURES,
+        **curves.PICTURES,
+        **model_pages.pictures(),
+        **claims.pictures(),
+    }
 
 
 def text_of(page: str, directory: Path = DIRECTORY) -> str:
@@ -139,14 +189,21 @@ def regenerate(directory: Path = DIRECTORY, *, write: bool = True) -> list[str]:
         new = renewed(page, text_of(page, directory), parts)
         if not path.is_file() or new != path.read_text("utf-8"):
             behind[page] = new
+    for page in RUN:
+        text = (directory / page).read_text("utf-8")
+        with tempfile.TemporaryDirectory() as scratch:
+            new = rerun(page, text, Path(scratch)).text
+        if new != text:
+            behind[page] = new
     for picture, make in every_picture().items():
         path = directory / picture
         new = make()
         if not path.is_file() or path.read_text("utf-8") != new:
             behind[picture] = new
     if write:
-        for page, new in behind.items():
-            replace_file(directory / page, new)
+        with held_in_turn(directory / "pages"):
+            for page, new in behind.items():
+                replace_file(directory / page, new)
     return sorted(behind)
 
 
@@ -165,4 +222,4 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    call_to_end(main)

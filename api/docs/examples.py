@@ -6,11 +6,11 @@ import asyncio
 import json
 from collections.abc import Iterator, Mapping
 from typing import Any
-from urllib.parse import quote
 
 from typer.testing import CliRunner
 
 from api.cli.command_line import COMMANDS, app, load
+from api.http.reference import columns, target, words
 from api.http.service import create_app
 
 LONGEST_LIST = 1
@@ -46,16 +46,16 @@ def http_examples() -> str:
             parts.append(_operation(service, path, method, operation))
     refused = _ask(service, "GET", REFUSED)
     parts.append(
-        "### What is refused\n\nAs a problem document (RFC 9457), with the nearest valid word:\n\n"
+        "## What is refused\n\nAs a problem document (RFC 9457), with the nearest valid word:\n\n"
         + _exchange(f"GET {REFUSED}", None, refused)
     )
     return "\n\n".join(parts)
 
 
 def _operation(service: Any, path: str, method: str, operation: Mapping[str, Any]) -> str:
-    target, body = _example(path, operation)
-    answer = _ask(service, method.upper(), target, body)
-    lines = [f"### {method.upper()} {path}", "", operation.get("summary", "") + ".", ""]
+    address, body = target(path, operation)
+    answer = _ask(service, method.upper(), address, body)
+    lines = [f"## {method.upper()} {path}", "", operation.get("summary", "") + ".", ""]
     if operation.get("description"):
         lines += [operation["description"], ""]
     rows = [p for p in operation.get("parameters", ()) if p["in"] in {"path", "query"}]
@@ -65,25 +65,10 @@ def _operation(service: Any, path: str, method: str, operation: Mapping[str, Any
             f"| `{p['name']}` | {_takes(p['schema'])} | {p.get('description', '')} |" for p in rows
         ]
         lines.append("")
-    lines.append(_exchange(f"{method.upper()} {target}", body, answer))
+    if said := columns(operation):
+        lines += [f"CSV, columns: {said.removeprefix('Columns: ')}", ""]
+    lines.append(_exchange(f"{method.upper()} {address}", body, answer))
     return "\n".join(lines)
-
-
-def _example(path: str, operation: Mapping[str, Any]) -> tuple[str, Any]:
-    """Return the target and the JSON body of an operation's example."""
-    query = []
-    for parameter in operation.get("parameters", ()):
-        if "example" not in parameter:
-            continue
-        given = parameter["example"]
-        if parameter["in"] == "path":
-            path = path.replace(f"{{{parameter['name']}}}", quote(str(given), safe=""))
-        elif parameter["in"] == "query":
-            values = given if isinstance(given, list) else [given]
-            query += [f"{parameter['name']}={quote(str(value), safe='')}" for value in values]
-    content = operation.get("requestBody", {}).get("content", {})
-    body = content.get("application/json", {}).get("example")
-    return path + ("?" + "&".join(query) if query else ""), body
 
 
 def _ask(service: Any, method: str, target: str, body: Any = None) -> tuple[int, str, str]:
@@ -149,16 +134,8 @@ def _pretty(value: Any, indent: str = "", name: str = "", comma: str = "") -> It
 
 def _takes(schema: Mapping[str, Any]) -> str:
     """Say in words what a parameter's schema takes."""
-    if schema.get("type") == "array":
-        return f"{_takes(schema['items'])}; repeatable"
-    if "enum" in schema:
-        words = schema["enum"]
-        some = ", ".join(f"`{word}`" for word in words[:6])
-        return some if len(words) <= 6 else f"{some}, … ({len(words)} values)"
-    default = f", {schema['default']} by default" if "default" in schema else ""
-    limits = [
-        f"{said} {schema[key]:g}"
-        for key, said in (("minimum", "from"), ("exclusiveMinimum", "above"), ("maximum", "to"))
-        if key in schema
-    ]
-    return " ".join([str(schema.get("type", "any")), *limits]) + default
+    some, count, said = words(schema)
+    listed = ", ".join(f"`{word}`" for word in some)
+    if count > len(some):
+        listed += f", … ({count} values)"
+    return "; ".join(part for part in (listed, said) if part)

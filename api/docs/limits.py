@@ -7,6 +7,7 @@ from functools import cache
 from typing import Any
 
 from api.docs.markdown import table
+from benchmark.leaderboard.headlines import headlines
 from benchmark.leaderboard.holding import table as holding
 from benchmark.leaderboard.holding.sentences import NEAR, PARTS, verdict
 from benchmark.leaderboard.realism import realism
@@ -58,16 +59,50 @@ def sentences() -> str:
     return counted + "\n\n" + "\n".join(lines)
 
 
+def headline_table() -> str:
+    """Set the numbers that mapped studies are known for beside the same methods here."""
+    rows, said = [], []
+    for row in headlines(Store().rows(), _conditions()):
+        stands = f"{row['extractor']} + {row['model']}" if row["dataset"] else "nothing"
+        rows.append(
+            (
+                row["study"],
+                f"{row['kind']}, {row['statistic']}",
+                _angle(row["published_deg"]),
+                f"[{row['dataset']}](datasets.md#{row['dataset']})" if row["dataset"] else "–",
+                stands,
+                "not measured"
+                if row["our_deg"] is None
+                else f"{_angle(row['our_deg'])} ({row['our_statistic']})",
+                "–" if row["ratio"] is None else f"{row['ratio']:.2g}",
+                _angle(row["floor_deg"]),
+                "–" if row["availability"] is None else f"{100 * row['availability']:.0f} %",
+            )
+        )
+        said.append(f"- {row['study']}, {row['kind']}: {row['difference']}")
+    header = ("study", "its number is", "published", "data set", "stands for it", "ours", "ratio")
+    return table((*header, "floor", "answered"), rows) + "\n\n" + "\n".join(said)
+
+
+def _angle(degrees: float | None) -> str:
+    """Spell an angle in degrees; in arcseconds below a five-hundredth of one."""
+    if degrees is None:
+        return "–"
+    return f"{degrees:.2g} deg" if degrees >= 1 / 500 else f"{degrees * 3600:.2g} arcsec"
+
+
 @cache
 def _leaders() -> Mapping[str, Mapping[str, Any]]:
-    conditions = {name: row["condition"] for name, row in holding.rows().items()}
-    return holding.leaders(Store().rows(), conditions)
+    return holding.leaders(Store().rows(), _conditions())
 
 
 @cache
 def _built() -> Mapping[str, Mapping[str, Any]]:
-    conditions = {name: row["condition"] for name, row in holding.rows().items()}
-    return {row["dataset"]: row for row in realism(Store().rows(), conditions)}
+    return {row["dataset"]: row for row in realism(Store().rows(), _conditions())}
+
+
+def _conditions() -> Mapping[str, str]:
+    return {name: row["condition"] for name, row in holding.rows().items()}
 
 
 def _floor(score: Mapping[str, Any] | None) -> str:

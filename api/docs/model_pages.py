@@ -18,8 +18,8 @@ from typing import Any
 
 from api.docs import field_pictures
 from api.docs.field_pictures import Shown
+from api.docs.knowledge import knowledge
 from api.docs.markdown import table
-from api.http.knowledge import Knowledge
 from benchmark.leaderboard.board import board_of
 from benchmark.metrics.score import AVAILABLE
 from benchmark.results.store import Store
@@ -103,7 +103,7 @@ def page_of(category: str) -> str:
 @cache
 def categories() -> tuple[str, ...]:
     """Return the categories that have an implementation, in the taxonomy's order."""
-    known = _knowledge()
+    known = knowledge()
     order = [known.taxonomy.category("model", v) for v in known.taxonomy.values("model")]
     there = {_category(i.taxonomy) for i in known.catalogue.listing("model")} - {None, "None"}
     return tuple(category for category in dict.fromkeys(order) if category in there)
@@ -114,7 +114,7 @@ def models(category: str) -> str:
     rows = [
         (
             f"`{i.name}`",
-            _knowledge().taxonomy.name("model", i.taxonomy),
+            knowledge().taxonomy.name("model", i.taxonomy),
             i.summary,
             ", ".join(i.accepts or ()),
             ", ".join(i.studies),
@@ -233,12 +233,12 @@ def index() -> str:
 
 
 def _of(category: str) -> list[Any]:
-    listing = _knowledge().catalogue.listing("model")
+    listing = knowledge().catalogue.listing("model")
     return [i for i in listing if _category(i.taxonomy) == category]
 
 
 def _category(value: str) -> str | None:
-    return _knowledge().taxonomy.category("model", value)
+    return knowledge().taxonomy.category("model", value)
 
 
 def _shown(category: str) -> Shown | None:
@@ -261,11 +261,6 @@ def _board() -> list[Mapping[str, Any]]:
         for row in dataset["rows"]
         if row["condition"] == dataset["conditions"][0]
     ]
-
-
-@cache
-def _knowledge() -> Knowledge:
-    return Knowledge()
 
 
 def _picture_of(category: str) -> str:

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from functools import cache
 from typing import Any
 
 import survey_data
 from api.docs.examples import command_line, http_examples
+from api.docs.knowledge import knowledge
 from api.docs.markdown import table as _table
-from api.http.knowledge import Knowledge
 from benchmark.datasets import coverage as simulated
 from registry.resolution import ESSENTIAL, Resolution
 from registry.sensors import BASES
@@ -42,7 +41,7 @@ def extractors() -> str:
             ", ".join(i.studies),
             _labels(i.labels),
         )
-        for i in _knowledge().catalogue.listing("extractor")
+        for i in knowledge().catalogue.listing("extractor")
     ]
     return _table(("name", "taxonomy", "what it does", "reads → gives", "studies", "survey"), rows)
 
@@ -58,14 +57,14 @@ def models() -> str:
             ", ".join(i.studies),
             _labels(i.labels),
         )
-        for i in _knowledge().catalogue.listing("model")
+        for i in knowledge().catalogue.listing("model")
     ]
     return _table(("name", "taxonomy", "what it does", "reads", "studies", "survey"), rows)
 
 
 def missing() -> str:
     """List the taxonomy's values that nothing implements, with the studies that wait for them."""
-    known = _knowledge()
+    known = knowledge()
     rows = []
     for attribute, value in known.catalogue.gaps():
         waiting = [key for key, s in known.facts.studies.items() if value in s.of(attribute)]
@@ -79,7 +78,7 @@ def missing() -> str:
 
 def datasets() -> str:
     """Write a card for each standard data set, with the published bounds."""
-    return "\n\n".join(_card(card) for card in _knowledge().measurements.cards)
+    return "\n\n".join(_card(card) for card in knowledge().measurements.cards)
 
 
 def coverage() -> str:
@@ -123,7 +122,7 @@ def findings() -> str:
 
 def resolutions() -> str:
     """Say how the studies run: on what evidence, by what rules, and what does not run as it is."""
-    known = _knowledge()
+    known = knowledge()
     resolved = known.resolutions
     states = Counter(resolution.state for resolution in resolved.values())
     cells = sum(len(p.datasets) for found in resolved.values() for p in found.pipelines)
@@ -184,11 +183,6 @@ def _ranked(ranking: Sequence[tuple[str, int]]) -> str:
     shown = ", ".join(f"{value} {count}" for value, count in ranking[:_COUNTS_SHOWN])
     more = len(ranking) - _COUNTS_SHOWN
     return f"{shown} and {more} rarer" if more > 0 else shown
-
-
-@cache
-def _knowledge() -> Knowledge:
-    return Knowledge()
 
 
 def _card(card: Any) -> str:

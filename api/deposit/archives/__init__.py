@@ -1,0 +1,1 @@
+"""Archives that take the bundle: Zenodo by either of its two interfaces."""

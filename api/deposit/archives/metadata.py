@@ -1,0 +1,217 @@
+"""What the archive is told of the bundle, in the words of both interfaces of Zenodo.
+
+The invenio form follows InvenioRDM's metadata reference (docs-invenio-rdm,
+`reference/metadata.md`), the legacy one the table of `developers.zenodo.org`. Both say the same,
+as far as the second can.
+"""
+
+from __future__ import annotations
+
+import html
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+from api.deposit.citation import Author, authors
+
+Scheme = Literal["arxiv", "doi"]
+
+
+@dataclass(frozen=True)
+class Related:
+    """Another work, and what it is to this one.
+
+    Attributes
+    ----------
+    identifier, scheme : of the work
+    relation : of this one to it, in DataCite's words
+    kind : (of InvenioRDM, of the legacy interface)
+    """
+
+    identifier: str
+    scheme: Scheme
+    relation: str
+    kind: tuple[str, str]
+
+
+#: The survey that the facts were compiled from; its authors' own table, which is another
+#: compilation of the same studies and is not contained here.
+RELATED = (
+    Related(
+        "arXiv:2507.21541",
+        "arxiv",
+        "isDerivedFrom",
+        ("publication-preprint", "publication-preprint"),
+    ),
+    Related("10.5281/zenodo.15784429", "doi", "references", ("dataset", "dataset")),
+)
+
+
+_CONTENTS = (
+    "{zip} holds everything; README.md says what, with an example. The SQLite file holds every "
+    "table, the bibliography every study that is identified."
+)
+
+
+@dataclass(frozen=True)
+class Description:
+    """What is told of a version of the bundle.
+
+    Attributes
+    ----------
+    title, version : of the bundle
+    released : YYYY-MM-DD
+    text : paragraphs, plain
+    authors : as CITATION.cff names them
+    keywords : free
+    licences : (SPDX identifier, what it covers), that of the data first
+    """
+
+    title: str
+    version: str
+    released: str
+    text: tuple[str, ...]
+    authors: tuple[Author, ...]
+    keywords: tuple[str, ...]
+    licences: tuple[tuple[str, str], ...]
+
+    @property
+    def html(self) -> str:
+        """The paragraphs, and which licence covers what, as HTML."""
+        terms = "; ".join(f"{covered}: {name}" for name, covered in self.licences)
+        paragraphs = (*self.text, f"Licences: {terms}.")
+        return "".join(f"<p>{html.escape(part, quote=False)}</p>" for part in paragraphs)
+
+
+def description(bundle: Path) -> Description:
+    """Read what a bundle says of itself, in datapackage.json and CITATION.cff.
+
+    Raises
+    ------
+    CitationError
+        Where the authors cannot be read.
+    """
+    package = json.loads((bundle / "datapackage.json").read_text("utf-8"))
+    path = bundle / "CITATION.cff"
+    return Description(
+        title=package["title"],
+        version=package["version"],
+        released=package["created"][:10],
+        text=(
+            package["description"],
+            _CONTENTS.format(zip=f"{package['name']}-{package['version']}.zip"),
+        ),
+        authors=authors(path.read_text("utf-8"), path),
+        keywords=tuple(package["keywords"]),
+        licences=(
+            ("CC-BY-4.0", "facts (survey/, bibliography/)"),
+            ("MIT", "what the code measured and made (everything else)"),
+        ),
+    )
+
+
+def invenio(told: Description) -> dict[str, Any]:
+    """Return the body of a draft for InvenioRDM's records interface."""
+    return {
+        "access": {"record": "public", "files": "public"},
+        "files": {"enabled": True},
+        "metadata": {
+            "resource_type": {"id": "dataset"},
+            "title": told.title,
+            "publication_date": told.released,
+            "creators": [_creator(author) for author in told.authors],
+            "description": told.html,
+            "rights": [{"id": name.lower()} for name, _ in told.licences],
+            "version": told.version,
+            "publisher": "Zenodo",  # without one no DOI is registered
+            "languages": [{"id": "eng"}],
+            "subjects": [{"subject": keyword} for keyword in told.keywords],
+            "related_identifiers": [
+                {
+                    "identifier": work.identifier,
+                    "scheme": work.scheme,
+                    "relation_type": {"id": work.relation.lower()},
+                    "resource_type": {"id": work.kind[0]},
+                }
+                for work in RELATED
+            ],
+        },
+    }
+
+
+def legacy(told: Description) -> dict[str, Any]:
+    """Return the `metadata` of a deposition; of the licences it can name only the first."""
+    return {
+        "title": told.title,
+        "upload_type": "dataset",
+        "description": told.html,
+        "creators": [
+            {
+                "name": author.inverted,
+                **({"orcid": author.orcid} if author.orcid else {}),
+                **({"affiliation": author.affiliation} if author.affiliation else {}),
+            }
+            for author in told.authors
+        ],
+        "access_right": "open",
+        "license": told.licences[0][0].lower(),
+        "version": told.version,
+        "publication_date": told.released,
+        "keywords": list(told.keywords),
+        "language": "eng",
+        "related_identifiers": [
+            {
+                "identifier": work.identifier,
+                "relation": work.relation,
+                "resource_type": work.kind[1],
+            }
+            for work in RELATED
+        ],
+    }
+
+
+def _creator(author: Author) -> dict[str, Any]:
+    if author.name:
+        who: dict[str, Any] = {"type": "organizational", "name": author.name}
+    else:
+        who = {"type": "personal", "family_name": author.family, "given_name": author.given}
+    if author.orcid:
+        who["identifiers"] = [{"scheme": "orcid", "identifier": author.orcid}]
+    affiliations = [{"name": author.affiliation}] if author.affiliation else []
+    return {"person_or_org": who, **({"affiliations": affiliations} if affiliations else {})}
+
+
+def creators_of_invenio(metadata: Any) -> tuple[Author, ...]:
+    """Read the authors back from the metadata of a record."""
+    found = []
+    for creator in _listed(metadata, "creators"):
+        who = creator.get("person_or_org") or {}
+        orcids = [i for i in who.get("identifiers") or [] if i.get("scheme") == "orcid"]
+        personal = who.get("type") == "personal"
+        found.append(
+            Author(
+                family=who.get("family_name") or "" if personal else "",
+                given=who.get("given_name") or "" if personal else "",
+                name="" if personal else who.get("name") or "",
+                orcid=orcids[0].get("identifier") if orcids else None,
+            )
+        )
+    return tuple(found)
+
+
+def creators_of_legacy(metadata: Any) -> tuple[Author, ...]:
+    """Read the authors back from the metadata of a deposition."""
+    found = []
+    for creator in _listed(metadata, "creators"):
+        family, comma, given = str(creator.get("name") or "").partition(", ")
+        orcid = creator.get("orcid")
+        found.append(
+            Author(family, given, "", orcid) if comma else Author(name=family, orcid=orcid)
+        )
+    return tuple(found)
+
+
+def _listed(metadata: Any, name: str) -> list[dict[str, Any]]:
+    found = metadata.get(name) if isinstance(metadata, dict) else None
+    return [entry for entry in found or [] if isinstance(entry, dict)]

@@ -1,0 +1,69 @@
+"""The one step that cannot be taken back, and what is looked at before it is taken."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from api.deposit.archives.contract import (
+    Archive,
+    ArchiveError,
+    NoDraftError,
+    Published,
+    wanting,
+)
+from api.deposit.archives.metadata import description
+from api.deposit.archives.uploading import md5_of, parts
+from api.deposit.citation import unpublishable
+from api.deposit.verification import verify
+
+
+class NotReadyError(ArchiveError):
+    """The draft may not become public; the message says why."""
+
+
+def publish(archive: Archive, identifier: str, directory: Path) -> Published:
+    """Make a draft public whose authors are people and whose files are the bundle's.
+
+    Authors are looked at in the bundle and in the draft, whose own become public.
+
+    Parameters
+    ----------
+    archive : that holds the draft
+    identifier : of the draft
+    directory : the bundle, its zip beside it
+
+    Raises
+    ------
+    NotReadyError
+        Where authors are missing or placeholders, or files are missing, foreign or other bytes.
+    ArchiveError
+        Where the archive does not do as asked.
+    """
+    if wrong := verify(directory):
+        raise NotReadyError(f"{directory}: {wrong[0][0]}: {wrong[0][1]}; nothing was published")
+    found = unpublishable(description(directory).authors)
+    if found:
+        raise NotReadyError(
+            f"the bundle's authors cannot be published: {'; '.join(found)}. Fill in CITATION.cff, "
+            "build and upload again; nothing was published"
+        )
+    try:
+        draft = archive.draft(identifier)
+    except NoDraftError:
+        if (public := archive.published(identifier)) is not None:
+            raise NotReadyError(f"{public.page} is published already") from None
+        raise
+    found = unpublishable(draft.authors)
+    if found:
+        raise NotReadyError(
+            f"the authors of draft {identifier} cannot be published: {'; '.join(found)}. Upload "
+            "again; nothing was published"
+        )
+    sent = {name: md5_of(path) for name, path in parts(directory).items()}
+    differing = wanting(archive.files(draft), sent)
+    if differing:
+        raise NotReadyError(
+            f"draft {identifier} is not the bundle in {directory}: {'; '.join(differing)}. Upload "
+            "again, or take foreign files out; nothing was published"
+        )
+    return archive.publish(draft)

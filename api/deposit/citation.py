@@ -1,0 +1,165 @@
+"""Who made the work: the authors as CITATION.cff names them, and whether they may be published.
+
+CITATION.cff is the one file in which a person fills in authors and ORCIDs; the bundle, the
+archive's forms and the RO-Crate take them from it. An archive keeps names for good, so that
+placeholders are refused before anything is published.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+_ORCID = re.compile(r"(?:https?://orcid\.org/)?(\d{4}-\d{4}-\d{4}-\d{3}[\dX])")
+#: The 15 digits before the last, from and to: the blocks of ISNI's numbers that ORCID gives.
+_BLOCKS = ((15_000_000, 35_000_000), (900_000_000_000, 900_100_000_000))
+#: Of people whom ORCID made up for its documentation.
+_EXAMPLES = frozenset({"0000-0002-1825-0097", "0000-0001-5109-3700"})
+_PLACEHOLDER = re.compile(
+    r"\s*|.*\b(contributors|todo|tbd|fixme|placeholder|your|example|n/a)\b.*|"
+    r"(the |my )?((family|given|first|last)[ -]?names?|names?|authors?|family|given)|"
+    r"anonymous|unknown|nobody|somebody|none|john doe|jane doe|x{2,}|[.?_<>*-]+",
+    re.IGNORECASE,
+)
+
+
+class CitationError(ValueError):
+    """A CITATION.cff cannot be read; the message names file and entry."""
+
+
+@dataclass(frozen=True)
+class Author:
+    """A person, or an organisation (`name`).
+
+    Attributes
+    ----------
+    family, given : of a person, else empty
+    name : of an organisation, else empty
+    orcid : 0000-0000-0000-0000, or None
+    affiliation : or None
+    """
+
+    family: str = ""
+    given: str = ""
+    name: str = ""
+    orcid: str | None = None
+    affiliation: str | None = None
+
+    @property
+    def title(self) -> str:
+        """The name as people write it."""
+        return self.name or " ".join(part for part in (self.given, self.family) if part)
+
+    @property
+    def inverted(self) -> str:
+        """The name as indices sort it."""
+        return self.name or ", ".join(part for part in (self.family, self.given) if part)
+
+
+def authors(text: str, where: str | Path) -> tuple[Author, ...]:
+    """Read the authors of a CITATION.cff (Citation File Format 1.2.0).
+
+    Parameters
+    ----------
+    text : of the file
+    where : its name, for messages
+
+    Raises
+    ------
+    CitationError
+        Where the text is no YAML, has no list of authors, or an entry is neither person nor
+        organisation.
+    """
+    try:
+        document = yaml.safe_load(text)
+    except yaml.YAMLError as error:
+        raise CitationError(f"{where}: not YAML ({' '.join(str(error).split())})") from error
+    listed = document.get("authors") if isinstance(document, Mapping) else None
+    if not isinstance(listed, list):
+        raise CitationError(f"{where}: expected a list of authors")
+    return tuple(_author(entry, f"{where}, author {n}") for n, entry in enumerate(listed, start=1))
+
+
+def of_dataset(text: str) -> str:
+    """Return a CITATION.cff whose `type` says that it goes with a data set, not with code."""
+    document = yaml.safe_load(text)
+    return str(yaml.safe_dump({**document, "type": "dataset"}, sort_keys=False, allow_unicode=True))
+
+
+def _author(entry: Any, where: str) -> Author:
+    known = {"family-names", "given-names", "name-particle", "name-suffix", "name"}
+    known |= {"orcid", "affiliation", "email", "website", "alias"}
+    if not isinstance(entry, Mapping) or not known.issuperset(entry):
+        strange = sorted(map(str, set(entry) - known)) if isinstance(entry, Mapping) else entry
+        raise CitationError(f"{where}: expected family-names, given-names, orcid; got {strange!r}")
+    wrong = [key for key, value in entry.items() if not isinstance(value, str | None)]
+    if wrong:
+        raise CitationError(f"{where}: expected text for {wrong[0]}, got {entry[wrong[0]]!r}")
+    text = {key: " ".join((value or "").split()) for key, value in entry.items()}
+    family = " ".join(filter(None, (text.get("name-particle"), text.get("family-names"))))
+    given = " ".join(filter(None, (text.get("given-names"), text.get("name-suffix"))))
+    found = _ORCID.fullmatch(text.get("orcid", ""))
+    return Author(
+        family,
+        given,
+        "" if family or given else text.get("name", ""),
+        (found[1] if found else text.get("orcid")) or None,
+        text.get("affiliation") or None,
+    )
+
+
+def check_digit(digits: str) -> str:
+    """Return the last character of an ORCID iD of these 15 digits (ISO 7064, mod 11-2)."""
+    total = 0
+    for digit in digits:
+        total = (total + int(digit)) * 2
+    rest = (12 - total % 11) % 11
+    return "X" if rest == 10 else str(rest)
+
+
+def wrong_orcid(orcid: str) -> str | None:
+    """Say what is wrong with an ORCID iD; None where nothing is."""
+    if not _ORCID.fullmatch(orcid):
+        return f"{orcid!r} is no ORCID iD: expected 0000-0000-0000-0000, the last a digit or X"
+    digits = orcid.replace("-", "")
+    expected = check_digit(digits[:15])
+    if digits[15] != expected:
+        return f"{orcid} is mistyped: its last character would have to be {expected}"
+    if not any(first <= int(digits[:15]) <= last for first, last in _BLOCKS):
+        return f"{orcid} lies outside the numbers that ORCID gives"
+    return f"{orcid} is ORCID's example, nobody's own" if orcid in _EXAMPLES else None
+
+
+def unpublishable(listed: Sequence[Author]) -> list[str]:
+    """Say why these authors may not be published; empty where they may.
+
+    At least one person, each with family name, given name and a valid ORCID iD, nobody twice, no
+    name that stands for another.
+    """
+    found = [] if any(a.family or a.given for a in listed) else ["no person among the authors"]
+    for author in listed:
+        found += _wrong(author)
+    known = [author.orcid for author in listed if author.orcid]
+    twice = sorted({orcid for orcid in known if known.count(orcid) > 1})
+    return [*found, *(f"{orcid} stands with two authors" for orcid in twice)]
+
+
+def _wrong(author: Author) -> list[str]:
+    if not (author.family or author.given):
+        if _PLACEHOLDER.fullmatch(author.name):
+            return [f"{author.name or 'an empty name'!r} is a placeholder, no organisation"]
+        return []
+    who = author.title
+    parts = (("family name", author.family), ("given name", author.given), ("name", who))
+    found = [
+        f"{who}: {part!r} is no {kind}" for kind, part in parts if _PLACEHOLDER.fullmatch(part)
+    ]
+    if author.orcid is None:
+        return [*found, f"{who}: no ORCID iD"]
+    wrong = wrong_orcid(author.orcid)
+    return [*found, f"{who}: {wrong}"] if wrong else found

@@ -1,0 +1,34 @@
+"""What the docs say of the leaderboard: the best of each architecture, and an overview of parts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cache
+from typing import Any
+
+from benchmark.leaderboard import summaries
+from benchmark.leaderboard.architectures import architectures
+from benchmark.leaderboard.board import board_of
+from benchmark.leaderboard.overview import overview
+from benchmark.results.store import Store
+
+
+def best_per_architecture_table() -> str:
+    """Table of the best pipeline of each architecture, how far from its bound and how sure."""
+    rows = architectures(_board())
+    return f"{summaries.best_per_architecture_table(rows)}\n\n{summaries.tally(rows)}"
+
+
+def how_sure() -> str:
+    """Say what the columns of that table are."""
+    return summaries.ARCHITECTURES
+
+
+def parts() -> str:
+    """Tables of how near the bound each part of a pipeline comes, and how that is counted."""
+    return summaries.overview_tables(overview(_board()))
+
+
+@cache
+def _board() -> Mapping[str, Any]:
+    return board_of(Store())

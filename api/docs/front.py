@@ -1,0 +1,242 @@
+"""What the README tells first: the answer as a picture, findings with their numbers, tallies."""
+
+from __future__ import annotations
+
+import statistics
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+from api.docs.knowledge import knowledge
+from benchmark.claims.ledger import Entry, ledger, tally
+from benchmark.drawing import svg
+from benchmark.leaderboard import summaries
+from benchmark.leaderboard.architectures import architectures, first_boards
+from benchmark.leaderboard.holding import table as holding
+from benchmark.leaderboard.holding.sentences import NEAR, PARTS, verdict
+from benchmark.metrics.score import is_available
+from registry.recommendation import recommend
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+Row = Mapping[str, Any]
+
+#: Told apart by every kind of colour vision (Okabe and Ito).
+_BEST, _STUDIES, _BUILT, _BOUND = "#0072b2", "#d55e00", "#009e73", "#1a1d21"
+_WIDTH_IN, _ROW_IN, _FRAME_IN = 8.6, 0.215, 1.15
+
+
+def picture() -> str:
+    """Draw for every architecture what is measured beside what bounds it, as SVG."""
+    return svg(figure, "Error of the best calibration of every architecture, against its bound")
+
+
+def figure() -> Figure:
+    """Draw the same as a figure of Matplotlib."""
+    from matplotlib.figure import Figure  # noqa: PLC0415 - a second that only pictures need
+
+    rows = sorted(_architectures(), key=lambda row: row["rms_deg"] or 1e9, reverse=True)
+    drawn = Figure(figsize=(_WIDTH_IN, _ROW_IN * len(rows) + _FRAME_IN), layout="constrained")
+    axes = drawn.subplots()
+    for height, row in enumerate(rows):
+        _draw(axes, height, row)
+    axes.set_xscale("log")
+    axes.set_yticks(
+        range(len(rows)), [f"{row['detector']}, {row['mask']}" for row in rows], fontsize="small"
+    )
+    axes.set_ylim(-0.8, len(rows) - 0.2)
+    axes.set_xlabel("RMS error of the direction to the Sun, deg (nominal condition)")
+    axes.grid(axis="x", color="#e3e7eb")
+    axes.set_axisbelow(True)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.tick_params(axis="y", length=0)
+    names = {
+        "best calibration measured": (_BEST, "o", "full"),
+        "best that a mapped study used": (_STUDIES, "o", "none"),
+        "built sensors, as published": (_BUILT, "^", "full"),
+        "Cramer-Rao bound": (_BOUND, "|", "full"),
+    }
+    for name, (colour, mark, fill) in names.items():
+        axes.plot([], [], mark, color=colour, label=name, fillstyle=fill)
+    drawn.legend(loc="outside upper center", ncols=4, frameon=False, fontsize="small")
+    return drawn
+
+
+def findings() -> str:
+    """Say what the measurements show, in five sentences made of their numbers."""
+    said = (_distance(), _methods(), _advice(), _light_of_the_earth(), _poses())
+    return "\n".join(f"{number}. {sentence}" for number, sentence in enumerate(said, start=1))
+
+
+def tallies() -> str:
+    """Count the claims by verdict, and the studies by how far they run."""
+    entries = _ledger()
+    counted = ", ".join(f"{number} {name}" for name, number in tally(entries).items() if number)
+    resolved = knowledge().resolutions
+    states = Counter(resolution.state for resolution in resolved.values())
+    running = sum(any(score["status"] == "ok" for score in _study_scores(key)) for key in resolved)
+    return (
+        f"**Claims tried**: of the {len(entries)} statements that the survey's text makes about "
+        f"algorithms, {counted} ([docs/claims.md](docs/claims.md)).\n\n"
+        f"**Studies that run**: {running} of {len(resolved)} have a scored pipeline on the data of "
+        f"their sensor, {states['complete']} of them with every value as the survey maps it; what "
+        "is assumed for the others stands beside every one "
+        "([docs/survey.md](docs/survey.md), `sunatlas run KEY`)."
+    )
+
+
+def table() -> str:
+    """Write the best pipeline of each architecture against its bound."""
+    rows = _architectures()
+    return "\n\n".join(
+        (
+            summaries.tally(rows),
+            summaries.best_per_architecture_table(rows),
+            summaries.ARCHITECTURES,
+        )
+    )
+
+
+@cache
+def _architectures() -> Sequence[Row]:
+    return architectures(knowledge().measurements.leaderboard)
+
+
+@cache
+def _ledger() -> tuple[Entry, ...]:
+    return ledger()
+
+
+def _draw(axes: Axes, height: int, row: Row) -> None:
+    if row["rms_deg"] is None:
+        return
+    axes.plot([row["bound_deg"], row["rms_deg"]], [height] * 2, color="#c5ccd3", linewidth=1.2)
+    axes.plot(row["bound_deg"], height, "|", color=_BOUND, markersize=8)
+    built = _built().get(row["dataset"], ())
+    axes.plot(built, [height] * len(built), "^", color=_BUILT, markersize=4.5)
+    used = _best_used(row["dataset"])
+    if used is not None:
+        axes.plot(used, height, "o", color=_STUDIES, fillstyle="none", markersize=7)
+    axes.plot(row["rms_deg"], height, "o", color=_BEST, markersize=4.5)
+
+
+@cache
+def _built() -> Mapping[str, Sequence[float]]:
+    """Accuracies of the built sensors that each data set stands for, degrees."""
+    return {
+        row["dataset"]: [
+            sensor["accuracy_rms_deg"]
+            for sensor in row["sensors"]
+            if sensor["accuracy_rms_deg"] is not None
+        ]
+        for row in knowledge().measurements.realism
+    }
+
+
+@cache
+def _boards() -> Mapping[str, Sequence[Row]]:
+    """Ranked rows of each data set's first condition that answer often enough."""
+    return {
+        dataset["name"]: [row for row in rows if row["rank"] is not None and is_available(row)]
+        for dataset, rows in first_boards(knowledge().measurements.leaderboard)
+    }
+
+
+def _best_used(dataset: str) -> float | None:
+    """Least error of the pipelines that mapped studies used, degrees; None for none."""
+    used = [row["rms_deg"] for row in _boards()[dataset] if row["studies"]]
+    return min(used, default=None)
+
+
+def _distance() -> str:
+    judged = [verdict(row) for row in holding.rows().values()]
+    near = sum(one.near for one in judged)
+    held = Counter(PARTS[one.leading] for one in judged if not one.near)
+    (most, count), *_ = held.most_common()
+    return (
+        f"**Most sensors are far from what their light allows.** On {near} of {len(judged)} data "
+        f"sets the best calibration comes within {NEAR:g} of the Cramer-Rao bound; of the other "
+        f"{len(judged) - near}, {count} are held back most by {most} "
+        "([docs/limits.md](docs/limits.md))."
+    )
+
+
+def _study_scores(key: str) -> list[dict[str, Any]]:
+    nominal = knowledge().measurements.nominal
+    return [
+        dict(nominal.get((dataset, pipeline.extractor, pipeline.model), {"status": None}))
+        for pipeline in knowledge().resolutions[key].pipelines
+        for dataset in pipeline.datasets
+    ]
+
+
+def _methods() -> str:
+    factors = []
+    for key in knowledge().resolutions:
+        ratios = [
+            row["rms_deg"] / _boards()[row["dataset"]][0]["rms_deg"]
+            for row in _study_scores(key)
+            if row["status"] == "ok" and row["rms_deg"] is not None and is_available(row)
+        ]
+        if ratios:
+            factors.append(min(ratios))
+    leading = sum(factor == 1.0 for factor in factors)
+    return (
+        f"**What the studies used is seldom the best there is.** The pipelines of {len(factors)} "
+        f"studies, each at its best, err {statistics.median(factors):.1f} times as much in the "
+        f"median as the best calibration on the same data, and a quarter of them more than "
+        f"{statistics.quantiles(factors, n=4)[2]:.1f} times; {leading} lead their board "
+        "(`sunatlas leaderboard`)."
+    )
+
+
+def _advice() -> str:
+    tasks = knowledge().taxonomy.values("task")
+    best, worse = 0, []
+    for task in tasks:
+        first = recommend({"task": [task]}, knowledge().measured, limit=1).architectures[0]
+        error = (first.calibrations[0].measured or {}).get("error_deg")
+        least = (first.best.measured or {}).get("error_deg")
+        if isinstance(error, float) and isinstance(least, float):
+            best += error == least
+            worse += [error / least] if error > least else []
+    silent = len(tasks) - best - len(worse)
+    return (
+        f"**What is advised is seldom what measures best.** Asked for each of the survey's "
+        f"{len(tasks)} tasks, the calibration that its advice and the studies put first is the "
+        f"best one measured for that sensor {_times(best)}; {_times(len(worse))} it errs "
+        f"{min(worse):.2g} to {max(worse):.2g} times as much, and {_times(silent)} it answers too "
+        "seldom to be ranked (`sunatlas recommend --task Volume`)."
+    )
+
+
+def _times(count: int) -> str:
+    return {0: "never", 1: "once", 2: "twice"}.get(count, f"{count} times")
+
+
+def _light_of_the_earth() -> str:
+    lines = {entry.claim.id: entry for entry in _ledger()}["C29"].outcome
+    if lines is None:
+        return "**Light from the Earth** was not measured on digital and analog sensors."
+    dark, lit = (lines.lines[name].median for name in ("black Earth", "sunlit Earth"))
+    return (
+        "**The sunlit Earth ruins analog sensors and leaves digital ones alone.** The RMS error "
+        f"of a photodiode cube goes from {dark[1]:.2g} to {lit[1]:.2g} deg, that of a CMOS pinhole "
+        f"camera from {dark[0]:.3g} to {lit[0]:.3g} deg ([C29](docs/claims.md#c29))."
+    )
+
+
+def _poses() -> str:
+    rows = [row for row in knowledge().measurements.curves if not row["in_order"]]
+    few, given = 50, [row["needed_poses"] for row in rows]
+    enough = sum(needed is not None and needed <= few for needed in given)
+    never = sum(needed is None for needed in given)
+    return (
+        f"**Few sensors need the poses they are given.** Of the {len(rows)} leading calibrations "
+        f"made on a bench, {enough} are within 10 % of the error that no number of poses improves "
+        f"with {few} random poses or fewer; {never} do not come so near with all of theirs "
+        "([docs/learning-curves.md](docs/learning-curves.md))."
+    )

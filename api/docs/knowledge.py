@@ -1,0 +1,13 @@
+"""What the service knows, loaded once for all pages."""
+
+from __future__ import annotations
+
+from functools import cache
+
+from api.http.knowledge import Knowledge
+
+
+@cache
+def knowledge() -> Knowledge:
+    """Return facts, implementations and published measurements."""
+    return Knowledge()

@@ -1,0 +1,48 @@
+"""The guide's chapters, in the order in which they are read."""
+
+from __future__ import annotations
+
+ROOT = "index"
+
+#: Caption of the sidebar, and its pages in docs/ without their suffix.
+CHAPTERS: dict[str, tuple[str, ...]] = {
+    "Start": ("guide/found", "guide/tutorial", "guide/glossary"),
+    "Results": (
+        "leaderboard",
+        "guide/scores",
+        "limits",
+        "learning-curves",
+        "claims",
+        "sweeps",
+        "assessment",
+        "networks",
+        "coded-masks",
+    ),
+    "Methods": (
+        "algorithms",
+        "models/lut",
+        "models/non-physical",
+        "models/geometric",
+        "models/physics-informed",
+        "models/multiplex",
+        "models/neural-network",
+        "filters",
+    ),
+    "Data": ("datasets", "survey", "guide/data-dictionary"),
+    "Interfaces": ("http", "guide/python", "command-line", "deposit"),
+    "Adding to it": (
+        "guide/add-an-algorithm",
+        "guide/add-a-data-set",
+        "architecture",
+        "faults",
+        "faults-kills",
+    ),
+}
+
+
+def toctrees() -> str:
+    """Return the chapters as MyST takes them: a hidden table of contents each."""
+    return "\n".join(
+        f"\n```{{toctree}}\n:hidden:\n:caption: {caption}\n\n" + "\n".join(pages) + "\n```\n"
+        for caption, pages in CHAPTERS.items()
+    )

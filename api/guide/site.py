@@ -1,0 +1,173 @@
+"""Where the guide's pages are, and the site that is made of them.
+
+A site is built once for its sources, kept in the user's cache, and never committed. What builds it
+(Sphinx, MyST, Furo, latex2mathml) is the extra `guide` of the distribution.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import os
+import re
+import shutil
+import tempfile
+from functools import cache
+from importlib.metadata import PackageNotFoundError, version
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from api.cli.working import working_directory
+from api.guide.chapters import ROOT
+from survey_data.whole_files import replacing
+
+BUILDERS = ("sphinx", "myst-parser", "furo", "latex2mathml")
+INSTALL = "pip install 'sun-sensor-atlas[guide]'"
+
+#: Sites of so many states of the pages are kept.
+KEPT = 4
+
+_COLOUR = re.compile(r"\x1b\[[0-9;]*m")
+_HERE = Path(__file__).resolve().parent
+_CHECKOUT = _HERE.parents[1] / "docs"
+
+
+class GuideError(RuntimeError):
+    """The guide cannot be built; the message says why and what to do."""
+
+
+def source() -> Path:
+    """Return the directory of the pages: docs/ of a checkout, else what the wheel carries.
+
+    Raises
+    ------
+    GuideError
+        Where there is neither.
+    """
+    for directory in (_CHECKOUT, Path(str(files("api"))) / "guide" / "source"):
+        if (directory / f"{ROOT}.md").is_file():
+            return directory
+    raise GuideError(
+        f"no pages of the guide: neither {_CHECKOUT} nor the installed package has any"
+    )
+
+
+@cache
+def missing_builders() -> tuple[str, ...]:
+    """Name the distributions that building needs and that are not installed."""
+    missing = []
+    for name in BUILDERS:
+        try:
+            version(name)
+        except PackageNotFoundError:
+            missing.append(name)
+    return tuple(missing)
+
+
+@cache
+def digest() -> str:
+    """Return what the site depends on as a digest: pages, this code, and what builds it."""
+    summed = hashlib.blake2b(digest_size=12)
+    for root in (source(), _HERE):
+        for path in sorted(root.rglob("*")):
+            if path.is_file() and path.suffix in {".md", ".svg", ".png", ".py", ".css"}:
+                summed.update(f"\0{path.relative_to(root).as_posix()}\0".encode())
+                summed.update(path.read_bytes())
+    for name in BUILDERS:
+        summed.update(f"{name} {version(name)}\n".encode())
+    return summed.hexdigest()
+
+
+def kept() -> Path | None:
+    """Return where the site of these pages is kept, built or not; None where it cannot be built."""
+    return None if missing_builders() else working_directory() / "guide" / digest()
+
+
+def build(out: Path) -> list[str]:
+    """Build the site into a directory, which is replaced whole or not at all.
+
+    Parameters
+    ----------
+    out : of the site
+
+    Returns
+    -------
+    list of str
+        Warnings, each with its page and line; a sound site has none.
+
+    Raises
+    ------
+    GuideError
+        Where what builds it is not installed, or it fails.
+    """
+    missing = missing_builders()
+    if missing:
+        raise GuideError(f"building the guide needs {', '.join(missing)}: {INSTALL}")
+    from sphinx.application import Sphinx  # noqa: PLC0415 - an extra, and a second to import
+    from sphinx.errors import SphinxError  # noqa: PLC0415
+
+    out = out.resolve()
+    out.parent.mkdir(parents=True, exist_ok=True)
+    told = io.StringIO()
+    with tempfile.TemporaryDirectory() as scratch, replacing(out) as (made,):
+        try:
+            Sphinx(
+                srcdir=source(),
+                confdir=None,
+                outdir=made,
+                doctreedir=Path(scratch),
+                buildername="html",
+                confoverrides=_settings(),
+                status=None,
+                warning=told,
+                freshenv=True,
+            ).build(force_all=True)
+        except SphinxError as error:
+            raise GuideError(f"the guide cannot be built: {error}") from error
+        (made / ".buildinfo").unlink(missing_ok=True)
+    return [line for line in _COLOUR.sub("", told.getvalue()).splitlines() if line.strip()]
+
+
+def keep() -> list[str]:
+    """Build the site where `kept` says, drop the oldest ones; return the warnings."""
+    place = kept()
+    if place is None:
+        raise GuideError(f"building the guide needs {', '.join(missing_builders())}: {INSTALL}")
+    if place.is_dir():
+        return []
+    warnings = build(place)
+    _drop_oldest(place)
+    return warnings
+
+
+def _drop_oldest(place: Path) -> None:
+    """Delete all but the newest sites: checkouts share a cache, and each has its own pages."""
+    sites = [path for path in place.parent.iterdir() if not path.name.startswith(".")]
+    for old in sorted(sites, key=lambda path: path.stat().st_mtime)[:-KEPT]:
+        shutil.rmtree(old, ignore_errors=True)
+
+
+def _settings() -> dict[str, Any]:
+    """Return what Sphinx reads from a conf.py elsewhere."""
+    return {
+        "project": "Sun Sensor Atlas",
+        "html_title": "Sun Sensor Atlas",
+        "extensions": ["myst_parser", "api.guide.extension"],
+        "root_doc": ROOT,
+        "source_suffix": {".md": "markdown"},
+        "myst_enable_extensions": ["dollarmath"],
+        "myst_heading_anchors": 6,
+        "myst_dmath_double_inline": True,
+        "smartquotes": False,
+        "html_math_renderer": "mathml",
+        "html_theme": "furo",
+        "html_static_path": [os.fspath(_HERE / "static")],
+        "html_css_files": ["guide.css"],
+        "html_favicon": os.fspath(_HERE.parent / "page" / "icon.svg"),
+        "html_copy_source": False,
+        "html_show_sphinx": False,
+        "html_show_copyright": False,
+        "html_use_index": False,
+        "nitpicky": True,
+    }
