@@ -26,7 +26,7 @@ export NUMBA_NUM_THREADS = 1
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help install serve test test-all coverage lint bench mutants leaderboard docs lock clean
+.PHONY: help install serve guide test test-browser test-slow test-all coverage lint bench load mutants faults faults-kills faults-load leaderboard docs lock clean
 
 help: ## show this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 14
@@ -50,6 +50,10 @@ $(COMPILED): $(DEVELOPING)
 	$(BIN)/sunatlas compile --workers $(WORKERS) --quiet
 	touch $@
 
+# The guide, kept in the user's cache; quick where its pages have not changed.
+guide: $(SERVING) ## build the guide (served at /guide; `make serve` builds it beside the service)
+	$(BIN)/sunatlas guide build --strict
+
 $(PEERS): $(DEVELOPING) requirements-peers.lock
 	$(PIP) --require-hashes -r requirements-peers.lock
 	touch $@
@@ -64,28 +68,50 @@ serve: $(SERVING) ## serve the page and the API on http://127.0.0.1:8000 (instal
 test: $(COMPILED) ## run the tests, the slow ones left out
 	$(TEST) -m "not slow"
 
-test-all: $(COMPILED) ## run every test, as CI does
+test-browser: $(COMPILED) ## run what walks the page in headless Chromium, slow tests too
+	$(TEST) tests/api/page
+
+test-slow: $(COMPILED) ## run the slow tests alone
+	$(TEST) -m slow
+
+test-all: $(COMPILED) ## run every test
 	$(TEST)
 
 coverage: $(COMPILED) ## run every test and tell which lines and branches of the floors it reached
 	$(TEST) --cov --cov-report=term:skip-covered --cov-report=html:out/coverage
 
-lint: $(DEVELOPING) ## ruff, mypy (strict), the floors
+lint: $(DEVELOPING) ## ruff, mypy (strict), the floors, the guide without warnings
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+	$(BIN)/sunatlas guide build --strict --out out/guide
 
 bench: $(PEERS) ## every speed and accuracy limit, as ratios measured in the same run; lists the broken ones (SEED=N repeats its frames)
 	$(BIN)/python -m tests.speed $(if $(SEED),--seed $(SEED))
+
+load: $(COMPILED) ## thousands of random requests, then 200 clients at once, against a running service
+	$(BIN)/python -m tests.load $(if $(SEED),--seed $(SEED))
 
 mutants: $(MUTANTS) ## put small faults into the code, one at a time; list those that no test notices
 	mkdir -p out
 	$(BIN)/python -m tests.mutants --workers $(WORKERS) --report out/mutants.md
 
+faults: $(COMPILED) ## try a thousand damaged files on every reader (minutes); renews docs/faults.md
+	$(BIN)/python -m tests.faults --report docs/faults.md
+
+faults-kills: $(COMPILED) ## kill every writing command 300 times at moments drawn by SEED, and let pairs write at once
+	mkdir -p out
+	$(BIN)/python -m tests.faults_kills --report out/faults-kills.md $(if $(SEED),--seed $(SEED))
+
+MINUTES ?= 60
+faults-load: $(COMPILED) ## 20 mixed requests a second on the service for MINUTES=60
+	$(BIN)/python -m tests.faults_load --minutes $(MINUTES) --report out/faults-load.md $(if $(SEED),--seed $(SEED))
+
 leaderboard: $(SERVING) ## bring scores and leaderboard up to date with code and data
 	$(BIN)/sunatlas leaderboard update --workers $(WORKERS)
 	$(BIN)/python -m benchmark.leaderboard.holding
+	$(BIN)/python -m benchmark.curves benchmark/published $(WORKERS)
 
 docs: $(DEVELOPING) ## regenerate the generated parts of docs/
 	$(BIN)/python -m api.docs.documentation
@@ -94,15 +120,15 @@ docs: $(DEVELOPING) ## regenerate the generated parts of docs/
 COMPILE := uv pip compile --quiet --universal --python-version 3.11 --generate-hashes \
 	--no-emit-index-url --no-header $(UPGRADE)
 lock: ## renew the lock files from pyproject.toml (needs uv on the PATH)
-	$(COMPILE) --extra build -o requirements.lock pyproject.toml
-	$(COMPILE) --extra build --extra dev --constraints requirements.lock -o requirements-dev.lock pyproject.toml
+	$(COMPILE) --extra build --extra guide -o requirements.lock pyproject.toml
+	$(COMPILE) --extra build --extra dev --extra distributed --extra guide --extra deposit --constraints requirements.lock -o requirements-dev.lock pyproject.toml
 	$(COMPILE) --extra peers --constraints requirements-dev.lock -o requirements-peers.lock pyproject.toml
 	$(COMPILE) --extra mutants --constraints requirements-dev.lock -o requirements-mutants.lock pyproject.toml
 	mkdir -p out
 	uv pip compile --quiet --python-version 3.11 --no-header --upgrade --resolution lowest-direct \
-		--extra build -o out/lowest.txt pyproject.toml
+		--extra build --extra guide -o out/lowest.txt pyproject.toml
 	uv pip compile --quiet --python-version 3.11 --generate-hashes --no-emit-index-url --no-header \
-		$(UPGRADE) --extra build --extra dev --constraints out/lowest.txt \
+		$(UPGRADE) --extra build --extra dev --extra distributed --extra guide --extra deposit --constraints out/lowest.txt \
 		-o requirements-lowest.lock pyproject.toml
 
 clean: ## remove the virtual environment and caches
