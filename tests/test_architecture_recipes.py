@@ -1,4 +1,4 @@
-"""The recipes of docs/architecture.md, followed as printed, in a copy of the tree."""
+"""The recipes of the guide, followed as printed, in a copy of the tree."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ pytestmark = pytest.mark.slow
 ROOT = Path(__file__).parents[1]
 FLOORS = ("survey_data", "registry", "algorithms", "benchmark", "api")
 RECIPE = re.compile(r"```python file=(\S+)\n(.*?)```", re.DOTALL)
+PAGES = ("add-an-algorithm.md", "add-a-data-set.md")
 
 MEASURE = """
 import json, sys
@@ -40,6 +41,14 @@ print(json.dumps({
     "rows": store.rows(),
 }))
 """
+
+
+def printed() -> dict[str, str]:
+    """The files that the guide prints, by their paths."""
+    pages = [(ROOT / "docs" / "guide" / name).read_text() for name in PAGES]
+    files = dict(found for page in pages for found in RECIPE.findall(page))
+    assert len(files) == len(PAGES)
+    return files
 
 
 def run(arguments: list[str], tree: Path) -> str:
@@ -66,9 +75,7 @@ def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
         unfinished = shutil.ignore_patterns("*.tmp.*", "*.pyc*")
         shutil.copytree(ROOT / floor, tree / floor, ignore=unfinished)
     shutil.copytree(ROOT / "tests" / "algorithms", tree / "tests" / "algorithms")
-    recipes = RECIPE.findall((ROOT / "docs" / "architecture.md").read_text())
-    assert len(recipes) == 2
-    for name, text in recipes:
+    for name, text in printed().items():
         assert not (tree / name).exists()
         (tree / name).write_text(text)
     return tree
@@ -93,7 +100,7 @@ def test_one_file_makes_an_algorithm_and_one_a_dataset_that_are_measured(tree: P
 
 
 def test_a_dataset_is_one_short_file_in_the_recipe_and_here() -> None:
-    recipes = dict(RECIPE.findall((ROOT / "docs" / "architecture.md").read_text()))
+    recipes = printed()
     (dataset,) = (text for name, text in recipes.items() if name.startswith("benchmark/"))
     assert len(dataset.splitlines()) <= 40
     assert "datasets.standard" not in dataset, "a sensor of its own, not another data set's"
@@ -105,7 +112,7 @@ def test_a_dataset_is_one_short_file_in_the_recipe_and_here() -> None:
 
 
 def test_an_algorithm_with_its_docstring_takes_at_most_60_lines() -> None:
-    recipes = dict(RECIPE.findall((ROOT / "docs" / "architecture.md").read_text()))
+    recipes = printed()
     text = recipes["algorithms/extractors/frames/squared_centroid.py"]
     assert "    Examples\n    --------\n    >>> " in text
     assert len(text.splitlines()) <= 60

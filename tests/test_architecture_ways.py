@@ -10,8 +10,9 @@ import asyncio
 import re
 import sys
 from collections.abc import Callable, Iterable
+from functools import cache
 from pathlib import Path
-from types import FrameType
+from types import CodeType, FrameType
 
 import httpx
 import pytest
@@ -45,14 +46,14 @@ def on_the_way(call: Callable[[], object], landmarks: Iterable[str]) -> list[str
     def watch(frame: FrameType, event: str, argument: object) -> None:
         if event != "call":
             return
-        name = spelt(frame)
+        name = spelt(frame.f_code)
         if name is None:
             return
         entered.setdefault(name, len(entered))
         if name in wanted:
             above: FrameType | None = frame
             while above is not None:
-                outer = spelt(above)
+                outer = spelt(above.f_code)
                 if outer is not None and not outer.startswith(OWN_MATTER):
                     found.add(outer)
                 above = above.f_back
@@ -67,12 +68,13 @@ def on_the_way(call: Callable[[], object], landmarks: Iterable[str]) -> list[str
     return sorted(found, key=entered.__getitem__)
 
 
-def spelt(frame: FrameType) -> str | None:
-    """``path: function`` of a frame in this project's own code; None elsewhere."""
-    path = Path(frame.f_code.co_filename)
+@cache
+def spelt(code: CodeType) -> str | None:
+    """``path: function`` of code of this project's own; None of any other."""
+    path = Path(code.co_filename)
     if not any(path.is_relative_to(ROOT / floor) for floor in FIRST_PARTY):
         return None
-    name = re.sub(r"\.?<locals>.*|\.?<\w+>", "", frame.f_code.co_qualname)
+    name = re.sub(r"\.?<locals>.*|\.?<\w+>", "", code.co_qualname)
     return f"{path.relative_to(ROOT).as_posix()}: {name}" if name else None
 
 

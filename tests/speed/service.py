@@ -24,16 +24,18 @@ from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from http.client import HTTPConnection
 from itertools import count, product
+from typing import Any
 from urllib.parse import urlencode
 
 import uvicorn
 from fastapi import FastAPI
 
+from api.http.connections import bounds
 from api.http.service import create_app
 from registry.studies import facts
 from tests.speed.verdicts import Verdict, broken
 
-LARGEST_RATIO = 5.0
+LARGEST_RATIO = 3.0
 PATH = "/v1/recommendations"
 #: A connection is kept however long the machine lets its next request wait, s.
 _KEPT_S = 600
@@ -71,12 +73,14 @@ def empty_app() -> FastAPI:
 
 
 @contextmanager
-def serving(apps: Sequence[FastAPI]) -> Iterator[list[HTTPConnection]]:
-    """Serve applications from a thread of this process; yield a connection to each."""
+def serving(apps: Sequence[FastAPI], **options: Any) -> Iterator[list[HTTPConnection]]:
+    """Serve applications from a thread of this process; yield a connection to each.
+
+    `options` are those of `uvicorn.Config`.
+    """
+    chosen = {**bounds(), "timeout_keep_alive": _KEPT_S, **options}
     servers = [
-        uvicorn.Server(
-            uvicorn.Config(app, log_level="error", access_log=False, timeout_keep_alive=_KEPT_S)
-        )
+        uvicorn.Server(uvicorn.Config(app, log_level="error", access_log=False, **chosen))
         for app in apps
     ]
     sockets = [_listening() for _ in apps]

@@ -25,7 +25,7 @@ PROPERTIES = tuple(DEFINITIONS)
 
 
 def run(*arguments):
-    return CliRunner(env={"COLUMNS": "80"}).invoke(app, ["assess", *arguments])
+    return CliRunner(env={"COLUMNS": "140"}).invoke(app, ["assess", *arguments])
 
 
 @pytest.fixture(scope="module")
@@ -49,7 +49,7 @@ def test_the_table_has_nineteen_rows_with_both_scores_and_counts():
     assert len(methods) == 19
     lines = shown.stdout.splitlines()
     for method in methods:
-        (line,) = [text for text in lines if text.startswith(f" {method}  ")]
+        (line,) = [text for text in lines if text.startswith(f"{method}  ")]
         counts = [int(n) for n in line.split()[-5:]]
         assert sum(counts) == 21
     assert all(name in shown.stdout for name in PROPERTIES)

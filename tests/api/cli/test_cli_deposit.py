@@ -1,11 +1,13 @@
 """`sunatlas deposit`: built and verified from the command line."""
 
 import json
+from functools import partial
 
 import pytest
 from typer.testing import CliRunner
 
 from api.cli.command_line import app
+from api.deposit import bundle
 
 
 def deposit(*arguments):
@@ -13,7 +15,10 @@ def deposit(*arguments):
 
 
 @pytest.mark.slow
-def test_what_is_built_is_verified_and_what_is_damaged_is_not(tmp_path):
+def test_what_is_built_is_verified_and_what_is_damaged_is_not(tmp_path, monkeypatch):
+    # All samples take minutes; the release builds them.
+    some = partial(bundle.build, frames=("cmos-single-aperture",))
+    monkeypatch.setattr(bundle, "build", some)
     out = tmp_path / "new" / "bundle"
     built = deposit("build", "--out", out, "--format", "json")
     assert built.exit_code == 0, built.stderr
@@ -38,3 +43,36 @@ def test_somebody_else_s_directory_is_refused_in_one_line(tmp_path):
     assert shown.stderr.count("\n") == 1
     assert "thesis.tex" in shown.stderr
     assert [path.name for path in tmp_path.iterdir()] == ["thesis.tex"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "why"),
+    [
+        (("upload", "--production", "--server", "https://a.example"), "give one"),
+        (("upload", "--draft", "1", "--new-version", "2"), "give one"),
+        (("publish",), "record_id"),
+        (("upload", "--api", "other"), "--api"),
+    ],
+)
+def test_a_wrong_call_is_named(arguments, why):
+    shown = deposit(*arguments)
+    assert shown.exit_code == 2
+    assert why in shown.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "variable"),
+    [
+        (("upload",), "ZENODO_SANDBOX_TOKEN"),
+        (("upload", "--production"), "ZENODO_TOKEN"),
+        (("publish", "7"), "ZENODO_SANDBOX_TOKEN"),
+        (("publish", "7", "--server", "https://a.example"), "ARCHIVE_TOKEN"),
+    ],
+)
+def test_without_a_token_nobody_is_asked(arguments, variable, monkeypatch):
+    for name in ("ZENODO_TOKEN", "ZENODO_SANDBOX_TOKEN", "ARCHIVE_TOKEN"):
+        monkeypatch.delenv(name, raising=False)
+    shown = deposit(*arguments)
+    assert shown.exit_code == 1
+    assert shown.stderr.count("\n") == 1
+    assert f"as {variable}" in shown.stderr

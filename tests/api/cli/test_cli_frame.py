@@ -100,7 +100,6 @@ def test_version_is_the_project_s():
         (["run"], "study"),
         (["run", "Chang2008", "--workers", "0"], "--workers"),
         (["serve", "--port", "70000"], "--port"),
-        (["survey"], "Missing command"),
         (["deposit", "bild"], "'build'"),
     ],
 )
@@ -111,6 +110,15 @@ def test_a_wrong_call_is_one_line_and_2(arguments, says):
     assert shown.stderr.startswith("sunatlas: ")
     assert shown.stderr.count("\n") == 1
     assert says in shown.stderr
+
+
+@pytest.mark.parametrize("arguments", [(), ("survey",), ("dataset",), ("deposit",)])
+def test_a_call_that_asks_nothing_is_told_what_can_be_asked_and_is_2(arguments):
+    shown = invoke(*arguments)
+    assert shown.exit_code == 2
+    assert shown.stdout == invoke(*arguments, "--help").stdout
+    assert "Commands:" in shown.stdout
+    assert shown.stderr == ""
 
 
 @pytest.mark.parametrize(

@@ -200,16 +200,18 @@ def listed(*arguments):
 
 
 def test_the_leaderboard_is_shown_and_nothing_is_measured(untimed):
-    best = listed()
+    best = listed("--each")
     assert {row["rank"] for row in best} == {1}
     assert {row["condition"] for row in best} == {"nominal"}
     assert {row["dataset"] for row in best} == set(installed().presets)
     assert all(row["latency_us"] is None for row in best)
     whole = listed("--dataset", "ccd-orbit", "--condition", "stable")
     assert {(row["dataset"], row["condition"]) for row in whole} == {("ccd-orbit", "stable")}
-    assert [row["rank"] for row in whole if row["rank"]] == sorted(
-        row["rank"] for row in whole if row["rank"]
-    )
+    for part in (True, False):
+        ranks = [r["rank"] for r in whole if r["rank"] and r["best_of_extractor"] is part]
+        assert ranks == sorted(ranks)
+    first = [row["best_of_extractor"] for row in whole]
+    assert first == sorted(first, reverse=True)
     assert not untimed.exists()
 
 

@@ -1,10 +1,14 @@
 """`sunatlas serve`: a port of its own, a URL to open, a clean end."""
 
 import json
+import os
+import re
+import shutil
 import signal
 import socket
 import subprocess
 import sys
+import time
 import urllib.request
 from functools import partial
 from pathlib import Path
@@ -15,13 +19,17 @@ from typer.testing import CliRunner
 
 from api.cli.command_line import app
 from api.cli.commands.serve import address, listen
+from registry import studies
+from survey_data import manifest, recorded_facts
+from survey_data.descriptor import DATA_DIRECTORY
 
 ROOT = Path(__file__).resolve().parents[3]
 SERVE = (sys.executable, "-m", "api.cli.command_line", "serve")
 
 
 @pytest.mark.slow
-def test_serve_prints_where_it_answers_and_ctrl_c_ends_it_with_130():
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_serve_prints_where_it_answers_and_ends_with_the_code_of_the_signal(number, code):
     with subprocess.Popen(
         [*SERVE, "--port", "0"],
         cwd=ROOT,
@@ -36,13 +44,13 @@ def test_serve_prints_where_it_answers_and_ctrl_c_ends_it_with_130():
             url = process.stdout.readline().split()[3]
             with urllib.request.urlopen(f"{url}/healthz", timeout=600) as answer:
                 health = json.load(answer)
-            process.send_signal(signal.SIGINT)
+            process.send_signal(number)
             _, said = process.communicate(timeout=600)
         finally:
             process.kill()
     assert health["status"] == "ok"
     assert health["studies"] == 129
-    assert process.returncode == 130
+    assert process.returncode == code
     assert "Traceback" not in said
 
 
@@ -74,3 +82,77 @@ def test_an_address_that_is_none_is_refused():
 )
 def test_the_url_is_one_a_browser_opens(host, url):
     assert address(host, 80) == url
+
+
+def test_times_are_for_one_worker():
+    shown = CliRunner().invoke(app, ["serve", "--times", "--workers", "2", "--port", "0"])
+    assert shown.exit_code == 2
+    assert "--times" in shown.stderr
+
+
+def running(group):
+    """Command lines of a group's processes; zombies, which nobody has reaped, do not run."""
+    found = []
+    for stat in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            state, _, of_group = stat.read_text().rpartition(")")[2].split()[:3]
+            if int(of_group) == group and state != "Z":
+                found.append(stat.with_name("cmdline").read_text())
+        except (FileNotFoundError, ProcessLookupError):
+            continue
+    return found
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="processes are read from /proc")
+def test_workers_add_up_their_counts_and_leave_nothing_behind(tmp_path):
+    command = [*SERVE, "--port", "0", "--workers", "2", "--access-log"]
+    with subprocess.Popen(
+        command,
+        cwd=ROOT,
+        env={**os.environ, "TMPDIR": str(tmp_path)},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    ) as process:
+        try:
+            assert process.stdout is not None
+            url = process.stdout.readline().split()[3]
+            for _ in range(40):
+                with urllib.request.urlopen(f"{url}/v1/taxonomy", timeout=600) as answer:
+                    assert answer.status == 200
+            with urllib.request.urlopen(f"{url}/metrics", timeout=600) as answer:
+                told = answer.read().decode()
+            process.send_signal(signal.SIGTERM)
+            out, said = process.communicate(timeout=600)
+        finally:
+            process.kill()
+    wanted = re.compile(r"sunatlas_http_requests_total\{.*taxonomy.*\} 40\.0")
+    assert wanted.search(told)
+    lines = [json.loads(line) for line in out.splitlines()]
+    assert [line["route"] for line in lines].count("/v1/taxonomy") == 40
+    assert "Traceback" not in said
+    assert not list(tmp_path.iterdir())
+    deadline = time.monotonic() + 60  # Python's resource tracker notices by itself
+    while left := running(process.pid):
+        assert time.monotonic() < deadline, left
+        time.sleep(0.05)
+
+
+def test_damaged_facts_are_refused_in_one_line_before_anything_is_served(monkeypatch, tmp_path):
+    for name in (*recorded_facts.names(), manifest.FILE):
+        shutil.copyfile(DATA_DIRECTORY / name, tmp_path / name)
+    path = tmp_path / "attributes.csv"
+    path.write_text(path.read_text().replace("accuracy_deg,0", "accuracy_deg,0x1", 1))
+    monkeypatch.setattr(recorded_facts.changes, "__defaults__", (tmp_path,))
+    monkeypatch.setattr(recorded_facts.require_unchanged, "__defaults__", (tmp_path,))
+    monkeypatch.setattr(uvicorn.Server, "run", lambda *_, **__: pytest.fail("it serves"))
+    studies.facts.cache_clear()
+    for command in (["serve", "--port", "0"], ["studies"], ["recommend"]):
+        shown = CliRunner().invoke(app, command)
+        assert shown.exit_code == 1
+        assert shown.stdout == ""
+        assert shown.stderr.count("\n") == 1
+        assert "attributes.csv, row " in shown.stderr
+        assert "column value" in shown.stderr

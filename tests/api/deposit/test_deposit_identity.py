@@ -56,13 +56,22 @@ def test_an_installation_speaks_by_its_metadata(elsewhere):
         "code terms",
         "data terms",
     )
-    assert who.authors == ("A. Sun", "B. Sensor")
+    assert [author.name for author in who.authors] == ["A. Sun", "B. Sensor"]
     cited = yaml.safe_load(who.citation)
     assert cited["cff-version"] == "1.2.0"
     assert cited["version"] == "9.8.7"
     assert cited["abstract"] == 'Says "hello".'
     assert cited["authors"] == [{"name": "A. Sun"}, {"name": "B. Sensor"}]
     assert cited["date-released"] == "1970-01-02"
+
+
+def test_an_installation_is_cited_as_its_checkout_is(elsewhere):
+    written = (ROOT / "CITATION.cff").read_text("utf-8")
+    texts = {"licenses/LICENSE": "code terms", "licenses/CITATION.cff": written}
+    elsewhere.setattr(deposit_identity, "_installed", lambda: Installed(texts))
+    who = deposit_identity.identity()
+    assert who.citation == written
+    assert who.released.isoformat() == yaml.safe_load(written)["date-released"]
 
 
 def test_without_its_licence_nothing_goes_out(elsewhere):

@@ -21,18 +21,24 @@ def test_what_is_altered_is_noticed_and_renewed(tmp_path, monkeypatch, capsys):
     pages = {"survey.md": PAGES["survey.md"]}
     monkeypatch.setattr(documentation, "every_page", lambda _: pages)
     monkeypatch.setattr(documentation, "every_picture", lambda: {"made.svg": lambda: "<svg/>"})
+    monkeypatch.setattr(documentation, "RUN", ("guide/scores.md",))
     monkeypatch.setattr(documentation.regenerate, "__defaults__", (docs,))
     page = docs / "survey.md"
     good = page.read_text("utf-8")
     page.write_text(good.replace("129 studies", "130 studies"), "utf-8")
+    run = docs / "guide" / "scores.md"
+    true = run.read_text("utf-8")
+    run.write_text(true.replace("[0.003 0.   ]", "[0.004 0.   ]"), "utf-8")
     assert documentation.main(["--check"]) == 1
     said = capsys.readouterr().err
     assert "docs/survey.md is behind" in said
     assert "docs/made.svg is behind" in said
+    assert "docs/guide/scores.md is behind" in said
     assert "130 studies" in page.read_text("utf-8")
     assert not (docs / "made.svg").exists()
     assert documentation.main([]) == 0
     assert page.read_text("utf-8") == good
+    assert run.read_text("utf-8") == true != ""
     assert (docs / "made.svg").read_text("utf-8") == "<svg/>"
 
 

@@ -8,12 +8,13 @@ import pytest
 from algorithms.angles import sun_from_angles
 from api.docs import documentation, field_pictures, limits, model_pages
 from api.docs.field_pictures import Shown
+from api.docs.knowledge import knowledge
 
 SHOWN = Shown("ccd-slit", "ppe", "slit")
 
 
 def test_every_category_with_a_model_has_a_page_and_every_model_a_line_on_one():
-    listed = model_pages._knowledge().catalogue.listing("model")
+    listed = knowledge().catalogue.listing("model")
     texts = [
         (model_pages.DIRECTORY / model_pages.page_of(category)).read_text("utf-8")
         for category in model_pages.categories()

@@ -33,7 +33,7 @@ def pinned(tmp_path_factory, client_of):
             0.25,
             0.25,
         ),
-        Pin(NAME, "hot", "test", 99, 400, "b" * 32, "c" * 32, 1000, 0.5, 0.5),
+        Pin(NAME, "hot", "test", 99, 400, "b" * 32, "c" * 32, 400, 0.5, 0.5),
     ]
     Store(directory).write({}, pins, [], Components())
     return client_of(create_app(Knowledge(Measurements(directory))))

@@ -33,15 +33,3 @@ def test_importing_the_package_loads_none_of_its_parts():
         [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True
     )
     assert done.stdout.strip() == "[]"
-
-
-def test_plotly_is_served_without_being_imported():
-    program = (
-        "from api.http.page import page_file\n"
-        "assert len(page_file('plotly.min.js').body) > 1_000_000\n"
-        "import sys\nprint('plotly' in sys.modules)"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True
-    )
-    assert done.stdout.strip() == "False"

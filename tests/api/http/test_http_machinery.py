@@ -1,8 +1,6 @@
 """Parts of the service on their own: negotiation, validators, the cache, CSV, the nearest word."""
 
-import csv
 import gzip
-import io
 import json
 
 import pytest
@@ -12,7 +10,6 @@ from hypothesis import strategies as st
 from api.http.negotiation import CSV, JSON, accepts_gzip, media_type
 from api.http.problems import Problem
 from api.http.representations import Representation, RepresentationCache, matches
-from api.http.tables import to_csv
 from survey_data.nearest import nearest
 
 fuzz = settings(deadline=None, derandomize=True)
@@ -124,22 +121,6 @@ def test_the_cache_forgets_the_least_recently_used_within_its_bounds():
     cache.put("huge", Representation(b"x" * 1000, "text/plain"))
     assert len(cache) == 1
     assert cache.bytes == 1000
-
-
-def test_csv_survives_its_own_delimiters():
-    rows = [
-        {"a": 'x, "y"\nz', "b": {"c": 1.5, "d": None}, "e": ["p", "q"], "f": True},
-        {"a": "", "b": {"c": float("nan")}, "e": [], "f": False, "late": 3},
-    ]
-    read_back = list(csv.DictReader(io.StringIO(to_csv(["a"], rows).decode(), newline="")))
-    assert read_back == [
-        {"a": 'x, "y"\nz', "b_c": "1.5", "b_d": "", "e": "p; q", "f": "true", "late": ""},
-        {"a": "", "b_c": "", "b_d": "", "e": "", "f": "false", "late": "3"},
-    ]
-
-
-def test_an_empty_table_has_its_header():
-    assert to_csv(["a", "b"], []) == b"a,b\r\n"
 
 
 @fuzz

@@ -32,6 +32,9 @@ def test_every_endpoint_of_the_contract_is_documented(document):
         ("/v1/studies", "get"),
         ("/v1/studies/{key}", "get"),
         ("/v1/flows/{chart}", "get"),
+        ("/v1/figures", "get"),
+        ("/v1/figures/matrix", "get"),
+        ("/v1/figures/{figure}", "get"),
         ("/v1/recommendations", "get"),
         ("/v1/recommendations", "post"),
         ("/v1/algorithms", "get"),
@@ -40,17 +43,61 @@ def test_every_endpoint_of_the_contract_is_documented(document):
         ("/v1/datasets/{name}/preview.png", "get"),
         ("/v1/realism", "get"),
         ("/v1/leaderboard", "get"),
+        ("/v1/leaderboard/architectures", "get"),
+        ("/v1/leaderboard/overview", "get"),
         ("/v1/leaderboard/{dataset}", "get"),
         ("/v1/sweeps", "get"),
+        ("/v1/curves", "get"),
         ("/v1/assessment", "get"),
+        ("/v1/claims", "get"),
+        ("/v1/claims/{id}", "get"),
+        ("/v1/compare", "get"),
+        ("/v1/search", "get"),
+        ("/v1/advice", "get"),
+        ("/v1/protocol", "get"),
         ("/v1/results", "get"),
         ("/healthz", "get"),
     }
 
 
+def begins(example, answer):
+    """Whether an example is what is answered but for the length of lists and texts."""
+    if isinstance(answer, dict):
+        return example.keys() == answer.keys() and all(
+            begins(example[k], answer[k]) for k in answer
+        )
+    if isinstance(answer, list):
+        kept = answer[: len(example)]
+        return bool(example) == bool(answer) and all(map(begins, example, kept))
+    if isinstance(answer, str) and example != answer:
+        return example.endswith("…") and answer.startswith(example[:-1]) and len(example) > 100
+    return example == answer
+
+
+def test_the_document_is_short(atlas):
+    assert len(atlas.get("/openapi.json").content) < 300_000
+
+
+def test_every_example_validates_against_its_schema(document):
+    checked = 0
+    for path, _, operation in operations(document):
+        places = [p for p in operation.get("parameters", ()) if "example" in p]
+        places += operation.get("requestBody", {}).get("content", {}).values()
+        for response in operation["responses"].values():
+            places += [c for c in response.get("content", {}).values() if "example" in c]
+        for place in places:
+            validator(document, place["schema"]).validate(place["example"])
+            checked += 1
+        answers = operation["responses"]["200"].get("content", {})
+        assert (
+            path == "/healthz" or "image/png" in answers or "example" in answers["application/json"]
+        )
+    assert checked > 100
+
+
 @pytest.mark.slow
 def test_examples_are_what_is_answered(atlas, document):
-    """The example's question is asked over HTTP; its answer is the example, in JSON and CSV."""
+    """The example's question is asked over HTTP; its answer begins as the example does."""
     checked = 0
     for template, method, operation in operations(document):
         content = operation["responses"]["200"]["content"]
@@ -65,18 +112,17 @@ def test_examples_are_what_is_answered(atlas, document):
                 body = operation["requestBody"]["content"]["application/json"]["example"]
                 answer = atlas.post(path, json=body, headers={"Accept": accept})
             else:
-                assert query or all(p["in"] == "path" for p in operation.get("parameters", ()))
                 answer = atlas.get(path, accept, params=query)
             assert answer.status_code == 200
             example = content[accept]["example"]
             if accept == "text/csv":
-                assert answer.text == example
-                list(csv.reader(io.StringIO(example), strict=True))
+                assert answer.text.startswith(example)
+                assert len(list(csv.reader(io.StringIO(example), strict=True))) == 2
             else:
-                assert answer.json() == example
-                validator(document, content[accept]["schema"]).validate(example)
+                assert begins(example, answer.json()), path
+                validator(document, content[accept]["schema"]).validate(answer.json())
             checked += 1
-    assert checked == 30
+    assert checked >= 40
 
 
 def test_examples_of_refusals_are_what_is_refused(atlas, document):
@@ -98,7 +144,7 @@ def test_examples_of_refusals_are_what_is_refused(atlas, document):
                 wrong = example["errors"][0]["parameter"]
                 live = atlas.get(f"{example['instance']}?{wrong}=1").json()
                 assert live == example, path
-    assert checked == 32
+    assert checked == 62
 
 
 @pytest.mark.slow
@@ -110,6 +156,12 @@ def test_examples_of_refusals_are_what_is_refused(atlas, document):
         "/v1/studies/Liebe2001",
         "/v1/flows/model-sunburst?counting=fractional",
         "/v1/flows/cross-analysis?grouped=true",
+        "/v1/figures",
+        "/v1/figures/matrix",
+        "/v1/figures/aggregate",
+        "/v1/figures/coordinates",
+        "/v1/figures/models",
+        "/v1/figures/publications",
         "/v1/recommendations",
         "/v1/recommendations?max_error_deg=0.000001",
         "/v1/recommendations?task=Accuracy&exclude_task=Accuracy",
@@ -118,10 +170,19 @@ def test_examples_of_refusals_are_what_is_refused(atlas, document):
         "/v1/datasets/pd-orbit",
         "/v1/realism",
         "/v1/leaderboard",
+        "/v1/leaderboard/architectures",
+        "/v1/leaderboard/overview?role=model&detector=PD",
         "/v1/leaderboard/qpd-single-aperture",
         "/v1/results",
         "/v1/sweeps",
+        "/v1/curves",
         "/v1/assessment",
+        "/v1/claims",
+        "/v1/claims/C04",
+        "/v1/compare?architecture=CMOS:Encoded&architecture=PD:Slit",
+        "/v1/search?q=albedo",
+        "/v1/advice",
+        "/v1/protocol",
         "/healthz",
     ],
 )
@@ -130,14 +191,21 @@ def test_whole_answers_fit_their_schemas(atlas, document, path):
     template = {
         "/v1/studies/Liebe2001": "/v1/studies/{key}",
         "/v1/datasets/pd-orbit": "/v1/datasets/{name}",
+        "/v1/claims/C04": "/v1/claims/{id}",
         "/v1/leaderboard/qpd-single-aperture": "/v1/leaderboard/{dataset}",
         "/v1/flows/model-sunburst": "/v1/flows/{chart}",
         "/v1/flows/cross-analysis": "/v1/flows/{chart}",
+        "/v1/figures/aggregate": "/v1/figures/{figure}",
+        "/v1/figures/coordinates": "/v1/figures/{figure}",
+        "/v1/figures/models": "/v1/figures/{figure}",
+        "/v1/figures/publications": "/v1/figures/{figure}",
     }.get(plain, plain)
     content = document["paths"][template]["get"]["responses"]["200"]["content"]
     answer = atlas.get(path)
     assert answer.status_code == 200
-    validator(document, content["application/json"]["schema"]).validate(answer.json())
+    schema = content["application/json"]["schema"]
+    # The other one is what `fields` makes of a page.
+    validator(document, schema.get("anyOf", [schema])[0]).validate(answer.json())
 
 
 def test_documented_words_are_the_vocabulary(atlas, document):
@@ -151,7 +219,7 @@ def test_documented_words_are_the_vocabulary(atlas, document):
     described = document["components"]["schemas"][reference.rpartition("/")[2]]
     properties = described["properties"]
     assert described["additionalProperties"] is False
-    assert set(properties) == set(parameters)
+    assert {*properties, "format"} == set(parameters)
     for attribute, entries in taxonomy.items():
         words = [entry["value"] for entry in entries]
         for name in (attribute, f"exclude_{attribute}"):

@@ -13,6 +13,7 @@ LISTS = [
     "/v1/algorithms",
     "/v1/datasets",
     "/v1/results",
+    "/v1/leaderboard/architectures",
     "/v1/leaderboard/cmos-single-aperture",
 ]
 TABLES = [
@@ -20,8 +21,12 @@ TABLES = [
     "/v1/taxonomy",
     "/v1/studies/Chang2008",
     "/v1/flows/error",
+    "/v1/figures",
+    "/v1/figures/matrix",
+    "/v1/figures/publications",
     "/v1/recommendations",
     "/v1/leaderboard",
+    "/v1/leaderboard/overview",
 ]
 
 
@@ -66,7 +71,7 @@ def test_an_unknown_path_is_a_404_with_the_nearest(atlas, path, nearest):
         ("/v1/flows/errors", "chart", "error"),
         ("/v1/flows/sunburst", "chart", "model-sunburst"),
         ("/v1/leaderboard/cmos-single-apertures", "dataset", "cmos-single-aperture"),
-        ("/page/indx.html", "file", "index.html"),
+        ("/page/pgae.js", "file", "page.js"),
     ],
 )
 def test_an_unknown_part_of_a_path_is_a_404_with_the_nearest(atlas, path, parameter, nearest):

@@ -8,6 +8,7 @@ from urllib.parse import quote
 import pytest
 from playwright.sync_api import Locator, expect
 
+from api.pages.terms import shown as named
 from tests.api.page.visiting import Visit, get_json
 
 pytestmark = pytest.mark.slow
@@ -67,7 +68,11 @@ def test_a_row_opens_to_its_calibrations_the_best_measured_among_them(wide: Visi
     rows = page.locator(".calibration")
     expect(rows).to_have_count(architecture["count"])
     for row, calibration in zip(rows.all(), architecture["calibrations"], strict=True):
-        way = [calibration["extractor"], *calibration["compensations"], calibration["model"]]
+        stages = [*calibration["compensations"], calibration["model"]]
+        way = [
+            named(calibration["extractor"], "extractor"),
+            *(named(stage, "model") for stage in stages),
+        ]
         assert row.locator(".pathway li").all_inner_texts() == way
         unproposed = "not in the literature" in kind(row, "proposed")
         assert unproposed == (not calibration["studies"])
@@ -127,7 +132,7 @@ def test_the_order_is_chosen_by_the_keyboard_and_keeps_the_focus(wide: Visit) ->
     assert wide.query()["sort"] == ["support"]
     assert page.evaluate("document.activeElement.value") == "support"
     found = answer(wide, "sort=support&limit=10")["architectures"]
-    shown = page.locator(".architecture .design > strong").all_inner_texts()
+    shown = page.locator(".architecture .pictured strong").all_inner_texts()
     assert shown == [f"{a['detector']} + {a['mask']}" for a in found]
 
 

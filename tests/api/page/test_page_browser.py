@@ -47,7 +47,7 @@ def test_a_requirement_narrows_flow_architectures_and_address_together(wide: Vis
     assert narrowed < nodes
     answer = get_json(f"{wide.address}/v1/recommendations?detector=CMOS&limit=500")
     assert wide.architectures() == answer["count"] < architectures
-    shown = page.locator(".architecture .design > strong").all_inner_texts()
+    shown = page.locator(".architecture .pictured strong").all_inner_texts()
     assert shown == [f"CMOS + {found['mask']}" for found in answer["architectures"]]
     page.go_back()
     wide.settle()
@@ -136,7 +136,7 @@ def test_the_keyboard_alone_requires_a_value_opens_evidence_and_sorts(wide: Visi
     rows = [
         {"extractor": name, "model": "m", "status": "ok", "rms_deg": rms, "bound_deg": 0.01,
          "over_bound": rms / 0.01, "availability": found, "false_sun": None, "time_ratio": 1.0,
-         "rank": rank, "tied": False}
+         "rank": rank, "tied": False, "studies": []}
         for rank, (name, rms, found) in enumerate((("a", 0.02, 0.5), ("b", 0.03, 1.0),
                                                    ("c", 0.04, 0.75)))
     ]  # fmt: skip

@@ -45,6 +45,25 @@ def test_the_leaderboard_is_judged_over_a_part_of_the_field(wide: Visit) -> None
     assert page.locator(".score").first.inner_text().split()[0] == "–"
 
 
+def test_the_best_of_each_extractor_stands_first_and_what_studies_used_is_marked(
+    wide: Visit,
+) -> None:
+    page = wide.go("/?dataset=qpd-single-aperture")
+    asked = "/v1/leaderboard/qpd-single-aperture?condition=nominal"
+    rows = get_json(f"{wide.address}{asked}")["items"]
+    assert sum(bool(row["studies"]) for row in rows) > 1
+    texts = page.locator(".score").all_inner_texts()
+    for row, text in zip(rows, texts, strict=False):
+        assert text.split()[1:3] == [row["extractor"], row["model"]]
+        count = len(row["studies"])
+        assert (f"{count} stud{'y' if count == 1 else 'ies'}" in text) == bool(count)
+    legend = page.locator("#board-body .legend")
+    assert "best pipeline of each extractor first" in legend.inner_text()
+    page.locator('[data-sort="over_bound"]').click()
+    wide.settle()
+    assert "best pipeline of each extractor first" not in legend.inner_text()
+
+
 def test_the_leaderboard_shows_every_row_the_service_has(wide: Visit) -> None:
     page = wide.go("/?view=table")
     for card in get_json(f"{wide.address}/v1/datasets?limit=500")["items"]:

@@ -32,8 +32,9 @@ class Visit:
     def settle(self) -> None:
         """Wait until nothing is being loaded or drawn."""
         self.page.wait_for_function(
-            """() => (document.querySelector('#summary').textContent
-                      || document.querySelector('#blocked .notice'))
+            """() => document.documentElement.dataset.live
+                     && (document.querySelector('#summary').textContent
+                         || document.querySelector('#blocked .notice'))
                      && !document.querySelector('[aria-busy="true"]')""",
             timeout=PATIENCE_MS,
         )

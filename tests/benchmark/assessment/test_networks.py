@@ -22,14 +22,14 @@ def flight():
 
 @pytest.fixture(scope="module")
 def parts():
-    return networks._parts(PRESET, "nominal")
+    return networks.parts(PRESET, "nominal")
 
 
 def thinned(part):
     """Every eighth sample."""
     rows = slice(None, None, 8)
     context = {name: np.asarray(column)[rows] for name, column in part.context.items()}
-    return networks._Part(part.features[rows], part.sun[rows], context, part.lit[rows])
+    return networks.Part(part.features[rows], part.sun[rows], context, part.lit[rows])
 
 
 def test_training_is_a_day_of_orbits_and_the_test_others_a_week_on():
@@ -100,10 +100,10 @@ def test_spans_fly_the_same_orbit_for_other_times(monkeypatch):
     def seen(preset: Preset, condition: str):
         assert isinstance(preset, FlightPreset)
         flown.append((preset.flight.calibration.samples, preset.flight.test.start_day))
-        return networks._Part(np.ones((2, 4)), np.eye(3)[[2, 2]], {}, np.ones(2, bool)), asked
+        return networks.Part(np.ones((2, 4)), np.eye(3)[[2, 2]], {}, np.ones(2, bool)), asked
 
-    asked = networks._Part(np.ones((2, 4)), np.eye(3)[[2, 2]], {}, np.ones(2, bool))
-    monkeypatch.setattr(networks, "_parts", seen)
+    asked = networks.Part(np.ones((2, 4)), np.eye(3)[[2, 2]], {}, np.ones(2, bool))
+    monkeypatch.setattr(networks, "parts", seen)
     stay = {name: lambda geometry, known, asked: asked.sun for name in networks.METHODS}
     monkeypatch.setattr(networks, "METHODS", stay)
     rows = list(networks.spans(trained_days=(0.5, 2.0), tested_days=(7.0,)))

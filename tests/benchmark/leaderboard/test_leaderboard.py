@@ -59,7 +59,7 @@ def changed_lines(before, after):
             state[name][0].decode().splitlines() if name in state else []
             for state in (before, after)
         )
-        if one != two:
+        if one != two and name != "manifest.json":  # digests of the others
             found[name] = [line for line in two if line not in one]
     return found
 
@@ -81,7 +81,7 @@ def test_everything_planned_is_measured_and_the_leading_on_other_units(made):
 def test_what_is_committed_is_tables_pins_digests_and_one_page(made):
     assert set(states(made)) == {
         "scores/fake-diodes.csv", "scores/fake-second.csv", "sweeps.csv", "pins.csv",
-        "components.json", PAGE,
+        "components.json", "manifest.json", PAGE,
     }  # fmt: skip
 
 
@@ -241,8 +241,8 @@ def test_pipelines_that_differ_less_than_units_share_a_rank_in_every_form(tmp_pa
     rows = [row for row in board["datasets"][0]["rows"] if row["condition"] == "nominal"]
     assert [(row["rank"], row["tied"], row["extractor"]) for row in rows] == [
         (1, True, "fake-currents"),
-        (1, True, "fake-currents"),
         (3, True, "fake-gaps"),
+        (1, True, "fake-currents"),
         (3, True, "fake-gaps"),
     ]
     first = rows[0]
@@ -250,7 +250,7 @@ def test_pipelines_that_differ_less_than_units_share_a_rank_in_every_form(tmp_pa
     assert first["unit_rms_deg"][0] == first["rms_deg"]
     assert first["low_deg"] == min(first["unit_rms_deg"]) < first["high_deg"]
     noisy = [row for row in board["datasets"][0]["rows"] if row["condition"] == "noisy"]
-    assert [row["rank"] for row in noisy] == [1, 2, 3, 4], "scored on one unit alone"
+    assert sorted(row["rank"] for row in noisy) == [1, 2, 3, 4], "scored on one unit alone"
     assert (tmp_path / PAGE).read_text().count("| 1= |") == 2
     assert FORMATS["leaderboard.html"](board).count(">1=<") == 2
     assert FORMATS["leaderboard.md"](board).count("| 1= |") == 2
@@ -277,6 +277,8 @@ def test_json_and_csv_hold_every_stored_number(made):
         for name, value in row.items():
             if value is None:
                 assert line[name] == ""
+            elif name == "studies":
+                assert line[name] == ";".join(value)
             elif isinstance(value, list):
                 assert [float(part) for part in line[name].split(";")] == value
             elif isinstance(value, float):
@@ -334,7 +336,7 @@ def test_a_reason_cannot_break_the_page_and_failures_are_shown(tmp_path):
     assert said in FORMATS["leaderboard.md"](board)
 
 
-def test_the_committed_page_has_the_first_three_of_the_first_condition(made):
+def test_the_committed_page_has_the_best_of_each_extractor_in_the_first_condition(made):
     """Of the nominal one where there is one; here the first by name."""
     text = (made / PAGE).read_text()
     assert text == page(board_of(Store(made)))

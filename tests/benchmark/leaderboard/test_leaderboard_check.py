@@ -19,6 +19,7 @@ from benchmark.metrics.rings import RINGS
 from benchmark.metrics.score import METRICS
 from benchmark.progress import silent
 from benchmark.results.store import Store
+from benchmark.results.tables import StoreError
 from benchmark.running import generated
 from benchmark.running.run import RunInterruptedError
 
@@ -38,8 +39,10 @@ def made(tmp_path_factory, readings_only):
 
 @pytest.fixture
 def published(made, tmp_path):
-    """A copy that a test may damage."""
-    return copied(made, tmp_path / "published")
+    """A copy that a test may damage; without what would name every damage at once."""
+    directory = copied(made, tmp_path / "published")
+    (directory / "manifest.json").unlink()
+    return directory
 
 
 def check(directory, **options):
@@ -60,6 +63,22 @@ def altered(directory, cell, **changed):
 def test_a_record_that_is_as_it_should_be_passes_with_and_without_measuring(published):
     assert check(published, stored_only=True) == []
     assert check(published) == []
+
+
+def test_a_number_changed_by_hand_is_named_by_row_and_column(made, tmp_path):
+    directory = copied(made, tmp_path / "published")
+    assert check(directory, stored_only=True) == []
+    path = directory / SCORES
+    lines = path.read_text().splitlines(keepends=True)
+    column = lines[0].split(",").index("p997_deg")
+    cells = lines[2].split(",")
+    cells[column] = "0.123"
+    path.write_text("".join([*lines[:2], ",".join(cells), *lines[3:]]))
+    [difference] = check(directory, stored_only=True)
+    assert (difference.file, difference.cell) == (SCORES, "row 3, p997_deg")
+    assert difference.committed.endswith("now '0.123'")
+    with pytest.raises(StoreError, match=r"row 3, column p997_deg.*take it over with `python -m"):
+        update(directory, progress=silent, parts=PARTS)
 
 
 def test_without_measuring_nothing_is_generated_or_extracted(published, log):
@@ -105,12 +124,12 @@ def test_a_number_of_another_unit_is_named_with_its_unit(published):
 def test_an_altered_number_of_the_page_is_found_without_measuring(published):
     store = Store(published)
     scores = store.scores()
-    scores[CELL] = {**scores[CELL], "rms_deg": 0.123}
+    scores[CELL] = {**scores[CELL], "rms_deg": 0.123, "over_bound": None, "over_bound_unit": None}
     store.write(scores, store.pins().values(), store.swept(), store.components())
     [difference] = check(published, stored_only=True)
     assert difference.file == PAGE
     assert re.fullmatch(r"line \d+", difference.cell)
-    assert " 0.1230 " in difference.measured
+    assert "| 0.123" in difference.measured
 
 
 @pytest.mark.slow
@@ -156,7 +175,10 @@ def test_a_missing_pin_is_named_and_an_altered_one_by_what_differs(published):
     assert (difference.file, difference.cell) == ("pins.csv", place)
     assert difference.measured.endswith("the data changed and the version did not")
     with_pins(*rest, dataclasses.replace(first, version=4))
-    [difference] = check(published)
+    [unmeasured] = check(published, stored_only=True)
+    assert unmeasured == Difference("pins.csv", f"{place}/version", "4", "1")
+    known, difference = check(published)
+    assert known == unmeasured
     assert (difference.committed, difference.measured) == ("version 4", "version 1")
 
 
@@ -168,9 +190,36 @@ def test_a_changed_bound_is_named_by_its_data_set(published):
     store.write(
         store.scores(), [*(pins | {test.place: moved}).values()], store.swept(), store.components()
     )
-    [difference] = check(published)
+    [unmeasured] = check(published, stored_only=True)
+    assert (unmeasured.file, unmeasured.cell) == ("pins.csv", "fake-second/quiet/test/bound_deg")
+    assert unmeasured.measured == f"{test.bound_deg:g}, as the scores have it"
+    _, difference = check(published)
     assert (difference.file, difference.cell) == ("pins.csv", "fake-second/quiet/test")
     assert "bound_deg" in difference.measured
+
+
+@pytest.mark.parametrize(
+    ("changed", "cells"),
+    [
+        ({"bound_deg": 1e-9}, {"test/bound_deg"}),
+        ({"n": 3, "observable": 3}, {"repeat/n"}),
+        ({"version": 77}, {"calibration/version", "repeat/version", "test/version"}),
+    ],
+)
+def test_bounds_sizes_and_versions_are_checked_without_measuring(published, changed, cells):
+    store = Store(published)
+    pins = [
+        dataclasses.replace(
+            pin, **{name: to for name, to in changed.items() if getattr(pin, name) is not None}
+        )
+        for pin in store.pins().values()
+    ]
+    store.write(store.scores(), pins, store.swept(), store.components())
+    write_page(store)
+    found = check(published, stored_only=True)
+    assert {difference.file for difference in found} == {"pins.csv"}
+    assert {difference.cell.split("/", 2)[2] for difference in found} == cells
+    assert len(found) == 4 * len(cells), "each condition of each data set is named"
 
 
 def test_results_of_other_code_are_named_without_measuring(published, log):

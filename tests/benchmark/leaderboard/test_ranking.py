@@ -107,9 +107,55 @@ def test_equals_stand_by_the_names_of_extractor_and_model_whatever_the_order():
         (dataset,) = build(order)["datasets"]
         found = [(r["rank"], r["extractor"], r["model"]) for r in dataset["rows"]]
         assert found == [
-            (1, "z", "z"), (2, "e", "a"), (3, "e", "b"), (4, "f", "a"), (None, "a", "c"),
+            (1, "z", "z"), (2, "e", "a"), (4, "f", "a"), (3, "e", "b"), (None, "a", "c"),
         ]  # fmt: skip
         assert [r["model"] for r in at_field(dataset["rows"], 10)] == ["c", "a", "b", "a", "z"]
+
+
+def test_the_best_pipeline_of_each_extractor_stands_before_all_others():
+    """Ranks stay those of all pipelines; an extractor without an error has no best one."""
+    rows = [
+        row("a", 1.0, extractor="e", rms_0_10_deg=4.0),
+        row("b", 2.0, extractor="e", rms_0_10_deg=3.0),
+        row("a", 3.0, extractor="f", rms_0_10_deg=2.0),
+        row("b", 4.0, extractor="f", rms_0_10_deg=1.0),
+        row("a", 0.5, extractor="g", availability=0.5),
+        row("a", None, extractor="h"),
+    ]
+    (dataset,) = build(rows)["datasets"]
+
+    def listed(found):
+        return [(r["rank"], r["extractor"], r["model"], r["best_of_extractor"]) for r in found]
+
+    assert listed(dataset["rows"]) == [
+        (1, "e", "a", True),
+        (3, "f", "a", True),
+        (5, "g", "a", True),
+        (2, "e", "b", False),
+        (4, "f", "b", False),
+        (None, "h", "a", False),
+    ]
+    assert listed(at_field(dataset["rows"], 10)) == [
+        (1, "f", "b", True),
+        (3, "e", "b", True),
+        (2, "f", "a", False),
+        (4, "e", "a", False),
+        (None, "h", "a", False),
+        (None, "g", "a", False),
+    ]
+    found = listed(within_error(dataset["rows"], 3.5))
+    assert found[:3] == [(1, "e", "b", True), (2, "f", "a", True), (3, "f", "b", False)]
+
+
+def test_studies_stand_beside_the_pipelines_that_they_used_on_that_architecture():
+    rows = [row("a", 1.0), row("b", 2.0), row("a", 1.0, dataset="other", mask="N")]
+    studied = {("PD", "M", "e", "a"): ("Bao2001", "Chi2002"), ("CCD", "M", "e", "b"): ("Du2003",)}
+    found = {
+        (r["dataset"], r["model"]): r["studies"]
+        for dataset in build(rows, studied=studied)["datasets"]
+        for r in dataset["rows"]
+    }
+    assert found == {("d", "a"): ["Bao2001", "Chi2002"], ("d", "b"): [], ("other", "a"): []}
 
 
 def test_ranks_are_shared_where_the_units_of_two_overlap():

@@ -18,6 +18,7 @@ from benchmark.plan.parts import installed
 from benchmark.progress import silent
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import backend, generated
+from benchmark.running.durations import Took
 
 NAMES = ("a", "b", "c")
 MODELS = [
@@ -123,7 +124,11 @@ def test_a_worker_that_goes_on_at_once_measures_what_would_be_asked_for_later(
         return files, list(dict.fromkeys(map(tuple, seen)))
 
     at_once, order = recorded("at once")
-    monkeypatch.setattr(backend, "_measured", lambda bundle, _: map(backend.measure, bundle))
+    monkeypatch.setattr(
+        backend,
+        "_measured",
+        lambda bundle, _: ((task, backend.measure(task), Took(1, 1, 0.0)) for task in bundle),
+    )
     later, staged = recorded("later")
     assert at_once == later
     assert sorted(order) == sorted(staged)

@@ -42,6 +42,25 @@ def test_a_score_s_key_depends_on_all_it_was_measured_with(changed):
     assert components(other="other", a="other", s="other").cell_key(cell()) == before
 
 
+@pytest.mark.parametrize(
+    ("changed", "kind"),
+    [("harness", "harness"), ("d", "dataset"), ("e", "extractor"), ("m", "model")],
+)
+def test_what_has_changed_since_a_key_was_made_is_named(changed, kind):
+    known = components(d="1", e="2", m="3")
+    key = known.cell_key(cell())
+    assert known.changed(key, cell()) == ()
+    since = components(**{"d": "1", "e": "2", "m": "3", changed: "0f"})
+    assert since.changed(key, cell()) == (kind,)
+    assert components(harness="x", d="1", e="4", m="3").changed(key, cell()) == (
+        "harness",
+        "extractor",
+    )
+    assert known.changed("a key of another layout", cell()) == (
+        "harness", "dataset", "extractor", "model",
+    )  # fmt: skip
+
+
 def test_a_point_s_key_depends_on_harness_series_and_extractor():
     keys = [
         known.point_key("s", "e")
@@ -114,8 +133,8 @@ def test_numbers_of_an_older_metric_are_read_as_out_of_date(tmp_path):
         ('"metric": ', '"metric": 9', "expected schema"),
         (f'"metric": {METRIC_VERSION}', f'"metric": {OLDEST_METRIC - 1}', "expected schema"),
         (f'"metric": {METRIC_VERSION}', '"metric": "3"', "expected schema"),
-        ('"extractors": {', '"extractor": {', "object of components in 'extractors'"),
-        ('"digest": "digest-e"', '"digest": 5', "object of components in 'extractors'"),
+        ('"extractors": {', '"extractor": {', "the member 'extractors' is missing"),
+        ('"digest": "digest-e"', '"digest": 5', "extractors/e/digest: expected text, got a whole"),
     ],
 )
 def test_a_file_of_something_else_is_an_error_that_names_it(tmp_path, old, new, message):

@@ -54,6 +54,7 @@ def test_what_is_written_is_read_back_sorted_whatever_the_order(store, tmp_path)
     assert files(other) == files(store)
     assert {str(path) for path in files(store)} == {
         "scores/c.csv", "scores/d.csv", "pins.csv", "sweeps.csv", "components.json",
+        "manifest.json",
     }  # fmt: skip
 
 
@@ -139,7 +140,7 @@ def test_writing_the_same_again_touches_no_file(store):
     assert {path: path.stat().st_mtime_ns for path in store.directory.rglob("*.*")} == before
     write(store, scores, [pin(n=4)], [swept()])
     changed = {path for path, then in before.items() if path.stat().st_mtime_ns != then}
-    assert changed == {store.pins_path}
+    assert changed == {store.pins_path, store.directory / "manifest.json"}
 
 
 def test_a_new_store_is_empty(store):
@@ -206,9 +207,9 @@ GOOD = "c,e,a,0,ok" + "," * len(METRICS) + ","
         ("c,e,a", f"line 3: expected {6 + len(METRICS)} cells, got 3"),
         (GOOD.replace("c,e,a", "c,e,"), "line 3, column model: expected a word"),
         (GOOD.replace(",0,", ",,"), "line 3: expected a number in unit"),
-        (GOOD.replace(",0,", ",one,"), "line 3, column unit: invalid literal"),
+        (GOOD.replace(",0,", ",one,"), "line 3, column unit: expected a whole number"),
         (GOOD.replace("ok", "fine"), "line 3, column status: expected one of ok, refused, failed"),
-        (GOOD.replace("ok,", "ok,x"), "line 3, column availability: could not convert"),
+        (GOOD.replace("ok,", "ok,x"), "line 3, column availability: expected a number"),
         (GOOD.replace("ok", '"o"k'), "line 3: not CSV"),
     ],
 )
@@ -228,7 +229,7 @@ def test_a_file_of_other_columns_or_no_text_is_named(store):
     with pytest.raises(StoreError, match="line 1: expected the columns dataset, condition, split"):
         store.pins()
     store.pins_path.write_bytes(b"\xff\xfe\xff")
-    with pytest.raises(StoreError, match=r"pins\.csv: not text"):
+    with pytest.raises(StoreError, match=r"pins\.csv, line 1: not UTF-8 text: byte 0xff"):
         store.pins()
     (store.scores_directory / "d.csv").write_text("")
     with pytest.raises(StoreError, match=r"line 1: expected the columns .*; got none"):

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-import os
-import platform
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
-from types import SimpleNamespace
 from typing import Any
 
 import fake_atlas
+import fake_cluster
 import fake_plan
 import pytest
 
 from benchmark.contract import Cell, UnknownNameError
+from benchmark.plan.combinations import cells
 from benchmark.progress import silent
 from benchmark.results.store import Store
 from benchmark.running import backend, run
+from benchmark.running.cluster import WorkerLostError
 from benchmark.running.task import Task, measure
 
 
@@ -32,7 +34,7 @@ def here(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     """What is measured in this process; other processes are not to be had."""
     measured: list[Any] = []
     monkeypatch.setattr(backend, "measure", lambda task: measured.append(task) or task)
-    monkeypatch.setattr(backend, "Parallel", lambda **_options: pytest.fail("other processes"))
+    monkeypatch.setattr(backend, "as_completed", lambda *_: pytest.fail("other processes"))
     return measured
 
 
@@ -49,38 +51,17 @@ def test_two_tasks_of_two_workers_go_to_other_processes(
 ) -> None:
     asked: list[Any] = []
 
-    class Generator(list[Any]):
-        def close(self) -> None:
+    def as_completed(work: Any, items: Any, workers: int) -> Any:
+        asked.append(workers)
+        try:
+            yield from map(work, items)
+        finally:
             asked.append("closed")
 
-    def parallel(**options: Any) -> Any:
-        asked.append(options)
-        return lambda calls: Generator([f(*given) for f, given, _ in calls])
-
-    monkeypatch.setattr(backend, "Parallel", parallel)
-    monkeypatch.setattr(backend, "_end_with", asked.append)
+    monkeypatch.setattr(backend, "as_completed", as_completed)
     some = [*tasks(5), *tasks(1, unit=1)]
     assert list(backend.outcomes(some, 2)) == some == here
-    options, *rest = asked
-    assert options["return_as"] == "generator_unordered"
-    assert options["batch_size"] == 1
-    # nobody's child here: there is no coordinator to end with
-    assert rest == ["closed"]
-
-
-@pytest.mark.parametrize(
-    ("host", "parent", "ends"), [("same", 0, True), ("other", 0, False), ("same", 1, False)]
-)
-def test_a_worker_ends_with_its_coordinator_where_that_is_its_parent(
-    here: list[Any], monkeypatch: pytest.MonkeyPatch, host: str, parent: int, ends: bool
-) -> None:
-    ended: list[int] = []
-    monkeypatch.setattr(backend, "_end_with", ended.append)
-    where = platform.node() if host == "same" else f"not {platform.node()}"
-    process = os.getppid() + parent
-    some = tasks(2)
-    assert backend._measure_for((where, process), some, None) == some
-    assert ended == ([process] if ends else [])
+    assert asked == [2, "closed"]
 
 
 def test_bundles_end_with_the_sensor_or_the_condition_and_after_four() -> None:
@@ -109,30 +90,45 @@ def test_from_four_data_sets_a_worker_on_each_is_one_workers_with_all_its_units(
     assert sizes == ([12] * sets if many else [4, 2, 4, 2] * sets)
 
 
-def test_a_scheduler_is_asked_though_there_is_one_worker(
+def test_a_scheduler_is_asked_though_there_is_one_worker_and_one_task(
     here: list[Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     asked: list[Any] = []
-    monkeypatch.setattr(backend, "find_spec", lambda name: object())
-    client = SimpleNamespace(__enter__=None)
 
-    class Client:
-        def __init__(self, address: str) -> None:
-            asked.append(address)
+    class Cluster:
+        def workers(self) -> int:
+            return 2
 
-        def __enter__(self) -> Any:
-            return client
+        def outcomes(self, bundled: Any) -> Any:
+            for bundle, do in bundled:
+                asked.append(len(bundle))
+                yield from do()
 
-        def __exit__(self, *_error: object) -> None:
-            asked.append("left")
+    @contextmanager
+    def connected(address: str) -> Iterator[Cluster]:
+        asked.append(address)
+        yield Cluster()
+        asked.append("left")
 
-    monkeypatch.setattr(backend, "import_module", lambda name: SimpleNamespace(Client=Client))
-    monkeypatch.setattr(
-        backend, "parallel_config", lambda kind, **options: pytest.MonkeyPatch.context()
-    )
-    monkeypatch.setattr(backend, "Parallel", lambda **options: _closing)
-    assert len(list(backend.outcomes(tasks(1), 1, "tcp://somewhere:1"))) == 1
-    assert asked == ["tcp://somewhere:1", "left"]
+    monkeypatch.setattr(backend, "connected", connected)
+    some = tasks(1)
+    assert list(backend.outcomes(some, 1, "tcp://somewhere:1")) == some == here
+    assert asked == ["tcp://somewhere:1", 1, "left"]
+
+
+def test_a_worker_of_this_machine_that_is_killed_ends_the_run_by_name(
+    tmp_path: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    deadly, store = tmp_path / "deadly", Store(tmp_path / "store")
+    deadly.touch()
+    parts = fake_cluster.parts(deadly=str(deadly))
+    wanted = cells(parts=parts)
+    with pytest.raises(WorkerLostError, match="a worker process was killed"):
+        run.run(wanted, store, 2, silent, parts=parts)
+    deadly.unlink()
+    kept = len(wanted) - len(run.stale(wanted, store, parts=parts))
+    assert run.run(wanted, store, 2, silent, parts=parts).computed == len(wanted) - kept
+    assert len(Store(store.directory).rows()) == len(wanted)
 
 
 @pytest.mark.parametrize("name", ["dataset", "extractor", "model"])
@@ -167,7 +163,3 @@ def test_cells_are_measured_once_each_and_the_time_is_told(tmp_path: Any) -> Non
     assert (done.planned, done.already_stored, done.computed) == (1, 0, 1)
     assert 0.0 < done.seconds < 600.0
     assert done.store == tmp_path
-
-
-def _closing(calls: Any) -> Any:
-    yield from (f(*given) for f, given, _ in calls)

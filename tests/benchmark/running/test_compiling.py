@@ -7,9 +7,13 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
+from algorithms.contract import Observation
+from benchmark.running import compiling
 from benchmark.running.compiling import compile_kernels
 
 PARTS = """
@@ -66,3 +70,28 @@ print(json.dumps([hits, misses]))
 def test_no_workers_compile_nothing() -> None:
     with pytest.raises(ValueError, match="workers must be at least 1; got 0"):
         compile_kernels(0)
+
+
+def test_an_extractor_reads_data_sets_until_it_finds_something_in_one() -> None:
+    read = []
+
+    def reader(geometry: str) -> SimpleNamespace:
+        def measure(seen: np.ndarray) -> SimpleNamespace:
+            read.append((geometry, seen.dtype.name))
+            return SimpleNamespace(features=np.full((2, 2), 1.0 if geometry == "fits" else np.nan))
+
+        return SimpleNamespace(measure=measure)
+
+    def preset(geometry: str) -> SimpleNamespace:
+        samples = SimpleNamespace(observations=np.full((2, 5, 5), 4095, dtype=np.uint16))
+        return SimpleNamespace(
+            conditions=("nominal", "noisy"),
+            generate=lambda condition, split, n: samples,
+            geometry=geometry,
+            observation=Observation.FRAMES,
+        )
+
+    extractor = SimpleNamespace(for_sensor=reader)
+    compiling._Reading(extractor, ((preset("empty"), preset("fits"), preset("spare")),))()
+    dtypes = ("uint16", "uint8", "float64")
+    assert read == [(name, dtype) for name in ("empty", "fits") for dtype in dtypes]

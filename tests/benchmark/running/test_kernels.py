@@ -67,11 +67,13 @@ def called(monkeypatch):
 def test_every_library_is_told_and_the_rest_of_the_environment_stays(monkeypatch):
     monkeypatch.setenv("FAKE_ATLAS_LOG", "somewhere")
     monkeypatch.setattr(kernels, "_beyond_avx2", lambda: ["X86_V4", "AVX512_ICL"])
+    monkeypatch.setattr(kernels, "_found_by_opencv", lambda: ["AVX512-SKX", "AVX512-COMMON"])
+    monkeypatch.setenv("OPENCV_CPU_DISABLE", "AVX512-ICL")  # by whoever started this process
     told = older_environment()
     assert told["NPY_DISABLE_CPU_FEATURES"] == "X86_V4 AVX512_ICL"
     assert told["OPENBLAS_CORETYPE"] == "Haswell"
     assert told["NUMBA_CPU_NAME"] == "haswell"
-    assert "AVX512-SKX" in told["OPENCV_CPU_DISABLE"].split(",")
+    assert told["OPENCV_CPU_DISABLE"] == "AVX512-COMMON,AVX512-ICL,AVX512-SKX"
     rest = {name: value for name, value in os.environ.items() if name not in kernels.OLDER}
     assert {name: value for name, value in told.items() if name not in kernels.OLDER} == rest
 
@@ -104,14 +106,14 @@ def test_the_record_is_updated_by_a_process_with_that_environment(tmp_path, call
     update_with_older_kernels(tmp_path, workers)
     [(call, options)] = called[0]
     assert call == [sys.executable, "-m", "benchmark.leaderboard", str(tmp_path), str(workers)]
-    assert options["env"] == older_environment()
+    assert options["env"] == {**older_environment(), "SUNATLAS_COORDINATOR": str(os.getpid())}
 
 
 @pytest.mark.usefixtures("x86")
 @pytest.mark.parametrize(
     ("code", "error"),
     [(1, OlderRunError), (-signal.SIGKILL, OlderRunError), (-signal.SIGINT, KeyboardInterrupt),
-     (130, KeyboardInterrupt)],
+     (130, KeyboardInterrupt), (143, KeyboardInterrupt)],
 )  # fmt: skip
 def test_a_process_that_ends_badly_is_an_error(tmp_path, called, code, error):
     called[1].returncode = code

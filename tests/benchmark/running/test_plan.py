@@ -137,3 +137,13 @@ def test_architectures_and_their_datasets(parts):
     assert set(found) == {("PD", "Maskless")}
     planned = {(cell.extractor, cell.model) for cell in plan.cells(parts=parts)}
     assert found["PD", "Maskless"] == dict.fromkeys(planned, ("fake-diodes",))
+
+
+def test_parts_of_cells_are_theirs_alone(parts):
+    one = Cell("fake-diodes", "quiet", "fake-currents", "fake-least-squares")
+    found = parts.only([one, dataclasses.replace(one, condition="noisy")])
+    assert set(found.presets) == {"fake-diodes"}
+    assert set(found.extractors) == {"fake-currents"}
+    assert set(found.models) == {"fake-least-squares"}
+    with pytest.raises(UnknownNameError, match="fake-least-square"):
+        parts.only([dataclasses.replace(one, model="fake-least-square")])

@@ -13,9 +13,10 @@ from benchmark.plan import combinations as plan
 from benchmark.progress import silent, terminal_progress
 from benchmark.results.record import Record
 from benchmark.results.store import Store
-from benchmark.running import generated, task
+from benchmark.running import cluster, generated, task
 from benchmark.running import run as runner
-from benchmark.running.backend import DaskMissingError, bundles
+from benchmark.running.backend import bundles
+from benchmark.running.cluster import DaskMissingError
 
 pytestmark = pytest.mark.usefixtures("log")
 
@@ -129,7 +130,7 @@ def test_a_second_run_renders_nothing_and_changes_no_byte(store, log):
     measure(store)
     before, done = contents(store), log()
     assert {str(path) for path in before} == {
-        "scores/fake-diodes.csv", "pins.csv", "sweeps.csv", "components.json",
+        "scores/fake-diodes.csv", "pins.csv", "sweeps.csv", "components.json", "manifest.json",
     }  # fmt: skip
     summary = measure(store)
     assert (summary.computed, summary.already_stored) == (0, 4)
@@ -331,7 +332,8 @@ def test_data_kept_are_those_of_the_same_parameters_and_unit():
     assert again is one, "an equal preset finds them"
 
 
-def test_dask_without_its_package_is_a_clear_error(store):
+def test_dask_without_its_package_is_a_clear_error(store, monkeypatch):
+    monkeypatch.setattr(cluster, "find_spec", lambda name: None)
     with pytest.raises(DaskMissingError, match="pip install distributed"):
         measure(store, scheduler="tcp://127.0.0.1:1")
 

@@ -1,0 +1,79 @@
+"""`sunatlas claims` and /v1/claims say the same, and every word narrows the list."""
+
+import json
+
+import pytest
+from typer.testing import CliRunner
+
+from api.cli.command_line import app
+from benchmark.claims.ledger import ledger, tally
+
+
+def told(*arguments):
+    answer = CliRunner().invoke(app, ["claims", *arguments])
+    assert answer.exit_code == 0, answer.output
+    return answer.stdout
+
+
+def test_the_whole_ledger_by_command_and_by_http(atlas):
+    document = json.loads(told("--format", "json"))
+    assert document == atlas.get("/v1/claims").json()
+    assert document["total"] == 55
+    assert document["tally"] == tally(ledger())
+    for item in document["items"]:
+        assert item["trials"] >= 5
+        assert item["rules"]
+        for rule in item["rules"]:
+            assert rule["statistic"]
+            assert rule["decides"]
+            assert rule["trials"] <= item["trials"]
+
+
+def test_one_claim_in_full(atlas):
+    document = json.loads(told("c04", "--format", "json"))
+    assert document == atlas.get("/v1/claims/C04").json()
+    assert {len(values) for values in document["values"].values()} == {document["trials"]}
+    shown = told("C04")
+    assert document["statement"] in shown
+    assert f"Verdict: {document['verdict']}" in shown
+    assert "Second method" in shown
+
+
+def test_verdicts_and_words_narrow(atlas):
+    whole = json.loads(told("--format", "json"))["items"]
+    for item in whole:
+        item["verdict"] = item["verdict"] or "not measured"
+    for verdict in {item["verdict"] for item in whole}:
+        found = json.loads(told("--verdict", verdict, "--format", "json"))["items"]
+        assert [item["id"] for item in found] == [
+            item["id"] for item in whole if item["verdict"] == verdict
+        ]
+    found = json.loads(told("--search", "albedo photodiodes", "--format", "json"))["items"]
+    assert found == []
+    found = json.loads(told("--search", "ALBEDO dnn", "--format", "json"))["items"]
+    assert [item["id"] for item in found] == ["C28"]
+    assert atlas.get("/v1/claims", params={"q": "albedo dnn"}).json()["items"] == found
+
+
+def test_as_csv_a_row_a_claim(atlas):
+    lines = told("--format", "csv").splitlines()
+    assert len(lines) == 56
+    assert lines[0].startswith("id,section,study,statement,verdict")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["C99"], "did you mean"),
+        (["--verdict", "refute"], "did you mean 'refuted'"),
+        (["C04", "--verdict", "refuted"], "an ID stands alone"),
+    ],
+)
+def test_a_wrong_call_says_what_was_expected(arguments, said):
+    answer = CliRunner().invoke(app, ["claims", *arguments])
+    assert answer.exit_code == 2
+    assert said in answer.output
+
+
+def test_an_unknown_claim_is_not_found(atlas):
+    assert atlas.get("/v1/claims/C99").status_code in {400, 404}

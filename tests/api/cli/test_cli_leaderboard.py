@@ -1,0 +1,191 @@
+"""`sunatlas leaderboard` on one screen, and what HTTP says of the same."""
+
+import csv
+import io
+import json
+import re
+
+import pytest
+from typer.testing import CliRunner
+
+from api.cli import asking
+from api.cli.boards import architectures_text
+from api.cli.command_line import app
+
+COLUMNS, LINES = 80, 45
+
+
+def sunatlas(*arguments):
+    shown = CliRunner().invoke(
+        app, ["leaderboard", *arguments], catch_exceptions=False, env={"COLUMNS": str(COLUMNS)}
+    )
+    assert shown.exit_code == 0, shown.stderr
+    return shown.stdout
+
+
+@pytest.fixture(scope="module", autouse=True)
+def known(tmp_path_factory):
+    """Nothing is timed on this machine."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("SUNATLAS_STORE", str(tmp_path_factory.mktemp("working") / "store"))
+        asking.knowledge.cache_clear()
+        yield asking.knowledge()
+        asking.knowledge.cache_clear()
+
+
+@pytest.fixture(scope="module")
+def rows():
+    return json.loads(sunatlas("--format", "json"))["items"]
+
+
+def table_of(text):
+    """Lines of the table: between the two empty lines, without its head."""
+    return text.split("\n\n")[1].splitlines()[1:]
+
+
+def test_without_options_the_answer_fits_one_screen(rows):
+    text = sunatlas()
+    lines = text.splitlines()
+    assert len(lines) <= LINES
+    assert max(map(len, lines)) <= COLUMNS
+    table = table_of(text)
+    assert len(table) == len(rows), "no row is broken over two lines"
+    for line, row in zip(table, rows, strict=True):
+        architecture = f"{row['detector']} {row['mask']}"
+        assert line.startswith(architecture)
+        pipeline, error, ratio, doubt, others = line[len(architecture) :].split()
+        assert pipeline == f"{row['extractor']}+{row['model']}".replace(" + ", "+")
+        assert error.endswith("=") == row["tie"]
+        assert float(error.rstrip("=")) == pytest.approx(row["rms_deg"], rel=0.005)
+        assert float(ratio) == pytest.approx(row["over_bound"], rel=0.005)
+        share = 100 * row["over_bound_se"] / row["over_bound"]
+        assert float(doubt.rstrip("%")) == pytest.approx(share, abs=0.51)
+        low, high = map(float, others.split("-"))
+        assert low == pytest.approx(row["others_low_deg"], rel=0.06)
+        assert high == pytest.approx(row["others_high_deg"], rel=0.06)
+
+
+def test_names_that_are_too_long_have_a_line_of_their_own_and_are_never_cut(rows):
+    long = {**rows[0], "extractor": "a-method-of-many-words", "model": "that + needs + a-chain"}
+    text = architectures_text([long, {**rows[1], "over_bound": 614340.0, "over_bound_se": None}])
+    assert "a-method-of-many-words+that+needs+a-chain" in text
+    assert max(map(len, text.splitlines())) <= COLUMNS
+    nothing = dict.fromkeys(rows[0]) | {"detector": "PD", "mask": "Slit", "datasets": []}
+    assert "none has an error" in architectures_text([{**nothing, "tie": False}])
+
+
+def test_what_answers_too_seldom_is_said_below_the_table(rows):
+    assert "too seldom" not in architectures_text(rows)
+    text = architectures_text([{**rows[0], "availability": 0.5}, *rows[1:]])
+    assert f"Answers too seldom: {rows[0]['detector']} {rows[0]['mask']} 50 %." in text
+
+
+def test_the_overview_fits_the_width_and_says_how_it_aggregates(known):
+    document = json.loads(sunatlas("--overview", "--format", "json"))
+    lines = sunatlas("--overview").splitlines()
+    assert max(map(len, lines)) <= COLUMNS
+    assert " ".join(lines).startswith(document["says"])
+    for part in document["parts"]:
+        cells = [part["part"], str(part["boards"])]
+        (line,) = [line for line in lines if line.split()[:2] == cells]
+        assert f"{100 * part['share_10']:.0f} %" in line
+
+
+@pytest.mark.parametrize(
+    ("arguments", "path", "listed"),
+    [
+        ([], "/v1/leaderboard/architectures", "items"),
+        (["--detector", "PD"], "/v1/leaderboard/architectures?detector=PD", "items"),
+        (["--mask", "Slit"], "/v1/leaderboard/architectures?mask=Slit", "items"),
+        (["--overview"], "/v1/leaderboard/overview", "parts"),
+        (
+            ["--overview", "--detector", "CCD", "--detector", "CMOS", "--mask", "Slit"],
+            "/v1/leaderboard/overview?detector=CCD&detector=CMOS&mask=Slit",
+            "parts",
+        ),
+    ],
+)
+def test_the_command_and_the_service_say_the_same(atlas, arguments, path, listed):
+    served = atlas.get(path).json()
+    assert json.loads(sunatlas(*arguments, "--format", "json")) == served
+    assert served[listed]
+    table = list(csv.DictReader(io.StringIO(sunatlas(*arguments, "--format", "csv"))))
+    assert table == atlas.table(path)
+    assert len(table) == len(served[listed])
+    numbers = [name for name, value in served[listed][0].items() if isinstance(value, float)]
+    assert numbers
+    for line, row in zip(table, served[listed], strict=True):
+        assert [float(line[name]) if line[name] else None for name in numbers] == [
+            row[name] for name in numbers
+        ], "whole numbers, not those of the screen"
+
+
+def test_an_overview_of_one_detector_counts_its_boards_alone(atlas):
+    every = atlas.get("/v1/leaderboard/overview").json()
+    cards = [card for card in atlas.walk("/v1/datasets") if card["detector"] == "Event"]
+    found = atlas.get("/v1/leaderboard/overview?detector=Event&role=extractor").json()
+    assert found["boards"] == len(cards) < every["boards"]
+    assert {part["role"] for part in found["parts"]} == {"extractor"}
+    assert max(part["boards"] for part in found["parts"]) == len(cards)
+
+
+def test_a_board_begins_with_the_best_of_each_extractor(atlas):
+    address = "/v1/leaderboard/ccd-single-aperture?condition=nominal"
+    board = atlas.walk(address)
+    best = atlas.walk(f"{address}&best_of_extractor=true")
+    assert board[: len(best)] == best
+    ranked = {row["extractor"] for row in board if row["rank"] is not None}
+    assert sorted(row["extractor"] for row in best) == sorted(ranked)
+    assert [row["rank"] for row in best] == sorted(row["rank"] for row in best)
+
+
+def test_people_read_the_best_of_each_extractor_in_a_table_before_the_others(known):
+    whole = sunatlas("--dataset", "psd-single-aperture", "--condition", "nominal")
+    best, others = whole.split("psd-single-aperture: the others")
+    assert "psd-single-aperture: the best of each extractor" in best
+    board = known.measurements.board_rows("psd-single-aperture")
+    for row in (row for row in board if row["condition"] == "nominal"):
+        where = best if row["best_of_extractor"] else others
+        name = rf"\bnominal +{re.escape(row['extractor'])} +{re.escape(row['model'])}\s"
+        assert len(re.findall(name, where)) == len(re.findall(name, whole)) == 1
+
+
+def test_pipelines_are_marked_with_the_studies_that_resolve_to_them(atlas):
+    """By what the service says of each study itself."""
+    by = {}
+    for study in atlas.walk("/v1/studies?limit=500"):
+        for pipeline in atlas.get(f"/v1/studies/{study['key']}").json()["pipelines"]:
+            if (pipeline["detector"], pipeline["mask"]) == ("CMOS", "Single-Ap."):
+                place = pipeline["extractor"], pipeline["model"]
+                by.setdefault(place, set()).add(study["key"])
+    assert len(set().union(*by.values())) > 5
+    address = "/v1/leaderboard/cmos-single-aperture?condition=nominal"
+    board = atlas.walk(address)
+    expected = {
+        place: sorted(by[place])
+        for row in board
+        if (place := (row["extractor"], row["model"])) in by
+    }
+    used = atlas.walk(f"{address}&studied=true")
+    assert {(row["extractor"], row["model"]): row["studies"] for row in used} == expected
+    assert 0 < len(used) == sum(bool(row["studies"]) for row in board) < len(board)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (["--overview", "--dataset", "ccd-lens"], "--overview counts over data sets"),
+        (["--overview", "--each"], "--overview counts over data sets"),
+        (["--overview", "--check"], "--overview counts over data sets"),
+        (["--detector", "QPD", "--each"], "--detector and --mask narrow architectures"),
+        (["--mask", "Slit", "--check"], "--detector and --mask narrow architectures"),
+        (["--detector", "QPDs"], "--detector: no 'QPDs'; did you mean 'QPD'?"),
+        (["--detector", "QPD", "--mask", "Slit"], "nothing is published of such"),
+        (["--overview", "--detector", "QPD", "--mask", "Slit"], "nothing is published of such"),
+    ],
+)
+def test_a_call_that_asks_for_two_things_is_refused_in_a_line(arguments, says):
+    shown = CliRunner().invoke(app, ["leaderboard", *arguments], catch_exceptions=False)
+    assert shown.exit_code == 2
+    assert says in shown.stderr
+    assert shown.stderr.count("\n") == 1

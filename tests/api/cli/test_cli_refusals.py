@@ -1,0 +1,141 @@
+"""Refusals say what came and what is expected, in words and not in those of the machinery."""
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from api.cli.command_line import app
+
+ROOT = Path(__file__).resolve().parents[3]
+SUNATLAS = (sys.executable, "-m", "api.cli.command_line")
+#: A dictionary, a list, a class or the words of a library.
+MACHINERY = re.compile(r"\{'|\['|<class|Error\b|Exception|Traceback|Input should|pydantic|None\b")
+
+
+def invoke(*arguments):
+    return CliRunner().invoke(app, [str(argument) for argument in arguments])
+
+
+@pytest.fixture
+def odd(tmp_path):
+    """A directory with what is not what commands expect."""
+    (tmp_path / "file").write_text("x,y\n")
+    (tmp_path / "bytes.csv").write_bytes(b"\xff\xfe\x00")
+    (tmp_path / "empty").mkdir()
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("call", "code", "says"),
+    [
+        ("nothing", 2, "No such command 'nothing'; `sunatlas --help` lists them"),
+        ("studes", 2, "Did you mean 'studies'"),
+        ("serve --port x", 2, "--port: got 'x'; expected a whole number"),
+        ("serve --port 70000", 2, "--port: got 70000; expected at most 65535"),
+        ("studies --format xml", 2, "--format: got 'xml'; expected one of table, json, csv"),
+        ("studies --format jsn", 2, "--format: no 'jsn'; did you mean 'json'?"),
+        ("studies --state compete", 2, "--state: no 'compete'; did you mean 'complete'?"),
+        ("studies --year-min soon", 2, "--year-min: got 'soon'; expected a whole number"),
+        ("studies --year-min 99999", 2, "--year-min: got 99999; expected an integer from 0"),
+        ("studies Chag2008", 2, "no study 'Chag2008'; did you mean 'Chang2008'?"),
+        ("recommend --max-error-deg little", 2, "got 'little'; expected a number"),
+        ("recommend --max-error-deg nan", 2, "got nan; expected a positive number of degrees"),
+        ("recommend --min-fov-deg 400", 2, "got 400; expected a number of degrees above 0"),
+        ("recommend --min-availability 2", 2, "got 2; expected a share above 0, at most 1"),
+        ("recommend --limit 0", 2, "--limit: got 0; expected at least 1"),
+        ("recommend --properties robust", 2, "--properties: no 'robust'; did you mean 'Robust"),
+        ("claims C99", 2, "no claim 'C99'"),
+        ("claims --verdict refutd", 2, "--verdict: no 'refutd'; did you mean 'refuted'?"),
+        ("claims --search=", 2, "--search: got nothing; expected a word"),
+        ("claims C04 --search x", 2, "an ID stands alone"),
+        ("compile x", 2, "no argument expected here; got x"),
+        ("leaderboard render", 2, "Missing option '--out'"),
+        ("leaderboard render --out {odd}/file", 2, "{odd}/file is a file; expected a directory"),
+        ("plan --store {odd}/file", 2, "--store: {odd}/file is a file; expected a directory"),
+        ("benchmark --dataset pd-slit --extractor bcm", 1, "pd-slit, bcm: reads frames"),
+        ("survey check --data {odd}/file", 1, "expected a directory of survey tables"),
+        ("survey import {odd}/nothing.csv", 1, "cannot read {odd}/nothing.csv: No such file"),
+        (
+            "survey import {odd}/empty",
+            1,
+            "{odd}/empty: expected a file, got a directory",
+        ),
+        ("survey import {odd}/file --map a", 2, "--map: expected COL=ATTRIBUTE; got 'a'"),
+        ("survey import --bibliography {odd}/bytes.csv", 1, "bytes.csv is not UTF-8 text"),
+        ("dataset verify {odd}/empty", 1, "not an export of a dataset"),
+        ("dataset export pd-slit --out {odd}/file", 1, "{odd}/file: expected a directory or"),
+        ("dataset preview pd-slit --out /proc/x.png", 1, "cannot write in /proc: "),
+        ("deposit verify {odd}/empty", 1, "not a bundle"),
+    ],
+)
+def test_a_refusal_is_a_line_in_the_words_of_who_asked(odd, call, code, says):
+    refused = invoke(*call.replace("{odd}", str(odd)).split())
+    assert refused.exit_code == code
+    assert refused.stdout == ""
+    assert refused.stderr.startswith("sunatlas: ")
+    assert refused.stderr.count("\n") == 1
+    assert says.replace("{odd}", str(odd)) in refused.stderr
+    assert not MACHINERY.search(refused.stderr)
+
+
+def test_options_that_are_not_met_by_one_value_are_each_named():
+    refused = invoke("curves", "--extractor", "bmc", "--model", "lsqq")
+    assert refused.exit_code == 2
+    assert "--extractor: no 'bmc'; did you mean 'bcm'?" in refused.stderr
+    assert "--model: no 'lsqq'; did you mean 'lsq'?" in refused.stderr
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("form", ["table", "csv"])
+@pytest.mark.parametrize(
+    ("where", "says"),
+    [(">&-", "standard output is closed"), (">/dev/full", "standard output: No space left")],
+)
+def test_output_that_cannot_be_written_is_named(form, where, says):
+    if where == ">/dev/full" and not Path("/dev/full").exists():
+        pytest.skip("no /dev/full here")
+    line = f"{' '.join(SUNATLAS)} claims --format {form} {where}"
+    shell = ["/bin/sh", "-c", line]
+    shown = subprocess.run(shell, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert shown.returncode == 1
+    assert shown.stderr.startswith(f"sunatlas: {says}")
+    assert shown.stderr.count("\n") == 1
+
+
+@pytest.mark.slow
+def test_letters_that_a_terminal_lacks_are_replaced():
+    environment = {**os.environ, "PYTHONIOENCODING": "iso8859-5:strict"}
+    shown = subprocess.run(
+        [*SUNATLAS, "leaderboard"], cwd=ROOT, env=environment, capture_output=True, check=True
+    )
+    assert "bounds    ?  others" in shown.stdout.decode("iso8859-5")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_a_command_that_writes_and_is_broken_off_leaves_nothing(tmp_path, number, code):
+    made = tmp_path / "made"
+    process = subprocess.Popen(
+        [*SUNATLAS, "dataset", "export", "cmos-single-aperture", "--out", made],
+        cwd=ROOT,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    started = time.monotonic()
+    while not any(path.is_dir() for path in tmp_path.iterdir()):  # the half that is being made
+        assert process.poll() is None, process.communicate()
+        assert time.monotonic() - started < 120
+        time.sleep(0.02)
+    process.send_signal(number)
+    _, said = process.communicate(timeout=60)
+    assert process.returncode == code
+    assert "Traceback" not in said
+    assert not any(path.is_dir() for path in tmp_path.iterdir())

@@ -1,0 +1,68 @@
+"""A whole bundle of one table: what an upload needs, made in no time."""
+
+from __future__ import annotations
+
+import datetime as dt
+import json
+import zipfile
+from pathlib import Path
+
+from api.deposit.citation import authors
+from api.deposit.crate import CRATE, crate
+from api.deposit.identity import Identity
+from api.deposit.package import DESCRIPTOR, package
+from api.deposit.tables import MeasuredTable
+from benchmark.datasets.checksums import contents, sha256, write_checksums
+
+PEOPLE = """\
+authors:
+  - family-names: Sommer
+    given-names: Ada
+    orcid: https://orcid.org/0009-0000-0012-3455
+    affiliation: Institute of Light
+"""
+PLACEHOLDER = "authors:\n  - name: The Sun Sensor Atlas contributors\n"
+
+
+def make(directory: Path, people: str = PEOPLE, readme: str = "# read me\n") -> Path:
+    """Make a bundle and its zip; over an earlier one, whose files it has."""
+    citation = f"cff-version: 1.2.0\ntype: dataset\n{people}"
+    who = Identity(
+        "Sun Sensor Atlas",
+        "0.1.0",
+        "Facts and measurements.",
+        authors(citation, "CITATION.cff"),
+        dt.date(2026, 11, 21),
+        citation,
+        "",
+        "",
+    )
+    (directory / "benchmark").mkdir(parents=True, exist_ok=True)
+    (directory / "bibliography").mkdir(exist_ok=True)
+    (directory / "benchmark" / "one.csv").write_text("name\na\n")
+    schema = {"fields": [{"name": "name", "type": "string"}], "primaryKey": ["name"]}
+    table = MeasuredTable("one", "One", "One table.", "", schema)
+    survey = {"resources": [], "keywords": ["sun sensor"]}
+    files = {
+        DESCRIPTOR: json.dumps(package(directory, who, survey, [table])),
+        "CITATION.cff": citation,
+        "README.md": readme,
+        "bibliography/studies.bib": "@misc{a,\n  title = {A},\n}\n",
+        "bibliography/studies.ris": "TY  - GEN\nTI  - A\nER  - \n",
+        "sun-sensor-atlas.sqlite": "no database, and none is asked for" * 1000,
+    }
+    for name, text in files.items():
+        (directory / name).write_text(text, "utf-8")
+    for name in (CRATE, "checksums-sha256.txt"):
+        (directory / name).unlink(missing_ok=True)
+    described = {
+        name: ((directory / name).stat().st_size, sha256(directory / name))
+        for name in contents(directory)
+    }
+    told = crate(who, described, {}, dict.fromkeys(described, "MIT"), ["sun sensor"])
+    (directory / CRATE).write_text(json.dumps(told))
+    write_checksums(directory)
+    with zipfile.ZipFile(directory.with_name(f"{directory.name}.zip"), "w") as archive:
+        for name in contents(directory):
+            archive.writestr(f"sun-sensor-atlas-0.1.0/{name}", (directory / name).read_bytes())
+    return directory

@@ -1,0 +1,139 @@
+"""Authors: read from CITATION.cff, told to the archive, and refused while they are nobody."""
+
+from pathlib import Path
+
+import pytest
+
+from api.deposit.archives.metadata import creators_of_invenio, creators_of_legacy, invenio, legacy
+from api.deposit.archives.metadata import description as described
+from api.deposit.citation import (
+    Author,
+    CitationError,
+    authors,
+    check_digit,
+    unpublishable,
+    wrong_orcid,
+)
+from tests.api.deposit import small_bundle
+
+ROOT = Path(__file__).resolve().parents[3]
+ADA = Author("Sommer", "Ada", orcid="0009-0000-0012-3455")
+
+
+@pytest.mark.parametrize(
+    "orcid",
+    # iDs that orcid.org itself prints, the second ending in X
+    ["0000-0002-1825-0097", "0000-0002-1694-233X", "0000-0001-5109-3700"],
+)
+def test_the_check_digit_is_orcid_s(orcid):
+    digits = orcid.replace("-", "")
+    assert check_digit(digits[:15]) == digits[15]
+
+
+@pytest.mark.parametrize("place", [0, 3, 8, 12, 14])
+def test_every_mistyped_digit_is_found(place):
+    digits = ADA.orcid.replace("-", "")
+    for other in "0123456789":
+        typed = digits[:place] + other + digits[place + 1 :]
+        found = wrong_orcid("-".join(typed[i : i + 4] for i in (0, 4, 8, 12)))
+        assert (found is None) == (typed == digits)
+
+
+@pytest.mark.parametrize(
+    ("orcid", "why"),
+    [
+        ("0000-0002-1825-0097", "example"),
+        ("0000-0000-0000-0001", "outside"),
+        ("0000-0000-0000-0000", "mistyped"),
+        ("0009000000123455", "is no ORCID iD"),
+        ("0009-0000-0012-345", "is no ORCID iD"),
+        ("todo", "is no ORCID iD"),
+    ],
+)
+def test_what_is_nobody_s_orcid_is_refused(orcid, why):
+    assert why in wrong_orcid(orcid)
+
+
+@pytest.mark.parametrize(
+    ("listed", "why"),
+    [
+        ((), "no person"),
+        ((Author(name="The Sun Sensor Atlas contributors"),), "no person"),
+        ((ADA, Author(name="The Sun Sensor Atlas contributors")), "placeholder"),
+        ((Author("Sommer", "Ada"),), "no ORCID"),
+        ((Author("Sommer", "", orcid=ADA.orcid),), "no given name"),
+        ((Author("Family", "Given", orcid=ADA.orcid),), "no family name"),
+        ((Author("TODO", "Ada", orcid=ADA.orcid),), "no family name"),
+        ((Author("Doe", "Jane", orcid=ADA.orcid),), "no name"),
+        ((ADA, Author("Other", "Bea", orcid=ADA.orcid)), "two authors"),
+        ((Author("...", "???", orcid=ADA.orcid),), "no family name"),
+    ],
+)
+def test_who_is_nobody_is_not_published(listed, why):
+    assert any(why in text for text in unpublishable(listed))
+
+
+@pytest.mark.parametrize(
+    "listed",
+    [
+        (ADA,),
+        (Author("Li", "Na", orcid=ADA.orcid),),
+        (Author("van der Heiden", "X.", orcid=ADA.orcid),),
+        (ADA, Author(name="Institute of Light")),
+    ],
+)
+def test_who_is_somebody_is(listed):
+    assert unpublishable(listed) == []
+
+
+def test_this_project_s_authors_are_not_filled_in_yet_and_so_not_published():
+    """Once a person has filled in CITATION.cff this says that the list is publishable."""
+    listed = authors((ROOT / "CITATION.cff").read_text("utf-8"), "CITATION.cff")
+    placeholder = any(author.name.endswith("contributors") for author in listed)
+    assert bool(unpublishable(listed)) == placeholder
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("authors: [", "not YAML"),
+        ("title: x", "list of authors"),
+        ("[]", "list of authors"),
+        ("authors:\n  - Ada Sommer", "author 1: expected family-names"),
+        ("authors:\n  - surname: Sommer", "author 1: expected family-names"),
+        ("authors:\n  - name: 3", "author 1: expected text for name"),
+    ],
+)
+def test_a_citation_that_cannot_be_read_is_named(text, why):
+    with pytest.raises(CitationError, match=f"CITATION.cff.*{why}"):
+        authors(text, "CITATION.cff")
+
+
+@pytest.fixture
+def told(tmp_path):
+    return described(small_bundle.make(tmp_path / "bundle"))
+
+
+def test_both_forms_name_the_same_people(told):
+    assert creators_of_invenio(invenio(told)["metadata"]) == (ADA,)
+    assert creators_of_legacy(legacy(told)) == (ADA,)
+    who = Author(name="Institute of Light")
+    crowd = told.__class__(**{**told.__dict__, "authors": (ADA, who)})
+    assert creators_of_invenio(invenio(crowd)["metadata"]) == (ADA, who)
+    assert creators_of_legacy(legacy(crowd)) == (ADA, who)
+
+
+def test_both_forms_say_data_set_survey_and_terms(told):
+    new, old = invenio(told)["metadata"], legacy(told)
+    assert new["resource_type"] == {"id": "dataset"}
+    assert old["upload_type"] == "dataset"
+    assert [right["id"] for right in new["rights"]] == ["cc-by-4.0", "mit"]
+    assert old["license"] == "cc-by-4.0"
+    assert "MIT" in old["description"]
+    works = {"arXiv:2507.21541": "isderivedfrom", "10.5281/zenodo.15784429": "references"}
+    assert {w["identifier"]: w["relation_type"]["id"] for w in new["related_identifiers"]} == works
+    assert {w["identifier"]: w["relation"].lower() for w in old["related_identifiers"]} == works
+    assert new["publisher"] == "Zenodo"
+    assert new["publication_date"] == old["publication_date"] == "2026-11-21"
+    assert new["creators"][0]["affiliations"] == [{"name": "Institute of Light"}]
+    assert old["creators"][0]["affiliation"] == "Institute of Light"

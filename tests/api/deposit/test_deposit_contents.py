@@ -1,0 +1,247 @@
+"""What lies in a bundle beside its CSV: Parquet, SQLite, references, crate, samples, an example."""
+
+import csv
+import json
+import re
+import sqlite3
+import subprocess
+import sys
+from contextlib import closing
+
+import bibtexparser
+import numpy as np
+import pyarrow.parquet
+import pytest
+import rispy
+
+from api.deposit.bibliography import bibtex, names, ris
+from api.deposit.database import NameNotPlainError, plain, write_database
+from api.deposit.frames import LEAST, ROOM, sample_size
+from api.deposit.typed import CellError, typed_tables
+from benchmark.datasets.checksums import CHECKSUMS
+from benchmark.datasets.export import verify as verify_export
+from benchmark.results.store import PUBLISHED, Store
+from tests.api.deposit.conftest import FRAMES
+from tests.api.deposit.test_deposit import files
+
+
+def described(bundle):
+    return json.loads((bundle / "datapackage.json").read_text("utf-8"))["resources"]
+
+
+def tables(bundle):
+    return [resource for resource in described(bundle) if resource.get("type") == "table"]
+
+
+def rows(path):
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def text(value, kind):
+    """A typed value as some cell of a CSV may spell it."""
+    if value is None:
+        return ""
+    if kind == "boolean":
+        return "true" if value else "false"
+    return value if kind == "number" else str(value)
+
+
+def agrees(cell, value, kind):
+    if kind == "number" and value is not None:
+        return float(cell) == value
+    return cell == text(value, kind)
+
+
+def test_parquet_holds_what_csv_holds(built):
+    found = {path.stem for path in (built.directory / "parquet").iterdir()}
+    assert found == {resource["name"] for resource in tables(built.directory)}
+    for resource in tables(built.directory):
+        path = built.directory / "parquet" / f"{resource['name']}.parquet"
+        made = pyarrow.parquet.read_table(path).to_pylist()
+        kinds = {field["name"]: field["type"] for field in resource["schema"]["fields"]}
+        for row, cells in zip(made, rows(built.directory / resource["path"]), strict=True):
+            assert row.keys() == cells.keys()
+            for name, kind in kinds.items():
+                assert agrees(cells[name], row[name], kind), (resource["name"], name, row)
+
+
+def test_sqlite_holds_what_csv_holds_under_plain_names(built):
+    path = built.directory / "sun-sensor-atlas.sqlite"
+    with closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True)) as base:
+        base.row_factory = sqlite3.Row
+        assert base.execute("PRAGMA integrity_check").fetchone()[0] == "ok"
+        assert base.execute("PRAGMA foreign_key_check").fetchall() == []
+        known = {r[0] for r in base.execute("SELECT name FROM sqlite_master WHERE type = 'table'")}
+        assert known == {
+            *(plain(resource["name"]) for resource in tables(built.directory)),
+            *("tables_of_the_atlas", "columns_of_the_atlas"),
+        }
+        for resource in tables(built.directory):
+            name = plain(resource["name"])
+            fields = resource["schema"]["fields"]
+            # No quotes: a name that needs them would be a syntax error here.
+            listed = ", ".join(plain(field["name"]) for field in fields)
+            made = base.execute(f"SELECT {listed} FROM {name} ORDER BY rowid").fetchall()
+            cells = rows(built.directory / resource["path"])
+            for row, told in zip(made, cells, strict=True):
+                for value, field in zip(tuple(row), fields, strict=True):
+                    assert agrees(told[field["name"]], value, field["type"]), (name, field["name"])
+            keys = {r["from"] for r in base.execute(f"PRAGMA foreign_key_list({name})")}
+            wanted = resource["schema"].get("foreignKeys", ())
+            assert keys == {plain(f) for key in wanted for f in key["fields"]}
+
+
+def test_sqlite_says_what_its_columns_hold(built):
+    with closing(sqlite3.connect(built.directory / "sun-sensor-atlas.sqlite")) as base:
+        told = base.execute("SELECT name, column_name FROM columns_of_the_atlas").fetchall()
+        for name, column in told:
+            base.execute(f"SELECT {column} FROM {name} LIMIT 1")
+        assert len(told) == sum(len(r["schema"]["fields"]) for r in tables(built.directory))
+
+
+@pytest.mark.parametrize("name", ["select", "two words", "1st", "a-b", "Group", "a;drop", ""])
+def test_a_name_that_needs_quotes_is_refused(name):
+    with pytest.raises(NameNotPlainError, match="no plain name"):
+        plain(name)
+
+
+def test_a_reference_to_nothing_does_not_go_out(bundle, tmp_path):
+    path = bundle / "survey" / "venues.csv"
+    path.write_text(path.read_text("utf-8").replace("Ali2011", "Nobody2011", 1), "utf-8")
+    made = typed_tables(bundle, {"resources": described(bundle)})
+    with pytest.raises(sqlite3.IntegrityError, match="venues"):
+        write_database(made, tmp_path / "new.sqlite")
+
+
+def test_a_cell_of_another_type_does_not_go_out(bundle):
+    path = bundle / "survey" / "studies.csv"
+    path.write_text(path.read_text("utf-8").replace(",2008,", ",MMVIII,", 1), "utf-8")
+    with pytest.raises(CellError, match=r"studies\.csv, row \d+, column year: expected year"):
+        typed_tables(bundle, {"resources": described(bundle)})
+
+
+def test_bibtex_is_read_back_with_every_identified_study(built):
+    library = bibtexparser.parse_string(
+        (built.directory / "bibliography" / "studies.bib").read_text("utf-8")
+    )
+    assert library.failed_blocks == []
+    studies = {r["key"]: r for r in rows(built.directory / "survey" / "studies.csv") if r["title"]}
+    assert {entry.key for entry in library.entries} == studies.keys()
+    assert len(studies) > 90
+    for entry in library.entries:
+        study, found = studies[entry.key], {f.key: f.value for f in entry.fields}
+        assert found["year"] == study["year"]
+        assert found.get("doi", "") == study["doi"]
+        assert found["title"].strip("{}").replace("\\", "") == study["title"]
+
+
+def test_ris_is_read_back_with_every_identified_study(built):
+    found = rispy.loads((built.directory / "bibliography" / "studies.ris").read_text("utf-8"))
+    studies = {r["key"]: r for r in rows(built.directory / "survey" / "studies.csv") if r["title"]}
+    assert {entry["id"] for entry in found} == studies.keys()
+    for entry in found:
+        study = studies[entry["id"]]
+        assert entry["title"] == " ".join(study["title"].split())
+        assert (entry["year"], entry.get("doi", "")) == (study["year"], study["doi"])
+        assert not entry.get("unknown_tag")
+
+
+STUDY = {
+    "key": "A2020",
+    "title": "Cost & 50% of_it {x}",
+    "authors": "N. van der Heiden; He Liang (as printed); et al.",
+    "year": "2020",
+    "venue": "J. Sun",
+    "type": "journal",
+    "doi": "",
+    "url": "",
+    "identity": "recalled",
+}
+
+
+def test_names_are_split_as_bibtex_does():
+    assert names(STUDY["authors"]) == [("van der Heiden", "N."), ("Liang", "He"), ("", "")]
+    assert names("") == []
+    assert "author = {van der Heiden, N. and Liang, He and others}" in bibtex([STUDY])
+    assert "AU  - van der Heiden, N.\nAU  - Liang, He\nAU  - et al.\n" in ris([STUDY])
+
+
+def test_signs_of_latex_are_escaped_and_the_unidentified_left_out():
+    assert r"title = {{Cost \& 50\% of\_it \{x\}}}" in bibtex([STUDY])
+    assert "identified from memory" in bibtex([STUDY])
+    assert bibtex([{**STUDY, "title": ""}]) == ris([{**STUDY, "title": ""}]) == ""
+
+
+def test_the_crate_names_every_file_with_its_checksum(built):
+    crate = json.loads((built.directory / "ro-crate-metadata.json").read_text("utf-8"))
+    graph = {entity["@id"]: entity for entity in crate["@graph"]}
+    assert len(graph) == len(crate["@graph"])
+    about = graph["ro-crate-metadata.json"]
+    assert about["conformsTo"] == {"@id": "https://w3id.org/ro/crate/1.2"}
+    assert crate["@context"] == "https://w3id.org/ro/crate/1.2/context"
+    root = graph[about["about"]["@id"]]
+    parts = {part["@id"] for part in root["hasPart"]}
+    assert parts == set(files(built.directory)) - {"ro-crate-metadata.json", CHECKSUMS}
+    assert {"name", "description", "datePublished", "license"} <= root.keys()
+    listed = dict(
+        line.split("  ", 1)[::-1]
+        for line in (built.directory / CHECKSUMS).read_text("utf-8").splitlines()
+    )
+    for part in parts:
+        assert int(graph[part]["contentSize"]) == (built.directory / part).stat().st_size
+        assert graph[part]["sha256"] == listed[part]
+        assert graph[part]["description"]
+    for entity in graph.values():
+        for name in ("license", "author", "hasPart", "about", "affiliation"):
+            found = entity.get(name, [])
+            for reference in found if isinstance(found, list) else [found]:
+                assert reference["@id"] in graph
+
+
+def test_samples_are_whole_exports_of_the_stated_size(built):
+    listed = rows(built.directory / "benchmark" / "frames.csv")
+    assert {row["dataset"] for row in listed} == set(FRAMES)
+    pins = Store(PUBLISHED).pins()
+    for name in FRAMES:
+        folder = built.directory / "frames" / name
+        assert verify_export(folder) == []
+        assert json.loads((folder / "card.json").read_text("utf-8"))["name"] == name
+    for row in listed:
+        pin = pins[row["dataset"], row["condition"], row["split"]]
+        with np.load(built.directory / row["file"]) as arrays:
+            count = len(arrays["observations"])
+            assert arrays["sun"].shape == (count, 3)
+            assert arrays["bound_deg"].shape == (count,)
+        assert (int(row["samples"]), int(row["samples_of"])) == (count, pin.n)
+        # A whole split is the published one, by its hash.
+        assert (row["data_hash"] == pin.data_hash) == (count == pin.n)
+
+
+def test_the_sample_of_a_data_set_follows_from_the_size_of_its_frames():
+    pins = Store(PUBLISHED).pins()
+    assert sample_size("pd-slit", pins) is None
+    assert sample_size("cmos-single-aperture", pins) is None  # 441 of 64 x 64 pixels, 3.4 MiB
+    assert sample_size("ccd-lens", pins) == ROOM // (256 * 256 * 2) == 8
+    assert sample_size("ccd-multi-aperture", pins) == LEAST
+
+
+def test_the_example_of_the_readme_runs_where_it_lies(bundle):
+    readme = (bundle / "README.md").read_text("utf-8")
+    (example,) = re.findall(r"^```python\n(.*?)^```$", readme, re.DOTALL | re.MULTILINE)
+    # -I: neither this checkout nor the environment helps.
+    shown = subprocess.run(
+        [sys.executable, "-I", "-W", "error", "-c", example],
+        cwd=bundle,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=300,
+    )
+    assert shown.returncode == 0, shown.stderr
+    lines = shown.stdout.splitlines()
+    assert lines[0].startswith("cmos-single-aperture ")
+    error = float(re.search(r"error: ([\d.]+) deg over 400 frames", shown.stdout)[1])
+    assert 0.0 < error < 1.0
+    read = {line.split(" ")[0] for line in lines if ".npz" in line}
+    assert read == {row["file"] for row in rows(bundle / "benchmark" / "frames.csv")}

@@ -1,0 +1,253 @@
+"""Verification: what is wrong is named, and nothing found in a bundle is ever fetched."""
+
+import json
+import socket
+
+import pytest
+
+from api.deposit.crate import CRATE
+from api.deposit.package import DESCRIPTOR
+from api.deposit.verification import NoBundleError, verify
+from benchmark.datasets.checksums import (
+    CHECKSUMS,
+    ChecksumFileError,
+    read_checksums,
+    sha256,
+    write_checksums,
+)
+from tests.api.deposit import small_bundle
+from tests.api.deposit.test_deposit import files
+
+ELSEWHERE = "http://127.0.0.1:9/elsewhere"
+
+
+@pytest.fixture(autouse=True)
+def offline(monkeypatch):
+    """No test here may open a connection, whatever a bundle says."""
+    asked = []
+
+    def refuse(*arguments, **_options):
+        asked.append(arguments)
+        raise AssertionError(f"asked for {arguments}")
+
+    for name in ("connect", "connect_ex"):
+        monkeypatch.setattr(socket.socket, name, refuse)
+    monkeypatch.setattr(socket, "getaddrinfo", refuse)
+    monkeypatch.setattr(socket, "create_connection", refuse)
+    yield asked
+    assert asked == []
+
+
+@pytest.fixture
+def small(tmp_path):
+    return small_bundle.make(tmp_path / "bundle")
+
+
+def change(bundle, edit, name=DESCRIPTOR):
+    """Let `edit` change a document, and make crate and checksums agree with it."""
+    document = json.loads((bundle / name).read_text("utf-8"))
+    edit(document)
+    (bundle / name).write_text(json.dumps(document))
+    agree(bundle)
+
+
+def agree(bundle):
+    (bundle / CHECKSUMS).unlink()
+    write_checksums(bundle)
+    listed = read_checksums(bundle)
+    try:
+        crate = json.loads((bundle / CRATE).read_text("utf-8"))
+        for entity in crate["@graph"]:
+            if entity.get("@id") in listed:
+                entity["sha256"] = listed[entity["@id"]]
+                entity["contentSize"] = str((bundle / entity["@id"]).stat().st_size)
+        (bundle / CRATE).write_text(json.dumps(crate))
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        pass
+    (bundle / CHECKSUMS).unlink()
+    write_checksums(bundle)
+
+
+def resource(name, value):
+    return lambda package: package["resources"][0].__setitem__(name, value)
+
+
+def schema(name, value):
+    return lambda package: package["resources"][0]["schema"].__setitem__(name, value)
+
+
+def field(name, value):
+    return lambda package: package["resources"][0]["schema"]["fields"][0].__setitem__(name, value)
+
+
+def package(name, value):
+    return lambda document: document.__setitem__(name, value)
+
+
+def test_a_small_bundle_holds(small):
+    assert verify(small) == []
+    agree(small)
+    assert verify(small) == []
+
+
+@pytest.mark.slow
+def test_a_whole_bundle_is_verified_offline(built):
+    assert verify(built.directory) == []
+
+
+@pytest.mark.parametrize(
+    "edit",
+    [
+        package("$schema", ELSEWHERE),
+        package("$schema", "https://datapackage.org/profiles/3.0/datapackage.json"),
+        package("profile", ELSEWHERE),
+        package("profiles", [ELSEWHERE]),
+        package("resources", ELSEWHERE),
+        package("resources", [ELSEWHERE]),
+        package("resources", []),
+        package("resources", None),
+        package("name", "another"),
+        package("name", None),
+        resource("path", ELSEWHERE),
+        resource("path", [ELSEWHERE]),
+        resource("path", "/etc/passwd"),
+        resource("path", "../secret.csv"),
+        resource("path", "benchmark/none.csv"),
+        resource("path", None),
+        resource("extrapaths", [ELSEWHERE]),
+        resource("profile", ELSEWHERE),
+        resource("$schema", ELSEWHERE),
+        resource("dialect", ELSEWHERE),
+        resource("dialect", {"$schema": ELSEWHERE}),
+        resource("schema", ELSEWHERE),
+        resource("schema", None),
+        resource("scheme", "http"),
+        resource("basepath", "http://127.0.0.1:9"),
+        resource("data", [{"name": "a"}]),
+        resource("url", ELSEWHERE),
+        resource("format", "sql"),
+        resource("encoding", "utf-16"),
+        resource("compression", "gz"),
+        resource("type", "file"),
+        resource("bytes", 1),
+        resource("hash", "sha256:00"),
+        resource("name", 3),
+        schema("$schema", ELSEWHERE),
+        schema("profile", ELSEWHERE),
+        schema("$ref", ELSEWHERE),
+        schema("fields", ELSEWHERE),
+        schema("fields", [ELSEWHERE]),
+        schema("foreignKeys", [{"fields": ["name"], "reference": {"package": ELSEWHERE}}]),
+        schema(
+            "foreignKeys",
+            [{"fields": ["name"], "reference": {"resource": ELSEWHERE, "fields": ["a"]}}],
+        ),
+        field("rdfType", ELSEWHERE),
+        field("constraints", {"jsonSchema": {"$ref": ELSEWHERE}}),
+        field("type", "year"),
+        lambda package: package["resources"].append(dict(package["resources"][0])),
+    ],
+)
+def test_a_descriptor_that_points_elsewhere_or_says_otherwise_is_refused_unasked(small, edit):
+    change(small, edit)
+    found = verify(small)
+    assert found
+    assert {name for name, _ in found} <= {DESCRIPTOR, "benchmark/one.csv"}
+
+
+@pytest.mark.parametrize("text", ["", "{", "[]", "3", "[" * 100_000, '"http://127.0.0.1:9/"'])
+@pytest.mark.parametrize("name", [DESCRIPTOR, CRATE])
+def test_a_document_that_is_none_is_named(small, name, text):
+    (small / name).write_text(text)
+    agree(small)
+    assert name in {place for place, _ in verify(small)}
+
+
+@pytest.mark.parametrize(
+    "edit",
+    [
+        lambda crate: crate.__setitem__("@graph", ELSEWHERE),
+        lambda crate: crate.__setitem__("@graph", []),
+        lambda crate: crate["@graph"].pop(),
+        lambda crate: crate["@graph"][0].__setitem__("conformsTo", {"@id": ELSEWHERE}),
+        lambda crate: crate["@graph"].append({"@id": ELSEWHERE, "@type": "File"}),
+        lambda crate: crate["@graph"][2].__setitem__("@id", "other.csv"),
+    ],
+)
+def test_a_crate_that_says_otherwise_is_refused_unasked(small, edit):
+    # the last entity of the graph is a licence: the one before the authors is a file
+    document = json.loads((small / CRATE).read_text("utf-8"))
+    document["@graph"] = [e for e in document["@graph"] if e["@type"] in ("CreativeWork", "File")]
+    document["@graph"] = [e for e in document["@graph"] if not e["@id"].startswith("http")]
+    (small / CRATE).write_text(json.dumps(document))
+    agree(small)
+    assert verify(small) == []
+    change(small, edit, CRATE)
+    assert CRATE in {name for name, _ in verify(small)}
+
+
+def test_a_crate_with_another_checksum_is_found(small):
+    crate = json.loads((small / CRATE).read_text("utf-8"))
+    for entity in crate["@graph"]:
+        if entity["@id"] == "README.md":
+            entity["sha256"] = "0" * 64
+    (small / CRATE).write_text(json.dumps(crate))
+    (small / CHECKSUMS).unlink()
+    write_checksums(small)
+    assert verify(small) == [(CRATE, "README.md: sha256 is not that of checksums-sha256.txt")]
+
+
+def test_a_cell_of_another_type_is_found_though_every_checksum_holds(small):
+    change(small, field("type", "integer"))
+    assert {name for name, _ in verify(small)} == {"benchmark/one.csv"}
+
+
+def test_what_is_no_bundle_cannot_be_verified(tmp_path):
+    with pytest.raises(NoBundleError, match="not a bundle"):
+        verify(tmp_path)
+
+
+@pytest.mark.slow
+def test_a_flipped_byte_is_found_in_every_file(bundle):
+    names = [name for name in files(bundle) if name != CHECKSUMS]
+    assert len(names) > 20
+    for name in names:
+        content = (bundle / name).read_bytes()
+        middle = len(content) // 2
+        flipped = content[:middle] + bytes([content[middle] ^ 1]) + content[middle + 1 :]
+        (bundle / name).write_bytes(flipped)
+        assert [place for place, _ in verify(bundle)] == [name]
+        (bundle / name).write_bytes(content)
+    assert verify(bundle) == []
+
+
+def test_a_missing_and_an_added_file_are_found(bundle):
+    (bundle / "survey" / "claims.csv").unlink()
+    (bundle / "survey" / "claims2.csv").write_text("id\n")
+    assert verify(bundle) == [
+        ("survey/claims.csv", "listed but missing"),
+        ("survey/claims2.csv", "not listed"),
+    ]
+
+
+@pytest.mark.slow
+def test_a_wrong_table_is_found_though_its_checksum_holds(bundle):
+    path = bundle / "survey" / "studies.csv"
+    path.write_text(path.read_text("utf-8").replace(",2008,", ",MMVIII,", 1), "utf-8")
+
+    def own_up(package):
+        (entry,) = (r for r in package["resources"] if r["name"] == "studies")
+        entry["bytes"] = path.stat().st_size
+        entry["hash"] = f"sha256:{sha256(path)}"
+
+    change(bundle, own_up)
+    assert {name for name, _ in verify(bundle)} == {"survey/studies.csv"}
+
+
+@pytest.mark.parametrize(
+    "line", ["", "abc  README.md", f"{'0' * 64}  ../secret", f"{'0' * 64}  /etc/passwd"]
+)
+def test_a_list_of_checksums_that_is_none_is_refused(bundle, line):
+    (bundle / CHECKSUMS).write_text(f"{line}\n")
+    with pytest.raises(ChecksumFileError, match="line 1"):
+        read_checksums(bundle)

@@ -1,0 +1,45 @@
+"""The Python of docs/http.md runs as printed, against a server."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from tests.speed.service import serving
+
+PAGE = Path(__file__).resolve().parents[3] / "docs" / "http.md"
+SNIPPETS = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
+
+
+@pytest.fixture(scope="module")
+def address(atlas):
+    with serving([atlas.app]) as (connection,):
+        yield f"http://{connection.host}:{connection.port}"
+
+
+def run(snippet, address):
+    names = {}
+    exec(snippet.replace("http://127.0.0.1:8000", address), names)
+    return names
+
+
+def test_a_table_is_one_line(atlas, address):
+    best = run(SNIPPETS[0], address)["best"]
+    told = atlas.get("/v1/leaderboard/architectures").json()["items"]
+    assert list(best["rms_deg"].dropna()) == [
+        i["rms_deg"] for i in told if i["rms_deg"] is not None
+    ]
+    assert list(best["mask"]) == [item["mask"] for item in told]
+
+
+def test_an_answer_with_a_shape_is_two(address):
+    names = run(SNIPPETS[1], address)
+    names["atlas"].close()
+    assert names["first"]["rank"] == 1
+
+
+def test_a_long_list_is_walked_to_its_end(atlas, address):
+    scores = run(SNIPPETS[2], address)["scores"]
+    total = atlas.get("/v1/results?condition=nominal&limit=1").json()["total"]
+    assert len(scores) == total > 500
+    assert not scores.duplicated(["dataset", "extractor", "model"]).any()

@@ -1,0 +1,269 @@
+"""What figures show, recounted from the survey's CSV files without the project's code."""
+
+from __future__ import annotations
+
+import csv
+import itertools
+from collections import Counter, defaultdict
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree as ET
+
+import pytest
+
+import survey_data
+from api.figures.catalogue import LEVELS, TITLES, evidence_map, figure
+from api.figures.statements import number_of_studies, statements
+from registry.studies import facts
+from registry.taxonomy import InvalidValueError
+
+TABLES = Path(survey_data.__file__).parent
+FLOWS = ("error", "performance", "cross-analysis", "task", "aggregate")
+Values = dict[str, dict[str, set[str]]]
+
+
+def read(name: str) -> list[dict[str, str]]:
+    with (TABLES / f"{name}.csv").open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+@pytest.fixture(scope="module")
+def values() -> Values:
+    """Study -> level -> values."""
+    found: Values = {row["key"]: defaultdict(set) for row in read("studies")}
+    category = {(r["attribute"], r["value"]): r["category"] for r in read("taxonomy")}
+    ring = {row["model"]: row["calibration"] for row in read("model_families")}
+    for row in read("attributes"):
+        attribute, value = row["attribute"], row["value"]
+        if not value:
+            continue
+        of = found[row["study"]]
+        of[attribute].add(value)
+        if attribute == "model":
+            of["model_category"].add(category["model", value])
+            of["calibration"].add("None" if value == "None" else ring.get(value, "offline"))
+        if attribute == "extractor":
+            of["extractor_family"].add(category["extractor", value])
+    return found
+
+
+@pytest.fixture(scope="module")
+def sensors() -> dict[str, set[tuple[str, str]]]:
+    """Study with several sensors -> detector and mask of each."""
+    found: dict[str, set[tuple[str, str]]] = defaultdict(set)
+    for row in read("architectures"):
+        found[row["study"]].add((row["detector"], row["mask"]))
+    return found
+
+
+def having(
+    values: Values,
+    sensors: dict[str, set[tuple[str, str]]],
+    one: tuple[str, str],
+    other: tuple[str, str],
+) -> set[str]:
+    """Studies with both values, on one sensor where detector and mask are meant."""
+    keys = {k for k, of in values.items() if one[1] in of[one[0]] and other[1] in of[other[0]]}
+    if {one[0], other[0]} != {"detector", "mask"}:
+        return keys
+    named = dict([one, other])
+    pair = (named["detector"], named["mask"])
+    return {key for key in keys if key not in sensors or pair in sensors[key]}
+
+
+@pytest.mark.parametrize("name", FLOWS)
+def test_every_flow_has_the_studies_with_both_values(
+    name: str, values: Values, sensors: dict[str, set[tuple[str, str]]]
+) -> None:
+    rows = figure(name, facts()).rows
+    links = {
+        ((row["level"], row["value"]), (row["next_level"], row["next_value"])): set(row["studies"])
+        for row in rows
+        if row["next_level"]
+    }
+    expected = {}
+    for one, other in itertools.pairwise(LEVELS[name]):
+        pairs = {
+            ((one, a), (other, b)) for of in values.values() for a in of[one] for b in of[other]
+        }
+        expected |= {pair: having(values, sensors, *pair) for pair in pairs}
+    assert links == {pair: keys for pair, keys in expected.items() if keys}
+
+
+@pytest.mark.parametrize("name", FLOWS)
+def test_every_node_has_the_studies_with_its_value(name: str, values: Values) -> None:
+    rows = [row for row in figure(name, facts()).rows if not row["next_level"]]
+    found = {(row["level"], row["value"]): set(row["studies"]) for row in rows}
+    expected: dict[tuple[str, str], set[str]] = defaultdict(set)
+    for key, of in values.items():
+        for level in LEVELS[name]:
+            for value in of[level]:
+                expected[level, value].add(key)
+    assert found == expected
+    assert all(row["count"] == len(row["studies"]) for row in rows)
+
+
+def test_arcs_of_the_sunburst_hold_the_studies_of_their_models(values: Values) -> None:
+    rows = figure("models", facts()).rows
+    models = {row["model"]: set(row["studies"]) for row in rows if row["level"] == "model"}
+    expected: dict[str, set[str]] = defaultdict(set)
+    for key, of in values.items():
+        for model in of["model"]:
+            expected[model].add(key)
+    assert models == expected
+    for row in rows:
+        inside = [
+            r
+            for r in rows
+            if r["level"] == "model"
+            and r["model_category"] == row["model_category"]
+            and (row["level"] == "model_category" or r["calibration"] == row["calibration"])
+            and row["model"] in ("", r["model"])
+        ]
+        assert row["memberships"] == sum(len(models[r["model"]]) for r in inside)
+        assert set(row["studies"]) == set().union(*(models[r["model"]] for r in inside))
+    categories = [row for row in rows if row["level"] == "model_category"]
+    assert sum(row["memberships"] for row in categories) == sum(map(len, expected.values())) == 178
+
+
+def test_the_middle_ring_says_which_models_are_calibrated_in_operation() -> None:
+    rings = {row["model"]: row["calibration"] for row in read("model_families")}
+    online = {model for model, ring in rings.items() if ring == "online"}
+    rows = figure("models", facts()).rows
+    assert {r["model"] for r in rows if r["level"] == "model" and r["calibration"] == "online"} == (
+        online & {r["model"] for r in rows}
+    )
+    assert online
+
+
+def test_publications_are_those_of_the_table_of_studies() -> None:
+    rows = figure("publications", facts()).rows
+    per_year = Counter(row["year"] for row in read("studies"))
+    found: Counter[str] = Counter()
+    for row in rows:
+        assert row["count"] == len(row["studies"])
+        if row["part"] == "year":
+            found[row["value"]] += row["count"]
+    assert found == per_year
+    kinds = {(row["year"], row["type"]): 0 for row in read("studies")}
+    for row in read("studies"):
+        kinds[row["year"], row["type"]] += 1
+    assert {(r["value"], r["stack"]): r["count"] for r in rows if r["part"] == "year"} == kinds
+    venues: dict[str, set[str]] = defaultdict(set)
+    for row in rows:
+        if row["part"] == "venue":
+            venues[row["value"]].update(row["studies"])
+    expected: dict[str, set[str]] = defaultdict(set)
+    known = {row["study"]: row["venue"] for row in read("venues")}
+    for row in read("studies"):
+        expected[known.get(row["key"], "")].add(row["key"])
+    assert venues == expected
+
+
+def test_the_years_that_the_survey_names_are_those_drawn() -> None:
+    # "steady growth since 2001", "peaked in 2017 and again in 2022, with a slight decline in 2023"
+    count: Counter[int] = Counter()
+    for row in figure("publications", facts()).rows:
+        if row["part"] == "year":
+            count[int(row["value"])] += row["count"]
+    assert min(count) == 2001
+    assert [year for year, _ in count.most_common(2)] == [2017, 2022]
+    assert count[2023] < count[2022]
+    assert count[2001] == 4, "the criterion of inclusion begins with 2002; four keys are of 2001"
+
+
+def test_every_sensor_is_a_line_with_the_numbers_that_its_study_states(
+    sensors: dict[str, set[tuple[str, str]]], values: Values
+) -> None:
+    rows = figure("coordinates", facts()).rows
+    assert {row["study"] for row in rows} == set(values)
+    for key, of in values.items():
+        found = {(row["detector"], row["mask"]) for row in rows if row["study"] == key}
+        every = itertools.product(of["detector"] or {None}, of["mask"] or {None})
+        assert found == (sensors.get(key) or set(every))
+    for row in rows:
+        of = values[row["study"]]
+        accuracies = [float(value) for value in of["accuracy_deg"]]
+        assert row["accuracy_deg"] == (min(accuracies) if accuracies else None)
+        fields = [float(value) for value in of["fov_deg"]]
+        assert row["fov_deg"] == (max(fields) if fields else None)
+
+
+@pytest.mark.parametrize(
+    ("rows", "columns"),
+    [("detector", "mask"), ("task", "error"), ("accuracy", "model_category"), ("model", "model")],
+)
+def test_a_matrix_counts_the_studies_with_both_and_shows_every_gap(
+    rows: str, columns: str, values: Values, sensors: dict[str, set[tuple[str, str]]]
+) -> None:
+    table = evidence_map(facts(), {}, rows, columns).rows
+    taxonomy = facts().taxonomy
+    assert len(table) == len(taxonomy.values(rows)) * len(taxonomy.values(columns))
+    for row in table:
+        keys = having(values, sensors, (rows, row["row"]), (columns, row["column"]))
+        if rows == columns:
+            pair = {row["row"], row["column"]}
+            keys = {key for key, of in values.items() if pair <= of[rows]}
+        assert set(row["studies"]) == keys
+        assert row["count"] == len(keys)
+
+
+def test_a_pair_that_cannot_be_is_no_gap() -> None:
+    table = evidence_map(facts(), {}, "model", "model_category").rows
+    pairs = {(row["row"], row["column"]) for row in table}
+    assert ("SPM", "Geometric") in pairs
+    assert ("SPM", "LUT") not in pairs
+    assert len(pairs) == len(facts().taxonomy.values("model"))
+
+
+def test_gaps_are_drawn_as_cells_of_their_own() -> None:
+    found = evidence_map(facts())
+    empty = sum(row["count"] == 0 for row in found.rows)
+    for drawing in found.drawings.values():
+        root = ET.fromstring(drawing.document("t", "d", ""))
+        drawn = [e for e in root.iter() if "cell" in e.get("class", "").split()]
+        assert len(drawn) == len(found.rows)
+        assert sum("gap" in e.get("class", "").split() for e in drawn) == empty == 74
+
+
+@pytest.mark.parametrize(("rows", "columns"), [("colour", "mask"), ("detector", "masks")])
+def test_an_unknown_attribute_is_refused_by_naming_those_there_are(rows: str, columns: str) -> None:
+    with pytest.raises(InvalidValueError) as caught:
+        evidence_map(facts(), {}, rows, columns)
+    assert all(level in str(caught.value) for level in facts().taxonomy.levels)
+
+
+def test_an_unknown_figure_is_refused_by_naming_those_there_are() -> None:
+    with pytest.raises(InvalidValueError) as caught:
+        figure("errors", facts())
+    assert caught.value.nearest == "error"
+    assert all(name in str(caught.value) for name in TITLES)
+
+
+@pytest.mark.parametrize("name", TITLES)
+def test_a_filter_keeps_the_studies_that_have_the_value(name: str, values: Values) -> None:
+    found = figure(name, facts(), {"detector": "Event"})
+    expected = {key for key, of in values.items() if "Event" in of["detector"]}
+    assert found.studies == len(expected) == 6
+    assert set().union(*(row["studies"] for row in found.rows)) == expected
+
+
+@pytest.mark.parametrize("name", TITLES)
+def test_a_figure_has_sentences_and_columns_that_every_row_keeps(name: str) -> None:
+    found = figure(name, facts())
+    assert all(tuple(row) == found.columns for row in found.rows)
+    assert all(text.endswith(".") and "None" not in text for text in found.text)
+    for drawing in found.drawings.values():
+        assert ">None" not in drawing.body
+
+
+def test_statements_of_the_survey_stand_at_the_figure_of_their_attributes() -> None:
+    given: dict[str, Any] = {name: {s.id for s in statements(name)} for name in TITLES}
+    assert {f"F{n:02}" for n in range(1, 10)} == given["error"]
+    assert {"F21", "F23"} <= given["task"]
+    assert {"F46", "F47"} == given["models"]
+    assert given["publications"] == {"F51"}
+    verdicts = {s.id: s.verdict for name in TITLES for s in statements(name)}
+    assert verdicts["F51"] == "reproduced"
+    assert "128" in number_of_studies()
+    assert "129" in number_of_studies()

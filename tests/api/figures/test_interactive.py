@@ -1,0 +1,77 @@
+"""The figures for Plotly: the numbers of their tables, read back by Plotly itself."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+
+import plotly.io
+import pytest
+
+from api.figures.catalogue import MATRIX, TITLES, evidence_map, figure
+from api.figures.interactive import specification
+from registry.studies import facts
+
+
+def drawn(name):
+    return evidence_map(facts()) if name == MATRIX else figure(name, facts())
+
+
+@pytest.mark.parametrize("name", [*TITLES, MATRIX])
+def test_plotly_reads_every_figure_back_and_it_is_the_same_each_time(name):
+    text = specification(drawn(name))
+    read = plotly.io.from_json(text)
+    assert read.data
+    assert read.layout.title.text == drawn(name).title
+    assert text == specification(drawn(name))
+
+
+@pytest.mark.parametrize("name", ["error", "performance", "cross-analysis", "task", "aggregate"])
+def test_flows_into_a_node_are_those_of_the_table(name):
+    found = drawn(name)
+    (trace,) = json.loads(specification(found))["data"]
+    told, counted = Counter(), Counter()
+    for target, value in zip(trace["link"]["target"], trace["link"]["value"], strict=True):
+        told[target] += value
+    nodes = [(row["level"], row["value"]) for row in found.rows if not row["next_level"]]
+    for row in found.rows:
+        if row["next_level"]:
+            counted[nodes.index((row["next_level"], row["next_value"]))] += row["count"]
+    assert told == counted
+    assert len(trace["node"]["label"]) == len(nodes)
+
+
+def test_rings_of_the_sunburst_add_up_to_the_ring_within():
+    (trace,) = json.loads(specification(drawn("models")))["data"]
+    within = dict(zip(trace["ids"], trace["values"], strict=True))
+    outer = Counter()
+    for parent, value in zip(trace["parents"], trace["values"], strict=True):
+        outer[parent] += value
+    assert {name: outer[name] for name in outer if name} == {n: within[n] for n in outer if n}
+
+
+def test_bars_and_cells_hold_what_the_table_counts():
+    found = drawn("publications")
+    bars = json.loads(specification(found))["data"]
+    assert sum(sum(bar["y"]) for bar in bars) == sum(row["count"] for row in found.rows)
+    found = drawn(MATRIX)
+    (cells,) = json.loads(specification(found))["data"]
+    assert sum(n for line in cells["z"] for n in line if n) == sum(r["count"] for r in found.rows)
+
+
+@pytest.mark.parametrize("name", ["error", "models", MATRIX])
+def test_the_page_gives_it_under_its_own_name(atlas, name):
+    answer = atlas.get(f"/figures/{name}.plotly.json")
+    assert answer.status_code == 200
+    assert answer.headers["content-type"] == "application/json"
+    assert answer.json() == json.loads(specification(drawn(name)))
+    page = atlas.get(f"/figures/{name}", headers={"accept": "text/html"})
+    assert f"/figures/{name}.plotly.json" in page.text
+    fewer = atlas.get(f"/figures/{name}.plotly.json?detector=CCD").json()
+    assert fewer != answer.json()
+
+
+def test_an_unknown_figure_is_answered_with_the_nearest(atlas):
+    answer = atlas.get("/figures/errors.plotly.json")
+    assert answer.status_code == 404
+    assert "error" in answer.text

@@ -1,0 +1,167 @@
+"""The guide's site: built without a warning, fetching nothing, with every page in a chapter."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from api.guide import extension, site
+from api.guide.chapters import CHAPTERS, ROOT, toctrees
+
+DOCS = Path(__file__).resolve().parents[3] / "docs"
+#: What a browser loads by itself, from wherever it says.
+LOADED = re.compile(
+    r"<(?:script|img|iframe|source)[^>]* src=\"([^\"]+)\"|<link[^>]* href=\"([^\"]+)\""
+)
+
+Built = tuple[Path, subprocess.CompletedProcess[str]]
+
+
+@pytest.fixture(scope="module")
+def built(
+    tmp_path_factory: pytest.TempPathFactory,
+) -> tuple[Path, subprocess.CompletedProcess[str]]:
+    """The site, built by the command in a process of its own."""
+    out = tmp_path_factory.mktemp("guide") / "site"
+    done = subprocess.run(
+        [sys.executable, "-m", "api.cli.command_line", "guide", "build", "--strict",
+         "--out", os.fspath(out)],
+        cwd=DOCS.parent, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    return out, done
+
+
+@pytest.mark.slow
+def test_the_site_is_built_without_a_warning(built: Built) -> None:
+    out, done = built
+    assert (done.stderr, done.returncode) == ("", 0)
+    assert done.stdout.endswith("0 warnings\n")
+    pages = {path.relative_to(out).with_suffix("").as_posix() for path in out.rglob("*.html")}
+    assert pages == {page for pages in CHAPTERS.values() for page in pages} | {ROOT, "search"}
+
+
+@pytest.mark.slow
+def test_no_page_loads_anything_from_elsewhere_or_has_a_script_of_its_own(
+    built: Built,
+) -> None:
+    out, _ = built
+    loaded = 0
+    for page in out.rglob("*.html"):
+        text = page.read_text("utf-8")
+        assert not re.search(r"<script(?![^>]*\bsrc=)[^>]*>", text), page
+        assert not re.search(r"<[a-z]+[^>]* on[a-z]+=\"", text), page
+        for match in LOADED.finditer(text):
+            target = (match[1] or match[2]).partition("?")[0]
+            if "canonical" in match[0] or target.startswith("#"):
+                continue
+            assert not re.match(r"(?:[a-z]+:)?//", target), (page, target)
+            assert (page.parent / target.partition("#")[0]).exists(), (page, target)
+            loaded += 1
+    assert loaded > 300
+    for sheet in out.rglob("*.css"):
+        assert not re.search(r"(?:url\(|@import)\s*[\"']?(?:https?:)?//", sheet.read_text("utf-8"))
+
+
+@pytest.mark.slow
+def test_every_link_between_built_pages_leads_to_a_heading(built: Built) -> None:
+    out, _ = built
+    texts = {page: page.read_text("utf-8") for page in out.rglob("*.html")}
+    ids = {page: set(re.findall(r' id="([^"]+)"', text)) for page, text in texts.items()}
+    followed = 0
+    for page, text in texts.items():
+        for target in re.findall(r'<a [^>]*href="([^"]+)"', text):
+            if re.match(r"[a-z]+:", target):
+                continue
+            path, _, anchor = target.partition("#")
+            there = (page.parent / path).resolve() if path else page
+            assert there in ids or there.is_file(), (page, target)
+            assert not anchor or anchor in ids[there], (page, target)
+            followed += 1
+    assert followed > 1000
+
+
+@pytest.mark.slow
+def test_equations_are_drawn_without_a_script(built: Built) -> None:
+    out, _ = built
+    text = (out / "models" / "geometric.html").read_text("utf-8")
+    assert text.count("<math") > 40
+    assert "$$" not in text
+    assert not re.search(r"<m[io]>[^<]*\\", text), "a command that was not understood"
+
+
+def test_every_page_of_docs_stands_in_one_chapter() -> None:
+    pages = sorted(p.relative_to(DOCS).with_suffix("").as_posix() for p in DOCS.rglob("*.md"))
+    assert sorted([ROOT, *(page for pages in CHAPTERS.values() for page in pages)]) == pages
+    assert toctrees().count("```{toctree}") == len(CHAPTERS)
+
+
+def test_an_equation_is_mathml_and_what_the_converter_does_not_know_is_said_otherwise() -> None:
+    drawn = extension.mathml(r"\hat t = \arg\min_t \frac{a}{b}", block=True)
+    assert drawn.startswith("<math")
+    assert 'display="block"' in drawn
+    assert "<mfrac>" in drawn
+    assert "\\" not in drawn
+    assert 'display="inline"' in extension.mathml(r"\arcsin x")
+
+
+def test_a_link_out_of_the_docs_becomes_its_path_and_what_is_fenced_stays() -> None:
+    text = "[a](../LICENSE) [`b/c.md`](../b/c.md) [d](limits.md#x) [e](https://e.org)\n"
+    assert extension.within("leaderboard", text) == (
+        "a (`LICENSE`) `b/c.md` [d](limits.md#x) [e](https://e.org)\n"
+    )
+    assert extension.within("models/lut", "[x](../limits.md)") == "[x](../limits.md)"
+    fenced = "```text\n[a](../LICENSE)\n```\n"
+    assert extension.within("leaderboard", fenced) == fenced
+
+
+def test_scripts_that_stand_in_pages_become_files(tmp_path: Path) -> None:
+    (tmp_path / "_static").mkdir()
+    (tmp_path / "deep").mkdir()
+    for name in ("a.html", "deep/b.html"):
+        (tmp_path / name).write_text("<p><script>one()</script><script src='x.js'></script>")
+    extension.scripts_apart(tmp_path)
+    (script,) = (tmp_path / "_static").iterdir()
+    assert script.read_text() == "one()"
+    assert f'src="_static/{script.name}"' in (tmp_path / "a.html").read_text()
+    assert f'src="../_static/{script.name}"' in (tmp_path / "deep" / "b.html").read_text()
+
+
+def test_a_guide_that_cannot_be_built_says_what_to_install(monkeypatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(site, "missing_builders", lambda: ("furo",))
+    assert site.kept() is None
+    for build in (site.keep, lambda: site.build(tmp_path / "out")):
+        with pytest.raises(site.GuideError, match=r"needs furo: pip install .*\[guide\]"):
+            build()
+    assert not (tmp_path / "out").exists()
+
+
+def test_the_site_of_changed_pages_is_another_and_the_oldest_are_let_go(
+    monkeypatch, tmp_path: Path
+) -> None:
+    pages = tmp_path / "docs"
+    pages.mkdir()
+    (pages / "index.md").write_text("# One\n")
+    monkeypatch.setenv("SUNATLAS_STORE", str(tmp_path))
+    monkeypatch.setattr(site, "source", lambda: pages)
+    monkeypatch.setattr(site, "digest", site.digest.__wrapped__)
+    places = []
+
+    def build(place: Path) -> list[str]:
+        place.mkdir(parents=True)
+        os.utime(place, (len(places), len(places)))
+        return ["a warning"]
+
+    monkeypatch.setattr(site, "build", build)
+    for number in range(site.KEPT + 2):
+        (pages / "index.md").write_text(f"# {number}\n")
+        places.append(site.kept())
+        assert site.keep() == ["a warning"]
+        assert site.keep() == [], "built once"
+    assert len(set(places)) == len(places)
+    assert sorted(path.is_dir() for path in places) == [False] * 2 + [True] * site.KEPT
+    assert not places[0].is_dir()

@@ -1,0 +1,201 @@
+"""Tables over HTTP: fixed columns, `format`, `sort` and `fields`, against the JSON of the same."""
+
+import csv
+import io
+import math
+
+import pytest
+
+from api import columns
+
+TABLES = {
+    "/v1/taxonomy": columns.TAXONOMY,
+    "/v1/studies": columns.STUDIES,
+    "/v1/studies?year_min=2020&detector=PD": columns.STUDIES,
+    "/v1/studies/Liebe2001": columns.STUDY,
+    "/v1/flows/error": columns.FLOWS,
+    "/v1/flows/error?error=Electrical&counting=fractional": columns.FLOWS,
+    "/v1/figures": columns.FIGURES,
+    "/v1/figures/matrix": columns.FIGURE_MATRIX,
+    "/v1/figures/matrix?rows=model&columns=model&detector=OI": columns.FIGURE_MATRIX,
+    "/v1/figures/performance": columns.FIGURE_FLOWS,
+    "/v1/figures/error?detector=OI": columns.FIGURE_FLOWS,
+    "/v1/figures/models?detector=OI": columns.FIGURE_MODELS,
+    "/v1/figures/publications?detector=OI": columns.FIGURE_PUBLICATIONS,
+    "/v1/figures/coordinates?detector=OI": columns.FIGURE_COORDINATES,
+    "/v1/recommendations?task=Accuracy": columns.RECOMMENDATIONS,
+    "/v1/recommendations?survive=albedo&max_error_deg=1": columns.RECOMMENDATIONS,
+    "/v1/recommendations?max_error_deg=0.000001": columns.RECOMMENDATIONS,
+    "/v1/algorithms": columns.ALGORITHMS,
+    "/v1/datasets": columns.DATASETS,
+    "/v1/datasets?limit=1": columns.DATASETS,
+    "/v1/datasets/pd-orbit": columns.DATASET,
+    "/v1/realism": columns.REALISM,
+    "/v1/leaderboard": columns.LEADERBOARD,
+    "/v1/leaderboard/architectures": columns.ARCHITECTURES,
+    "/v1/leaderboard/overview": columns.PARTS,
+    "/v1/leaderboard/qpd-single-aperture": columns.LEADERBOARD,
+    "/v1/leaderboard/qpd-single-aperture?field_deg=30": columns.LEADERBOARD,
+    "/v1/leaderboard/qpd-single-aperture?max_error_deg=1": columns.LEADERBOARD,
+    "/v1/results?limit=5": columns.RESULTS,
+    "/v1/sweeps?limit=5": columns.SWEEPS,
+    "/v1/curves": columns.CURVES,
+    "/v1/assessment": columns.ASSESSMENT,
+    "/v1/claims": columns.CLAIMS,
+    "/v1/claims?q=zzz": columns.CLAIMS,
+    "/v1/claims/C04": columns.CLAIM,
+    "/v1/search?q=centroid": columns.SEARCH,
+    "/v1/search?q=zzzzzzzz": columns.SEARCH,
+    "/v1/compare?architecture=CMOS:Encoded&architecture=PD:Slit": columns.COMPARISON,
+    "/v1/advice": columns.ADVICE,
+    "/v1/protocol": columns.PROTOCOL,
+}
+LISTS = {
+    # nested, and so columns of their own or left to JSON
+    "/v1/studies": {"values", "runs"},
+    "/v1/datasets": {"splits", "stands_for", "setups"},
+    "/v1/curves": None,  # points and draws are JSON's
+    "/v1/claims": None,  # rules too
+    "/v1/algorithms": set(),
+    "/v1/leaderboard/architectures": set(),
+    "/v1/leaderboard/qpd-single-aperture": set(),
+    "/v1/results": set(),
+    "/v1/sweeps": set(),
+    "/v1/advice": set(),
+    "/v1/search?q=centroid": set(),
+}
+
+
+def asked(url, **more):
+    return url + ("&" if "?" in url else "?") + "&".join(f"{k}={v}" for k, v in more.items())
+
+
+@pytest.mark.parametrize("url", TABLES)
+def test_a_table_has_its_columns_whatever_is_asked(atlas, url):
+    text = atlas.get(asked(url, format="csv")).text
+    header = text.partition("\n")[0]
+    assert header.split(",") == list(TABLES[url])
+    assert "\r" not in header
+    assert atlas.get(url, "text/csv").text == text
+
+
+def test_every_table_of_the_service_is_among_them_and_lists_its_columns(atlas):
+    document = atlas.get("/openapi.json").json()
+    listed = 0
+    for template, operations in document["paths"].items():
+        for operation in operations.values():
+            content = operation["responses"]["200"].get("content", {}).get("text/csv")
+            if content is None:
+                continue
+            here = template.split("{")[0].rstrip("/")
+            known = [c for url, c in TABLES.items() if url.partition("?")[0].startswith(here)]
+            described = content["schema"]["description"].removeprefix("Columns: ").rstrip(".")
+            assert tuple(described.split(", ")) in known, template
+            listed += 1
+    assert listed == 27
+
+
+@pytest.mark.parametrize("url", [url for url, left in LISTS.items() if left is not None])
+def test_no_member_of_an_item_is_lost_in_its_table(atlas, url):
+    members = set(atlas.get(asked(url, limit=500)).json()["items"][0])
+    table = TABLES.get(url) or TABLES[f"{url}?limit=5"]
+    assert members - set(table) <= LISTS[url]
+
+
+def test_format_and_accept_agree_or_are_refused(atlas):
+    url = "/v1/taxonomy"
+    assert atlas.get(f"{url}?format=csv").headers["content-type"].startswith("text/csv")
+    assert atlas.get(f"{url}?format=json", "text/csv, */*;q=0.1").json()["attributes"]
+    browser = "text/html,application/xhtml+xml,*/*;q=0.8"
+    assert atlas.get(f"{url}?format=csv", browser).text.startswith("attribute,")
+    assert atlas.get(f"{url}?%66ormat=csv").text.startswith("attribute,")
+    for query, accept, status in [
+        ("format=csv", "application/json", 406),
+        ("format=json", "text/csv", 406),
+        ("format=json", "application/json;q=0, */*", 406),
+        ("format=xml", None, 422),
+        ("format=csv&format=json", None, 422),
+        ("format=", None, 422),
+        ("Format=csv", None, 400),
+    ]:
+        answer = atlas.get(f"{url}?{query}", accept)
+        assert answer.status_code == status, query
+        assert "ormat" in answer.json()["detail"]
+    assert atlas.get("/healthz?format=csv").status_code == 400
+
+
+def test_what_is_asked_by_post_has_a_format_too(atlas):
+    url, body = "/v1/recommendations", {"task": ["Accuracy"], "limit": 2}
+    table = atlas.post(f"{url}?format=csv", json=body)
+    assert table.text.partition("\n")[0].split(",") == list(columns.RECOMMENDATIONS)
+    for query in ("format=xml", "format=csv&format=json"):
+        refused = atlas.post(f"{url}?{query}", json=body)
+        assert refused.status_code == 422
+        assert refused.json()["errors"][0]["parameter"] == "format"
+    assert atlas.post(f"{url}?formt=csv", json=body).status_code == 400
+
+
+def test_the_next_page_keeps_format_sort_and_fields(atlas):
+    url = "/v1/studies?format=csv&sort=-year&fields=key&fields=year&limit=100"
+    rows, following = [], url
+    while following:
+        answer = atlas.get(following)
+        rows += list(csv.DictReader(io.StringIO(answer.text)))
+        following = answer.links.get("next", {}).get("url")
+    every = atlas.get("/v1/studies?limit=500").json()["items"]
+    assert {row["key"] for row in rows} == {study["key"] for study in every}
+    years = [int(row["year"] or -1) for row in rows]
+    assert years == sorted(years, reverse=True)
+
+
+@pytest.mark.parametrize(
+    ("url", "column"),
+    [
+        ("/v1/leaderboard/qpd-single-aperture", "max_deg"),
+        ("/v1/leaderboard/architectures", "over_bound"),
+        ("/v1/studies", "year"),
+        ("/v1/curves", "needed_poses"),
+        ("/v1/claims", "statement"),
+        ("/v1/algorithms", "name"),
+    ],
+)
+def test_sorted_rows_are_those_of_the_list_in_order(atlas, url, column):
+    plain = atlas.get(f"{url}?limit=500").json()["items"]
+    up = atlas.get(f"{url}?limit=500&sort={column}").json()["items"]
+    down = atlas.get(f"{url}?limit=500&sort=-{column}").json()["items"]
+    there = [row for row in plain if row[column] not in (None, "")]
+    missing = [row for row in plain if row[column] in (None, "")]
+
+    def key(row):
+        value = row[column]
+        return value.casefold() if isinstance(value, str) else value
+
+    assert up == sorted(there, key=key) + missing
+    assert down == sorted(there, key=key, reverse=True) + missing
+
+
+def test_fields_narrow_json_and_csv_alike(atlas):
+    wanted = ["rms_deg", "extractor", "studies"]
+    base = "/v1/leaderboard/qpd-single-aperture?limit=50"
+    query = base + "".join(f"&fields={name}" for name in wanted)
+    items = atlas.get(query).json()["items"]
+    whole = atlas.get(base).json()["items"]
+    assert items == [
+        {name: row[name] for name in ("extractor", "rms_deg", "studies")} for row in whole
+    ]
+    rows = atlas.table(query)
+    assert list(rows[0]) == ["extractor", "rms_deg", "studies"]
+    for row, item in zip(rows, items, strict=True):
+        assert row["extractor"] == item["extractor"]
+        assert row["studies"] == "; ".join(item["studies"])
+        number = float(row["rms_deg"]) if row["rms_deg"] else None
+        assert number == item["rms_deg"] or math.isnan(item["rms_deg"])
+
+
+def test_words_that_are_no_columns_are_refused_with_the_nearest(atlas):
+    for name, word, near in [("sort", "rms_degs", "rms_deg"), ("fields", "extracter", "extractor")]:
+        answer = atlas.get(f"/v1/results?{name}={word}")
+        assert answer.status_code == 422
+        assert answer.json()["errors"][0]["nearest"] == near
+    assert atlas.get("/v1/studies?sort=detector").status_code == 422  # a list a row
+    assert atlas.get("/v1/studies?sort=year&sort=key").status_code == 422

@@ -1,0 +1,36 @@
+"""axe-core finds nothing serious on any kind of page, in either scheme, wide or narrow."""
+
+from __future__ import annotations
+
+from importlib.resources import files
+
+import pytest
+
+from tests.api.page.visiting import Visit
+from tests.api.pages.addresses import KINDS
+
+pytestmark = pytest.mark.slow
+
+AXE = (files("axe_playwright_python") / "axe.min.js").read_text(encoding="utf-8")
+SERIOUS = {"serious", "critical"}
+
+
+@pytest.mark.parametrize("visit", ["wide", "narrow", "dark"])
+def test_no_page_has_a_serious_issue(visit: str, request: pytest.FixtureRequest) -> None:
+    visited: Visit = request.getfixturevalue(visit)
+    page = visited.page
+    found = []
+    for kind, path in KINDS.items():
+        page.goto(visited.address + path)
+        if kind.startswith("answer"):
+            page.wait_for_function("() => document.documentElement.dataset.live")
+        page.evaluate(AXE)
+        result = page.evaluate("() => axe.run(document, {resultTypes: ['violations']})")
+        found += [
+            (kind, issue["id"], node["target"], node["failureSummary"])
+            for issue in result["violations"]
+            if issue["impact"] in SERIOUS
+            for node in issue["nodes"][:3]
+        ]
+        assert len(result["passes"]) > 10, kind  # or it has not looked
+    assert found == []

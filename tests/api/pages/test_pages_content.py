@@ -1,0 +1,146 @@
+"""What pages say, against what the service says."""
+
+from __future__ import annotations
+
+import re
+from html import unescape
+
+import pytest
+
+from api.pages.numbers import counted, degrees, number, percent, times
+from api.pages.terms import explained, glossary, shown
+from registry.studies import facts
+from tests.api.conftest import Client
+from tests.api.pages.addresses import KINDS
+
+TAGS = re.compile(r"<(script|style|template|noscript)\b.*?</\1>|<[^>]+>", re.DOTALL)
+
+
+def text_of(html: str) -> str:
+    """What is read: no tags, no line breaks."""
+    return " ".join(unescape(TAGS.sub(" ", html)).split())
+
+
+def test_a_study_shows_every_value_with_its_basis_and_every_score(atlas: Client) -> None:
+    told = atlas.get("/v1/studies/Chang2008").json()
+    page = text_of(atlas.get("/studies/Chang2008").text)
+    for cell in told["attributes"]:
+        assert cell["value"] in page
+        assert cell["note"] in page
+    errors = [s["rms_deg"] for p in told["pipelines"] for s in p["scores"]]
+    assert len(errors) > 4
+    assert all(degrees(error) in page for error in errors if error is not None)
+
+
+def test_a_board_is_that_of_the_service_in_its_order(atlas: Client) -> None:
+    rows = atlas.walk("/v1/leaderboard/ccd-lens?condition=hot&limit=500")
+    html = atlas.get("/datasets/ccd-lens?condition=hot&rows=all").text
+    board = html[html.index('id="board"') : html.index('id="heat"')]
+    names = re.findall(r'<td class="first">.*?>([^<]+)</a> → .*?>([^<]+)</a>', board)
+    assert names == [(row["extractor"], row["model"]) for row in rows]
+
+
+def test_a_condition_of_another_data_set_is_refused_with_the_nearest(atlas: Client) -> None:
+    refused = atlas.get("/datasets/ccd-lens?condition=ghosts", accept="application/json")
+    assert refused.status_code == 422
+    assert "nominal" in refused.json()["errors"][0]["expected"]
+
+
+def test_the_answer_reads_without_a_script(atlas: Client) -> None:
+    asked = "task=Accuracy&survive=albedo"
+    told = atlas.get(f"/v1/recommendations?{asked}&limit=500").json()
+    page = text_of(atlas.get(f"/?{asked}").text)
+    assert counted(told["count"], "architecture") in page
+    assert counted(told["designs"], "calibration") in page
+    for architecture in told["architectures"][:10]:
+        assert f"{architecture['detector']} + {architecture['mask']}" in page
+        measured = architecture["best"]["measured"]
+        assert degrees(measured["error_deg"]) in page
+    assert "Asked for: task Accuracy, shall survive albedo." in page
+
+
+def test_what_leaves_nothing_and_what_would_help_are_said(atlas: Client) -> None:
+    told = atlas.get("/v1/recommendations?detector=Event&mask=Lens").json()["blocked"]
+    page = text_of(atlas.get("/?detector=Event&mask=Lens").text)
+    assert told["constraint"] in page
+    assert all(relaxation["words"][1:] in page for relaxation in told["relaxations"])
+
+
+def test_how_the_answer_is_shown_is_no_requirement(atlas: Client) -> None:
+    plain = text_of(atlas.get("/?task=Cost").text)
+    assert text_of(atlas.get("/?task=Cost&chart=error&view=table&board_sort=model").text) == plain
+
+
+def test_the_scatter_has_a_point_for_every_measured_architecture(atlas: Client) -> None:
+    told = atlas.get("/v1/recommendations?limit=500").json()["architectures"]
+    page = atlas.get("/scatter").text
+    drawn = re.findall(r'<circle class="dot (\w+)"', page)
+    every = [a["best"]["measured"] for a in told]
+    seen = [m for m in every if m["field_deg"] or m["fov_deg"]]
+    assert 20 < len(drawn) == len(seen) < len(every)
+    assert f"{len(every) - len(seen)} more" in text_of(page)  # which see all directions
+    # The front: none errs less over a field as wide.
+    places = {(m["field_deg"] or m["fov_deg"], m["error_deg"]) for m in seen}
+    front = [
+        (field, error)
+        for field, error in places
+        if not any(f >= field and e <= error and (f, e) != (field, error) for f, e in places)
+    ]
+    assert drawn.count("pareto") == len(front)
+
+
+def test_comparison_needs_two_and_takes_four(atlas: Client) -> None:
+    assert "side by side" in atlas.get("/compare?architecture=CMOS:Encoded").text
+    five = "&".join(
+        f"architecture=CMOS:{m}" for m in ("Encoded", "Slit", "Lens", "L-Slit", "N-Slit")
+    )
+    assert atlas.get(f"/compare?{five}").status_code == 422
+    told = atlas.get("/compare.json?architecture=CMOS:Encoded&architecture=PD:Maskless").json()
+    assert [item["detector"] for item in told["items"]] == ["CMOS", "PD"]
+
+
+def test_search_leads_to_the_page_of_what_it_finds(atlas: Client) -> None:
+    for word, page in (
+        ("Chang2008", "/studies/Chang2008"),
+        ("cmos-lens", "/datasets/cmos-lens"),
+        ("mt-acm", "/algorithms/mt-acm"),
+    ):
+        found = atlas.get(f"/search.json?q={word}").json()["items"]
+        assert page in [item["page"] for item in found[:3]]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_none_never_stands_bare(atlas: Client, kind: str) -> None:
+    page = atlas.get(KINDS[kind], accept="text/html").text
+    assert not re.search(r">\s*None\s*<", page)
+
+
+def test_every_abbreviation_of_the_taxonomy_is_told_in_the_glossary() -> None:
+    taxonomy = facts().taxonomy.to_dict()
+    short = {e["value"] for entries in taxonomy.values() for e in entries if e["value"].isupper()}
+    assert len(short) > 20
+    assert short <= set(glossary())
+
+
+def test_an_abbreviation_is_explained_at_its_first_place_and_no_part_of_a_name_is() -> None:
+    text = str(explained("RMS of RMS, not RMS-like nor <CCD>"))
+    assert text.count('class="term"') == 2
+    assert 'title="root mean square">RMS</a> of RMS, not RMS-like' in text
+    assert "&lt;<a" in text
+    assert shown("None", "mask") == "no mask"
+
+
+def test_numbers_have_three_digits_no_exponent_and_a_dash_for_none() -> None:
+    assert [number(x) for x in (0.0123456, 123.4, 2e-7, 0.0, None)] == [
+        "0.0123",
+        "123",
+        "0.00000020",
+        "0",
+        "–",
+    ]
+    assert (degrees(0.5), times(None), percent(0.99999), percent(1.0)) == (
+        "0.500°",
+        "–",
+        "99.9 %",
+        "100 %",
+    )

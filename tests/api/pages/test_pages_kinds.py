@@ -1,0 +1,141 @@
+"""What holds for every kind of page, read as a browser without a script reads it."""
+
+from __future__ import annotations
+
+import re
+from html.parser import HTMLParser
+from itertools import pairwise
+from urllib.parse import urlsplit
+
+import pytest
+
+from api.http.page import page_files
+from api.pages.rendering import NAVIGATION
+from tests.api.conftest import Client
+from tests.api.pages.addresses import KINDS
+
+VOID = {"meta", "link", "img", "input", "br", "hr"}
+#: Parts of the atlas that a service has beside the pages.
+BESIDE = ("/guide",)
+
+
+class Page(HTMLParser):
+    """Tags with their attributes, text outside scripts, and whether tags are closed in order."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
+        self.open: list[str] = []
+        self.inline: list[str] = []
+        self.unmatched: list[str] = []
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, dict(attrs)))
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, dict(attrs)))
+
+    def handle_endtag(self, tag: str) -> None:
+        if self.open and self.open[-1] == tag:
+            self.open.pop()
+        else:
+            self.unmatched.append(f"</{tag}> in {'/'.join(self.open[-3:])}")
+
+    def handle_data(self, data: str) -> None:
+        if self.open and self.open[-1] in {"script", "style"} and data.strip():
+            self.inline.append(data)
+
+    def having(self, name: str) -> list[tuple[str, str]]:
+        return [(tag, a[name] or "") for tag, a in self.tags if a.get(name) is not None]
+
+
+@pytest.fixture(scope="module", params=KINDS.values(), ids=KINDS.keys())
+def page(request: pytest.FixtureRequest, atlas: Client) -> Page:
+    response = atlas.get(request.param, accept="text/html")
+    assert response.headers["content-type"] == "text/html; charset=utf-8"
+    assert response.status_code in {200, 404, 422}
+    return Page(response.text)
+
+
+def test_markup_is_whole_and_ids_are_one_elements(page: Page) -> None:
+    assert page.unmatched == []
+    assert page.open == []
+    ids = [value for _, value in page.having("id")]
+    assert sorted(set(ids)) == sorted(ids)
+
+
+def test_nothing_is_inline_and_nothing_comes_from_elsewhere(page: Page) -> None:
+    assert page.inline == []
+    assert not [a for _, attributes in page.tags for a in attributes if a.startswith("on")]
+    assert page.having("style") == []
+    for tag, address in page.having("src") + [
+        (tag, value) for tag, value in page.having("href") if tag == "link"
+    ]:
+        assert not urlsplit(address).netloc, (tag, address)
+        if address.startswith("/page/"):
+            assert address.removeprefix("/page/") in page_files()
+
+
+def test_there_is_one_heading_of_the_page_and_none_is_skipped(page: Page) -> None:
+    levels = [int(tag[1]) for tag, _ in page.tags if re.fullmatch("h[1-6]", tag)]
+    assert levels.count(1) == 1
+    assert levels[0] == 1
+    assert all(after - before <= 1 for before, after in pairwise(levels))
+
+
+def test_every_part_of_the_atlas_is_a_press_away(page: Page) -> None:
+    links = {value for tag, value in page.having("href") if tag == "a"}
+    assert {address for address, _ in NAVIGATION} <= links
+
+
+def test_tables_name_their_columns_and_pictures_say_what_they_show(page: Page) -> None:
+    assert all("scope" in a for tag, a in page.tags if tag == "th")
+    assert all(a.get("alt") is not None for tag, a in page.tags if tag == "img")
+    for tag, attributes in page.tags:
+        if tag == "svg":
+            assert attributes.get("aria-label")
+
+
+@pytest.mark.slow
+def test_every_link_within_the_atlas_leads_somewhere(atlas: Client) -> None:
+    """The crawl starts at one page of every kind and follows what these link to, one step."""
+    leads: dict[str, str] = {}
+    anchors: dict[str, set[str]] = {}
+    for kind, start in KINDS.items():
+        if kind == "answer, refused":
+            continue  # its links ask the same again
+        for tag, link in Page(atlas.get(start, accept="text/html").text).having("href"):
+            target = urlsplit(link)
+            if tag == "a" and not target.netloc and not link.startswith(BESIDE) and target.path:
+                leads.setdefault(link, start)
+    assert len(leads) > 400
+    pages: dict[str, Page] = {}
+    for link, start in leads.items():
+        path, _, fragment = link.partition("#")
+        if path not in pages:
+            response = atlas.get(path, accept="text/html, */*;q=0.8")
+            assert response.status_code == 200, (start, link)
+            pages[path] = Page(response.text if "html" in response.headers["content-type"] else "")
+            anchors[path] = {value for _, value in pages[path].having("id")}
+        if fragment:
+            assert fragment in anchors[path], (start, link)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "kind", ["studies", "algorithms", "datasets", "claims", "masks", "detectors"]
+)
+def test_every_one_of_a_kind_has_its_page(atlas: Client, kind: str) -> None:
+    index = Page(atlas.get(f"/{kind}").text)
+    pages = {v.partition("?")[0].partition("#")[0] for tag, v in index.having("href") if tag == "a"}
+    own = {address for address in pages if address.startswith(f"/{kind}/")}
+    assert len(own) >= 10
+    for address in own:
+        response = atlas.get(address, accept="text/html")
+        assert response.status_code == 200, address
+        assert not re.search(r">\s*None\s*<", response.text), address
+        page = Page(response.text)
+        assert page.unmatched == [], address

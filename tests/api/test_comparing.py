@@ -1,0 +1,89 @@
+"""Comparisons say what the boards, curves and studies say; what does not fit is refused."""
+
+import pytest
+
+from api.comparing import compare_architectures, compare_pipelines
+from api.http.knowledge import Knowledge
+from api.http.measurements import Measurements
+from registry.taxonomy import InvalidValueError
+
+DATASET = "cmos-single-aperture"
+
+
+@pytest.fixture(scope="module")
+def known(atlas):
+    return atlas.app.state.knowledge
+
+
+def test_pipelines_have_the_numbers_of_their_scores_and_curves(atlas, known):
+    curves = atlas.get(f"/v1/curves?dataset={DATASET}").json()["items"]
+    names = [f"{c['extractor']}:{c['model']}" for c in curves][:3]
+    assert len(names) >= 2
+    found = compare_pipelines(known, DATASET, names, "hot")
+    assert (found["dataset"], found["condition"]) == (DATASET, "hot")
+    assert [f"{i['extractor']}:{i['model']}" for i in found["items"]] == names
+    for item, curve in zip(found["items"], curves, strict=False):
+        asked = {k: item[k] for k in ("extractor", "model")} | {"dataset": DATASET}
+        scores = atlas.request("GET", "/v1/results", params=asked).json()["items"]
+        by = {score["condition"]: score for score in scores}
+        for name in ("rms_deg", "bound_deg", "availability", "over_bound", "floor_deg"):
+            assert item[name] == by["hot"][name]
+        assert {c: v["rms_deg"] for c, v in item["conditions"].items()} == {
+            c: score["rms_deg"] for c, score in by.items()
+        }
+        assert item["needed_poses"] == curve["needed_poses"]
+        for ring in item["rings"]:
+            name = f"rms_{ring['inner_deg']:g}_{ring['outer_deg']:g}_deg"
+            assert ring["rms_deg"] == by["hot"][name]
+    errors = [item["rms_deg"] for item in found["items"]]
+    assert [i["over_least"] for i in found["items"]] == [e / min(errors) for e in errors]
+
+
+def test_architectures_have_their_best_pipeline_and_their_studies(atlas, known):
+    best = {
+        f"{row['detector']}:{row['mask']}": row
+        for row in atlas.get("/v1/leaderboard/architectures?limit=500").json()["items"]
+    }
+    names = ["QPD:Single-Ap.", "CMOS:Single-Ap.", "CMOS:Multi-Ap."]
+    found = compare_architectures(known, names)["items"]
+    for item, name in zip(found, names, strict=True):
+        assert f"{item['detector']}:{item['mask']}" == name
+        for member in ("dataset", "extractor", "model", "rms_deg", "over_bound", "half_fov_deg"):
+            assert item[member] == best[name][member]
+    listed = atlas.get("/v1/studies?detector=CMOS&mask=Multi-Ap.").json()["items"]
+    assert set(found[2]["proposed"]) <= {study["key"] for study in listed}
+    assert len(found[2]["proposed"]) > 3
+
+
+def test_architectures_that_only_studies_have_are_shown_without_numbers(tmp_path):
+    unmeasured = Knowledge(Measurements(tmp_path))
+    for item in compare_architectures(unmeasured, ["CMOS:Multi-Ap.", "QPD:Single-Ap."])["items"]:
+        assert item["rms_deg"] is None
+        assert item["over_least"] is None
+        assert item["reason"] == "no data set"
+        assert len(item["proposed"]) > 3
+
+
+@pytest.mark.parametrize(
+    ("pipelines", "condition", "parameter"),
+    [
+        (["bctm:spm"], None, "pipeline"),
+        (["bctm:spm", "bctm:spm"], None, "pipeline"),
+        (["bctm:spm"] * 5, None, "pipeline"),
+        (["bctm:spm", "bctm:smp"], None, "pipeline"),
+        (["bctm:spm", "mirror:homography"], "foggy", "condition"),
+    ],
+)
+def test_what_cannot_be_compared_is_refused(known, pipelines, condition, parameter):
+    with pytest.raises(InvalidValueError) as refused:
+        compare_pipelines(known, DATASET, pipelines, condition)
+    assert refused.value.parameter == parameter
+
+
+def test_a_refusal_names_the_nearest(known):
+    with pytest.raises(InvalidValueError) as refused:
+        compare_pipelines(known, DATASET, ["bctm:spm", "bctm:smp"])
+    assert refused.value.nearest == "bctm:spm"
+    with pytest.raises(InvalidValueError) as refused:
+        compare_architectures(known, ["CMOS:Multi-Ap.", "CMOS:Single-AP"])
+    assert refused.value.nearest == "CMOS:Single-Ap."

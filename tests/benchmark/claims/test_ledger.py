@@ -1,0 +1,221 @@
+"""The ledger of claims: what was decided ahead, what came out, and that it is of this code."""
+
+import dataclasses
+import json
+import math
+from collections import Counter
+
+import pandas as pd
+import pytest
+
+import survey_data
+from benchmark.claims import rules as claim_rules
+from benchmark.claims.experiment import Experiment, Sketch, Trial, found
+from benchmark.claims.judgement import judged
+from benchmark.claims.ledger import LedgerError, ledger, tally, unexplained
+from benchmark.claims.outcomes import (
+    PUBLISHED,
+    OutcomeError,
+    outcome_of,
+    read,
+    stale,
+    write,
+)
+from benchmark.claims.rules import DIRECTORY, VERDICTS, claims
+from benchmark.claims.run import due, main, run
+from benchmark.contract import UnknownNameError
+
+
+def experiment(trial):
+    return Experiment("C04", "benchmark.claims.judgement", trial, Sketch(), "about")
+
+
+def trials(count=6, **more):
+    one = {"little": 1.0, "before": 2.0}
+    return [Trial(one, {"line": ((1, 2), (0.5, math.nan))}, one, **more) for _ in range(count)]
+
+
+def test_every_claim_of_the_survey_has_rules_and_trials():
+    assert list(claims()) == list(survey_data.load().claims["id"])
+    for claim in claims().values():
+        assert claim.rules
+        assert claim.trials >= 5
+    assert sum(bool(claim.second) for claim in claims().values()) >= 5
+
+
+def test_every_claim_has_an_experiment_in_its_family():
+    for name, one in found().items():
+        assert one.module.split(".")[-2] == claims()[name].family
+
+
+def test_every_outcome_is_of_the_rules_and_the_code_as_they_are():
+    """What CI checks: a changed algorithm, data set or rule leaves no outcome behind."""
+    assert due() == {}, "measure again: python -m benchmark.claims.run"
+
+
+def test_verdicts_follow_from_the_published_numbers():
+    """Recomputed from the files by hand: Student's interval by pandas, limits from the CSV."""
+    table = pd.read_csv(DIRECTORY / "rules.csv", keep_default_na=False)
+    for entry in (entry for entry in ledger() if entry.outcome):
+        document = json.loads((PUBLISHED / f"{entry.claim.id}.json").read_text())
+        rows = table[table["claim"] == entry.claim.id]
+        assert set(document["values"]) == set(rows["rule"])
+        assert entry.verdict in VERDICTS
+        standings = {one.rule.name: one.standing for one in entry.rules}
+        for row in rows.itertuples():
+            values = pd.Series(document["values"][row.rule], dtype=float).dropna()
+            assert len(document["values"][row.rule]) == entry.claim.trials >= 5
+            if row.scale == "linear" and len(values) >= 5:
+                half = values.sem() * {4: 2.7764, 5: 2.5706, 7: 2.3646}[len(values) - 1]
+                low, high = values.mean() - half, values.mean() + half
+                outside = {
+                    ">": high <= float(row.limit),
+                    ">=": high < float(row.limit),
+                    "<": low >= float(row.limit),
+                    "<=": low > float(row.limit),
+                }
+                if row.relation in outside and abs(half) > 1e-9:
+                    assert (standings[row.rule] == "fails") == outside[row.relation]
+
+
+def test_what_is_not_reproduced_is_explained():
+    assert unexplained(ledger()) == ()
+
+
+def test_a_second_method_is_named():
+    for entry in ledger():
+        assert bool(entry.second) == bool(entry.claim.second and entry.outcome)
+
+
+def test_tally_counts_every_claim_once():
+    entries = ledger()
+    assert sum(tally(entries).values()) == 55
+    counted = Counter(entry.verdict for entry in entries)
+    assert all(tally(entries)[name] == counted[name] for name in VERDICTS)
+
+
+def test_an_outcome_is_read_as_it_was_written(tmp_path):
+    outcome = outcome_of(claims()["C04"], experiment(None), trials())
+    write(outcome, tmp_path)
+    again = read(tmp_path)["C04"]
+    assert again.values == {"little": (1.0,) * 6, "before": (2.0,) * 6}
+    assert again.lines["line"].across == (1.0, 2.0)
+    assert again.lines["line"].median[0] == 0.5
+    assert math.isnan(again.lines["line"].median[1])
+    before = (tmp_path / "C04.json").read_bytes()
+    write(again, tmp_path)
+    assert (tmp_path / "C04.json").read_bytes() == before
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"values": {"little": 1.0}}, "trial 0 must give before, little; it gives little"),
+        ({"second": {"other": 1.0}}, "the second method gives"),
+        ({"second": {}}, "expected numbers by the second method"),
+        ({"lines": {"line": ((1, 2, 3), (0.5, 1.0))}}, "3 places and"),
+    ],
+)
+def test_trials_that_do_not_fit_their_claim_are_refused(change, said):
+    made = [dataclasses.replace(trial, **change) for trial in trials()]
+    with pytest.raises(OutcomeError, match=said):
+        outcome_of(claims()["C04"], experiment(None), made)
+
+
+def test_trials_that_place_their_points_differently_are_refused():
+    made = trials()
+    made[3] = dataclasses.replace(made[3], lines={"line": ((1, 3), (0.5, 0.5))})
+    with pytest.raises(OutcomeError, match="differently"):
+        outcome_of(claims()["C04"], experiment(None), made)
+
+
+def test_a_changed_rule_or_code_makes_an_outcome_stale(monkeypatch):
+    claim, one = claims()["C04"], experiment(None)
+    outcome = outcome_of(claim, one, trials())
+    assert stale(claim, one, outcome) == ""
+    assert stale(claim, one, None) == "not measured"
+    tightened = dataclasses.replace(claim.rules[0], limit=0.95)
+    changed = dataclasses.replace(claim, rules=(tightened, *claim.rules[1:]))
+    assert stale(changed, one, outcome) == "rules or plan changed"
+    reworded = dataclasses.replace(claim, measured_on="said in other words")
+    assert stale(reworded, one, outcome) == ""
+    other = dataclasses.replace(one, module="benchmark.claims.ledger")
+    assert stale(claim, other, outcome) == "code changed"
+
+
+def test_a_broken_file_is_named(tmp_path):
+    (tmp_path / "C04.json").write_text('{"claim": "C04"}')
+    with pytest.raises(OutcomeError, match=r"C04\.json is no outcome"):
+        read(tmp_path)
+
+
+def test_an_explanation_of_another_verdict_is_refused(tmp_path):
+    write(outcome_of(claims()["C04"], experiment(None), trials()), tmp_path)
+    said = tmp_path / "explanations.csv"
+    said.write_text("claim,verdict,says\nC04,refuted,It is not so.\n")
+    with pytest.raises(LedgerError, match=r"C04 is explained as 'refuted'.*'reproduced'"):
+        ledger(tmp_path, said)
+    said.write_text("claim,verdict,says\nC99,refuted,It is not so.\n")
+    with pytest.raises(LedgerError, match="C99"):
+        ledger(tmp_path, said)
+
+
+def test_what_was_not_measured_says_so(tmp_path):
+    said = tmp_path / "explanations.csv"
+    said.write_text("claim,verdict,says\n")
+    entries = ledger(tmp_path, said)
+    assert tally(entries)["not measured"] == 55
+    assert unexplained(entries) == ()
+
+
+def test_the_second_method_disagrees_where_a_rule_comes_out_otherwise(tmp_path):
+    low = {"little": 0.5, "before": 2.0}
+    made = [dataclasses.replace(trial, second=low) for trial in trials()]
+    write(outcome_of(claims()["C04"], experiment(None), made), tmp_path)
+    said = tmp_path / "explanations.csv"
+    said.write_text("claim,verdict,says\n")
+    (entry,) = (e for e in ledger(tmp_path, said) if e.claim.id == "C04")
+    assert entry.agrees is False
+    assert judged(entry.claim.rule("little"), [0.5] * 6).standing == "fails"
+
+
+def test_only_what_is_asked_for_is_measured_and_unknown_claims_are_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr("benchmark.claims.run.measured", lambda name: trials())
+    assert run(["C04"], tmp_path) == ["C04"]
+    assert [path.name for path in tmp_path.iterdir()] == ["C04.json"]
+    with pytest.raises(UnknownNameError, match="did you mean"):
+        run(["C044"], tmp_path)
+
+
+def test_the_check_names_what_is_due(tmp_path, capsys):
+    assert main(["--check", "--directory", str(tmp_path)]) == 1
+    assert "C04: not measured" in capsys.readouterr().out
+
+
+def test_rules_that_no_claim_has_are_refused(tmp_path, monkeypatch):
+    for name in ("rules.csv", "trials.csv"):
+        (tmp_path / name).write_text((DIRECTORY / name).read_text())
+    with (tmp_path / "rules.csv").open("a") as file:
+        file.write("C99,a,Something,linear,>,1,,\n")
+    monkeypatch.setattr(claim_rules, "DIRECTORY", tmp_path)
+    with pytest.raises(claim_rules.RulesError, match="C99"):
+        claim_rules.claims.__wrapped__()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("C04,little", "C04,before", "two rules of one name"),
+        ("log,>=,0.9,,", "log,=>,0.9,,", "expected one of"),
+        ("log,>=,0.9,,", "log,within,0.9,,", "needs an upper limit"),
+    ],
+)
+def test_a_rule_that_cannot_be_read_is_named(tmp_path, monkeypatch, old, new, said):
+    for name in ("rules.csv", "trials.csv"):
+        (tmp_path / name).write_text((DIRECTORY / name).read_text())
+    text = (tmp_path / "rules.csv").read_text()
+    start = text.index("C04,little")
+    (tmp_path / "rules.csv").write_text(text[:start] + text[start:].replace(old, new, 1))
+    monkeypatch.setattr(claim_rules, "DIRECTORY", tmp_path)
+    with pytest.raises(claim_rules.RulesError, match=said):
+        claim_rules.claims.__wrapped__()

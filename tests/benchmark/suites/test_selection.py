@@ -1,0 +1,96 @@
+"""What the suites hold: by rule, so that what is new takes its place."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import fake_atlas
+import fake_plan
+import pytest
+
+from algorithms.chain import Chain
+from benchmark.contract import Cell, UnknownNameError
+from benchmark.leaderboard import scope
+from benchmark.plan.combinations import cells
+from benchmark.plan.parts import Parts, installed
+from benchmark.results.store import PUBLISHED, Store
+from benchmark.suites.selection import NOT_QUICK, SUITES, suite
+from registry.studies import facts
+
+
+@pytest.fixture(scope="module")
+def quick() -> list[Cell]:
+    return suite("quick").select({}, installed())
+
+
+def test_quick_meets_every_extractor_and_every_model_that_fits_a_data_set(
+    quick: list[Cell],
+) -> None:
+    everything = cells()
+    assert {cell.extractor for cell in quick} == set(installed().extractors)
+    assert {cell.model for cell in quick} == {cell.model for cell in everything}
+    assert {cell.dataset for cell in quick} == set(installed().presets) - NOT_QUICK
+    assert set(quick) <= set(everything)
+    assert len(set(quick)) == len(quick) < 150
+
+
+def test_quick_meets_every_category_of_models_that_has_one(quick: list[Cell]) -> None:
+    taxonomy, models = facts().taxonomy, installed().models
+
+    def category(name: str) -> str:
+        model = models[name]
+        last = model.model if isinstance(model, Chain) else model
+        return taxonomy.category("model", last.about.taxonomy)
+
+    there = {category(name) for name in models}
+    assert len(there) >= 6
+    assert {category(cell.model) for cell in quick} == there
+
+
+def test_quick_needs_nothing_that_is_not_published_anyway(quick: list[Cell]) -> None:
+    assert set(quick) <= set(Store(PUBLISHED).scores())
+    assert {cell.unit for cell in quick} == {0}
+
+
+def test_standard_is_all_that_is_published() -> None:
+    published = Store(PUBLISHED).scores()
+    assert suite("standard").select(published, installed()) == sorted(published)
+
+
+def test_standard_is_the_first_cells_where_nothing_is_known() -> None:
+    parts = fake_plan.parts()
+    assert suite("standard").select({}, parts) == scope.first(parts)
+
+
+def test_what_is_new_takes_its_place_in_quick_and_moves_nothing_else() -> None:
+    class Another(fake_atlas.Currents):
+        about = replace(fake_atlas.CURRENTS, name="fake-z-another")
+
+    class Worse(fake_atlas.LeastSquares):
+        about = replace(fake_atlas.LeastSquares.about, name="fake-z-worse")
+
+    before = fake_plan.parts(presets=(fake_atlas.Diodes(), fake_atlas.Diodes(name="fake-second")))
+    after = Parts(
+        {**before.presets, "fake-third": fake_atlas.Diodes(name="fake-third")},
+        {**before.extractors, "fake-z-another": Another},
+        {**before.models, "fake-z-worse": Worse},
+    )
+    first, second = (set(suite("quick").select({}, parts)) for parts in (before, after))
+    one, other = "fake-currents", "fake-least-squares"
+    assert first == {
+        Cell("fake-diodes", "quiet", one, other),
+        Cell("fake-diodes", "quiet", "fake-gaps", other),
+        Cell("fake-second", "quiet", one, other),
+    }
+    assert second - first == {
+        Cell("fake-diodes", "quiet", "fake-z-another", other),
+        Cell("fake-diodes", "quiet", one, "fake-z-worse"),
+        Cell("fake-third", "quiet", one, other),
+    }
+    assert first < second
+
+
+def test_an_unknown_suite_is_refused_with_the_nearest() -> None:
+    with pytest.raises(UnknownNameError, match="did you mean 'quick'"):
+        suite("quik")
+    assert {one.name: one for one in SUITES.values()} == dict(SUITES)

@@ -1,0 +1,154 @@
+"""Processes end with those they work for, and tidily when they are told to."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+import benchmark
+
+ROOT = Path(benchmark.__file__).parents[1]
+PROGRAM = """
+import sys, time
+from pathlib import Path
+from benchmark.processes import call_to_end
+from survey_data.leftovers import scratch_directory
+
+def main():
+    with scratch_directory(Path(sys.argv[1]) / "out"):
+        print("working", flush=True)
+        time.sleep(600)
+
+call_to_end(main)
+"""
+#: Starts PROGRAM as one that works for it, says its number, and waits to be killed.
+COORDINATOR = """
+import os, subprocess, sys, time
+from benchmark.processes import for_coordinator
+command = [sys.executable, "-c", sys.argv[1], sys.argv[2]]
+environment = {**os.environ, **for_coordinator()}
+with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True) as process:
+    process.stdout.readline()
+    print(process.pid, flush=True)
+    time.sleep(600)
+"""
+#: The same of workers of a pool, of which one works and the others wait.
+POOL = """
+import os, sys, time
+from benchmark.running.workers import as_completed
+sys.path.append(sys.argv[1])
+from sleeping import sleep
+for pid in as_completed(sleep, [0, 0, 0, 600], 2):
+    print(pid, flush=True)
+"""
+
+
+def start(*command: object) -> subprocess.Popen[str]:
+    return subprocess.Popen(
+        [sys.executable, "-c", *map(str, command)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        cwd=ROOT,
+        # else a run in a shell's background, where Ctrl-C is ignored, hands that on
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # noqa: PLW1509
+    )
+
+
+def first_line(process: subprocess.Popen[str]) -> str:
+    assert process.stdout is not None
+    return process.stdout.readline().strip()
+
+
+def ended(process: int) -> bool:
+    """Wait for a process of another parent; far less than it would go on by itself."""
+    deadline = time.monotonic() + 60
+    while time.monotonic() < deadline:
+        try:
+            state = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0]
+        except OSError:
+            return True
+        if state == "Z":
+            return True
+        time.sleep(0.02)
+    return False
+
+
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGTERM, 143), (signal.SIGINT, 130)])
+def test_a_program_that_is_told_to_end_removes_what_it_was_making(
+    tmp_path: Path, number: signal.Signals, code: int
+) -> None:
+    process = start(PROGRAM, tmp_path)
+    assert first_line(process) == "working"
+    assert len(list(tmp_path.iterdir())) == 1
+    process.send_signal(number)
+    _, said = process.communicate(timeout=60)
+    assert (process.returncode, said) == (code, "")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_error_that_a_signal_was_made_into_ends_as_the_signal_does(tmp_path: Path) -> None:
+    """As where an extension module is being loaded: its ImportError says nothing of the signal."""
+    program = (
+        "import time\n"
+        "from benchmark.processes import call_to_end\n"
+        "def main():\n"
+        "    try:\n        print('working', flush=True); time.sleep(600)\n"
+        "    except KeyboardInterrupt:\n        raise ImportError('initialization failed')\n"
+        "call_to_end(main)\n"
+    )
+    process = start(program)
+    assert first_line(process) == "working"
+    process.terminate()
+    _, said = process.communicate(timeout=60)
+    assert (process.returncode, said) == (143, "")
+
+
+def test_a_second_writer_is_told_in_one_line(tmp_path: Path) -> None:
+    program = (
+        "import sys; from pathlib import Path\n"
+        "from benchmark.processes import call_to_end\n"
+        "from survey_data.locks import held_alone\n"
+        "def main():\n"
+        "    with held_alone(Path(sys.argv[1])), held_alone(Path(sys.argv[1])): pass\n"
+        "call_to_end(main)\n"
+    )
+    process = start(program, tmp_path / "out")
+    _, said = process.communicate(timeout=60)
+    assert process.returncode == 1
+    assert said.count("\n") == 1
+    assert f"another process {process.pid} is writing to {tmp_path / 'out'}" in said
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="processes are looked up in /proc")
+def test_a_program_ends_tidily_with_the_one_it_works_for_even_by_a_kill(tmp_path: Path) -> None:
+    coordinator = start(COORDINATOR, PROGRAM, tmp_path)
+    working = int(first_line(coordinator))
+    coordinator.kill()
+    coordinator.communicate()
+    assert ended(working)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="processes are looked up in /proc")
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM])
+def test_workers_end_with_their_coordinator_busy_or_not(
+    tmp_path: Path, number: signal.Signals
+) -> None:
+    (tmp_path / "sleeping.py").write_text(
+        "import os, time\n"
+        "def sleep(seconds):\n    time.sleep(seconds or 0.2)\n    return os.getpid()\n"
+    )
+    coordinator = start(POOL, tmp_path)
+    workers = {int(first_line(coordinator)) for _ in range(3)}
+    coordinator.send_signal(number)
+    coordinator.communicate(timeout=60)
+    assert workers
+    assert os.getpid() not in workers
+    assert all(ended(worker) for worker in workers)

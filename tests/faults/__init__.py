@@ -1,0 +1,1 @@
+"""Damaged files tried on every reader: ``make faults``, no part of the tests."""

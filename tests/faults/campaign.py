@@ -1,0 +1,107 @@
+"""Trying damaged files, each in a process of its own: forked, so that imports are paid once."""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+import resource
+import shutil
+import signal
+import time
+import traceback
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from api.cli.command_line import is_known
+from tests.faults.damage import damage
+from tests.faults.kinds import SAME, Kind
+
+SECONDS = 10
+MEGABYTES = 500
+
+REFUSED, HARMLESS, WRONG, TRACEBACK, SLOW, LARGE = (
+    "refused",
+    "harmless",
+    "accepted wrongly",
+    "traceback",
+    f"over {SECONDS} s",
+    f"over {MEGABYTES} MB",
+)
+OUTCOMES = (REFUSED, HARMLESS, WRONG, TRACEBACK, SLOW, LARGE)
+FAULTS = (WRONG, TRACEBACK, SLOW, LARGE)
+
+
+@dataclass(frozen=True)
+class Case:
+    """One damaged file and what became of it."""
+
+    kind: str
+    number: int
+    file: str
+    how: str
+    outcome: str
+    said: str
+    seconds: float
+    megabytes: float
+
+
+def cases(kind: Kind, count: int, seed: int, scratch: Path) -> Iterator[Case]:
+    """Try so many damaged files of a kind; the same ones for a seed."""
+    sound = scratch / "sound"
+    sound.mkdir(parents=True)
+    names = [path.relative_to(sound) for path in kind.make(sound)]
+    reference = kind.read(sound)
+    for number in range(count):
+        rng = random.Random(f"{seed} {kind.name} {number}")
+        folder = scratch / "damaged"
+        shutil.copytree(sound, folder)
+        name = rng.choice(names)
+        how = damage(rng, folder / name)
+        outcome, said, seconds, megabytes = _tried(kind, folder, reference)
+        said = said.replace(str(folder), "").strip("/")
+        yield Case(kind.name, number, str(name), how, outcome, said, seconds, megabytes)
+        shutil.rmtree(folder)
+    shutil.rmtree(sound)
+
+
+def _tried(kind: Kind, folder: Path, reference: Any) -> tuple[str, str, float, float]:
+    back, into = os.pipe()
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    started = time.monotonic()
+    child = os.fork()
+    if child == 0:
+        os.close(back)
+        signal.signal(signal.SIGALRM, signal.SIG_DFL)
+        signal.alarm(SECONDS)
+        told = json.dumps(_outcome(kind, folder, reference))
+        os.write(into, told.encode()[:60_000])
+        os._exit(0)
+    os.close(into)
+    with os.fdopen(back, "rb") as reader:
+        said = reader.read()
+    _, status, used = os.wait4(child, 0)
+    seconds = time.monotonic() - started
+    megabytes = max(used.ru_maxrss - before, 0) / 1024
+    if os.WIFSIGNALED(status):
+        killed = os.WTERMSIG(status)
+        outcome = SLOW if killed == signal.SIGALRM else TRACEBACK
+        return outcome, f"ended by signal {killed}", seconds, megabytes
+    outcome, told = json.loads(said)
+    if megabytes > MEGABYTES:
+        outcome = LARGE
+    return outcome, told, seconds, megabytes
+
+
+def _outcome(kind: Kind, folder: Path, reference: Any) -> tuple[str, str]:
+    try:
+        result = kind.read(folder)
+    except Exception as error:  # noqa: BLE001 - what it is decides
+        if is_known(error) or type(error).__module__.startswith("tests."):
+            return REFUSED, " ".join(str(error).split())[:300]
+        return TRACEBACK, traceback.format_exc()[-1500:]
+    if result == reference:
+        return HARMLESS, SAME
+    return (HARMLESS, kind.differing) if kind.differing else (WRONG, "another result, unsaid")

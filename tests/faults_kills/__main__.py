@@ -1,0 +1,65 @@
+"""`python -m tests.faults_kills`: kill everything that writes, and let writers meet.
+
+Every program is killed by SIGKILL, SIGTERM and SIGINT at moments drawn by seed, and called again:
+the bytes must be those of a run that was left alone, nothing else may lie about, and no worker may
+live two seconds after the kill. Pairs of writers that start at once must lose nothing. Exit status
+1 where anything is not so. Linux alone: processes are found in /proc.
+"""
+# ruff: noqa: T201 - a command, which says what it does
+
+from __future__ import annotations
+
+import argparse
+import random
+import shutil
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from tests.faults_kills.commands import COMMANDS, preload
+from tests.faults_kills.pairs import PAIRS, meet
+from tests.faults_kills.report import complaints, report
+from tests.faults_kills.trials import kills
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the campaign and print its tables."""
+    parser = argparse.ArgumentParser(prog="python -m tests.faults_kills", description=__doc__)
+    parser.add_argument("--kills", type=int, default=300)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--only", action="append", choices=list(COMMANDS), help="only this program")
+    parser.add_argument("--no-pairs", action="store_true", help="leave the pairs out")
+    parser.add_argument("--report", type=Path, help="file that takes the report as well")
+    asked = parser.parse_args(arguments)
+    names = asked.only or list(COMMANDS)
+    if "render" in names:
+        preload()
+    started = time.monotonic()
+    found, met = [], []
+    # No TemporaryDirectory: at the end of a forked child it would take this one's away.
+    work = Path(tempfile.mkdtemp(prefix="kills-")).resolve()
+    try:
+        for one in kills(asked.kills, asked.seed, work, names):
+            found.append(one)
+            for said in one.wrong:
+                print(f"{one.command}, {one.signal} after {one.at_s:.2f} s: {said}", flush=True)
+        draw = random.Random(asked.seed)
+        for number, what in enumerate(() if asked.no_pairs else PAIRS):
+            met.append(meet(what, work / f"pair {number}", draw))
+            print(what, met[-1].refused, "refused", *met[-1].wrong, flush=True)
+    finally:
+        shutil.rmtree(work)
+    text = report(found, met)
+    print(text)
+    wrong = complaints(found, met)
+    print(*wrong, sep="\n")
+    print(f"seed {asked.seed}, {time.monotonic() - started:.0f} s")
+    if asked.report:
+        asked.report.parent.mkdir(parents=True, exist_ok=True)
+        asked.report.write_text("\n".join([text, *wrong]))
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
