@@ -118,7 +118,7 @@ docs: $(DEVELOPING) ## regenerate the generated parts of docs/
 
 # `make lock UPGRADE=--upgrade` takes the newest versions; without it, pins that still fit stay.
 COMPILE := uv pip compile --quiet --universal --python-version 3.11 --generate-hashes \
-	--no-emit-index-url --no-header $(UPGRADE)
+	--no-emit-index-url --no-header --no-strip-extras $(UPGRADE)
 lock: ## renew the lock files from pyproject.toml (needs uv on the PATH)
 	$(COMPILE) --extra build --extra guide -o requirements.lock pyproject.toml
 	$(COMPILE) --extra build --extra dev --extra distributed --extra guide --extra deposit --constraints requirements.lock -o requirements-dev.lock pyproject.toml
@@ -127,7 +127,7 @@ lock: ## renew the lock files from pyproject.toml (needs uv on the PATH)
 	mkdir -p out
 	uv pip compile --quiet --python-version 3.11 --no-header --upgrade --resolution lowest-direct \
 		--extra build --extra guide -o out/lowest.txt pyproject.toml
-	uv pip compile --quiet --python-version 3.11 --generate-hashes --no-emit-index-url --no-header \
+	uv pip compile --quiet --python-version 3.11 --generate-hashes --no-emit-index-url --no-header --no-strip-extras \
 		$(UPGRADE) --extra build --extra dev --extra distributed --extra guide --extra deposit --constraints out/lowest.txt \
 		-o requirements-lowest.lock pyproject.toml
 
