@@ -29,7 +29,7 @@ from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensors.diffractive_frames import DiffractiveFrameSensor
 from benchmark.simulator.sensors.frames import FrameSensor
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[4]
 NAME = "cmos-single-aperture-pinhole"
 GREEN = Spectrum((550.0,), (1.0,))
 GREEN_MM = 550e-6
