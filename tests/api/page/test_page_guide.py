@@ -43,8 +43,7 @@ def test_a_reader_searches_and_finds_without_a_network(wide: Visit) -> None:
     )
     wide.page.keyboard.press("Enter")
     results = wide.page.locator("#search-results li")
-    results.first.wait_for()
-    assert results.count() >= 5
+    results.nth(4).wait_for()  # found pages are listed one by one; a fifth is enough
     results.get_by_role("link").first.click()
     wide.page.wait_for_load_state("networkidle")
     assert "/guide/" in wide.page.url

@@ -90,7 +90,6 @@ def test_without_measuring_nothing_is_generated_or_extracted(published, log):
 @pytest.mark.parametrize(
     ("column", "value"),
     [
-        ("rms_deg", 0.123),
         ("p997_deg", 0.123),
         ("availability", 0.5),
         ("false_sun", 0.5),
@@ -111,6 +110,16 @@ def test_one_altered_number_is_found_by_measuring_and_named_by_its_cell(publishe
     assert str(difference) == (
         f"{SCORES}: {CELL}/{column} is {value}, should be {right} (native kernels)"
     )
+
+
+def test_an_error_that_contradicts_its_ratio_to_the_bound_is_found_without_measuring(published):
+    right = Store(published).scores()[CELL]["rms_deg"]
+    altered(published, CELL, rms_deg=0.123)
+    unmeasured = check(published, stored_only=True)
+    assert {difference.cell for difference in unmeasured} == {
+        f"{CELL}/over_bound", f"{CELL}/over_bound_unit"
+    }  # fmt: skip
+    assert Difference(SCORES, f"{CELL}/rms_deg", "0.123", str(right), NATIVE) in check(published)
 
 
 def test_a_number_of_another_unit_is_named_with_its_unit(published):
