@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from registry.advice import Advice
 from registry.designs import Kept
 from registry.judging import KeptPlace
 from registry.measured import Measured
-from registry.ranking import Place, Regret
+from registry.ranking import Regret
 
 LEAST_RATIO = 1.1
 """Errors nearer to each other than this contradict nothing."""
@@ -25,20 +25,18 @@ def architecture_words(place: KeptPlace) -> str:
     return " + ".join(place.place.architecture)
 
 
-def against_literature(place: KeptPlace, designs: Sequence[Kept]) -> str | None:
+def against_literature(place: KeptPlace, usual: Kept | None) -> str | None:
     """Say that what most studies stand for on an architecture is not what errs least there.
 
     Parameters
     ----------
     place : KeptPlace
-    designs : sequence of Kept
-        Its calibrations.
+    usual : Kept
+        Of its measured calibrations the one that most studies stand for; None for none.
     """
-    backed = [k for k in designs if k.design.taken and k.row and place.taken(k)]
     best = place.best
-    if not backed or not math.isfinite(best.error_deg):
+    if usual is None or not math.isfinite(best.error_deg):
         return None
-    usual = max(backed, key=lambda kept: (place.taken(kept).bit_count(), -kept.error_deg))
     if usual.error_deg < LEAST_RATIO * best.error_deg:
         return None
     many = place.taken(usual).bit_count()
@@ -51,7 +49,11 @@ def against_literature(place: KeptPlace, designs: Sequence[Kept]) -> str | None:
     )
 
 
-def against_advice(places: Sequence[Place], tasks: Sequence[str]) -> tuple[str, ...]:
+def against_advice(
+    places: Sequence[KeptPlace],
+    least: Callable[[str], Sequence[tuple[float, Kept] | None]],
+    tasks: Sequence[str],
+) -> tuple[str, ...]:
     """Say where an architecture that is not advised does better at a task than those advised.
 
     Of the tasks, accuracy, precision and field of view are measured here: by the error over the
@@ -59,28 +61,30 @@ def against_advice(places: Sequence[Place], tasks: Sequence[str]) -> tuple[str, 
 
     Parameters
     ----------
-    places : sequence of Place
+    places : sequence of KeptPlace
+    least : callable
+        Gives the least "repeatability" or "field" (negated) on each of the places, and who has it
+        (`registry.ranked_designs.RankedDesigns.least`).
     tasks : sequence of str
         Those asked for; none means all.
     """
     found = []
     for task, number, unit in (
-        ("Accuracy", _least_error, "deg"),
-        ("Precision", _repeatability, "deg of repeatability"),
-        ("FOV", _field, "deg of field"),
+        ("Accuracy", "error", "deg"),
+        ("Precision", "repeatability", "deg of repeatability"),
+        ("FOV", "field", "deg of field"),
     ):
         if tasks and task not in tasks:
             continue
+        is_advised = [_advises(place.advice, task) for place in places]
+        if all(is_advised) or not any(is_advised):
+            continue
         advised: list[tuple[float, KeptPlace, Kept]] = []
         others: list[tuple[float, KeptPlace, Kept]] = []
-        for place, _ in places:
-            # By error the least is known.
-            designs = place.designs[:1] if number is _least_error else place.designs
-            values = [(value, kept) for kept in designs if (value := number(kept)) is not None]
-            if not values:
-                continue
-            value, kept = min(values, key=lambda pair: pair[0])
-            (advised if _advises(place.advice, task) else others).append((value, place, kept))
+        values = map(_least_error, places) if number == "error" else least(number)
+        for place, meant, value in zip(places, is_advised, values, strict=True):
+            if value is not None:
+                (advised if meant else others).append((value[0], place, value[1]))
         if not advised or not others:
             continue
         first, other = (min(side, key=lambda item: item[0]) for side in (advised, others))
@@ -148,19 +152,6 @@ def _times(worse: Kept, better: Kept) -> str:
     return f", {worse.error_deg / better.error_deg:.3g} times less"
 
 
-def _least_error(kept: Kept) -> float | None:
-    return kept.error_deg if math.isfinite(kept.error_deg) else None
-
-
-def _repeatability(kept: Kept) -> float | None:
-    """Return the spread of answers to one pose; none is an answer in steps, which says nothing."""
-    if kept.row is None or math.isinf(kept.error_deg):
-        return None
-    return kept.row.nominal.repeatability_deg or None
-
-
-def _field(kept: Kept) -> float | None:
-    """Return the field, negated: the largest is the best."""
-    if kept.row is None or kept.row.half_fov_deg is None or math.isinf(kept.error_deg):
-        return None
-    return -2 * kept.row.half_fov_deg
+def _least_error(place: KeptPlace) -> tuple[float, Kept] | None:
+    best = place.best
+    return (best.error_deg, best) if math.isfinite(best.error_deg) else None

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Mapping
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Body, Query
 
@@ -16,7 +17,9 @@ from api.http.models.recommendations import (
     RequirementsBody,
     RequirementsQuery,
 )
+from api.http.recommended import document
 from api.recommending import rows
+from registry.recommendation import answered
 from registry.recommendation import recommend as ranked
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
@@ -37,7 +40,7 @@ DESCRIPTION = (
 )
 async def recommendations(known: Known, query: Annotated[RequirementsQuery, Query()]) -> Answer:
     """Recommend for requirements in a query."""
-    return _answer(query, known)
+    return Recommended(query, known)
 
 
 @router.post(
@@ -52,18 +55,49 @@ async def recommend(
     query: TableOnly = AS_ACCEPTED,  # noqa: ARG001 - the route has read it
 ) -> Answer:
     """Recommend for requirements in a body."""
-    return _answer(body, known)
+    return Recommended(body, known)
 
 
-def _answer(requirements: Requirements, known: Knowledge) -> Answer:
-    asked = requirements.model_dump(exclude={"limit", "calibrations", "sort", "format"})
-    found = ranked(
-        asked,
-        known.measured,
-        sort=requirements.sort,
-        limit=requirements.limit,
-        calibrations=requirements.calibrations,
-        facts=known.facts,
-    )
-    document = found.to_dict()
-    return Answer(document, columns.RECOMMENDATIONS, lambda: list(rows(document)))
+class Recommended(Answer):
+    """A recommendation: its JSON comes as bytes, its document is made where somebody reads it.
+
+    Parameters
+    ----------
+    requirements : what is asked
+    known : what is told
+    """
+
+    def __init__(self, requirements: Requirements, known: Knowledge) -> None:
+        self._requirements = requirements
+        self._known = known
+        super().__init__({}, columns.RECOMMENDATIONS, lambda: list(rows(self.document)))
+
+    def render(self, content: Any) -> bytes:  # noqa: ARG002 - the document is not needed
+        """Return the JSON."""
+        asked = self._requirements
+        found = answered(
+            _parameters(asked), self._known.measured, sort=asked.sort, facts=self._known.facts
+        )
+        return document(found, asked.limit, asked.calibrations)
+
+    @property
+    def document(self) -> Mapping[str, Any]:
+        """The JSON object."""
+        asked = self._requirements
+        return ranked(
+            _parameters(asked),
+            self._known.measured,
+            sort=asked.sort,
+            limit=asked.limit,
+            calibrations=asked.calibrations,
+            facts=self._known.facts,
+        ).to_dict()
+
+    @document.setter
+    def document(self, _document: Mapping[str, Any]) -> None:
+        """Leave it to be made."""
+
+
+def _parameters(requirements: Requirements) -> dict[str, Any]:
+    about_answer = {"limit", "calibrations", "sort", "format"}
+    return {name: value for name, value in requirements if name not in about_answer}
