@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 
-from registry.advice import Advice
 from registry.designs import Kept
 from registry.judging import KeptPlace
 from registry.measured import Measured
@@ -13,6 +12,10 @@ from registry.ranking import Regret
 
 LEAST_RATIO = 1.1
 """Errors nearer to each other than this contradict nothing."""
+
+
+Reached = tuple[float, KeptPlace, int]
+"""A number, the architecture on which it is reached, and by which design."""
 
 
 def design_words(kept: Kept) -> str:
@@ -51,7 +54,7 @@ def against_literature(place: KeptPlace, usual: Kept | None) -> str | None:
 
 def against_advice(
     places: Sequence[KeptPlace],
-    least: Callable[[str], Sequence[tuple[float, Kept] | None]],
+    least: Callable[[str], Sequence[tuple[float, int]]],
     tasks: Sequence[str],
 ) -> tuple[str, ...]:
     """Say where an architecture that is not advised does better at a task than those advised.
@@ -63,7 +66,8 @@ def against_advice(
     ----------
     places : sequence of KeptPlace
     least : callable
-        Gives the least "repeatability" or "field" (negated) on each of the places, and who has it
+        Gives the least "repeatability" or "field" (negated) on each of the places, infinite where
+        there is none, and the position of the design that has it
         (`registry.ranked_designs.RankedDesigns.least`).
     tasks : sequence of str
         Those asked for; none means all.
@@ -76,15 +80,15 @@ def against_advice(
     ):
         if tasks and task not in tasks:
             continue
-        is_advised = [_advises(place.advice, task) for place in places]
+        is_advised = [task in place.advised_tasks for place in places]
         if all(is_advised) or not any(is_advised):
             continue
-        advised: list[tuple[float, KeptPlace, Kept]] = []
-        others: list[tuple[float, KeptPlace, Kept]] = []
+        advised: list[Reached] = []
+        others: list[Reached] = []
         values = map(_least_error, places) if number == "error" else least(number)
-        for place, meant, value in zip(places, is_advised, values, strict=True):
-            if value is not None:
-                (advised if meant else others).append((value[0], place, value[1]))
+        for place, meant, (value, design) in zip(places, is_advised, values, strict=True):
+            if math.isfinite(value):
+                (advised if meant else others).append((value, place, design))
         if not advised or not others:
             continue
         first, other = (min(side, key=lambda item: item[0]) for side in (advised, others))
@@ -118,13 +122,9 @@ def regret_words(regret: Regret) -> str:
     )
 
 
-def _advises(advice: Sequence[Advice], task: str) -> bool:
-    return any(a.requirement == "task" and a.value == task for a in advice)
-
-
-def _where(item: tuple[float, KeptPlace, Kept]) -> str:
-    _, place, kept = item
-    row = kept.row
+def _where(item: Reached) -> str:
+    _, place, design = item
+    row = place.question.kept(design).row
     return f"{architecture_words(place)} ({'' if row is None else _pipeline(row)})"
 
 
@@ -152,6 +152,5 @@ def _times(worse: Kept, better: Kept) -> str:
     return f", {worse.error_deg / better.error_deg:.3g} times less"
 
 
-def _least_error(place: KeptPlace) -> tuple[float, Kept] | None:
-    best = place.best
-    return (best.error_deg, best) if math.isfinite(best.error_deg) else None
+def _least_error(place: KeptPlace) -> tuple[float, int]:
+    return place.error_deg, place.best_at

@@ -15,21 +15,21 @@ import weakref
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 from registry.advice import Advice
+from registry.kept_answers import KeptAnswers
 from registry.measured import Judged, Measured, Measurements
 from registry.plan import Architecture
 from registry.studies import Facts, Study
 from registry.taxonomy import NO_IMPLEMENTATION_STATED, Taxonomy
 
-if TYPE_CHECKING:
-    from registry.design_columns import DesignColumns
-
 COMPENSATIONS = "Physics-Informed"
 """The category of models that compensate: beside them a study may state no other."""
 
 Stages = tuple[str, ...]
+
+AdviceFor = tuple[tuple[Advice, ...], frozenset[str]]
+"""Advice for what is asked, and the tasks that it is for."""
 
 NOTHING = Judged(math.inf, "", None)
 """What is not measured."""
@@ -163,11 +163,9 @@ class DesignTable:
         )
 
     @cached_property
-    def columns(self) -> DesignColumns:
-        """The designs as columns."""
-        from registry.design_columns import DesignColumns  # noqa: PLC0415 - NumPy
-
-        return DesignColumns(self.places, len(self.facts.keys))
+    def advice(self) -> KeptAnswers[list[AdviceFor]]:
+        """Advice by place, for the tasks and accuracies asked for."""
+        return KeptAnswers()
 
     def _place(
         self,

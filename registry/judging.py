@@ -9,11 +9,13 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from registry.advice import ADVISING, Advice
-from registry.designs import NOTHING, DesignTable, Kept, Limits, Place
+from registry.designs import NOTHING, AdviceFor, DesignTable, Kept, Limits, Place
+from registry.measured import Measured, Partly
 from registry.requirements import EXCLUDE, Requirements
 
 if TYPE_CHECKING:
-    from registry.design_columns import Best, Judgements
+    from registry.design_columns import Best
+    from registry.judged_columns import Judgements
 
 OF_STUDIES = ("task", "error", "accuracy")
 """What is asked of the studies of an architecture."""
@@ -37,7 +39,15 @@ class KeptPlace:
     studies: int
     stated: int
     advice: tuple[Advice, ...]
-    best: Kept
+    advised_tasks: frozenset[str]
+    question: Question
+    best_at: int
+    error_deg: float
+
+    @cached_property
+    def best(self) -> Kept:
+        """The design that errs least; its error is ``error_deg``, its position ``best_at``."""
+        return self.question.kept(self.best_at)
 
     def taken(self, kept: Kept) -> int:
         """Return the studies (bits) that stand for a calibration and meet the requirements."""
@@ -52,7 +62,10 @@ class Question:
     """Requirements as they are put to a table of designs."""
 
     def __init__(self, table: DesignTable, requirements: Requirements) -> None:
+        from registry.design_columns import design_columns  # noqa: PLC0415 - NumPy
+
         self.table = table
+        self.columns = design_columns(table)
         self.asked = requirements
         self.studies = self._meeting_studies()
         self._of_studies = any(
@@ -78,34 +91,47 @@ class Question:
     @cached_property
     def best(self) -> Best:
         """The best pipeline of each design among those that keep the limits."""
-        return self.table.columns.best(self.judged_by)
+        return self.columns.best(self.judged_by)
 
     @cached_property
     def judgements(self) -> Judgements:
         """What every pipeline is judged by."""
         asked = self.asked
-        return self.table.columns.judgements(asked.survive, asked.half_field_deg)
+        return self.columns.judgements(asked.survive, asked.half_field_deg)
 
     @cached_property
     def meeting(self) -> int:
         """The designs (bits) that meet the requirements."""
-        columns, largest = self.table.columns, self.asked.max_error_deg
+        columns, largest = self.columns, self.asked.max_error_deg
         kept = self.best.kept
         if largest is not None:
             kept &= columns.bits(self.best.error <= largest)
         kept |= columns.stated(self.all_stated)
         for bits in self.having.values():
             kept &= bits
-        if self._of_studies:
-            for place, bits in zip(self.table.places, columns.of_place, strict=True):
-                if kept & bits and self.broken_by_studies(place):
-                    kept &= ~bits
-        return kept
+        return kept & self._of_studies_asked if self._of_studies else kept
+
+    @property
+    def _of_studies_asked(self) -> int:
+        """The designs (bits) of architectures with what is asked of studies, or advised for it."""
+        columns, studies = self.columns, self.studies
+        found = 0
+        for place, bits in zip(self.table.places, columns.of_place, strict=True):
+            if place.studies & studies:
+                found |= bits
+        included = [name for name in OF_STUDIES if name in self.asked.include]
+        if not included:
+            return found | columns.without_studies
+        advised = columns.every
+        for name in included:
+            values = self.asked.include[name]
+            advised &= columns.advised_for(name, values)
+        return found | advised
 
     @cached_property
     def having(self) -> Mapping[str, int]:
         """The designs (bits) that meet each requirement on detector, mask, extractor and so on."""
-        columns, facts = self.table.columns, self.table.facts
+        columns, facts = self.columns, self.table.facts
         found: dict[str, int] = {}
         for prefix, side in (("", self.asked.include), (EXCLUDE, self.asked.exclude)):
             for attribute, values in side.items():
@@ -123,37 +149,51 @@ class Question:
 
     def count(self) -> int:
         """Return how many architectures meet the requirements."""
-        return sum(1 for bits in self.table.columns.of_place if bits & self.meeting)
+        return sum(1 for bits in self.columns.of_place if bits & self.meeting)
 
     def kept(self, at: int) -> Kept:
         """Return a design that meets the requirements, with what it is judged by."""
         row = int(self.best.row[at])
-        columns = self.table.columns
+        columns = self.columns
         if row < 0:
             return Kept(at, row, columns.designs[at], None, NOTHING)
         return Kept(at, row, columns.designs[at], columns.rows[row], self.judgements.of(row))
 
-    def advice(self, advice: Iterable[Advice]) -> tuple[Advice, ...]:
-        """Return the advice for the tasks and accuracies asked for; for any if none is."""
+    @cached_property
+    def finest(self) -> Mapping[int, int]:
+        """What errs least of the pipelines that answer too seldom, by place; both by position.
+
+        They are of the calibrations asked for, whatever is asked of studies and errors.
+        """
+        allowed = self.columns.every
+        for name in ("model", "exclude_model", "extractor", "exclude_extractor", "properties"):
+            allowed &= self.having.get(name, allowed)
+        return self.judgements.finest(self.judged_by, self.columns.rows_of(allowed))
+
+    def partly(self, place: int) -> tuple[Partly[Measured], ...]:
+        """Return the finest pipeline that answers too seldom on a place, if there is one."""
+        at = self.finest.get(place)
+        found = None if at is None else self.judgements.partly_of(at)
+        return () if found is None else (found,)
+
+    @cached_property
+    def advice(self) -> Sequence[AdviceFor]:
+        """Of each place the advice for the tasks and accuracies asked for; for any if none is."""
+        asked = tuple(self.asked.include.get(name) for name in ADVISING)
+        return self.table.advice.get(
+            asked, lambda: [self._advice(place.advice) for place in self.table.places]
+        )
+
+    def _advice(self, advice: Iterable[Advice]) -> AdviceFor:
         include = self.asked.include
         asked = [name for name in ADVISING if name in include]
-        return tuple(
+        found = tuple(
             a
             for a in advice
             if a.requirement in ADVISING
             and (not asked or (a.requirement in asked and a.value in include[a.requirement]))
         )
-
-    def broken_by_studies(self, place: Place) -> bool:
-        """Say whether what is asked of studies is met neither by one of them nor by advice."""
-        if not self._of_studies:
-            return False
-        if place.studies & self.studies:
-            return False
-        included = [name for name in OF_STUDIES if name in self.asked.include]
-        if not included:
-            return bool(place.studies)
-        return not self.advised(place, included)
+        return found, frozenset(a.value for a in found if a.requirement == "task")
 
     def advised(self, place: Place, included: Sequence[str]) -> bool:
         """Say whether the survey advises an architecture for everything included."""

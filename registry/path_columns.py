@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from registry.design_columns import WORD_BITS, DesignColumns
+from registry.design_columns import WORD_BITS, DesignColumns, design_columns
 from registry.designs import DesignTable
 from registry.paths import PathTable, path_table
 from registry.ranked_designs import RankedDesigns
@@ -138,9 +138,8 @@ def _present(studies: Words) -> Sets:
     """Return the sets that are not empty, with their positions; `studies` is (words, sets)."""
     at = np.flatnonzero(studies.any(axis=0))
     rows = np.ascontiguousarray(studies[:, at].T)
-    size = 8 * rows.shape[1]
-    data = rows.tobytes()
-    return [(n, data[i * size : i * size + size]) for i, n in enumerate(at.tolist())]
+    sets = rows.view(f"V{8 * rows.shape[1]}").ravel()
+    return list(zip(at.tolist(), sets.tolist(), strict=True))
 
 
 def _steps(steps_of_paths: Sequence[Sequence[int]]) -> _Steps:
@@ -161,5 +160,5 @@ def path_columns(table: DesignTable) -> PathColumns:
     """Return the paths of the facts of a table of designs, laid out at the first call."""
     found = _COLUMNS.get(table)
     if found is None:
-        found = _COLUMNS[table] = PathColumns(path_table(table.facts), table.columns)
+        found = _COLUMNS[table] = PathColumns(path_table(table.facts), design_columns(table))
     return found

@@ -36,7 +36,7 @@ class RankedPlace(KeptPlace):
 
 
 class RankedDesigns:
-    """What meets a question, best first; equals in the order of the table.
+    """Designs (bits) that meet a question, best first; equals in the order of the table.
 
     A calibration whose extractor or model has no name in the taxonomy comes last, but by what is
     measured.
@@ -47,11 +47,11 @@ class RankedDesigns:
     at : positions of the designs, in the order of the table
     """
 
-    def __init__(self, question: Question, sort: Sort) -> None:
+    def __init__(self, question: Question, designs: int, sort: Sort) -> None:
         self.question = question
         self.sort = sort
-        columns = question.table.columns
-        self.at = np.flatnonzero(columns.flags(question.meeting))
+        columns = question.columns
+        self.at = np.flatnonzero(columns.flags(designs))
         of = columns.place_of[self.at]
         self._starts = np.flatnonzero(np.diff(of, prepend=-1))
         self._numbers: list[int] = of[self._starts].tolist()
@@ -61,7 +61,7 @@ class RankedDesigns:
     @cached_property
     def _standing(self) -> tuple[Positions, Positions]:
         """How many studies stand for the stages of each design, and for its extractor too."""
-        columns, question = self.question.table.columns, self.question
+        columns, question = self.question.columns, self.question
         every = columns.words_of([question.studies])
         if question.all_stated != question.studies:
             stated = columns.words_of([question.all_stated])
@@ -78,14 +78,17 @@ class RankedDesigns:
         many = np.zeros(len(table.places), np.int64)
         many[numbers] = [bits.bit_count() for bits in studies]
         designs, segments = self._by_key(many)
-        least = best.at_order[np.minimum.reduceat(self._order, self._starts)]
+        least_at = best.at_order[np.minimum.reduceat(self._order, self._starts)]
+        least, errors = least_at.tolist(), best.error[least_at].tolist()
         found = [
             RankedPlace(
                 table.places[number],
                 bits,
                 table.places[number].studies & question.all_stated,
-                question.advice(table.places[number].advice),
-                question.kept(int(least[segment])),
+                *question.advice[number],
+                question,
+                least[segment],
+                errors[segment],
                 number,
                 segment,
                 designs[segments[segment] : segments[segment + 1]],
@@ -94,7 +97,7 @@ class RankedDesigns:
         ]
         found.sort(
             key=lambda place: key_of(
-                sort, bool(place.advice), place.studies.bit_count(), place.best.error_deg
+                sort, bool(place.advice), place.studies.bit_count(), place.error_deg
             )
         )
         return found
@@ -106,7 +109,7 @@ class RankedDesigns:
         highest bits: sorting those is many times quicker than sorting by one part after another.
         The cube root of the support, which rises with it, can be left out.
         """
-        columns, at, best = self.question.table.columns, self.at, self.question.best
+        columns, at, best = self.question.columns, self.at, self.question.best
         with_model, taken = self._standing
         of = columns.place_of[at]
         most = (1 << columns.support_bits) - 1
@@ -135,15 +138,17 @@ class RankedDesigns:
         Of several the one that errs least, then the first.
         """
         taken = self._standing[1][place.designs]
-        backed = np.flatnonzero((taken > 0) & self.question.table.columns.measured[place.designs])
+        backed = np.flatnonzero((taken > 0) & self.question.columns.measured[place.designs])
         if not len(backed):
             return None
         rank = self.question.best.rank[place.designs[backed]]
         first = np.lexsort((rank, -taken[backed]))[0]
         return self.question.kept(int(place.designs[backed[first]]))
 
-    def least(self, number: str) -> list[tuple[float, Kept] | None]:
+    def least(self, number: str) -> list[tuple[float, int]]:
         """Return the least of a number on each architecture, in ranked order, and who has it.
+
+        Infinite where none has it; the design by its position.
 
         Parameters
         ----------
@@ -153,7 +158,7 @@ class RankedDesigns:
         """
         if not self.places:
             return []
-        columns, best = self.question.table.columns, self.question.best
+        columns, best = self.question.columns, self.question.best
         row = best.row[self.at]
         of_rows = {
             "repeatability": columns.repeatability_deg,
@@ -166,9 +171,5 @@ class RankedDesigns:
         least = np.minimum.reduceat(values, self._starts)
         reached = values == np.repeat(least, np.diff(self._starts, append=len(row)))
         order = np.minimum.reduceat(np.where(reached, self._order, _NONE), self._starts)
-        return [
-            (float(least[p.segment]), self.question.kept(int(best.at_order[order[p.segment]])))
-            if np.isfinite(least[p.segment])
-            else None
-            for p in self.places
-        ]
+        found = list(zip(least.tolist(), best.at_order[order].tolist(), strict=True))
+        return [found[place.segment] for place in self.places]

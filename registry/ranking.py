@@ -44,7 +44,7 @@ def key_of(sort: Sort, advised: bool, backing: float, error: float) -> tuple[flo
 
 def pareto(places: Sequence[KeptPlace]) -> frozenset[int]:
     """Return the positions of the architectures that none beats in both support and error."""
-    costs = [(-place.studies.bit_count(), place.best.error_deg) for place in places]
+    costs = [(-place.studies.bit_count(), place.error_deg) for place in places]
     beaten = math.nan
     found: dict[tuple[int, float], bool] = {}
     for cost in sorted(set(costs)):  # whoever beats one comes before it
@@ -89,7 +89,7 @@ def regret(places: Sequence[KeptPlace], first: Kept | None) -> Regret | None:
     """
     if first is None:
         return None
-    best = min((place.best for place in places), key=lambda kept: kept.error_deg)
+    best = min(places, key=lambda place: place.error_deg).best
     if not math.isfinite(best.error_deg):
         return None
     return Regret(first, first if first.error_deg == best.error_deg else best)

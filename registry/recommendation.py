@@ -205,12 +205,19 @@ def recommend(
         if most is not None and most < 1:
             raise InvalidValueError(name, most, "a whole number of at least 1")
     found = answered(requirements, measured, sort=sort, facts=facts)
+    return recommendation(found, limit, calibrations)
+
+
+def recommendation(
+    found: Answered, limit: int | None = None, calibrations: int | None = None
+) -> Recommendation:
+    """Return an answer as objects, with the first architectures and calibrations of each."""
     ranked, taken, asked = found.ranked, found.taken, found.question.asked
     paths = path_table(found.question.table.facts)
     lost = found.regret
     return Recommendation(
         requirements=asked,
-        sort=sort,
+        sort=ranked.sort,
         count=len(ranked.places),
         designs=len(ranked.at),
         architectures=tuple(
@@ -255,8 +262,8 @@ class Answered:
     @cached_property
     def untried(self) -> dict[str, tuple[tuple[str, str], ...]]:
         """Architectures that no data set tries a hazard on, by the hazards asked for."""
-        table = self.question.table
-        return {hazard: table.columns.untried(hazard) for hazard in self.question.asked.survive}
+        question = self.question
+        return {hazard: question.columns.untried(hazard) for hazard in question.asked.survive}
 
     @cached_property
     def blocked(self) -> Blocked | None:
@@ -278,7 +285,7 @@ class Answered:
         if kept.row is None:
             return ()
         judged = self.question.judgements
-        first = int(self.question.table.columns.first_row[kept.at])
+        first = int(self.question.columns.first_row[kept.at])
         others: dict[str, tuple[float, Measured]] = {}
         for at, row in enumerate(kept.design.rows, first):
             if row.dataset != kept.row.dataset:
@@ -311,7 +318,7 @@ def answered(
     rows = measured if isinstance(measured, Measurements) else Measurements(measured)
     table = design_table(known, rows)
     question = Question(table, asked)
-    ranked = RankedDesigns(question, sort)
+    ranked = RankedDesigns(question, question.meeting, sort)
     return Answered(question, ranked, path_columns(table).taken(ranked))
 
 
@@ -319,7 +326,7 @@ def _architecture(
     at: int, place: RankedPlace, found: Answered, paths: PathTable, most: int | None
 ) -> Architecture:
     detector, mask = place.place.architecture
-    best = int((place.designs == place.best.at).argmax())
+    best = int((place.designs == place.best_at).argmax())
     return Architecture(
         rank=at + 1,
         detector=detector,
@@ -342,6 +349,7 @@ def _calibration(
     at: int, kept: Kept, place: RankedPlace, found: Answered, paths: PathTable
 ) -> Calibration:
     design, asked = kept.design, found.question.asked
+    partly = found.question.partly(place.number)
     return Calibration(
         rank=at + 1,
         extractor=design.extractor,
@@ -351,7 +359,7 @@ def _calibration(
         studies=paths.studies(place.taken(kept)),
         with_model=place.with_model(kept).bit_count(),
         backing=support(kept, place),
-        measured=None if kept.row is None else kept.row.to_dict(asked),
-        others=tuple(row.to_dict(asked) for row in found.others(kept)),
+        measured=None if kept.row is None else kept.row.to_dict(asked, partly),
+        others=tuple(row.to_dict(asked, partly) for row in found.others(kept)),
         basis=found.question.basis(place.place, measured=kept.row is not None),
     )

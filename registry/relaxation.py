@@ -167,7 +167,7 @@ def _broken(question: Question, names: tuple[str, ...]) -> frozenset[int]:
     a choice of those that are given up.
     """
     bit = {name: 1 << at for at, name in enumerate(names)}
-    columns = question.table.columns
+    columns = question.columns
     by_study = _broken_by_studies(question, names, bit)
     by_design = columns.broken({bit[name]: has for name, has in question.having.items()})
     by_row = columns.broken_by_place(by_design, _broken_by_rows(question, bit))
@@ -198,7 +198,7 @@ def _broken_by_rows(question: Question, bit: Mapping[str, int]) -> list[tuple[in
 
     Of each pipeline the smallest sets. What is left is judged without what is given up.
     """
-    asked, columns = question.asked, question.table.columns
+    asked, columns = question.asked, question.columns
     alone = asked.without(*(n for n in asked.names if n not in _TOGETHER))
     found: list[tuple[int, Flags]] = []
     for size in range(len(alone.names) + 1):
@@ -291,7 +291,8 @@ def _nearest_limit(table: DesignTable, requirements: Requirements, limit: str) -
     """Return the strictest bound on `limit` that is kept by what meets all else; None if none."""
     if limit == "min_fov_deg":
         return _widest(table, requirements)
-    question, columns = Question(table, requirements), table.columns
+    question = Question(table, requirements)
+    columns = question.columns
     rows = columns.rows_of(question.meeting) & _keeping(columns, requirements)
     values = {
         "max_error_deg": question.judgements.error_deg,
@@ -308,9 +309,9 @@ def _nearest_limit(table: DesignTable, requirements: Requirements, limit: str) -
 
 def _stated(question: Question, attribute: str) -> list[float]:
     """Return a number stated by the studies behind the designs of an answer not measured."""
-    designs = question.table.columns.designs
+    designs = question.columns.designs
     bits = 0
-    for at in positions(question.meeting & question.table.columns.not_measured):
+    for at in positions(question.meeting & question.columns.not_measured):
         bits |= designs[at].taken
     bits &= question.all_stated
     return [number for at, number in question.table.stated[attribute] if bits >> at & 1]
@@ -318,9 +319,9 @@ def _stated(question: Question, attribute: str) -> list[float]:
 
 def _widest(table: DesignTable, requirements: Requirements) -> float | None:
     """Return the widest field that something has which meets all else over that field."""
-    columns = table.columns
     # What is judged over the field is left to the rows.
     rest = Question(table, requirements.without(*_TOGETHER))
+    columns = rest.columns
     rows = columns.rows_of(rest.meeting)
     widest = 0.0
     for half, having in columns.cone_edges:
@@ -333,7 +334,7 @@ def _widest(table: DesignTable, requirements: Requirements) -> float | None:
 
 def _has_evidence(table: DesignTable, requirements: Requirements, name: str) -> bool:
     """Say whether anything measured or stated tells of a requirement at all."""
-    columns = table.columns
+    columns = Question(table, requirements).columns
     if name == "max_latency_us":
         return bool((columns.latency_us < math.inf).any())
     if name == "min_availability":

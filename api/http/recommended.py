@@ -15,6 +15,7 @@ from typing import Any
 from pydantic_core import to_json
 
 from registry.contradiction import against_literature, regret_words
+from registry.design_columns import design_columns
 from registry.designs import DesignTable, Kept
 from registry.judging import OF_STUDIES
 from registry.paths import PATH_LEVELS, path_table
@@ -67,14 +68,14 @@ class Pieces:
     """
 
     def __init__(self, table: DesignTable) -> None:
-        paths = path_table(table.facts)
-        self._size = 8 * table.columns.words
+        paths, columns = path_table(table.facts), design_columns(table)
+        self._size = 8 * columns.words
         self._studies = _by_byte(table.facts.keys, self._size)
         self._left_out = encoded([left.to_dict() for left in paths.left_out])
         self._architectures = KeptPieces()
         self._measured = KeptPieces()
         self._behind = {name: KeptPieces() for name in ("paths", "nodes", "links")}
-        self._heads: list[bytes | None] = [None] * len(table.columns.designs)
+        self._heads: list[bytes | None] = [None] * len(columns.designs)
         self._path_heads = [
             _head(dict(zip(PATH_LEVELS, path, strict=True))) + b',"studies":['
             for path in paths.paths
@@ -141,7 +142,7 @@ class Pieces:
 
     def _listed(self, found: Answered, limit: int | None, calibrations: int | None) -> bytes:
         question, sort = found.question, found.ranked.sort
-        columns, meeting = question.table.columns, question.meeting
+        columns, meeting = question.columns, question.meeting
         asked, judged = question.asked, question.judged_by
         # All that an architecture's piece depends on, beside its own designs and studies.
         context = (
@@ -154,7 +155,8 @@ class Pieces:
         listed: list[bytes] = []
         for at, place in enumerate(found.ranked.places[:limit]):
             designs = meeting & columns.of_place[place.number]
-            key = (context, place.number, designs, place.studies, place.stated)
+            finest = question.finest.get(place.number)
+            key = (context, place.number, designs, place.studies, place.stated, finest)
             piece = get(key) or keep(key, self._architecture(place, found, calibrations))
             before, _, after = piece.partition(b"\n")
             listed += (
@@ -166,7 +168,7 @@ class Pieces:
     def _architecture(self, place: RankedPlace, found: Answered, most: int | None) -> bytes:
         """Return an architecture without its rank; a line feed stands where `pareto` belongs."""
         detector, mask = place.place.architecture
-        best = int((place.designs == place.best.at).argmax())
+        best = int((place.designs == place.best_at).argmax())
         tasks = [
             {"task": task, "studies": n, "advised": advised}
             for task, (n, advised) in found.tasks(place).items()
@@ -214,7 +216,7 @@ class Pieces:
                 self._of_bits(place.taken(kept)),
                 b'],"with_model":%d,"support":' % place.with_model(kept).bit_count(),
                 *(encoded(round(support(kept, place), 4)), b',"measured":'),
-                self._of_row(kept, found),
+                self._of_row(kept, place.number, found),
                 *(b',"basis":', basis[kept.row is not None], b"}"),
             )
         )
@@ -232,18 +234,22 @@ class Pieces:
             head = self._heads[kept.at] = encoded(about)[1:-1] + b',"studies":['
         return head
 
-    def _of_row(self, kept: Kept, found: Answered) -> bytes:
+    def _of_row(self, kept: Kept, place: int, found: Answered) -> bytes:
         """Return what is measured of a calibration, and its best on each other data set."""
         if kept.row is None:
             return b'null,"other_datasets":[]'
-        asked, judged = found.question.asked, found.question.judgements
-        key = (judged.hazards, judged.half, kept.row_at)
-        return self._measured.get(key) or self._measured.keep(
-            key,
-            encoded(kept.row.to_dict(asked))
-            + b',"other_datasets":'
-            + encoded([row.to_dict(asked) for row in found.others(kept)]),
-        )
+        question = found.question
+        asked, judged = question.asked, question.judgements
+        key = (judged.hazards, judged.half, kept.row_at, question.finest.get(place))
+        piece = self._measured.get(key)
+        if piece is None:
+            partly = question.partly(place)
+            others = [row.to_dict(asked, partly) for row in found.others(kept)]
+            piece = self._measured.keep(
+                key,
+                encoded(kept.row.to_dict(asked, partly)) + b',"other_datasets":' + encoded(others),
+            )
+        return piece
 
     def _of_bits(self, bits: int) -> bytes:
         return self.studies(bits.to_bytes(self._size, "little"))
@@ -252,7 +258,9 @@ class Pieces:
 _PIECES: weakref.WeakKeyDictionary[DesignTable, Pieces] = weakref.WeakKeyDictionary()
 
 
-def document(found: Answered, limit: int | None = None, calibrations: int | None = None) -> bytes:
+def encoded_answer(
+    found: Answered, limit: int | None = None, calibrations: int | None = None
+) -> bytes:
     """Return an answer as JSON.
 
     Parameters

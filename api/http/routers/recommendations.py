@@ -17,10 +17,9 @@ from api.http.models.recommendations import (
     RequirementsBody,
     RequirementsQuery,
 )
-from api.http.recommended import document
+from api.http.recommended import encoded_answer
 from api.recommending import rows
-from registry.recommendation import answered
-from registry.recommendation import recommend as ranked
+from registry.recommendation import Answered, answered, recommendation
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
@@ -40,7 +39,7 @@ DESCRIPTION = (
 )
 async def recommendations(known: Known, query: Annotated[RequirementsQuery, Query()]) -> Answer:
     """Recommend for requirements in a query."""
-    return Recommended(query, known)
+    return _answer(query, known)
 
 
 @router.post(
@@ -55,7 +54,7 @@ async def recommend(
     query: TableOnly = AS_ACCEPTED,  # noqa: ARG001 - the route has read it
 ) -> Answer:
     """Recommend for requirements in a body."""
-    return Recommended(body, known)
+    return _answer(body, known)
 
 
 class Recommended(Answer):
@@ -64,40 +63,37 @@ class Recommended(Answer):
     Parameters
     ----------
     requirements : what is asked
-    known : what is told
+    found : what meets them
     """
 
-    def __init__(self, requirements: Requirements, known: Knowledge) -> None:
+    def __init__(self, requirements: Requirements, found: Answered) -> None:
         self._requirements = requirements
-        self._known = known
+        self._found = found
+        self._document: Mapping[str, Any] | None = None
         super().__init__({}, columns.RECOMMENDATIONS, lambda: list(rows(self.document)))
 
     def render(self, content: Any) -> bytes:  # noqa: ARG002 - the document is not needed
         """Return the JSON."""
-        asked = self._requirements
-        found = answered(
-            _parameters(asked), self._known.measured, sort=asked.sort, facts=self._known.facts
+        return encoded_answer(
+            self._found, self._requirements.limit, self._requirements.calibrations
         )
-        return document(found, asked.limit, asked.calibrations)
 
     @property
     def document(self) -> Mapping[str, Any]:
         """The JSON object."""
-        asked = self._requirements
-        return ranked(
-            _parameters(asked),
-            self._known.measured,
-            sort=asked.sort,
-            limit=asked.limit,
-            calibrations=asked.calibrations,
-            facts=self._known.facts,
-        ).to_dict()
+        if self._document is None:
+            asked = self._requirements
+            told = recommendation(self._found, asked.limit, asked.calibrations)
+            self._document = told.to_dict()
+        return self._document
 
     @document.setter
     def document(self, _document: Mapping[str, Any]) -> None:
-        """Leave it to be made."""
+        """Leave it to who reads it."""
 
 
-def _parameters(requirements: Requirements) -> dict[str, Any]:
+def _answer(requirements: Requirements, known: Knowledge) -> Recommended:
     about_answer = {"limit", "calibrations", "sort", "format"}
-    return {name: value for name, value in requirements if name not in about_answer}
+    asked = {name: value for name, value in requirements if name not in about_answer}
+    found = answered(asked, known.measured, sort=requirements.sort, facts=known.facts)
+    return Recommended(requirements, found)
