@@ -33,7 +33,7 @@ def link_names(document: nodes.document) -> None:
         if page is None and _within(literal, (nodes.entry,)):
             page = in_tables.get(name)
         if page is not None:
-            # "raw" in Sphinx's sense: an address that is none of the guide's pages.
+            # External, as Sphinx has it: an address that is none of the guide's pages.
             link = nodes.reference("", "", internal=False, refuri=page)
             literal.replace_self(link)
             link += literal
@@ -56,7 +56,7 @@ def _pages() -> tuple[dict[str, str], dict[str, str]]:
     from registry.studies import facts  # noqa: PLC0415
 
     everywhere = {name: dataset_page(name) for name in datasets.names()}
-    everywhere |= {claim.id: claim_page(claim.id) for claim in claims()}
+    everywhere |= {name: claim_page(name) for name in claims()}
     everywhere |= {key: study_page(key) for key in facts().studies}
     in_tables = {one.name: algorithm_page(one.name) for one in catalogue().listing(None)}
     return everywhere, in_tables
