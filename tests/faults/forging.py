@@ -45,7 +45,7 @@ def _fit(folder: Path, card: dict[str, Any]) -> None:
                 "bound_rms_deg": _rms(arrays),
                 "samples": len(arrays["sun"]),
             }
-            entry |= said
+            entry.update(said)
             entry["arrays"] = {
                 name: {"dtype": array.dtype.str, "shape": list(array.shape)}
                 for name, array in arrays.items()
@@ -53,10 +53,10 @@ def _fit(folder: Path, card: dict[str, Any]) -> None:
             for other in card["files"]:
                 if other["path"] == entry["path"].replace(".npz", ".csv"):
                     write_table(folder / other["path"], arrays)
-                    other |= said
+                    other.update(said)
     for entry in card["files"]:
         data = (folder / entry["path"]).read_bytes()
-        entry |= {"bytes": len(data), "sha256": hashlib.sha256(data).hexdigest()}
+        entry.update(bytes=len(data), sha256=hashlib.sha256(data).hexdigest())
     (folder / CARD).write_text(json.dumps(card))
     write_checksums(folder)
 
@@ -132,7 +132,7 @@ def _said(rng: random.Random, folder: Path, card: dict[str, Any]) -> None:
 
 
 def _picture(rng: random.Random, folder: Path, card: dict[str, Any]) -> None:
-    from PIL import Image  # noqa: PLC0415
+    from PIL import Image
 
     path = _archive(rng, folder, card, "preview")
     with Image.open(path) as shown:
