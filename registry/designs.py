@@ -17,7 +17,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from registry.advice import Advice
-from registry.measured import Judged, Measured, Measurements
+from registry.measured import Judged, Measured, Measurements, Partly
 from registry.plan import Architecture
 from registry.studies import Facts, Study
 from registry.taxonomy import NO_IMPLEMENTATION_STATED, Taxonomy
@@ -28,6 +28,9 @@ COMPENSATIONS = "Physics-Informed"
 _MOST_KEPT = 64
 
 Stages = tuple[str, ...]
+
+Part = tuple["Design", Partly[Measured]]
+"""A design and a pipeline of it that answers too seldom to be judged by its error."""
 
 NOTHING = Judged(math.inf, "", None)
 """What is not measured."""
@@ -166,6 +169,7 @@ class DesignTable:
         )
         self._judged: dict[tuple[Stages, float | None], dict[Measured, Judged]] = {}
         self._best: dict[Limits, tuple[tuple[Kept, ...], ...]] = {}
+        self._partly: dict[Limits, Mapping[Architecture, tuple[Part, ...]]] = {}
 
     def judged(
         self, hazards: tuple[str, ...], half_field_deg: float | None
@@ -198,6 +202,20 @@ class DesignTable:
                 tuple(sorted(_least(place, limits, judged), key=lambda kept: kept.error_deg))
                 for place in self.places
             )
+        return found
+
+    def partly(self, limits: Limits) -> Mapping[Architecture, tuple[Part, ...]]:
+        """Return, of each architecture, what answers too seldom, the least error first."""
+        found = self._partly.get(limits)
+        if found is None:
+            if len(self._partly) >= _MOST_KEPT:
+                self._partly.clear()
+            found = self._partly[limits] = {
+                place.architecture: tuple(
+                    sorted(_seldom(place, limits), key=lambda part: part[1].error_deg)
+                )
+                for place in self.places
+            }
         return found
 
     def _place(
@@ -259,6 +277,19 @@ def _least(place: Place, limits: Limits, judged: Mapping[Measured, Judged]) -> I
         if rows:
             row = min(rows, key=lambda row: judged[row].error_deg)
             yield Kept(design, row, judged[row])
+
+
+def _seldom(place: Place, limits: Limits) -> Iterator[Part]:
+    """Yield what answers too seldom, but keeps the limits on answers and time."""
+    least = limits.min_availability or 0.0
+    most = limits.max_latency_us
+    for design in place.designs:
+        for row in design.rows:
+            part = row.partly(limits.hazards, limits.half_field_deg)
+            if part is None or part.availability < least:
+                continue
+            if most is None or (row.latency_us is not None and row.latency_us <= most):
+                yield design, part
 
 
 @dataclass

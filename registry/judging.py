@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from registry.advice import ADVISING, Advice
 from registry.designs import NOTHING, Design, DesignTable, Kept, Limits, Place
-from registry.measured import Measured
+from registry.measured import Measured, Partly
 from registry.requirements import EXCLUDE, Requirements
 
 OF_STUDIES = ("task", "error", "accuracy")
@@ -93,6 +93,11 @@ class Question:
                 advice = self.advice(place.advice)
                 found.append(KeptPlace(place, studies, stated, advice, kept))
         return found
+
+    def partly(self, place: Place) -> tuple[Partly[Measured], ...]:
+        """Return pipelines of what is asked for that answer too seldom, the least error first."""
+        parts = self.table.partly(self._judged_by)[place.architecture]
+        return tuple(part for design, part in parts if not self.broken_by_design(design))
 
     def advice(self, advice: Iterable[Advice]) -> tuple[Advice, ...]:
         """Return the advice for the tasks and accuracies asked for; for any if none is."""

@@ -15,7 +15,7 @@ from registry.contradiction import against_advice, against_literature, regret_wo
 from registry.designs import DesignTable, Kept, design_table
 from registry.flows import LeftOut, Link, Node
 from registry.judging import KeptPlace, Question
-from registry.measured import Measured, Measurements
+from registry.measured import Measured, Measurements, Partly
 from registry.paths import PathTable, StudyPath, path_table
 from registry.ranking import SORTS, Place, Sort, pareto, ranked, regret, support
 from registry.relaxation import Blocked, Relaxation, explain
@@ -257,6 +257,7 @@ def _architecture(
 ) -> Architecture:
     place, designs = found
     best = designs.index(place.best)
+    partly = question.partly(place.place)
     detector, mask = place.place.architecture
     advised = [a.value for a in place.place.advice if a.requirement == "task"]
     tasks = {
@@ -270,18 +271,25 @@ def _architecture(
         tasks={task: both for task, both in tasks.items() if any(both)},
         advice=tuple(advice.to_dict() for advice in place.advice),
         studies=paths.studies(place.studies),
-        best=_calibration(best, designs[best], place, question, paths),
+        best=_calibration(best, designs[best], place, question, paths, partly=partly),
         pareto=pareto,
         contradiction=against_literature(place, designs),
         count=len(designs),
         calibrations=tuple(
-            _calibration(i, kept, place, question, paths) for i, kept in enumerate(designs[:most])
+            _calibration(i, kept, place, question, paths, partly=partly)
+            for i, kept in enumerate(designs[:most])
         ),
     )
 
 
 def _calibration(
-    at: int, kept: Kept, place: KeptPlace, question: Question, paths: PathTable
+    at: int,
+    kept: Kept,
+    place: KeptPlace,
+    question: Question,
+    paths: PathTable,
+    *,
+    partly: tuple[Partly[Measured], ...],
 ) -> Calibration:
     design, asked, judged = kept.design, question.asked, question.judged
     others: dict[str, Measured] = {}
@@ -299,8 +307,8 @@ def _calibration(
         studies=paths.studies(place.taken(kept)),
         with_model=place.with_model(kept).bit_count(),
         backing=support(kept, place),
-        measured=None if kept.row is None else kept.row.to_dict(asked),
-        others=tuple(row.to_dict(asked) for row in others.values()),
+        measured=None if kept.row is None else kept.row.to_dict(asked, partly),
+        others=tuple(row.to_dict(asked, partly) for row in others.values()),
         basis=question.basis(place.place, kept),
     )
 

@@ -56,6 +56,15 @@ export function scoreAddress(m) {
   return address("/v1/results", { dataset: m.dataset, condition: m.condition, extractor: m.extractor, model: m.model });
 }
 
+/** What errs far less on the part of the samples that it answers. */
+export function finerContent(m) {
+  if (!m?.finer) return null;
+  const { dataset, extractor, model, error_deg: error, availability } = m.finer;
+  return h("div", { class: "below finer" }, h("strong", {}, "Far finer on the part it answers: "),
+    h("a", { href: `/datasets/${encodeURIComponent(dataset)}#board`, title: "The board it stands on" }, degrees(error)),
+    ` on ${percent(availability)} of the samples (${extractor} → ${model})`);
+}
+
 /** The error, where it holds, and all that stands beside it. */
 export function measuredContent(m) {
   if (!m) return none("not measured");
