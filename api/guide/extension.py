@@ -17,6 +17,7 @@ from docutils import nodes
 from pygments.lexers.special import TextLexer
 from sphinx.application import Sphinx
 
+from api.guide.atlas import link_names
 from api.guide.chapters import ROOT, toctrees
 from api.mathml import mathml
 
@@ -32,6 +33,7 @@ def setup(app: Sphinx) -> dict[str, Any]:
     # Requests in the docs have no version line, which the lexer of HTTP asks for.
     app.add_lexer("http", TextLexer)
     app.connect("source-read", _read)
+    app.connect("doctree-read", _named)
     app.connect("build-finished", _finish)
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}
 
@@ -81,6 +83,10 @@ def scripts_apart(site: Path) -> None:
 
 def _read(app: Sphinx, page: str, source: list[str]) -> None:  # noqa: ARG001 - Sphinx's signature
     source[0] = within(page, source[0]) + (toctrees() if page == ROOT else "")
+
+
+def _named(app: Sphinx, document: nodes.document) -> None:  # noqa: ARG001 - Sphinx's signature
+    link_names(document)
 
 
 def _finish(app: Sphinx, error: Exception | None) -> None:

@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from api.cli.working import working_directory
+from api.guide.atlas import atlas_links
 from api.guide.chapters import ROOT
 from survey_data.leftovers import temporary_directory
 from survey_data.whole_files import replacing
@@ -162,6 +163,7 @@ def _settings() -> dict[str, Any]:
         "smartquotes": False,
         "html_math_renderer": "mathml",
         "html_theme": "furo",
+        "html_theme_options": {"announcement": atlas_links()},
         "html_static_path": [os.fspath(_HERE / "static")],
         "html_css_files": ["guide.css"],
         "html_favicon": os.fspath(_HERE.parent / "page" / "icon.svg"),

@@ -229,7 +229,7 @@ def tex(text: str) -> str | None:
     Examples
     --------
     >>> tex("x_c = sum(x I) / sum(I)")
-    'x_{c} = \\frac{\\sum x I}{\\sum I}'
+    'x_{c} = \\frac{\\sum x \\, I}{\\sum I}'
     >>> tex("extract") is None
     True
     """
@@ -290,14 +290,20 @@ def _quotient(sides: list[list[_Factor]]) -> str:
         single = len(below) == 1 or below[0].sums
         if single and (sums or not over_sum):
             return rf"\frac{{{_inside(above)}}}{{{_inside(below)}}}"
-    return " / ".join(" ".join(factor.tex for factor in side) for side in sides)
+    return " / ".join(_product(side) for side in sides)
 
 
 def _inside(side: list[_Factor]) -> str:
     """Write what a fraction's line holds together, without parentheses for that."""
-    if len(side) == 1 and side[0].bare is not None and "," not in side[0].bare:
+    if len(side) == 1 and side[0].bare is not None and " , " not in side[0].bare:
         return side[0].bare
-    return " ".join(factor.tex for factor in side)
+    return _product(side)
+
+
+def _product(factors: list[_Factor]) -> str:
+    """Write factors with a narrow space between them, or two letters look like one name."""
+    spaced = [f"{one.tex} " if one.sums else rf"{one.tex} \, " for one in factors[:-1]]
+    return "".join(spaced) + factors[-1].tex
 
 
 def _spelt(name: str, *, below: bool = False) -> str:

@@ -28,16 +28,16 @@ DRAWN = {
 @pytest.mark.parametrize(
     ("plain", "written"),
     [
-        ("x_c = sum(x I) / sum(I)", r"x_{c} = \frac{\sum x I}{\sum I}"),
-        ("alpha = arctan(Y s / h)", r"\alpha = \arctan \left( \frac{Y s}{h} \right)"),
-        ("p'_1 - p'_3 tan(u) = 0", r"p_{1}^{\prime} - p_{3}^{\prime} \tan \left( u \right) = 0"),
-        ("x = xi b_x^T e / b_x^T b_x", r"x = \xi b_{x}^{T} e / b_{x}^{T} b_{x}"),
+        ("x_c = sum(x I) / sum(I)", r"x_{c} = \frac{\sum x \, I}{\sum I}"),
+        ("alpha = arctan(Y s / h)", r"\alpha = \arctan \left( \frac{Y \, s}{h} \right)"),
+        ("p'_1 - p'_3 tan(u) = 0", r"p_{1}^{\prime} - p_{3}^{\prime} \, \tan \left( u \right) = 0"),
+        ("x = xi b_x^T e / b_x^T b_x", r"x = \xi \, b_{x}^{T} \, e / b_{x}^{T} \, b_{x}"),
         ("s = (a, b) / c", r"s = \frac{\left( a , b \right)}{c}"),
-        ("(n + K)! / (n! K!)", r"\frac{\left( n + K \right) !}{n ! K !}"),
+        ("(n + K)! / (n! K!)", r"\frac{\left( n + K \right) !}{n ! \, K !}"),
         ("I_max,i", r"I_{\mathrm{max}, i}"),
         ("atan2(y, x)", r"\operatorname{atan2} \left( y , x \right)"),
         ("sum (I - J)^2", r"\sum \left( I - J \right)^{2}"),
-        ("sum(c p / v) d", r"\sum \left( \frac{c p}{v} \right) d"),
+        ("sum(c p / v) d", r"\sum \left( \frac{c \, p}{v} \right) \, d"),
     ],
 )
 def test_a_formula_is_written_as_it_reads(plain: str, written: str) -> None:
@@ -92,7 +92,7 @@ def value(text: str) -> float:
     """A formula's value: products before sums, and a quotient from left to right."""
     text = re.sub(r"\\frac\{", "((", text)
     text = text.replace("}{", ") / (").replace("}", "))")
-    text = re.sub(r"\\left|\\right", " ", text)
+    text = re.sub(r"\\left|\\right|\\,", " ", text)
     spaced = re.sub(r"(?<=[a-d)])\s*(?=[a-d(])", " * ", re.sub(r"\s+", " ", text))
     return float(eval(spaced, {}, VALUES))
 
@@ -109,5 +109,7 @@ def test_a_text_links_the_studies_that_it_names_and_keeps_its_code() -> None:
     said = marked("Implements: alg:BCM (Chang2008): ``x = a / b`` by `Some2099`, <not> ``track``")
     assert '(<a href="/studies/Chang2008">Chang2008</a>)' in said
     assert "<mfrac>" in said
+    assert marked("``a = b``, then").endswith("</math>,</span> then")
+    assert 'href="/glossary#term-survey-label"' in said
     assert 'alttext="x = a / b"' in said
     assert "<code>Some2099</code>, &lt;not&gt; <code>track</code>" in said
