@@ -11,7 +11,6 @@ import io
 import os
 import re
 import shutil
-import tempfile
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from importlib.resources import files
@@ -21,6 +20,7 @@ from typing import Any
 from api.cli.working import working_directory
 from api.guide.atlas import atlas_links
 from api.guide.chapters import ROOT
+from survey_data.leftovers import temporary_directory
 from survey_data.whole_files import replacing
 
 BUILDERS = ("sphinx", "myst-parser", "furo")
@@ -111,13 +111,13 @@ def build(out: Path) -> list[str]:
     out = out.resolve()
     out.parent.mkdir(parents=True, exist_ok=True)
     told = io.StringIO()
-    with tempfile.TemporaryDirectory() as scratch, replacing(out) as (made,):
+    with temporary_directory() as scratch, replacing(out) as (made,):
         try:
             Sphinx(
                 srcdir=source(),
                 confdir=None,
                 outdir=made,
-                doctreedir=Path(scratch),
+                doctreedir=scratch,
                 buildername="html",
                 confoverrides=_settings(),
                 status=None,

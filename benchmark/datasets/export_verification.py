@@ -273,8 +273,8 @@ def _unlike(said: Any, should: Any, place: str = "") -> Iterator[tuple[str, Any,
             if name in _OF_THE_FILE:
                 continue
             inner = f"{place}.{name}".lstrip(".")
-            if name == "published_data_hash" and said.get(name, "") is None:
-                continue  # made without pins
+            if name == "published_data_hash" and None in (said.get(name, ""), should.get(name, "")):
+                continue  # made, or verified, without pins
             if name == "bound_rms_deg" and _alike(said.get(name, math.nan), should.get(name)):
                 continue
             yield from _unlike(said.get(name, _NONE), should.get(name, _NONE), inner)

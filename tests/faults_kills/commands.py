@@ -47,6 +47,7 @@ from tests.faults_kills import small
 
 #: A sensor of few numbers a sample.
 _DATASET = "pd-maskless-cube"
+_PAGE = "page.md"
 _CLAIMS = ("C01", "C02", "C03", "C05")
 _TABLES = Path(survey_data.__file__).parent
 
@@ -197,10 +198,17 @@ def hold_back(*datasets: str) -> None:
     )
 
 
+def empty_docs() -> None:
+    """A directory of documentation with one page."""
+    Path("docs").mkdir()
+    (Path("docs") / _PAGE).write_text("# A page\n\nNothing is run here.\n")
+
+
 def document() -> None:
-    """`python -m api.docs.documentation` of a few pictures."""
+    """`python -m api.docs.documentation` of a few pictures, and a page without commands to run."""
     pictures = {f"{n}.svg": small.picture for n in range(12)}
     _give(documentation, "every_page", lambda _directory: {})
+    _give(documentation, "RUN", (_PAGE,))
     _give(documentation, "every_picture", lambda: pictures)
     program(lambda: documentation.regenerate(Path("docs")))
 
@@ -295,7 +303,7 @@ COMMANDS: Mapping[str, Command] = {
         lambda: Path("held.csv").write_text(",".join(table._COLUMNS) + "\n"),
         hold_back,
     ),
-    "docs": Command("`python -m api.docs.documentation`", lambda: Path("docs").mkdir(), document),
+    "docs": Command("`python -m api.docs.documentation`", empty_docs, document),
     "save": Command("`calibration.saving.save`", _nothing, lambda: program(save_calibration)),
 }
 

@@ -402,7 +402,7 @@ def test_what_was_judged_for_one_question_does_not_tell_for_another(
     rows: list[Measured] = [pipeline(hazards={"albedo": worse(0.9)}), pipeline(extractor="b")]
     asks = [{}, {"survive": ["albedo"]}, {"min_fov_deg": 30.0}, {"max_latency_us": 1.0}]
     fresh = [recommend(ask, list(rows), facts=facts).to_dict() for ask in asks]
-    monkeypatch.setattr("registry.designs._MOST_KEPT", 2)
+    monkeypatch.setattr("registry.kept_answers.MOST_KEPT", 2)
     kept = Measurements(rows)
     for _ in range(2):
         assert [recommend(ask, kept, facts=facts).to_dict() for ask in asks] == fresh
