@@ -79,7 +79,7 @@ def _window(light: Floats, middle: NDArray[np.int64], height: int, width: int, b
     # Rows share the columns between them, so that those of the core reach no other one's.
     stride = columns + max(REACH - first, 0)
     box[0], box[1], box[2], box[3] = left, top, last, columns
-    box[4], box[5], box[6] = (stride + 7) // 8 * 8, first, above
+    box[4], box[5], box[6] = stride, first, above
     box[7] = (last - top + 2) // 2 - above
     return True
 

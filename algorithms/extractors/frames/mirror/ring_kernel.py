@@ -175,15 +175,20 @@ def _powers(box: Any, inverse: float, sums: Floats) -> None:
 
 
 @compiled
-def _right(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    lines: Line, n: int, inverse: Any, slope: Floats, limit: float, lanes: Line
-) -> float:
-    """Write sums of what is left times x, y, rho x and rho y to the lanes; how many are beyond."""
-    a, b = np.float32(2.0 * slope[0]), np.float32(2.0 * slope[1])
-    c, e = np.float32(2.0 * slope[2]), np.float32(2.0 * slope[3])
-    far = np.float32(limit)
-    r, across, along = lines[0], lines[1], lines[2]
-    lanes[:] = _ZERO
+def _add_left(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    r: Line,
+    across: Line,
+    along: Line,
+    n: int,
+    inverse: Any,
+    a: Any,
+    b: Any,
+    c: Any,
+    e: Any,
+    far: Any,
+    lanes: Line,
+) -> None:
+    """Add what `_right` sums up to the lanes, which stay in registers here."""
     for k in range(0, n, _LANES):
         for j in range(_LANES):
             q = np.uint64(k) + np.uint64(j)  # what is never negative is vectorised
@@ -197,6 +202,18 @@ def _right(  # noqa: PLR0917 - Numba takes no keyword-only ones
             lanes[j + _LANES] += left * y
             lanes[j + 2 * _LANES] += left * x * rho
             lanes[j + 3 * _LANES] += left * y * rho
+
+
+@compiled
+def _right(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    lines: Line, n: int, inverse: Any, slope: Floats, limit: float, lanes: Line
+) -> float:
+    """Write sums of what is left times x, y, rho x and rho y to the lanes; how many are beyond."""
+    a, b = np.float32(2.0 * slope[0]), np.float32(2.0 * slope[1])
+    c, e = np.float32(2.0 * slope[2]), np.float32(2.0 * slope[3])
+    far = np.float32(limit)
+    lanes[:] = _ZERO
+    _add_left(lines[0], lines[1], lines[2], n, inverse, a, b, c, e, far, lanes)
     return _fold(lanes, 4)
 
 
