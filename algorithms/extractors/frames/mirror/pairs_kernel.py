@@ -19,7 +19,7 @@ Line = NDArray[np.float32]
 #: Rows and columns around the core that its slopes reach; lines end so much later.
 REACH, LANES = 7, 64
 #: Half the core, px: the lit extent times one and a bit, more where the light falls off slowly.
-_WIDER, _SOFTER, _MARGIN = 1.1, 1.5, 3.0
+_WIDER, _SOFTER, _MARGIN = 1.1, 1.5, 2.0
 #: The ring about the core that tells the background's slope, over the core.
 _RING_SHARE = 0.25
 #: As much as this, over the peak, a pixel counts at most.
