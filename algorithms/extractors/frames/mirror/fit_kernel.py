@@ -117,41 +117,6 @@ def _slopes(  # noqa: PLR0917 - Numba takes no keyword-only ones
         )
 
 
-# Sums in lanes are fast in functions of their own: there the lanes stay in registers.
-
-
-@compiled
-def _add_products(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    h_x: Line,
-    h_y: Line,
-    g_x: Line,
-    g_y: Line,
-    d: Line,
-    w: Line,
-    share: Line,
-    begin: int,
-    end: int,
-    lanes: Line,
-) -> None:
-    """Add the products of `_normal` of the pairs ``begin .. end - 1`` to the lanes."""
-    for k in range(begin, end, _LANES):
-        for j in range(_LANES):
-            q = np.uint64(k) + np.uint64(j)  # what is never negative is vectorised
-            a, b, dk, part = h_x[q], h_y[q], d[q], share[q]
-            x, y = w[q] * a, w[q] * b
-            lanes[j] += x * g_x[q]
-            lanes[j + _LANES] += y * g_y[q]
-            lanes[j + 2 * _LANES] += x * g_y[q]
-            lanes[j + 3 * _LANES] += y * g_x[q]
-            lanes[j + 4 * _LANES] += x * dk
-            lanes[j + 5 * _LANES] += y * dk
-            lanes[j + 9 * _LANES] += part
-            x *= part
-            lanes[j + 6 * _LANES] += x * a
-            lanes[j + 7 * _LANES] += y * b * part
-            lanes[j + 8 * _LANES] += x * b
-
-
 @compiled
 def _normal(  # noqa: PLR0917 - Numba takes no keyword-only ones
     h_x: Line,
@@ -171,8 +136,22 @@ def _normal(  # noqa: PLR0917 - Numba takes no keyword-only ones
     sums[:10] = 0.0
     for begin in range(0, w.size, _BLOCK):
         lanes[:] = _ZERO
-        end = min(begin + _BLOCK, w.size)
-        _add_products(h_x, h_y, g_x, g_y, d, w, share, begin, end, lanes)
+        for k in range(begin, min(begin + _BLOCK, w.size), _LANES):
+            for j in range(_LANES):
+                q = np.uint64(k) + np.uint64(j)  # what is never negative is vectorised
+                a, b, dk, part = h_x[q], h_y[q], d[q], share[q]
+                x, y = w[q] * a, w[q] * b
+                lanes[j] += x * g_x[q]
+                lanes[j + _LANES] += y * g_y[q]
+                lanes[j + 2 * _LANES] += x * g_y[q]
+                lanes[j + 3 * _LANES] += y * g_x[q]
+                lanes[j + 4 * _LANES] += x * dk
+                lanes[j + 5 * _LANES] += y * dk
+                lanes[j + 9 * _LANES] += part
+                x *= part
+                lanes[j + 6 * _LANES] += x * a
+                lanes[j + 7 * _LANES] += y * b * part
+                lanes[j + 8 * _LANES] += x * b
         for i in range(10):
             sums[i] += _fold(lanes, i)
 
@@ -276,34 +255,6 @@ def _places(box: Any, scale: float, x: Line, y: Line) -> None:
 
 
 @compiled
-def _add_sloping(h_x: Line, h_y: Line, w: Line, x: Line, y: Line, lanes: Line) -> None:
-    """Add weighted products of `h_x` and `h_y` with x and y to the lanes."""
-    for k in range(0, w.size, _LANES):
-        for j in range(_LANES):
-            q = np.uint64(k) + np.uint64(j)
-            a, b = w[q] * h_x[q], w[q] * h_y[q]
-            lanes[j] += a * x[q]
-            lanes[j + _LANES] += a * y[q]
-            lanes[j + 4 * _LANES] += b * x[q]
-            lanes[j + 5 * _LANES] += b * y[q]
-
-
-@compiled
-def _add_bent(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    inverse: Any, h_x: Line, h_y: Line, w: Line, x: Line, y: Line, lanes: Line
-) -> None:
-    """Add the same times ``rho = inverse (x^2 + y^2)``."""
-    for k in range(0, w.size, _LANES):
-        for j in range(_LANES):
-            q = np.uint64(k) + np.uint64(j)
-            rho = inverse * w[q] * (x[q] * x[q] + y[q] * y[q])
-            lanes[j + 2 * _LANES] += rho * h_x[q] * x[q]
-            lanes[j + 3 * _LANES] += rho * h_x[q] * y[q]
-            lanes[j + 6 * _LANES] += rho * h_y[q] * x[q]
-            lanes[j + 7 * _LANES] += rho * h_y[q] * y[q]
-
-
-@compiled
 def _odd_parts(  # noqa: PLR0917 - Numba takes no keyword-only ones
     inverse: float,
     bent: bool,
@@ -315,11 +266,29 @@ def _odd_parts(  # noqa: PLR0917 - Numba takes no keyword-only ones
     lanes: Line,
     sums: Floats,
 ) -> None:
-    """Write weighted products of `h_x` and `h_y` with 2 x, 2 y, and, if `bent`, rho times both."""
+    """Write weighted products of `h_x` and `h_y` with 2 x, 2 y, and, if `bent`, rho times both.
+
+    ``rho = inverse (x^2 + y^2)``.
+    """
+    factor = np.float32(inverse)
     lanes[:] = _ZERO
-    _add_sloping(h_x, h_y, w, x, y, lanes)
+    for k in range(0, w.size, _LANES):
+        for j in range(_LANES):
+            q = np.uint64(k) + np.uint64(j)
+            a, b = w[q] * h_x[q], w[q] * h_y[q]
+            lanes[j] += a * x[q]
+            lanes[j + _LANES] += a * y[q]
+            lanes[j + 4 * _LANES] += b * x[q]
+            lanes[j + 5 * _LANES] += b * y[q]
     if bent:
-        _add_bent(np.float32(inverse), h_x, h_y, w, x, y, lanes)
+        for k in range(0, w.size, _LANES):
+            for j in range(_LANES):
+                q = np.uint64(k) + np.uint64(j)
+                rho = factor * w[q] * (x[q] * x[q] + y[q] * y[q])
+                lanes[j + 2 * _LANES] += rho * h_x[q] * x[q]
+                lanes[j + 3 * _LANES] += rho * h_x[q] * y[q]
+                lanes[j + 6 * _LANES] += rho * h_y[q] * x[q]
+                lanes[j + 7 * _LANES] += rho * h_y[q] * y[q]
     for i in range(8):
         sums[i] = 2.0 * _fold(lanes, i)
 
@@ -347,16 +316,6 @@ def _background(  # noqa: PLR0917 - Numba takes no keyword-only ones
         state[4] += slope[5 + q] * moved_x * moved_x
         state[5] += slope[5 + q] * moved_y * moved_y
         state[6] += slope[5 + q] * moved_x * moved_y
-
-
-@compiled
-def _leave(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    d: Line, g_x: Line, g_y: Line, n_x: Any, n_y: Any, left: Line, steep: Line
-) -> None:
-    """Write what a displacement leaves of the differences, and the size of the slopes."""
-    for q in range(left.size):
-        left[q] = d[q] + n_x * g_x[q] + n_y * g_y[q]
-        steep[q] = abs(g_x[q]) + abs(g_y[q])
 
 
 @compiled
@@ -430,8 +389,10 @@ def fit(  # noqa: PLR0915, PLR0917 - the method's steps in order
             old = wide[(level - 1) % 2]
             h_x[:], h_y[:] = a, b
             state[:] = other
-        n_x, n_y = np.float32(state[2]), np.float32(state[3])
-        _leave(differences, g_x, g_y, n_x, n_y, left, slack[k, :n])
+        n_x, n_y, steep = np.float32(state[2]), np.float32(state[3]), slack[k, :n]
+        for q in range(n):
+            left[q] = differences[q] + n_x * g_x[q] + n_y * g_y[q]
+            steep[q] = abs(g_x[q]) + abs(g_y[q])
         if not first:
             x, y = work[8, :n], work[9, :n]
             _background(box, slopes[k], h_x, h_y, w, x, y, lanes, sums, state)

@@ -53,17 +53,6 @@ def _complete(s: Line, box: Any) -> None:
 
 
 @compiled
-def _add_flat(mean: Line, e: Line, flat: Line, lanes: Line) -> None:
-    """Add what `_noise` sums up to the lanes, which stay in registers here."""
-    for k in range(0, flat.size, _LANES):
-        for j in range(_LANES):
-            i = np.uint64(k) + np.uint64(j)  # what is never negative is vectorised
-            lanes[j] += flat[i]
-            lanes[j + _LANES] += flat[i] * mean[i]
-            lanes[j + 2 * _LANES] += flat[i] * abs(e[i + np.uint64(1)] - e[i])
-
-
-@compiled
 def _noise(  # noqa: PLR0917 - Numba takes no keyword-only ones
     mean: Line, keep: Line, slack: Line, e: Line, flat: Line, lanes: Line
 ) -> tuple[float, float]:
@@ -82,36 +71,17 @@ def _noise(  # noqa: PLR0917 - Numba takes no keyword-only ones
     for q in range(n - 1):
         flat[q] *= flat[q + 1]
     lanes[:] = _ZERO
-    _add_flat(mean, e, flat, lanes)
+    for k in range(0, n, _LANES):
+        for j in range(_LANES):
+            i = np.uint64(k) + np.uint64(j)  # what is never negative is vectorised
+            lanes[j] += flat[i]
+            lanes[j + _LANES] += flat[i] * mean[i]
+            lanes[j + 2 * _LANES] += flat[i] * abs(e[i + np.uint64(1)] - e[i])
     number = max(_fold(lanes, 0), 1e-30)
     light = max(_fold(lanes, 1) / number, 1e-30)
     apart = _fold(lanes, 2) / number
     # Of a normal variable, the mean size is sqrt(2 / pi) of the standard deviation.
     return 0.125 * np.pi * apart**2, light
-
-
-@compiled
-def _add_beyond(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    mean: Line,
-    keep: Line,
-    e: Line,
-    slack: Line,
-    noise: Any,
-    gain: Any,
-    share: Any,
-    least: Any,
-    over: Line,
-    lanes: Line,
-) -> None:
-    """Write which pairs are beyond the limit, and add their number to the lanes."""
-    for k in range(0, over.size, _LANES):
-        for j in range(_LANES):
-            q = np.uint64(k) + np.uint64(j)
-            beyond = max(_ZERO, abs(e[q]) - least - share * slack[q])
-            far = (keep[q] > _ZERO) & (beyond * beyond > noise + gain * max(_ZERO, mean[q]))
-            one = _ONE if far else _ZERO
-            over[q] = one
-            lanes[j] += one
 
 
 @compiled
@@ -127,7 +97,14 @@ def _beyond(  # noqa: PLR0917 - Numba takes no keyword-only ones
     )
     noise, gain = noise * sigmas * sigmas, gain * sigmas * sigmas
     lanes[:] = _ZERO
-    _add_beyond(mean, keep, e, slack, noise, gain, share, least, over, lanes)
+    for k in range(0, over.size, _LANES):
+        for j in range(_LANES):
+            q = np.uint64(k) + np.uint64(j)
+            beyond = max(_ZERO, abs(e[q]) - least - share * slack[q])
+            far = (keep[q] > _ZERO) & (beyond * beyond > noise + gain * max(_ZERO, mean[q]))
+            one = _ONE if far else _ZERO
+            over[q] = one
+            lanes[j] += one
     return _fold(lanes, 0)
 
 
