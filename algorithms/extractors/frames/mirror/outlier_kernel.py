@@ -22,8 +22,9 @@ _ZERO, _HALF, _ONE = np.float32(0.0), np.float32(0.5), np.float32(1.0)
 #: A pair is left out whose difference departs by so many deviations, this share of the slope and
 #: this of the peak: at first, and when the fit is good.
 _BAD, _BAD_SLOPE, _BAD_PEAK = (5.0, 4.5), (0.4, 0.05), (0.1, 0.003)
-#: Where the slope, over the peak, is above one over the root of this, little of noise is told.
-_STEEP = np.float32(100.0)
+#: Squares of the share of the slope by which sharp rims depart, and of what slopes miss, over the
+#: peak: little of noise is told where the first is above the noise that is there in the dark.
+_SHARP, _FLOOR = 0.03**2, 0.0005**2
 #: What the slopes' own noise adds to departures.
 _OWN, _COMMON = taps.noise_of_slopes()
 #: Variance of the mean of N neighbours' departures, over its square and times N: half of a normal
@@ -79,19 +80,19 @@ def _complete(s: Line, box: Any) -> None:
 
 @compiled
 def _noise(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    mean: Line, keep: Line, slack: Line, e: Line, flat: Line, lanes: Line
+    mean: Line, keep: Line, slack: Line, e: Line, dark: float, flat: Line, lanes: Line
 ) -> tuple[float, float]:
     """Variance of a pixel where the spot is lit and flat, and the light there.
 
     Told by neighbours' departures, which a light beside the spot hardly enters; `e` holds a number
     more.
     """
-    n = flat.size
+    n, steep = flat.size, np.float32(0.5 * _SHARP / (dark + _FLOOR))
     for q in range(n):
         lit = _ONE if mean[q] > _CUT else _ZERO
         kept = keep[q]
         lit *= max(_ZERO, kept)
-        flat[q] = np.divide(lit, _ONE + _STEEP * slack[q] * slack[q])
+        flat[q] = np.divide(lit, _ONE + steep * slack[q] * slack[q])
     flat[n - 1], e[n] = _ZERO, _ZERO
     for q in range(n - 1):
         flat[q] *= flat[q + 1]
@@ -206,7 +207,9 @@ def leave_out(  # noqa: PLR0917 - Numba takes no keyword-only ones
         p = 8 + (_REACH + box[6]) * box[4]
         before = state[1]
         kept = keep[k, :n]
-        variance, light = _noise(s[k, p : p + n], kept, slack[k, :n], e[k], over[:n], lanes)
+        variance, light = _noise(
+            s[k, p : p + n], kept, slack[k, :n], e[k], state[0], over[:n], lanes
+        )
         state[1] = max(variance / _more(state)[1] - state[0], 0.0) / light
         number = _beyond(
             s[k, p : p + n],

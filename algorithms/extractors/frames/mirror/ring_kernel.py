@@ -218,9 +218,7 @@ def _right(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def _step(
-    variance: float, prior: float, sums: Floats, right: Floats, slope: Floats
-) -> None:
+def _step(variance: float, prior: float, sums: Floats, right: Floats, slope: Floats) -> None:
     """Write the slope and bend of both axes that solve what is linear: no pair is far off."""
     scale, ridge = 4.0 / variance, 1.0 / prior
     for axis in range(2):

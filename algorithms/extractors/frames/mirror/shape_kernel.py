@@ -184,7 +184,8 @@ def _scatter(  # noqa: PLR0917 - Numba takes no keyword-only ones
 ) -> tuple[float, float]:
     """Mean square of the departures over their variance, by the information of each pair.
 
-    As if some more pairs had been as expected: few pairs tell little. The second allows for what
+    As if some more pairs had been as expected: few pairs tell little, and less of a variance. The
+    second allows for what
     a rim sharper than a pixel resolves departs by.
     """
     more = 2.0 * _more(state)
@@ -211,7 +212,10 @@ def _scatter(  # noqa: PLR0917 - Numba takes no keyword-only ones
     departing, leniently = _fold(lanes, 0), _fold(lanes, 1)
     scale = number / max(total, 1e-30)
     count = max(number - 2.0, 0.0) + _EXPECTED
-    return (departing * scale + _EXPECTED) / count, (leniently * scale + _EXPECTED) / count
+    # a variance that is itself told by so many departures: that of Student's distribution
+    student = count / (count - 2.0)
+    departing = student * (departing * scale + _EXPECTED) / count
+    return departing, (leniently * scale + _EXPECTED) / count
 
 
 @compiled
