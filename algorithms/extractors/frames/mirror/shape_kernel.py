@@ -171,10 +171,10 @@ def _more(state: Floats) -> float:
     """Variance of a pair's departure over that of the noise of its pixels: see the outliers'."""
     total = 1.0
     for axis in range(2):
-        d2, sum_ = state[14 + axis] * state[14 + axis], 0.0
+        d2, own = state[14 + axis] * state[14 + axis], 0.0
         for k in range(_OWN.size):
-            sum_ = sum_ * d2 + _OWN[_OWN.size - 1 - k]
-        total += 0.5 * d2 * sum_
+            own = own * d2 + _OWN[_OWN.size - 1 - k]
+        total += 0.5 * d2 * own
     return total
 
 
@@ -185,8 +185,7 @@ def _scatter(  # noqa: PLR0917 - Numba takes no keyword-only ones
     """Mean square of the departures over their variance, by the information of each pair.
 
     As if some more pairs had been as expected: few pairs tell little, and less of a variance. The
-    second allows for what
-    a rim sharper than a pixel resolves departs by.
+    second allows for what a rim sharper than a pixel resolves departs by.
     """
     more = 2.0 * _more(state)
     noise, gain = np.float32(more * (state[0] + _FLOOR * _FLOOR)), np.float32(more * state[1])
