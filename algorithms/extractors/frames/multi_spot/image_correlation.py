@@ -137,7 +137,7 @@ class ImageCorrelation(Extractor):
         studies=("Xing2008",),
         labels=("fe:feic", "alg:FEIC"),
         origin="survey",
-        version=2,
+        version=3,
         needs=PATTERN_NEEDS,
         observation=Observation.FRAMES,
         kind=FeatureKind.SPOT,

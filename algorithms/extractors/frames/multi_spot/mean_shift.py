@@ -135,7 +135,7 @@ class MeanShift(Extractor):
         studies=("You2011",),
         labels=("fe:fmms", "alg:FMMS1", "alg:FMMS2"),
         origin="survey",
-        version=2,
+        version=3,
         needs=PATTERN_NEEDS,
         observation=Observation.FRAMES,
         kind=FeatureKind.SPOT,

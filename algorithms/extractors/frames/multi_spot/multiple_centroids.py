@@ -115,7 +115,7 @@ class MultipleCentroids(Extractor):
         studies=("Rufino2009b",),
         labels=("fe:mcam", "alg:MCAM"),
         origin="survey",
-        version=2,
+        version=3,
         needs=PATTERN_NEEDS,
         observation=Observation.FRAMES,
         kind=FeatureKind.SPOT,
