@@ -34,9 +34,9 @@ GRID, CODE = square_grid(), coded()
 
 def methods(apertures):
     return (
-        MultipleCentroids(apertures),
-        MeanShift(apertures, bandwidth_px=10.0),
-        ImageCorrelation(apertures),
+        MultipleCentroids(apertures, faulty_lines=1),
+        MeanShift(apertures, bandwidth_px=10.0, faulty_lines=1),
+        ImageCorrelation(apertures, faulty_lines=1),
     )
 
 

@@ -80,14 +80,18 @@ def test_a_dark_edge_is_never_taken_for_a_mask_moved_by_a_pitch(side, pitch):
     """The same frame is that of a whole mask of which one line is out of view."""
     for missing in (0.0, 0.1):
         scenes = Scenes(201, side, pitch, dark=True, missing=missing)
-        wrong, _ = scenes.shares(MultipleCentroids(scenes.apertures).extract(scenes.frames))
+        wrong, _ = scenes.shares(
+            MultipleCentroids(scenes.apertures, faulty_lines=1).extract(scenes.frames)
+        )
         assert wrong == 0.0
 
 
 @every_grid
 def test_a_whole_mask_in_view_is_answered(side, pitch):
     scenes = Scenes(202, side, pitch)
-    wrong, answered = scenes.shares(MultipleCentroids(scenes.apertures).extract(scenes.frames))
+    wrong, answered = scenes.shares(
+        MultipleCentroids(scenes.apertures, faulty_lines=1).extract(scenes.frames)
+    )
     assert wrong == 0.0
     assert answered == 1.0
 
@@ -97,7 +101,7 @@ def test_a_whole_mask_in_view_is_answered(side, pitch):
 def test_a_doubled_edge_is_told_unless_the_other_edge_is_out_of_view(side, pitch):
     """Then the frame is that of the mask moved by a pitch: two faulty lines must be allowed for."""
     scenes = Scenes(203, side, pitch, doubled=1.0)
-    extractor = MultipleCentroids(scenes.apertures)
+    extractor = MultipleCentroids(scenes.apertures, faulty_lines=1)
     found = extractor.extract(scenes.frames)
     whole = np.array(scenes.whole)
     wrong = np.abs(found - scenes.places).max(axis=1) > pitch / 4  # not where NaN
@@ -125,7 +129,7 @@ def test_a_doubled_edge_makes_the_very_frame_of_a_mask_moved_by_a_pitch():
 def test_an_identity_without_a_doubt_is_right(side, pitch):
     for seed, faults in ((210, {"doubled": 1.0}), (211, {"dark": True}), (212, {})):
         scenes = Scenes(seed, side, pitch, **faults)
-        extractor = MultipleCentroids(scenes.apertures)
+        extractor = MultipleCentroids(scenes.apertures, faulty_lines=1)
         found = extractor.measure(scenes.frames)
         doubted = found.doubts == int(Doubt.AMBIGUOUS_PATTERN)
         wrong = np.abs(found.features - scenes.places).max(axis=1) > pitch / 4
@@ -143,7 +147,7 @@ def test_an_ambiguous_pattern_and_a_dark_frame_are_different_doubts(method):
         for place in ((60.3, 59.8), (18.3, 59.8), (30.3, 59.8))  # amid, cut by a line, at the edge
     ]
     frames.append(draw(rng, (120, 120), []))
-    found = method(apertures, **own.get(method, {})).measure(np.array(frames))
+    found = method(apertures, faulty_lines=1, **own.get(method, {})).measure(np.array(frames))
     unsure = int(Doubt.AMBIGUOUS_PATTERN)
     assert found.doubts.tolist() == [0, unsure, unsure, int(Doubt.NO_SPOT)]
     assert np.isfinite(found.features[:, 0]).tolist() == [True, False, True, False]
@@ -154,7 +158,9 @@ def test_an_ambiguous_pattern_and_a_dark_frame_are_different_doubts(method):
 def test_reflections_dimmer_than_the_spots_mislead_nobody(pitch):
     for faults in ({"doubled": 0.6}, {"dark": True, "opposite": 0.5}):
         scenes = Scenes(204, 5, pitch, **faults)
-        wrong, _ = scenes.shares(MultipleCentroids(scenes.apertures).extract(scenes.frames))
+        wrong, _ = scenes.shares(
+            MultipleCentroids(scenes.apertures, faulty_lines=1).extract(scenes.frames)
+        )
         assert wrong == 0.0
 
 
@@ -170,7 +176,7 @@ def test_missing_dirty_and_stray_spots_do_not_move_the_pattern(method):
         spots = [(*(place + a[:2]), s) for a, s in zip(apertures, light, strict=True)]
         stray = place - np.array([48.0, 0.0]) + rng.uniform(-3.0, 3.0, 2)
         frames.append(draw(rng, (116, 118), [*spots, (*stray, 1.0)]))
-    found = method(apertures, **own.get(method, {})).extract(np.array(frames))
+    found = method(apertures, faulty_lines=1, **own.get(method, {})).extract(np.array(frames))
     seen = np.isfinite(found[:, 0])
     assert seen.mean() > 0.9
     assert np.abs(found - places)[seen].max() < 0.5
@@ -180,7 +186,10 @@ def test_missing_dirty_and_stray_spots_do_not_move_the_pattern(method):
 
 trackers = pytest.mark.parametrize(
     "make",
-    [lambda a: MeanShift(a, bandwidth_px=8.0), lambda a: ImageCorrelation(a, correlations=4)],
+    [
+        lambda a: MeanShift(a, bandwidth_px=8.0, faulty_lines=1),
+        lambda a: ImageCorrelation(a, correlations=4, faulty_lines=1),
+    ],
     ids=["fmms", "feic"],
 )
 

@@ -60,7 +60,9 @@ class MirrorRegistration(Extractor):
     two becomes the other one.
 
     `measure` gives the covariance of that fit, with what the background's slopes are uncertain by,
-    times the mean square of the departures over what was expected. Outlines of one spot are alike
+    times the mean square of the departures over what was expected: of two pixels' noise and of that
+    of the slopes, which have it from the same pixels. Few departures tell a variance badly: it is
+    that of Student's distribution. Outlines of one spot are alike
     at all heights; those of two that overlap are not, or have a waist. A weaker light beside a spot
     makes it skew: cubic odd shapes are fitted to what the slopes leave. A hole's fringes make such
     outlines, and oblique light such skewness: they count where the spot is longer than the design's
@@ -102,7 +104,7 @@ class MirrorRegistration(Extractor):
         name="mirror",
         taxonomy="None",
         origin="ours",
-        version=2,
+        version=3,
         observation=Observation.FRAMES,
         kind=FeatureKind.SPOT,
     )

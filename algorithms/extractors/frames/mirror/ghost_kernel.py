@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
+from algorithms.extractors.frames.mirror import taps
 
 Line = NDArray[np.float32]
 
@@ -23,6 +24,8 @@ _REACH, _LANES, _WHOLE = 7, 16, 64
 _ZERO, _HALF = np.float32(0.0), np.float32(0.5)
 #: What the slopes miss, over the peak, as the fit has it.
 _FLOOR = 0.0005
+#: What the slopes' own noise adds to departures.
+_OWN = taps.noise_of_slopes()[0]
 #: A pixel counts as lit above this fraction of the peak.
 _CUT = np.float32(0.1)
 #: Slopes along both axes, and the four cubic shapes.
@@ -50,6 +53,18 @@ def _fold(lanes: Line, which: int) -> float:
 
 
 @compiled
+def _more(state: Floats) -> float:
+    """Variance of a pair's departure over that of the noise of its pixels: see the outliers'."""
+    total = 1.0
+    for axis in range(2):
+        d2, own = state[14 + axis] * state[14 + axis], 0.0
+        for k in range(_OWN.size):
+            own = own * d2 + _OWN[_OWN.size - 1 - k]
+        total += 0.5 * d2 * own
+    return total
+
+
+@compiled
 def _weighted(  # noqa: PLR0917 - Numba takes no keyword-only ones
     mean: Line, keep: Line, e: Line, state: Floats, w: Line, lanes: Line
 ) -> tuple[float, float]:
@@ -57,7 +72,8 @@ def _weighted(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
     No shapes explain more than all of the first.
     """
-    noise, gain = np.float32(state[0] + _FLOOR * _FLOOR), np.float32(state[1])
+    more = _more(state)
+    noise, gain = np.float32(more * (state[0] + _FLOOR * _FLOOR)), np.float32(more * state[1])
     lanes[:] = _ZERO
     for k in range(0, w.size, _LANES):
         for j in range(_LANES):

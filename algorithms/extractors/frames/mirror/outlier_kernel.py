@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
+from algorithms.extractors.frames.mirror import taps
 
 Line = NDArray[np.float32]
 
@@ -21,8 +22,14 @@ _ZERO, _HALF, _ONE = np.float32(0.0), np.float32(0.5), np.float32(1.0)
 #: A pair is left out whose difference departs by so many deviations, this share of the slope and
 #: this of the peak: at first, and when the fit is good.
 _BAD, _BAD_SLOPE, _BAD_PEAK = (5.0, 4.5), (0.4, 0.05), (0.1, 0.003)
-#: Where the slope, over the peak, is above one over the root of this, little of noise is told.
-_STEEP = np.float32(100.0)
+#: Squares of the share of the slope by which sharp rims depart, and of what slopes miss, over the
+#: peak: little of noise is told where the first is above the noise that is there in the dark.
+_SHARP, _FLOOR = 0.03**2, 0.0005**2
+#: What the slopes' own noise adds to departures.
+_OWN, _COMMON = taps.noise_of_slopes()
+#: Variance of the mean of N neighbours' departures, over its square and times N: half of a normal
+#: variable has (pi / 2 - 1), and those that share a pixel are alike by 0.224.
+_UNSURE = (0.5 * np.pi - 1.0) * (1.0 + 2.0 * 0.224)
 #: A pixel counts as lit above this fraction of the peak.
 _CUT = np.float32(0.3)
 #: Change of d, px, up to which the slopes for the last one stand.
@@ -42,6 +49,25 @@ def _fold(lanes: Line, which: int) -> float:
 
 
 @compiled
+def _polynomial(coefficients: Floats, d2: float) -> float:
+    total = 0.0
+    for k in range(coefficients.size):
+        total = total * d2 + coefficients[coefficients.size - 1 - k]
+    return total
+
+
+@compiled
+def _more(state: Floats) -> tuple[float, float]:
+    """Variance of a pair's departure, and of neighbours', over that of the noise of their pixels.
+
+    What predicts the departure has noise of the same pixels' means, half of it in each axis.
+    """
+    a, b = state[14] * state[14], state[15] * state[15]
+    own = 1.0 + 0.5 * (a * _polynomial(_OWN, a) + b * _polynomial(_OWN, b))
+    return own, own - 0.5 * a * _polynomial(_COMMON, a)
+
+
+@compiled
 def _complete(s: Line, box: Any) -> None:
     """Fill the rows below the middle by symmetry once more."""
     columns, stride, rows, height = box[3], box[4], box[6] + box[7], box[2] - box[1] + 1
@@ -54,19 +80,19 @@ def _complete(s: Line, box: Any) -> None:
 
 @compiled
 def _noise(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    mean: Line, keep: Line, slack: Line, e: Line, flat: Line, lanes: Line
+    mean: Line, keep: Line, slack: Line, e: Line, dark: float, flat: Line, lanes: Line
 ) -> tuple[float, float]:
     """Variance of a pixel where the spot is lit and flat, and the light there.
 
     Told by neighbours' departures, which a light beside the spot hardly enters; `e` holds a number
     more.
     """
-    n = flat.size
+    n, steep = flat.size, np.float32(0.5 * _SHARP / (dark + _FLOOR))
     for q in range(n):
         lit = _ONE if mean[q] > _CUT else _ZERO
         kept = keep[q]
         lit *= max(_ZERO, kept)
-        flat[q] = np.divide(lit, _ONE + _STEEP * slack[q] * slack[q])
+        flat[q] = np.divide(lit, _ONE + steep * slack[q] * slack[q])
     flat[n - 1], e[n] = _ZERO, _ZERO
     for q in range(n - 1):
         flat[q] *= flat[q + 1]
@@ -77,11 +103,14 @@ def _noise(  # noqa: PLR0917 - Numba takes no keyword-only ones
             lanes[j] += flat[i]
             lanes[j + _LANES] += flat[i] * mean[i]
             lanes[j + 2 * _LANES] += flat[i] * abs(e[i + np.uint64(1)] - e[i])
+            lanes[j + 3 * _LANES] += flat[i] * flat[i]
     number = max(_fold(lanes, 0), 1e-30)
     light = max(_fold(lanes, 1) / number, 1e-30)
     apart = _fold(lanes, 2) / number
-    # Of a normal variable, the mean size is sqrt(2 / pi) of the standard deviation.
-    return 0.125 * np.pi * apart**2, light
+    # Of a normal variable, the mean size is sqrt(2 / pi) of the standard deviation; and the square
+    # of a mean is larger than that of what it is the mean of.
+    large = 1.0 + _UNSURE * _fold(lanes, 3) / (number * number)
+    return 0.125 * np.pi * apart**2 / large, light
 
 
 @compiled
@@ -89,7 +118,8 @@ def _beyond(  # noqa: PLR0917 - Numba takes no keyword-only ones
     mean: Line, keep: Line, e: Line, slack: Line, state: Floats, good: int, over: Line, lanes: Line
 ) -> float:
     """Write which pairs are beyond the limit to `over`; return how many."""
-    noise, gain = np.float32(2.0 * state[0]), np.float32(2.0 * state[1])
+    more = 2.0 * _more(state)[0]
+    noise, gain = np.float32(more * state[0]), np.float32(more * state[1])
     sigmas, share, least = (
         np.float32(_BAD[good]),
         np.float32(_BAD_SLOPE[good]),
@@ -168,7 +198,7 @@ def leave_out(  # noqa: PLR0917 - Numba takes no keyword-only ones
     Return how many these are.
     """
     remaining = 0
-    over, lanes = space[0], np.empty(3 * _LANES, dtype=np.float32)
+    over, lanes = space[0], np.empty(4 * _LANES, dtype=np.float32)
     for k in todo:
         box, state = boxes[k], states[k]
         if not np.isfinite(state[4]):
@@ -177,8 +207,10 @@ def leave_out(  # noqa: PLR0917 - Numba takes no keyword-only ones
         p = 8 + (_REACH + box[6]) * box[4]
         before = state[1]
         kept = keep[k, :n]
-        variance, light = _noise(s[k, p : p + n], kept, slack[k, :n], e[k], over[:n], lanes)
-        state[1] = max(variance - state[0], 0.0) / light
+        variance, light = _noise(
+            s[k, p : p + n], kept, slack[k, :n], e[k], state[0], over[:n], lanes
+        )
+        state[1] = max(variance / _more(state)[1] - state[0], 0.0) / light
         number = _beyond(
             s[k, p : p + n],
             kept,

@@ -19,7 +19,7 @@ Line = NDArray[np.float32]
 #: Rows and columns around the core that its slopes reach; lines end so much later.
 REACH, LANES = 7, 64
 #: Half the core, px: the lit extent times one and a bit, more where the light falls off slowly.
-_WIDER, _SOFTER, _MARGIN = 1.1, 1.5, 3.0
+_WIDER, _SOFTER, _MARGIN = 1.1, 1.5, 2.0
 #: The ring about the core that tells the background's slope, over the core.
 _RING_SHARE = 0.25
 #: As much as this, over the peak, a pixel counts at most.
@@ -79,7 +79,7 @@ def _window(light: Floats, middle: NDArray[np.int64], height: int, width: int, b
     # Rows share the columns between them, so that those of the core reach no other one's.
     stride = columns + max(REACH - first, 0)
     box[0], box[1], box[2], box[3] = left, top, last, columns
-    box[4], box[5], box[6] = (stride + 7) // 8 * 8, first, above
+    box[4], box[5], box[6] = stride, first, above
     box[7] = (last - top + 2) // 2 - above
     return True
 

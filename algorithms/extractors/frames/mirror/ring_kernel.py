@@ -48,17 +48,19 @@ def _fold(lanes: Line, which: int) -> float:
 @compiled
 def _lines(  # noqa: PLR0917 - Numba takes no keyword-only ones
     s: Line, d: Line, box: Any, d_x: float, d_y: float, templates: Line, lines: Line
-) -> int:
-    """Write the window's pairs to `lines`, zero in the core; return how many are not.
+) -> None:
+    """Write the window's pairs to `lines`, zero in the core.
 
-    Rows: difference without what the spot's own slope explains, x, y. `templates` (4, stride): of a
+    Rows: difference without what the spot's own slope explains, x, y. `templates` (4, L): of a
     row above the core and of one through it, which columns are of the ring, and their x.
     """
     columns, stride, first, above = box[3], box[4], box[5], box[6]
     across, along = np.float32(0.5 * d_x), np.float32(0.5 * d_y)
     rows = above + box[7]
     middle = np.float32(0.5 * (columns - 1))
-    templates[:] = _ZERO
+    for j in range(stride):
+        for i in range(4):
+            templates[i, j] = _ZERO
     for j in range(columns):
         templates[0, j], templates[1, j] = _ONE, np.float32(j) - middle
     for j in range(first):
@@ -73,7 +75,6 @@ def _lines(  # noqa: PLR0917 - Numba takes no keyword-only ones
     _masked(lines, above, rows, stride, -0.5 * (box[2] - box[1]), templates[2:])
     for q in range(n, (n + _LANES - 1) // _LANES * _LANES):
         lines[0, q], lines[1, q], lines[2, q] = _ZERO, _ZERO, _ZERO
-    return int(rows * columns - box[7] * (columns - 2 * first))
 
 
 @compiled
@@ -90,6 +91,56 @@ def _masked(  # noqa: PLR0917 - Numba takes no keyword-only ones
             r[q] *= mask[j]
             x[q] = across[j]
             y[q] = at * mask[j]
+
+
+@compiled
+def _by_column(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    s: Line, d: Line, box: Any, d_x: float, d_y: float, line: Line, columns: Line
+) -> None:
+    """Sum the ring's differences, without what the spot's own slope explains, down its columns.
+
+    To `columns` (5, L): sums times 1, y, y^2 and y^3, and the largest. `line` is work space.
+    """
+    stride, first, above, rows = box[4], box[5], box[6], box[6] + box[7]
+    across, along = np.float32(0.5 * d_x), np.float32(0.5 * d_y)
+    p, n = 8 + _REACH * stride, rows * stride
+    own, after, up, down = s[p - 1 :], s[p + 1 :], s[p - stride :], s[p + stride :]
+    for q in range(n):
+        line[q] = d[q] + across * (after[q] - own[q]) + along * (down[q] - up[q])
+    for i in range(above, rows):
+        for j in range(i * stride + first, i * stride + box[3] - first):
+            line[j] = _ZERO
+    # rows of what is contiguous: loops over others are not vectorised
+    one, two, three, four, most = columns[0], columns[1], columns[2], columns[3], columns[4]
+    for j in range(stride):
+        one[j], two[j], three[j], four[j], most[j] = _ZERO, _ZERO, _ZERO, _ZERO, _ZERO
+    for i in range(rows):
+        y, begin = np.float32(i - 0.5 * (box[2] - box[1])), np.uint64(i * stride)
+        for j in range(stride):
+            a = line[begin + np.uint64(j)]
+            one[j] += a
+            most[j] = max(most[j], abs(a))
+            a *= y
+            two[j] += a
+            a *= y
+            three[j] += a
+            four[j] += a * y
+
+
+@compiled
+def _moments(box: Any, inverse: float, columns: Line, right: Floats) -> float:
+    """Write the ring's sums times x, y, rho x and rho y by its columns'; return the largest."""
+    right[:] = 0.0
+    largest = _ZERO
+    for j in range(box[3]):
+        x = j - 0.5 * (box[3] - 1)
+        one, two = float(columns[0, j]), float(columns[1, j])
+        right[0] += x * one
+        right[1] += two
+        right[2] += inverse * x * (x * x * one + columns[2, j])
+        right[3] += inverse * (x * x * two + columns[3, j])
+        largest = max(largest, columns[4, j])
+    return float(largest)
 
 
 @compiled
@@ -124,15 +175,20 @@ def _powers(box: Any, inverse: float, sums: Floats) -> None:
 
 
 @compiled
-def _right(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    lines: Line, n: int, inverse: Any, slope: Floats, limit: float, lanes: Line
-) -> float:
-    """Write sums of what is left times x, y, rho x and rho y to the lanes; how many are beyond."""
-    a, b = np.float32(2.0 * slope[0]), np.float32(2.0 * slope[1])
-    c, e = np.float32(2.0 * slope[2]), np.float32(2.0 * slope[3])
-    far = np.float32(limit)
-    r, across, along = lines[0], lines[1], lines[2]
-    lanes[:] = _ZERO
+def _add_left(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    r: Line,
+    across: Line,
+    along: Line,
+    n: int,
+    inverse: Any,
+    a: Any,
+    b: Any,
+    c: Any,
+    e: Any,
+    far: Any,
+    lanes: Line,
+) -> None:
+    """Add what `_right` sums up to the lanes, which stay in registers here."""
     for k in range(0, n, _LANES):
         for j in range(_LANES):
             q = np.uint64(k) + np.uint64(j)  # what is never negative is vectorised
@@ -146,16 +202,42 @@ def _right(  # noqa: PLR0917 - Numba takes no keyword-only ones
             lanes[j + _LANES] += left * y
             lanes[j + 2 * _LANES] += left * x * rho
             lanes[j + 3 * _LANES] += left * y * rho
+
+
+@compiled
+def _right(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    lines: Line, n: int, inverse: Any, slope: Floats, limit: float, lanes: Line
+) -> float:
+    """Write sums of what is left times x, y, rho x and rho y to the lanes; how many are beyond."""
+    a, b = np.float32(2.0 * slope[0]), np.float32(2.0 * slope[1])
+    c, e = np.float32(2.0 * slope[2]), np.float32(2.0 * slope[3])
+    far = np.float32(limit)
+    lanes[:] = _ZERO
+    _add_left(lines[0], lines[1], lines[2], n, inverse, a, b, c, e, far, lanes)
     return _fold(lanes, 4)
 
 
 @compiled
-def _solve(  # noqa: PLR0917 - Numba takes no keyword-only ones
+def _step(variance: float, prior: float, sums: Floats, right: Floats, slope: Floats) -> None:
+    """Write the slope and bend of both axes that solve what is linear: no pair is far off."""
+    scale, ridge = 4.0 / variance, 1.0 / prior
+    for axis in range(2):
+        own, bent = sums[axis] * scale + ridge, sums[4 + axis] * scale + ridge
+        mixed = sums[2 + axis] * scale
+        determinant = own * bent - mixed * mixed
+        one, two = 0.5 * scale * right[axis], 0.5 * scale * right[2 + axis]
+        slope[axis] = (bent * one - mixed * two) / determinant
+        slope[2 + axis] = (own * two - mixed * one) / determinant
+
+
+@compiled
+def _solve_robustly(  # noqa: PLR0917 - Numba takes no keyword-only ones
     lines: Line,
     box: Any,
     count: int,
     variance: float,
     prior: float,
+    sums: Floats,
     lanes: Line,
     slope: Floats,
 ) -> None:
@@ -164,10 +246,8 @@ def _solve(  # noqa: PLR0917 - Numba takes no keyword-only ones
     No pair has much influence. `prior` is the variance of a slope and of a bend before anything is
     known, which counts where the frame's edge leaves few pairs.
     """
-    sums = np.empty(6)
     inverse = np.float32(1.0 / slope[4])
     n = ((box[6] + box[7]) * box[4] + _LANES - 1) // _LANES * _LANES
-    _powers(box, 1.0 / slope[4], sums)
     scale, ridge = 4.0 / variance, 1.0 / prior
     differences = lines[0]
     lanes[:] = _ZERO
@@ -195,7 +275,12 @@ def _solve(  # noqa: PLR0917 - Numba takes no keyword-only ones
         if limit <= least and (beyond == 0.0 or moved < _STILL):
             break  # one step solves what is linear
         limit = max(least, 0.3 * limit)
-    bends = False
+
+
+@compiled
+def _settle(variance: float, prior: float, sums: Floats, slope: Floats) -> None:
+    """Take the bend out of a solution where it shows none; write how sure it is."""
+    scale, ridge, bends = 4.0 / variance, 1.0 / prior, False
     for axis in range(2):
         own, bent = sums[axis] * scale + ridge, sums[4 + axis] * scale + ridge
         mixed = sums[2 + axis] * scale
@@ -251,17 +336,25 @@ def flatten(  # noqa: PLR0917 - Numba takes no keyword-only ones
     Columns: slope along x and y, bend along both, the square of the length it is told at; the
     variances of slope and bend of each axis, and their covariance.
     """
-    lines = space[:3]
-    lanes = np.empty(6 * _LANES, dtype=np.float32)
+    lines, columns = space[:3], space[8:13]
+    lanes, sums, right = np.empty(6 * _LANES, dtype=np.float32), np.empty(6), np.empty(4)
     for k in todo:
         state, slope = states[k], slopes[k]
         box = boxes[k]
         slope[:] = 0.0
         slope[4] = 0.25 * (box[3] * box[3] + (box[2] - box[1]) ** 2)
-        count = _lines(s[k], d[k], box, state[2], state[3], space[3:7, : box[4]], lines)
+        count = (box[6] + box[7]) * box[3] - box[7] * (box[3] - 2 * box[5])
         if count == 0:
             continue
         variance = 2.0 * state[0] + 1e-12
         prior = (_PRIOR / max(lights[k, 2], lights[k, 3])) ** 2
-        _solve(lines, box, count, variance, prior, lanes, slope)
+        _powers(box, 1.0 / slope[4], sums)
+        _by_column(s[k], d[k], box, state[2], state[3], space[0], columns)
+        largest = _moments(box, 1.0 / slope[4], columns, right)
+        if largest <= _FAR * math.sqrt(variance):
+            _step(variance, prior, sums, right, slope)
+        else:
+            _lines(s[k], d[k], box, state[2], state[3], space[3:7], lines)
+            _solve_robustly(lines, box, count, variance, prior, sums, lanes, slope)
+        _settle(variance, prior, sums, slope)
         _flatten(d[k], boxes[k], slope, space[7])

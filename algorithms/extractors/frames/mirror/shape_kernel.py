@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
+from algorithms.extractors.frames.mirror import taps
 
 Line = NDArray[np.float32]
 
@@ -28,6 +29,8 @@ _EXPECTED = 5.0
 #: The square of the share of the slope by which all rims depart, without moving the centre: left
 #: out of what scatters, where so many pairs tell it from noise.
 _RIMS, _TELLS = np.float32(0.005**2), 40.0
+#: What the slopes' own noise adds to departures.
+_OWN = taps.noise_of_slopes()[0]
 #: A pixel counts as lit above this fraction of the peak.
 _CUT = np.float32(0.3)
 #: Heights, over the peak, whose outlines are compared, and half of what they are blurred by.
@@ -164,15 +167,28 @@ def _alike(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
+def _more(state: Floats) -> float:
+    """Variance of a pair's departure over that of the noise of its pixels: see the outliers'."""
+    total = 1.0
+    for axis in range(2):
+        d2, own = state[14 + axis] * state[14 + axis], 0.0
+        for k in range(_OWN.size):
+            own = own * d2 + _OWN[_OWN.size - 1 - k]
+        total += 0.5 * d2 * own
+    return total
+
+
+@compiled
 def _scatter(  # noqa: PLR0917 - Numba takes no keyword-only ones
     mean: Line, keep: Line, e: Line, slack: Line, state: Floats, z: Line, q: Line, lanes: Line
 ) -> tuple[float, float]:
     """Mean square of the departures over their variance, by the information of each pair.
 
-    As if some more pairs had been as expected: few pairs tell little. The second allows for what
-    a rim sharper than a pixel resolves departs by.
+    As if some more pairs had been as expected: few pairs tell little, and less of a variance. The
+    second allows for what a rim sharper than a pixel resolves departs by.
     """
-    noise, gain = np.float32(2.0 * (state[0] + _FLOOR * _FLOOR)), np.float32(2.0 * state[1])
+    more = 2.0 * _more(state)
+    noise, gain = np.float32(more * (state[0] + _FLOOR * _FLOOR)), np.float32(more * state[1])
     for j in range(e.size):
         z[j] = noise + gain * max(_ZERO, mean[j])
         q[j] = np.divide(keep[j] * slack[j] * slack[j], z[j])
@@ -195,7 +211,10 @@ def _scatter(  # noqa: PLR0917 - Numba takes no keyword-only ones
     departing, leniently = _fold(lanes, 0), _fold(lanes, 1)
     scale = number / max(total, 1e-30)
     count = max(number - 2.0, 0.0) + _EXPECTED
-    return (departing * scale + _EXPECTED) / count, (leniently * scale + _EXPECTED) / count
+    # a variance that is itself told by so many departures: that of Student's distribution
+    student = count / (count - 2.0)
+    departing = student * (departing * scale + _EXPECTED) / count
+    return departing, (leniently * scale + _EXPECTED) / count
 
 
 @compiled

@@ -43,3 +43,16 @@ def noise_of_levels() -> tuple[Floats, Floats]:
         taps = slope[middle + 1 : middle + 1 + reach]
         products[level] = 2.0 * (TAPS[:, :reach] @ taps) * mean[len(mean) // 2]
     return squares, products
+
+
+def noise_of_slopes() -> tuple[Floats, Floats]:
+    """Of white noise in the slopes of `TAPS`, as polynomials in d^2.
+
+    Half its variance over that of the means, and what neighbours along the slope have in common.
+    """
+    own, common = np.zeros(2 * len(TAPS) - 1), np.zeros(2 * len(TAPS) - 1)
+    for q, one in enumerate(TAPS):
+        for r, other in enumerate(TAPS):
+            own[q + r] += one @ other
+            common[q + r] += one[1:] @ other[:-1]  # t_0 is none, and -t_1 has t_1 two pixels away
+    return own, common

@@ -80,7 +80,7 @@ class ImageCorrelation(Extractor):
     faulty_lines : int
         Lines of apertures (columns or rows) that may be dark or doubled at once without a wrong
         answer, not negative: a displacement is an answer where every other one leaves more of
-        them unexplained.
+        them unexplained. Beyond 0 a departure: the survey takes the mask for whole.
     field_px : tuple of (x, y, reach) or None
         Where the pattern's middle is for a Sun on the boresight, and how far along an axis it is
         from there at the edge of the field of view, px, positive: a Sun beyond it counts as a
@@ -137,7 +137,7 @@ class ImageCorrelation(Extractor):
         studies=("Xing2008",),
         labels=("fe:feic", "alg:FEIC"),
         origin="survey",
-        version=2,
+        version=3,
         needs=PATTERN_NEEDS,
         observation=Observation.FRAMES,
         kind=FeatureKind.SPOT,
@@ -150,7 +150,7 @@ class ImageCorrelation(Extractor):
     presence: float = 0.3
     threshold: float = 0.3
     tolerance_px: float = 0.75
-    faulty_lines: int = 1
+    faulty_lines: int = 0
     field_px: FieldPx | None = None
 
     def __post_init__(self) -> None:

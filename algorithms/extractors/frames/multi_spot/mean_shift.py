@@ -75,7 +75,7 @@ class MeanShift(Extractor):
     faulty_lines : int
         Lines of apertures (columns or rows) that may be dark or doubled at once without a wrong
         answer, not negative: a displacement is an answer where every other one leaves more of
-        them unexplained.
+        them unexplained. Beyond 0 a departure: the survey takes the mask for whole.
     field_px : tuple of (x, y, reach) or None
         Where the pattern's middle is for a Sun on the boresight, and how far along an axis it is
         from there at the edge of the field of view, px, positive: a Sun beyond it counts as a
@@ -135,7 +135,7 @@ class MeanShift(Extractor):
         studies=("You2011",),
         labels=("fe:fmms", "alg:FMMS1", "alg:FMMS2"),
         origin="survey",
-        version=2,
+        version=3,
         needs=PATTERN_NEEDS,
         observation=Observation.FRAMES,
         kind=FeatureKind.SPOT,
@@ -149,7 +149,7 @@ class MeanShift(Extractor):
     convergence_px: float = 0.01
     similarity: float = 0.5
     tolerance_px: float = 0.75
-    faulty_lines: int = 1
+    faulty_lines: int = 0
     field_px: FieldPx | None = None
 
     def __post_init__(self) -> None:

@@ -58,7 +58,7 @@ class MultipleCentroids(Extractor):
     faulty_lines : int
         Lines of apertures (columns or rows) that may be dark or doubled at once without a wrong
         answer, not negative: a displacement is an answer where every other one leaves more of
-        them unexplained.
+        them unexplained. Beyond 0 a departure: the survey takes the mask for whole.
     field_px : tuple of (x, y, reach) or None
         Where the pattern's middle is for a Sun on the boresight, and how far along an axis it is
         from there at the edge of the field of view, px, positive: a Sun beyond it counts as a
@@ -115,7 +115,7 @@ class MultipleCentroids(Extractor):
         studies=("Rufino2009b",),
         labels=("fe:mcam", "alg:MCAM"),
         origin="survey",
-        version=2,
+        version=3,
         needs=PATTERN_NEEDS,
         observation=Observation.FRAMES,
         kind=FeatureKind.SPOT,
@@ -125,7 +125,7 @@ class MultipleCentroids(Extractor):
     blur_px: float = 0.0
     threshold: float = 0.3
     tolerance_px: float = 0.75
-    faulty_lines: int = 1
+    faulty_lines: int = 0
     field_px: FieldPx | None = None
 
     def __post_init__(self) -> None:

@@ -366,3 +366,30 @@ def test_the_longest_spot_of_a_design_follows_its_shadow_or_its_diffraction():
     assert MirrorRegistration.for_sensor(SensorGeometry(focal_length_mm=2.0)).longest_px is None
     with pytest.raises(ValueError, match="longest_px must be positive and finite; got 0"):
         MirrorRegistration(longest_px=0.0)
+
+
+def test_the_noise_of_the_slopes_is_known_at_every_displacement():
+    """White noise through the slopes: its variance, and what two neighbours have in common."""
+    rng = np.random.default_rng(51)
+    line, taps = rng.normal(size=200_000), np.arange(1, 7)
+    own, common = filters.noise_of_slopes()
+    for d in (0.0, 0.5):
+        t = sum(filters.TAPS[q] * d ** (2 * q) for q in range(4))
+        slope = sum(t[n - 1] * (np.roll(line, -n) - np.roll(line, n)) for n in taps)
+        said = [2.0 * np.polyval(given[::-1], d**2) for given in (own, common)]
+        measured = [np.mean(slope**2), np.mean(slope * np.roll(slope, 1))]
+        np.testing.assert_allclose(measured, said, atol=0.03)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("radius", "peak"), [(2.0, PEAK), (4.0, PEAK), (8.0, 200.0)])
+def test_the_covariance_holds_for_few_pixels_and_for_weak_light(radius, peak):
+    """Of 500 frames, within 20 % of 2: four deviations; few pixels tell little of their noise."""
+    frames, centres, _ = spots(lambda x, y: disc(x, y, radius), 500, 52, peak=peak)
+    found = MirrorRegistration().measure(frames)
+    assert np.isfinite(found.features).all(axis=1).mean() > 0.97
+    errors = found.features - centres
+    seen = np.isfinite(errors[:, 0])
+    inverse = np.linalg.inv(found.covariance[seen])
+    squares = np.einsum("ni,nij,nj->n", errors[seen], inverse, errors[seen])
+    assert 1.6 < squares.mean() < 2.4
