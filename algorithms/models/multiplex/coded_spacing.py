@@ -41,10 +41,9 @@ class CodedSpacing(CodedMask):
         is no answer. None for no such edge.
     agreeing : int
         Spots that must agree on a place, at least 3.
-    clear : int
-        Every other place must have so many times the faults (spots unexplained, apertures in view
-        that are dark) and one, at least 1: where faults happen, one says less. A spot beside its
-        place makes two.
+    odds : float
+        By how much likelier than any other the place must make the spots, from 1 up: where these
+        lie as far from their places as the code's steps are wide, none is.
     share : float
         Of the spots, and of the apertures in view, that must agree, in (0, 1].
     extrapolation : float
