@@ -229,6 +229,8 @@ class SigmaPointKalman:
         From 0 up.
     beta : float
         Weight added to the middle's in covariances; 2 suits a normal distribution.
+    considered : tuple of int
+        As `ExtendedKalman`.
 
     Examples
     --------
@@ -239,6 +241,7 @@ class SigmaPointKalman:
 
     kappa: float = 1.0
     beta: float = 2.0
+    considered: tuple[int, ...] = ()
 
     def weights(self, n: int) -> tuple[Floats, Floats]:
         """(2 n + 1,) of means and of covariances, the middle first."""
@@ -281,6 +284,10 @@ class SigmaPointKalman:
         step, covariance, squared, likelihood = algebra.gained(
             belief.covariance, algebra.crossed(errors, off, spreads), spread, read - mean
         )
+        if self.considered:  # what is known of them stays; of all the rest the gain is the best
+            kept = np.ix_(range(count), self.considered, self.considered)
+            covariance[kept] = belief.covariance[kept]
+            step[:, list(self.considered)] = 0.0
         states = space.moved(belief.states, step)
         return Belief(states, covariance, belief.noise, squared, likelihood, belief.weights)
 

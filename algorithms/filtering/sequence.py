@@ -15,7 +15,7 @@ from algorithms.calibration.calibrated import WORST_RESIDUAL
 from algorithms.calibration.quality import FitQuality, data_digest
 from algorithms.context import Context, as_context, complete
 from algorithms.contract import FeatureKind, Floats, Model, SensorGeometry, UnusableDataError
-from algorithms.filtering.drift import LEVEL, MOTION, Drift, Gyroscope
+from algorithms.filtering.drift import HEAD_SHIFTS, LEVEL, MOTION, Drift, Gyroscope
 from algorithms.inputs import (
     as_calibration_rows,
     as_features,
@@ -45,8 +45,14 @@ _FEWEST_READ = 2
 #: Longest correlation of residuals that is looked for, in steps.
 _LAGS = 200
 _LEVEL = Drift(place=LEVEL, deviation=0.05, walk=5e-4)
-_HOUR_S = 3600.0
+_HOUR_S, _YEAR_S = 3600.0, 365.25 * 86_400.0
+#: Steps towards the white noise that the readings themselves tell.
+_NOISE_STEPS = 8
+#: White noise that is taken for none, over the residuals' variance.
+_QUIET = 1e-6
 _ROOT_HOUR = _HOUR_S**0.5
+#: Of what has not aged: a covariance must have a root.
+_LEAST_AGED = 1e-9
 
 
 @dataclass(frozen=True)
@@ -98,6 +104,11 @@ class SunFilter(Model):
     angle_walk_deg_sqrt_h, bias_deg_h, bias_walk_deg_h_sqrt_h : float
         The gyroscope's data sheet, positive: angle random walk, bias when switched on, and what
         the bias moves in an hour.
+    reference_deg : float
+        1-sigma, about each axis, of a fixed turn of what told the calibration's directions,
+        positive: of a star tracker against the sensor.
+    ageing_per_year : float
+        1-sigma of how far a spot's offsets move in a year, over the focal length, positive.
     worst_deg : float
         1-sigma beyond which a direction is not answered, positive.
 
@@ -106,7 +117,11 @@ class SunFilter(Model):
     readings_ : FaceReadings or SpotReadings
         How the sensor reads a direction.
     noise_ : ndarray, shape (m,)
-        Variance of each reading: of the residuals, times the steps over which they are correlated.
+        Variance of each reading's white noise.
+    lasting_ : ndarray, shape (m, 2)
+        Variance of each reading's errors that last, and their time constant, s.
+    calibrated_s_ : float
+        Mean time of the calibration.
     starts_ : ndarray, shape (G, 3)
         Directions that the calibration saw.
     step_s_ : float
@@ -119,10 +134,14 @@ class SunFilter(Model):
     angle_walk_deg_sqrt_h: float = 0.15
     bias_deg_h: float = 10.0
     bias_walk_deg_h_sqrt_h: float = 0.5
+    reference_deg: float = 0.02
+    ageing_per_year: float = 7.5e-4
     worst_deg: float = 10.0
 
     readings_: FaceReadings | SpotReadings = field(init=False, repr=False, compare=False)
     noise_: Floats = field(init=False, repr=False, compare=False)
+    lasting_: Floats = field(init=False, repr=False, compare=False)
+    calibrated_s_: float = field(init=False, repr=False, compare=False)
     starts_: Floats = field(init=False, repr=False, compare=False)
     step_s_: float = field(init=False, repr=False, compare=False)
     quality_: FitQuality = field(init=False, repr=False, compare=False)
@@ -138,6 +157,8 @@ class SunFilter(Model):
             angle_walk_deg_sqrt_h=self.angle_walk_deg_sqrt_h,
             bias_deg_h=self.bias_deg_h,
             bias_walk_deg_h_sqrt_h=self.bias_walk_deg_h_sqrt_h,
+            reference_deg=self.reference_deg,
+            ageing_per_year=self.ageing_per_year,
             worst_deg=self.worst_deg,
         )
 
@@ -160,9 +181,21 @@ class SunFilter(Model):
         """Parameters of the sensor in the state: the light's strength before faces."""
         return (_LEVEL,) if self.face_normals else ()
 
+    def uncertain(self, years: float) -> Sequence[Drift]:
+        """Parameters of the sensor that are considered, not estimated, so long after calibration.
+
+        Offsets behind a spot, which age; of faces, errors that last have it all.
+        """
+        if self.face_normals:
+            return ()
+        deviation = max(self.ageing_per_year * years, _LEAST_AGED)
+        return [Drift(place, deviation, 0.0) for place in HEAD_SHIFTS[1:]]
+
     def considered(self) -> tuple[int, ...]:
-        """Which errors of the state are considered and not estimated; none."""
-        return ()
+        """Which errors of the state are considered: those of `uncertain`, and the head's turn."""
+        first, number = MOTION + len(self.drifts()), len(self.uncertain(0.0))
+        turn = first + number + self.columns()
+        return (*range(first, first + number), *range(turn, turn + 3))
 
     def columns(self) -> int:
         """One a face; two of a spot or balance."""
@@ -206,11 +239,47 @@ class SunFilter(Model):
         self.step_s_ = float(np.median(apart))
         if not self.step_s_ > 0:
             raise UnusableDataError(f"{by}: the calibration's samples must follow each other")
-        size = float(np.abs(features).max())
-        variance = np.maximum((residuals**2).mean(axis=0), (1e-9 * size) ** 2)
-        self.noise_ = variance * correlated_steps(residuals)
         chosen = np.linspace(0, len(sun) - 1, min(_STARTS, len(sun))).round().astype(int)
         self.starts_ = sun[chosen]
+        self.calibrated_s_ = float(told["time_s"].mean())
+        size = float(np.abs(features).max())
+        least = (1e-9 * size) ** 2
+        self.noise_, self.lasting_ = parted(residuals, told["time_s"], self.step_s_)
+        self.noise_ = np.maximum(self.noise_, least)
+        self.lasting_[:, 0] = np.maximum(self.lasting_[:, 0], least)
+        self._hear(features, told, np.maximum(_QUIET * self.noise_, least))
+
+    def _hear(self, features: Floats, told: dict[str, Floats], least: Floats) -> None:
+        """Lower the white noise to what the readings, one after the other, leave of it.
+
+        Residuals have the noise of the reference, too. Of a filter that has the right noise, squares
+        of what updates leave have the mean ``R - H P H'`` (Mohamed and Schwarz).
+        """
+        from algorithms.filtering.filters import ExtendedKalman  # noqa: PLC0415 - Numba
+
+        known = _known(told) - np.array([0.0] * 6 + [self.readings_.middle_k])
+        steps = np.diff(told["time_s"], prepend=-np.inf)
+        by, most = ExtendedKalman(self.considered()), self.noise_
+        for _ in range(_NOISE_STEPS):
+            space, belief = self.space(), None
+            total = np.zeros((2, self.columns()))
+            for row, read in enumerate(features):
+                if belief is None or not 0 < steps[row] <= _LONGEST * self.step_s_:
+                    belief = space.started(
+                        by, self.starts_, read, known[row], self.considered()
+                    )
+                    continue
+                belief = by.predict(space, belief, known[row], float(steps[row]))
+                belief = by.update(space, belief, read[None], known[row])
+                values, slopes = space.measured(belief.states, known[row]), space.sensitivity(
+                    belief.states, known[row]
+                )
+                spread = slopes[0] @ belief.covariance[0] @ slopes[0].T
+                left = np.stack([(read - values[0]) ** 2, self.noise_ - np.diagonal(spread)])
+                if np.isfinite(left).all():
+                    total += left
+            if (total > 0).all():
+                self.noise_ = np.clip(self.noise_ * total[0] / total[1], least, most)
 
     def assess(self, features: Floats, sun: Floats, told: dict[str, Floats]) -> None:
         """Set `quality_`: UnusableDataError where the filter does not follow its calibration."""
@@ -254,8 +323,8 @@ class SunFilter(Model):
         usable &= np.where(usable, self.readings_.lit(found), 0.0) > 0
         return self._followed(found, told["time_s"], _known(told), usable)
 
-    def space(self) -> SunSpace:
-        """State space of the fitted sensor."""
+    def space(self, years: float = 0.0) -> SunSpace:
+        """State space of the fitted sensor, so long after its calibration."""
         from algorithms.filtering.sun_space import SunSpace  # noqa: PLC0415 - Numba
 
         gyroscope = Gyroscope(
@@ -263,12 +332,21 @@ class SunFilter(Model):
             float(np.radians(self.bias_deg_h / _HOUR_S)),
             float(np.radians(self.bias_walk_deg_h_sqrt_h / (_HOUR_S * _ROOT_HOUR))),
         )
-        return SunSpace(self.readings_, np.diag(self.noise_), gyroscope, self.drifts())
+        return SunSpace(
+            self.readings_,
+            np.diag(self.noise_),
+            gyroscope,
+            (*self.drifts(), *self.uncertain(years)),
+            lasting=self.lasting_,
+            turn=float(np.radians(self.reference_deg)),
+        )
 
     def _followed(
         self, found: Floats, time_s: Floats, known: Floats, usable: NDArray[np.bool_]
     ) -> Track:
-        space, by = self.space(), self.filter()
+        away_s = float(np.abs(time_s[:1] - self.calibrated_s_).sum())
+        space, by = self.space(away_s / _YEAR_S), self.filter()
+        drifts = len(self.drifts()) + len(self.uncertain(0.0))
         known = known - np.array([0.0] * 6 + [self.readings_.middle_k])
         count = len(found)
         states = np.full((count, space.errors + 7), np.nan)
@@ -299,8 +377,8 @@ class SunFilter(Model):
             read=read,
             squared_innovation=squared,
             series=np.cumsum(~follows) - int(count > 0 and not follows[0]),
-            drift=states[:, 12:],
-            drift_deviation=np.sqrt(variance[:, MOTION:]),
+            drift=states[:, 12 : 12 + drifts],
+            drift_deviation=np.sqrt(variance[:, MOTION : MOTION + drifts]),
             bias_deg_h=np.degrees(states[:, 9:12]) * _HOUR_S,
         )
 
@@ -325,23 +403,47 @@ class SunFilter(Model):
         return np.concatenate(rows)
 
 
-def correlated_steps(residuals: Floats) -> Floats:
-    """Count steps (m,) over which residuals (n, m) are correlated, at least 1.
+def parted(residuals: Floats, time_s: Floats, step_s: float) -> tuple[Floats, Floats]:
+    """Part residuals (n, m) in the order of time into white noise and errors that last.
 
-    ``1 + 2 sum rho_k`` up to where the correlation has fallen to a twentieth: a mean over many
-    samples has this many times the variance that it would have of white ones.
+    The covariance of residuals k steps apart is ``a exp(-k step / tau)``, and at no distance white
+    noise is beside it: least squares over lags up to a quarter of the samples, 200 at most, tau
+    tried along a geometric series.
+
+    Returns
+    -------
+    white : ndarray, shape (m,)
+        Variances.
+    lasting : ndarray, shape (m, 2)
+        Variances a, and tau in seconds.
     """
     count, number = residuals.shape
-    steps = np.ones(number)
+    place = np.round((time_s - time_s[0]) / step_s).astype(np.int64)
+    lags = np.arange(1, max(min(_LAGS, count // 4), 1) + 1)
+    off = residuals - residuals.mean(axis=0)
+    covariance = np.zeros((len(lags), number))
+    for row, lag in enumerate(lags):
+        # pairs so far apart in time, across gaps too
+        later = np.searchsorted(place, place + lag)
+        pair = np.flatnonzero(later < count)
+        pair = pair[place[later[pair]] == place[pair] + lag]
+        if len(pair):
+            covariance[row] = (off[pair] * off[later[pair]]).mean(axis=0)
+    power = (off**2).mean(axis=0)
+    constants = np.geomspace(0.5, float(_LAGS), 41)
+    white, lasting = power.copy(), np.zeros((number, 2))
     for m in range(number):
-        r = residuals[:, m] - residuals[:, m].mean()
-        power = float((r**2).sum())
-        for lag in range(1, min(_LAGS, count // 4)):
-            rho = float((r[lag:] * r[:-lag]).sum()) / power if power > 0 else 0.0
-            if rho < 0.05:
-                break
-            steps[m] += 2.0 * rho
-    return steps
+        best = np.inf
+        lasting[m] = 0.0, step_s
+        for constant in constants:
+            fall = np.exp(-lags / constant)
+            size = float(np.clip(covariance[:, m] @ fall / (fall @ fall), 0.0, power[m]))
+            cost = float(((covariance[:, m] - size * fall) ** 2).sum())
+            if cost < best:
+                best = cost
+                lasting[m] = size, constant * step_s
+        white[m] = power[m] - lasting[m, 0]
+    return white, lasting
 
 
 def _known(told: dict[str, Floats]) -> Floats:

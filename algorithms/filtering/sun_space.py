@@ -22,7 +22,9 @@ class SunSpace:
     """State space of a Sun sensor on a body whose turning a gyroscope tells.
 
     ``s' = exp(-[(w - b) dt]) s``, bias and parameters wander, readings are those learnt. States
-    are (B, 12 + p), errors (B, 5 + p): see `algorithms.filtering.sun_kernel`.
+    are (B, 12 + p), errors (B, 5 + p): see `algorithms.filtering.sun_kernel`. Behind the sensor's
+    parameters stand errors of the readings that last, ``c' = exp(-dt / tau) c`` and white noise,
+    where there are such, and a turn of the head: ``z = h(exp([d]) s) + c + v``.
 
     Parameters
     ----------
@@ -33,21 +35,37 @@ class SunSpace:
     gyroscope : Gyroscope
         Its data sheet.
     drifts : sequence of Drift
-        The p numbers of the sensor that are in the state.
+        Numbers of the sensor that are in the state.
+    lasting : ndarray, shape (m, 2), optional
+        Of each reading's errors that last: variance and time constant, s; nothing lasts by default.
+    turn : float
+        1-sigma, rad, of the head's turn about each axis; 0 where there is none.
     """
 
     def __init__(
-        self, readings: Readings, noise: Floats, gyroscope: Gyroscope, drifts: Sequence[Drift]
+        self,
+        readings: Readings,
+        noise: Floats,
+        gyroscope: Gyroscope,
+        drifts: Sequence[Drift],
+        *,
+        lasting: Floats | None = None,
+        turn: float = 0.0,
     ) -> None:
         self._readings, self._noise = readings, noise
         self._gyroscope = gyroscope
         self._chosen = np.array([drift.place for drift in drifts], dtype=np.float64)
-        self.errors = MOTION + len(drifts)
+        spread = np.zeros((0, 2)) if lasting is None else lasting
+        turns = [turn] * 3 if turn else []
+        self._spread = spread
+        self._lasting = MOTION + len(drifts)
+        self._turn = self._lasting + len(spread) if turn else 0
+        self.errors = self._lasting + len(spread) + len(turns)
         first = [_FIRST_RAD] * 2 + [gyroscope.bias] * 3 + [drift.deviation for drift in drifts]
-        self._first = np.diag(np.square(first))
+        self._first = np.diag(np.square([*first, *np.sqrt(spread[:, 0]), *turns]))
         walks = [0.0] * 2 + [gyroscope.bias_walk] * 3 + [drift.walk for drift in drifts]
-        self._walks = np.square(walks)
-        self._step: tuple[float, Floats] | None = None
+        self._walks = np.square([*walks, *np.zeros(len(spread)), *np.zeros(len(turns))])
+        self._step: tuple[float, Floats, Floats] | None = None
 
     @property
     def readings(self) -> int:
@@ -55,34 +73,58 @@ class SunSpace:
         return self._readings.count
 
     def propagated(self, states: Floats, known: Floats, step_s: float) -> Floats:
-        """States after the body turned."""
+        """States after the body turned; errors that last have faded."""
         found: Floats = motion.propagated(states, known, step_s)
+        if len(self._spread):
+            place = self._lasting + 7
+            found[:, place : place + len(self._spread)] *= self._stepped(step_s)[1]
         return found
 
     def transition(self, states: Floats, known: Floats, step_s: float) -> Floats:
         """Jacobian of `propagated`."""
         after = motion.propagated(states, known, step_s)
         found: Floats = motion.transition(states, after, known, step_s)
+        if len(self._spread):
+            place = np.arange(self._lasting, self._lasting + len(self._spread))
+            found[:, place, place] = self._stepped(step_s)[1]
         return found
 
     def process_noise(self, step_s: float) -> Floats:
         """Angle random walk, and what the bias' own walk adds to it; walks of all the rest."""
-        if self._step is None or self._step[0] != step_s:  # steps are nearly always alike
+        return self._stepped(step_s)[0]
+
+    def _stepped(self, step_s: float) -> tuple[Floats, Floats]:
+        """Process noise of a step, and what is left of errors that last; steps are mostly alike."""
+        if self._step is None or self._step[0] != step_s:
             noise = np.diag(self._walks * step_s)
             walk = self._gyroscope
             noise[0, 0] = noise[1, 1] = (
                 walk.angle_walk**2 * step_s + walk.bias_walk**2 * step_s**3 / 3.0
             )
-            self._step = step_s, noise
-        return self._step[1]
+            kept = np.exp(-step_s / self._spread[:, 1])
+            place = np.arange(self._lasting, self._lasting + len(kept))
+            noise[place, place] = self._spread[:, 0] * (1.0 - kept**2)
+            self._step = step_s, noise, kept
+        return self._step[1:]
 
     def measured(self, states: Floats, known: Floats) -> Floats:
         """Give readings without noise."""
-        return self._readings.at(states, self._chosen, known)[0]
+        return self._read(states, known)[0]
 
     def sensitivity(self, states: Floats, known: Floats) -> Floats:
         """Jacobian of `measured`."""
-        return self._readings.at(states, self._chosen, known)[1]
+        return self._read(states, known)[1]
+
+    def _read(self, states: Floats, known: Floats) -> tuple[Floats, Floats]:
+        seen = motion.headed(states, self._turn + 7) if self._turn else states
+        values, slopes = self._readings.at(seen, self._chosen, known)
+        if len(self._spread):
+            place = np.arange(len(self._spread))
+            values = values + states[:, self._lasting + 7 + place]
+            slopes[:, place, self._lasting + place] = 1.0
+        if self._turn:
+            motion.heading(seen, slopes, self._turn + 7)
+        return values, slopes
 
     def measurement_noise(self) -> Floats:
         """Covariance of readings."""
@@ -119,7 +161,8 @@ class SunSpace:
 
         Gauss-Newton steps of the update, all from the same prior (iterated Kalman update).
         """
-        scale = np.sqrt(np.diagonal(self._noise))
+        lasting = self._spread[:, 0] if len(self._spread) else 0.0
+        scale = np.sqrt(np.diagonal(self._noise) + lasting)
         tried = self.states_towards(starts)
         off = (read - self.measured(tried, known)) / scale
         cost = (off**2).sum(axis=1)
@@ -133,7 +176,7 @@ class SunSpace:
         prior = self._first[None].copy()
         covariance = prior
         for _ in range(_STEPS):
-            values, slopes = self._readings.at(state, self._chosen, known)
+            values, slopes = self._read(state, known)
             innovation = read - values + (slopes @ step[0])
             if not np.isfinite(innovation).all():
                 return None

@@ -1,8 +1,8 @@
 """How surely a list of spots shows one part of a coded mask: evidence for all places of it.
 
 The evidence for a place is the logarithm of how likely it makes the list. Spots that it explains
-lie about their apertures with one deviation, which the list itself tells, beside a prior of few
-degrees of freedom: ``t``-distributed residuals. Any other spot is stray light somewhere on the
+lie about their apertures with one deviation: that of the design or, rarely, one that the list alone
+tells, which makes residuals ``t``-distributed. Any other spot is stray light somewhere on the
 detector, and an aperture in view without a spot is closed. So a spot that fills a wide tolerance
 tells no place from the next, and a list whose spots do is said to show several.
 
@@ -26,24 +26,27 @@ from algorithms.calibration.coded.identity_kernel import (
     of_one,
     partners_of,
     room_for,
+    spacings,
 )
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
 
-#: Prior of a spot's variance: degrees of freedom and px^2; cost of a spot unexplained and of an
-#: aperture dark; odds asked for; room for displacements and for a spot. All but the first two are
-#: logarithms.
-Noise = tuple[float, float, float, float, float, float, float]
+#: Of a spot's variance by design, then of one that is not known: degrees of freedom, px^2, and cost
+#: of that it is so; cost of a spot unexplained and of an aperture dark; odds asked for; room for a
+#: displacement and for a spot. Costs, odds and room are logarithms.
+Noise = tuple[float, float, float, float, float, float, float, float, float, float, float]
+_UNEXPLAINED, _DARK, _ODDS, _MASK, _VIEW = 6, 7, 8, 9, 10
 
 #: What is said of a list: read, nothing to read, several places that it may show.
 READ, NOTHING, SEVERAL = 0, 1, 2
 
 
 @compiled
-def _paired(spots: Floats, count: int, most: int, reach: float) -> Indices:
+def _paired(spots: Floats, count: int, most: int, code: Code) -> Indices:
     """Partner of each spot in sets that share none, more than `most` sets; itself alone.
 
-    -1 for a spot in no set, and throughout where there are not so many sets.
+    A neighbour, of those that are left the one whose spacing is on the mask least often. -1 for a
+    spot in no set, and throughout where there are not so many sets.
     """
     mates = np.full(count, -1, dtype=np.int64)
     sets = 0
@@ -52,11 +55,15 @@ def _paired(spots: Floats, count: int, most: int, reach: float) -> Indices:
             continue
         mates[i] = i
         sets += 1
+        fewest = -1
         for j in range(i + 1, count):
-            if mates[j] < 0 and near(spots, i, j, reach):
-                mates[i] = j
-                mates[j] = i
-                break
+            if mates[j] < 0 and near(spots, i, j, code[5][0]):
+                number = spacings(spots, i, j, code)
+                if fewest < 0 or number < fewest:
+                    fewest = number
+                    mates[i] = j
+        if mates[i] != i:
+            mates[mates[i]] = i
     if sets <= most:
         for i in range(count):
             mates[i] = i if count > most else -1
@@ -65,21 +72,27 @@ def _paired(spots: Floats, count: int, most: int, reach: float) -> Indices:
 
 @compiled
 def _agreement(dimensions: int, squares: float, noise: Noise) -> float:
-    """Logarithm of the density of residuals whose deviation is not known but for its prior."""
-    freedom, variance = noise[0], noise[1]
-    all_of = 0.5 * (freedom + dimensions)
-    return (
-        math.lgamma(all_of)
-        - math.lgamma(0.5 * freedom)
-        - 0.5 * dimensions * math.log(math.pi * freedom * variance)
-        - all_of * math.log1p(squares / (freedom * variance))
-    )
+    """Logarithm of the density of residuals, of the design's noise or of an unknown one."""
+    found = -math.inf
+    for prior in range(2):
+        freedom, variance, cost = noise[3 * prior], noise[3 * prior + 1], noise[3 * prior + 2]
+        all_of = 0.5 * (freedom + dimensions)
+        told = (
+            math.lgamma(all_of)
+            - math.lgamma(0.5 * freedom)
+            - 0.5 * dimensions * math.log(math.pi * freedom * variance)
+            - all_of * math.log1p(squares / (freedom * variance))
+            - cost
+        )
+        high, low = max(found, told), min(found, told)
+        found = high + math.log1p(math.exp(low - high))
+    return found
 
 
 @compiled
 def _at_most(count: int, left: int, noise: Noise) -> float:
     """Evidence for a place that leaves so many of the spots: no place that does has more."""
-    return _agreement(max(2 * (count - left) - 2, 0), 0.0, noise) - left * noise[2]
+    return _agreement(max(2 * (count - left) - 2, 0), 0.0, noise) - left * noise[_UNEXPLAINED]
 
 
 @compiled
@@ -114,11 +127,11 @@ def _evidence(  # noqa: PLR0917 - Numba takes no keyword-only ones
                 squares += (spots[s, 0] - places[partners[s], 0] - x) ** 2
                 squares += (spots[s, 1] - places[partners[s], 1] - y) ** 2
         at[0], at[1] = x, y
-    found = _agreement(2 * (count - left) - 2, squares, noise) - left * noise[2]
+    found = _agreement(2 * (count - left) - 2, squares, noise) - left * noise[_UNEXPLAINED]
     if found < least:
         return -math.inf
-    closed = dark(count, at, int(min((found - least) / noise[3], 1e6)), code, view, partners)
-    found -= closed * noise[3]
+    closed = dark(count, at, int(min((found - least) / noise[_DARK], 1e6)), code, view, partners)
+    found -= closed * noise[_DARK]
     return found if found >= least else -math.inf
 
 
@@ -134,13 +147,13 @@ def _compared(  # noqa: PLR0917 - Numba takes no keyword-only ones
 ) -> tuple[float, float]:
     """Evidence for the likeliest place, to which `place` is moved, and for the next likely one.
 
-    Exactly, as far as the next one is within the odds of noise[4]: such a place leaves some
+    Exactly, as far as the next one is within the odds asked for: such a place leaves some
     spots at most, and of one set more that share none it explains one whole. Sets are two
     neighbours, whose spacing the table has, or a spot alone.
     """
     trials, left, partners = room
     apart = 2.0 * code[2][3]
-    nothing = noise[5] - count * noise[6]
+    nothing = noise[_MASK] - count * noise[_VIEW]
     best, second = nothing, -math.inf
     known = not math.isnan(place[0])
     if known:
@@ -148,9 +161,9 @@ def _compared(  # noqa: PLR0917 - Numba takes no keyword-only ones
             _evidence(spots, count, place, -math.inf, code, view, noise, partners), nothing
         )
     most = 0
-    while most < count and _at_most(count, most + 1, noise) >= best - noise[4]:
+    while most < count and _at_most(count, most + 1, noise) >= best - noise[_ODDS]:
         most += 1
-    mates = _paired(spots, count, most, code[5][0])
+    mates = _paired(spots, count, most, code)
     sets = 0
     for i in range(count):
         if sets > most:
@@ -167,7 +180,7 @@ def _compared(  # noqa: PLR0917 - Numba takes no keyword-only ones
             if left[h] > most:
                 continue
             at = trials[h]
-            told = _evidence(spots, count, at, best - noise[4], code, view, noise, partners)
+            told = _evidence(spots, count, at, best - noise[_ODDS], code, view, noise, partners)
             if told == -math.inf:
                 continue
             if known and abs(at[0] - place[0]) <= apart and abs(at[1] - place[1]) <= apart:
@@ -212,11 +225,11 @@ def decide(  # noqa: PLR0917 - Numba takes no keyword-only ones
         if count < agreeing:
             continue
         best, second = _compared(spots, count, code, view, noise, room, found[k])
-        if math.isnan(found[k, 0]) or best < noise[5] - count * noise[6] + noise[4]:
+        if math.isnan(found[k, 0]) or best < noise[_MASK] - count * noise[_VIEW] + noise[_ODDS]:
             continue
         explained = count - partners_of(spots, count, found[k], code, own)
         lit = explained + dark(count, found[k], len(code[0]), code, view, own)
         if explained >= max(float(agreeing), share * count, share * lit):
-            verdicts[k] = READ if best - second >= noise[4] else SEVERAL
+            verdicts[k] = READ if best - second >= noise[_ODDS] else SEVERAL
         if verdicts[k] != READ:
             own[:] = -1

@@ -137,6 +137,16 @@ def _entries(spots: Floats, i: int, j: int, line: int, code: Code) -> tuple[int,
 
 
 @compiled
+def spacings(spots: Floats, i: int, j: int, code: Code) -> int:
+    """Count the mask's pairs that may be as far apart as two spots."""
+    number = 0
+    for line in range(3):
+        first, last = _entries(spots, i, j, line, code)
+        number += last - first
+    return number
+
+
+@compiled
 def named(  # noqa: PLR0917 - Numba takes no keyword-only ones
     spots: Floats, i: int, j: int, own: int, code: Code, trials: Floats
 ) -> int:
@@ -181,10 +191,7 @@ def _rarest(spots: Floats, count: int, code: Code, rare: Indices) -> int:
         for j in range(i + 1, count):
             if not near(spots, i, j, code[5][0]):
                 continue
-            number = 0
-            for line in range(3):
-                first, last = _entries(spots, i, j, line, code)
-                number += last - first
+            number = spacings(spots, i, j, code)
             if number == 0 or (found == len(rare) and number >= rare[found - 1, 0]):
                 continue
             k = min(found, len(rare) - 1)

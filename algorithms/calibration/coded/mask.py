@@ -55,11 +55,13 @@ _WORST = 4.2
 _ASTRAY_DEG = 2.0
 #: Turns of a mask that a calibration looks for where the drawing's is not it, degrees.
 _TURNS = tuple(sign * step / 4.0 for step in range(1, 13) for sign in (1, -1))
-#: A design's tolerance is so many standard deviations of a spot, of which the prior of a list's
-#: own deviation knows as much as so many degrees of freedom would tell.
-_DEVIATIONS, _FREEDOM = 5.0, 4.0
+#: A design's tolerance is so many standard deviations of a spot; it is known as well as from so
+#: many degrees of freedom. One list in so many is of a noise that the design does not tell: of a
+#: wider deviation, known as from few.
+_DEVIATIONS, _FREEDOM = 5.0, 30.0
+_WIDE_DEVIATIONS, _WIDE_FREEDOM, _NOISY = 2.0, 4.0, 1e4
 #: Spots of noisy lists may lie so many tolerances off.
-_WIDEST = 3.0
+_WIDEST = 4.0
 #: One spot in so many is stray light, and one aperture in so many closed or not seen.
 _STRAY, _CLOSED = 100.0, 5.0
 #: Share of the calibration samples whose code must be read.
@@ -313,7 +315,7 @@ class CodedMask(ForwardModel):
         partners = np.empty(lists.shape[:2], dtype=np.int64)
         self.search()(lists, counts, code, drawn.view, self.share, found, faults)
         code, order = table.code_of(places, drawn.widths, drawn.reach, drawn.widest, size)
-        noise = (*drawn.noise[:4], math.log(self.odds), *drawn.noise[4:])
+        noise = (*drawn.noise[:8], math.log(self.odds), *drawn.noise[8:])
         rules = (self.agreeing, self.share)
         evidence_kernel.decide(
             lists, counts, code, drawn.view, rules, noise, found, partners, verdicts
@@ -348,6 +350,10 @@ class CodedMask(ForwardModel):
             (
                 _FREEDOM,
                 (tolerance / _DEVIATIONS) ** 2,
+                -math.log1p(-1.0 / _NOISY),
+                _WIDE_FREEDOM,
+                (tolerance / _WIDE_DEVIATIONS) ** 2,
+                math.log(_NOISY),
                 area + math.log(_STRAY),
                 math.log(_CLOSED),
                 math.log(float(np.prod(np.ptp(rows[:, :2], axis=0) + self.size_px))),

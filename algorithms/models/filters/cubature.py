@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, ClassVar
 
 from algorithms.contract import AboutModel, FeatureKind
@@ -29,6 +29,11 @@ class CubatureKalmanFilter(SunFilter):
         Standard deviation of its bias when switched on, positive.
     bias_walk_deg_h_sqrt_h : float
         Of what its bias moves in an hour, positive.
+    reference_deg : float
+        1-sigma, about each axis, of a fixed turn of what told the calibration's directions,
+        positive.
+    ageing_per_year : float
+        1-sigma of how far a spot's offsets move in a year, over the focal length, positive.
     worst_deg : float
         1-sigma of a direction beyond which it is not answered, positive.
 
@@ -37,7 +42,11 @@ class CubatureKalmanFilter(SunFilter):
     readings_ : FaceReadings or SpotReadings
         How the sensor reads a direction.
     noise_ : ndarray, shape (m,)
-        Variance of each reading.
+        Variance of each reading's white noise.
+    lasting_ : ndarray, shape (m, 2)
+        Variance of each reading's errors that last, and their time constant, s.
+    calibrated_s_ : float
+        Mean time of the calibration.
     starts_ : ndarray, shape (G, 3)
         Directions that the calibration saw.
     step_s_ : float
@@ -55,8 +64,9 @@ class CubatureKalmanFilter(SunFilter):
     Implements: the online section's CKF, of the filters that model:mnc names.
 
     State: the Sun's direction in the body frame, the gyroscope's bias and, before faces, the
-    light's strength; ``s' = exp(-[(w - b) dt]) s``, ``z = h(s) + v`` with h as the calibration
-    found it, warmth and the Earth's light by nadir included.
+    light's strength; ``s' = exp(-[(w - b) dt]) s``, ``z = h(s) + c + v`` with h as the calibration
+    found it, warmth and the Earth's light by nadir included, and c what h is off by, which lasts.
+    The turn of the calibration's reference is considered, as is what ages behind a spot.
 
     Shapes: signals (N, K), or spots or balances (N, 2), in the order of time, with the context's
     columns, to unit vectors (N, 3).
@@ -109,4 +119,4 @@ class CubatureKalmanFilter(SunFilter):
         """Take the cubature rule's points."""
         from algorithms.filtering.filters import CUBATURE  # noqa: PLC0415 - Numba
 
-        return CUBATURE
+        return replace(CUBATURE, considered=self.considered())
