@@ -29,7 +29,8 @@ class Belief:
     covariance : ndarray, shape (B, n, n)
         Of their errors.
     noise : ndarray, shape (B, m, m)
-        Covariance of readings as the filter takes it.
+        Covariance of readings as the filter takes it; of how many tell as much as one, the state
+        space knows.
     squared_innovation : ndarray, shape (B,)
         Of the last update, in units of its own covariance; NaN where nothing was read. Chi-square
         of m degrees of freedom where the state space is the system's.
@@ -60,6 +61,16 @@ def begun(space: StateSpace, states: Floats, covariance: Floats) -> Belief:
         nothing,
         np.ones(count),
     )
+
+
+def spread_over(noise: Floats, steps: Floats) -> Floats:
+    """Covariance (B, m, m) that white errors would have to tell as little as correlated ones.
+
+    A mean of many readings whose errors are correlated over some steps has as many times the
+    variance that it would have of white ones.
+    """
+    root = np.sqrt(steps)
+    return noise * (root[:, None] * root)
 
 
 class Filter(Protocol):
@@ -129,10 +140,13 @@ class ExtendedKalman:
         step, covariance, squared, likelihood = algebra.updated(
             belief.covariance,
             sensitivity,
-            noise,
+            spread_over(noise, space.correlated()),
             innovation,
             _estimated(space.errors, self.considered),
         )
+        if (space.correlated() > 1.0).any():  # a reading is as far off as readings are
+            spread = algebra.innovation_covariance(belief.covariance, sensitivity, noise)
+            squared, likelihood = algebra.foretold(spread, innovation)
         states = space.moved(belief.states, step)
         after = Belief(states, covariance, belief.noise, squared, likelihood, belief.weights)
         return self.learnt(space, after, read, known, sensitivity)
@@ -179,6 +193,8 @@ class AdaptiveKalman(ExtendedKalman):
         heard = np.isfinite(residual).all(axis=1) & np.isfinite(after.squared_innovation)
         left = residual[:, :, None] * residual[:, None, :]
         found = algebra.innovation_covariance(after.covariance, sensitivity, left)
+        if (space.correlated() > 1.0).any():  # what is still unknown is not what the residual lacks
+            found = left
         noise = after.noise + (found - after.noise) / self.window
         floor = self.least * np.diagonal(space.measurement_noise())
         place = np.arange(space.readings)
@@ -280,10 +296,14 @@ class SigmaPointKalman:
         seen = space.measured(points.reshape(-1, size), known).reshape(count, number, -1)
         mean, off = algebra.centred(seen, means)
         spread = algebra.crossed(off, off, spreads)
-        spread += belief.noise
         step, covariance, squared, likelihood = algebra.gained(
-            belief.covariance, algebra.crossed(errors, off, spreads), spread, read - mean
+            belief.covariance,
+            algebra.crossed(errors, off, spreads),
+            spread + spread_over(belief.noise, space.correlated()),
+            read - mean,
         )
+        if (space.correlated() > 1.0).any():
+            squared, likelihood = algebra.foretold(spread + belief.noise, read - mean)
         if self.considered:  # what is known of them stays; of all the rest the gain is the best
             kept = np.ix_(range(count), self.considered, self.considered)
             covariance[kept] = belief.covariance[kept]

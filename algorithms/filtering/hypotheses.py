@@ -61,7 +61,8 @@ class MultipleModels:
         """Belief with readings (B, m), one row a run."""
         number = len(self.noise_scales)
         after = ExtendedKalman(self.considered).update(space, belief, np.repeat(read, number, axis=0), known)
-        told = after.log_likelihood.reshape(-1, number)
+        # readings whose errors are correlated tell as much as fewer would
+        told = after.log_likelihood.reshape(-1, number) / space.correlated().mean()
         best = told.max(axis=1, keepdims=True)
         likelihood = np.where(np.isfinite(best), np.exp(told - best), 1.0)
         weights = after.weights.reshape(-1, number) * likelihood

@@ -15,7 +15,7 @@ from algorithms.calibration.calibrated import WORST_RESIDUAL
 from algorithms.calibration.quality import FitQuality, data_digest
 from algorithms.context import Context, as_context, complete
 from algorithms.contract import FeatureKind, Floats, Model, SensorGeometry, UnusableDataError
-from algorithms.filtering.drift import HEAD_SHIFTS, LEVEL, MOTION, Drift, Gyroscope
+from algorithms.filtering.drift import GAINS, HEAD_SHIFTS, LEVEL, MOTION, Drift, Gyroscope
 from algorithms.inputs import (
     as_calibration_rows,
     as_features,
@@ -46,8 +46,10 @@ _FEWEST_READ = 2
 _LAGS = 200
 _LEVEL = Drift(place=LEVEL, deviation=0.05, walk=5e-4)
 _HOUR_S, _YEAR_S = 3600.0, 365.25 * 86_400.0
-#: Steps towards the white noise that the readings themselves tell.
-_NOISE_STEPS = 8
+#: Steps at most towards the white noise that the readings themselves tell, and a step that is none.
+_NOISE_STEPS, _SETTLED = 12, 0.03
+#: Steps of correlation up to which residuals count as white.
+_WHITE = 2.0
 #: White noise that is taken for none, over the residuals' variance.
 _QUIET = 1e-6
 _ROOT_HOUR = _HOUR_S**0.5
@@ -107,8 +109,9 @@ class SunFilter(Model):
     reference_deg : float
         1-sigma, about each axis, of a fixed turn of what told the calibration's directions,
         positive: of a star tracker against the sensor.
-    ageing_per_year : float
-        1-sigma of how far a spot's offsets move in a year, over the focal length, positive.
+    gain_ageing_per_year, shift_ageing_per_year : float
+        1-sigma of what a year changes, positive: a face's gain against the others', and a spot's
+        offsets over the focal length.
     worst_deg : float
         1-sigma beyond which a direction is not answered, positive.
 
@@ -117,9 +120,10 @@ class SunFilter(Model):
     readings_ : FaceReadings or SpotReadings
         How the sensor reads a direction.
     noise_ : ndarray, shape (m,)
-        Variance of each reading's white noise.
-    lasting_ : ndarray, shape (m, 2)
-        Variance of each reading's errors that last, and their time constant, s.
+        Variance of each reading.
+    steps_ : ndarray, shape (m,)
+        Steps over which its errors are correlated: so many readings tell as much as one would of
+        errors that are white.
     calibrated_s_ : float
         Mean time of the calibration.
     starts_ : ndarray, shape (G, 3)
@@ -135,12 +139,13 @@ class SunFilter(Model):
     bias_deg_h: float = 10.0
     bias_walk_deg_h_sqrt_h: float = 0.5
     reference_deg: float = 0.02
-    ageing_per_year: float = 7.5e-4
+    gain_ageing_per_year: float = 0.01
+    shift_ageing_per_year: float = 7.5e-4
     worst_deg: float = 10.0
 
     readings_: FaceReadings | SpotReadings = field(init=False, repr=False, compare=False)
     noise_: Floats = field(init=False, repr=False, compare=False)
-    lasting_: Floats = field(init=False, repr=False, compare=False)
+    steps_: Floats = field(init=False, repr=False, compare=False)
     calibrated_s_: float = field(init=False, repr=False, compare=False)
     starts_: Floats = field(init=False, repr=False, compare=False)
     step_s_: float = field(init=False, repr=False, compare=False)
@@ -158,7 +163,8 @@ class SunFilter(Model):
             bias_deg_h=self.bias_deg_h,
             bias_walk_deg_h_sqrt_h=self.bias_walk_deg_h_sqrt_h,
             reference_deg=self.reference_deg,
-            ageing_per_year=self.ageing_per_year,
+            gain_ageing_per_year=self.gain_ageing_per_year,
+            shift_ageing_per_year=self.shift_ageing_per_year,
             worst_deg=self.worst_deg,
         )
 
@@ -184,17 +190,18 @@ class SunFilter(Model):
     def uncertain(self, years: float) -> Sequence[Drift]:
         """Parameters of the sensor that are considered, not estimated, so long after calibration.
 
-        Offsets behind a spot, which age; of faces, errors that last have it all.
+        What ages: gains of faces, offsets behind a spot.
         """
         if self.face_normals:
-            return ()
-        deviation = max(self.ageing_per_year * years, _LEAST_AGED)
-        return [Drift(place, deviation, 0.0) for place in HEAD_SHIFTS[1:]]
+            gain = max(self.gain_ageing_per_year * years, _LEAST_AGED)
+            return [Drift(GAINS + face, gain, 0.0) for face in range(len(self.face_normals))]
+        shift = max(self.shift_ageing_per_year * years, _LEAST_AGED)
+        return [Drift(place, shift, 0.0) for place in HEAD_SHIFTS[1:]]
 
     def considered(self) -> tuple[int, ...]:
         """Which errors of the state are considered: those of `uncertain`, and the head's turn."""
         first, number = MOTION + len(self.drifts()), len(self.uncertain(0.0))
-        turn = first + number + self.columns()
+        turn = first + number
         return (*range(first, first + number), *range(turn, turn + 3))
 
     def columns(self) -> int:
@@ -239,14 +246,13 @@ class SunFilter(Model):
         self.step_s_ = float(np.median(apart))
         if not self.step_s_ > 0:
             raise UnusableDataError(f"{by}: the calibration's samples must follow each other")
-        chosen = np.linspace(0, len(sun) - 1, min(_STARTS, len(sun))).round().astype(int)
-        self.starts_ = sun[chosen]
         self.calibrated_s_ = float(told["time_s"].mean())
         size = float(np.abs(features).max())
         least = (1e-9 * size) ** 2
-        self.noise_, self.lasting_ = parted(residuals, told["time_s"], self.step_s_)
-        self.noise_ = np.maximum(self.noise_, least)
-        self.lasting_[:, 0] = np.maximum(self.lasting_[:, 0], least)
+        self.noise_ = np.maximum((residuals**2).mean(axis=0), least)
+        self.steps_ = correlated_steps(residuals)
+        chosen = np.linspace(0, len(sun) - 1, min(_STARTS, len(sun))).round().astype(int)
+        self.starts_ = sun[chosen]
         self._hear(features, told, np.maximum(_QUIET * self.noise_, least))
 
     def _hear(self, features: Floats, told: dict[str, Floats], least: Floats) -> None:
@@ -257,6 +263,8 @@ class SunFilter(Model):
         """
         from algorithms.filtering.filters import ExtendedKalman  # noqa: PLC0415 - Numba
 
+        if (self.steps_ > _WHITE).any():  # what lasts is more than noise
+            return
         known = _known(told) - np.array([0.0] * 6 + [self.readings_.middle_k])
         steps = np.diff(told["time_s"], prepend=-np.inf)
         by, most = ExtendedKalman(self.considered()), self.noise_
@@ -279,7 +287,11 @@ class SunFilter(Model):
                 if np.isfinite(left).all():
                     total += left
             if (total > 0).all():
-                self.noise_ = np.clip(self.noise_ * total[0] / total[1], least, most)
+                # squared: where the gyroscope is noisier than readings, steps are short
+                before = self.noise_
+                self.noise_ = np.clip(before * (total[0] / total[1]) ** 2, least, most)
+                if (np.abs(self.noise_ - before) <= _SETTLED * before).all():
+                    break
 
     def assess(self, features: Floats, sun: Floats, told: dict[str, Floats]) -> None:
         """Set `quality_`: UnusableDataError where the filter does not follow its calibration."""
@@ -337,7 +349,7 @@ class SunFilter(Model):
             np.diag(self.noise_),
             gyroscope,
             (*self.drifts(), *self.uncertain(years)),
-            lasting=self.lasting_,
+            steps=self.steps_,
             turn=float(np.radians(self.reference_deg)),
         )
 
@@ -366,7 +378,8 @@ class SunFilter(Model):
                 read[row] = belief is not None
             elif usable[row] and belief is not None:
                 belief = by.update(space, belief, found[row : row + 1], known[row])
-                squared[row] = belief.squared_innovation[0]
+                likeliest = int(belief.weights.argmax())
+                squared[row] = belief.squared_innovation[likeliest]
                 read[row] = squared[row] == squared[row]  # not NaN
             if belief is not None:
                 best, covariance = by.estimate(space, belief)
@@ -403,47 +416,23 @@ class SunFilter(Model):
         return np.concatenate(rows)
 
 
-def parted(residuals: Floats, time_s: Floats, step_s: float) -> tuple[Floats, Floats]:
-    """Part residuals (n, m) in the order of time into white noise and errors that last.
+def correlated_steps(residuals: Floats) -> Floats:
+    """Count steps (m,) over which residuals (n, m) are correlated, at least 1.
 
-    The covariance of residuals k steps apart is ``a exp(-k step / tau)``, and at no distance white
-    noise is beside it: least squares over lags up to a quarter of the samples, 200 at most, tau
-    tried along a geometric series.
-
-    Returns
-    -------
-    white : ndarray, shape (m,)
-        Variances.
-    lasting : ndarray, shape (m, 2)
-        Variances a, and tau in seconds.
+    ``1 + 2 sum rho_k`` up to where the correlation has fallen to a twentieth: a mean over many
+    samples has this many times the variance that it would have of white ones.
     """
     count, number = residuals.shape
-    place = np.round((time_s - time_s[0]) / step_s).astype(np.int64)
-    lags = np.arange(1, max(min(_LAGS, count // 4), 1) + 1)
-    off = residuals - residuals.mean(axis=0)
-    covariance = np.zeros((len(lags), number))
-    for row, lag in enumerate(lags):
-        # pairs so far apart in time, across gaps too
-        later = np.searchsorted(place, place + lag)
-        pair = np.flatnonzero(later < count)
-        pair = pair[place[later[pair]] == place[pair] + lag]
-        if len(pair):
-            covariance[row] = (off[pair] * off[later[pair]]).mean(axis=0)
-    power = (off**2).mean(axis=0)
-    constants = np.geomspace(0.5, float(_LAGS), 41)
-    white, lasting = power.copy(), np.zeros((number, 2))
+    steps = np.ones(number)
     for m in range(number):
-        best = np.inf
-        lasting[m] = 0.0, step_s
-        for constant in constants:
-            fall = np.exp(-lags / constant)
-            size = float(np.clip(covariance[:, m] @ fall / (fall @ fall), 0.0, power[m]))
-            cost = float(((covariance[:, m] - size * fall) ** 2).sum())
-            if cost < best:
-                best = cost
-                lasting[m] = size, constant * step_s
-        white[m] = power[m] - lasting[m, 0]
-    return white, lasting
+        r = residuals[:, m] - residuals[:, m].mean()
+        power = float((r**2).sum())
+        for lag in range(1, min(_LAGS, count // 4)):
+            rho = float((r[lag:] * r[:-lag]).sum()) / power if power > 0 else 0.0
+            if rho < 0.05:
+                break
+            steps[m] += 2.0 * rho
+    return steps
 
 
 def _known(told: dict[str, Floats]) -> Floats:

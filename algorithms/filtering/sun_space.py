@@ -23,8 +23,7 @@ class SunSpace:
 
     ``s' = exp(-[(w - b) dt]) s``, bias and parameters wander, readings are those learnt. States
     are (B, 12 + p), errors (B, 5 + p): see `algorithms.filtering.sun_kernel`. Behind the sensor's
-    parameters stand errors of the readings that last, ``c' = exp(-dt / tau) c`` and white noise,
-    where there are such, and a turn of the head: ``z = h(exp([d]) s) + c + v``.
+    parameters stands a turn of the head, where there is one: ``z = h(exp([d]) s) + v``.
 
     Parameters
     ----------
@@ -36,8 +35,8 @@ class SunSpace:
         Its data sheet.
     drifts : sequence of Drift
         Numbers of the sensor that are in the state.
-    lasting : ndarray, shape (m, 2), optional
-        Of each reading's errors that last: variance and time constant, s; nothing lasts by default.
+    steps : ndarray, shape (m,), optional
+        Over which errors of readings are correlated; white by default.
     turn : float
         1-sigma, rad, of the head's turn about each axis; 0 where there is none.
     """
@@ -49,23 +48,21 @@ class SunSpace:
         gyroscope: Gyroscope,
         drifts: Sequence[Drift],
         *,
-        lasting: Floats | None = None,
+        steps: Floats | None = None,
         turn: float = 0.0,
     ) -> None:
         self._readings, self._noise = readings, noise
         self._gyroscope = gyroscope
         self._chosen = np.array([drift.place for drift in drifts], dtype=np.float64)
-        spread = np.zeros((0, 2)) if lasting is None else lasting
         turns = [turn] * 3 if turn else []
-        self._spread = spread
-        self._lasting = MOTION + len(drifts)
-        self._turn = self._lasting + len(spread) if turn else 0
-        self.errors = self._lasting + len(spread) + len(turns)
+        self._steps = np.ones(len(noise)) if steps is None else np.asarray(steps)
+        self._turn = MOTION + len(drifts) if turn else 0
+        self.errors = MOTION + len(drifts) + len(turns)
         first = [_FIRST_RAD] * 2 + [gyroscope.bias] * 3 + [drift.deviation for drift in drifts]
-        self._first = np.diag(np.square([*first, *np.sqrt(spread[:, 0]), *turns]))
+        self._first = np.diag(np.square([*first, *turns]))
         walks = [0.0] * 2 + [gyroscope.bias_walk] * 3 + [drift.walk for drift in drifts]
-        self._walks = np.square([*walks, *np.zeros(len(spread)), *np.zeros(len(turns))])
-        self._step: tuple[float, Floats, Floats] | None = None
+        self._walks = np.square([*walks, *np.zeros(len(turns))])
+        self._step: tuple[float, Floats] | None = None
 
     @property
     def readings(self) -> int:
@@ -73,39 +70,26 @@ class SunSpace:
         return self._readings.count
 
     def propagated(self, states: Floats, known: Floats, step_s: float) -> Floats:
-        """States after the body turned; errors that last have faded."""
+        """States after the body turned."""
         found: Floats = motion.propagated(states, known, step_s)
-        if len(self._spread):
-            place = self._lasting + 7
-            found[:, place : place + len(self._spread)] *= self._stepped(step_s)[1]
         return found
 
     def transition(self, states: Floats, known: Floats, step_s: float) -> Floats:
         """Jacobian of `propagated`."""
         after = motion.propagated(states, known, step_s)
         found: Floats = motion.transition(states, after, known, step_s)
-        if len(self._spread):
-            place = np.arange(self._lasting, self._lasting + len(self._spread))
-            found[:, place, place] = self._stepped(step_s)[1]
         return found
 
     def process_noise(self, step_s: float) -> Floats:
         """Angle random walk, and what the bias' own walk adds to it; walks of all the rest."""
-        return self._stepped(step_s)[0]
-
-    def _stepped(self, step_s: float) -> tuple[Floats, Floats]:
-        """Process noise of a step, and what is left of errors that last; steps are mostly alike."""
-        if self._step is None or self._step[0] != step_s:
+        if self._step is None or self._step[0] != step_s:  # steps are nearly always alike
             noise = np.diag(self._walks * step_s)
             walk = self._gyroscope
             noise[0, 0] = noise[1, 1] = (
                 walk.angle_walk**2 * step_s + walk.bias_walk**2 * step_s**3 / 3.0
             )
-            kept = np.exp(-step_s / self._spread[:, 1])
-            place = np.arange(self._lasting, self._lasting + len(kept))
-            noise[place, place] = self._spread[:, 0] * (1.0 - kept**2)
-            self._step = step_s, noise, kept
-        return self._step[1:]
+            self._step = step_s, noise
+        return self._step[1]
 
     def measured(self, states: Floats, known: Floats) -> Floats:
         """Give readings without noise."""
@@ -118,10 +102,6 @@ class SunSpace:
     def _read(self, states: Floats, known: Floats) -> tuple[Floats, Floats]:
         seen = motion.headed(states, self._turn + 7) if self._turn else states
         values, slopes = self._readings.at(seen, self._chosen, known)
-        if len(self._spread):
-            place = np.arange(len(self._spread))
-            values = values + states[:, self._lasting + 7 + place]
-            slopes[:, place, self._lasting + place] = 1.0
         if self._turn:
             motion.heading(seen, slopes, self._turn + 7)
         return values, slopes
@@ -129,6 +109,10 @@ class SunSpace:
     def measurement_noise(self) -> Floats:
         """Covariance of readings."""
         return self._noise
+
+    def correlated(self) -> Floats:
+        """Steps over which errors of readings are correlated."""
+        return self._steps
 
     def moved(self, states: Floats, errors: Floats) -> Floats:
         """States with errors added."""
@@ -161,8 +145,7 @@ class SunSpace:
 
         Gauss-Newton steps of the update, all from the same prior (iterated Kalman update).
         """
-        lasting = self._spread[:, 0] if len(self._spread) else 0.0
-        scale = np.sqrt(np.diagonal(self._noise) + lasting)
+        scale = np.sqrt(np.diagonal(self._noise))
         tried = self.states_towards(starts)
         off = (read - self.measured(tried, known)) / scale
         cost = (off**2).sum(axis=1)
@@ -170,7 +153,7 @@ class SunSpace:
             return None
         first = tried[[int(np.nanargmin(cost))]]
         state, step = first, np.zeros((1, self.errors))
-        noise = self._noise[None]
+        noise = np.diag(np.diagonal(self._noise) * self._steps)[None]
         estimated = np.ones(self.errors)
         estimated[list(considered)] = 0.0
         prior = self._first[None].copy()

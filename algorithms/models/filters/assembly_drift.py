@@ -37,8 +37,9 @@ class AssemblyDriftFilter(SunFilter):
     reference_deg : float
         1-sigma, about each axis, of a fixed turn of what told the calibration's directions,
         positive.
-    ageing_per_year : float
-        1-sigma of how far a spot's offsets move in a year, over the focal length, positive.
+    gain_ageing_per_year, shift_ageing_per_year : float
+        1-sigma of what a year changes, positive: a face's gain against the others', and a spot's
+        offsets over the focal length.
     worst_deg : float
         1-sigma of a direction beyond which it is not answered, positive.
     gain_deviation : float
@@ -53,9 +54,9 @@ class AssemblyDriftFilter(SunFilter):
     readings_ : FaceReadings or SpotReadings
         How the sensor reads a direction.
     noise_ : ndarray, shape (m,)
-        Variance of each reading's white noise.
-    lasting_ : ndarray, shape (m, 2)
-        Variance of each reading's errors that last, and their time constant, s.
+        Variance of each reading.
+    steps_ : ndarray, shape (m,)
+        Steps over which its errors are correlated.
     calibrated_s_ : float
         Mean time of the calibration.
     starts_ : ndarray, shape (G, 3)
@@ -77,9 +78,9 @@ class AssemblyDriftFilter(SunFilter):
     on the ground, for faces). The survey gives no equations since every sensor has its own (ours).
 
     State: the Sun's direction in the body frame, the gyroscope's bias and, before faces, the
-    light's strength; ``s' = exp(-[(w - b) dt]) s``, ``z = h(s) + c + v`` with h as the calibration
-    found it, warmth and the Earth's light by nadir included, and c what h is off by, which lasts.
-    The turn of the calibration's reference is considered, as is what ages behind a spot.
+    light's strength; ``s' = exp(-[(w - b) dt]) s``, ``z = h(s) + v`` with h as the calibration
+    found it, warmth and the Earth's light by nadir included. The turn of the calibration's
+    reference is considered, not estimated, and so is what ages.
 
     Shapes: signals (N, K), or spots or balances (N, 2), in the order of time, with the context's
     columns, to unit vectors (N, 3).
