@@ -60,7 +60,9 @@ class MultipleModels:
     def update(self, space: StateSpace, belief: Belief, read: Floats, known: Floats) -> Belief:
         """Belief with readings (B, m), one row a run."""
         number = len(self.noise_scales)
-        after = ExtendedKalman(self.considered).update(space, belief, np.repeat(read, number, axis=0), known)
+        after = ExtendedKalman(self.considered).update(
+            space, belief, np.repeat(read, number, axis=0), known
+        )
         # readings whose errors are correlated tell as much as fewer would
         told = after.log_likelihood.reshape(-1, number) / space.correlated().mean()
         best = told.max(axis=1, keepdims=True)

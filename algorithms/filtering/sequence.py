@@ -16,6 +16,7 @@ from algorithms.calibration.quality import FitQuality, data_digest
 from algorithms.context import Context, as_context, complete
 from algorithms.contract import FeatureKind, Floats, Model, SensorGeometry, UnusableDataError
 from algorithms.filtering.drift import GAINS, HEAD_SHIFTS, LEVEL, MOTION, Drift, Gyroscope
+from algorithms.filtering.reading_noise import correlated_steps, heard
 from algorithms.inputs import (
     as_calibration_rows,
     as_features,
@@ -42,12 +43,8 @@ _STARTS = 256
 _LONGEST = 1.5
 #: Readings after which a series is answered: one alone is the static calibration's.
 _FEWEST_READ = 2
-#: Longest correlation of residuals that is looked for, in steps.
-_LAGS = 200
 _LEVEL = Drift(place=LEVEL, deviation=0.05, walk=5e-4)
 _HOUR_S, _YEAR_S = 3600.0, 365.25 * 86_400.0
-#: Steps at most towards the white noise that the readings themselves tell, and a step that is none.
-_NOISE_STEPS, _SETTLED = 12, 0.03
 #: Steps of correlation up to which residuals count as white.
 _WHITE = 2.0
 #: White noise that is taken for none, over the residuals' variance.
@@ -253,45 +250,11 @@ class SunFilter(Model):
         self.steps_ = correlated_steps(residuals)
         chosen = np.linspace(0, len(sun) - 1, min(_STARTS, len(sun))).round().astype(int)
         self.starts_ = sun[chosen]
-        self._hear(features, told, np.maximum(_QUIET * self.noise_, least))
-
-    def _hear(self, features: Floats, told: dict[str, Floats], least: Floats) -> None:
-        """Lower the white noise to what the readings, one after the other, leave of it.
-
-        Residuals have the noise of the reference, too. Of a filter that has the right noise, squares
-        of what updates leave have the mean ``R - H P H'`` (Mohamed and Schwarz).
-        """
-        from algorithms.filtering.filters import ExtendedKalman  # noqa: PLC0415 - Numba
-
-        if (self.steps_ > _WHITE).any():  # what lasts is more than noise
-            return
-        known = _known(told) - np.array([0.0] * 6 + [self.readings_.middle_k])
-        steps = np.diff(told["time_s"], prepend=-np.inf)
-        by, most = ExtendedKalman(self.considered()), self.noise_
-        for _ in range(_NOISE_STEPS):
-            space, belief = self.space(), None
-            total = np.zeros((2, self.columns()))
-            for row, read in enumerate(features):
-                if belief is None or not 0 < steps[row] <= _LONGEST * self.step_s_:
-                    belief = space.started(
-                        by, self.starts_, read, known[row], self.considered()
-                    )
-                    continue
-                belief = by.predict(space, belief, known[row], float(steps[row]))
-                belief = by.update(space, belief, read[None], known[row])
-                values, slopes = space.measured(belief.states, known[row]), space.sensitivity(
-                    belief.states, known[row]
-                )
-                spread = slopes[0] @ belief.covariance[0] @ slopes[0].T
-                left = np.stack([(read - values[0]) ** 2, self.noise_ - np.diagonal(spread)])
-                if np.isfinite(left).all():
-                    total += left
-            if (total > 0).all():
-                # squared: where the gyroscope is noisier than readings, steps are short
-                before = self.noise_
-                self.noise_ = np.clip(before * (total[0] / total[1]) ** 2, least, most)
-                if (np.abs(self.noise_ - before) <= _SETTLED * before).all():
-                    break
+        if (self.steps_ <= _WHITE).all():
+            gaps = np.diff(told["time_s"], prepend=-np.inf)
+            apart = np.where((gaps > 0) & (gaps <= _LONGEST * self.step_s_), gaps, np.inf)
+            least = np.maximum(_QUIET * self.noise_, least)
+            self.noise_ = heard(self, features, self._known(told), apart, least)
 
     def assess(self, features: Floats, sun: Floats, told: dict[str, Floats]) -> None:
         """Set `quality_`: UnusableDataError where the filter does not follow its calibration."""
@@ -335,8 +298,8 @@ class SunFilter(Model):
         usable &= np.where(usable, self.readings_.lit(found), 0.0) > 0
         return self._followed(found, told["time_s"], _known(told), usable)
 
-    def space(self, years: float = 0.0) -> SunSpace:
-        """State space of the fitted sensor, so long after its calibration."""
+    def space(self, years: float = 0.0, noise: Floats | None = None) -> SunSpace:
+        """State space of the sensor so long after its calibration, of its noise or another."""
         from algorithms.filtering.sun_space import SunSpace  # noqa: PLC0415 - Numba
 
         gyroscope = Gyroscope(
@@ -346,7 +309,7 @@ class SunFilter(Model):
         )
         return SunSpace(
             self.readings_,
-            np.diag(self.noise_),
+            np.diag(self.noise_ if noise is None else noise),
             gyroscope,
             (*self.drifts(), *self.uncertain(years)),
             steps=self.steps_,
@@ -405,6 +368,10 @@ class SunFilter(Model):
         held = track.read & (counted >= _FEWEST_READ) & (track.deviation_deg <= self.worst_deg)
         return np.where(held[:, None], track.sun, np.nan)
 
+    def _known(self, told: dict[str, Floats]) -> Floats:
+        """(N, 7) what states and readings go by, warmth counted from the calibration's middle."""
+        return _known(told) - np.array([0.0] * 6 + [self.readings_.middle_k])
+
     def _explained(self, sun: Floats, known: Floats) -> Floats:
         """Give readings (n, m) of known Suns."""
         from algorithms.filtering.sun_space import SunSpace  # noqa: PLC0415 - Numba
@@ -414,25 +381,6 @@ class SunFilter(Model):
         known = known - np.array([0.0] * 6 + [self.readings_.middle_k])
         rows = [space.measured(states[n : n + 1], known[n]) for n in range(len(sun))]
         return np.concatenate(rows)
-
-
-def correlated_steps(residuals: Floats) -> Floats:
-    """Count steps (m,) over which residuals (n, m) are correlated, at least 1.
-
-    ``1 + 2 sum rho_k`` up to where the correlation has fallen to a twentieth: a mean over many
-    samples has this many times the variance that it would have of white ones.
-    """
-    count, number = residuals.shape
-    steps = np.ones(number)
-    for m in range(number):
-        r = residuals[:, m] - residuals[:, m].mean()
-        power = float((r**2).sum())
-        for lag in range(1, min(_LAGS, count // 4)):
-            rho = float((r[lag:] * r[:-lag]).sum()) / power if power > 0 else 0.0
-            if rho < 0.05:
-                break
-            steps[m] += 2.0 * rho
-    return steps
 
 
 def _known(told: dict[str, Floats]) -> Floats:

@@ -111,7 +111,7 @@ class SunSpace:
         return self._noise
 
     def correlated(self) -> Floats:
-        """Steps over which errors of readings are correlated."""
+        """Give the steps over which errors of readings are correlated."""
         return self._steps
 
     def moved(self, states: Floats, errors: Floats) -> Floats:

@@ -106,7 +106,7 @@ def _evidence(  # noqa: PLR0917 - Numba takes no keyword-only ones
     noise: Noise,
     partners: Indices,
 ) -> float:
-    """Logarithm of how likely a place makes the spots; `at` goes to the middle of those it explains.
+    """Logarithm of how likely a place makes the spots; `at` goes to the middle of its own.
 
     Minus infinity where it is less than `least`, or the place explains no two.
     """
@@ -136,7 +136,7 @@ def _evidence(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def _compared(  # noqa: PLR0917 - Numba takes no keyword-only ones
+def _compared(  # noqa: C901, PLR0912, PLR0917 - one pass over places; positional for Numba
     spots: Floats,
     count: int,
     code: Code,
@@ -157,9 +157,7 @@ def _compared(  # noqa: PLR0917 - Numba takes no keyword-only ones
     best, second = nothing, -math.inf
     known = not math.isnan(place[0])
     if known:
-        best = max(
-            _evidence(spots, count, place, -math.inf, code, view, noise, partners), nothing
-        )
+        best = max(_evidence(spots, count, place, -math.inf, code, view, noise, partners), nothing)
     most = 0
     while most < count and _at_most(count, most + 1, noise) >= best - noise[_ODDS]:
         most += 1

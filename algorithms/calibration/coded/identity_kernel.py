@@ -87,6 +87,10 @@ def partners_of(spots: Floats, count: int, at: Floats, code: Code, partners: Ind
             and abs(spots[s, 2] - places[a, 2] - at[2]) <= grid[4]
         ):
             a = -1
+        for earlier in range(s if a >= 0 else 0):  # a hole casts one spot: a piece tells nothing
+            if partners[earlier] == a:
+                a = -1
+                break
         partners[s] = a
         left += a < 0
     return left
@@ -124,6 +128,7 @@ def dark(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 @compiled
 def near(spots: Floats, i: int, j: int, reach: float) -> bool:
+    """Whether two spots are within reach of each other along both axes."""
     return bool(abs(spots[j, 0] - spots[i, 0]) <= reach and abs(spots[j, 1] - spots[i, 1]) <= reach)
 
 
@@ -207,6 +212,7 @@ def _rarest(spots: Floats, count: int, code: Code, rare: Indices) -> int:
 
 @compiled
 def room_for(lists: Floats, code: Code) -> Room:
+    """Room for as many hypotheses as apertures."""
     return (
         np.empty((len(code[0]), 3)),
         np.empty(len(code[0]), dtype=np.int64),

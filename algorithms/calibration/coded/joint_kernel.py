@@ -15,7 +15,7 @@ _LEAST_PX = 0.01
 
 
 @compiled
-def joint(  # noqa: PLR0917 - Numba takes no keyword-only ones
+def joint(  # noqa: C901, PLR0917 - one pass over spots; positional for Numba
     lists: Floats,
     places: Floats,
     partners: NDArray[np.int64],

@@ -151,7 +151,7 @@ class ConsiderKalmanFilter(SunFilter):
         return ExtendedKalman(self.considered())
 
     def uncertain(self, years: float) -> Sequence[Drift]:
-        """What is considered beside the head's turn: gains and the Earth, or focal length and offsets."""
+        """Consider gains and the Earth, or focal length and offsets, however long ago."""
         del years
         faces = len(self.face_normals)
         if faces:

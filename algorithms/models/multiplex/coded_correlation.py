@@ -79,9 +79,12 @@ class CodedCorrelation(CodedMask):
     correlated as points: the correlation is the number of spots that have an aperture where they
     fall. It is exact at every displacement that brings one of the first spots upon an aperture;
     of equal peaks that with the fewest dark apertures is taken.
-    The place is kept if nothing rivals it: f its faults, every other place must have at least
-    ``clear (f + 1)``, which is decided exactly, not among those tried. Then ``D = sum(p_i - a_i -
-    o_i) / n`` over the n spots that agree is the least-squares displacement, and so direction, of
+    That place is compared with every other one that is nearly as likely, decided exactly, not among
+    those tried: ``log p = log t(r) - left log(100 A) - dark log 5``, r what the n spots it explains
+    are from their apertures less their mean, t the density of residuals of the design's deviation
+    (a fifth of the tolerance) or, of one list in ten thousand, of one that the list alone tells; A
+    the detector's area. It is kept if it is `odds` times as likely as any other. Then
+    ``D = sum(p_i - a_i - o_i) / n`` over the n spots that agree is the least-squares displacement, and so direction, of
     all of them: parallel light moves every spot alike. Spots far from the median are left out. o_i
     are offsets of the built apertures, predicted from how spots of one frame lie to each other
     (best linear unbiased; no error of the turntable enters); focal length, centre, turns and tilts
