@@ -70,7 +70,7 @@ def spread_over(noise: Floats, steps: Floats) -> Floats:
     variance that it would have of white ones.
     """
     root = np.sqrt(steps)
-    return noise * (root[:, None] * root)
+    return np.asarray(noise * (root[:, None] * root))
 
 
 class Filter(Protocol):
@@ -180,10 +180,14 @@ class AdaptiveKalman(ExtendedKalman):
         Readings over which the noise is averaged, above 1.
     least : float
         Share of the space's own variance below which none falls.
+    most : float
+        Multiple of it above which none rises: a reading that is taken for noise altogether would
+        never again tell that the estimate is off.
     """
 
     window: float = 50.0
     least: float = 1e-4
+    most: float = 16.0
 
     def learnt(
         self, space: StateSpace, after: Belief, read: Floats, known: Floats, sensitivity: Floats
@@ -193,12 +197,10 @@ class AdaptiveKalman(ExtendedKalman):
         heard = np.isfinite(residual).all(axis=1) & np.isfinite(after.squared_innovation)
         left = residual[:, :, None] * residual[:, None, :]
         found = algebra.innovation_covariance(after.covariance, sensitivity, left)
-        if (space.correlated() > 1.0).any():  # what is still unknown is not what the residual lacks
-            found = left
         noise = after.noise + (found - after.noise) / self.window
-        floor = self.least * np.diagonal(space.measurement_noise())
+        own = np.diagonal(space.measurement_noise())
         place = np.arange(space.readings)
-        noise[:, place, place] = np.maximum(noise[:, place, place], floor)
+        noise[:, place, place] = np.clip(noise[:, place, place], self.least * own, self.most * own)
         noise[~heard] = after.noise[~heard]
         return replace(after, noise=noise)
 

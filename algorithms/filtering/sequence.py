@@ -253,8 +253,8 @@ class SunFilter(Model):
         if (self.steps_ <= _WHITE).all():
             gaps = np.diff(told["time_s"], prepend=-np.inf)
             apart = np.where((gaps > 0) & (gaps <= _LONGEST * self.step_s_), gaps, np.inf)
-            least = np.maximum(_QUIET * self.noise_, least)
-            self.noise_ = heard(self, features, self._known(told), apart, least)
+            quiet = np.maximum(_QUIET * self.noise_, least)
+            self.noise_ = heard(self, features, self._known(told), apart, quiet)
 
     def assess(self, features: Floats, sun: Floats, told: dict[str, Floats]) -> None:
         """Set `quality_`: UnusableDataError where the filter does not follow its calibration."""
@@ -370,7 +370,7 @@ class SunFilter(Model):
 
     def _known(self, told: dict[str, Floats]) -> Floats:
         """(N, 7) what states and readings go by, warmth counted from the calibration's middle."""
-        return _known(told) - np.array([0.0] * 6 + [self.readings_.middle_k])
+        return np.asarray(_known(told) - np.array([0.0] * 6 + [self.readings_.middle_k]))
 
     def _explained(self, sun: Floats, known: Floats) -> Floats:
         """Give readings (n, m) of known Suns."""

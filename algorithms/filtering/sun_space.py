@@ -16,6 +16,8 @@ from algorithms.filtering.readings import Readings
 _DIRECTION = slice(6, 9)
 #: Of the direction, rad, before the first reading; and steps towards what explains it best.
 _FIRST_RAD, _STEPS = 0.5, 6
+#: Standard deviations of a chi-square beyond which a reading is not explained.
+_FAR = 5.0
 
 
 class SunSpace:
@@ -143,6 +145,8 @@ class SunSpace:
     ) -> Belief | None:
         """Belief after a first reading (m,), from the best of directions (G, 3); None without one.
 
+        A reading that no direction explains begins nothing: squares of what is left are chi-square.
+
         Gauss-Newton steps of the update, all from the same prior (iterated Kalman update).
         """
         scale = np.sqrt(np.diagonal(self._noise))
@@ -165,6 +169,9 @@ class SunSpace:
                 return None
             step, covariance, _, _ = algebra.updated(prior, slopes, noise, innovation, estimated)
             state = self.moved(first, step)
+        left = (read - self.measured(state, known)[0]) ** 2 / np.diagonal(noise[0])
+        if not left.sum() <= len(left) + _FAR * np.sqrt(2.0 * len(left)):
+            return None
         return by.begin(self, state, covariance)
 
     @staticmethod

@@ -7,7 +7,7 @@ from abc import abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import NamedTuple, Self
+from typing import TYPE_CHECKING, NamedTuple, Self, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -25,6 +25,9 @@ from algorithms.contract import (
 )
 from algorithms.inputs import as_features, require_positive
 from algorithms.spot_lists import SPOT_COLUMNS, detector_size_px, spots_listed
+
+if TYPE_CHECKING:
+    from algorithms.calibration.coded.evidence_kernel import Noise
 
 NEEDS = (
     "focal_length_mm",
@@ -315,7 +318,7 @@ class CodedMask(ForwardModel):
         partners = np.empty(lists.shape[:2], dtype=np.int64)
         self.search()(lists, counts, code, drawn.view, self.share, found, faults)
         code, order = table.code_of(places, drawn.widths, drawn.reach, drawn.widest, size)
-        noise = (*drawn.noise[:8], math.log(self.odds), *drawn.noise[8:])
+        noise = cast("Noise", (*drawn.noise[:8], math.log(self.odds), *drawn.noise[8:]))
         rules = (self.agreeing, self.share)
         evidence_kernel.decide(
             lists, counts, code, drawn.view, rules, noise, found, partners, verdicts

@@ -84,11 +84,11 @@ class CodedSpacing(CodedMask):
     are from their apertures less their mean, t the density of residuals of the design's deviation
     (a fifth of the tolerance) or, of one list in ten thousand, of one that the list alone tells; A
     the detector's area. It is kept if it is `odds` times as likely as any other. Then
-    ``D = sum(p_i - a_i - o_i) / n`` over the n spots that agree is the least-squares displacement, and so direction, of
-    all of them: parallel light moves every spot alike. Spots far from the median are left out. o_i
-    are offsets of the built apertures, predicted from how spots of one frame lie to each other
-    (best linear unbiased; no error of the turntable enters); focal length, centre, turns and tilts
-    are fitted to D by least squares of the angles, through the cover glass.
+    ``D = sum(p_i - a_i - o_i) / n`` over the n spots that agree is the least-squares displacement,
+    and so direction, of all of them: parallel light moves every spot alike. Spots far from the
+    median are left out. o_i are offsets of the built apertures, predicted from how spots of one
+    frame lie to each other (best linear unbiased; no error of the turntable enters); focal length,
+    centre, turns and tilts are fitted to D by least squares of the angles, through the cover glass.
 
     Shapes: lists ``(x_px, y_px, light)`` of spots (N, 3 K), light 0 and last for none, to unit
     vectors (N, 3). No row leans on another: lost in space, in one frame.

@@ -137,7 +137,8 @@ def evidence_everywhere(spots, model):
     places, view = places_px(), model._drawn.view
     widest = model._drawn.widest
     at, found = [], []
-    for here in (spots[:, None, :2] - places).reshape(-1, 2):
+    for named in (spots[:, None, :2] - places).reshape(-1, 2):
+        here = named
         for _ in range(2):
             off = spots[:, None, :2] - here - places
             partner = np.where(
@@ -219,7 +220,7 @@ def test_pieces_of_one_spot_are_one_spot():
     twice = rows.copy()
     for row in twice:
         number = int((row[:, 2] > 0).sum())
-        row[number : number + 2] = row[:2] + (0.2, -0.2, 0.0)
+        row[number : number + 2] = row[:2] + np.array((0.2, -0.2, 0.0))
     whole, pieces = (model.read(x.reshape(20, -1)) for x in (rows, twice))
     np.testing.assert_array_equal(
         (pieces.apertures >= 0).sum(axis=1), (whole.apertures >= 0).sum(axis=1)
@@ -321,7 +322,7 @@ def test_a_mask_that_is_seen_whole_needs_no_code():
         ({"spots": 2}, "spots"),
         ({"agreeing": 2}, "agreeing"),
         ({"share": 0.0}, "share"),
-        ({"clear": 0}, "clear"),
+        ({"odds": 0.5}, "odds"),
         ({"tolerance_px": -1.0}, "tolerance_px"),
         ({"size_tolerance": 0.0}, "size_tolerance"),
         ({"layers": ((0.1, 0.9),)}, "layers"),
