@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
-from registry.advice import Advice
 from registry.designs import Kept
 from registry.judging import KeptPlace
 from registry.measured import Measured
-from registry.ranking import Place, Regret
+from registry.ranking import Regret
 
 LEAST_RATIO = 1.1
 """Errors nearer to each other than this contradict nothing."""
+
+
+Reached = tuple[float, KeptPlace, int]
+"""A number, the architecture on which it is reached, and by which design."""
 
 
 def design_words(kept: Kept) -> str:
@@ -25,20 +28,18 @@ def architecture_words(place: KeptPlace) -> str:
     return " + ".join(place.place.architecture)
 
 
-def against_literature(place: KeptPlace, designs: Sequence[Kept]) -> str | None:
+def against_literature(place: KeptPlace, usual: Kept | None) -> str | None:
     """Say that what most studies stand for on an architecture is not what errs least there.
 
     Parameters
     ----------
     place : KeptPlace
-    designs : sequence of Kept
-        Its calibrations.
+    usual : Kept
+        Of its measured calibrations the one that most studies stand for; None for none.
     """
-    backed = [k for k in designs if k.design.taken and k.row and place.taken(k)]
     best = place.best
-    if not backed or not math.isfinite(best.error_deg):
+    if usual is None or not math.isfinite(best.error_deg):
         return None
-    usual = max(backed, key=lambda kept: (place.taken(kept).bit_count(), -kept.error_deg))
     if usual.error_deg < LEAST_RATIO * best.error_deg:
         return None
     many = place.taken(usual).bit_count()
@@ -51,7 +52,11 @@ def against_literature(place: KeptPlace, designs: Sequence[Kept]) -> str | None:
     )
 
 
-def against_advice(places: Sequence[Place], tasks: Sequence[str]) -> tuple[str, ...]:
+def against_advice(
+    places: Sequence[KeptPlace],
+    least: Callable[[str], Sequence[tuple[float, int]]],
+    tasks: Sequence[str],
+) -> tuple[str, ...]:
     """Say where an architecture that is not advised does better at a task than those advised.
 
     Of the tasks, accuracy, precision and field of view are measured here: by the error over the
@@ -59,28 +64,31 @@ def against_advice(places: Sequence[Place], tasks: Sequence[str]) -> tuple[str, 
 
     Parameters
     ----------
-    places : sequence of Place
+    places : sequence of KeptPlace
+    least : callable
+        Gives the least "repeatability" or "field" (negated) on each of the places, infinite where
+        there is none, and the position of the design that has it
+        (`registry.ranked_designs.RankedDesigns.least`).
     tasks : sequence of str
         Those asked for; none means all.
     """
     found = []
     for task, number, unit in (
-        ("Accuracy", _least_error, "deg"),
-        ("Precision", _repeatability, "deg of repeatability"),
-        ("FOV", _field, "deg of field"),
+        ("Accuracy", "error", "deg"),
+        ("Precision", "repeatability", "deg of repeatability"),
+        ("FOV", "field", "deg of field"),
     ):
         if tasks and task not in tasks:
             continue
-        advised: list[tuple[float, KeptPlace, Kept]] = []
-        others: list[tuple[float, KeptPlace, Kept]] = []
-        for place, _ in places:
-            # By error the least is known.
-            designs = place.designs[:1] if number is _least_error else place.designs
-            values = [(value, kept) for kept in designs if (value := number(kept)) is not None]
-            if not values:
-                continue
-            value, kept = min(values, key=lambda pair: pair[0])
-            (advised if _advises(place.advice, task) else others).append((value, place, kept))
+        is_advised = [task in place.advised_tasks for place in places]
+        if all(is_advised) or not any(is_advised):
+            continue
+        advised: list[Reached] = []
+        others: list[Reached] = []
+        values = map(_least_error, places) if number == "error" else least(number)
+        for place, meant, (value, design) in zip(places, is_advised, values, strict=True):
+            if math.isfinite(value):
+                (advised if meant else others).append((value, place, design))
         if not advised or not others:
             continue
         first, other = (min(side, key=lambda item: item[0]) for side in (advised, others))
@@ -114,13 +122,9 @@ def regret_words(regret: Regret) -> str:
     )
 
 
-def _advises(advice: Sequence[Advice], task: str) -> bool:
-    return any(a.requirement == "task" and a.value == task for a in advice)
-
-
-def _where(item: tuple[float, KeptPlace, Kept]) -> str:
-    _, place, kept = item
-    row = kept.row
+def _where(item: Reached) -> str:
+    _, place, design = item
+    row = place.question.kept(design).row
     return f"{architecture_words(place)} ({'' if row is None else _pipeline(row)})"
 
 
@@ -148,19 +152,5 @@ def _times(worse: Kept, better: Kept) -> str:
     return f", {worse.error_deg / better.error_deg:.3g} times less"
 
 
-def _least_error(kept: Kept) -> float | None:
-    return kept.error_deg if math.isfinite(kept.error_deg) else None
-
-
-def _repeatability(kept: Kept) -> float | None:
-    """Return the spread of answers to one pose; none is an answer in steps, which says nothing."""
-    if kept.row is None or math.isinf(kept.error_deg):
-        return None
-    return kept.row.nominal.repeatability_deg or None
-
-
-def _field(kept: Kept) -> float | None:
-    """Return the field, negated: the largest is the best."""
-    if kept.row is None or kept.row.half_fov_deg is None or math.isinf(kept.error_deg):
-        return None
-    return -2 * kept.row.half_fov_deg
+def _least_error(place: KeptPlace) -> tuple[float, int]:
+    return place.error_deg, place.best_at

@@ -12,11 +12,12 @@ from __future__ import annotations
 import itertools
 import math
 import weakref
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
 from registry.advice import Advice
+from registry.kept_answers import KeptAnswers
 from registry.measured import Judged, Measured, Measurements
 from registry.plan import Architecture
 from registry.studies import Facts, Study
@@ -25,9 +26,10 @@ from registry.taxonomy import NO_IMPLEMENTATION_STATED, Taxonomy
 COMPENSATIONS = "Physics-Informed"
 """The category of models that compensate: beside them a study may state no other."""
 
-_MOST_KEPT = 64
-
 Stages = tuple[str, ...]
+
+AdviceFor = tuple[tuple[Advice, ...], frozenset[str]]
+"""Advice for what is asked, and the tasks that it is for."""
 
 NOTHING = Judged(math.inf, "", None)
 """What is not measured."""
@@ -67,8 +69,14 @@ class Design:
 
 @dataclass(frozen=True, eq=False)
 class Kept:
-    """A design and its best measured pipeline; None, erring without limit, if none is measured."""
+    """A design and its best measured pipeline; None, erring without limit, if none is measured.
 
+    ``at`` is the position of the design among the columns of its table, ``row_at`` that of the
+    pipeline; -1 for none.
+    """
+
+    at: int
+    row_at: int
     design: Design
     row: Measured | None
     judged: Judged
@@ -88,24 +96,6 @@ class Limits:
     min_availability: float | None = None
     max_latency_us: float | None = None
 
-    def broken(self, row: Measured, judged: Judged) -> list[str]:
-        """Return the names of those that a pipeline breaks."""
-        broken = []
-        half = self.half_field_deg
-        if half is not None and math.isinf(row.over(row.nominal, half).error_deg):
-            broken.append("min_fov_deg")
-        tried = all(map(row.tried, self.hazards))
-        if self.hazards and (not tried or math.isinf(judged.error_deg)):
-            broken.append("survive")
-        if self.min_availability is not None:
-            share = row.availability(self.hazards)
-            if share is None or share < self.min_availability:
-                broken.append("min_availability")
-        took = math.inf if row.latency_us is None else row.latency_us
-        if self.max_latency_us is not None and took > self.max_latency_us:
-            broken.append("max_latency_us")
-        return broken
-
 
 @dataclass(frozen=True, eq=False)
 class Place:
@@ -116,11 +106,6 @@ class Place:
     designs: tuple[Design, ...]
     advice: tuple[Advice, ...]
     tasks: Mapping[str, int]  # task -> studies with it, as bits
-
-    @cached_property
-    def unmeasured(self) -> tuple[Design, ...]:
-        """Designs that studies stand for and nothing measures."""
-        return tuple(design for design in self.designs if not design.rows)
 
 
 class DesignTable:
@@ -143,6 +128,18 @@ class DesignTable:
             )
             for attribute in ("accuracy_deg", "fov_deg")
         }
+        # Numbers in ascending order, and the studies (bits) of the first 0, 1, 2 ... of them.
+        self.ascending = {
+            attribute: (
+                tuple(sorted(number for _, number in pairs)),
+                tuple(
+                    itertools.accumulate(
+                        (1 << at for at, _ in sorted(pairs, key=lambda pair: pair[1])), initial=0
+                    )
+                ),
+            )
+            for attribute, pairs in self.stated.items()
+        }
         order = {
             attribute: {v: i for i, v in enumerate(facts.taxonomy.values(attribute))}
             for attribute in ("detector", "mask", "extractor", "model")
@@ -164,41 +161,11 @@ class DesignTable:
             )
             for architecture in architectures
         )
-        self._judged: dict[tuple[Stages, float | None], dict[Measured, Judged]] = {}
-        self._best: dict[Limits, tuple[tuple[Kept, ...], ...]] = {}
 
-    def judged(
-        self, hazards: tuple[str, ...], half_field_deg: float | None
-    ) -> Mapping[Measured, Judged]:
-        """Return what every measured pipeline is judged by; kept for the next question."""
-        asked = (hazards, half_field_deg)
-        found = self._judged.get(asked)
-        if found is None:
-            if len(self._judged) >= _MOST_KEPT:
-                self._judged.clear()
-            found = self._judged[asked] = {
-                row: row.judged(hazards, half_field_deg)
-                for place in self.places
-                for design in place.designs
-                for row in design.rows
-            }
-        return found
-
-    def best(self, limits: Limits) -> tuple[tuple[Kept, ...], ...]:
-        """Return, of each place, what keeps the limits: measured designs, the least error first.
-
-        Of each design the pipeline that errs least of those that keep them.
-        """
-        found = self._best.get(limits)
-        if found is None:
-            if len(self._best) >= _MOST_KEPT:
-                self._best.clear()
-            judged = self.judged(limits.hazards, limits.half_field_deg)
-            found = self._best[limits] = tuple(
-                tuple(sorted(_least(place, limits, judged), key=lambda kept: kept.error_deg))
-                for place in self.places
-            )
-        return found
+    @cached_property
+    def advice(self) -> KeptAnswers[list[AdviceFor]]:
+        """Advice by place, for the tasks and accuracies asked for."""
+        return KeptAnswers()
 
     def _place(
         self,
@@ -251,14 +218,6 @@ class DesignTable:
                 if (both := everyone & self.having.get(("task", task), 0))
             },
         )
-
-
-def _least(place: Place, limits: Limits, judged: Mapping[Measured, Judged]) -> Iterator[Kept]:
-    for design in place.designs:
-        rows = [row for row in design.rows if not limits.broken(row, judged[row])]
-        if rows:
-            row = min(rows, key=lambda row: judged[row].error_deg)
-            yield Kept(design, row, judged[row])
 
 
 @dataclass

@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 import bisect
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
 
 from registry.advice import ADVISING, Advice
-from registry.designs import NOTHING, Design, DesignTable, Kept, Limits, Place
-from registry.measured import Measured
+from registry.designs import NOTHING, AdviceFor, DesignTable, Kept, Limits, Place
+from registry.measured import Measured, Partly
 from registry.requirements import EXCLUDE, Requirements
+
+if TYPE_CHECKING:
+    from registry.design_columns import Best
+    from registry.judged_columns import Judgements
 
 OF_STUDIES = ("task", "error", "accuracy")
 """What is asked of the studies of an architecture."""
-
-OF_DESIGN = ("extractor", "model")
-OF_PLACE = ("detector", "mask")
 
 _STATED = {"max_error_deg": "accuracy_deg", "min_fov_deg": "fov_deg"}
 """Limits that a study's own number is judged by, where nothing is measured."""
@@ -25,7 +28,7 @@ _MEASURED = ("max_error_deg", "min_fov_deg", "survive", "min_availability", "max
 
 @dataclass(frozen=True, eq=False)
 class KeptPlace:
-    """An architecture that meets the requirements, with the designs that do.
+    """An architecture that meets the requirements, with the design that errs least.
 
     ``advice`` is what advises it for what is asked: for any task or accuracy if neither is.
     ``studies`` are those of its studies (bits) that have what is asked of studies, ``stated``
@@ -36,12 +39,15 @@ class KeptPlace:
     studies: int
     stated: int
     advice: tuple[Advice, ...]
-    designs: tuple[Kept, ...]  # measured ones first, the least error first
+    advised_tasks: frozenset[str]
+    question: Question
+    best_at: int
+    error_deg: float
 
-    @property
+    @cached_property
     def best(self) -> Kept:
-        """The design that errs least."""
-        return self.designs[0]
+        """The design that errs least; its error is ``error_deg``, its position ``best_at``."""
+        return self.question.kept(self.best_at)
 
     def taken(self, kept: Kept) -> int:
         """Return the studies (bits) that stand for a calibration and meet the requirements."""
@@ -56,89 +62,138 @@ class Question:
     """Requirements as they are put to a table of designs."""
 
     def __init__(self, table: DesignTable, requirements: Requirements) -> None:
+        from registry.design_columns import design_columns  # noqa: PLC0415 - NumPy
+
         self.table = table
+        self.columns = design_columns(table)
         self.asked = requirements
-        self.judged = table.judged(requirements.survive, requirements.half_field_deg)
         self.studies = self._meeting_studies()
-        self._sets = {
-            prefix + attribute: self._values(attribute, values)
-            for prefix, side in (("", requirements.include), (EXCLUDE, requirements.exclude))
-            for attribute, values in side.items()
-        }
-        self._of_design = bool(requirements.properties) or any(
-            name.removeprefix(EXCLUDE) in OF_DESIGN for name in self._sets
+        self._of_studies = any(
+            attribute in OF_STUDIES for attribute in (*requirements.include, *requirements.exclude)
         )
         self.limits = tuple(n for n in _MEASURED if requirements.asked(n) is not None)
-        self._judged_by = Limits(
+        self.judged_by = self.limits_of(requirements)
+        self._stated = {name: self._stated_within(name) for name in self.limits}
+        self.all_stated = self.studies
+        for name in self.limits:
+            self.all_stated &= self._stated[name]
+
+    @staticmethod
+    def limits_of(requirements: Requirements) -> Limits:
+        """Return the limits that decide which pipelines are judged."""
+        return Limits(
             requirements.survive,
             requirements.half_field_deg,
             requirements.min_availability,
             requirements.max_latency_us,
         )
-        self._stated = {name: self._stated_within(name) for name in self.limits}
-        self._all_stated = self.studies
-        for name in self.limits:
-            self._all_stated &= self._stated[name]
 
-    def places(self) -> list[KeptPlace]:
-        """Return the architectures that meet the requirements, in the order of the taxonomy."""
-        found = []
-        for place, best in zip(self.table.places, self.table.best(self._judged_by), strict=True):
-            if self.broken_by_place(place) or self.broken_by_studies(place):
-                continue
-            kept = self._kept(place, best)
-            if kept:
-                studies = place.studies & self.studies
-                stated = place.studies & self._all_stated
-                advice = self.advice(place.advice)
-                found.append(KeptPlace(place, studies, stated, advice, kept))
+    @cached_property
+    def best(self) -> Best:
+        """The best pipeline of each design among those that keep the limits."""
+        return self.columns.best(self.judged_by)
+
+    @cached_property
+    def judgements(self) -> Judgements:
+        """What every pipeline is judged by."""
+        asked = self.asked
+        return self.columns.judgements(asked.survive, asked.half_field_deg)
+
+    @cached_property
+    def meeting(self) -> int:
+        """The designs (bits) that meet the requirements."""
+        columns, largest = self.columns, self.asked.max_error_deg
+        kept = self.best.kept
+        if largest is not None:
+            kept &= columns.bits(self.best.error <= largest)
+        kept |= columns.stated(self.all_stated)
+        for bits in self.having.values():
+            kept &= bits
+        return kept & self._of_studies_asked if self._of_studies else kept
+
+    @property
+    def _of_studies_asked(self) -> int:
+        """The designs (bits) of architectures with what is asked of studies, or advised for it."""
+        columns, studies = self.columns, self.studies
+        found = 0
+        for place, bits in zip(self.table.places, columns.of_place, strict=True):
+            if place.studies & studies:
+                found |= bits
+        included = [name for name in OF_STUDIES if name in self.asked.include]
+        if not included:
+            return found | columns.without_studies
+        advised = columns.every
+        for name in included:
+            values = self.asked.include[name]
+            advised &= columns.advised_for(name, values)
+        return found | advised
+
+    @cached_property
+    def having(self) -> Mapping[str, int]:
+        """The designs (bits) that meet each requirement on detector, mask, extractor and so on."""
+        columns, facts = self.columns, self.table.facts
+        found: dict[str, int] = {}
+        for prefix, side in (("", self.asked.include), (EXCLUDE, self.asked.exclude)):
+            for attribute, values in side.items():
+                if attribute in OF_STUDIES:
+                    continue
+                kinds = facts.taxonomy.kinds
+                has = columns.having(attribute, (k for v in values for k in kinds(attribute, v)))
+                found[prefix + attribute] = columns.every & ~has if prefix else has
+        if self.asked.properties:
+            marks = [facts.properties[name] for name in self.asked.properties]
+            extractors = {design.extractor for design in columns.designs}
+            marked = (e for e in extractors if all(of.get(e, 0) for of in marks))
+            found["properties"] = columns.having("extractor", marked)
         return found
 
-    def advice(self, advice: Iterable[Advice]) -> tuple[Advice, ...]:
-        """Return the advice for the tasks and accuracies asked for; for any if none is."""
+    def count(self) -> int:
+        """Return how many architectures meet the requirements."""
+        return sum(1 for bits in self.columns.of_place if bits & self.meeting)
+
+    def kept(self, at: int) -> Kept:
+        """Return a design that meets the requirements, with what it is judged by."""
+        row = int(self.best.row[at])
+        columns = self.columns
+        if row < 0:
+            return Kept(at, row, columns.designs[at], None, NOTHING)
+        return Kept(at, row, columns.designs[at], columns.rows[row], self.judgements.of(row))
+
+    @cached_property
+    def finest(self) -> Mapping[int, int]:
+        """What errs least of the pipelines that answer too seldom, by place; both by position.
+
+        They are of the calibrations asked for, whatever is asked of studies and errors.
+        """
+        allowed = self.columns.every
+        for name in ("model", "exclude_model", "extractor", "exclude_extractor", "properties"):
+            allowed &= self.having.get(name, allowed)
+        return self.judgements.finest(self.judged_by, self.columns.rows_of(allowed))
+
+    def partly(self, place: int) -> tuple[Partly[Measured], ...]:
+        """Return the finest pipeline that answers too seldom on a place, if there is one."""
+        at = self.finest.get(place)
+        found = None if at is None else self.judgements.partly_of(at)
+        return () if found is None else (found,)
+
+    @cached_property
+    def advice(self) -> Sequence[AdviceFor]:
+        """Of each place the advice for the tasks and accuracies asked for; for any if none is."""
+        asked = tuple(self.asked.include.get(name) for name in ADVISING)
+        return self.table.advice.get(
+            asked, lambda: [self._advice(place.advice) for place in self.table.places]
+        )
+
+    def _advice(self, advice: Iterable[Advice]) -> AdviceFor:
         include = self.asked.include
         asked = [name for name in ADVISING if name in include]
-        return tuple(
+        found = tuple(
             a
             for a in advice
             if a.requirement in ADVISING
             and (not asked or (a.requirement in asked and a.value in include[a.requirement]))
         )
-
-    def broken_by_place(self, place: Place) -> list[str]:
-        """Return the requirements on detector and mask that an architecture breaks."""
-        return [
-            name
-            for name, values in self._sets.items()
-            for attribute, value in zip(OF_PLACE, place.architecture, strict=True)
-            if name.removeprefix(EXCLUDE) == attribute
-            and (value in values) == name.startswith(EXCLUDE)
-        ]
-
-    def broken_by_design(self, design: Design) -> list[str]:
-        """Return the requirements on extractor, model and properties that a calibration breaks."""
-        broken = []
-        for name, values in self._sets.items():
-            attribute = name.removeprefix(EXCLUDE)
-            if attribute in OF_DESIGN:
-                has = (design.extractor,) if attribute == "extractor" else design.stages
-                if values.isdisjoint(has) != name.startswith(EXCLUDE):
-                    broken.append(name)
-        marks = self.table.facts.properties
-        if not all(marks[name].get(design.extractor, 0) for name in self.asked.properties):
-            broken.append("properties")
-        return broken
-
-    def broken_by_studies(self, place: Place) -> bool:
-        """Say whether what is asked of studies is met neither by one of them nor by advice."""
-        if not any(name.removeprefix(EXCLUDE) in OF_STUDIES for name in self._sets):
-            return False
-        if place.studies & self.studies:
-            return False
-        included = [name for name in OF_STUDIES if name in self.asked.include]
-        if not included:
-            return bool(place.studies)
-        return not self.advised(place, included)
+        return found, frozenset(a.value for a in found if a.requirement == "task")
 
     def advised(self, place: Place, included: Sequence[str]) -> bool:
         """Say whether the survey advises an architecture for everything included."""
@@ -147,37 +202,13 @@ class Question:
             for name in included
         )
 
-    def broken_limits(self, row: Measured) -> list[str]:
-        """Return the limits that a measured pipeline breaks."""
-        judged = self.judged[row]
-        broken = self._judged_by.broken(row, judged)
-        largest = self.asked.max_error_deg
-        if largest is not None and not judged.error_deg <= largest:
-            broken.append("max_error_deg")
-        return broken
-
     def stated(self, limit: str) -> int:
         """Return the studies (bits) whose stated number keeps a limit that is asked."""
         return self._stated[limit]
 
-    def _kept(self, place: Place, best: Sequence[Kept]) -> tuple[Kept, ...]:
-        """Return the designs that meet them: measured, the least error first; then stated."""
-        largest = self.asked.max_error_deg
-        if largest is not None:
-            best = best[: bisect.bisect_right(best, largest, key=lambda kept: kept.error_deg)]
-        stated = tuple(
-            Kept(design, None, NOTHING)
-            for design in place.unmeasured
-            if design.taken & self._all_stated
-        )
-        both = (*best, *stated)
-        if not self._of_design:
-            return both
-        return tuple(kept for kept in both if not self.broken_by_design(kept.design))
-
-    def basis(self, place: Place, kept: Kept) -> dict[str, str]:
+    def basis(self, place: Place, *, measured: bool) -> dict[str, str]:
         """Say of each requirement whether it was judged on what is measured, stated, and so on."""
-        basis = dict.fromkeys(self.limits, "stated" if kept.row is None else "measured")
+        basis = dict.fromkeys(self.limits, "measured" if measured else "stated")
         for name in OF_STUDIES:
             if name in self.asked.include:
                 basis[name] = "studies" if place.studies & self.studies else "advised"
@@ -208,19 +239,12 @@ class Question:
             found |= self.table.having.get((attribute, value), 0)
         return found
 
-    def _values(self, attribute: str, values: Iterable[str]) -> frozenset[str]:
-        """Return values and their kinds."""
-        taxonomy = self.table.facts.taxonomy
-        return frozenset(kind for v in values for kind in taxonomy.kinds(attribute, v))
-
     def _stated_within(self, limit: str) -> int:
         if limit not in _STATED:
             return 0
         bound = self.asked.limit(limit)
         assert bound is not None  # noqa: S101 - only limits asked for are looked at
-        numbers = self.table.stated[_STATED[limit]]
-        return sum(
-            1 << at
-            for at, number in numbers
-            if (number >= bound if limit == "min_fov_deg" else number <= bound)
-        )
+        numbers, up_to = self.table.ascending[_STATED[limit]]
+        if limit == "min_fov_deg":
+            return up_to[-1] & ~up_to[bisect.bisect_left(numbers, bound)]
+        return up_to[bisect.bisect_right(numbers, bound)]

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
+from typing import Generic, TypeVar
 
 from registry.requirements import Requirements
 
@@ -13,6 +14,51 @@ _NUMBERS = (
     *("rms_deg", "bound_deg", "over_bound", "repeatability_deg"),
     *("availability", "false_sun"),
 )
+
+
+#: What answers too seldom to be judged by its error is named beside what is judged where that errs
+#: by more than this many times as much, and where it answers at least this share of the samples.
+FINER = 3.0
+LEAST_ANSWERED = 0.5
+
+Of = TypeVar("Of")
+
+
+@dataclass(frozen=True)
+class Partly(Generic[Of]):
+    """What answers too seldom to be judged by its error: its error where it answers, and how often.
+
+    Attributes
+    ----------
+    of
+        Whatever it is said of.
+    """
+
+    error_deg: float
+    availability: float
+    of: Of
+
+
+def finer_for(error_deg: float, partly: Iterable[Partly[Of]]) -> Partly[Of] | None:
+    """Return what errs least of those that answer part of the samples, if far less than an error.
+
+    Parameters
+    ----------
+    error_deg
+        Of what is judged; infinite where nothing is, beside which nothing is named.
+    partly
+        Those that answer less than `LEAST_ANSWERED` are passed over.
+
+    Returns
+    -------
+    Partly or None
+        The first of equals; None unless the error is more than `FINER` times as large.
+    """
+    often = (one for one in partly if one.availability >= LEAST_ANSWERED)
+    finest = min(often, key=lambda one: one.error_deg, default=None)
+    if finest is None or math.isinf(error_deg) or not error_deg > FINER * finest.error_deg:
+        return None
+    return finest
 
 
 @dataclass(frozen=True)
@@ -150,8 +196,42 @@ class Measured:
         known = [share for share in shares if share is not None]
         return min(known) if len(known) == len(shares) else None
 
-    def to_dict(self, requirements: Requirements) -> dict[str, object]:
-        """Return the pipeline as in the HTTP answer, judged by the requirements."""
+    def partly(
+        self, hazards: Iterable[str] = (), half_field_deg: float | None = None
+    ) -> Partly[Measured] | None:
+        """Return the largest error where it answers, if it answers too seldom to be judged.
+
+        None where it is judged, and where no error is known: a refused condition, a hazard that
+        nothing tries, a field that the data set does not have.
+        """
+        names = tuple(hazards)
+        scores = [self.nominal, *(s for name in names for s in self.hazards.get(name, ()))]
+        whole = self.half_fov_deg
+        wide = half_field_deg is None or (whole is not None and whole >= half_field_deg)
+        if not (wide and all(map(self.tried, names))):
+            return None
+        errors, judged = [], True
+        for score in scores:
+            error = self.over(score, half_field_deg).error_deg
+            if math.isinf(error):
+                judged = False
+                if score.rms_deg is None:
+                    return None
+                error = score.rms_deg
+            errors.append(error)
+        share = self.availability(names)
+        return None if judged or share is None else Partly(max(errors), share, self)
+
+    def to_dict(
+        self, requirements: Requirements, partly: Iterable[Partly[Measured]] = ()
+    ) -> dict[str, object]:
+        """Return the pipeline as in the HTTP answer, judged by the requirements.
+
+        Parameters
+        ----------
+        partly
+            Pipelines on the same sensor that answer too seldom, of which one may be far finer.
+        """
         judged = self.judged(requirements.survive, requirements.half_field_deg)
         units = [e for e in (self.nominal.rms_deg, *self.unit_rms_deg) if e is not None]
         return {
@@ -174,7 +254,20 @@ class Measured:
             "units": {"count": len(units), "least_deg": min(units), "largest_deg": max(units)}
             if units
             else None,
+            "finer": _finer(finer_for(judged.error_deg, partly)),
         }
+
+
+def _finer(found: Partly[Measured] | None) -> dict[str, object] | None:
+    if found is None:
+        return None
+    return {
+        "dataset": found.of.dataset,
+        "extractor": found.of.extractor,
+        "model": found.of.model,
+        "error_deg": found.error_deg,
+        "availability": found.availability,
+    }
 
 
 def _finite(number: float) -> float | None:

@@ -7,13 +7,11 @@ from __future__ import annotations
 
 import itertools
 import weakref
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple, TypeVar
 
 from registry.designs import Design
 from registry.flows import LeftOut, Link, Node
-from registry.judging import Question
-from registry.ranking import Place
 from registry.studies import Facts, Study
 
 PATH_LEVELS = ("task", "detector", "mask", "model", "extractor")
@@ -67,10 +65,6 @@ class PathTable:
         self._on: dict[tuple[str, str, str], list[int]] = {}
         for at, (_, detector, mask, _, extractor) in enumerate(self.paths):
             self._on.setdefault((detector, mask, extractor), []).append(at)
-        # Paths of a design, found when it is first asked for.
-        self._paths_of: weakref.WeakKeyDictionary[Design, tuple[int, ...]] = (
-            weakref.WeakKeyDictionary()
-        )
         self._lay_out(order)
         self.left_out = tuple(
             LeftOut(lv, tuple(missing[lv])) for lv in PATH_LEVELS if lv in missing
@@ -136,59 +130,24 @@ class PathTable:
             _keep(self._links_of, (at, bits), found)
         return found
 
-    def taken(self, question: Question, places: Iterable[Place]) -> dict[int, int]:
-        """Return the paths that lead to the designs of an answer, each with its studies (bits).
-
-        A study counts that meets what is asked; where a design is not measured, one whose stated
-        numbers keep the limits.
-        """
-        include, exclude = question.asked.include, question.asked.exclude
-        tasks = set(include.get("task", self.taxonomy.values("task")))
-        tasks -= set(exclude.get("task", ()))
-        found: dict[int, int] = {}
-        for place, designs in places:
-            for kept in designs:
-                if not kept.design.taken:
-                    continue
-                meeting = place.studies if kept.row else place.stated
-                for at in self._of(kept.design):
-                    studies = self.sets[at] & meeting
-                    if studies and self.paths[at][0] in tasks:
-                        found[at] = found.get(at, 0) | studies
-        return found
-
-    def _of(self, design: Design) -> tuple[int, ...]:
-        found = self._paths_of.get(design)
-        if found is None:
-            on = self._on.get((*design.architecture, design.extractor), ())
-            kinds = self.taxonomy.kinds
-            found = self._paths_of[design] = tuple(
-                at
-                for at in on
-                if not set(kinds("model", self.paths[at][3])).isdisjoint(design.stages)
-            )
-        return found
-
-    def study_paths(self, taken: Mapping[int, int]) -> tuple[StudyPath, ...]:
-        """Return paths with their studies, in the order of the taxonomy."""
+    def of(self, design: Design) -> tuple[int, ...]:
+        """Return the paths that lead to a design."""
+        kinds = self.taxonomy.kinds
         return tuple(
-            StudyPath(task, detector, mask, model, extractor, self.studies(taken[at]))
-            for at in sorted(taken)
-            for task, detector, mask, model, extractor in (self.paths[at],)
+            at
+            for at in self._on.get((*design.architecture, design.extractor), ())
+            if not set(kinds("model", self.paths[at][3])).isdisjoint(design.stages)
         )
 
-    def narrowed(self, taken: Mapping[int, int]) -> tuple[tuple[Node, ...], tuple[Link, ...]]:
-        """Return nodes and links of paths, with the studies that took them."""
-        node_bits = [0] * len(self.nodes)
-        link_bits = [0] * len(self.links)
-        for at, studies in taken.items():
-            for node in self.nodes_on[at]:
-                node_bits[node] |= studies
-            for link in self.links_on[at]:
-                link_bits[link] |= studies
-        return (
-            tuple(self.node(at, bits) for at, bits in enumerate(node_bits) if bits),
-            tuple(self.link(at, bits) for at, bits in enumerate(link_bits) if bits),
+    def study_paths(self, taken: Iterable[tuple[int, bytes]]) -> tuple[StudyPath, ...]:
+        """Return paths, given by position, with the studies (bits, as bytes) that took them."""
+        return tuple(
+            StudyPath(
+                *(task, detector, mask, model, extractor),
+                studies=self.studies(int.from_bytes(bits, "little")),
+            )
+            for at, bits in taken
+            for task, detector, mask, model, extractor in (self.paths[at],)
         )
 
 

@@ -14,9 +14,6 @@ Sort = Literal["advice", "support", "measured"]
 SORTS: tuple[Sort, ...] = ("advice", "support", "measured")
 """What an answer is ordered by first; the first of them is the usual one."""
 
-Place = tuple[KeptPlace, tuple[Kept, ...]]
-"""An architecture and its calibrations, best first."""
-
 
 def support(kept: Kept, place: KeptPlace) -> float:
     """Return how the literature backs a calibration on an architecture.
@@ -32,31 +29,12 @@ def support(kept: Kept, place: KeptPlace) -> float:
     return float(math.prod(bits.bit_count() for bits in counts) ** (1 / 3))
 
 
-def ranked(places: Sequence[KeptPlace], sort: Sort) -> list[Place]:
-    """Return architectures and their calibrations, best first; equals in the order they came.
+def key_of(sort: Sort, advised: bool, backing: float, error: float) -> tuple[float, ...]:
+    """Return what an architecture or a calibration is ranked by, the best first.
 
     By advice: what the survey advises, then what most studies back, then what errs least. By
-    support, or by what is measured: that first. What is not measured errs without limit. A
-    calibration whose extractor or model has no name in the taxonomy comes last, but by what is
-    measured.
+    support, or by what is measured: that first. What is not measured errs without limit.
     """
-    found: list[tuple[tuple[float, ...], Place]] = []
-    for place in places:
-        designs = sorted(
-            place.designs,
-            key=lambda kept: (
-                sort != "measured" and not kept.design.stated,
-                *_key(sort, kept.design.advised, support(kept, place), kept.error_deg),
-            ),
-        )
-        error = place.best.error_deg
-        key = _key(sort, bool(place.advice), place.studies.bit_count(), error)
-        found.append((key, (place, tuple(designs))))
-    found.sort(key=lambda item: item[0])
-    return [place for _, place in found]
-
-
-def _key(sort: Sort, advised: bool, backing: float, error: float) -> tuple[float, ...]:
     if sort == "measured":
         return (error, not advised, -backing)
     if sort == "support":
@@ -64,14 +42,15 @@ def _key(sort: Sort, advised: bool, backing: float, error: float) -> tuple[float
     return (not advised, -backing, error)
 
 
-def pareto(places: Sequence[Place]) -> frozenset[int]:
+def pareto(places: Sequence[KeptPlace]) -> frozenset[int]:
     """Return the positions of the architectures that none beats in both support and error."""
-    costs = [(-place.studies.bit_count(), place.best.error_deg) for place, _ in places]
-    return frozenset(
-        at
-        for at, cost in enumerate(costs)
-        if not any(other != cost and other[0] <= cost[0] and other[1] <= cost[1] for other in costs)
-    )
+    costs = [(-place.studies.bit_count(), place.error_deg) for place in places]
+    beaten = math.nan
+    found: dict[tuple[int, float], bool] = {}
+    for cost in sorted(set(costs)):  # whoever beats one comes before it
+        found[cost] = not beaten <= cost[1]
+        beaten = cost[1] if math.isnan(beaten) else min(beaten, cost[1])
+    return frozenset(at for at, cost in enumerate(costs) if found[cost])
 
 
 @dataclass(frozen=True)
@@ -92,13 +71,25 @@ class Regret:
             return None
         return self.first.error_deg / self.best.error_deg
 
+    def to_dict(self, sentence: str) -> dict[str, object]:
+        """Return the regret as in the HTTP answer, beside a sentence that says it."""
+        first = self.first.error_deg
+        return {
+            "first_deg": None if math.isinf(first) else first,
+            "best_deg": self.best.error_deg,
+            "ratio": self.ratio,
+            "sentence": sentence,
+        }
 
-def regret(places: Sequence[Place]) -> Regret | None:
-    """Return the regret of an answer; None where nothing in it is measured."""
-    if not places:
+
+def regret(places: Sequence[KeptPlace], first: Kept | None) -> Regret | None:
+    """Return the regret of an answer; None where nothing in it is measured.
+
+    ``first`` is the first calibration of the first of its architectures.
+    """
+    if first is None:
         return None
-    best = min((place.best for place, _ in places), key=lambda kept: kept.error_deg)
+    best = min(places, key=lambda place: place.error_deg).best
     if not math.isfinite(best.error_deg):
         return None
-    first = places[0][1][0]
     return Regret(first, first if first.error_deg == best.error_deg else best)

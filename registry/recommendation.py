@@ -9,19 +9,25 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
 
 from registry import studies as registered
 from registry.contradiction import against_advice, against_literature, regret_words
-from registry.designs import DesignTable, Kept, design_table
+from registry.designs import Kept, design_table
 from registry.flows import LeftOut, Link, Node
-from registry.judging import KeptPlace, Question
+from registry.judging import Question
 from registry.measured import Measured, Measurements
 from registry.paths import PathTable, StudyPath, path_table
-from registry.ranking import SORTS, Place, Sort, pareto, ranked, regret, support
+from registry.ranking import SORTS, Regret, Sort, pareto, regret, support
 from registry.relaxation import Blocked, Relaxation, explain
 from registry.requirements import Requirements
 from registry.studies import Facts
 from registry.taxonomy import InvalidValueError, unknown_name
+
+if TYPE_CHECKING:
+    from registry.path_columns import Taken
+    from registry.ranked_designs import RankedDesigns, RankedPlace
 
 __all__ = [
     "Architecture",
@@ -198,6 +204,109 @@ def recommend(
     for name, most in (("limit", limit), ("calibrations", calibrations)):
         if most is not None and most < 1:
             raise InvalidValueError(name, most, "a whole number of at least 1")
+    found = answered(requirements, measured, sort=sort, facts=facts)
+    return recommendation(found, limit, calibrations)
+
+
+def recommendation(
+    found: Answered, limit: int | None = None, calibrations: int | None = None
+) -> Recommendation:
+    """Return an answer as objects, with the first architectures and calibrations of each."""
+    ranked, taken, asked = found.ranked, found.taken, found.question.asked
+    paths = path_table(found.question.table.facts)
+    lost = found.regret
+    return Recommendation(
+        requirements=asked,
+        sort=ranked.sort,
+        count=len(ranked.places),
+        designs=len(ranked.at),
+        architectures=tuple(
+            _architecture(at, place, found, paths, calibrations)
+            for at, place in enumerate(ranked.places[:limit])
+        ),
+        contradictions=found.contradictions,
+        regret=None if lost is None else lost.to_dict(regret_words(lost)),
+        untried=found.untried,
+        paths=paths.study_paths(taken.paths),
+        nodes=tuple(paths.node(at, int.from_bytes(bits, "little")) for at, bits in taken.nodes),
+        links=tuple(paths.link(at, int.from_bytes(bits, "little")) for at, bits in taken.links),
+        left_out=paths.left_out,
+        blocked=found.blocked,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Answered:
+    """What an answer is made of: `recommend` makes objects of it, the HTTP service bytes."""
+
+    question: Question
+    ranked: RankedDesigns
+    taken: Taken
+
+    @cached_property
+    def contradictions(self) -> tuple[str, ...]:
+        """Where an architecture that is not advised does better at a task than those advised."""
+        tasks = self.question.asked.include.get("task", ())
+        return against_advice(self.ranked.places, self.ranked.least, tasks)
+
+    @cached_property
+    def regret(self) -> Regret | None:
+        """What the first calibration named errs beside the best one; None if none is measured."""
+        return regret(self.ranked.places, self.ranked.first())
+
+    @cached_property
+    def pareto(self) -> frozenset[int]:
+        """Positions of the architectures that none beats in both support and error."""
+        return pareto(self.ranked.places)
+
+    @cached_property
+    def untried(self) -> dict[str, tuple[tuple[str, str], ...]]:
+        """Architectures that no data set tries a hazard on, by the hazards asked for."""
+        question = self.question
+        return {hazard: question.columns.untried(hazard) for hazard in question.asked.survive}
+
+    @cached_property
+    def blocked(self) -> Blocked | None:
+        """Why nothing meets the requirements, if nothing does."""
+        places = self.ranked.places
+        return None if places else explain(self.question.table, self.question.asked)
+
+    def tasks(self, place: RankedPlace) -> dict[str, tuple[int, bool]]:
+        """Return the tasks of an architecture: how many studies had them, whether advised."""
+        advised = [a.value for a in place.place.advice if a.requirement == "task"]
+        found = {
+            task: ((bits & place.studies).bit_count(), task in advised)
+            for task, bits in {**dict.fromkeys(advised, 0), **place.place.tasks}.items()
+        }
+        return {task: both for task, both in found.items() if any(both)}
+
+    def others(self, kept: Kept) -> tuple[Measured, ...]:
+        """Return the best pipeline of a design on each data set beside that of its best one."""
+        if kept.row is None:
+            return ()
+        judged = self.question.judgements
+        first = int(self.question.columns.first_row[kept.at])
+        others: dict[str, tuple[float, Measured]] = {}
+        for at, row in enumerate(kept.design.rows, first):
+            if row.dataset != kept.row.dataset:
+                error = judged.error_deg[at]
+                known = others.get(row.dataset)
+                if known is None or error < known[0]:
+                    others[row.dataset] = error, row
+        return tuple(row for _, row in others.values())
+
+
+def answered(
+    requirements: Requirements | Mapping[str, object] | None = None,
+    measured: Measurements | Iterable[Measured] = (),
+    *,
+    sort: Sort = "advice",
+    facts: Facts | None = None,
+) -> Answered:
+    """Find what meets the requirements, ranked; the parameters are those of `recommend`."""
+    from registry.path_columns import path_columns  # noqa: PLC0415 - NumPy
+    from registry.ranked_designs import RankedDesigns  # noqa: PLC0415 - NumPy
+
     if sort not in SORTS:
         raise unknown_name("sort", sort, SORTS)
     known = facts or registered.facts()
@@ -209,87 +318,38 @@ def recommend(
     rows = measured if isinstance(measured, Measurements) else Measurements(measured)
     table = design_table(known, rows)
     question = Question(table, asked)
-    places = ranked(question.places(), sort)
-    paths = path_table(known)
-    taken = paths.taken(question, places)
-    nodes, links = paths.narrowed(taken)
-    beaten = pareto(places)
-    lost = regret(places)
-    return Recommendation(
-        requirements=asked,
-        sort=sort,
-        count=len(places),
-        designs=sum(len(designs) for _, designs in places),
-        architectures=tuple(
-            _architecture(at, place, question, paths, calibrations, pareto=at in beaten)
-            for at, place in enumerate(places[:limit])
-        ),
-        contradictions=against_advice(places, asked.include.get("task", ())),
-        regret=None
-        if lost is None
-        else {
-            "first_deg": _or_none(lost.first),
-            "best_deg": lost.best.error_deg,
-            "ratio": lost.ratio,
-            "sentence": regret_words(lost),
-        },
-        untried=_untried(table, asked),
-        paths=paths.study_paths(taken),
-        nodes=nodes,
-        links=links,
-        left_out=paths.left_out,
-        blocked=None if places else explain(table, asked),
-    )
-
-
-def _or_none(kept: Kept) -> float | None:
-    return None if kept.error_deg == float("inf") else kept.error_deg
+    ranked = RankedDesigns(question, question.meeting, sort)
+    return Answered(question, ranked, path_columns(table).taken(ranked))
 
 
 def _architecture(
-    at: int,
-    found: Place,
-    question: Question,
-    paths: PathTable,
-    most: int | None,
-    *,
-    pareto: bool,
+    at: int, place: RankedPlace, found: Answered, paths: PathTable, most: int | None
 ) -> Architecture:
-    place, designs = found
-    best = designs.index(place.best)
     detector, mask = place.place.architecture
-    advised = [a.value for a in place.place.advice if a.requirement == "task"]
-    tasks = {
-        task: ((bits & place.studies).bit_count(), task in advised)
-        for task, bits in {**dict.fromkeys(advised, 0), **place.place.tasks}.items()
-    }
+    best = int((place.designs == place.best_at).argmax())
     return Architecture(
         rank=at + 1,
         detector=detector,
         mask=mask,
-        tasks={task: both for task, both in tasks.items() if any(both)},
+        tasks=found.tasks(place),
         advice=tuple(advice.to_dict() for advice in place.advice),
         studies=paths.studies(place.studies),
-        best=_calibration(best, designs[best], place, question, paths),
-        pareto=pareto,
-        contradiction=against_literature(place, designs),
-        count=len(designs),
+        best=_calibration(best, place.best, place, found, paths),
+        pareto=at in found.pareto,
+        contradiction=against_literature(place, found.ranked.usual(place)),
+        count=len(place.designs),
         calibrations=tuple(
-            _calibration(i, kept, place, question, paths) for i, kept in enumerate(designs[:most])
+            _calibration(i, found.question.kept(design), place, found, paths)
+            for i, design in enumerate(place.designs[:most].tolist())
         ),
     )
 
 
 def _calibration(
-    at: int, kept: Kept, place: KeptPlace, question: Question, paths: PathTable
+    at: int, kept: Kept, place: RankedPlace, found: Answered, paths: PathTable
 ) -> Calibration:
-    design, asked, judged = kept.design, question.asked, question.judged
-    others: dict[str, Measured] = {}
-    for row in design.rows:
-        if kept.row is not None and row.dataset != kept.row.dataset:
-            known = others.get(row.dataset)
-            if known is None or judged[row].error_deg < judged[known].error_deg:
-                others[row.dataset] = row
+    design, asked = kept.design, found.question.asked
+    partly = found.question.partly(place.number)
     return Calibration(
         rank=at + 1,
         extractor=design.extractor,
@@ -299,18 +359,7 @@ def _calibration(
         studies=paths.studies(place.taken(kept)),
         with_model=place.with_model(kept).bit_count(),
         backing=support(kept, place),
-        measured=None if kept.row is None else kept.row.to_dict(asked),
-        others=tuple(row.to_dict(asked) for row in others.values()),
-        basis=question.basis(place.place, kept),
+        measured=None if kept.row is None else kept.row.to_dict(asked, partly),
+        others=tuple(row.to_dict(asked, partly) for row in found.others(kept)),
+        basis=found.question.basis(place.place, measured=kept.row is not None),
     )
-
-
-def _untried(table: DesignTable, asked: Requirements) -> dict[str, tuple[tuple[str, str], ...]]:
-    return {
-        hazard: tuple(
-            place.architecture
-            for place in table.places
-            if not any(row.tried(hazard) for design in place.designs for row in design.rows)
-        )
-        for hazard in asked.survive
-    }

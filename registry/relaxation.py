@@ -7,12 +7,15 @@ import math
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
+from typing import TYPE_CHECKING
 
-from registry.designs import DesignTable, Limits
+from registry.designs import DesignTable
 from registry.judging import OF_STUDIES, Question
-from registry.measured import Measured
 from registry.paths import positions
 from registry.requirements import EXCLUDE, LIMITS, LISTS, Requirements
+
+if TYPE_CHECKING:
+    from registry.design_columns import DesignColumns, Flags
 
 MOST_CHANGES = 5
 """Changes of value offered for one categorical constraint."""
@@ -164,12 +167,17 @@ def _broken(question: Question, names: tuple[str, ...]) -> frozenset[int]:
     a choice of those that are given up.
     """
     bit = {name: 1 << at for at, name in enumerate(names)}
+    columns = question.columns
     by_study = _broken_by_studies(question, names, bit)
-    by_row = _broken_by_rows(question, bit)
+    by_design = columns.broken({bit[name]: has for name, has in question.having.items()})
+    by_row = columns.broken_by_place(by_design, _broken_by_rows(question, bit))
+    by_limit = [
+        sum(bit[n] for n in question.limits if not question.stated(n) >> at & 1)
+        for at in range(len(by_study))
+    ]
     included = [n for n in OF_STUDIES if n in question.asked.include]
     found: set[int] = set()
-    for place in question.table.places:
-        by_place = sum(bit[n] for n in question.broken_by_place(place))
+    for number, place in enumerate(question.table.places):
         ways = {bits for at in positions(place.studies) for bits in by_study[at]}
         unadvised = [n for n in included if not question.advised(place, [n])]
         # Advice speaks for what is asked for; of what is excluded only studies tell.
@@ -177,39 +185,46 @@ def _broken(question: Question, names: tuple[str, ...]) -> frozenset[int]:
             ways.add(sum(bit[n] for n in unadvised))
         if not place.studies:
             ways.add(sum(bit[n] for n in included))
-        for design in place.designs:
-            by_design = by_place | sum(bit[n] for n in question.broken_by_design(design))
-            for row in design.rows:
-                found.update(by_design | limit | way for limit in by_row[row] for way in ways)
-            if not design.rows:
-                for at in positions(design.taken):
-                    by_limit = sum(
-                        bit[n] for n in question.limits if not question.stated(n) >> at & 1
-                    )
-                    found.update(by_design | by_limit | way for way in by_study[at])
+        found.update(bits | way for bits in by_row[number] for way in ways)
+    for design_at in columns.unmeasured.tolist():
+        bits = int(by_design[design_at])
+        for at in positions(columns.designs[design_at].taken):
+            found.update(bits | by_limit[at] | way for way in by_study[at])
     return frozenset(found)
 
 
-def _broken_by_rows(question: Question, bit: Mapping[str, int]) -> dict[Measured, set[int]]:
-    """Return the sets of limits that each measured pipeline breaks, by what is given up."""
-    asked = question.asked
+def _broken_by_rows(question: Question, bit: Mapping[str, int]) -> list[tuple[int, Flags]]:
+    """Return sets of limits that may be given up, and which measured pipelines then keep the rest.
+
+    Of each pipeline the smallest sets. What is left is judged without what is given up.
+    """
+    asked, columns = question.asked, question.columns
     alone = asked.without(*(n for n in asked.names if n not in _TOGETHER))
-    found: dict[Measured, set[int]] = {}
+    found: list[tuple[int, Flags]] = []
     for size in range(len(alone.names) + 1):
         for dropped in itertools.combinations(alone.names, size):
             given_up = sum(bit[n] for n in dropped)
-            kept = Question(question.table, alone.without(*dropped))
-            for row in kept.judged:
-                known = found.setdefault(row, set())
-                if any(given_up & bits == bits for bits in known):
-                    continue  # less is enough
-                if not kept.broken_limits(row):
-                    known.add(given_up)
+            keeping = _keeping(columns, alone.without(*dropped))
+            for less, kept in found:
+                if given_up & less == less:
+                    keeping = keeping & ~kept  # less is enough
+            found.append((given_up, keeping))
     if asked.max_latency_us is not None:
-        for row, sets in found.items():
-            if "max_latency_us" in question.broken_limits(row):
-                found[row] = {bits | bit["max_latency_us"] for bits in sets}
+        slow = ~(columns.latency_us <= asked.max_latency_us)
+        also = bit["max_latency_us"]
+        found = [
+            part
+            for bits, kept in found
+            for part in ((bits, kept & ~slow), (bits | also, kept & slow))
+        ]
     return found
+
+
+def _keeping(columns: DesignColumns, asked: Requirements) -> Flags:
+    """Say of each measured pipeline whether it keeps all limits asked for."""
+    limits = Question.limits_of(asked)
+    judged = columns.judgements(limits.hazards, limits.half_field_deg)
+    return judged.keeping(limits, asked.max_error_deg)
 
 
 def _broken_by_studies(
@@ -247,7 +262,7 @@ def _only(requirements: Requirements, names: Collection[str]) -> Requirements:
 
 
 def _count(table: DesignTable, requirements: Requirements) -> int:
-    return len(Question(table, requirements).places())
+    return Question(table, requirements).count()
 
 
 def _changes(table: DesignTable, requirements: Requirements, name: str) -> list[Relaxation]:
@@ -277,82 +292,59 @@ def _nearest_limit(table: DesignTable, requirements: Requirements, limit: str) -
     if limit == "min_fov_deg":
         return _widest(table, requirements)
     question = Question(table, requirements)
-    numbers: list[float] = []
-    for place in question.places():
-        for kept in place.designs:
-            rows = [r for r in kept.design.rows if not question.broken_limits(r)]
-            for row in rows:
-                number = _number(question, row, limit)
-                if number is not None and math.isfinite(number) and number > 0:
-                    numbers.append(number)
-            if not kept.design.rows and limit == "max_error_deg":
-                stated = dict(table.stated["accuracy_deg"])
-                numbers += [stated[at] for at in positions(place.taken(kept)) if at in stated]
+    columns = question.columns
+    rows = columns.rows_of(question.meeting) & _keeping(columns, requirements)
+    values = {
+        "max_error_deg": question.judgements.error_deg,
+        "min_availability": question.judgements.availability,
+        "max_latency_us": columns.latency_us,
+    }[limit][rows]
+    numbers: list[float] = [n for n in values.tolist() if math.isfinite(n) and n > 0]
+    if limit == "max_error_deg":
+        numbers += _stated(question, "accuracy_deg")
     if not numbers:
         return None
     return max(numbers) if limit.startswith("min_") else min(numbers)
 
 
-def _number(question: Question, row: Measured, limit: str) -> float | None:
-    if limit == "max_error_deg":
-        return question.judged[row].error_deg
-    if limit == "min_availability":
-        return row.availability(question.asked.survive)
-    return row.latency_us
+def _stated(question: Question, attribute: str) -> list[float]:
+    """Return a number stated by the studies behind the designs of an answer not measured."""
+    designs = question.columns.designs
+    bits = 0
+    for at in positions(question.meeting & question.columns.not_measured):
+        bits |= designs[at].taken
+    bits &= question.all_stated
+    return [number for at, number in question.table.stated[attribute] if bits >> at & 1]
 
 
 def _widest(table: DesignTable, requirements: Requirements) -> float | None:
     """Return the widest field that something has which meets all else over that field."""
-    widest = 0.0
     # What is judged over the field is left to the rows.
     rest = Question(table, requirements.without(*_TOGETHER))
-    for place in rest.places():
-        for kept in place.designs:
-            for row in kept.design.rows:
-                widest = max(widest, _widest_of(row, requirements, widest))
-    stated = dict(table.stated["fov_deg"])
-    for place in Question(table, requirements).places():
-        for kept in place.designs:
-            if kept.row is None:
-                fields = [stated[at] for at in positions(place.taken(kept)) if at in stated]
-                widest = max(widest, *fields, 0.0)
-    return widest or None
-
-
-def _widest_of(row: Measured, requirements: Requirements, beyond: float) -> float:
-    """Return the widest field wider than another over which a pipeline meets all; 0 if none."""
-    halves = {half for half, error in row.nominal.cones if error is not None}
-    if row.half_fov_deg is not None:
-        halves.add(row.half_fov_deg)
-    largest = math.inf if requirements.max_error_deg is None else requirements.max_error_deg
-    for half in sorted(halves, reverse=True):
-        if 2.0 * half <= beyond:
+    columns = rest.columns
+    rows = columns.rows_of(rest.meeting)
+    widest = 0.0
+    for half, having in columns.cone_edges:
+        over = requirements.changed("min_fov_deg", 2.0 * half)
+        if (rows & having & _keeping(columns, over)).any():
+            widest = 2.0 * half
             break
-        judged = row.judged(requirements.survive, half)
-        limits = Limits(
-            requirements.survive,
-            half,
-            requirements.min_availability,
-            requirements.max_latency_us,
-        )
-        if judged.error_deg <= largest and not limits.broken(row, judged):
-            return 2.0 * half
-    return 0.0
+    return max(widest, *_stated(Question(table, requirements), "fov_deg"), 0.0) or None
 
 
 def _has_evidence(table: DesignTable, requirements: Requirements, name: str) -> bool:
     """Say whether anything measured or stated tells of a requirement at all."""
-    rows = [row for place in table.places for design in place.designs for row in design.rows]
+    columns = Question(table, requirements).columns
     if name == "max_latency_us":
-        return any(row.latency_us is not None for row in rows)
+        return bool((columns.latency_us < math.inf).any())
     if name == "min_availability":
-        return bool(rows)
+        return bool(columns.rows)
     if name == "survive":
-        return all(any(row.tried(hazard) for row in rows) for hazard in requirements.survive)
+        return all(bool(columns.tried(hazard).any()) for hazard in requirements.survive)
     if name == "max_error_deg":
-        return bool(rows or table.stated["accuracy_deg"])
+        return bool(columns.rows or table.stated["accuracy_deg"])
     if name == "min_fov_deg":
-        return bool(rows or table.stated["fov_deg"])
+        return bool(columns.rows or table.stated["fov_deg"])
     return True
 
 

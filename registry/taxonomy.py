@@ -105,6 +105,7 @@ class Taxonomy:
                 raise ValueError(f"taxonomy has {entry.attribute} {entry.value!r} twice")
             values[entry.value] = entry
         self._entries = table
+        self._kinds: dict[tuple[str, str], tuple[str, ...]] = {}
         self._levels = {level: self._level_names(level) for level in self.levels}
 
     @property
@@ -157,9 +158,13 @@ class Taxonomy:
 
     def kinds(self, attribute: str, value: str) -> tuple[str, ...]:
         """`value` and, where it is a parent such as ECM or ICM, its kinds (ECM/Noise, ...)."""
-        self.require(attribute, value)
-        prefix = f"{value}/"
-        return (value, *(v for v in self._entries[attribute] if v.startswith(prefix)))
+        found = self._kinds.get((attribute, value))
+        if found is None:
+            self.require(attribute, value)
+            prefix = f"{value}/"
+            kinds = (v for v in self._entries[attribute] if v.startswith(prefix))
+            found = self._kinds[attribute, value] = (value, *kinds)
+        return found
 
     def derived(self, level: str, value: str) -> str:
         """Return what `value` of the level's attribute means at `level`."""

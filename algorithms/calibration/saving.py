@@ -1,4 +1,8 @@
-"""Calibrated chains as JSON documents, and back: plain numbers, no pickle, answers bit-equal."""
+"""Calibrated chains as JSON documents, and back: plain numbers, no pickle, answers bit-equal.
+
+A document has a digest of all that it holds, and one whose digest does not fit is refused: a number
+with another digit would give directions that look as good as the right ones.
+"""
 
 from __future__ import annotations
 
@@ -15,6 +19,13 @@ from typing import Any, cast
 
 import numpy as np
 
+from algorithms.calibration.documents import (
+    DIGEST,
+    DocumentError,
+    digest_of,
+    read_document,
+    require_whole,
+)
 from algorithms.contract import Compensation, Extractor, Model, SensorGeometry
 from algorithms.discovery import (
     discover_compensations,
@@ -24,7 +35,16 @@ from algorithms.discovery import (
 from algorithms.pipeline import Pipeline
 
 SCHEMA = "sun-sensor-atlas/calibration"
-SCHEMA_VERSION = 1
+#: 2 brought the digest. Of version 1, without one, nobody can tell a damaged file from a sound one.
+SCHEMA_VERSION = 2
+_MEMBERS = frozenset(
+    {
+        *("schema", "schema_version", "conventions", "sensor"),
+        *("extractor", "compensations", "model", DIGEST),
+    }
+)
+#: Kinds of NumPy's types that a calibration's arrays may have: numbers, truth values, text.
+_KINDS = "biufU"
 
 CONVENTIONS = {
     "sun": "unit vector from the sensor to the Sun, sensor frame, +z the boresight",
@@ -32,6 +52,12 @@ CONVENTIONS = {
     "pixels": "centres at integers, order (x, y), x along columns",
     "units": "in the names: _deg, _mm, _px, _s, _K, _nT",
 }
+
+#: What a document leads to that fits no class here.
+_MISFITS = (
+    *(DocumentError, LookupError, TypeError, ValueError, AttributeError, ImportError),
+    *(ArithmeticError, MemoryError, RecursionError),
+)
 
 Stage = Extractor | Compensation | Model
 
@@ -53,7 +79,8 @@ def document(pipeline: Pipeline, geometry: SensorGeometry | None = None) -> dict
     Returns
     -------
     dict
-        With schema, conventions, each stage's name, version, parameters and fitted attributes.
+        With schema, conventions, each stage's name, version, parameters and fitted attributes, and
+        the digest of all these.
 
     Raises
     ------
@@ -74,7 +101,7 @@ def document(pipeline: Pipeline, geometry: SensorGeometry | None = None) -> dict
     """
     pipeline.require_fitted()
     design = None if geometry is None else _without_none(dataclasses.asdict(geometry))
-    return {
+    held = {
         "schema": SCHEMA,
         "schema_version": SCHEMA_VERSION,
         "conventions": CONVENTIONS,
@@ -83,6 +110,7 @@ def document(pipeline: Pipeline, geometry: SensorGeometry | None = None) -> dict
         "compensations": [stage_document(stage) for stage in pipeline.compensations],
         "model": stage_document(pipeline.model),
     }
+    return {**held, DIGEST: digest_of(held)}
 
 
 def pipeline_of(stored: Mapping[str, Any]) -> Pipeline:
@@ -101,8 +129,8 @@ def pipeline_of(stored: Mapping[str, Any]) -> Pipeline:
     Raises
     ------
     UnreadableCalibrationError
-        If it is not a calibration, of another schema version, or of a stage or a stage's version
-        that this software does not have.
+        If it is not a calibration, of another schema version, not what its digest is of, or of a
+        stage or a stage's version that this software does not have.
 
     Examples
     --------
@@ -116,9 +144,11 @@ sun-sensor-atlas/calibration; got 'recipe'
         raise UnreadableCalibrationError(f"expected a document of {SCHEMA}; got {said!r}")
     if stored.get("schema_version") != SCHEMA_VERSION:
         raise UnreadableCalibrationError(
-            f"expected schema version {SCHEMA_VERSION}; got {stored.get('schema_version')!r}"
+            f"expected schema version {SCHEMA_VERSION}; got {stored.get('schema_version')!r}: "
+            "calibrate and save anew"
         )
     try:
+        require_whole(stored, _MEMBERS)
         return Pipeline(
             cast("Extractor", stage_of(stored["extractor"], discover_extractors())),
             cast("Model", stage_of(stored["model"], discover_models())),
@@ -129,7 +159,7 @@ sun-sensor-atlas/calibration; got 'recipe'
         )
     except UnreadableCalibrationError:
         raise
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
+    except _MISFITS as error:
         raise UnreadableCalibrationError(f"the calibration is damaged: {error}") from error
 
 
@@ -208,7 +238,7 @@ def load(path: str | Path) -> Pipeline:
     Raises
     ------
     UnreadableCalibrationError
-        If it holds no such document.
+        If it holds no such document, or not the one that was saved; the message names the file.
     OSError
         If it cannot be read.
 
@@ -217,10 +247,9 @@ def load(path: str | Path) -> Pipeline:
     >>> load("calibration.json").predict(frames)  # doctest: +SKIP
     """
     try:
-        stored = json.loads(Path(path).read_text(encoding="utf-8"))
-    except ValueError as error:
-        raise UnreadableCalibrationError(f"{path} is not JSON: {error}") from error
-    return pipeline_of(stored)
+        return pipeline_of(read_document(Path(path)))
+    except (DocumentError, UnreadableCalibrationError) as error:
+        raise UnreadableCalibrationError(f"{path}: {error}") from error
 
 
 def stage_document(stage: Stage) -> dict[str, Any]:
@@ -344,8 +373,10 @@ def _value(stored: Any) -> Any:
     if not isinstance(stored, dict):
         return stored
     if "array" in stored:
-        flat = [_value(v) for v in stored["array"]]
-        return np.array(flat, dtype=stored["dtype"]).reshape(stored["shape"])
+        kind = np.dtype(stored["dtype"])
+        if kind.kind not in _KINDS:
+            raise TypeError(f"an array of {stored['dtype']!r}")
+        return np.array([_value(v) for v in stored["array"]], dtype=kind).reshape(stored["shape"])
     if "float" in stored:
         return float(stored["float"])
     if "tuple" in stored:

@@ -72,6 +72,9 @@ def _architecture(architecture: Mapping[str, Any], width: int) -> Iterator[str]:
     yield from _paragraph("advised", _advised(architecture["advice"]), width)
     yield from _paragraph("proposed", _proposed(architecture["studies"]), width)
     yield from _paragraph("measured", _measured(architecture["best"]), width)
+    finer = (architecture["best"]["measured"] or {}).get("finer")
+    if finer is not None:
+        yield from _paragraph("finer", _finer(finer), width)
     if architecture["contradiction"]:
         yield from _paragraph("against", architecture["contradiction"], width)
     calibrations = architecture["calibrations"]
@@ -121,6 +124,15 @@ def _measured(best: Mapping[str, Any]) -> str:
         spread = f"{units['least_deg']:.3g} to {units['largest_deg']:.3g} deg"
         parts.append(f"{units['count']} units {spread}")
     return f"{_way(best)}: {'; '.join(parts)}"
+
+
+def _finer(finer: Mapping[str, Any]) -> str:
+    """Return what errs far less on the part of the samples that it answers."""
+    return (
+        f"far finer on the part it answers, {100 * finer['availability']:.4g} %: "
+        f"{finer['extractor']} > {finer['model']}, {finer['error_deg']:.3g} deg "
+        f"({finer['dataset']})"
+    )
 
 
 def _calibration(

@@ -10,7 +10,7 @@ import csv
 import json
 import os
 import zipfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -37,7 +37,6 @@ from benchmark.datasets.checksums import (
     sha256,
     write_checksums,
 )
-from benchmark.datasets.pins import Pin, Place
 from benchmark.progress import ProgressCallback, silent
 from benchmark.results.store import PUBLISHED, Store
 from survey_data.whole_files import replacing
@@ -64,12 +63,16 @@ class Bundle:
     files: tuple[str, ...]
 
 
+#: Files that tell checksums of the others.
+OF_DIGESTS = frozenset({CHECKSUMS, CRATE, DESCRIPTOR})
+
+
 @dataclass(frozen=True)
-class _Sources:
+class Sources:
+    """What a bundle is made of: directory of the survey's tables, and the measured ones."""
+
     survey: Path
     measured: list[MeasuredTable]
-    frames: Sequence[str]
-    pins: Mapping[Place, Pin]
 
 
 def build(
@@ -112,33 +115,56 @@ def build(
             "see `sunatlas survey check`"
         )
     who = identity()
-    sources = _Sources(
-        survey,
-        measured_tables(published),
-        datasets.names() if frames is None else frames,
-        Store(published).pins(),
-    )
+    sources = Sources(survey, measured_tables(published))
+    pins = Store(published).pins()
     out.parent.mkdir(parents=True, exist_ok=True)
     with replacing(out, archive) as (bundle, zipped):
         bundle.mkdir()
-        _fill(bundle, who, sources, progress)
+        names = datasets.names() if frames is None else frames
+        exported = write_frames(bundle, names, pins, progress)
+        fill(bundle, who, sources, exported)
         _pack(bundle, zipped, who)
     return Bundle(out, archive, tuple(contents(out)))
 
 
-def _fill(bundle: Path, who: Identity, sources: _Sources, progress: ProgressCallback) -> None:
+def write_other_forms(bundle: Path, descriptor: Mapping[str, Any]) -> None:
+    """Write the tables of a bundle as Parquet and SQLite, too."""
+    tables = typed_tables(bundle, descriptor)
+    for table in tables:
+        write_parquet(table, bundle / "parquet" / f"{table.name}.parquet")
+    write_database(tables, bundle / DATABASE)
+
+
+def fill(
+    bundle: Path,
+    who: Identity,
+    sources: Sources,
+    exported: Sequence[Mapping[str, Any]],
+    *,
+    other_forms: Callable[[Path, Mapping[str, Any]], None] = write_other_forms,
+) -> None:
+    """Write all of a bundle beside the samples that lie in it.
+
+    Parameters
+    ----------
+    bundle : its directory
+    who : name, version and terms
+    sources : what it is made of
+    exported : of each file of samples what `frames.write_frames` says
+    other_forms : writes the tables in other forms than CSV
+    """
     described = read_descriptor(sources.survey / DESCRIPTOR)
     for resource in described["resources"]:
         target = bundle / "survey" / resource["path"]
         target.parent.mkdir(parents=True, exist_ok=True)
         target.write_bytes((sources.survey / resource["path"]).read_bytes())
-    exported = write_frames(bundle, sources.frames, sources.pins, progress)
     measured = [*sources.measured, *([frames_table(exported)] if exported else [])]
     for table in measured:
         _write(bundle / "benchmark" / f"{table.name}.csv", table.text)
     descriptor = package(bundle, who, described, measured, exported)
     _write_json(bundle / DESCRIPTOR, descriptor)
-    _write_other_forms(bundle, descriptor)
+    other_forms(bundle, descriptor)
+    _write_bibliography(bundle)
     _write(bundle / "LICENSE", who.code_licence)
     for folder in ("survey", BIBLIOGRAPHY):
         _write(bundle / folder / "LICENSE", who.data_licence)
@@ -163,11 +189,7 @@ def _fill(bundle: Path, who: Identity, sources: _Sources, progress: ProgressCall
     write_checksums(bundle)
 
 
-def _write_other_forms(bundle: Path, descriptor: Mapping[str, Any]) -> None:
-    tables = typed_tables(bundle, descriptor)
-    for table in tables:
-        write_parquet(table, bundle / "parquet" / f"{table.name}.parquet")
-    write_database(tables, bundle / DATABASE)
+def _write_bibliography(bundle: Path) -> None:
     with (bundle / "survey" / "studies.csv").open(encoding="utf-8", newline="") as file:
         studies = list(csv.DictReader(file))
     _write(bundle / BIBLIOGRAPHY / "studies.bib", bibtex(studies))

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from benchmark import datasets
-from benchmark.datasets.export import export
+from benchmark.datasets.export import export, read_card
 from benchmark.datasets.pins import Pin, Place
 from benchmark.progress import ProgressCallback, silent
 
@@ -57,7 +57,7 @@ def write_frames(
         preset = datasets.get(name)
         size = sample_size(name, pins)
         condition = preset.conditions[0]
-        made = export(
+        export(
             name,
             bundle / FOLDER / name,
             conditions=(condition,),
@@ -65,18 +65,23 @@ def write_frames(
             n=size,
             pins=pins,
         )
-        rows += [
-            {
-                "dataset": name,
-                "condition": entry["condition"],
-                "split": entry["split"],
-                "file": f"{FOLDER}/{name}/{entry['path']}",
-                "samples": entry["samples"],
-                "samples_of": pins[name, condition, entry["split"]].n,
-                "data_hash": entry["data_hash"],
-            }
-            for entry in made.card["files"]
-            if entry["kind"] == "arrays"
-        ]
+        rows += sampled(bundle, name, pins)
     progress(len(names), len(names), "")
     return rows
+
+
+def sampled(bundle: Path, name: str, pins: Mapping[Place, Pin]) -> list[dict[str, Any]]:
+    """Return a row for each file of arrays of a data set's samples, as their card says."""
+    return [
+        {
+            "dataset": name,
+            "condition": entry["condition"],
+            "split": entry["split"],
+            "file": f"{FOLDER}/{name}/{entry['path']}",
+            "samples": entry["samples"],
+            "samples_of": pins[name, entry["condition"], entry["split"]].n,
+            "data_hash": entry["data_hash"],
+        }
+        for entry in read_card(bundle / FOLDER / name)["files"]
+        if entry["kind"] == "arrays"
+    ]

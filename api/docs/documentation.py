@@ -10,7 +10,6 @@ from __future__ import annotations
 import argparse
 import re
 import sys
-import tempfile
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
@@ -30,6 +29,7 @@ from api.docs.parts import (
 from api.guide import dictionary, found, python_page, words
 from api.guide.blocks import rerun
 from benchmark.processes import call_to_end
+from survey_data.leftovers import temporary_directory
 from survey_data.locks import held_in_turn
 from survey_data.whole_files import replace_file
 
@@ -191,8 +191,8 @@ def regenerate(directory: Path = DIRECTORY, *, write: bool = True) -> list[str]:
             behind[page] = new
     for page in RUN:
         text = (directory / page).read_text("utf-8")
-        with tempfile.TemporaryDirectory() as scratch:
-            new = rerun(page, text, Path(scratch)).text
+        with temporary_directory() as scratch:
+            new = rerun(page, text, scratch).text
         if new != text:
             behind[page] = new
     for picture, make in every_picture().items():

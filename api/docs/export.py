@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import subprocess
 import sys
-import tempfile
-from pathlib import Path
 
 from typer.testing import CliRunner
 
 from api.cli.command_line import app
+from survey_data.leftovers import temporary_directory
 
 EXPORTS = (
     "dataset export pd-maskless-cube --out cube --condition nominal --split test",
@@ -47,11 +46,11 @@ print(np.median(np.abs(angle - truth), axis=0).round(1), "deg")
 
 def export_example() -> str:
     """Export, read the files with nothing but NumPy and pandas, and show what is printed."""
-    with tempfile.TemporaryDirectory() as directory:
+    with temporary_directory() as directory:
         for command in EXPORTS:
             name, kind, *rest = command.split()
             place = rest.index("--out") + 1
-            rest[place] = str(Path(directory, rest[place]))
+            rest[place] = str(directory / rest[place])
             made = CliRunner().invoke(app, [name, kind, *rest])
             if made.exit_code:
                 raise RuntimeError(f"sunatlas {command} failed: {made.stderr}")

@@ -14,18 +14,17 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from docutils import nodes
-from latex2mathml.converter import convert
 from pygments.lexers.special import TextLexer
 from sphinx.application import Sphinx
 
+from api.guide.atlas import link_names
 from api.guide.chapters import ROOT, toctrees
+from api.mathml import mathml
 
 #: A link whose target is a path, not an address and not an anchor alone.
 _LINK = re.compile(r"(?<!!)\[(?P<text>[^\]\[]+)\]\((?P<target>[^)#:\s]+)(?P<anchor>#[^)\s]*)?\)")
 _FENCED = re.compile(r"(^```.*?^```$)", re.DOTALL | re.MULTILINE)
 _INLINE_SCRIPT = re.compile(r"<script>(?P<code>.+?)</script>", re.DOTALL)
-#: What the converter does not know, in words that it does.
-_UNKNOWN_TEX = {r"\arg": r"\operatorname{arg}"}
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
@@ -34,15 +33,9 @@ def setup(app: Sphinx) -> dict[str, Any]:
     # Requests in the docs have no version line, which the lexer of HTTP asks for.
     app.add_lexer("http", TextLexer)
     app.connect("source-read", _read)
+    app.connect("doctree-read", _named)
     app.connect("build-finished", _finish)
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}
-
-
-def mathml(tex: str, *, block: bool = False) -> str:
-    """Write an equation as MathML, which browsers draw without a script."""
-    for unknown, known in _UNKNOWN_TEX.items():
-        tex = re.sub(re.escape(unknown) + r"(?![a-zA-Z])", known.replace("\\", r"\\"), tex)
-    return convert(tex, display="block" if block else "inline")
 
 
 def within(page: str, text: str) -> str:
@@ -90,6 +83,10 @@ def scripts_apart(site: Path) -> None:
 
 def _read(app: Sphinx, page: str, source: list[str]) -> None:  # noqa: ARG001 - Sphinx's signature
     source[0] = within(page, source[0]) + (toctrees() if page == ROOT else "")
+
+
+def _named(app: Sphinx, document: nodes.document) -> None:  # noqa: ARG001 - Sphinx's signature
+    link_names(document)
 
 
 def _finish(app: Sphinx, error: Exception | None) -> None:

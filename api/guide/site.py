@@ -1,7 +1,7 @@
 """Where the guide's pages are, and the site that is made of them.
 
 A site is built once for its sources, kept in the user's cache, and never committed. What builds it
-(Sphinx, MyST, Furo, latex2mathml) is the extra `guide` of the distribution.
+(Sphinx, MyST, Furo) is the extra `guide` of the distribution.
 """
 
 from __future__ import annotations
@@ -11,7 +11,6 @@ import io
 import os
 import re
 import shutil
-import tempfile
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from importlib.resources import files
@@ -19,10 +18,12 @@ from pathlib import Path
 from typing import Any
 
 from api.cli.working import working_directory
+from api.guide.atlas import atlas_links
 from api.guide.chapters import ROOT
+from survey_data.leftovers import temporary_directory
 from survey_data.whole_files import replacing
 
-BUILDERS = ("sphinx", "myst-parser", "furo", "latex2mathml")
+BUILDERS = ("sphinx", "myst-parser", "furo")
 INSTALL = "pip install 'sun-sensor-atlas[guide]'"
 
 #: Sites of so many states of the pages are kept.
@@ -69,12 +70,12 @@ def missing_builders() -> tuple[str, ...]:
 def digest() -> str:
     """Return what the site depends on as a digest: pages, this code, and what builds it."""
     summed = hashlib.blake2b(digest_size=12)
-    for root in (source(), _HERE):
-        for path in sorted(root.rglob("*")):
+    for root in (source(), _HERE, _HERE.parent / "mathml.py"):
+        for path in sorted(root.rglob("*")) or [root]:
             if path.is_file() and path.suffix in {".md", ".svg", ".png", ".py", ".css"}:
                 summed.update(f"\0{path.relative_to(root).as_posix()}\0".encode())
                 summed.update(path.read_bytes())
-    for name in BUILDERS:
+    for name in (*BUILDERS, "latex2mathml"):
         summed.update(f"{name} {version(name)}\n".encode())
     return summed.hexdigest()
 
@@ -110,13 +111,13 @@ def build(out: Path) -> list[str]:
     out = out.resolve()
     out.parent.mkdir(parents=True, exist_ok=True)
     told = io.StringIO()
-    with tempfile.TemporaryDirectory() as scratch, replacing(out) as (made,):
+    with temporary_directory() as scratch, replacing(out) as (made,):
         try:
             Sphinx(
                 srcdir=source(),
                 confdir=None,
                 outdir=made,
-                doctreedir=Path(scratch),
+                doctreedir=scratch,
                 buildername="html",
                 confoverrides=_settings(),
                 status=None,
@@ -162,6 +163,7 @@ def _settings() -> dict[str, Any]:
         "smartquotes": False,
         "html_math_renderer": "mathml",
         "html_theme": "furo",
+        "html_theme_options": {"announcement": atlas_links()},
         "html_static_path": [os.fspath(_HERE / "static")],
         "html_css_files": ["guide.css"],
         "html_favicon": os.fspath(_HERE.parent / "page" / "icon.svg"),

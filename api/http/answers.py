@@ -11,6 +11,7 @@ from fastapi.routing import APIRoute
 from pydantic_core import to_json
 
 from api.columns import csv_of, flat
+from api.http.direct import direct
 from api.http.negotiation import CONTENT_TYPES, CSV, JSON, PNG, wanted_type
 from api.http.pagination import Page
 from api.http.representations import Representation, RepresentationCache
@@ -134,6 +135,7 @@ class AnswerRoute(StrictRoute):
     def get_route_handler(self) -> Handler:
         """Return what handles a request."""
         compute = super().get_route_handler()
+        straight = None if self.dependencies else direct(self.endpoint)
         offered = cast("type[Kept]", self.response_class).offered
 
         async def answer(request: Request) -> Response:
@@ -141,12 +143,13 @@ class AnswerRoute(StrictRoute):
             query: bytes = request.scope["query_string"]
             wanted = wanted_type(query, request.headers.get("accept"), offered)
             if request.method != "GET":
-                made = cast("Kept", await compute(request))
-                return made.representation(wanted).respond(request, conditional=False)
+                posted = cast("Kept", await compute(request))
+                return posted.representation(wanted).respond(request, conditional=False)
             asked = (request.scope["path"], query, wanted)
             found = kept.get(asked)
             if found is None:
-                made = cast("Kept", await compute(request))
+                made = await straight(request) if straight else None
+                made = cast("Kept", made or await compute(request))
                 found = made.representation(wanted)
                 kept.put(asked, found)
             return found.respond(request)

@@ -52,7 +52,8 @@ class Representation:
     @cached_property
     def digest(self) -> str:
         """Digest of the body: the opaque part of its ETag."""
-        return hashlib.blake2b(self.body, digest_size=16).hexdigest()
+        # Processors have instructions for SHA-256: it takes half the time of BLAKE2 and less.
+        return hashlib.sha256(self.body).hexdigest()[:32]
 
     @cached_property
     def compressed(self) -> bytes:

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import gc
 import threading
 from collections.abc import AsyncIterator
@@ -75,11 +76,12 @@ def create_app(knowledge: Knowledge | None = None) -> FastAPI:
 @asynccontextmanager
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     app.state.knowledge.load_all()
+    # Who asks for it first shall not wait for it, nor shall all others meanwhile: a thread beside
+    # them would hold up each of their answers. Before a service answers it is nobody's loss.
+    await asyncio.to_thread(app.openapi)  # it asks path functions, each in a loop of its own
     # What is loaded now stays: the collector need not walk it again for every few answers.
     gc.collect()
     gc.freeze()
-    # Who asks for it first shall not wait for it, nor shall all others meanwhile.
-    threading.Thread(target=app.openapi, name="description", daemon=True).start()
     yield
     gc.unfreeze()
 

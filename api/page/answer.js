@@ -103,11 +103,18 @@ function notTried(hazard, pairs) {
     h("details", { class: "flow-links" }, h("summary", {}, `${lead}${plural(pairs.length, "architecture")}; they are left out.`), h("p", {}, `${named}.`)));
 }
 
+/** Requirements as the form names them, where the service has their parameters. */
+function constraintWords(constraint) {
+  const name = (key) => (key.startsWith("exclude_") ? `not that ${ATTRIBUTE_NAMES[key.slice(8)].toLowerCase()}`
+    : (LIMIT_NAMES[key] ?? LIST_NAMES[key])?.words ?? ATTRIBUTE_NAMES[key]?.toLowerCase() ?? key);
+  return constraint ? constraint.split(/(\W+)/).map((part) => (/^\w+$/.test(part) ? name(part) : part)).join("") : "there are no designs at all";
+}
+
 /** Why nothing is left, and what would leave something. */
 export function showBlocked(blocked, relax) {
   byId("blocked").replaceChildren(...(blocked ? [h("div", { class: "notice" },
     h("p", {}, h("strong", {}, "No architecture meets these requirements. "), sentence(blocked.detail)),
-    h("p", {}, "What leaves nothing: ", h("code", { class: "culprit" }, blocked.constraint || "there are no designs at all")),
+    h("p", {}, "What leaves nothing: ", h("strong", { class: "culprit" }, constraintWords(blocked.constraint))),
     blocked.relaxations.length > 0 && h("p", { id: "relax-title" }, "What would leave something:"),
     blocked.relaxations.length > 0 && h("div", { class: "relaxations", role: "group", "aria-labelledby": "relax-title" },
       blocked.relaxations.map((r) => h("button", {

@@ -3,7 +3,7 @@
 import { openedRow, pathway } from "./calibrations.js";
 import { byId, h, segmented } from "./dom.js";
 import { sensor } from "./drawings.js";
-import { advisedContent, below, evidenceCell, KINDS, measuredContent, notProposed, proposedContent } from "./evidence.js";
+import { advisedContent, below, evidenceCell, finerContent, KINDS, measuredContent, notProposed, proposedContent } from "./evidence.js";
 import { show, standing, state } from "./state.js";
 import { plural, SORTS, studiesCount } from "./wording.js";
 
@@ -52,7 +52,7 @@ function row(architecture, known) {
       architecture.pareto && h("span", { class: "pareto-mark", title: "None has more studies and a smaller error" }, "Pareto"))),
     evidenceCell("advised", advisedContent(advice)),
     evidenceCell("proposed", proposedContent(studies, NAMED)),
-    evidenceCell("measured", measuredContent(best.measured),
+    evidenceCell("measured", measuredContent(best.measured), finerContent(best.measured),
       best.measured && below(pathway(best), !best.studies.length && notProposed()))), detail];
 }
 

@@ -1,7 +1,7 @@
 /* The second level of the answer: how to calibrate an architecture, and the evidence of each way. */
 
 import { byId, copyable, h, problemNotice } from "./dom.js";
-import { advisedContent, below, evidenceCell, KINDS, measuredContent, proposedContent, scoreAddress } from "./evidence.js";
+import { advisedContent, below, evidenceCell, KINDS, measuredContent, proposedContent, boardAddress } from "./evidence.js";
 import { address, getJson } from "./service.js";
 import { question, show, standing } from "./state.js";
 import { studyEntry } from "./studies.js";
@@ -10,10 +10,15 @@ import { ATTRIBUTE_NAMES, degrees, JUDGED_ON, LIMIT_NAMES, LIST_NAMES, plural, q
 const NAMED = 4; // studies that a row names
 
 /** Extractor, compensations, model. */
-export function pathway({ extractor, compensations, model }) {
+export function pathway({ extractor, compensations, model, measured }) {
+  // What the survey has no name for is ours, unless signals are taken as they are.
+  const ours = extractor === "None" && measured && !measured.extractor.startsWith("direct");
+  const first = ours
+    ? [h("a", { href: `/algorithms/${encodeURIComponent(measured.extractor)}` }, measured.extractor), " (ours)"]
+    : worded("extractor", extractor);
   const asked = (attribute, name) => standing(attribute, name) === "include" && "asked";
   return h("ol", { class: "pathway" },
-    h("li", {}, h("span", { class: asked("extractor", extractor) }, worded("extractor", extractor))),
+    h("li", {}, h("span", { class: asked("extractor", extractor) }, first)),
     [...compensations, model].map((stage) => h("li", {}, h("span", { class: asked("model", stage) }, worded("model", stage)))));
 }
 
@@ -29,7 +34,7 @@ function judgedOn(basis) {
 
 function elsewhere(others) {
   return others.length > 0 && below("also ", others.map((m, i) => [i > 0 && "; ", `${m.dataset} `,
-    h("a", { href: scoreAddress(m) }, m.error_deg === null ? "answers too seldom" : degrees(m.error_deg)),
+    h("a", { href: boardAddress(m) }, m.error_deg === null ? "answers too seldom" : degrees(m.error_deg)),
     m.error_deg !== null && m.field_deg !== null && ` over ${wide(m.field_deg)}`]));
 }
 

@@ -74,7 +74,7 @@ export function problemNotice(problem, retry) {
   return h("div", { class: "notice error", role: "alert" },
     h("p", {}, h("strong", {}, problem.title || "Something went wrong"),
       problem.status ? ` (${problem.status})` : ""),
-    problem.detail && h("p", {}, problem.detail),
+    problem.detail && !problem.errors?.length && h("p", {}, problem.detail),
     problem.errors?.length > 0 && h("ul", {}, problem.errors.map((e) => h("li", {},
       h("code", {}, e.parameter ?? ""), `: expected ${e.expected ?? "another value"}`,
       e.value !== undefined && e.value !== null && `, got “${e.value}”`,

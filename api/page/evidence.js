@@ -9,7 +9,6 @@ export const KINDS = [
   ["advised", "The survey advises it"], ["proposed", "Studies proposed it"], ["measured", "Measured here"],
 ];
 
-const SURVEY = "https://doi.org/10.48550/arXiv.2507.21541";
 const OF_STUDIES = ["task", "error", "accuracy"];
 
 /** A cell of one kind of evidence. */
@@ -22,7 +21,7 @@ export const below = (...content) => h("div", { class: "below" }, ...content);
 const none = (text, title) => h("span", { class: "muted", title }, text);
 
 /** Section of the survey, by the label that its source gives it. */
-const section = (label) => h("a", { href: SURVEY, rel: "noreferrer", title: "The survey; the section by its label" }, label);
+const section = (label) => h("a", { class: "term", href: "/glossary#term-survey-label", title: "label in the survey's source" }, label);
 
 /** What advice is for: tasks by name, classes of accuracy as such. */
 export function advisedFor(advice) {
@@ -52,8 +51,18 @@ export function notProposed() {
     : h("span", { class: "novel", title: "No study stands for it" }, "not in the literature");
 }
 
-export function scoreAddress(m) {
-  return address("/v1/results", { dataset: m.dataset, condition: m.condition, extractor: m.extractor, model: m.model });
+/** Page of the board that a score stands on. */
+export function boardAddress({ dataset, condition }) {
+  return `${address(`/datasets/${encodeURIComponent(dataset)}`, { condition })}#board`;
+}
+
+/** What errs far less on the part of the samples that it answers. */
+export function finerContent(m) {
+  if (!m?.finer) return null;
+  const { dataset, extractor, model, error_deg: error, availability } = m.finer;
+  return h("div", { class: "below finer" }, h("strong", {}, "Far finer on the part it answers: "),
+    h("a", { href: `/datasets/${encodeURIComponent(dataset)}#board`, title: "The board it stands on" }, degrees(error)),
+    ` on ${percent(availability)} of the samples (${extractor} → ${model})`);
 }
 
 /** The error, where it holds, and all that stands beside it. */
@@ -64,7 +73,7 @@ export function measuredContent(m) {
   return [
     m.error_deg === null
       ? h("strong", {}, "answers too seldom")
-      : [h("strong", {}, h("a", { href: scoreAddress(m), title: "The score rows" }, degrees(m.error_deg))),
+      : [h("strong", {}, h("a", { href: boardAddress(m), title: "The board it stands on" }, degrees(m.error_deg))),
         h("span", {}, m.field_deg === null ? " over all its directions" : ` over ${wide(m.field_deg)}`)],
     below(`${m.dataset}, ${m.condition}`),
     below(narrowed && (m.error_deg === null ? `nominal ${degrees(nominal.rms_deg)} where it answers, ` : `nominal ${degrees(nominal.rms_deg)}, `),

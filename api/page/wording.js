@@ -73,6 +73,9 @@ export function number(value, digits = 3) {
   if (value === null || value === undefined || !Number.isFinite(Number(value))) return "–";
   const x = Number(value);
   if (x === 0) return "0";
+  if (Math.abs(x) >= 1000) { // all its digits would say more than is known
+    return Number(x.toPrecision(digits)).toLocaleString("en-GB");
+  }
   const decimals = Math.max(0, digits - 1 - Math.floor(Math.log10(Math.abs(x))));
   return x.toFixed(Math.min(decimals, 8));
 }

@@ -20,7 +20,7 @@ from api.pages.addresses import architecture_page
 from api.pages.charts.scatter import Point, Scatter
 from api.pages.serving import PageRouter, View
 from api.pages.study import NAMES
-from registry.requirements import HAZARDS, LIMITS, LISTS
+from registry.requirements import HAZARDS, LIMITS
 from registry.taxonomy import ATTRIBUTES
 
 router = PageRouter()
@@ -48,6 +48,7 @@ LIMIT_WORDS = {
     "min_availability": ("answered share at least", ""),
     "max_latency_us": ("latency at most", " µs"),
 }
+LIST_WORDS = {"survive": "shall survive", "properties": "extractor assessed as"}
 
 
 @router.page("/", twin="/answer")
@@ -77,6 +78,7 @@ async def answer(known: Known, request: Request) -> View:
         measured=sum(1 for a in document["architectures"] if a["best"]["measured"]),
         best=best,
         board=_board(known, best),
+        blocked_by=_in_words(document["blocked"]["constraint"]) if document["blocked"] else "",
         **_parts(known),
     )
 
@@ -149,10 +151,20 @@ def _clauses(asked: RequirementsQuery) -> list[str]:
     for name, (words, unit) in LIMIT_WORDS.items():
         if name in given:
             clauses.append(f"{words} {given[name]:g}{unit}")
-    for name, words in zip(LISTS, ("shall survive", "extractor assessed as"), strict=True):
+    for name, words in LIST_WORDS.items():
         if given.get(name):
             clauses.append(f"{words} {' and '.join(given[name])}")
     return clauses
+
+
+def _in_words(constraint: str) -> str:
+    """Return parameters joined by " + " as the form names them."""
+    return " + ".join(
+        f"not that {NAMES[name.removeprefix('exclude_')].lower()}"
+        if name.startswith("exclude_")
+        else LIMIT_WORDS.get(name, (LIST_WORDS.get(name) or NAMES.get(name, name).lower(), ""))[0]
+        for name in constraint.split(" + ")
+    )
 
 
 def _best_measured(document: Mapping[str, Any]) -> Mapping[str, Any] | None:
@@ -189,6 +201,7 @@ def _scatter(known: Knowledge, document: Mapping[str, Any], across: str) -> Scat
                 value,
                 measured["error_deg"],
                 measured["nominal"]["bound_deg"],
+                measured["finer"],
             )
         )
     return Scatter(points, words, more, "°" if more else "poses", left_out)

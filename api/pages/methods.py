@@ -10,8 +10,18 @@ from typing import Any
 
 from markupsafe import Markup
 
+from api.mathml import mathml
+from api.pages.addresses import study_page
+from api.pages.formulas import tex
+from api.pages.terms import labelled
+from registry.studies import facts
+
 _HEADING = re.compile(r"^(\w[\w ]+)\n-{3,}\n", re.MULTILINE)
-_LITERAL = re.compile(r"``([^`]+)``|`([^`]+)`")
+#: Characters of a formula that stands within a line; a longer one may have to be scrolled.
+_SHORT = 36
+_WORD = re.compile(r"[A-Za-z]+\d{4}[a-z]?")
+#: A literal; of a formula also the stop or comma behind it, which would else start a line.
+_LITERAL = re.compile(r"``([^`]+)``([.,;:]?)|`([^`]+)`")
 
 
 @dataclass(frozen=True)
@@ -75,13 +85,40 @@ def _paragraphs(text: str) -> list[str]:
 
 
 def marked(text: str) -> Markup:
-    """Return a text of a docstring, its literals as code."""
+    """Return a text of a docstring: formulas typeset, other literals as code, studies linked."""
     parts, at = [], 0
     for found in _LITERAL.finditer(text):
-        parts.append(Markup.escape(text[at : found.start()]))
-        parts.append(Markup("<code>{}</code>").format(found.group(1) or found.group(2)))
+        parts.append(_linked(text[at : found.start()]))
+        literal = found.group(1)
+        parts.append(
+            _formula(literal, found[2]) if literal else Markup("<code>{}</code>").format(found[3])
+        )
         at = found.end()
-    return Markup("").join([*parts, Markup.escape(text[at:])])
+    return Markup("").join([*parts, _linked(text[at:])])
+
+
+def _formula(text: str, stop: str) -> Markup:
+    """Return a formula as MathML, one that is long on a line of its own; code where it is none."""
+    written = tex(text)
+    if written is None:
+        return Markup("<code>{}</code>{}").format(text, stop)
+    drawn = Markup(mathml(written)).replace(  # noqa: S704 - made here, of names that are letters
+        'display="inline"', Markup('displaystyle="true" alttext="{}"').format(text)
+    )
+    if len(text) <= _SHORT:
+        return Markup('<span class="formula">{}{}</span>').format(drawn, stop)
+    return Markup('<span class="formula long" tabindex="0">{}{}</span>').format(drawn, stop)
+
+
+def _linked(text: str) -> Markup:
+    """Return a text with links to the studies that it names, and of labels to what they are."""
+    studies, parts, at = facts().studies, [], 0
+    for found in _WORD.finditer(text):
+        if found[0] in studies:
+            link = Markup('<a href="{}">{}</a>').format(study_page(found[0]), found[0])
+            parts += [labelled(text[at : found.start()]), link]
+            at = found.end()
+    return Markup("").join([*parts, labelled(text[at:])])
 
 
 def _parameters(text: str) -> list[tuple[str, str, Markup]]:

@@ -5,6 +5,14 @@ from __future__ import annotations
 import math
 
 NOTHING = "–"
+_KINDS = {
+    "unspecified": "of which kind is not said",
+    "1sigma": "1σ",
+    "2sigma": "2σ",
+    "3sigma": "3σ",
+    "max": "the largest",
+    "rms": "RMS",
+}
 
 
 def number(value: float | None, digits: int = 3) -> str:
@@ -13,6 +21,9 @@ def number(value: float | None, digits: int = 3) -> str:
         return NOTHING
     if value == 0:
         return "0"
+    if abs(value) >= 1000:  # all its digits would say more than is known
+        power = 10 ** (math.floor(math.log10(abs(value))) - digits + 1)
+        return f"{round(value / power) * power:,}"
     decimals = max(0, digits - 1 - math.floor(math.log10(abs(value))))
     return f"{value:.{min(decimals, 8)}f}"
 
@@ -74,5 +85,13 @@ def unit_name(name: str) -> str:
     return f"{words.replace('_', ' ').capitalize()}, {_UNITS[last]}"
 
 
-GIVEN = (number, degrees, wide, times, percent, counted, studied, sentence, upfirst, unit_name)
+def kind_said(kind: str) -> str:
+    """Return of which kind a published accuracy is said to be, in words."""
+    return _KINDS.get(kind, kind)
+
+
+GIVEN = (
+    *(number, degrees, wide, times, percent, counted, studied, sentence, upfirst, unit_name),
+    kind_said,
+)
 """What templates are given as filters."""

@@ -17,6 +17,10 @@ from registry.studies import facts
 from registry.taxonomy import ATTRIBUTES
 
 NONE = "None"
+LABEL = "survey label"
+"""The term that says what a label of the survey's source is."""
+
+_LABEL = re.compile(r"\b(?:sec|tab|eq|fe|model|alg):[\w-]+")
 WITHOUT = {
     "mask": "no mask",
     "extractor": "no feature extraction",
@@ -119,5 +123,15 @@ def value(text: str, attribute: str) -> Markup:
     return link.format(at=at, name=named(text, attribute), text=shown(text, attribute))
 
 
-GIVEN = (term, explained, shown, named, named_here, value)
+def labelled(text: str) -> Markup:
+    """Return a text, each label of the survey's source in it with what such labels are."""
+    parts: list[Markup] = []
+    at = 0
+    for found in _LABEL.finditer(text):
+        parts += [Markup.escape(text[at : found.start()]), term(LABEL, found.group())]
+        at = found.end()
+    return Markup("").join([*parts, Markup.escape(text[at:])])
+
+
+GIVEN = (term, explained, shown, named, named_here, value, labelled)
 """What templates are given as filters."""

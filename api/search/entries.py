@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Protocol
 from urllib.parse import quote
 
 import survey_data
-from api.glossary import words
+from api.glossary import glossary
 from api.search.index import Entry
+from registry.taxonomy import NO_IMPLEMENTATION_STATED
 
 if TYPE_CHECKING:
     from api.http.measurements import Measurements
@@ -112,6 +113,7 @@ def _attributes(_known: Known) -> Iterator[Entry]:
 
 
 def _words(known: Known) -> Iterator[Entry]:
+    meanings = {(one.kind, one.term): one.meaning for one in glossary()}
     for attribute in known.taxonomy.attributes:
         for entry in known.taxonomy.entries(attribute):
             yield Entry(
@@ -119,11 +121,13 @@ def _words(known: Known) -> Iterator[Entry]:
                 id=f"{attribute}: {entry.value}",
                 title=entry.name,
                 words=f"{entry.category} {entry.section}",
+                text=meanings.get((attribute, entry.value), entry.category or ""),
                 address="/v1/taxonomy",
             )
-    for term in words():
-        yield Entry(kind="word", id=term.term, title=term.name, text=term.meaning)
+    for term in glossary():
+        if term.kind == "term":
+            yield Entry(kind="word", id=term.term, title=term.name, text=term.meaning)
 
 
 def _named(value: str, name: str) -> str:
-    return value if value == name else f"{name} ({value})"
+    return name if value in {name, NO_IMPLEMENTATION_STATED} else f"{name} ({value})"

@@ -12,6 +12,7 @@ from typing import Any
 from benchmark.claims.judgement import Judged, judged, verdict
 from benchmark.claims.outcomes import PUBLISHED, Outcome, read
 from benchmark.claims.rules import DIRECTORY, VERDICTS, Claim, Verdict, claims, rows_of
+from benchmark.claims.verification import contradictions
 
 EXPLANATIONS = DIRECTORY / "explanations.csv"
 
@@ -79,7 +80,8 @@ def ledger(directory: Path = PUBLISHED, explanations: Path = EXPLANATIONS) -> tu
     Raises
     ------
     LedgerError
-        Where an explanation was written for another verdict than the one that is measured.
+        Where an explanation was written for another verdict than the one that is measured, or an
+        outcome cannot be of its claim's plan.
     """
     outcomes, written = read(directory), _explanations(explanations)
     if unknown := sorted(set(written) - set(claims())):
@@ -112,6 +114,10 @@ def _entry(claim: Claim, outcome: Outcome | None, written: tuple[str, str]) -> E
         untestable = about == "not testable here"
         rules = tuple(judged(rule, ()) for rule in claim.rules)
         return Entry(claim, "not testable here" if untestable else None, rules, (), said, None)
+    if wrong := next(contradictions(claim, outcome), ""):
+        raise LedgerError(
+            f"{claim.id}.json: {wrong}; measure it again with `python -m benchmark.claims.run`"
+        )
     rules = tuple(judged(rule, outcome.values[rule.name]) for rule in claim.rules)
     second = tuple(judged(claim.rule(name), values) for name, values in outcome.second.items())
     found = verdict(rules)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import secrets
 import sys
 from collections.abc import Sequence
 from contextlib import closing
@@ -11,6 +12,7 @@ from pathlib import Path
 from benchmark.claims.experiment import Trial, found
 from benchmark.claims.outcomes import PUBLISHED, outcome_of, read, stale, write
 from benchmark.claims.rules import FIRST_TRIAL, claims
+from benchmark.claims.verification import contradictions, differences, drawn
 from benchmark.contract import UnknownNameError
 from benchmark.processes import call_to_end
 from benchmark.running.threads import one_thread
@@ -40,6 +42,9 @@ def due(directory: Path = PUBLISHED) -> dict[str, str]:
         name: stale(claims()[name], experiment, outcomes.get(name))
         for name, experiment in found().items()
     }
+    for name in outcomes.keys() & reasons.keys():
+        wrong = next(contradictions(claims()[name], outcomes[name]), "")
+        reasons[name] = reasons[name] or wrong
     return {name: reason for name, reason in reasons.items() if reason}
 
 
@@ -71,8 +76,23 @@ def run(
     return chosen
 
 
+def _again(directory: Path, sample: int, seed: int | None) -> int:
+    number = secrets.randbelow(10**6) if seed is None else seed
+    places = drawn(sample, number, directory)
+    sys.stderr.write(f"{len(places)} trials, drawn by --seed {number}\n")
+    count = 0
+    for file, text in differences(places, directory):
+        sys.stdout.write(f"{file}: {text}\n")
+        count += 1
+    sys.stderr.write(f"{count} differences\n")
+    return 1 if count else 0
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Measure claims and write their outcomes; with --check only say what is due (exit code 1)."""
+    """Measure claims and write their outcomes; with --check only say what is due (exit code 1).
+
+    With --again trials drawn at random are made anew and compared; nothing is written.
+    """
     parser = argparse.ArgumentParser(
         prog="python -m benchmark.claims.run", description=main.__doc__
     )
@@ -82,12 +102,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--directory", type=Path, default=PUBLISHED)
     parser.add_argument("--workers", type=int, default=1)
     parser.add_argument("--check", action="store_true", help="measure nothing")
+    parser.add_argument("--again", type=int, metavar="K", help="make K trials again and compare")
+    parser.add_argument("--seed", type=int, help="draws the same trials again; else others")
     options = parser.parse_args(arguments)
     if options.check:
         waiting = due(options.directory)
         for name, reason in waiting.items():
             sys.stdout.write(f"{name}: {reason}\n")
         return 1 if waiting else 0
+    if options.again is not None:
+        return _again(options.directory, options.again, options.seed)
     run(options.claims or None, options.directory, options.workers)
     return 0
 

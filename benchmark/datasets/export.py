@@ -23,23 +23,24 @@ from numpy.typing import NDArray
 from algorithms.contract import Observation
 from benchmark import datasets
 from benchmark.contract import SPLITS, UnknownNameError
-from benchmark.datasets import Preset, Samples
+from benchmark.datasets import Preset
 from benchmark.datasets.checksums import (
     CHECKSUMS,
     ChecksumFileError,
     contents,
-    differences,
     read_checksums,
     sha256,
     write_checksums,
 )
-from benchmark.datasets.export_arrays import columns_of, read_archive, write_archive, write_table
+from benchmark.datasets.export_arrays import columns_of, write_archive, write_table
 from benchmark.datasets.pins import Pin, Place
 from benchmark.datasets.preview import preview_png
 from benchmark.datasets.samples import samples_hash
 from benchmark.metrics.bounds import Bound
 from benchmark.metrics.score import stored
 from benchmark.progress import ProgressCallback, silent
+from survey_data.file_bytes import FileRefusedError
+from survey_data.json_reading import read_json
 from survey_data.whole_files import replacing
 
 CARD = "card.json"
@@ -150,75 +151,12 @@ def export(
             (made / picture).write_bytes(preview_png(preset, condition))
             files.append({"path": picture, "kind": "preview", "condition": condition})
         exported = {"conditions": chosen, "splits": wanted, "first_samples": n}
-        card = _card(made, preset, exported, files)
+        card = card_of(made, preset, exported, files)
         text = json.dumps(card, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
         (made / CARD).write_text(text, "utf-8", newline="\n")
         write_checksums(made)
     progress(total, total, "")
     return Exported(out, tuple(contents(out)), card)
-
-
-def verify(directory: Path | str) -> list[tuple[str, str]]:
-    """Check an export: (file, what is wrong with it); empty where all holds.
-
-    Checksums of the files first; where they hold, the arrays against their hashes in the card.
-
-    Raises
-    ------
-    ExportError
-        Where the directory is no export, or its card cannot be read.
-    ChecksumFileError
-        Where the list of checksums cannot be read.
-    """
-    directory = Path(directory)
-    if not (directory / CHECKSUMS).is_file():
-        raise ExportError(f"{directory}: not an export of a dataset, it has no {CHECKSUMS}")
-    wrong = differences(directory)
-    if wrong:
-        return wrong
-    card = _read_card(directory)
-    found: list[tuple[str, str]] = []
-    try:
-        for entry in card["files"]:
-            path = directory / entry["path"]
-            if not path.is_file():
-                found.append((entry["path"], "in the card but missing"))
-            elif sha256(path) != entry["sha256"]:
-                found.append((entry["path"], "SHA-256 is not that of the card"))
-            elif entry["kind"] == "arrays":
-                found += _wrong_arrays(path, entry)
-    except (KeyError, TypeError, AttributeError) as error:
-        raise ExportError(f"{directory / CARD}: not the card of an export ({error!r})") from error
-    return sorted(found)
-
-
-def _wrong_arrays(path: Path, entry: Mapping[str, Any]) -> list[tuple[str, str]]:
-    try:
-        arrays = read_archive(path)
-    except ValueError as error:
-        return [(entry["path"], str(error))]
-    shapes = {name: _described(array) for name, array in arrays.items()}
-    if shapes != entry["arrays"]:
-        return [(entry["path"], f"holds {shapes}, the card says {entry['arrays']}")]
-    found = samples_hash(_samples(arrays))
-    if found != entry["data_hash"]:
-        return [(entry["path"], f"hash of the data is {found}, the card says {entry['data_hash']}")]
-    return []
-
-
-def _samples(arrays: Mapping[str, NDArray[Any]]) -> Samples:
-    context = {
-        name.removeprefix("context."): array
-        for name, array in arrays.items()
-        if name.startswith("context.")
-    }
-    return Samples(
-        arrays["observations"],
-        arrays["sun"],
-        arrays.get("origin_px"),
-        context or None,
-        arrays.get("true_sun"),
-    )
 
 
 def _write_split(
@@ -274,12 +212,25 @@ def _described(array: NDArray[Any]) -> dict[str, Any]:
     return {"dtype": array.dtype.str, "shape": list(array.shape)}
 
 
-def _card(
+def card_of(
     made: Path,
     preset: Preset,
     exported: Mapping[str, Any],
-    files: list[dict[str, Any]],
+    files: Sequence[Mapping[str, Any]],
 ) -> dict[str, Any]:
+    """Return the card of an export.
+
+    Parameters
+    ----------
+    made
+        Directory with its files.
+    preset
+        The data set.
+    exported
+        Conditions, splits and how many samples.
+    files
+        What each file is; their sizes and checksums are added.
+    """
     card = preset.card()
     names = {name for file in files for name in file.get("arrays", ())}
     context = card.get("context", {})
@@ -338,14 +289,15 @@ def _chosen(what: str, wanted: Sequence[str] | None, known: Sequence[str]) -> li
     return [name for name in known if not wanted or name in wanted]
 
 
-def _read_card(directory: Path) -> dict[str, Any]:
+def read_card(directory: Path) -> dict[str, Any]:
+    """Read the card of an export; ExportError where there is none."""
     path = directory / CARD
     try:
-        card = json.loads(path.read_bytes())
+        card = read_json(path)
     except FileNotFoundError as error:
         raise ExportError(f"{directory}: not an export of a dataset, it has no {CARD}") from error
-    except ValueError as error:
-        raise ExportError(f"{path}: not JSON ({error})") from error
+    except FileRefusedError as error:
+        raise ExportError(str(error)) from error
     if not isinstance(card, dict) or card.get("schema") != SCHEMA_VERSION or "files" not in card:
         raise ExportError(f"{path}: not the card of an export, schema {SCHEMA_VERSION}")
     return card
@@ -359,7 +311,7 @@ def _require_free(out: Path, *, force: bool) -> None:
     try:
         listed = {*read_checksums(out), CHECKSUMS}
         foreign = [name for name in contents(out) if name not in listed]
-        _read_card(out)
+        read_card(out)
     except (FileNotFoundError, ChecksumFileError, ExportError):
         foreign = contents(out) or ["directories"]
     if foreign:

@@ -68,9 +68,14 @@ def columns_of(arrays: Arrays) -> dict[str, NDArray[Any]]:
     return found
 
 
-def write_table(path: Path, arrays: Arrays) -> None:
-    """Write arrays (N,) and (N, K) as CSV with a header; every number reads back the same."""
+def table_text(arrays: Arrays) -> str:
+    """Spell arrays (N,) and (N, K) as CSV with a header; every number reads back the same."""
     columns = columns_of(arrays)
     # tolist gives Python's numbers, whose text is the shortest that reads back the same
     rows = zip(*(array.tolist() for array in columns.values()), strict=True)
-    path.write_text(csv_text(list(columns), rows), "utf-8", newline="\n")
+    return csv_text(list(columns), rows)
+
+
+def write_table(path: Path, arrays: Arrays) -> None:
+    """Write arrays as `table_text` spells them."""
+    path.write_text(table_text(arrays), "utf-8", newline="\n")

@@ -13,17 +13,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from benchmark.metrics.score import is_available
+from registry.measured import Partly, finer_for
 
 Board = Mapping[str, Any]
 Row = Mapping[str, Any]
 
 #: Standard errors within which two ratios to the bound are not told apart.
 STANDARD_ERRORS = 2.0
-
-#: A pipeline that answers part of the samples is named beside the best where the best errs by more
-#: than this many times as much, and where it answers at least this share.
-FINER = 3.0
-LEAST_ANSWERED = 0.5
 
 #: Members that are those of the best pipeline's score.
 _OF_SCORE = (
@@ -58,7 +54,7 @@ def architectures(board: Board) -> list[dict[str, Any]]:
         samples), ``tie_by_units`` (the errors on the units overlap, as shared ranks do); on
         how many of ``units_compared`` units the best errs less, ``units_ahead``; and as
         ``finer_...`` the pipeline that errs least of those that answer half of the samples or more
-        but too seldom to rank first, where the best errs by more than `FINER` times as much.
+        but too seldom to rank first, where the best errs far more (`registry.measured.finer_for`).
     """
     by: dict[tuple[str, str], list[Mapping[str, Any]]] = {}
     for dataset in board["datasets"]:
@@ -106,15 +102,14 @@ def _best(datasets: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
 
 def _finer(best: Row, ranked: Sequence[Sequence[Row]]) -> Row:
     """Return what errs far less than the best, answering seldom; nothing where nothing does."""
-    seldom = [
-        row
+    seldom = (
+        Partly(row["rms_deg"], row["availability"] or 0.0, row)
         for rows in ranked
         for row in rows
-        if not is_available(row) and (row["availability"] or 0.0) >= LEAST_ANSWERED
-    ]
-    finest = min(seldom, key=lambda row: row["rms_deg"], default=None)
-    far = finest is not None and best["rms_deg"] > FINER * finest["rms_deg"]
-    return finest if far and finest is not None else {}
+        if not is_available(row)
+    )
+    found = finer_for(best["rms_deg"], seldom)
+    return {} if found is None else found.of
 
 
 def _order(row: Row) -> tuple[bool, float, str, str]:

@@ -2,13 +2,12 @@
 
 What is measured is in the journal before more is awaited, so that a killed run loses only what
 was in flight; the store's files are written once, at the end. A line torn by a kill is dropped
-when the journal is read and cut off before more is appended. One process writes at a time.
+when the journal is read and cut off before more is appended (`benchmark.results.journal`). One
+process writes at a time.
 """
 
 from __future__ import annotations
 
-import json
-import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from dataclasses import asdict
@@ -19,11 +18,11 @@ from benchmark.contract import Cell
 from benchmark.datasets.pins import Pin, Place
 from benchmark.results import recorded
 from benchmark.results.components import Components
+from benchmark.results.journal import Journal
 from benchmark.results.store import Store
 from benchmark.results.tables import Row, StoreError
 from survey_data.leftovers import remove_leftovers
 from survey_data.locks import HeldError, held_alone
-from survey_data.whole_files import naming
 
 Point = tuple[str, str, str, str]  # (series, sweep, point, extractor)
 
@@ -55,6 +54,7 @@ class Record:
     def __init__(self, store: Store) -> None:
         self.store = store
         self.journal = store.work_directory / "journal.jsonl"
+        self._journal = Journal(self.journal)
         self._components = store.components()
         self.scores: dict[Cell, Row] = store.scores()
         self.pins: dict[Place, Pin] = store.pins()
@@ -122,12 +122,7 @@ class Record:
         ]
         if not records:
             return
-        text = "".join(json.dumps(record, allow_nan=False) + "\n" for record in records)
-        self.journal.parent.mkdir(parents=True, exist_ok=True)
-        with naming(self.journal), self.journal.open("ab") as file:
-            file.write(text.encode())
-            file.flush()
-            os.fsync(file.fileno())
+        self._journal.append(records)
         for record in records:
             self._take(record, str(self.journal))
 
@@ -189,17 +184,15 @@ class Record:
         )
         if self._changed or used != self._components:
             self.store.write(scores, pins, order(swept) if order else swept, used)
-        self.journal.unlink(missing_ok=True)
+        self._journal.remove()
+
+    def cut_torn(self) -> None:
+        """Cut off what a kill left half written at the journal's end."""
+        self._journal.cut_torn()
 
     def _read_journal(self) -> None:
-        whole = _whole_lines(self.journal)
-        for number, line in enumerate(whole.splitlines(), start=1):
-            where = f"{self.journal}, line {number}"
-            try:
-                record = json.loads(line)
-            except ValueError as error:
-                raise StoreError(f"{where}: not JSON ({error})") from error
-            self._take(record, where)
+        for number, record in self._journal.read():
+            self._take(record, f"{self.journal}, line {number}")
 
     def _take(self, record: Any, where: str) -> None:
         self._changed = True
@@ -249,14 +242,8 @@ def opened(store: Store) -> Iterator[Record]:
             remove_leftovers(place)
         recorded.require_unchanged(store.directory)
         record = Record(store)
-        if record.journal.is_file():
-            os.truncate(record.journal, len(_whole_lines(record.journal)))
+        record.cut_torn()
         yield record
-
-
-def _whole_lines(path: Path) -> bytes:
-    content = path.read_bytes() if path.is_file() else b""
-    return content[: content.rfind(b"\n") + 1]
 
 
 def _used(facts: Mapping[str, Any], names: Iterable[str]) -> dict[str, Any]:

@@ -66,12 +66,19 @@ def settled_by(tally: Tally) -> str:
     unknown = tally.matching - tally.counted
     if not tally.decided:
         wanted = LEAST_COUNTED - tally.counted
-        known = f"with a known {tally.ranked}"
+        known = f"with a known {_in_words(tally.ranked)}"
         if unknown >= wanted:
             return f"{_studies(wanted)} of the {unknown} that match, {known}"
-        return f"{_studies(wanted, 'more ')} that match, {known}"
-    lacking = f"; {unknown} of the {tally.matching} have no known {tally.ranked}" * bool(unknown)
-    return f"{_margin(tally)}{lacking}"
+        return f"{_studies(wanted, 'more ')} that match{'es' if wanted == 1 else ''}, {known}"
+    if not unknown:
+        return _margin(tally)
+    lacking = f"{unknown} of the {tally.matching} have no known {_in_words(tally.ranked)}"
+    return f"{_margin(tally)}; {lacking}"
+
+
+def _in_words(ranked: str) -> str:
+    """Return what is ranked, an attribute or several, as a sentence has it."""
+    return ranked.replace("+", " and ").replace("_", " ")
 
 
 def _margin(tally: Tally) -> str:

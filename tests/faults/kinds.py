@@ -11,7 +11,7 @@ from typing import Any
 import survey_data
 from benchmark.claims import outcomes
 from benchmark.curves import record as curves
-from benchmark.datasets import export
+from benchmark.datasets import export, export_verification
 from benchmark.results import recorded
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import times
@@ -152,7 +152,7 @@ def _export(folder: Path) -> list[Path]:
 
 
 def _verify(folder: Path) -> Any:
-    if wrong := export.verify(folder / "out"):
+    if wrong := export_verification.verify(folder / "out"):
         raise RefusedError(": ".join(wrong[0]))
     return []
 

@@ -18,9 +18,9 @@ import time
 from pathlib import Path
 
 from tests.faults_kills.commands import COMMANDS, preload
-from tests.faults_kills.pairs import PAIRS, meet
+from tests.faults_kills.pairs import PAIRS, Met, meet
 from tests.faults_kills.report import complaints, report
-from tests.faults_kills.trials import kills
+from tests.faults_kills.trials import Kill, kills
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -33,8 +33,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--report", type=Path, help="file that takes the report as well")
     asked = parser.parse_args(arguments)
     names = asked.only or list(COMMANDS)
-    if "render" in names:
-        preload()
+    preload(names)
     started = time.monotonic()
     found, met = [], []
     # No TemporaryDirectory: at the end of a forked child it would take this one's away.
@@ -44,6 +43,7 @@ def main(arguments: list[str] | None = None) -> int:
             found.append(one)
             for said in one.wrong:
                 print(f"{one.command}, {one.signal} after {one.at_s:.2f} s: {said}", flush=True)
+            _keep(asked.report, found, met)  # a campaign that is broken off has told something
         draw = random.Random(asked.seed)
         for number, what in enumerate(() if asked.no_pairs else PAIRS):
             met.append(meet(what, work / f"pair {number}", draw))
@@ -55,10 +55,15 @@ def main(arguments: list[str] | None = None) -> int:
     wrong = complaints(found, met)
     print(*wrong, sep="\n")
     print(f"seed {asked.seed}, {time.monotonic() - started:.0f} s")
-    if asked.report:
-        asked.report.parent.mkdir(parents=True, exist_ok=True)
-        asked.report.write_text("\n".join([text, *wrong]))
+    _keep(asked.report, found, met)
     return 1 if wrong else 0
+
+
+def _keep(path: Path | None, found: list[Kill], met: list[Met]) -> None:
+    """Write the report of what has been tried so far."""
+    if path is not None:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text("\n".join([report(found, met), *complaints(found, met)]))
 
 
 if __name__ == "__main__":

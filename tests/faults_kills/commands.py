@@ -6,10 +6,11 @@ given smaller things to measure (`tests.faults_kills.small`).
 
 from __future__ import annotations
 
+import importlib
 import os
 import shutil
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -29,6 +30,7 @@ from api.cli.commands import compile as compile_command  # noqa: F401
 from api.cli.commands import dataset as dataset_command
 from api.cli.commands import gc as gc_command
 from api.cli.commands import leaderboard as leaderboard_command
+from api.deposit import bundle
 from api.docs import documentation
 from benchmark.claims import run as claims_run
 from benchmark.curves import run as curves_run
@@ -45,6 +47,7 @@ from tests.faults_kills import small
 
 #: A sensor of few numbers a sample.
 _DATASET = "pd-maskless-cube"
+_PAGE = "page.md"
 _CLAIMS = ("C01", "C02", "C03", "C05")
 _TABLES = Path(survey_data.__file__).parent
 
@@ -195,12 +198,25 @@ def hold_back(*datasets: str) -> None:
     )
 
 
+def empty_docs() -> None:
+    """A directory of documentation with one page."""
+    Path("docs").mkdir()
+    (Path("docs") / _PAGE).write_text("# A page\n\nNothing is run here.\n")
+
+
 def document() -> None:
-    """`python -m api.docs.documentation` of a few pictures."""
+    """`python -m api.docs.documentation` of a few pictures, and a page without commands to run."""
     pictures = {f"{n}.svg": small.picture for n in range(12)}
     _give(documentation, "every_page", lambda _directory: {})
+    _give(documentation, "RUN", (_PAGE,))
     _give(documentation, "every_picture", lambda: pictures)
     program(lambda: documentation.regenerate(Path("docs")))
+
+
+def deposit_build() -> None:
+    """`sunatlas deposit build` with samples of one data set; those of all take minutes."""
+    _give(bundle, "build", partial(bundle.build, frames=(_DATASET,)))
+    sunatlas("deposit", "build", "--out", "bundle")
 
 
 def export(n: int) -> None:
@@ -231,9 +247,14 @@ def _to_end(act: Callable[[], object]) -> None:
             raise RuntimeError(f"it ended with {ended.code}") from ended
 
 
-def preload() -> None:
-    """Read once what every child then has: the board that is rendered."""
-    _ = knowledge().measurements.leaderboard
+def preload(names: Collection[str]) -> None:
+    """Read and import once what every child then has: the board that is rendered, libraries."""
+    if "render" in names:
+        _ = knowledge().measurements.leaderboard
+    if any(name.startswith("deposit") for name in names):
+        survey_data.validate()
+        for library in ("pyarrow.parquet", "matplotlib.backends.backend_agg", "scipy.stats"):
+            importlib.import_module(library)
 
 
 COMMANDS: Mapping[str, Command] = {
@@ -256,13 +277,9 @@ COMMANDS: Mapping[str, Command] = {
         _nothing,
         lambda: sunatlas("dataset", "preview", _DATASET, "--out", "seen/preview.png"),
     ),
-    "deposit": Command(
-        "`deposit build`", _nothing, lambda: sunatlas("deposit", "build", "--out", "bundle")
-    ),
+    "deposit": Command("`deposit build`", _nothing, deposit_build),
     "deposit-again": Command(
-        "`deposit build` over an earlier one",
-        _earlier("deposit"),
-        lambda: sunatlas("deposit", "build", "--out", "bundle"),
+        "`deposit build` over an earlier one", _earlier("deposit"), deposit_build
     ),
     "pin": Command("`dataset pin`", _nothing, pin),
     "update": Command(
@@ -286,7 +303,7 @@ COMMANDS: Mapping[str, Command] = {
         lambda: Path("held.csv").write_text(",".join(table._COLUMNS) + "\n"),
         hold_back,
     ),
-    "docs": Command("`python -m api.docs.documentation`", lambda: Path("docs").mkdir(), document),
+    "docs": Command("`python -m api.docs.documentation`", empty_docs, document),
     "save": Command("`calibration.saving.save`", _nothing, lambda: program(save_calibration)),
 }
 

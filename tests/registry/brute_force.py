@@ -50,7 +50,7 @@ def scores(condition: str) -> st.SearchStrategy[Score]:
         Score,
         condition=st.just(condition),
         rms_deg=st.none() | numbers,
-        availability=st.sampled_from([0.5, 0.97, 1.0]),
+        availability=st.sampled_from([0.4, 0.5, 0.97, 1.0]),
         available=st.booleans(),
         cones=cones,
     )
@@ -174,6 +174,48 @@ def error_of(row: Measured, ask: Ask) -> float | None:
         return None
     largest = number(ask, "max_error_deg")
     return None if largest is not None and max(errors) > largest else max(errors)
+
+
+def partly(row: Measured, ask: Ask) -> tuple[float, float] | None:
+    """Error where it answers, and the answered share, of what answers half but too seldom."""
+    hazards = wanted(ask, "survive")
+    full, least, latency = (
+        number(ask, name) for name in ("min_fov_deg", "min_availability", "max_latency_us")
+    )
+    tried = [row.nominal, *(s for name in hazards for s in row.hazards.get(name, ()))]
+    if any(name not in row.hazards for name in hazards):
+        return None
+    if full is not None and (row.half_fov_deg is None or 2 * row.half_fov_deg < full):
+        return None
+    if latency is not None and (row.latency_us is None or row.latency_us > latency):
+        return None
+    errors = [error_over(row, score, full) for score in tried]
+    if math.inf not in errors or any(score.rms_deg is None for score in tried):
+        return None
+    share = min(score.availability or 0.0 for score in tried)
+    if share < max(0.5, least or 0.0):
+        return None
+    known = [
+        score.rms_deg or 0.0 if math.isinf(error) else error
+        for error, score in zip(errors, tried, strict=True)
+    ]
+    return max(known), share
+
+
+def finer(pair: Pair, error: float, ask: Ask, table: list[Measured]) -> list[tuple[object, ...]]:
+    """What may be named beside an error: all that err least, if less than a third of it."""
+    parts: list[tuple[object, ...]] = []
+    least = math.inf
+    for (extractor, stages), there in on(pair, table).items():
+        if refused(ask, "extractor", {extractor}) or refused(ask, "model", set(stages)):
+            continue
+        for row in there:
+            part = partly(row, ask)
+            if part is not None and 3 * part[0] < error and part[0] <= least:
+                parts = parts if part[0] == least else []
+                least = part[0]
+                parts.append((row.dataset, row.extractor, row.model, *part))
+    return [] if math.isinf(error) else parts
 
 
 @dataclass

@@ -11,7 +11,17 @@ from hypothesis import strategies as st
 from registry.measured import Measured, Measurements
 from registry.recommendation import recommend
 from registry.studies import Facts
-from tests.registry.brute_force import Ask, Found, Rows, asked, brute_force, key_of, pipelines, rows
+from tests.registry.brute_force import (
+    Ask,
+    Found,
+    Rows,
+    asked,
+    brute_force,
+    finer,
+    key_of,
+    pipelines,
+    rows,
+)
 
 
 @settings(deadline=None, derandomize=True, max_examples=250)
@@ -41,6 +51,26 @@ def test_designs_errors_and_studies_are_those_brute_force_finds(
         least = min((math.inf if d.error is None else d.error) for d in designs.values())
         best = architecture.best.measured
         assert (math.inf if best is None else best["error_deg"] or math.inf) == least
+
+
+@settings(deadline=None, derandomize=True, max_examples=400)
+@given(
+    ask=asked.filter(lambda ask: not {"max_error_deg", "accuracy"} & set(ask)), measured=pipelines
+)
+def test_what_is_far_finer_where_it_answers_is_named_beside_each_measured_error(
+    facts_of: Callable[[Rows], Facts], ask: Ask, measured: list[Measured]
+) -> None:
+    facts = facts_of([])
+    for place in recommend(ask, measured, facts=facts).architectures:
+        pair = (place.detector, place.mask)
+        for one in (place.best, *place.calibrations):
+            for shown in (one.measured, *one.others):
+                if shown is None:
+                    continue
+                error = shown["error_deg"]
+                expected = finer(pair, math.inf if error is None else error, ask, measured)
+                named = shown["finer"]
+                assert (tuple(named.values()) in expected) if named else not expected
 
 
 @settings(deadline=None, derandomize=True, max_examples=100)

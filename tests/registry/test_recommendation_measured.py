@@ -194,6 +194,57 @@ def test_what_seldom_answers_keeps_no_limit_of_error_and_is_last_by_what_is_meas
     assert best.measured["dataset"] == "f"
 
 
+def test_a_coarse_best_names_what_is_far_finer_where_it_answers(
+    facts_of: Callable[[Rows], Facts],
+) -> None:
+    """A grid that is read surely on most of its field: neither hidden, nor first."""
+    facts = one_study(facts_of)
+    coarse = pipeline(rms_deg=3.0)
+    for rms_deg, share, of_it in (
+        (0.01, 0.7, True),
+        (0.01, 0.5, True),
+        (0.01, 0.49, False),  # answers less than half
+        (1.0, 0.7, False),  # three times as fine is not more than three times
+        (0.999, 0.7, True),
+    ):
+        seldom = pipeline(
+            extractor="grid", model="lut", stages=("LUT",), rms_deg=rms_deg,
+            available=False, availability=share,
+        )  # fmt: skip
+        best = only(recommend({}, [coarse, seldom], facts=facts)).best.measured
+        assert best is not None
+        assert best["error_deg"] == 3.0
+        named = {"dataset": "d", "extractor": "grid", "model": "lut",
+                 "error_deg": rms_deg, "availability": share}  # fmt: skip
+        assert best["finer"] == (named if of_it else None)
+
+
+@pytest.mark.parametrize(
+    "ask",
+    [
+        {"exclude_model": ["LUT"]},
+        {"exclude_extractor": ["MCAM"]},
+        {"min_availability": 0.8},
+        {"max_latency_us": 5.0},
+        {"survive": ["spin"]},
+        {"min_fov_deg": 100.0},
+    ],
+)
+def test_what_is_finer_keeps_all_else_that_is_asked(
+    facts_of: Callable[[Rows], Facts], ask: dict[str, object]
+) -> None:
+    seldom = pipeline(
+        extractor="grid", extractor_taxonomy="MCAM", model="lut", stages=("LUT",), rms_deg=0.01,
+        available=False, availability=0.7, latency_us=9.0, half_fov_deg=45.0,
+    )  # fmt: skip
+    coarse = pipeline(rms_deg=3.0, latency_us=1.0, hazards={"spin": worse(3.0, availability=1.0)})
+    facts = one_study(facts_of)
+    for asked, named in (({}, "grid"), (ask, None)):
+        best = only(recommend(asked, [coarse, seldom], facts=facts)).best.measured
+        assert best is not None
+        assert (best["finer"] or {}).get("extractor") == named  # type: ignore[attr-defined]
+
+
 def test_the_best_calibration_is_shown_where_no_study_used_it(
     facts_of: Callable[[Rows], Facts],
 ) -> None:
@@ -351,7 +402,7 @@ def test_what_was_judged_for_one_question_does_not_tell_for_another(
     rows: list[Measured] = [pipeline(hazards={"albedo": worse(0.9)}), pipeline(extractor="b")]
     asks = [{}, {"survive": ["albedo"]}, {"min_fov_deg": 30.0}, {"max_latency_us": 1.0}]
     fresh = [recommend(ask, list(rows), facts=facts).to_dict() for ask in asks]
-    monkeypatch.setattr("registry.designs._MOST_KEPT", 2)
+    monkeypatch.setattr("registry.kept_answers.MOST_KEPT", 2)
     kept = Measurements(rows)
     for _ in range(2):
         assert [recommend(ask, kept, facts=facts).to_dict() for ask in asks] == fresh

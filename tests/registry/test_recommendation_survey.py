@@ -186,13 +186,13 @@ def test_the_worst_question_is_explained_by_a_few_answers(
 ) -> None:
     """Every parameter asked, nothing met: all subsets of 20 would be a million answers."""
     answers = []
-    places = Question.places
+    count = Question.count
 
     def counted(question: Question) -> object:
         answers.append(question.asked)
-        return places(question)
+        return count(question)
 
-    monkeypatch.setattr(Question, "places", counted)
+    monkeypatch.setattr(Question, "count", counted)
     ask = worst_question(survey)
     assert set(Requirements.parse(ask, survey.taxonomy, survey.properties).names) == set(ask)
     answer = recommend(ask, facts=survey)

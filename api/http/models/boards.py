@@ -22,8 +22,9 @@ from api.http.models.parameters import (
     sorting,
 )
 from api.http.models.words import Detector, Mask
-from benchmark.leaderboard.architectures import FINER, STANDARD_ERRORS
+from benchmark.leaderboard.architectures import STANDARD_ERRORS
 from benchmark.leaderboard.overview import ROLES
+from registry.measured import FINER
 
 RoleName = Annotated[str, OneOf(lambda: ROLES)]
 

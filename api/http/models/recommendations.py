@@ -10,6 +10,7 @@ from api.http.models import words
 from api.http.models.base import OpenShape, Question, Shape, TableQuestion
 from api.http.models.flows import LeftOut, Link, Node
 from api.http.models.parameters import LARGEST_PAGE, NUMBER, WHOLE, Several, several
+from registry.measured import FINER, LEAST_ANSWERED
 from registry.ranking import Sort
 
 
@@ -149,6 +150,16 @@ class Units(Shape):
     largest_deg: float
 
 
+class Finer(Shape):
+    """A pipeline on the same sensor that errs far less, but answers too seldom to be judged."""
+
+    dataset: str
+    extractor: str
+    model: str
+    error_deg: float = Field(description="Its largest error where it answers.")
+    availability: float = Field(description="Its least answered share.")
+
+
 class Measured(Shape):
     """A pipeline on a data set, judged over the field and the conditions asked for."""
 
@@ -172,6 +183,11 @@ class Measured(Shape):
         description="Of one sample on this machine, microseconds; null where it is not timed."
     )
     units: Units | None
+    finer: Finer | None = Field(
+        description="Of what keeps the other requirements on this sensor, but answers too seldom "
+        f"to be judged, at least {100 * LEAST_ANSWERED:.0f} % though: what errs least, where the "
+        f"error here is more than {FINER:g} times as large."
+    )
 
 
 class Calibration(Shape):

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Mapping
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Body, Query
 
@@ -16,8 +17,9 @@ from api.http.models.recommendations import (
     RequirementsBody,
     RequirementsQuery,
 )
+from api.http.recommended import encoded_answer
 from api.recommending import rows
-from registry.recommendation import recommend as ranked
+from registry.recommendation import Answered, answered, recommendation
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
@@ -55,15 +57,43 @@ async def recommend(
     return _answer(body, known)
 
 
-def _answer(requirements: Requirements, known: Knowledge) -> Answer:
-    asked = requirements.model_dump(exclude={"limit", "calibrations", "sort", "format"})
-    found = ranked(
-        asked,
-        known.measured,
-        sort=requirements.sort,
-        limit=requirements.limit,
-        calibrations=requirements.calibrations,
-        facts=known.facts,
-    )
-    document = found.to_dict()
-    return Answer(document, columns.RECOMMENDATIONS, lambda: list(rows(document)))
+class Recommended(Answer):
+    """A recommendation: its JSON comes as bytes, its document is made where somebody reads it.
+
+    Parameters
+    ----------
+    requirements : what is asked
+    found : what meets them
+    """
+
+    def __init__(self, requirements: Requirements, found: Answered) -> None:
+        self._requirements = requirements
+        self._found = found
+        self._document: Mapping[str, Any] | None = None
+        super().__init__({}, columns.RECOMMENDATIONS, lambda: list(rows(self.document)))
+
+    def render(self, content: Any) -> bytes:  # noqa: ARG002 - the document is not needed
+        """Return the JSON."""
+        return encoded_answer(
+            self._found, self._requirements.limit, self._requirements.calibrations
+        )
+
+    @property
+    def document(self) -> Mapping[str, Any]:
+        """The JSON object."""
+        if self._document is None:
+            asked = self._requirements
+            told = recommendation(self._found, asked.limit, asked.calibrations)
+            self._document = told.to_dict()
+        return self._document
+
+    @document.setter
+    def document(self, _document: Mapping[str, Any]) -> None:
+        """Leave it to who reads it."""
+
+
+def _answer(requirements: Requirements, known: Knowledge) -> Recommended:
+    about_answer = {"limit", "calibrations", "sort", "format"}
+    asked = {name: value for name, value in requirements if name not in about_answer}
+    found = answered(asked, known.measured, sort=requirements.sort, facts=known.facts)
+    return Recommended(requirements, found)

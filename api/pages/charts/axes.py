@@ -11,7 +11,7 @@ from markupsafe import Markup
 from api.pages.numbers import number
 
 WIDTH, HEIGHT = 460, 300
-LEFT, RIGHT, TOP, BOTTOM = 54, 12, 12, 44
+LEFT, RIGHT, TOP, BOTTOM = 68, 12, 12, 44
 
 
 @dataclass(frozen=True)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from markupsafe import Markup
 
@@ -33,6 +34,7 @@ class Point:
     address : where a press leads
     across, error_deg : its place
     bound_deg : the limit of its error; None where it has none
+    finer : what errs far less on the part that it answers, as `/v1/recommendations` tells it
     """
 
     name: str
@@ -40,6 +42,7 @@ class Point:
     across: float
     error_deg: float
     bound_deg: float | None
+    finer: Mapping[str, Any] | None = None
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from algorithms.calibration.documents import digest_of
 from algorithms.calibration.quality import FitQuality, Parameter, data_digest
 from algorithms.calibration.saving import (
     SCHEMA,
@@ -92,13 +93,25 @@ def test_what_a_killed_process_left_goes_and_what_a_living_one_writes_stays(cali
     ("change", "said"),
     [
         (lambda stored: stored.update(schema="other"), "expected a document of"),
-        (lambda stored: stored.update(schema_version=99), "expected schema version 1; got 99"),
+        (lambda stored: stored.update(schema_version=99), "expected schema version 2; got 99"),
+        (lambda stored: stored.update(schema_version=1), "got 1: calibrate and save anew"),
+        (lambda stored: stored.update(note="mine"), "the member 'note' is unknown"),
         (lambda stored: stored["model"].update(name="nobody"), "no stage is named 'nobody'"),
         (lambda stored: stored["model"].update(version=99), "of version 99 of polynomial-2d"),
         (lambda stored: stored["model"]["fitted"].pop("hull_"), "is fitted with"),
         (lambda stored: stored["model"]["parameters"].update(nothing=1), "damaged"),
         (lambda stored: stored["model"]["parameters"].update(degree=99), "damaged: .*degree"),
         (lambda stored: stored.pop("extractor"), "damaged"),
+        (
+            lambda stored: stored["model"]["fitted"]["hull_"].update(object="algorithms.none:x"),
+            "damaged: No module",
+        ),
+        (
+            lambda stored: stored["model"]["parameters"].update(
+                degree={"array": [1], "shape": [1], "dtype": "O"}
+            ),
+            "damaged: an array of 'O'",
+        ),
         (
             lambda stored: stored["model"]["fitted"]["hull_"].update(object="os:system"),
             "holds no os:system",
@@ -114,8 +127,46 @@ def test_what_a_killed_process_left_goes_and_what_a_living_one_writes_stays(cali
 def test_a_document_that_is_none_is_named(calibrated, change, said):
     stored = json.loads(json.dumps(document(calibrated[0])))
     change(stored)
+    stored["digest"] = digest_of(stored)  # whoever forges a file can do so
     with pytest.raises(UnreadableCalibrationError, match=said):
         pipeline_of(stored)
+
+
+def test_a_number_with_another_digit_is_refused_by_the_digest(calibrated, tmp_path):
+    path = tmp_path / "calibration.json"
+    save(calibrated[0], path)
+    sound = path.read_text()
+    stored = json.loads(sound)
+    del stored["digest"]
+    path.write_text(json.dumps(stored))
+    with pytest.raises(
+        UnreadableCalibrationError, match=r"calibration.json: .*'digest' is missing"
+    ):
+        load(path)
+    at = next(at for at in range(len(sound) // 2, len(sound)) if sound[at] in "12345678")
+    path.write_text(sound[:at] + str(int(sound[at]) + 1) + sound[at + 1 :])
+    with pytest.raises(UnreadableCalibrationError, match=r"calibration.json: .*digest of what"):
+        load(path)
+    path.write_text(json.dumps(json.loads(sound), sort_keys=True))  # the layout is no matter
+    assert load(path).name == calibrated[0].name
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["[" * 200_000, '{"a": 1, "a": 2}', '{"a": NaN}', '{"a": 1e999}', '{"a": ' + "9" * 5000 + "}"],
+)
+def test_json_that_no_program_should_trip_over_is_refused(tmp_path, text):
+    path = tmp_path / "calibration.json"
+    path.write_text(text)
+    with pytest.raises(UnreadableCalibrationError, match=r"calibration.json: not JSON"):
+        load(path)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="named pipes")
+def test_what_is_no_file_is_refused_and_not_waited_for(tmp_path):
+    os.mkfifo(tmp_path / "pipe.json")
+    with pytest.raises(UnreadableCalibrationError, match=r"pipe.json: expected a file"):
+        load(tmp_path / "pipe.json")
 
 
 @pytest.mark.parametrize("text", ["", "[1, 2]", "{", '{"schema": 3}', "null"])

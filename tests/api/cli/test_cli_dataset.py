@@ -75,7 +75,9 @@ def test_verify_passes_then_names_what_was_changed(made, tmp_path):
     out, _ = made
     shown = sunatlas("verify", out)
     assert (shown.exit_code, shown.stdout) == (0, "")
-    assert shown.stderr == f"{out}: every checksum and every array holds\n"
+    assert shown.stderr == f"{out}: every checksum and every array holds, as made again\n"
+    shown = sunatlas("verify", out, "--quick")
+    assert shown.stderr == f"{out}: every checksum and every array holds; it was not made again\n"
     assert json.loads(sunatlas("verify", out, "--format", "json").stdout) == []
     path = out / "nominal" / "test.npz"
     good = path.read_bytes()

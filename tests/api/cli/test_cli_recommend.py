@@ -8,6 +8,7 @@ import re
 import pytest
 from typer.testing import CliRunner
 
+from api.cells import cell
 from api.cli import architectures
 from api.cli.command_line import app
 from api.cli.commands.recommend import Sort
@@ -150,6 +151,27 @@ def test_what_cannot_be_met_names_the_requirement_and_what_would_help(atlas):
     assert blocked["relaxations"]
     for relaxation in blocked["relaxations"]:
         assert f"- {words(relaxation['words'])}: {relaxation['architectures']} arch" in said
+
+
+def test_what_is_far_finer_where_it_answers_is_named_by_command_page_and_table(atlas):
+    """CMOS behind several apertures: what answers everywhere is coarse, and stands not alone."""
+    asked = {"detector": "CMOS", "mask": "Multi-Ap."}
+    (place,) = atlas.get("/v1/recommendations", params=asked).json()["architectures"]
+    finer = place["best"]["measured"]["finer"]
+    assert 0.5 <= finer["availability"] < 0.95
+    assert 3 * finer["error_deg"] < place["best"]["measured"]["error_deg"]
+    shown = words(sunatlas(*options(asked)).stdout)
+    share = f"{100 * finer['availability']:.4g} %"
+    assert f"far finer on the part it answers, {share}: {finer['extractor']} > " in shown
+    page = atlas.get("/", params=asked).text
+    assert "Far finer on the part it answers" in page
+    assert f"({finer['extractor']} → {finer['model']})" in page
+    best = place["best"]["rank"]
+    table = atlas.get("/v1/recommendations", params={**asked, "calibrations": 500, "format": "csv"})
+    row = list(csv.DictReader(table.text.splitlines()))[best - 1]
+    assert {name: row[f"measured_finer_{name}"] for name in finer} == {
+        name: cell(value) for name, value in finer.items()
+    }
 
 
 def test_a_pipeline_that_answers_too_seldom_has_no_error_and_says_so():

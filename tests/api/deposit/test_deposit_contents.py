@@ -19,7 +19,7 @@ from api.deposit.database import NameNotPlainError, plain, write_database
 from api.deposit.frames import LEAST, ROOM, sample_size
 from api.deposit.typed import CellError, typed_tables
 from benchmark.datasets.checksums import CHECKSUMS
-from benchmark.datasets.export import verify as verify_export
+from benchmark.datasets.export_verification import verify as verify_export
 from benchmark.results.store import PUBLISHED, Store
 from tests.api.deposit.conftest import FRAMES
 from tests.api.deposit.test_deposit import files

@@ -12,6 +12,9 @@ import pytest
 
 from api.guide import extension, site
 from api.guide.chapters import CHAPTERS, ROOT, toctrees
+from api.mathml import mathml
+from api.pages.rendering import NAVIGATION
+from tests.api.conftest import Client
 
 DOCS = Path(__file__).resolve().parents[3] / "docs"
 #: What a browser loads by itself, from wherever it says.
@@ -75,7 +78,7 @@ def test_every_link_between_built_pages_leads_to_a_heading(built: Built) -> None
     followed = 0
     for page, text in texts.items():
         for target in re.findall(r'<a [^>]*href="([^"]+)"', text):
-            if re.match(r"[a-z]+:", target):
+            if re.match(r"[a-z]+:|/", target):  # elsewhere, and the atlas: see below
                 continue
             path, _, anchor = target.partition("#")
             there = (page.parent / path).resolve() if path else page
@@ -101,12 +104,12 @@ def test_every_page_of_docs_stands_in_one_chapter() -> None:
 
 
 def test_an_equation_is_mathml_and_what_the_converter_does_not_know_is_said_otherwise() -> None:
-    drawn = extension.mathml(r"\hat t = \arg\min_t \frac{a}{b}", block=True)
+    drawn = mathml(r"\hat t = \arg\min_t \frac{a}{b}", block=True)
     assert drawn.startswith("<math")
     assert 'display="block"' in drawn
     assert "<mfrac>" in drawn
     assert "\\" not in drawn
-    assert 'display="inline"' in extension.mathml(r"\arcsin x")
+    assert 'display="inline"' in mathml(r"\arcsin x")
 
 
 def test_a_link_out_of_the_docs_becomes_its_path_and_what_is_fenced_stays() -> None:
@@ -165,3 +168,21 @@ def test_the_site_of_changed_pages_is_another_and_the_oldest_are_let_go(
     assert len(set(places)) == len(places)
     assert sorted(path.is_dir() for path in places) == [False] * 2 + [True] * site.KEPT
     assert not places[0].is_dir()
+
+
+@pytest.mark.slow
+def test_every_page_leads_back_to_the_atlas_and_what_it_names_to_its_page(
+    built: Built, atlas: Client
+) -> None:
+    out, _ = built
+    links: dict[str, str] = {}
+    for page in out.rglob("*.html"):
+        found = re.findall(r'href="(/[^"/][^"]*|/)"', page.read_text("utf-8"))
+        assert {address for address, _ in NAVIGATION if address != "/guide"} <= set(found), page
+        links |= dict.fromkeys(found, page.name)
+    kinds = {link.split("/")[1] for link in links}
+    assert {"algorithms", "datasets", "claims", "studies"} <= kinds
+    assert sum(link.startswith("/algorithms/") for link in links) > 50
+    for link, page_name in links.items():
+        response = atlas.get(link, accept="text/html, */*;q=0.8")
+        assert response.status_code == 200, (page_name, link)

@@ -245,6 +245,7 @@ def test_recommendations_carry_what_is_measured(measured):
         "availability": 1.0,
         "latency_us": 5.0,
         "units": {"count": 5, "least_deg": 0.009, "largest_deg": 0.03},
+        "finer": None,
     }
 
 

@@ -6,8 +6,8 @@ from importlib.resources import files
 
 import pytest
 
-from tests.api.page.visiting import Visit
-from tests.api.pages.addresses import KINDS
+from tests.api.page.visiting import PATIENCE_MS, Visit
+from tests.api.pages.addresses import BESIDE, KINDS
 
 pytestmark = pytest.mark.slow
 
@@ -20,8 +20,10 @@ def test_no_page_has_a_serious_issue(visit: str, request: pytest.FixtureRequest)
     visited: Visit = request.getfixturevalue(visit)
     page = visited.page
     found = []
-    for kind, path in KINDS.items():
+    for kind, path in {**KINDS, **BESIDE}.items():
         page.goto(visited.address + path)
+        if kind.startswith("guide"):  # the first to ask for it waits until it is built
+            page.wait_for_selector("article", timeout=PATIENCE_MS)
         if kind.startswith("answer"):
             page.wait_for_function("() => document.documentElement.dataset.live")
         page.evaluate(AXE)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from api.figures.catalogue import MATRIX, TITLES
+
 KINDS = {
     "answer": "/",
     "answer, asked": "/?task=Accuracy&max_error_deg=0.1&survive=albedo",
@@ -29,6 +31,16 @@ KINDS = {
     "search": "/search",
     "found": "/search?q=centroid",
     "glossary": "/glossary",
+    "figures": "/figures",
+    **{f"figure {name}": f"/figures/{name}" for name in TITLES},
+    "figure narrowed": f"/figures/{next(iter(TITLES))}?detector=CMOS",
+    "evidence map": f"/figures/{MATRIX}",
     "refused": "/studies/Nobody1900",
     "nowhere": "/nowhere",
+}
+#: Pages that are not made of the templates, but stand in the same place.
+BESIDE = {
+    "guide": "/guide/index.html",
+    "guide, prose": "/guide/guide/scores.html",
+    "reference": "/docs",
 }

@@ -5,12 +5,15 @@ from __future__ import annotations
 import re
 from html.parser import HTMLParser
 from itertools import pairwise
-from urllib.parse import urlsplit
+from urllib.parse import unquote, urlsplit
 
 import pytest
+from fastapi.routing import APIRoute
 
 from api.http.page import page_files
 from api.pages.rendering import NAVIGATION
+from api.pages.routers import ROUTERS
+from api.pages.serving import PageRouter
 from tests.api.conftest import Client
 from tests.api.pages.addresses import KINDS
 
@@ -97,6 +100,22 @@ def test_tables_name_their_columns_and_pictures_say_what_they_show(page: Page) -
     for tag, attributes in page.tags:
         if tag == "svg":
             assert attributes.get("aria-label")
+
+
+def test_there_is_a_page_of_every_route() -> None:
+    """What these tests and the browser's look at is every kind of page that there is."""
+    paths = [urlsplit(unquote(path)).path for path in KINDS.values()]
+    routes = [
+        route
+        for router in ROUTERS
+        if isinstance(router, PageRouter)
+        for route in router.routes
+        if isinstance(route, APIRoute) and not route.path.endswith((".json", ".csv"))
+    ]
+    assert len(routes) > 15
+    for route in routes:
+        if route.path not in {"/", "/scatter"}:  # the second is a part of the first
+            assert any(route.path_regex.fullmatch(path) for path in paths), route.path
 
 
 @pytest.mark.slow

@@ -19,8 +19,9 @@ from benchmark.datasets.checksums import (
     read_checksums,
     write_checksums,
 )
-from benchmark.datasets.export import ExportError, export, verify
+from benchmark.datasets.export import ExportError, export
 from benchmark.datasets.export_arrays import columns_of, read_archive, write_archive, write_table
+from benchmark.datasets.export_verification import verify
 
 ARRAYS = {
     "observations": np.arange(8.0).reshape(2, 4) / 3,

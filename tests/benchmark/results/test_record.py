@@ -7,6 +7,7 @@ import sys
 import pytest
 from fake_results import cell, components, numbers, pin, swept
 
+from benchmark.results.journal import chained
 from benchmark.results.record import Record, StoreLockedError, opened, point_of
 from benchmark.results.store import Store
 from benchmark.results.tables import StoreError
@@ -196,9 +197,47 @@ def test_the_journal_adds_to_the_store_and_loses_only_a_torn_last_line(store):
 def test_a_journal_line_that_is_not_a_record_is_an_error(store, line, message):
     record = Record(store)
     record.keep(components(), pins=[pin()])
-    with record.journal.open("a") as file:
-        file.write(line + "\n")
+    first = record.journal.read_text()
+    if line.startswith("{") and line != "{":
+        line, _ = chained(line, json.loads(first)["chain"])
+    record.journal.write_text(f"{first}{line}\n")
     with pytest.raises(StoreError, match=message):
+        Record(store)
+
+
+@pytest.mark.parametrize(
+    ("change", "where"),
+    [
+        (lambda lines: [lines[1], lines[0], *lines[2:]], "line 1: not as a runner wrote it"),
+        (lambda lines: [*lines[:2], *lines[1:]], "line 3: not as a runner wrote it"),
+        (lambda lines: [lines[0], *lines[2:]], "line 2: not as a runner wrote it"),
+        (lambda lines: [*lines[:2], lines[2].replace("0.5", "0.6")], "line 3: not as"),
+        (lambda lines: [lines[0].replace(', "chain"', ', "chian"')], "line 1: .*no digest"),
+        (lambda lines: ['{"pin": {}, "key": "k"}'], "line 1: .*earlier version"),
+    ],
+)
+def test_a_line_that_no_runner_wrote_there_is_named(store, change, where):
+    record = Record(store)
+    keep_all(record)
+    lines = record.journal.read_text().splitlines()
+    changed = change(lines)
+    assert changed != lines
+    record.journal.write_text("".join(f"{line}\n" for line in changed))
+    with pytest.raises(StoreError, match=where):
+        Record(store)
+
+
+def test_lines_lost_at_the_end_are_measured_again(store):
+    record = Record(store)
+    keep_all(record)
+    lines = record.journal.read_text().splitlines(keepends=True)
+    record.journal.write_text("".join(lines[:-1]))
+    assert Record(store).swept == {}
+
+
+def test_a_directory_is_no_journal(store):
+    Record(store).journal.mkdir(parents=True)
+    with pytest.raises(StoreError, match="expected a file, got a directory"):
         Record(store)
 
 
@@ -207,10 +246,10 @@ def test_every_line_is_json_of_its_own(store):
     keep_all(record)
     kept = [json.loads(line) for line in record.journal.read_text().splitlines()]
     assert [sorted(one) for one in kept] == [
-        ["key", "pin"],
-        ["cell", "key", "score"],
-        ["cell", "key", "score"],
-        ["key", "swept"],
+        ["chain", "key", "pin"],
+        ["cell", "chain", "key", "score"],
+        ["cell", "chain", "key", "score"],
+        ["chain", "key", "swept"],
     ]
 
 

@@ -1,0 +1,174 @@
+"""Whether a bundle is what the facts and the published record make, not only whole in itself.
+
+Checksums in a bundle are made by whoever made it. What it says is held against the bundle that this
+software builds of its own tables, and its samples against the data sets; nothing is fetched.
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+import sqlite3
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import closing
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from api.deposit import bundle as building
+from api.deposit.bundle import Sources, fill, write_other_forms
+from api.deposit.database import DATABASE
+from api.deposit.frames import FOLDER, SPLITS, sample_size, sampled
+from api.deposit.identity import identity
+from api.deposit.package import DESCRIPTOR
+from api.deposit.tables import measured_tables, read_descriptor
+from api.deposit.verification import Problem
+from benchmark import datasets
+from benchmark.datasets.checksums import ChecksumFileError, contents
+from benchmark.datasets.export import ExportError, read_card
+from benchmark.datasets.export_verification import verify as verify_export
+from benchmark.datasets.pins import Pin, Place
+from benchmark.progress import ProgressCallback, silent
+from benchmark.results.store import PUBLISHED, Store
+from survey_data.leftovers import temporary_directory
+
+
+def differences(
+    bundle: Path,
+    *,
+    survey: Path = building.SURVEY,
+    published: Path = PUBLISHED,
+    frames: Sequence[str] | None = None,
+    anew: bool = True,
+    progress: ProgressCallback = silent,
+) -> list[Problem]:
+    """Say in what a bundle that is whole (`verification.verify`) is not the one built here.
+
+    Parameters
+    ----------
+    bundle : its directory
+    survey, published : tables and results that it is held against
+    frames : data sets whose samples it should have; all by default
+    anew : make the samples again, which takes minutes; see `export_verification.verify`
+    progress : called as ``progress(done, total, what)`` in data sets
+
+    Raises
+    ------
+    As `bundle.build` of what it is held against.
+    """
+    who = identity()
+    said = read_descriptor(bundle / DESCRIPTOR).get("version")
+    if said != who.version:
+        return [(DESCRIPTOR, f"of version {said!r}; here is {who.version}: verify it with its own")]
+    names = datasets.names() if frames is None else frames
+    pins = Store(published).pins()
+    wrong = list(_of_frames(bundle, names, pins, anew, progress))
+    if wrong:
+        return wrong
+    with temporary_directory() as temporary:
+        made = temporary / "bundle"
+        made.mkdir()
+        if (bundle / FOLDER).is_dir():
+            shutil.copytree(bundle / FOLDER, made / FOLDER)
+        rows = [row for name in names for row in sampled(made, name, pins)]
+        fill(
+            made,
+            who,
+            Sources(survey, measured_tables(published)),
+            rows,
+            other_forms=partial(_as_in, bundle),
+        )
+        return list(_unlike(bundle, made))
+
+
+def _of_frames(
+    bundle: Path,
+    names: Sequence[str],
+    pins: Mapping[Place, Pin],
+    anew: bool,
+    progress: ProgressCallback,
+) -> Iterator[Problem]:
+    """Verify the samples of every data set as exports."""
+    folder = bundle / FOLDER
+    there = {path.name for path in folder.iterdir()} if folder.is_dir() else set()
+    for name in sorted(there ^ set(names)):
+        yield f"{FOLDER}/{name}", "no data set of this bundle" if name in there else "missing"
+    for done, name in enumerate(names if there == set(names) else ()):
+        progress(done, len(names), name)
+        try:
+            asked = read_card(folder / name).get("exported")
+            conditions = list(datasets.get(name).conditions[:1])
+            n = sample_size(name, pins)
+            should = {"conditions": conditions, "splits": list(SPLITS), "first_samples": n}
+            if asked != should:
+                yield f"{FOLDER}/{name}/card.json", f"exported is {asked}, expected {should}"
+            for file, text in verify_export(folder / name, pins=pins, anew=anew):
+                yield f"{FOLDER}/{name}/{file}", text
+        except (ExportError, ChecksumFileError) as error:
+            yield f"{FOLDER}/{name}", str(error).removeprefix(f"{folder / name}: ")
+    progress(len(names), len(names), "")
+
+
+def _as_in(bundle: Path, made: Path, descriptor: Mapping[str, Any]) -> None:
+    """Write Parquet and SQLite; take the bundle's own where another library packed the same."""
+    write_other_forms(made, descriptor)
+    forms = [f"parquet/{path.name}" for path in (made / "parquet").iterdir()]
+    for name in [*forms, DATABASE]:
+        same = _same_database if name == DATABASE else _same_parquet
+        if (bundle / name).is_file() and _holds(same, bundle / name, made / name):
+            shutil.copyfile(bundle / name, made / name)
+
+
+def _holds(same: Callable[[Path, Path], bool], one: Path, other: Path) -> bool:
+    if one.read_bytes() == other.read_bytes():
+        return False  # nothing to take
+    try:
+        return same(one, other)
+    except Exception:  # noqa: BLE001 - whatever a mangled file leads its reader to
+        return False
+
+
+def _same_parquet(one: Path, other: Path) -> bool:
+    from pyarrow import parquet  # noqa: PLC0415 - part of an extra
+
+    return bool(parquet.read_table(one).equals(parquet.read_table(other), check_metadata=True))
+
+
+def _same_database(one: Path, other: Path) -> bool:
+    texts = []
+    for path in (one, other):
+        with closing(sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro", uri=True)) as base:
+            texts.append(list(base.iterdump()))
+    return texts[0] == texts[1]
+
+
+def _unlike(bundle: Path, made: Path) -> Iterator[Problem]:
+    """Name each file that differs, and where it does; files of digests last and only alone."""
+    there, should = set(contents(bundle)), set(contents(made))
+    for name in sorted(there ^ should):
+        yield name, "no file of this bundle" if name in there else "missing"
+    others = False
+    for name in sorted(there & should, key=lambda name: (name in building.OF_DIGESTS, name)):
+        one, other = (bundle / name).read_bytes(), (made / name).read_bytes()
+        if one == other or (others and name in building.OF_DIGESTS):
+            continue
+        others = True
+        yield name, _where(name, one, other)
+
+
+def _where(name: str, one: bytes, other: bytes) -> str:
+    """Say where a file differs from the one built here."""
+    if name.endswith(".json"):
+        try:
+            if json.loads(one) == json.loads(other):
+                return "not laid out as built here"
+        except (ValueError, RecursionError):
+            return "not JSON"
+    if name.endswith((".parquet", ".sqlite")):
+        return "holds other tables than the CSV of this bundle"
+    ours, theirs = other.split(b"\n"), one.split(b"\n")
+    for number, (told, built) in enumerate(zip(theirs, ours, strict=False), start=1):
+        if told != built:
+            said, should = (part.decode("utf-8", "replace")[:80] for part in (told, built))
+            return f"row {number} is {said!r}; built of facts and record here it is {should!r}"
+    return f"has {len(theirs)} lines; built of facts and record here it has {len(ours)}"

@@ -1,0 +1,239 @@
+"""Designs and their measured pipelines as columns: what makes many of them one step each.
+
+Built once of a table of designs (`registry.designs`), whose order they keep. Sets of designs are
+integers, one bit a design, as sets of studies are; numbers are arrays over designs or pipelines.
+Only who answers imports this module: it needs NumPy.
+"""
+
+from __future__ import annotations
+
+import itertools
+import weakref
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from registry.designs import Design, DesignTable, Limits, Place
+from registry.judged_columns import PipelineColumns
+from registry.kept_answers import KeptAnswers
+
+Flags = NDArray[np.bool_]
+Numbers = NDArray[np.float64]
+Positions = NDArray[np.int64]
+Words = NDArray[np.uint64]
+
+WORD_BITS = 64
+_LARGEST_KEY = 63
+
+
+@dataclass(frozen=True, eq=False)
+class Best:
+    """The best pipeline of each design among those that keep some limits.
+
+    Attributes
+    ----------
+    row : position of the pipeline, shape (designs,); -1 where none keeps them
+    error : the error it is judged by; infinite where there is none
+    order : of the designs, the least error first, measured ones first of the same, shape (designs,)
+    rank : of the error, equal errors alike
+    at_order : the design at each place of that order
+    kept : designs (bits) of which one keeps them
+    """
+
+    row: Positions
+    error: Numbers
+    order: Positions
+    rank: Positions
+    at_order: Positions
+    kept: int
+
+
+class DesignColumns(PipelineColumns):
+    """Columns of the designs of a table.
+
+    Parameters
+    ----------
+    places : of the table
+    studies : how many there are
+    """
+
+    def __init__(self, places: Sequence[Place], studies: int) -> None:
+        self.places = places
+        self.designs: tuple[Design, ...] = tuple(d for place in places for d in place.designs)
+        self.words = studies // WORD_BITS + 1
+        self.everyone = (1 << studies) - 1
+        self.every = (1 << len(self.designs)) - 1
+        self.place_of = _repeated([len(place.designs) for place in places])
+        design_of = _repeated([len(design.rows) for design in self.designs])
+        rows = tuple(row for design in self.designs for row in design.rows)
+        super().__init__(rows, self.place_of[design_of], design_of)
+        self.first_row = np.cumsum([0, *(len(design.rows) for design in self.designs)])
+        first = [0, *itertools.accumulate(len(place.designs) for place in places)]
+        self.of_place = tuple(
+            ((1 << end) - 1) ^ ((1 << start) - 1) for start, end in itertools.pairwise(first)
+        )
+        self.taken = self.words_of(design.taken for design in self.designs)
+        self.with_model = self.words_of(design.with_model for design in self.designs)
+        self.measured = np.array([bool(design.rows) for design in self.designs], bool)
+        self.not_advised = np.array([not design.advised for design in self.designs], np.int64)
+        self.not_stated = np.array([not design.stated for design in self.designs], np.int64)
+        self.unmeasured = np.flatnonzero(~self.measured)
+        self._unmeasured_taken = self.taken[:, self.unmeasured]
+        self._having = self._values()
+        self._untried: dict[str, tuple[tuple[str, str], ...]] = {}
+        self._best: KeptAnswers[Best] = KeptAnswers()
+        self.design_bits = max(1, len(self.designs).bit_length())
+        self.support_bits = max(1, (studies**3).bit_length())
+        place_bits = max(1, len(places).bit_length())
+        if 2 + place_bits + 2 * self.design_bits + self.support_bits > _LARGEST_KEY:
+            raise ValueError(
+                f"{len(self.designs)} designs of {studies} studies are too many to be ranked"
+            )
+
+    def _values(self) -> dict[tuple[str, str], int]:
+        found: dict[tuple[str, str], int] = {}
+        for at, design in enumerate(self.designs):
+            detector, mask = design.architecture
+            for key in (
+                *(("detector", detector), ("mask", mask), ("extractor", design.extractor)),
+                *(("model", stage) for stage in dict.fromkeys(design.stages)),
+            ):
+                found[key] = found.get(key, 0) | 1 << at
+        return found
+
+    def having(self, attribute: str, values: Iterable[str]) -> int:
+        """Return the designs (bits) with one of some values of detector, mask, extractor, model."""
+        return self._bits_of(self._having, attribute, values)
+
+    @staticmethod
+    def _bits_of(having: Mapping[tuple[str, str], int], name: str, values: Iterable[str]) -> int:
+        found = 0
+        for value in values:
+            found |= having.get((name, value), 0)
+        return found
+
+    @cached_property
+    def _advised(self) -> dict[tuple[str, str], int]:
+        found: dict[tuple[str, str], int] = {}
+        for place, bits in zip(self.places, self.of_place, strict=True):
+            for key in {(advice.requirement, advice.value) for advice in place.advice}:
+                found[key] = found.get(key, 0) | bits
+        return found
+
+    @cached_property
+    def without_studies(self) -> int:
+        """The designs (bits) of places that no study has."""
+        bare = (bits for p, bits in zip(self.places, self.of_place, strict=True) if not p.studies)
+        return sum(bare)
+
+    def advised_for(self, requirement: str, values: Iterable[str]) -> int:
+        """Return the designs (bits) of places that the survey advises for one of some values."""
+        return self._bits_of(self._advised, requirement, values)
+
+    def words_of(self, sets: Iterable[int]) -> Words:
+        """Return sets of studies as words, shape (words, sets)."""
+        size = 8 * self.words
+        data = b"".join(bits.to_bytes(size, "little") for bits in sets)
+        return np.ascontiguousarray(np.frombuffer(data, "<u8").reshape(-1, self.words).T)
+
+    def flags(self, bits: int) -> Flags:
+        """Return a set of designs as one flag a design."""
+        size = len(self.designs) // 8 + 1
+        data = np.frombuffer(bits.to_bytes(size, "little"), np.uint8)
+        return np.unpackbits(data, count=len(self.designs), bitorder="little").view(bool)
+
+    @staticmethod
+    def bits(flags: Flags) -> int:
+        """Return one flag a design as a set of designs."""
+        return int.from_bytes(np.packbits(flags, bitorder="little").tobytes(), "little")
+
+    def stated(self, studies: int) -> int:
+        """Return the designs (bits) that nothing measures and one of some studies stands for."""
+        words = self.words_of([studies])
+        found = np.zeros(len(self.designs), bool)
+        found[self.unmeasured] = (self._unmeasured_taken & words).any(axis=0)
+        return self.bits(found)
+
+    @cached_property
+    def not_measured(self) -> int:
+        """The designs (bits) that nothing measures."""
+        return self.bits(~self.measured)
+
+    def rows_of(self, designs: int) -> Flags:
+        """Say of each pipeline whether it is of some designs (bits)."""
+        return self.flags(designs)[self.design_of]
+
+    def broken(self, having: Mapping[int, int]) -> Positions:
+        """Return, of each design, the requirements (bits) that it breaks.
+
+        `having` maps a requirement's bit to the designs (bits) that meet it.
+        """
+        found = np.zeros(len(self.designs), np.int64)
+        for bit, designs in having.items():
+            found[~self.flags(designs)] |= bit
+        return found
+
+    def broken_by_place(
+        self, by_design: Positions, by_row: Iterable[tuple[int, Flags]]
+    ) -> list[set[int]]:
+        """Return, of each place, the sets of requirements (bits) that its pipelines break.
+
+        Each breaks those of its design, beside one of the sets that it is among the flags of.
+        """
+        found: list[set[int]] = [set() for _ in self.places]
+        for bits, rows in by_row:
+            designs = np.unique(self.design_of[rows])
+            for place, of_design in zip(
+                self.place_of[designs].tolist(), by_design[designs].tolist(), strict=True
+            ):
+                found[place].add(of_design | bits)
+        return found
+
+    def best(self, limits: Limits) -> Best:
+        """Return the best pipeline of each design that keeps limits; kept for the next question."""
+        half = self.half_field(limits.half_field_deg)
+        key = (limits.hazards, half, limits.min_availability, limits.max_latency_us)
+        return self._best.get(key, lambda: self._least(limits))
+
+    def _least(self, limits: Limits) -> Best:
+        judged = self.judgements(limits.hazards, limits.half_field_deg)
+        by_error = judged.by_error[judged.keeping(limits)[judged.by_error]]
+        designs = self.design_of[by_error]
+        first = by_error[np.diff(designs, prepend=-1) != 0]
+        row = np.full(len(self.designs), -1)
+        row[self.design_of[first]] = first
+        error = np.full(len(self.designs), np.inf)
+        error[self.design_of[first]] = judged.error_deg[first]
+        at_order = np.lexsort((~self.measured, error))
+        order = np.empty_like(at_order)
+        order[at_order] = np.arange(len(at_order))
+        _, rank = np.unique(error, return_inverse=True)
+        return Best(row, error, order, rank, at_order, self.bits(row >= 0))
+
+    def untried(self, hazard: str) -> tuple[tuple[str, str], ...]:
+        """Return the architectures that no data set tries a hazard on."""
+        found = self._untried.get(hazard)
+        if found is None:
+            tried = set(self.row_place[self.tried(hazard)].tolist())
+            found = self._untried[hazard] = tuple(
+                place.architecture for at, place in enumerate(self.places) if at not in tried
+            )
+        return found
+
+
+def _repeated(lengths: Sequence[int]) -> Positions:
+    return np.repeat(np.arange(len(lengths)), np.array(lengths, int))
+
+
+_COLUMNS: weakref.WeakKeyDictionary[DesignTable, DesignColumns] = weakref.WeakKeyDictionary()
+
+
+def design_columns(table: DesignTable) -> DesignColumns:
+    """Return the designs of a table as columns, laid out at the first call."""
+    found = _COLUMNS.get(table)
+    if found is None:
+        found = _COLUMNS[table] = DesignColumns(table.places, len(table.facts.keys))
+    return found

@@ -1,0 +1,64 @@
+"""A bundle whose digests all fit is held against the facts, the record and the data sets."""
+
+from __future__ import annotations
+
+import json
+import random
+import shutil
+from pathlib import Path
+
+import pytest
+
+from api.deposit import against_record, bundle
+from api.deposit.package import DESCRIPTOR
+from api.deposit.verification import verify
+from tests.faults.forging_bundles import FORGERIES, fit
+
+pytestmark = pytest.mark.slow  # a bundle and each comparison take seconds
+FRAMES = ("pd-slit",)
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory):
+    return bundle.build(tmp_path_factory.mktemp("deposit") / "bundle", frames=FRAMES).directory
+
+
+@pytest.fixture
+def copy(built, tmp_path):
+    return Path(shutil.copytree(built, tmp_path / "copy"))
+
+
+@pytest.mark.parametrize("forgery", FORGERIES, ids=lambda one: one.__name__)
+def test_a_forgery_whose_digests_fit_is_found(copy, forgery):
+    forgery(random.Random(4), copy)
+    fit(copy)
+    found = verify(copy) or against_record.differences(copy, frames=FRAMES)
+    assert len(found) >= 1
+    assert not {name for name, _ in found} <= {DESCRIPTOR}, "what was changed is named"
+
+
+def test_what_was_built_is_what_the_record_makes(built, copy):
+    assert against_record.differences(built, frames=FRAMES, anew=False) == []
+    fit(copy)  # lays nothing out in another way
+    assert against_record.differences(copy, frames=FRAMES, anew=False) == []
+
+
+def test_the_row_of_a_changed_number_is_named(copy):
+    path = copy / "benchmark" / "scores.csv"
+    lines = path.read_bytes().split(b"\n")
+    lines[6] = lines[6].replace(b",81,80,", b",82,80,")
+    path.write_bytes(b"\n".join(lines))
+    fit(copy)
+    assert verify(copy) == []
+    ((name, text),) = against_record.differences(copy, frames=FRAMES, anew=False)
+    assert (name, text[:8]) == ("benchmark/scores.csv", "row 7 is")
+
+
+def test_samples_that_are_missing_and_another_version_are_said(copy):
+    ((name, text),) = against_record.differences(copy, frames=("pd-slit", "pd-orbit"))
+    assert (name, text) == ("frames/pd-orbit", "missing")
+    package = json.loads((copy / DESCRIPTOR).read_text("utf-8"))
+    (copy / DESCRIPTOR).write_text(json.dumps({**package, "version": "9.9"}))
+    ((name, text),) = against_record.differences(copy, frames=FRAMES)
+    assert name == DESCRIPTOR
+    assert text.startswith("of version '9.9'; here is ")

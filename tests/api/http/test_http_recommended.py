@@ -1,0 +1,94 @@
+"""Answers put together from pieces are the bytes of the document, whatever was asked before."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import pytest
+from pydantic_core import to_json
+
+from api.http import recommended
+from api.http.knowledge import Knowledge
+from api.http.recommended import KeptPieces, encoded_answer
+from benchmark.assessment.regret import drawn_requirements
+from registry.measured import Measurements
+from registry.ranking import SORTS
+from registry.recommendation import answered, recommend
+
+QUESTIONS, SEED = 300, 4100
+
+
+@pytest.fixture(scope="module")
+def known() -> Knowledge:
+    return Knowledge()
+
+
+def asked(number: int, drawn: Mapping[str, Any], known: Knowledge) -> dict[str, Any]:
+    """A question of every kind: with nothing, with properties, with what nothing meets."""
+    question = dict(drawn) if number % 11 else {}
+    if number % 7 == 0:
+        properties = list(known.facts.properties)
+        question["properties"] = [properties[number % len(properties)]]
+    if number % 13 == 0:
+        question["max_latency_us"] = float(number + 1)
+    if number % 17 == 0:
+        question["max_error_deg"] = 1e-6
+    return question
+
+
+def test_pieces_make_the_bytes_of_the_document(known: Knowledge) -> None:
+    """The oracle is the document that `recommend` gives as objects, encoded as a whole."""
+    blocked = 0
+    for number, drawn in enumerate(drawn_requirements(QUESTIONS, SEED, known.facts)):
+        question = asked(number, drawn, known)
+        shown = {"limit": (1, 5, 20, None)[number % 4], "calibrations": (1, 5, None)[number % 3]}
+        sort = SORTS[number % len(SORTS)]
+        found = answered(question, known.measured, sort=sort, facts=known.facts)
+        told = recommend(question, known.measured, sort=sort, facts=known.facts, **shown)
+        document = told.to_dict()
+        blocked += document["blocked"] is not None
+        assert encoded_answer(found, **shown) == to_json(document, inf_nan_mode="null"), question
+    assert 10 < blocked < QUESTIONS / 2
+
+
+def test_what_is_kept_is_bounded_and_changes_no_answer(
+    known: Knowledge, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(recommended, "MOST_BYTES", 3000)
+    measured = Measurements(known.measured.rows)
+    for number, drawn in enumerate(drawn_requirements(12, SEED + 1, known.facts)):
+        found = answered(drawn, measured, facts=known.facts)
+        told = recommend(drawn, known.measured, facts=known.facts)
+        assert encoded_answer(found) == to_json(told.to_dict(), inf_nan_mode="null"), number
+    kept = KeptPieces()
+    for number in range(100):
+        assert kept.keep(number, b"x" * 500) == b"x" * 500
+        assert kept.get(number) is not None
+        assert sum(kept.get(other) is not None for other in range(100)) < 10
+
+
+@pytest.mark.parametrize(
+    ("query", "status"),
+    [
+        ("limit=3&limit=3", 422),
+        ("task=Accuracy&task=Cost&task=Accuracy", 200),
+        ("task=", 422),
+        ("limit=", 422),
+        ("max_error_deg=1e-1&sort=measured", 200),
+        ("max_error_deg=%2B1", 422),
+        ("task=Accuracy&tasks=Cost", 400),
+        ("task=%ff", 400),
+        ("%74ask=Accuracy", 200),
+        ("format=json&format=csv", 422),
+    ],
+)
+def test_a_query_read_straight_is_read_as_fastapi_reads_it(atlas, query, status) -> None:
+    """A body of the same requirements goes through FastAPI."""
+    answer = atlas.get(f"/v1/recommendations?{query}")
+    assert answer.status_code == status
+    if status == 200:
+        body = answer.json()["requirements"]
+        sort = answer.json()["sort"]
+        posted = atlas.post("/v1/recommendations", json={**body, "sort": sort})
+        assert posted.content == answer.content
+    else:
+        assert answer.json()["errors"]
