@@ -147,11 +147,11 @@ def evidence_everywhere(spots, model):
                 -1,
             )
             kept = np.flatnonzero(partner >= 0)
-            if len(kept) < 2:
+            if 2 * len(kept) < len(spots):
                 break
             moved = spots[kept, :2] - places[partner[kept]]
             here = moved.mean(axis=0)
-        if len(kept) < 2:
+        if 2 * len(kept) < len(spots):  # far below any that explains the most of them
             continue
         squares = ((moved - here) ** 2).sum()
         margin = view[5] + view[6] * (1.0 + ((here - view[2:4]) ** 2).sum() / view[4] ** 2)
@@ -200,17 +200,17 @@ def test_what_is_read_is_what_trying_every_place_finds(cls):
 def test_spots_that_fill_the_tolerance_tell_no_place(cls):
     """Noise as wide as steps of the code: hardly any list is answered, and none wrongly."""
     model, rng = model_of(cls), np.random.default_rng(41)
-    displaced = cast(field(400, seed=9))
+    displaced = cast(field(200, seed=9))
     rows = lists(places_px(), displaced, model.spots)
     rows[:, :, :2] += np.where(rows[:, :, 2:] > 0, 0.7, 0.0) * rng.standard_normal(
         rows[:, :, :2].shape
     )
-    found = model.read(rows.reshape(400, -1))
+    found = model.read(rows.reshape(200, -1))
     off = np.hypot(*(found.displacement - displaced).T)
     assert not (off > 3.0).any()
     assert found.ambiguous.mean() > 0.3
     # the same spots where they belong
-    told = model.read(lists(places_px(), displaced, model.spots).reshape(400, -1)).displacement
+    told = model.read(lists(places_px(), displaced, model.spots).reshape(200, -1)).displacement
     assert np.isfinite(told[:, 0]).mean() > 0.97
 
 
