@@ -157,6 +157,35 @@ def updated(  # noqa: C901, PLR0912, PLR0915 - one pass, nothing allocated betwe
 
 
 @compiled
+def foretold(spread: Floats, innovation: Floats) -> tuple[Floats, Floats]:
+    """Squared innovation (B,) in units of its covariance (B, m, m), and its log-likelihood (B,)."""
+    count, m = innovation.shape
+    squared, likelihood = np.full(count, np.nan), np.full(count, np.nan)
+    root, white = np.zeros((m, m)), np.empty(m)
+    for b in range(count):
+        determinant, squares = 0.0, 0.0
+        for i in range(m):
+            for j in range(i + 1):
+                total = spread[b, i, j]
+                for k in range(j):
+                    total -= root[i, k] * root[j, k]
+                if i == j:
+                    root[i, i] = math.sqrt(total) if total > 0.0 else math.nan
+                    determinant += 2.0 * math.log(root[i, i])
+                else:
+                    root[i, j] = total / root[j, j]
+            total = innovation[b, i]
+            for k in range(i):
+                total -= root[i, k] * white[k]
+            white[i] = total / root[i, i]
+            squares += white[i] * white[i]
+        if math.isfinite(squares):
+            squared[b] = squares
+            likelihood[b] = -0.5 * (squares + determinant + m * math.log(2.0 * math.pi))
+    return squared, likelihood
+
+
+@compiled
 def gained(  # noqa: C901, PLR0912 - one pass, nothing allocated between
     covariance: Floats, crossed: Floats, spread: Floats, innovation: Floats
 ) -> tuple[Floats, Floats, Floats, Floats]:

@@ -29,7 +29,8 @@ class Belief:
     covariance : ndarray, shape (B, n, n)
         Of their errors.
     noise : ndarray, shape (B, m, m)
-        Covariance of readings as the filter takes it.
+        Covariance of readings as the filter takes it; of how many tell as much as one, the state
+        space knows.
     squared_innovation : ndarray, shape (B,)
         Of the last update, in units of its own covariance; NaN where nothing was read. Chi-square
         of m degrees of freedom where the state space is the system's.
@@ -60,6 +61,16 @@ def begun(space: StateSpace, states: Floats, covariance: Floats) -> Belief:
         nothing,
         np.ones(count),
     )
+
+
+def spread_over(noise: Floats, steps: Floats) -> Floats:
+    """Covariance (B, m, m) that white errors would have to tell as little as correlated ones.
+
+    A mean of many readings whose errors are correlated over some steps has as many times the
+    variance that it would have of white ones.
+    """
+    root = np.sqrt(steps)
+    return np.asarray(noise * (root[:, None] * root))
 
 
 class Filter(Protocol):
@@ -129,10 +140,13 @@ class ExtendedKalman:
         step, covariance, squared, likelihood = algebra.updated(
             belief.covariance,
             sensitivity,
-            noise,
+            spread_over(noise, space.correlated()),
             innovation,
             _estimated(space.errors, self.considered),
         )
+        if (space.correlated() > 1.0).any():  # a reading is as far off as readings are
+            spread = algebra.innovation_covariance(belief.covariance, sensitivity, noise)
+            squared, likelihood = algebra.foretold(spread, innovation)
         states = space.moved(belief.states, step)
         after = Belief(states, covariance, belief.noise, squared, likelihood, belief.weights)
         return self.learnt(space, after, read, known, sensitivity)
@@ -166,10 +180,14 @@ class AdaptiveKalman(ExtendedKalman):
         Readings over which the noise is averaged, above 1.
     least : float
         Share of the space's own variance below which none falls.
+    most : float
+        Multiple of it above which none rises: a reading that is taken for noise altogether would
+        never again tell that the estimate is off.
     """
 
     window: float = 50.0
     least: float = 1e-4
+    most: float = 16.0
 
     def learnt(
         self, space: StateSpace, after: Belief, read: Floats, known: Floats, sensitivity: Floats
@@ -180,9 +198,9 @@ class AdaptiveKalman(ExtendedKalman):
         left = residual[:, :, None] * residual[:, None, :]
         found = algebra.innovation_covariance(after.covariance, sensitivity, left)
         noise = after.noise + (found - after.noise) / self.window
-        floor = self.least * np.diagonal(space.measurement_noise())
+        own = np.diagonal(space.measurement_noise())
         place = np.arange(space.readings)
-        noise[:, place, place] = np.maximum(noise[:, place, place], floor)
+        noise[:, place, place] = np.clip(noise[:, place, place], self.least * own, self.most * own)
         noise[~heard] = after.noise[~heard]
         return replace(after, noise=noise)
 
@@ -229,6 +247,8 @@ class SigmaPointKalman:
         From 0 up.
     beta : float
         Weight added to the middle's in covariances; 2 suits a normal distribution.
+    considered : tuple of int
+        As `ExtendedKalman`.
 
     Examples
     --------
@@ -239,6 +259,7 @@ class SigmaPointKalman:
 
     kappa: float = 1.0
     beta: float = 2.0
+    considered: tuple[int, ...] = ()
 
     def weights(self, n: int) -> tuple[Floats, Floats]:
         """(2 n + 1,) of means and of covariances, the middle first."""
@@ -277,10 +298,18 @@ class SigmaPointKalman:
         seen = space.measured(points.reshape(-1, size), known).reshape(count, number, -1)
         mean, off = algebra.centred(seen, means)
         spread = algebra.crossed(off, off, spreads)
-        spread += belief.noise
         step, covariance, squared, likelihood = algebra.gained(
-            belief.covariance, algebra.crossed(errors, off, spreads), spread, read - mean
+            belief.covariance,
+            algebra.crossed(errors, off, spreads),
+            spread + spread_over(belief.noise, space.correlated()),
+            read - mean,
         )
+        if (space.correlated() > 1.0).any():
+            squared, likelihood = algebra.foretold(spread + belief.noise, read - mean)
+        if self.considered:  # what is known of them stays; of all the rest the gain is the best
+            kept = np.ix_(range(count), self.considered, self.considered)
+            covariance[kept] = belief.covariance[kept]
+            step[:, list(self.considered)] = 0.0
         states = space.moved(belief.states, step)
         return Belief(states, covariance, belief.noise, squared, likelihood, belief.weights)
 

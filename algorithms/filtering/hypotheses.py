@@ -24,6 +24,8 @@ class MultipleModels:
         Standard deviation of readings, over the space's own, of each hypothesis; positive.
     least : float
         Smallest probability.
+    considered : tuple of int
+        As `algorithms.filtering.filters.ExtendedKalman`.
 
     Examples
     --------
@@ -39,6 +41,7 @@ class MultipleModels:
 
     noise_scales: tuple[float, ...] = (0.25, 1.0, 4.0)
     least: float = 1e-6
+    considered: tuple[int, ...] = ()
 
     def begin(self, space: StateSpace, states: Floats, covariance: Floats) -> Belief:
         """Belief of all hypotheses, equally probable, those of a run beside each other."""
@@ -57,8 +60,11 @@ class MultipleModels:
     def update(self, space: StateSpace, belief: Belief, read: Floats, known: Floats) -> Belief:
         """Belief with readings (B, m), one row a run."""
         number = len(self.noise_scales)
-        after = ExtendedKalman().update(space, belief, np.repeat(read, number, axis=0), known)
-        told = after.log_likelihood.reshape(-1, number)
+        after = ExtendedKalman(self.considered).update(
+            space, belief, np.repeat(read, number, axis=0), known
+        )
+        # readings whose errors are correlated tell as much as fewer would
+        told = after.log_likelihood.reshape(-1, number) / space.correlated().mean()
         best = told.max(axis=1, keepdims=True)
         likelihood = np.where(np.isfinite(best), np.exp(told - best), 1.0)
         weights = after.weights.reshape(-1, number) * likelihood

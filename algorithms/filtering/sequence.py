@@ -15,7 +15,8 @@ from algorithms.calibration.calibrated import WORST_RESIDUAL
 from algorithms.calibration.quality import FitQuality, data_digest
 from algorithms.context import Context, as_context, complete
 from algorithms.contract import FeatureKind, Floats, Model, SensorGeometry, UnusableDataError
-from algorithms.filtering.drift import LEVEL, MOTION, Drift, Gyroscope
+from algorithms.filtering.drift import GAINS, HEAD_SHIFTS, LEVEL, MOTION, Drift, Gyroscope
+from algorithms.filtering.reading_noise import correlated_steps, heard
 from algorithms.inputs import (
     as_calibration_rows,
     as_features,
@@ -42,11 +43,15 @@ _STARTS = 256
 _LONGEST = 1.5
 #: Readings after which a series is answered: one alone is the static calibration's.
 _FEWEST_READ = 2
-#: Longest correlation of residuals that is looked for, in steps.
-_LAGS = 200
 _LEVEL = Drift(place=LEVEL, deviation=0.05, walk=5e-4)
-_HOUR_S = 3600.0
+_HOUR_S, _YEAR_S = 3600.0, 365.25 * 86_400.0
+#: Steps of correlation up to which residuals count as white.
+_WHITE = 2.0
+#: White noise that is taken for none, over the residuals' variance.
+_QUIET = 1e-6
 _ROOT_HOUR = _HOUR_S**0.5
+#: Of what has not aged: a covariance must have a root.
+_LEAST_AGED = 1e-9
 
 
 @dataclass(frozen=True)
@@ -98,6 +103,12 @@ class SunFilter(Model):
     angle_walk_deg_sqrt_h, bias_deg_h, bias_walk_deg_h_sqrt_h : float
         The gyroscope's data sheet, positive: angle random walk, bias when switched on, and what
         the bias moves in an hour.
+    reference_deg : float
+        1-sigma, about each axis, of a fixed turn of what told the calibration's directions,
+        positive: of a star tracker against the sensor.
+    gain_ageing_per_year, shift_ageing_per_year : float
+        1-sigma of what a year changes, positive: a face's gain against the others', and a spot's
+        offsets over the focal length.
     worst_deg : float
         1-sigma beyond which a direction is not answered, positive.
 
@@ -106,7 +117,12 @@ class SunFilter(Model):
     readings_ : FaceReadings or SpotReadings
         How the sensor reads a direction.
     noise_ : ndarray, shape (m,)
-        Variance of each reading: of the residuals, times the steps over which they are correlated.
+        Variance of each reading.
+    steps_ : ndarray, shape (m,)
+        Steps over which its errors are correlated: so many readings tell as much as one would of
+        errors that are white.
+    calibrated_s_ : float
+        Mean time of the calibration.
     starts_ : ndarray, shape (G, 3)
         Directions that the calibration saw.
     step_s_ : float
@@ -119,10 +135,15 @@ class SunFilter(Model):
     angle_walk_deg_sqrt_h: float = 0.15
     bias_deg_h: float = 10.0
     bias_walk_deg_h_sqrt_h: float = 0.5
+    reference_deg: float = 0.02
+    gain_ageing_per_year: float = 0.01
+    shift_ageing_per_year: float = 7.5e-4
     worst_deg: float = 10.0
 
     readings_: FaceReadings | SpotReadings = field(init=False, repr=False, compare=False)
     noise_: Floats = field(init=False, repr=False, compare=False)
+    steps_: Floats = field(init=False, repr=False, compare=False)
+    calibrated_s_: float = field(init=False, repr=False, compare=False)
     starts_: Floats = field(init=False, repr=False, compare=False)
     step_s_: float = field(init=False, repr=False, compare=False)
     quality_: FitQuality = field(init=False, repr=False, compare=False)
@@ -138,6 +159,9 @@ class SunFilter(Model):
             angle_walk_deg_sqrt_h=self.angle_walk_deg_sqrt_h,
             bias_deg_h=self.bias_deg_h,
             bias_walk_deg_h_sqrt_h=self.bias_walk_deg_h_sqrt_h,
+            reference_deg=self.reference_deg,
+            gain_ageing_per_year=self.gain_ageing_per_year,
+            shift_ageing_per_year=self.shift_ageing_per_year,
             worst_deg=self.worst_deg,
         )
 
@@ -160,9 +184,22 @@ class SunFilter(Model):
         """Parameters of the sensor in the state: the light's strength before faces."""
         return (_LEVEL,) if self.face_normals else ()
 
+    def uncertain(self, years: float) -> Sequence[Drift]:
+        """Parameters of the sensor that are considered, not estimated, so long after calibration.
+
+        What ages: gains of faces, offsets behind a spot.
+        """
+        if self.face_normals:
+            gain = max(self.gain_ageing_per_year * years, _LEAST_AGED)
+            return [Drift(GAINS + face, gain, 0.0) for face in range(len(self.face_normals))]
+        shift = max(self.shift_ageing_per_year * years, _LEAST_AGED)
+        return [Drift(place, shift, 0.0) for place in HEAD_SHIFTS[1:]]
+
     def considered(self) -> tuple[int, ...]:
-        """Which errors of the state are considered and not estimated; none."""
-        return ()
+        """Which errors of the state are considered: those of `uncertain`, and the head's turn."""
+        first, number = MOTION + len(self.drifts()), len(self.uncertain(0.0))
+        turn = first + number
+        return (*range(first, first + number), *range(turn, turn + 3))
 
     def columns(self) -> int:
         """One a face; two of a spot or balance."""
@@ -206,11 +243,18 @@ class SunFilter(Model):
         self.step_s_ = float(np.median(apart))
         if not self.step_s_ > 0:
             raise UnusableDataError(f"{by}: the calibration's samples must follow each other")
+        self.calibrated_s_ = float(told["time_s"].mean())
         size = float(np.abs(features).max())
-        variance = np.maximum((residuals**2).mean(axis=0), (1e-9 * size) ** 2)
-        self.noise_ = variance * correlated_steps(residuals)
+        least = (1e-9 * size) ** 2
+        self.noise_ = np.maximum((residuals**2).mean(axis=0), least)
+        self.steps_ = correlated_steps(residuals)
         chosen = np.linspace(0, len(sun) - 1, min(_STARTS, len(sun))).round().astype(int)
         self.starts_ = sun[chosen]
+        if (self.steps_ <= _WHITE).all():
+            gaps = np.diff(told["time_s"], prepend=-np.inf)
+            apart = np.where((gaps > 0) & (gaps <= _LONGEST * self.step_s_), gaps, np.inf)
+            quiet = np.maximum(_QUIET * self.noise_, least)
+            self.noise_ = heard(self, features, self._known(told), apart, quiet)
 
     def assess(self, features: Floats, sun: Floats, told: dict[str, Floats]) -> None:
         """Set `quality_`: UnusableDataError where the filter does not follow its calibration."""
@@ -254,8 +298,8 @@ class SunFilter(Model):
         usable &= np.where(usable, self.readings_.lit(found), 0.0) > 0
         return self._followed(found, told["time_s"], _known(told), usable)
 
-    def space(self) -> SunSpace:
-        """State space of the fitted sensor."""
+    def space(self, years: float = 0.0, noise: Floats | None = None) -> SunSpace:
+        """State space of the sensor so long after its calibration, of its noise or another."""
         from algorithms.filtering.sun_space import SunSpace  # noqa: PLC0415 - Numba
 
         gyroscope = Gyroscope(
@@ -263,12 +307,21 @@ class SunFilter(Model):
             float(np.radians(self.bias_deg_h / _HOUR_S)),
             float(np.radians(self.bias_walk_deg_h_sqrt_h / (_HOUR_S * _ROOT_HOUR))),
         )
-        return SunSpace(self.readings_, np.diag(self.noise_), gyroscope, self.drifts())
+        return SunSpace(
+            self.readings_,
+            np.diag(self.noise_ if noise is None else noise),
+            gyroscope,
+            (*self.drifts(), *self.uncertain(years)),
+            steps=self.steps_,
+            turn=float(np.radians(self.reference_deg)),
+        )
 
     def _followed(
         self, found: Floats, time_s: Floats, known: Floats, usable: NDArray[np.bool_]
     ) -> Track:
-        space, by = self.space(), self.filter()
+        away_s = float(np.abs(time_s[:1] - self.calibrated_s_).sum())
+        space, by = self.space(away_s / _YEAR_S), self.filter()
+        drifts = len(self.drifts()) + len(self.uncertain(0.0))
         known = known - np.array([0.0] * 6 + [self.readings_.middle_k])
         count = len(found)
         states = np.full((count, space.errors + 7), np.nan)
@@ -288,7 +341,8 @@ class SunFilter(Model):
                 read[row] = belief is not None
             elif usable[row] and belief is not None:
                 belief = by.update(space, belief, found[row : row + 1], known[row])
-                squared[row] = belief.squared_innovation[0]
+                likeliest = int(belief.weights.argmax())
+                squared[row] = belief.squared_innovation[likeliest]
                 read[row] = squared[row] == squared[row]  # not NaN
             if belief is not None:
                 best, covariance = by.estimate(space, belief)
@@ -299,8 +353,8 @@ class SunFilter(Model):
             read=read,
             squared_innovation=squared,
             series=np.cumsum(~follows) - int(count > 0 and not follows[0]),
-            drift=states[:, 12:],
-            drift_deviation=np.sqrt(variance[:, MOTION:]),
+            drift=states[:, 12 : 12 + drifts],
+            drift_deviation=np.sqrt(variance[:, MOTION : MOTION + drifts]),
             bias_deg_h=np.degrees(states[:, 9:12]) * _HOUR_S,
         )
 
@@ -314,6 +368,10 @@ class SunFilter(Model):
         held = track.read & (counted >= _FEWEST_READ) & (track.deviation_deg <= self.worst_deg)
         return np.where(held[:, None], track.sun, np.nan)
 
+    def _known(self, told: dict[str, Floats]) -> Floats:
+        """(N, 7) what states and readings go by, warmth counted from the calibration's middle."""
+        return np.asarray(_known(told) - np.array([0.0] * 6 + [self.readings_.middle_k]))
+
     def _explained(self, sun: Floats, known: Floats) -> Floats:
         """Give readings (n, m) of known Suns."""
         from algorithms.filtering.sun_space import SunSpace  # noqa: PLC0415 - Numba
@@ -323,25 +381,6 @@ class SunFilter(Model):
         known = known - np.array([0.0] * 6 + [self.readings_.middle_k])
         rows = [space.measured(states[n : n + 1], known[n]) for n in range(len(sun))]
         return np.concatenate(rows)
-
-
-def correlated_steps(residuals: Floats) -> Floats:
-    """Count steps (m,) over which residuals (n, m) are correlated, at least 1.
-
-    ``1 + 2 sum rho_k`` up to where the correlation has fallen to a twentieth: a mean over many
-    samples has this many times the variance that it would have of white ones.
-    """
-    count, number = residuals.shape
-    steps = np.ones(number)
-    for m in range(number):
-        r = residuals[:, m] - residuals[:, m].mean()
-        power = float((r**2).sum())
-        for lag in range(1, min(_LAGS, count // 4)):
-            rho = float((r[lag:] * r[:-lag]).sum()) / power if power > 0 else 0.0
-            if rho < 0.05:
-                break
-            steps[m] += 2.0 * rho
-    return steps
 
 
 def _known(told: dict[str, Floats]) -> Floats:

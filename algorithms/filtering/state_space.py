@@ -52,6 +52,10 @@ class StateSpace(Protocol):
         """(m, m) covariance R of readings."""
         ...
 
+    def correlated(self) -> Floats:
+        """(m,) steps over which errors of readings are correlated, 1 of white ones."""
+        ...
+
     def moved(self, states: Floats, errors: Floats) -> Floats:
         """States (B, S) with errors (B, n) added."""
         ...
@@ -126,6 +130,10 @@ class LinearStateSpace:
     def measurement_noise(self) -> Floats:
         """R."""
         return self.noise
+
+    def correlated(self) -> Floats:
+        """White."""
+        return np.ones(len(self.noise))
 
     def moved(self, states: Floats, errors: Floats) -> Floats:
         """Their sum."""

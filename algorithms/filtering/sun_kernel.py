@@ -120,6 +120,45 @@ def moved(states: Floats, errors: Floats) -> Floats:
 
 
 @compiled
+def headed(states: Floats, first: int) -> Floats:
+    """States (B, S) as a head sees them that is turned by their three numbers from `first` on."""
+    out = states.copy()
+    for b in range(len(states)):
+        x, y, z = states[b, first], states[b, first + 1], states[b, first + 2]
+        squared = x * x + y * y + z * z
+        if squared == 0.0:
+            continue
+        angle = math.sqrt(squared)
+        if angle > _SMALL:
+            sine, versine = math.sin(angle) / angle, (1.0 - math.cos(angle)) / squared
+        else:
+            sine, versine = 1.0 - squared / 6.0, 0.5 - squared / 24.0
+        for start in range(0, 9, 3):
+            u, v, w = states[b, start], states[b, start + 1], states[b, start + 2]
+            cu, cv, cw = y * w - z * v, z * u - x * w, x * v - y * u
+            out[b, start] = u + sine * cu + versine * (y * cw - z * cv)
+            out[b, start + 1] = v + sine * cv + versine * (z * cu - x * cw)
+            out[b, start + 2] = w + sine * cw + versine * (x * cv - y * cu)
+    return out
+
+
+@compiled
+def heading(states: Floats, slopes: Floats, first: int) -> None:
+    """Write into `slopes` (B, m, n) how readings change with the head's small turns.
+
+    A turn about an axis moves the direction by their cross product; by the axes across the
+    direction, ``a x s = (a.e2) e1 - (a.e1) e2``.
+    """
+    for b in range(len(states)):
+        for i in range(slopes.shape[1]):
+            for k in range(3):
+                # (k x s) . e1 = k . (s x e1) = k . e2, and (k x s) . e2 = -k . e1
+                slopes[b, i, first - 7 + k] = (
+                    slopes[b, i, 0] * states[b, 3 + k] - slopes[b, i, 1] * states[b, k]
+                )
+
+
+@compiled
 def away(states: Floats, origins: Floats) -> Floats:
     """Errors (B, n) that take origins (B, S) to states, as `moved` adds them."""
     count, n = len(states), states.shape[1] - 7

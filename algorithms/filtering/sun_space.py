@@ -16,13 +16,16 @@ from algorithms.filtering.readings import Readings
 _DIRECTION = slice(6, 9)
 #: Of the direction, rad, before the first reading; and steps towards what explains it best.
 _FIRST_RAD, _STEPS = 0.5, 6
+#: Standard deviations of a chi-square beyond which a reading is not explained.
+_FAR = 5.0
 
 
 class SunSpace:
     """State space of a Sun sensor on a body whose turning a gyroscope tells.
 
     ``s' = exp(-[(w - b) dt]) s``, bias and parameters wander, readings are those learnt. States
-    are (B, 12 + p), errors (B, 5 + p): see `algorithms.filtering.sun_kernel`.
+    are (B, 12 + p), errors (B, 5 + p): see `algorithms.filtering.sun_kernel`. Behind the sensor's
+    parameters stands a turn of the head, where there is one: ``z = h(exp([d]) s) + v``.
 
     Parameters
     ----------
@@ -33,20 +36,34 @@ class SunSpace:
     gyroscope : Gyroscope
         Its data sheet.
     drifts : sequence of Drift
-        The p numbers of the sensor that are in the state.
+        Numbers of the sensor that are in the state.
+    steps : ndarray, shape (m,), optional
+        Over which errors of readings are correlated; white by default.
+    turn : float
+        1-sigma, rad, of the head's turn about each axis; 0 where there is none.
     """
 
     def __init__(
-        self, readings: Readings, noise: Floats, gyroscope: Gyroscope, drifts: Sequence[Drift]
+        self,
+        readings: Readings,
+        noise: Floats,
+        gyroscope: Gyroscope,
+        drifts: Sequence[Drift],
+        *,
+        steps: Floats | None = None,
+        turn: float = 0.0,
     ) -> None:
         self._readings, self._noise = readings, noise
         self._gyroscope = gyroscope
         self._chosen = np.array([drift.place for drift in drifts], dtype=np.float64)
-        self.errors = MOTION + len(drifts)
+        turns = [turn] * 3 if turn else []
+        self._steps = np.ones(len(noise)) if steps is None else np.asarray(steps)
+        self._turn = MOTION + len(drifts) if turn else 0
+        self.errors = MOTION + len(drifts) + len(turns)
         first = [_FIRST_RAD] * 2 + [gyroscope.bias] * 3 + [drift.deviation for drift in drifts]
-        self._first = np.diag(np.square(first))
+        self._first = np.diag(np.square([*first, *turns]))
         walks = [0.0] * 2 + [gyroscope.bias_walk] * 3 + [drift.walk for drift in drifts]
-        self._walks = np.square(walks)
+        self._walks = np.square([*walks, *np.zeros(len(turns))])
         self._step: tuple[float, Floats] | None = None
 
     @property
@@ -78,15 +95,26 @@ class SunSpace:
 
     def measured(self, states: Floats, known: Floats) -> Floats:
         """Give readings without noise."""
-        return self._readings.at(states, self._chosen, known)[0]
+        return self._read(states, known)[0]
 
     def sensitivity(self, states: Floats, known: Floats) -> Floats:
         """Jacobian of `measured`."""
-        return self._readings.at(states, self._chosen, known)[1]
+        return self._read(states, known)[1]
+
+    def _read(self, states: Floats, known: Floats) -> tuple[Floats, Floats]:
+        seen = motion.headed(states, self._turn + 7) if self._turn else states
+        values, slopes = self._readings.at(seen, self._chosen, known)
+        if self._turn:
+            motion.heading(seen, slopes, self._turn + 7)
+        return values, slopes
 
     def measurement_noise(self) -> Floats:
         """Covariance of readings."""
         return self._noise
+
+    def correlated(self) -> Floats:
+        """Give the steps over which errors of readings are correlated."""
+        return self._steps
 
     def moved(self, states: Floats, errors: Floats) -> Floats:
         """States with errors added."""
@@ -117,6 +145,8 @@ class SunSpace:
     ) -> Belief | None:
         """Belief after a first reading (m,), from the best of directions (G, 3); None without one.
 
+        A reading that no direction explains begins nothing: squares of what is left are chi-square.
+
         Gauss-Newton steps of the update, all from the same prior (iterated Kalman update).
         """
         scale = np.sqrt(np.diagonal(self._noise))
@@ -127,18 +157,21 @@ class SunSpace:
             return None
         first = tried[[int(np.nanargmin(cost))]]
         state, step = first, np.zeros((1, self.errors))
-        noise = self._noise[None]
+        noise = np.diag(np.diagonal(self._noise) * self._steps)[None]
         estimated = np.ones(self.errors)
         estimated[list(considered)] = 0.0
         prior = self._first[None].copy()
         covariance = prior
         for _ in range(_STEPS):
-            values, slopes = self._readings.at(state, self._chosen, known)
+            values, slopes = self._read(state, known)
             innovation = read - values + (slopes @ step[0])
             if not np.isfinite(innovation).all():
                 return None
             step, covariance, _, _ = algebra.updated(prior, slopes, noise, innovation, estimated)
             state = self.moved(first, step)
+        left = (read - self.measured(state, known)[0]) ** 2 / np.diagonal(noise[0])
+        if not left.sum() <= len(left) + _FAR * np.sqrt(2.0 * len(left)):
+            return None
         return by.begin(self, state, covariance)
 
     @staticmethod

@@ -1,4 +1,4 @@
-"""Which part of a coded mask a list of spots shows: hypotheses, rivals, the place of the mask.
+"""Which part of a coded mask a list of spots shows: hypotheses, and the one of fewest faults.
 
 A hypothesis is a displacement of the mask on the detector. It explains a spot that falls where it
 has an aperture; its faults are the spots it leaves unexplained and the apertures in view that it
@@ -28,8 +28,6 @@ Indices = NDArray[np.int64]
 Room = tuple[Floats, Indices, Indices]
 Code = tuple[Floats, Indices, Floats, Indices, Indices, Floats]
 
-#: What is said of a list: read, nothing to read, several places that it may show.
-READ, NOTHING, SEVERAL = 0, 1, 2
 #: Pairs of neighbouring spots that are looked up, the rarest spacings first.
 _PAIRS = 10
 #: Spots that the correlation's peak is looked for from.
@@ -39,7 +37,7 @@ _HIGH = 1
 
 
 @compiled
-def _leave(  # noqa: PLR0917 - Numba takes no keyword-only ones
+def leave(  # noqa: PLR0917 - Numba takes no keyword-only ones
     spots: Floats, count: int, room: Room, number: int, most: int, slack: int, code: Code
 ) -> None:
     """Write how many spots each of the first `number` hypotheses leaves unexplained.
@@ -73,7 +71,7 @@ def _leave(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def _partners(spots: Floats, count: int, at: Floats, code: Code, partners: Indices) -> int:
+def partners_of(spots: Floats, count: int, at: Floats, code: Code, partners: Indices) -> int:
     """Write each spot's aperture by one hypothesis, or -1; return how many have none."""
     places, cells, grid, _, _, _ = code
     left = 0
@@ -89,20 +87,24 @@ def _partners(spots: Floats, count: int, at: Floats, code: Code, partners: Indic
             and abs(spots[s, 2] - places[a, 2] - at[2]) <= grid[4]
         ):
             a = -1
+        for earlier in range(s if a >= 0 else 0):  # a hole casts one spot: a piece tells nothing
+            if partners[earlier] == a:
+                a = -1
+                break
         partners[s] = a
         left += a < 0
     return left
 
 
 @compiled
-def _dark(  # noqa: PLR0917 - Numba takes no keyword-only ones
+def dark(  # noqa: PLR0917 - Numba takes no keyword-only ones
     count: int, at: Floats, most: int, code: Code, view: Floats, partners: Indices
 ) -> int:
     """Apertures well in view of which no spot is seen; stops after more than `most`."""
     places = code[0]
     slope = ((at[0] - view[2]) ** 2 + (at[1] - view[3]) ** 2) / view[4] ** 2
     margin = view[5] + view[6] * (1.0 + slope)
-    dark = 0
+    closed = 0
     first, last = 0, places.shape[0]
     while first < last:  # the first that is not above the view
         middle = (first + last) // 2
@@ -118,14 +120,15 @@ def _dark(  # noqa: PLR0917 - Numba takes no keyword-only ones
         seen = False
         for s in range(count):
             seen |= partners[s] == a
-        dark += not seen
-        if dark > most:
+        closed += not seen
+        if closed > most:
             break
-    return dark
+    return closed
 
 
 @compiled
-def _near(spots: Floats, i: int, j: int, reach: float) -> bool:
+def near(spots: Floats, i: int, j: int, reach: float) -> bool:
+    """Whether two spots are within reach of each other along both axes."""
     return bool(abs(spots[j, 0] - spots[i, 0]) <= reach and abs(spots[j, 1] - spots[i, 1]) <= reach)
 
 
@@ -139,7 +142,17 @@ def _entries(spots: Floats, i: int, j: int, line: int, code: Code) -> tuple[int,
 
 
 @compiled
-def _named(  # noqa: PLR0917 - Numba takes no keyword-only ones
+def spacings(spots: Floats, i: int, j: int, code: Code) -> int:
+    """Count the mask's pairs that may be as far apart as two spots."""
+    number = 0
+    for line in range(3):
+        first, last = _entries(spots, i, j, line, code)
+        number += last - first
+    return number
+
+
+@compiled
+def named(  # noqa: PLR0917 - Numba takes no keyword-only ones
     spots: Floats, i: int, j: int, own: int, code: Code, trials: Floats
 ) -> int:
     """Write the hypotheses that the spacing of two spots names, but `own` aperture's; how many."""
@@ -164,7 +177,7 @@ def _named(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def _of_one(spots: Floats, i: int, own: int, code: Code, trials: Floats) -> int:
+def of_one(spots: Floats, i: int, own: int, code: Code, trials: Floats) -> int:
     """Write the hypotheses that one spot allows, but `own` aperture's; return how many."""
     number = 0
     for a in range(code[0].shape[0]):
@@ -181,12 +194,9 @@ def _rarest(spots: Floats, count: int, code: Code, rare: Indices) -> int:
     found = 0
     for i in range(count):
         for j in range(i + 1, count):
-            if not _near(spots, i, j, code[5][0]):
+            if not near(spots, i, j, code[5][0]):
                 continue
-            number = 0
-            for line in range(3):
-                first, last = _entries(spots, i, j, line, code)
-                number += last - first
+            number = spacings(spots, i, j, code)
             if number == 0 or (found == len(rare) and number >= rare[found - 1, 0]):
                 continue
             k = min(found, len(rare) - 1)
@@ -201,7 +211,8 @@ def _rarest(spots: Floats, count: int, code: Code, rare: Indices) -> int:
 
 
 @compiled
-def _room(lists: Floats, code: Code) -> Room:
+def room_for(lists: Floats, code: Code) -> Room:
+    """Room for as many hypotheses as apertures."""
     return (
         np.empty((len(code[0]), 3)),
         np.empty(len(code[0]), dtype=np.int64),
@@ -224,13 +235,13 @@ def _improved(  # noqa: PLR0917 - Numba takes no keyword-only ones
     """Faults of the best hypothesis after those in `room`; `found` is where it is."""
     trials, left, partners = room
     fewest = min(most, best - 1)
-    _leave(spots, count, room, number, fewest, 0, code)
+    leave(spots, count, room, number, fewest, 0, code)
     for h in range(number):
         fewest = min(fewest, left[h])
     for h in range(number):
         if left[h] == fewest and fewest < best:
-            _partners(spots, count, trials[h], code, partners)
-            faults = fewest + _dark(count, trials[h], best - fewest, code, view, partners)
+            partners_of(spots, count, trials[h], code, partners)
+            faults = fewest + dark(count, trials[h], best - fewest, code, view, partners)
             if faults < best:
                 best = faults
                 found[:] = trials[h]
@@ -252,7 +263,7 @@ def search_spacings(  # noqa: PLR0917 - Numba takes no keyword-only ones
     Of places that explain at least `share` of the spots; NaN where there is none.
     """
     rare = np.empty((_PAIRS, 3), dtype=np.int64)
-    room = _room(lists, code)
+    room = room_for(lists, code)
     for k in range(lists.shape[0]):
         spots, count = lists[k], counts[k]
         best = count + len(code[0])
@@ -261,7 +272,7 @@ def search_spacings(  # noqa: PLR0917 - Numba takes no keyword-only ones
         for pair in range(_rarest(spots, count, code, rare)):
             if best == 0:
                 break
-            number = _named(spots, rare[pair, 1], rare[pair, 2], -1, code, room[0])
+            number = named(spots, rare[pair, 1], rare[pair, 2], -1, code, room[0])
             best = _improved(spots, count, room, number, most, code, view, best, found[k])
         faults[k] = best
 
@@ -282,7 +293,7 @@ def search_correlation(  # noqa: PLR0917 - Numba takes no keyword-only ones
     where a spot falls on an aperture: it is looked at where one of the first few spots does, until
     a higher peak would explain one of those before. As `search_spacings` otherwise.
     """
-    room = _room(lists, code)
+    room = room_for(lists, code)
     for k in range(lists.shape[0]):
         spots, count = lists[k], counts[k]
         best = count + len(code[0])
@@ -292,106 +303,6 @@ def search_correlation(  # noqa: PLR0917 - Numba takes no keyword-only ones
             for s in range(min(count, _ANCHORS)):
                 if best <= s:
                     break
-                number = _of_one(spots, s, -1, code, room[0])
+                number = of_one(spots, s, -1, code, room[0])
                 best = _improved(spots, count, room, number, most, code, view, best, found[k])
         faults[k] = best
-
-
-@compiled
-def _paired(spots: Floats, count: int, own: Indices, most: int, reach: float) -> Indices:
-    """Partner of each explained spot in sets that share none, more than `most` sets; itself alone.
-
-    -1 for a spot in no set, and throughout where there are not so many sets.
-    """
-    mates = np.full(count, -1, dtype=np.int64)
-    sets = 0
-    for i in range(count):
-        if own[i] < 0 or mates[i] >= 0:
-            continue
-        mates[i] = i
-        sets += 1
-        for j in range(i + 1, count):
-            if own[j] >= 0 and mates[j] < 0 and _near(spots, i, j, reach):
-                mates[i] = j
-                mates[j] = i
-                break
-    if sets > most:
-        return mates
-    alone = 0
-    for i in range(count):
-        if own[i] >= 0:
-            mates[i] = i
-            alone += 1
-    if alone <= most:
-        mates[:] = -1
-    return mates
-
-
-@compiled
-def _rivalled(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    spots: Floats, count: int, own: Indices, most: int, code: Code, view: Floats, room: Room
-) -> bool:
-    """Whether another place has at most `most` faults, or may have.
-
-    Exactly: of more than `most` sets of explained spots that share none, such a place explains
-    one whole. Sets are two neighbours, whose spacing the table has, or a spot alone.
-    """
-    trials, left, partners = room
-    mates = _paired(spots, count, own, most, code[5][0])
-    sets = 0
-    for i in range(count):
-        if sets > most:
-            return False
-        if mates[i] < i:  # no set, or one that was looked at
-            continue
-        sets += 1
-        if mates[i] == i:
-            number = _of_one(spots, i, own[i], code, trials)
-        else:
-            number = _named(spots, i, mates[i], own[i], code, trials)
-        _leave(spots, count, room, number, most, most, code)
-        for h in range(number):
-            if left[h] <= most:
-                _partners(spots, count, trials[h], code, partners)
-                dark = _dark(count, trials[h], most - left[h], code, view, partners)
-                if left[h] + dark <= most:
-                    return True
-    return sets <= most
-
-
-@compiled
-def decide(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    lists: Floats,
-    counts: Indices,
-    code: Code,
-    view: Floats,
-    rules: tuple[int, float, int],
-    found: Floats,
-    faults: Indices,
-    partners: Indices,
-    verdicts: Indices,
-) -> None:
-    """Keep of the best hypotheses those that nothing rivals.
-
-    `rules`: spots a place must explain; share of the spots, and of the apertures in view, that it
-    must; how many times its faults and one every other place must have. `found` (N, 3) and `faults`
-    (N,) are a search's. `partners` (N, K) receives the aperture of each spot, -1 for none;
-    `verdicts` (N,) what is said of the list.
-    """
-    agreeing, share, clear = rules
-    room = _room(lists, code)
-    for k in range(lists.shape[0]):
-        spots, count, own = lists[k], counts[k], partners[k]
-        own[:] = -1
-        verdicts[k] = NOTHING
-        if math.isnan(found[k, 0]):
-            continue
-        explained = count - _partners(spots, count, found[k], code, own)
-        lit = explained + faults[k] - (count - explained)
-        verdicts[k] = READ
-        if explained < max(float(agreeing), share * count, share * lit):
-            verdicts[k] = NOTHING
-        elif _rivalled(spots, count, own, clear * (faults[k] + 1) - 1, code, view, room):
-            verdicts[k] = SEVERAL
-        if verdicts[k] != READ:
-            own[:] = -1

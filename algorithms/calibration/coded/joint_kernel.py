@@ -15,7 +15,7 @@ _LEAST_PX = 0.01
 
 
 @compiled
-def joint(  # noqa: PLR0917 - Numba takes no keyword-only ones
+def joint(  # noqa: C901, PLR0917 - one pass over spots; positional for Numba
     lists: Floats,
     places: Floats,
     partners: NDArray[np.int64],
@@ -26,9 +26,11 @@ def joint(  # noqa: PLR0917 - Numba takes no keyword-only ones
     """Write each list's displacement (N, 2): the mean of spot less place, NaN for none.
 
     Spots farther than `worst` times the median distance from the median, an axis at a time taken,
-    lose their partner (N, K); where fewer than `agreeing` are left there is none.
+    lose their partner (N, K), unless fewer than `agreeing` would be left. There is none where
+    fewer have a partner.
     """
     room = np.empty((3, lists.shape[1]))
+    told = np.empty(lists.shape[1], dtype=np.int64)
     for k in range(lists.shape[0]):
         own = partners[k]
         found[k] = math.nan
@@ -45,6 +47,7 @@ def joint(  # noqa: PLR0917 - Numba takes no keyword-only ones
         y = np.median(room[1, :n])
         for m in range(n):
             room[2, m] = math.hypot(room[0, m] - x, room[1, m] - y)
+        told[:] = own
         reach = worst * max(np.median(room[2, :n]), _LEAST_PX)
         across, along, kept, n = 0.0, 0.0, 0, 0
         for s in range(lists.shape[1]):
@@ -57,8 +60,13 @@ def joint(  # noqa: PLR0917 - Numba takes no keyword-only ones
             else:
                 own[s] = -1
             n += 1
-        if kept < agreeing:
-            own[:] = -1
-            continue
+        if kept < agreeing:  # of so few, two that happen to agree do not make the third wrong
+            across, along, kept = 0.0, 0.0, 0
+            for s in range(lists.shape[1]):
+                if told[s] >= 0:
+                    across += lists[k, s, 0] - places[told[s], 0]
+                    along += lists[k, s, 1] - places[told[s], 1]
+                    kept += 1
+            own[:] = told
         found[k, 0] = across / kept
         found[k, 1] = along / kept

@@ -7,7 +7,7 @@ from abc import abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import NamedTuple, Self
+from typing import TYPE_CHECKING, NamedTuple, Self, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -25,6 +25,9 @@ from algorithms.contract import (
 )
 from algorithms.inputs import as_features, require_positive
 from algorithms.spot_lists import SPOT_COLUMNS, detector_size_px, spots_listed
+
+if TYPE_CHECKING:
+    from algorithms.calibration.coded.evidence_kernel import Noise
 
 NEEDS = (
     "focal_length_mm",
@@ -55,6 +58,15 @@ _WORST = 4.2
 _ASTRAY_DEG = 2.0
 #: Turns of a mask that a calibration looks for where the drawing's is not it, degrees.
 _TURNS = tuple(sign * step / 4.0 for step in range(1, 13) for sign in (1, -1))
+#: A design's tolerance is so many standard deviations of a spot; it is known as well as from so
+#: many degrees of freedom. One list in so many is of a noise that the design does not tell: of a
+#: wider deviation, known as from few.
+_DEVIATIONS, _FREEDOM = 5.0, 30.0
+_WIDE_DEVIATIONS, _WIDE_FREEDOM, _NOISY = 2.0, 4.0, 1e4
+#: Spots of noisy lists may lie so many tolerances off.
+_WIDEST = 4.0
+#: One spot in so many is stray light, and one aperture in so many closed or not seen.
+_STRAY, _CLOSED = 100.0, 5.0
 #: Share of the calibration samples whose code must be read.
 _ENOUGH = 0.5
 #: Rounds of reading the code and placing the apertures.
@@ -86,7 +98,9 @@ class _Drawn(NamedTuple):
     widths: Floats  # (A,)
     reach: float
     tolerance: float
+    widest: float
     view: Floats  # (7,)
+    noise: tuple[float, ...]
 
 
 @dataclass
@@ -107,7 +121,7 @@ class CodedMask(ForwardModel):
     size_tolerance: float | None = None
     half_fov_deg: float | None = None
     agreeing: int = 3
-    clear: int = 2
+    odds: float = 1e4
     share: float = 0.5
 
     turn_: float = field(init=False, repr=False, compare=False)
@@ -129,7 +143,6 @@ class CodedMask(ForwardModel):
             width_px=self.size_px[0],
             height_px=self.size_px[1],
             tolerance_px=self.tolerance_px,
-            clear=self.clear,
         )
         for name in ("spots", "agreeing"):
             if getattr(self, name) < 3:
@@ -138,6 +151,8 @@ class CodedMask(ForwardModel):
             raise ValueError(f"{by}: half_fov_deg must be in (0, 90); got {self.half_fov_deg!r}")
         if not 0.0 < self.share <= 1.0:
             raise ValueError(f"{by}: share must be in (0, 1]; got {self.share!r}")
+        if not 1.0 <= self.odds < math.inf:
+            raise ValueError(f"{by}: odds must be finite and at least 1; got {self.odds!r}")
         if self.size_tolerance is not None:
             require_positive(by, size_tolerance=self.size_tolerance)
         for layer in self.layers:
@@ -282,7 +297,7 @@ class CodedMask(ForwardModel):
 
     def _read(self, features: Floats, places: Floats) -> CodeReading:
         from algorithms.calibration.coded import (  # noqa: PLC0415 - Numba, at first use
-            identity_kernel,
+            evidence_kernel,
             joint_kernel,
             table,
         )
@@ -302,9 +317,11 @@ class CodedMask(ForwardModel):
         faults, verdicts = np.empty((2, len(lists)), dtype=np.int64)
         partners = np.empty(lists.shape[:2], dtype=np.int64)
         self.search()(lists, counts, code, drawn.view, self.share, found, faults)
-        rules = (self.agreeing, self.share, self.clear)
-        identity_kernel.decide(
-            lists, counts, code, drawn.view, rules, found, faults, partners, verdicts
+        code, order = table.code_of(places, drawn.widths, drawn.reach, drawn.widest, size)
+        noise = cast("Noise", (*drawn.noise[:8], math.log(self.odds), *drawn.noise[8:]))
+        rules = (self.agreeing, self.share)
+        evidence_kernel.decide(
+            lists, counts, code, drawn.view, rules, noise, found, partners, verdicts
         )
         apertures = np.where(partners >= 0, order[partners], -1)
         displacement = found[:, :2].copy()
@@ -314,7 +331,7 @@ class CodedMask(ForwardModel):
             off = np.abs(displacement - np.array(self.centre_px)).max(axis=1)
             beyond = off > edge * self.focal_length_mm / self.pixel_pitch_mm
             displacement[beyond], apertures[beyond] = np.nan, -1
-        return CodeReading(displacement, apertures, verdicts == identity_kernel.SEVERAL)
+        return CodeReading(displacement, apertures, verdicts == evidence_kernel.SEVERAL)
 
     @cached_property
     def _drawn(self) -> _Drawn:
@@ -324,12 +341,27 @@ class CodedMask(ForwardModel):
         least, most = table.neighbours_px(rows[:, :2])
         focal = self.focal_length_mm / self.pixel_pitch_mm
         rim, sun = rows[:, 2].max() / 2.0 + _RIM_PX, _SOLAR_DIAMETER * focal / 2.0
+        tolerance = min(self.tolerance_px, least / 6.0)
+        area = math.log(self.size_px[0] * self.size_px[1])
         return _Drawn(
             rows[:, :2],
             rows[:, 2].copy(),
             _REACH * most,
-            min(self.tolerance_px, least / 6.0),
+            tolerance,
+            min(_WIDEST * tolerance, least / 6.0),
             np.array([*self.size_px, *self.centre_px, focal, rim, sun]),
+            (
+                _FREEDOM,
+                (tolerance / _DEVIATIONS) ** 2,
+                -math.log1p(-1.0 / _NOISY),
+                _WIDE_FREEDOM,
+                (tolerance / _WIDE_DEVIATIONS) ** 2,
+                math.log(_NOISY),
+                area + math.log(_STRAY),
+                math.log(_CLOSED),
+                math.log(float(np.prod(np.ptp(rows[:, :2], axis=0) + self.size_px))),
+                area,
+            ),
         )
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 from algorithms.contract import AboutModel, FeatureKind
-from algorithms.filtering.drift import EARTH, GAINS, HEAD_SHIFTS, MOTION, Drift
+from algorithms.filtering.drift import EARTH, GAINS, HEAD_SHIFTS, Drift
 from algorithms.filtering.sequence import CONTEXT, SunFilter
 from algorithms.inputs import require_positive
 
@@ -33,6 +33,12 @@ class ConsiderKalmanFilter(SunFilter):
         Standard deviation of its bias when switched on, positive.
     bias_walk_deg_h_sqrt_h : float
         Of what its bias moves in an hour, positive.
+    reference_deg : float
+        1-sigma, about each axis, of a fixed turn of what told the calibration's directions,
+        positive.
+    gain_ageing_per_year, shift_ageing_per_year : float
+        1-sigma of what a year changes, positive: a face's gain against the others', and a spot's
+        offsets over the focal length.
     worst_deg : float
         1-sigma of a direction beyond which it is not answered, positive.
     gain_deviation : float
@@ -48,6 +54,10 @@ class ConsiderKalmanFilter(SunFilter):
         How the sensor reads a direction.
     noise_ : ndarray, shape (m,)
         Variance of each reading.
+    steps_ : ndarray, shape (m,)
+        Steps over which its errors are correlated.
+    calibrated_s_ : float
+        Mean time of the calibration.
     starts_ : ndarray, shape (G, 3)
         Directions that the calibration saw.
     step_s_ : float
@@ -70,7 +80,8 @@ class ConsiderKalmanFilter(SunFilter):
 
     State: the Sun's direction in the body frame, the gyroscope's bias and, before faces, the
     light's strength; ``s' = exp(-[(w - b) dt]) s``, ``z = h(s) + v`` with h as the calibration
-    found it, warmth and the Earth's light by nadir included.
+    found it, warmth and the Earth's light by nadir included. The turn of the calibration's
+    reference is considered, not estimated, and so is what ages.
     ``K = P H' S^-1`` with the rows of what is considered set to nothing; Joseph's form.
 
     Shapes: signals (N, K), or spots or balances (N, 2), in the order of time, with the context's
@@ -137,18 +148,11 @@ class ConsiderKalmanFilter(SunFilter):
         """Leave what is considered as it is."""
         from algorithms.filtering.filters import ExtendedKalman  # noqa: PLC0415 - Numba
 
-        return ExtendedKalman(considered=self.considered())
+        return ExtendedKalman(self.considered())
 
-    def drifts(self) -> Sequence[Drift]:
-        """Give what is considered, behind the light's strength."""
-        return (*super().drifts(), *self._uncertain())
-
-    def considered(self) -> tuple[int, ...]:
-        """All of the sensor's parameters but the light's strength."""
-        first = MOTION + len(super().drifts())
-        return tuple(range(first, first + len(self._uncertain())))
-
-    def _uncertain(self) -> tuple[Drift, ...]:
+    def uncertain(self, years: float) -> Sequence[Drift]:
+        """Consider gains and the Earth, or focal length and offsets, however long ago."""
+        del years
         faces = len(self.face_normals)
         if faces:
             gains = (Drift(GAINS + face, self.gain_deviation, 0.0) for face in range(faces))

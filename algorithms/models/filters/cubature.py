@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, ClassVar
 
 from algorithms.contract import AboutModel, FeatureKind
@@ -29,6 +29,12 @@ class CubatureKalmanFilter(SunFilter):
         Standard deviation of its bias when switched on, positive.
     bias_walk_deg_h_sqrt_h : float
         Of what its bias moves in an hour, positive.
+    reference_deg : float
+        1-sigma, about each axis, of a fixed turn of what told the calibration's directions,
+        positive.
+    gain_ageing_per_year, shift_ageing_per_year : float
+        1-sigma of what a year changes, positive: a face's gain against the others', and a spot's
+        offsets over the focal length.
     worst_deg : float
         1-sigma of a direction beyond which it is not answered, positive.
 
@@ -38,6 +44,10 @@ class CubatureKalmanFilter(SunFilter):
         How the sensor reads a direction.
     noise_ : ndarray, shape (m,)
         Variance of each reading.
+    steps_ : ndarray, shape (m,)
+        Steps over which its errors are correlated.
+    calibrated_s_ : float
+        Mean time of the calibration.
     starts_ : ndarray, shape (G, 3)
         Directions that the calibration saw.
     step_s_ : float
@@ -56,7 +66,8 @@ class CubatureKalmanFilter(SunFilter):
 
     State: the Sun's direction in the body frame, the gyroscope's bias and, before faces, the
     light's strength; ``s' = exp(-[(w - b) dt]) s``, ``z = h(s) + v`` with h as the calibration
-    found it, warmth and the Earth's light by nadir included.
+    found it, warmth and the Earth's light by nadir included. The turn of the calibration's
+    reference is considered, not estimated, and so is what ages.
 
     Shapes: signals (N, K), or spots or balances (N, 2), in the order of time, with the context's
     columns, to unit vectors (N, 3).
@@ -109,4 +120,4 @@ class CubatureKalmanFilter(SunFilter):
         """Take the cubature rule's points."""
         from algorithms.filtering.filters import CUBATURE  # noqa: PLC0415 - Numba
 
-        return CUBATURE
+        return replace(CUBATURE, considered=self.considered())

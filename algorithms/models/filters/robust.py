@@ -30,6 +30,12 @@ class RobustKalmanFilter(SunFilter):
         Standard deviation of its bias when switched on, positive.
     bias_walk_deg_h_sqrt_h : float
         Of what its bias moves in an hour, positive.
+    reference_deg : float
+        1-sigma, about each axis, of a fixed turn of what told the calibration's directions,
+        positive.
+    gain_ageing_per_year, shift_ageing_per_year : float
+        1-sigma of what a year changes, positive: a face's gain against the others', and a spot's
+        offsets over the focal length.
     worst_deg : float
         1-sigma of a direction beyond which it is not answered, positive.
     limit : float
@@ -41,6 +47,10 @@ class RobustKalmanFilter(SunFilter):
         How the sensor reads a direction.
     noise_ : ndarray, shape (m,)
         Variance of each reading.
+    steps_ : ndarray, shape (m,)
+        Steps over which its errors are correlated.
+    calibrated_s_ : float
+        Mean time of the calibration.
     starts_ : ndarray, shape (G, 3)
         Directions that the calibration saw.
     step_s_ : float
@@ -59,7 +69,8 @@ class RobustKalmanFilter(SunFilter):
 
     State: the Sun's direction in the body frame, the gyroscope's bias and, before faces, the
     light's strength; ``s' = exp(-[(w - b) dt]) s``, ``z = h(s) + v`` with h as the calibration
-    found it, warmth and the Earth's light by nadir included.
+    found it, warmth and the Earth's light by nadir included. The turn of the calibration's
+    reference is considered, not estimated, and so is what ages.
 
     Shapes: signals (N, K), or spots or balances (N, 2), in the order of time, with the context's
     columns, to unit vectors (N, 3).
@@ -118,4 +129,4 @@ class RobustKalmanFilter(SunFilter):
         """Weigh readings by how far off they are."""
         from algorithms.filtering.filters import RobustKalman  # noqa: PLC0415 - Numba
 
-        return RobustKalman(limit=self.limit)
+        return RobustKalman(self.considered(), limit=self.limit)

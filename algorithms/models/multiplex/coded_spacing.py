@@ -41,10 +41,9 @@ class CodedSpacing(CodedMask):
         is no answer. None for no such edge.
     agreeing : int
         Spots that must agree on a place, at least 3.
-    clear : int
-        Every other place must have so many times the faults (spots unexplained, apertures in view
-        that are dark) and one, at least 1: where faults happen, one says less. A spot beside its
-        place makes two.
+    odds : float
+        By how much likelier than any other the place must make the spots, from 1 up: where these
+        lie as far from their places as the code's steps are wide, none is.
     share : float
         Of the spots, and of the apertures in view, that must agree, in (0, 1].
     extrapolation : float
@@ -80,13 +79,16 @@ class CodedSpacing(CodedMask):
     placed obliquely without symmetry (Wei2017). Here a table holds the pairs of neighbouring
     apertures by their spacing (x, y), in cells of the tolerance; the rarest of the spacings seen
     name places of the mask, and the place with the fewest faults is looked at again.
-    The place is kept if nothing rivals it: f its faults, every other place must have at least
-    ``clear (f + 1)``, which is decided exactly, not among those tried. Then ``D = sum(p_i - a_i -
-    o_i) / n`` over the n spots that agree is the least-squares displacement, and so direction, of
-    all of them: parallel light moves every spot alike. Spots far from the median are left out. o_i
-    are offsets of the built apertures, predicted from how spots of one frame lie to each other
-    (best linear unbiased; no error of the turntable enters); focal length, centre, turns and tilts
-    are fitted to D by least squares of the angles, through the cover glass.
+    That place is compared with every other one that is nearly as likely, decided exactly, not among
+    those tried: ``log p = log t(r) - left log(100 A) - dark log 5``, r what the n spots it explains
+    are from their apertures less their mean, t the density of residuals of the design's deviation
+    (a fifth of the tolerance) or, of one list in ten thousand, of one that the list alone tells; A
+    the detector's area. It is kept if it is `odds` times as likely as any other. Then
+    ``D = sum(p_i - a_i - o_i) / n`` over the n spots that agree is the least-squares displacement,
+    and so direction, of all of them: parallel light moves every spot alike. Spots far from the
+    median are left out. o_i are offsets of the built apertures, predicted from how spots of one
+    frame lie to each other (best linear unbiased; no error of the turntable enters); focal length,
+    centre, turns and tilts are fitted to D by least squares of the angles, through the cover glass.
 
     Shapes: lists ``(x_px, y_px, light)`` of spots (N, 3 K), light 0 and last for none, to unit
     vectors (N, 3). No row leans on another: lost in space, in one frame.
@@ -96,7 +98,7 @@ class CodedSpacing(CodedMask):
     spots nearly as well (`read` says ``ambiguous``). fit raises UnusableDataError where the code is
     read in less than half of the samples, and below 4 samples; ValueError for a list with a gap.
 
-    Cost: 3 to 20 us a sample, for a mask of a thousand apertures as for one of a hundred.
+    Cost: 6 to 40 us a sample, for a mask of a thousand apertures as for one of a hundred.
 
     References
     ----------

@@ -2,12 +2,29 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from kalman_runs import SPACES, STEP_S, drawn, first_doubt, turned_exactly
+from kalman_runs import (
+    GYROSCOPE,
+    SPACES,
+    STEP_S,
+    drawn,
+    first_doubt,
+    pinhole,
+    turned_exactly,
+)
 from scipy.stats import chi2
 
-from algorithms.filtering.filters import CUBATURE, ExtendedKalman, SigmaPointKalman
+from algorithms.filtering.filters import (
+    CUBATURE,
+    AdaptiveKalman,
+    ExtendedKalman,
+    SigmaPointKalman,
+)
+from algorithms.filtering.hypotheses import MultipleModels
+from algorithms.filtering.sun_space import SunSpace
 
 NAMES = ("faces", "spot", "gains", "earth", "head")
 KNOWN = np.array([0.01, -0.02, 0.015, 0.6, 0.0, -0.8, 12.0])
@@ -125,6 +142,122 @@ def test_a_filter_that_ignores_gains_is_too_sure_and_one_that_considers_them_is_
     assert said["considering"] > said["ignoring"]
     assert spread["ignoring"] > 1.5 * said["ignoring"]
     assert (considering.states[:, 13:] == 0).all()
+
+
+def squared_errors(space, by, runs, first) -> tuple[np.ndarray, np.ndarray]:
+    """(T, B) of the direction, in the filter's own units; and of innovations, a reading."""
+    size = space.errors + 7
+    start = np.ascontiguousarray(runs.first[:, :size])
+    belief = by.begin(space, start, first[: space.errors, : space.errors])
+    found, innovations = [], []
+    for step, known in enumerate(runs.known):
+        if step:
+            belief = by.predict(space, belief, known, STEP_S)
+        belief = by.update(space, belief, runs.readings[step], known)
+        off = space.away(np.ascontiguousarray(runs.states[step][:, :size]), belief.states)[:, :2]
+        inverse = np.linalg.inv(belief.covariance[:, :2, :2])
+        found.append(np.einsum("bi,bij,bj->b", off, inverse, off))
+        innovations.append(belief.squared_innovation / space.readings)
+    return np.array(found), np.array(innovations)
+
+
+@pytest.mark.parametrize(
+    "by",
+    [
+        ExtendedKalman((5, 6, 7)),
+        SigmaPointKalman(considered=(5, 6, 7)),
+        AdaptiveKalman((5, 6, 7)),
+        MultipleModels(considered=(5, 6, 7)),
+    ],
+    ids=lambda by: type(by).__name__,
+)
+def test_a_reference_that_was_turned_is_considered(by) -> None:
+    """Heads turned by half a degree, 100 runs: errors within bounds; who ignores it is too sure."""
+    space, first = SPACES["turned"], first_doubt(SPACES["turned"])
+    runs = drawn(space, first=first, seed=14)
+    if isinstance(by, MultipleModels):
+        estimates = mixed_errors(space, by, runs, first)
+        ignored = mixed_errors(SPACES["spot"], MultipleModels(), runs, first[:5, :5])
+    else:
+        estimates = squared_errors(space, by, runs, first)[0]
+        plain = replace(by, considered=())
+        ignored = squared_errors(SPACES["spot"], plain, runs, first)[0]
+    low, high = chi2.ppf((0.025, 0.975), 200)
+    inside = np.mean([low < sum_ < high for sum_ in estimates[5:].sum(axis=1)])
+    assert inside > 0.8, f"{inside:.2f} of the steps within the bounds"
+    assert ignored[-1].mean() > 10.0 * estimates[-1].mean()
+
+
+def mixed_errors(space, by, runs, first) -> np.ndarray:
+    """(T, B) of the mixture's direction, in units of its covariance."""
+    size = space.errors + 7
+    belief = by.begin(space, np.ascontiguousarray(runs.first[:, :size]), first)
+    found = []
+    for step, known in enumerate(runs.known):
+        if step:
+            belief = by.predict(space, belief, known, STEP_S)
+        belief = by.update(space, belief, runs.readings[step], known)
+        states, covariance = by.estimate(space, belief)
+        off = space.away(np.ascontiguousarray(runs.states[step][:, :size]), states)[:, :2]
+        inverse = np.linalg.inv(covariance[:, :2, :2])
+        found.append(np.einsum("bi,bij,bj->b", off, inverse, off))
+    return np.array(found)
+
+
+def test_readings_slope_with_the_heads_turn_as_differences_do() -> None:
+    space = SPACES["turned"]
+    states = some_states(space)
+    states[:, -3:] = 0.0
+    sensitivity = space.sensitivity(states, KNOWN)
+    for column in range(5, 8):
+        error = np.zeros((len(states), space.errors))
+        error[:, column] = 1e-6
+        read = space.measured(space.moved(states, error), KNOWN)
+        read = read - space.measured(space.moved(states, -error), KNOWN)
+        np.testing.assert_allclose(sensitivity[:, :, column], read / 2e-6, atol=2e-5)
+
+
+def test_a_turned_head_sees_what_turning_the_sun_shows() -> None:
+    space = SPACES["turned"]
+    states = some_states(space)
+    still = states.copy()
+    still[:, -3:] = 0.0
+    for n, state in enumerate(states):
+        still[n, 6:9] = turned_exactly(state[None, 6:9], state[-3:])[0]
+    np.testing.assert_allclose(
+        space.measured(states, KNOWN), space.measured(still, KNOWN), rtol=1e-12
+    )
+
+
+def test_readings_that_err_alike_for_some_steps_tell_as_much_as_fewer() -> None:
+    """An autoregression of 0.8 lasts for nine steps: 100 runs, told of that and not."""
+    space, first = SPACES["spot"], first_doubt(SPACES["spot"])
+    told = SunSpace(pinhole(), 0.01 * np.eye(2), GYROSCOPE, (), steps=np.full(2, 9.0))
+    runs = drawn(space, first=first, seed=15, steps=200)
+    clean = np.array(
+        [space.measured(at, known) for at, known in zip(runs.states, runs.known, strict=True)]
+    )
+    white = runs.readings - clean
+    for step in range(1, len(white)):
+        white[step] = 0.8 * white[step - 1] + 0.6 * white[step]
+    lasting = replace(runs, readings=clean + white)
+    knowing, innovations = squared_errors(told, ExtendedKalman(), lasting, first)
+    ignoring, _ = squared_errors(space, ExtendedKalman(), lasting, first)
+    assert 0.7 < knowing[40:].mean() / 2.0 < 1.3
+    assert 0.7 < innovations[40:].mean() < 1.3
+    assert ignoring[40:].mean() / 2.0 > 2.0
+
+
+def test_a_reading_that_no_direction_explains_begins_nothing() -> None:
+    space, by = SPACES["faces"], ExtendedKalman()
+    sun = np.array([[0.6, 0.0, 0.8]])
+    known = np.r_[np.zeros(3), 1.0, 0.0, 0.0, 0.0]
+    read = space.measured(space.states_towards(sun), known)[0]
+    starts = np.vstack([np.eye(3), -np.eye(3), sun])
+    begun = space.started(by, starts, read, known)
+    assert begun is not None
+    np.testing.assert_allclose(begun.states[0, 6:9], sun[0], atol=2e-3)
+    assert space.started(by, starts, read + 20.0 * np.arange(6), known) is None
 
 
 def test_gains_that_drift_are_found_by_the_filter_that_has_them_in_its_state() -> None:

@@ -11,8 +11,8 @@ import pytest
 from algorithms.angles import separation_deg
 from algorithms.contract import FeatureKind, UnsuitableDesignError
 from algorithms.discovery import discover_models
+from algorithms.filtering.reading_noise import correlated_steps
 from algorithms.filtering.readings import FaceReadings, SpotReadings, earth_columns
-from algorithms.filtering.sequence import correlated_steps
 from algorithms.models.filters.adaptive import AdaptiveKalmanFilter
 from algorithms.models.filters.assembly_drift import AssemblyDriftFilter
 from algorithms.models.filters.consider import ConsiderKalmanFilter

@@ -95,6 +95,7 @@ def spaces() -> dict[str, SunSpace]:
         "head": SunSpace(
             pinhole(), 0.01 * np.eye(2), GYROSCOPE, [Drift(p, 0.01, 1e-5) for p in range(5)]
         ),
+        "turned": SunSpace(pinhole(), 0.01 * np.eye(2), GYROSCOPE, (), turn=float(np.radians(0.5))),
     }
 
 
