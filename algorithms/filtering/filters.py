@@ -200,7 +200,10 @@ class AdaptiveKalman(ExtendedKalman):
         noise = after.noise + (found - after.noise) / self.window
         own = np.diagonal(space.measurement_noise())
         place = np.arange(space.readings)
-        noise[:, place, place] = np.clip(noise[:, place, place], self.least * own, self.most * own)
+        # rows and columns together: what is lowered on the diagonal alone has no root
+        high = np.sqrt(np.minimum(self.most * own / noise[:, place, place], 1.0))
+        noise *= high[:, :, None] * high[:, None, :]
+        noise[:, place, place] = np.maximum(noise[:, place, place], self.least * own)
         noise[~heard] = after.noise[~heard]
         return replace(after, noise=noise)
 

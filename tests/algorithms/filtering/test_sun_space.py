@@ -172,9 +172,12 @@ def squared_errors(space, by, runs, first) -> tuple[np.ndarray, np.ndarray]:
     ids=lambda by: type(by).__name__,
 )
 def test_a_reference_that_was_turned_is_considered(by) -> None:
-    """Heads turned by half a degree, 100 runs: errors within bounds; who ignores it is too sure."""
+    """Heads turned by half a degree, 400 runs: who ignores it is too sure.
+
+    A turn lasts: the runs' mean is one draw for all steps, of 0.05 standard deviation.
+    """
     space, first = SPACES["turned"], first_doubt(SPACES["turned"])
-    runs = drawn(space, first=first, seed=14)
+    runs = drawn(space, first=first, seed=14, runs=400, steps=50)
     if isinstance(by, MultipleModels):
         estimates = mixed_errors(space, by, runs, first)
         ignored = mixed_errors(SPACES["spot"], MultipleModels(), runs, first[:5, :5])
@@ -182,9 +185,8 @@ def test_a_reference_that_was_turned_is_considered(by) -> None:
         estimates = squared_errors(space, by, runs, first)[0]
         plain = replace(by, considered=())
         ignored = squared_errors(SPACES["spot"], plain, runs, first)[0]
-    low, high = chi2.ppf((0.025, 0.975), 200)
-    inside = np.mean([low < sum_ < high for sum_ in estimates[5:].sum(axis=1)])
-    assert inside > 0.8, f"{inside:.2f} of the steps within the bounds"
+    said = estimates[5:].mean(axis=1) / 2.0
+    assert 0.85 < said.min() <= said.max() < 1.15, f"{said.min():.2f} to {said.max():.2f}"
     assert ignored[-1].mean() > 10.0 * estimates[-1].mean()
 
 
@@ -244,7 +246,8 @@ def test_readings_that_err_alike_for_some_steps_tell_as_much_as_fewer() -> None:
     knowing, innovations = squared_errors(told, ExtendedKalman(), lasting, first)
     ignoring, _ = squared_errors(space, ExtendedKalman(), lasting, first)
     assert 0.7 < knowing[40:].mean() / 2.0 < 1.3
-    assert 0.7 < innovations[40:].mean() < 1.3
+    # what was told so far has the error of the reading, too: innovations are somewhat less
+    assert 0.4 < innovations[40:].mean() < 1.1
     assert ignoring[40:].mean() / 2.0 > 2.0
 
 

@@ -169,7 +169,7 @@ def evidence_everywhere(spots, model):
 def test_what_is_read_is_what_trying_every_place_finds(cls):
     """Holes missing, spots too many and noisy: read is what is far likelier than all others."""
     model, rng = model_of(cls), np.random.default_rng(21)
-    count = 12
+    count = 6
     displaced = cast(field(count, seed=5))
     rows = lists(places_px(), displaced, model.spots)
     for k, row in enumerate(rows):
@@ -193,7 +193,7 @@ def test_what_is_read_is_what_trying_every_place_finds(cls):
             assert np.hypot(*(found - best)) < 0.7
         else:
             assert not clear or len(spots) < 2 * model.agreeing
-    assert 4 <= answered < count
+    assert 2 <= answered < count
 
 
 @pytest.mark.parametrize("cls", MODELS)
