@@ -319,8 +319,7 @@ class SunFilter(Model):
     def _followed(
         self, found: Floats, time_s: Floats, known: Floats, usable: NDArray[np.bool_]
     ) -> Track:
-        away_s = float(np.abs(time_s[:1] - self.calibrated_s_).sum())
-        space, by = self.space(away_s / _YEAR_S), self.filter()
+        space, by = self.space(), self.filter()
         drifts = len(self.drifts()) + len(self.uncertain(0.0))
         known = known - np.array([0.0] * 6 + [self.readings_.middle_k])
         count = len(found)
@@ -332,8 +331,10 @@ class SunFilter(Model):
         follows = moving & (steps > 0) & (steps <= _LONGEST * self.step_s_)
         belief: Belief | None = None
         for row in range(count):
-            if not follows[row]:
+            if not follows[row]:  # a series, as old as its first row
                 belief = None
+                if np.isfinite(time_s[row]):
+                    space = self.space(abs(float(time_s[row]) - self.calibrated_s_) / _YEAR_S)
             elif belief is not None:
                 belief = by.predict(space, belief, known[row], float(steps[row]))
             if usable[row] and belief is None:
