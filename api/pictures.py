@@ -2,8 +2,8 @@
 
 Drawing simulates, which takes seconds of a processor: within the service it would hold up all
 other answers. `python -m api.pictures DIRECTORY [NAME...]` draws what is not there yet; without
-names all, giving way to everything else on the machine. What is kept lies below a digest of all
-code that makes it; it may be deleted at any time.
+names all, giving way to everything else on the machine once the slowest are there. What is kept
+lies below a digest of all code that makes it; it may be deleted at any time.
 """
 
 from __future__ import annotations
@@ -131,11 +131,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 0
     from benchmark import datasets  # noqa: PLC0415 - as in `draw`
 
+    every = datasets.names()
+    draw(Path(directory), (name for name in SLOWEST if name in every))
+    # For those somebody may be waiting; of the others none takes long.
     with suppress(OSError):
         os.nice(10)
-    every = datasets.names()
-    first = [name for name in SLOWEST if name in every]
-    draw(Path(directory), dict.fromkeys((*first, *every)))
+    draw(Path(directory), every)
     forget_others(Path(directory))
     return 0
 
