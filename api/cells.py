@@ -8,10 +8,13 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 LIST_SEPARATOR = "; "
+_PLAIN = frozenset((str, int, bool, type(None)))
 
 
 def plain(value: Any) -> Any:
     """Return a value made of what JSON knows: sets sorted, numbers that are not finite None."""
+    if type(value) in _PLAIN:
+        return value
     if isinstance(value, Mapping):
         return {str(name): plain(member) for name, member in value.items()}
     if isinstance(value, set | frozenset):
@@ -25,12 +28,19 @@ def plain(value: Any) -> Any:
     raise TypeError(f"expected text, numbers, lists and mappings; got {type(value).__name__}")
 
 
-def cell(value: Any) -> str:
+def cell(value: Any) -> str:  # noqa: PLR0911 - a kind of value each
     """Return a value as the text of a CSV cell: lists joined by "; ", nothing found empty.
 
     Numbers have all their digits; the record spells its own shorter, to be compared by line
     (`benchmark.results.tables.spelt`).
     """
+    # What most cells hold is told by its exact type: tables have hundreds of thousands of them, and
+    # asking whether text is a mapping takes longer than to write it.
+    kind = type(value)
+    if kind is str:
+        return str(value)
+    if kind is int or (kind is float and math.isfinite(value)):
+        return str(value)
     if value is None or (isinstance(value, float) and not math.isfinite(value)):
         return ""
     if isinstance(value, bool):

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from api.figures import svg
-from api.figures.lettering import shortened, text_width
+from api.figures.lettering import line_height, text_width, wrapped
 from api.figures.sunburst_layout import arc_label, arc_path, arcs
 from api.figures.svg import BODY, SMALL, Drawing
 
@@ -62,13 +62,19 @@ def draw_sunburst(sectors: Sequence[Sector], width: float) -> Drawing:
     disc = _Disc((left, radius + 2), radius, [], [])
     _ring(sectors, 0, (0.0, 2 * math.pi), disc)
     at = (2 * radius + 40, 4.0) if wide else (0.0, 2 * radius + 20)
-    rows = math.ceil(len(entries) / columns)
     column_width = (width - at[0]) / columns
-    for index, entry in enumerate(entries):
-        x = at[0] + column_width * (index // rows)
-        y = at[1] + ROW * (index % rows + 0.5)
-        disc.letters.append(_entry(entry, (x, y), column_width - 12))
-    height = max(2 * radius + 4, at[1] + ROW * rows + 4)
+    written = [_lines(entry, column_width - 12) for entry in entries]
+    heights = [ROW + line_height(SMALL) * (len(lines) - 1) for lines in written]
+    tall = sum(heights) / columns
+    column, down, lowest = 0, 0.0, 0.0
+    for entry, lines, high in zip(entries, written, heights, strict=True):
+        if down >= tall and column < columns - 1:
+            column, down = column + 1, 0.0
+        place = (at[0] + column_width * column, at[1] + down + high / 2)
+        disc.letters.append(_entry(entry, place, lines))
+        down += high
+        lowest = max(lowest, down)
+    height = max(2 * radius + 4, at[1] + lowest + 4)
     return Drawing(width, height, "".join(disc.shapes + disc.letters))
 
 
@@ -116,17 +122,24 @@ def _entries(sector: Sector) -> list[_Entry]:
     return found
 
 
-def _entry(entry: _Entry, at: tuple[float, float], width: float) -> str:
-    """Return a line of the legend."""
+def _lines(entry: _Entry, width: float) -> tuple[str, ...]:
+    """Return the lines that an entry of the legend takes, with its number."""
     sector, head = entry.sector, entry.head
     tail = f" {sector.count}"
     said = sector.label
     if sector.name.casefold() != sector.label.casefold():
         said = f"{said} – {sector.name}"
+    room = width - SWATCH - 6 - text_width(tail, SMALL, bold=head)
+    *lines, last = wrapped(said + entry.also, room, SMALL, 3, bold=head)
+    return (*lines, last + tail)
+
+
+def _entry(entry: _Entry, at: tuple[float, float], lines: tuple[str, ...]) -> str:
+    """Return an entry of the legend, its middle at `at`."""
+    sector, head = entry.sector, entry.head
     start = at[0] + SWATCH + 6
-    room = at[0] + width - start - text_width(tail, SMALL, bold=head)
-    line = shortened(said + entry.also, room, SMALL, bold=head) + tail
-    shapes = [svg.text(start, at[1], line, size=SMALL, bold=head, tail=tail)]
+    tail = f" {sector.count}"
+    shapes = [svg.text(start, at[1], lines, size=SMALL, bold=head, tail=tail)]
     if head:
         place = (at[0], at[1] - SWATCH / 2, SWATCH, SWATCH)
         shapes.insert(0, svg.rectangle(*place, f"swatch c{sector.colour}"))

@@ -1,7 +1,7 @@
 """Writing SVG: a canvas of marks that have a title and, mostly, an address behind them.
 
-Colours are classes of `api/page/figures.css`, which stands in the page and in a drawing of its own
-alike; sizes of letters are attributes, so that nothing in a style sheet makes labels meet.
+Colours are classes of `api/page/styles/figures.css`, which stands in the page and in a drawing of
+its own alike; sizes of letters are attributes, so that nothing in a style sheet makes labels meet.
 """
 
 from __future__ import annotations

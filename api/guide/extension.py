@@ -81,6 +81,22 @@ def scripts_apart(site: Path) -> None:
             page.write_text(new, "utf-8")
 
 
+def made_reachable(site: Path) -> None:
+    """Let the keyboard scroll blocks of code, and give headings of the sidebar their level.
+
+    Parameters
+    ----------
+    site : of HTML, changed in place
+    """
+    for page in sorted(site.rglob("*.html")):
+        text = page.read_text("utf-8")
+        new = text.replace("<pre>", '<pre tabindex="0">')
+        new = new.replace(
+            'class="caption" role="heading"', 'class="caption" role="heading" aria-level="2"'
+        )
+        page.write_text(new, "utf-8")
+
+
 def _read(app: Sphinx, page: str, source: list[str]) -> None:  # noqa: ARG001 - Sphinx's signature
     source[0] = within(page, source[0]) + (toctrees() if page == ROOT else "")
 
@@ -92,6 +108,7 @@ def _named(app: Sphinx, document: nodes.document) -> None:  # noqa: ARG001 - Sph
 def _finish(app: Sphinx, error: Exception | None) -> None:
     if error is None:
         scripts_apart(Path(app.outdir))
+        made_reachable(Path(app.outdir))
 
 
 def _inline(translator: Any, node: nodes.math) -> None:

@@ -45,6 +45,9 @@ _SECTION = re.compile(r"^(?P<name>[A-Z][A-Za-z ]+)\n-{3,}\n", re.MULTILINE)
 _SHOWN = ("Parameters", "Attributes", "Returns", "Yields", "Raises")
 _LONGEST_SIGNATURE = 88
 
+#: A function among the defaults, with the place in memory that it has in this process.
+_ADDRESS = re.compile(r"<function (\w+) at 0x[0-9a-f]+>")
+
 
 def interface() -> str:
     """Describe every public class and function of `MODULES`."""
@@ -91,7 +94,7 @@ def _signature(one: Any) -> str:
     if inspect.isclass(one) and (issubclass(one, BaseException) or _is_protocol(one)):
         return ""
     try:
-        said = str(inspect.signature(one)).replace("'", "")
+        said = _ADDRESS.sub(r"\1", str(inspect.signature(one))).replace("'", "")
     except ValueError:
         return ""
     said = re.sub(r"<factory>|<object object at [^>]+>", "...", said)

@@ -52,10 +52,13 @@ class Answer(JSONResponse):
         """Return the JSON."""
         return to_json(content, inf_nan_mode="null")
 
+    def table(self) -> str:
+        """Return the CSV."""
+        return csv_of(self.columns, self.rows())
+
     def representation(self, wanted: str) -> Representation:
         """Return the answer in a media type."""
-        table = wanted == CSV
-        body = csv_of(self.columns, self.rows()).encode() if table else bytes(self.body)
+        body = self.table().encode() if wanted == CSV else bytes(self.body)
         return Representation(body, CONTENT_TYPES[wanted], self.links)
 
 

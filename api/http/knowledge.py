@@ -11,6 +11,7 @@ from functools import cached_property
 import survey_data
 from api.columns import ADVICE
 from api.http.measurements import Measurements
+from api.pictures import Pictures
 from api.search.entries import entries
 from api.search.index import Index
 from registry.catalogue import Catalogue, catalogue
@@ -72,6 +73,11 @@ class Knowledge:
         table = survey_data.load().advice.rename(columns={"survey_section": "section"}).fillna("")
         rows = table[list(ADVICE)].itertuples(index=False)
         return [dict(zip(ADVICE, map(str, row), strict=True)) for row in rows]
+
+    @cached_property
+    def pictures(self) -> Pictures:
+        """Pictures of the data sets, kept where the times of this machine are."""
+        return Pictures(self.measurements.times_directory)
 
     @cached_property
     def index(self) -> Index:

@@ -208,7 +208,7 @@ def _abbreviations(known: Knowledge, found: Figure) -> list[tuple[str, str]]:
 
 
 def _document(found: Figure) -> Response:
-    style = (files("api") / "page" / "figures.css").read_text(encoding="utf-8")
+    style = (files("api") / "page" / "styles" / "figures.css").read_text(encoding="utf-8")
     # What places a figure in a page says nothing to a drawing of its own.
     drawing = found.drawings["wide"]
     return Response(drawing.document(found.title, found.description, style))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import weakref
 from collections.abc import Iterator, Mapping
 from types import FunctionType
 
@@ -25,16 +26,29 @@ _HARNESS = (
 )
 
 
+#: By the identity of a preset, which never changes: itself, digest of the code, digest of all.
+_known: dict[int, tuple[weakref.ref[Preset], str, str]] = {}
+
+
 def dataset_digest(preset: Preset) -> str:
-    """Digest of everything a dataset's data and bounds depend on, under all its conditions."""
-    return _component(
+    """Digest of everything a dataset's data and bounds depend on, under all its conditions.
+
+    Spelling a preset's parameters takes longer than finding out whether its code has changed: a
+    process that asks again spells them once.
+    """
+    code = closure_digest(*modules_of(preset))
+    if (known := _known.get(id(preset))) and known[0]() is preset and known[1] == code:
+        return known[2]
+    found = _component(
         {
             "dataset": preset.name,
             "version": preset.version,
             "parameters": {name: preset.parameters(name) for name in preset.conditions},
-            "code": closure_digest(*modules_of(preset)),
+            "code": code,
         }
     )
+    _known[id(preset)] = (weakref.ref(preset), code, found)
+    return found
 
 
 def series_digest(series: object) -> str:

@@ -6,8 +6,7 @@ from collections.abc import Callable, Mapping
 import pytest
 from scores import pipeline
 
-from registry import paths
-from registry.measured import Measured, Measurements, Score
+from registry.measured import Measurements, Score
 from registry.recommendation import Architecture, Recommendation, recommend
 from registry.studies import Facts
 
@@ -379,30 +378,3 @@ def test_support_is_said_to_four_decimals(facts_of: Callable[[Rows], Facts]) -> 
     first = only(recommend({}, facts=facts)).calibrations[0].to_dict()
     assert first["support"] == 1.8171  # of 3 studies, 2 and 1
     assert first["with_model"] == 2
-
-
-def test_sets_and_nodes_made_once_are_kept_but_never_many(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr(paths, "_MOST_KEPT", 2)
-    kept: dict[str, int] = {}
-    sizes = []
-    for number, name in enumerate("abcde"):
-        paths._keep(kept, name, number)
-        assert kept[name] == number
-        sizes.append(len(kept))
-    assert sizes == [1, 2, 1, 2, 1]
-
-
-def test_what_was_judged_for_one_question_does_not_tell_for_another(
-    facts_of: Callable[[Rows], Facts], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Answers are the same whatever was asked before, and however much is kept."""
-    facts = one_study(facts_of)
-    rows: list[Measured] = [pipeline(hazards={"albedo": worse(0.9)}), pipeline(extractor="b")]
-    asks = [{}, {"survive": ["albedo"]}, {"min_fov_deg": 30.0}, {"max_latency_us": 1.0}]
-    fresh = [recommend(ask, list(rows), facts=facts).to_dict() for ask in asks]
-    monkeypatch.setattr("registry.kept_answers.MOST_KEPT", 2)
-    kept = Measurements(rows)
-    for _ in range(2):
-        assert [recommend(ask, kept, facts=facts).to_dict() for ask in asks] == fresh

@@ -26,6 +26,7 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None)
 _SUNATLAS = (sys.executable, "-m", "api.cli.command_line")
 _TIMES = (*_SUNATLAS, "leaderboard", "times", "--format", "json")
 _GUIDE = (*_SUNATLAS, "guide", "build", "--quiet")
+_PICTURES = (sys.executable, "-m", "api.pictures")
 _QUIET: dict[str, Any] = {"log_level": "warning", "access_log": False}
 
 
@@ -63,6 +64,8 @@ def serve(
     os.environ[serving.ACCESS_LOG] = "1" if access_log else ""
     listener = listen(host, port)
     with listener, contextlib.ExitStack() as stack:
+        # What takes longest is drawn while we load: who comes first shall not wait for it.
+        stack.enter_context(beside((*_PICTURES, str(working_directory()))))
         # Loaded before anything is served: damaged facts are refused in one sentence.
         application = Renewed(serving.application(loaded=True))
         guide = site.kept()

@@ -58,8 +58,6 @@ def dataset_preview(known: Known, name: Name) -> Picture:
     """Picture of some of its nominal samples.
 
     They are frames from small to large incidence, profiles, currents over angle or time, or spikes
-    by their time.
+    by their time. Where it is not drawn yet, who asks for it waits, and nobody else.
     """
-    from benchmark.datasets.preview import preview_png  # noqa: PLC0415 - renders, so on demand
-
-    return Picture(preview_png(known.measurements.presets[name]))
+    return Picture(known.pictures.png(name))

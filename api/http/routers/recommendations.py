@@ -18,6 +18,7 @@ from api.http.models.recommendations import (
     RequirementsQuery,
 )
 from api.http.recommended import encoded_answer
+from api.http.recommended_table import table_text
 from api.recommending import rows
 from registry.recommendation import Answered, answered, recommendation
 
@@ -77,6 +78,10 @@ class Recommended(Answer):
         return encoded_answer(
             self._found, self._requirements.limit, self._requirements.calibrations
         )
+
+    def table(self) -> str:
+        """Return the CSV."""
+        return table_text(self._found, self._requirements.limit, self._requirements.calibrations)
 
     @property
     def document(self) -> Mapping[str, Any]:

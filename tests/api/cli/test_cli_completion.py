@@ -15,23 +15,34 @@ from benchmark.results.store import PUBLISHED, Store
 from registry.studies import facts
 
 
-def completed(line, shell="bash", **environment):
-    """Return what a shell offers behind a line; a line that ends in a space begins a word."""
-    words = line.split(" ")
-    asked = {
-        "bash": {"COMP_WORDS": line, "COMP_CWORD": str(len(words) - 1)},
+def asking(line, shell):
+    """Return what a shell sets; a line that ends in a space begins a word."""
+    words = {
+        "bash": {"COMP_WORDS": line, "COMP_CWORD": str(len(line.split(" ")) - 1)},
         "zsh": {"_TYPER_COMPLETE_ARGS": line},
         "fish": {"_TYPER_COMPLETE_ARGS": line, "_TYPER_COMPLETE_FISH_ACTION": "get-args"},
     }[shell]
+    return {**words, completion.VARIABLE: f"complete_{shell}"}
+
+
+def completed(line, shell="bash"):
+    """Return what a shell offers behind a line."""
+    shown = CliRunner().invoke(app, [], env=asking(line, shell), prog_name="sunatlas")
+    assert shown.stderr == ""
+    return shown.stdout.split("\n")[:-1] if shell == "bash" else shown.stdout
+
+
+def test_the_program_itself_answers_a_shell():
+    line = "sunatlas studies Chang200"
     shown = subprocess.run(
         [sys.executable, "-m", "api.cli.command_line"],
-        env={**os.environ, **asked, completion.VARIABLE: f"complete_{shell}", **environment},
+        env={**os.environ, **asking(line, "bash")},
         capture_output=True,
         text=True,
         check=False,
     )
     assert shown.stderr == ""
-    return shown.stdout.split("\n")[:-1] if shell == "bash" else shown.stdout
+    assert shown.stdout.split("\n")[:-1] == completed(line)
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 import itertools
 import json
 import re
+from functools import cache
 
 import pytest
 from typer.testing import CliRunner
@@ -10,7 +11,8 @@ from typer.testing import CliRunner
 from api.cli.command_line import app
 from api.cli.layout import Column, laid_out, wrapped
 
-WIDTHS = (40, 60, 80, 120, 200)
+#: The narrowest and what most terminals have; slow are those between and beyond.
+WIDTHS = (40, 80, *[pytest.param(width, marks=pytest.mark.slow) for width in (60, 120, 200)])
 #: What says which row it is, in the JSON of the command, and where that lists the rows.
 TABLES = (
     (("studies", "--detector", "Event"), ("key",), None),
@@ -38,10 +40,16 @@ def shown(*arguments, width=80):
     return found.stdout
 
 
+@cache
+def document_of(arguments):
+    """Rows are the same at every width."""
+    return json.loads(shown(*arguments, "--format", "json"))
+
+
 @pytest.mark.parametrize("width", WIDTHS)
 @pytest.mark.parametrize(("arguments", "names", "listed"), TABLES)
 def test_every_row_keeps_its_words_at_every_width(arguments, names, listed, width):
-    document = json.loads(shown(*arguments, "--format", "json"))
+    document = document_of(arguments)
     rows = document if listed is None else document[listed]
     assert rows
     text = shown(*arguments, width=width)

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import shutil
+import ssl
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -125,6 +127,14 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Bundle:
 def bundle(built: Bundle, tmp_path: Path) -> Path:
     """A bundle of one's own."""
     return Path(shutil.copytree(built.directory, tmp_path / "bundle"))
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _certificates_are_read_once() -> Iterator[None]:
+    """Each client would read all authorities anew, which takes longer than what it then does."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(ssl, "create_default_context", cache(ssl.create_default_context))
+        yield
 
 
 @pytest.fixture(params=["records", "legacy"])

@@ -6,9 +6,12 @@ from typing import Any
 import pytest
 from pydantic_core import to_json
 
+from api.columns import RECOMMENDATIONS, csv_of
 from api.http import recommended
 from api.http.knowledge import Knowledge
 from api.http.recommended import KeptPieces, encoded_answer
+from api.http.recommended_table import table_text
+from api.recommending import rows
 from benchmark.assessment.regret import drawn_requirements
 from registry.measured import Measurements
 from registry.ranking import SORTS
@@ -47,6 +50,7 @@ def test_pieces_make_the_bytes_of_the_document(known: Knowledge) -> None:
         document = told.to_dict()
         blocked += document["blocked"] is not None
         assert encoded_answer(found, **shown) == to_json(document, inf_nan_mode="null"), question
+        assert table_text(found, **shown) == csv_of(RECOMMENDATIONS, rows(document)), question
     assert 10 < blocked < QUESTIONS / 2
 
 

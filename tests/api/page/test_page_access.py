@@ -6,13 +6,18 @@ from importlib.resources import files
 
 import pytest
 
-from tests.api.page.visiting import PATIENCE_MS, Visit
+from tests.api.page.visiting import Visit, build_guide
 from tests.api.pages.addresses import BESIDE, KINDS
 
 pytestmark = pytest.mark.slow
 
 AXE = (files("axe_playwright_python") / "axe.min.js").read_text(encoding="utf-8")
 SERIOUS = {"serious", "critical"}
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _built(_own_working_store: None) -> None:
+    build_guide()
 
 
 @pytest.mark.parametrize("visit", ["wide", "narrow", "dark"])
@@ -22,8 +27,6 @@ def test_no_page_has_a_serious_issue(visit: str, request: pytest.FixtureRequest)
     found = []
     for kind, path in {**KINDS, **BESIDE}.items():
         page.goto(visited.address + path)
-        if kind.startswith("guide"):  # the first to ask for it waits until it is built
-            page.wait_for_selector("article", timeout=PATIENCE_MS)
         if kind.startswith("answer"):
             page.wait_for_function("() => document.documentElement.dataset.live")
         page.evaluate(AXE)

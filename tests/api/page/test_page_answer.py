@@ -69,8 +69,10 @@ def test_a_row_opens_to_its_calibrations_the_best_measured_among_them(wide: Visi
     expect(rows).to_have_count(architecture["count"])
     for row, calibration in zip(rows.all(), architecture["calibrations"], strict=True):
         stages = [*calibration["compensations"], calibration["model"]]
+        ours = (calibration["measured"] or {}).get("extractor", "direct")
+        unnamed = calibration["extractor"] == "None" and not ours.startswith("direct")
         way = [
-            named(calibration["extractor"], "extractor"),
+            f"{ours} (ours)" if unnamed else named(calibration["extractor"], "extractor"),
             *(named(stage, "model") for stage in stages),
         ]
         assert row.locator(".pathway li").all_inner_texts() == way

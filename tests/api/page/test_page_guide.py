@@ -2,29 +2,16 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
-
 import pytest
 
-from api.guide import site
-from tests.api.page.visiting import Visit
+from tests.api.page.visiting import Visit, build_guide
 
 pytestmark = pytest.mark.slow
 
 
 @pytest.fixture(scope="module", autouse=True)
 def _built(_own_working_store: None) -> None:
-    """The site, where the service looks for it; a warning is an error."""
-    done = subprocess.run(
-        [sys.executable, "-m", "api.cli.command_line", "guide", "build", "--strict", "--quiet"],
-        env=os.environ, capture_output=True, text=True, check=False,
-    )  # fmt: skip
-    assert (done.returncode, done.stderr) == (0, "")
-    place = site.kept()
-    assert place is not None
-    assert place.is_dir()
+    build_guide()
 
 
 def go(visit: Visit, path: str) -> None:

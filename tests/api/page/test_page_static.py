@@ -13,7 +13,7 @@ from tests.api.conftest import Client
 
 PAGE = Path(__file__).parents[3] / "api" / "page"
 MODULES = sorted(PAGE.glob("*.js"))
-STYLES = sorted(PAGE.glob("*.css"))
+STYLES = sorted(PAGE.glob("styles/*.css"))
 READABLE = 4.5  # WCAG 2.2, 1.4.3, level AA
 
 
@@ -60,7 +60,7 @@ def test_every_file_the_document_loads_is_a_file_of_the_page(index: Tags) -> Non
     }
     assert len(loaded) >= 5
     for address in loaded:
-        assert re.fullmatch(r"/page/[\w.]+", address), address
+        assert re.fullmatch(r"/page/(styles/)?[\w.]+", address), address
         assert (PAGE / address.removeprefix("/page/")).is_file(), address
 
 
@@ -121,7 +121,7 @@ def test_nothing_is_loaded_from_elsewhere() -> None:
 
 
 def _tokens(selector: str) -> dict[str, str]:
-    text = (PAGE / "base.css").read_text(encoding="utf-8")
+    text = (PAGE / "styles" / "base.css").read_text(encoding="utf-8")
     block = re.search(rf"^{re.escape(selector)} \{{(.*?)^\}}", text, re.MULTILINE | re.DOTALL)
     assert block is not None
     return dict(re.findall(r"(--[\w-]+): (#[0-9a-f]{6});", block.group(1)))

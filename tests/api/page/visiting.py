@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import json
+import os
+import subprocess
+import sys
 from dataclasses import dataclass, field
 from typing import Any
 from urllib.parse import parse_qs, urlsplit
 from urllib.request import urlopen
 
 from playwright.sync_api import ConsoleMessage, Page
+
+from api.guide import site
 
 WIDE, NARROW = (1280, 900), (390, 844)
 #: Longer than a machine under load ever takes: what does not come at all is what fails.
@@ -55,6 +60,18 @@ class Visit:
     def architectures(self) -> int:
         """Number of architectures that the summary states."""
         return int(self.page.locator("#summary strong").first.inner_text().split()[0])
+
+
+def build_guide() -> None:
+    """Build the guide's site where the service looks for it; a warning is an error."""
+    done = subprocess.run(
+        [sys.executable, "-m", "api.cli.command_line", "guide", "build", "--strict", "--quiet"],
+        env=os.environ, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert (done.returncode, done.stderr) == (0, "")
+    place = site.kept()
+    assert place is not None
+    assert place.is_dir()
 
 
 def get_json(address: str) -> Any:

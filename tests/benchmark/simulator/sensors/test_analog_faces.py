@@ -319,7 +319,13 @@ def test_models_of_other_layouts_are_left_out_with_the_reason() -> None:
             assert f"the sensor has {faces} faces" in reasons["voltage-balance", ""]
 
 
-@pytest.mark.parametrize("name", ANALOG)
+#: Currents behind a mask, a position, few faces without one, and many.
+FEW = ("pd-slit", "psd-single-aperture", "qpd-maskless-pyramid", "pva-maskless-sphere")
+
+
+@pytest.mark.parametrize(
+    "name", [n if n in FEW else pytest.param(n, marks=pytest.mark.slow) for n in ANALOG]
+)
 def test_no_planned_pair_fails_on_the_analog_datasets(name: str) -> None:
     preset = datasets.get(name)
     samples = preset.generate("nominal", "calibration")

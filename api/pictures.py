@@ -1,0 +1,145 @@
+"""Pictures of the data sets, drawn by processes of their own and kept in the working store.
+
+Drawing simulates, which takes seconds of a processor: within the service it would hold up all
+other answers. `python -m api.pictures DIRECTORY [NAME...]` draws what is not there yet; without
+names all, giving way to everything else on the machine once the slowest are there. What is kept
+lies below a digest of all code that makes it; it may be deleted at any time.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+import subprocess
+import sys
+import threading
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+
+from benchmark.processes import end_with_coordinator, for_coordinator
+from survey_data.leftovers import temporary_directory
+from survey_data.locks import held_in_turn
+from survey_data.whole_files import replace_file
+
+FOLDER = "pictures"
+#: What takes longest is drawn first: it is what somebody would wait for longest.
+SLOWEST = ("cmos-encoded-sizes", "ccd-orbit", "ccd-multi-aperture", "cmos-compound-eye")
+#: Pictures of other code that are left where they are: another checkout may serve them.
+OTHERS_KEPT = 3
+#: Pictures that are drawn at once for whoever asks.
+AT_ONCE = 2
+
+_ROOT = Path(__file__).resolve().parents[1]
+_MAKERS = ("algorithms", "benchmark", "survey_data")
+_DRAWING_WITH = ("matplotlib", "numpy", "scipy", "opencv-python-headless")
+
+
+@cache
+def digest() -> str:
+    """Return the digest of all that a picture is made by, code and libraries."""
+    found = hashlib.sha256(" ".join(map(version, _DRAWING_WITH)).encode())
+    for package in _MAKERS:
+        for path in sorted((_ROOT / package).rglob("*.py")):
+            content = path.read_bytes()
+            found.update(f"{path.relative_to(_ROOT)} {len(content)}\n".encode())
+            found.update(content)
+    return found.hexdigest()[:16]
+
+
+def place(directory: Path, name: str) -> Path:
+    """Return where the picture of a data set is kept in a working store."""
+    return directory / FOLDER / digest() / f"{name}.png"
+
+
+class Pictures:
+    """Pictures as the service gives them.
+
+    Parameters
+    ----------
+    directory : the working store; None keeps nothing
+    """
+
+    def __init__(self, directory: Path | None) -> None:
+        self._directory = directory
+        self._turns = threading.BoundedSemaphore(AT_ONCE)
+        self._locks: dict[str, threading.Lock] = {}
+
+    def png(self, name: str) -> bytes:
+        """Return the picture of a data set; waits where it has to be drawn.
+
+        Raises
+        ------
+        RuntimeError
+            Where the process that draws it fails; its message is in the log of the service.
+        """
+        with self._locks.setdefault(name, threading.Lock()):
+            if self._directory is not None:
+                with suppress(OSError):
+                    return place(self._directory, name).read_bytes()
+            with self._turns, temporary_directory() as made:
+                keep = made if self._directory is None else self._directory
+                for store in dict.fromkeys((keep, made)):  # a store that takes no file is no reason
+                    _drawn_beside(store, name)
+                    with suppress(OSError):
+                        return place(store, name).read_bytes()
+        raise RuntimeError(f"the picture of {name} was not drawn")
+
+
+def _drawn_beside(directory: Path, name: str) -> None:
+    subprocess.run(  # noqa: S603 - this module itself
+        [sys.executable, "-m", "api.pictures", str(directory), name],
+        cwd=_ROOT,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        env={**os.environ, **for_coordinator()},
+        check=False,
+    )
+
+
+def draw(directory: Path, names: Iterable[str]) -> None:
+    """Draw the pictures of data sets that are not kept yet, each in its turn."""
+    from benchmark import datasets  # noqa: PLC0415 - slow, and not needed to find what is kept
+    from benchmark.datasets.preview import preview_png  # noqa: PLC0415 - as above
+
+    for name in names:
+        path = place(directory, name)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with held_in_turn(path):
+            if not path.is_file():
+                replace_file(path, preview_png(datasets.get(name)))
+
+
+def forget_others(directory: Path) -> None:
+    """Remove pictures of other code, but the newest."""
+    folder = directory / FOLDER
+    others = [found for found in folder.iterdir() if found.is_dir() and found.name != digest()]
+    others.sort(key=lambda found: found.stat().st_mtime, reverse=True)
+    for found in others[OTHERS_KEPT:]:
+        shutil.rmtree(found, ignore_errors=True)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Draw; the exit status."""
+    end_with_coordinator()
+    directory, *names = arguments or sys.argv[1:]
+    if names:
+        draw(Path(directory), names)
+        return 0
+    from benchmark import datasets  # noqa: PLC0415 - as in `draw`
+
+    every = datasets.names()
+    draw(Path(directory), (name for name in SLOWEST if name in every))
+    # For those somebody may be waiting; of the others none takes long.
+    with suppress(OSError):
+        os.nice(10)
+    draw(Path(directory), every)
+    forget_others(Path(directory))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
