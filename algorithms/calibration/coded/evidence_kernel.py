@@ -32,10 +32,16 @@ from algorithms.compiled import compiled
 from algorithms.contract import Floats
 
 #: Of a spot's variance by design, then of one that is not known: degrees of freedom, px^2, and cost
-#: of that it is so; cost of a spot unexplained and of an aperture dark; odds asked for; room for a
-#: displacement and for a spot. Costs, odds and room are logarithms.
-Noise = tuple[float, float, float, float, float, float, float, float, float, float, float]
-_UNEXPLAINED, _DARK, _ODDS, _MASK, _VIEW = 6, 7, 8, 9, 10
+#: of that it is so; cost of a spot unexplained, and of an aperture dark on a broken mask; odds asked
+#: for; room for a displacement and for a spot; cost of an aperture dark on a whole mask, and share
+#: of broken ones. Costs, odds and room are logarithms.
+Noise = tuple[
+    *tuple[float, float, float],
+    *tuple[float, float, float],
+    *tuple[float, float, float, float, float],
+    *tuple[float, float],
+]
+_UNEXPLAINED, _DARK, _ODDS, _MASK, _VIEW, _WHOLE, _BROKEN = 6, 7, 8, 9, 10, 11, 12
 
 #: What is said of a list: read, nothing to read, several places that it may show.
 READ, NOTHING, SEVERAL = 0, 1, 2
@@ -90,6 +96,13 @@ def _agreement(dimensions: int, squares: float, noise: Noise) -> float:
 
 
 @compiled
+def _closed(dark_ones: int, noise: Noise) -> float:
+    """Logarithm of the odds of apertures being dark: on whole masks hardly any is."""
+    whole, broken = -dark_ones * noise[_WHOLE], -dark_ones * noise[_DARK]
+    return math.log((1.0 - noise[_BROKEN]) * math.exp(whole) + noise[_BROKEN] * math.exp(broken))
+
+
+@compiled
 def _at_most(count: int, left: int, noise: Noise) -> float:
     """Evidence for a place that leaves so many of the spots: no place that does has more."""
     return _agreement(max(2 * (count - left) - 2, 0), 0.0, noise) - left * noise[_UNEXPLAINED]
@@ -131,7 +144,7 @@ def _evidence(  # noqa: PLR0917 - Numba takes no keyword-only ones
     if found < least:
         return -math.inf
     closed = dark(count, at, int(min((found - least) / noise[_DARK], 1e6)), code, view, partners)
-    found -= closed * noise[_DARK]
+    found += _closed(closed, noise)
     return found if found >= least else -math.inf
 
 
