@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 
 #: Longest correlation of residuals that is looked for, in steps.
 _LAGS = 200
-#: Rounds at most towards the noise that readings themselves tell, and a step that is none.
-_ROUNDS, _SETTLED = 12, 0.03
+#: Least share of the residuals' variance that is tried for the readings' own, and how many are.
+_QUIETEST, _SHARES = 1e-3, 13
 
 
 def correlated_steps(residuals: Floats) -> Floats:
@@ -43,8 +43,8 @@ def heard(
     """Lower the noise of a calibration's residuals to what the readings themselves leave of it.
 
     Residuals have the noise of the calibration's reference, too; readings that follow each other
-    are compared by the gyroscope alone. Of a filter that has the right noise R, squares of what
-    updates leave have the mean ``R - H P H'`` (Mohamed and Schwarz).
+    are compared by the gyroscope alone. The share of the residuals' variance that makes the
+    readings likeliest: tried along a geometric series, with a parabola through the best three.
 
     Parameters
     ----------
@@ -64,26 +64,26 @@ def heard(
     """
     from algorithms.filtering.filters import ExtendedKalman  # noqa: PLC0415 - Numba
 
-    by, most, noise = ExtendedKalman(model.considered()), model.noise_, model.noise_
-    for _ in range(_ROUNDS):
-        space = model.space(noise=noise)
+    by = ExtendedKalman(model.considered())
+    shares = np.geomspace(_QUIETEST, 1.0, _SHARES)
+    told = []
+    for share in shares:
+        space = model.space(noise=np.maximum(share * model.noise_, least))
         belief: Belief | None = None
-        total = np.zeros((2, len(noise)))
+        total = 0.0
         for row, read in enumerate(features):
             if belief is None or not np.isfinite(apart_s[row]):
                 belief = space.started(by, model.starts_, read, known[row], model.considered())
                 continue
             belief = by.predict(space, belief, known[row], float(apart_s[row]))
             belief = by.update(space, belief, read[None], known[row])
-            slopes = space.sensitivity(belief.states, known[row])[0]
-            spread = np.diagonal(slopes @ belief.covariance[0] @ slopes.T)
-            left = (read - space.measured(belief.states, known[row])[0]) ** 2
-            if np.isfinite(left).all() and np.isfinite(spread).all():
-                total += np.stack([left, noise - spread])
-        if not (total > 0).all():
-            break
-        # squared: where the gyroscope is noisier than readings, steps are short
-        before, noise = noise, np.clip(noise * (total[0] / total[1]) ** 2, least, most)
-        if (np.abs(noise - before) <= _SETTLED * before).all():
-            break
-    return noise
+            if np.isfinite(belief.log_likelihood[0]):
+                total += float(belief.log_likelihood[0])
+        told.append(total)
+    best = min(max(int(np.argmax(told)), 1), _SHARES - 2)
+    before, here, after = told[best - 1 : best + 2]
+    bend = before - 2.0 * here + after
+    shift = 0.5 * (before - after) / bend if bend < 0 else 0.0
+    step = np.log(shares[1] / shares[0])
+    share = min(float(shares[best] * np.exp(np.clip(shift, -1.0, 1.0) * step)), 1.0)
+    return np.asarray(np.maximum(share * model.noise_, least))

@@ -9,10 +9,11 @@ from __future__ import annotations
 import hashlib
 import math
 from collections.abc import Iterable, Iterator, Mapping
+from itertools import groupby
 from pathlib import Path
 
 from benchmark.claims.experiment import Trial, found
-from benchmark.claims.outcomes import PUBLISHED, Curve, Outcome, plan_digest, read
+from benchmark.claims.outcomes import PUBLISHED, Curve, Outcome, outcome_of, plan_digest, read
 from benchmark.claims.rules import FIRST_TRIAL, Claim, claims
 
 #: That of scores measured on another processor, and as much for the last of five digits.
@@ -67,20 +68,43 @@ def drawn(sample: int, seed: int, directory: Path = PUBLISHED) -> list[Place]:
 def differences(places: Iterable[Place], directory: Path = PUBLISHED) -> Iterator[tuple[str, str]]:
     """Make trials again and give (file, what differs) of what is not as published.
 
-    Ratios of run times are left aside, and the lines of claims that have any.
+    Ratios of run times are left aside, and the lines of claims that have any. Where all trials of a
+    claim are made again, its lines are compared whole; else a trial's points have to lie between
+    the extremes.
     """
     from benchmark.running.threads import one_thread  # noqa: PLC0415 - the service measures nothing
 
     outcomes = read(directory)
-    for name, number in places:
+    for name, group in groupby(sorted(places), key=lambda place: place[0]):
         claim, outcome = claims()[name], outcomes[name]
         if wrong := list(contradictions(claim, outcome)):
             yield f"{name}.json", wrong[0]
             continue
-        with one_thread():
-            trial = found()[name].trial(number)
-        for text in _unlike(claim, outcome, trial, number - FIRST_TRIAL):
-            yield f"{name}.json", f"trial {number}: {text}"
+        trials = []
+        for _, number in group:
+            with one_thread():
+                trials.append(found()[name].trial(number))
+            for text in _unlike(claim, outcome, trials[-1], number - FIRST_TRIAL):
+                yield f"{name}.json", f"trial {number}: {text}"
+        if len(trials) == claim.trials and not any(rule.timed for rule in claim.rules):
+            made = outcome_of(claim, found()[name], trials)
+            yield from ((f"{name}.json", text) for text in _unlike_lines(outcome, made))
+
+
+def _unlike_lines(outcome: Outcome, made: Outcome) -> Iterator[str]:
+    for name in sorted(outcome.lines.keys() ^ made.lines.keys()):
+        yield f"line {name!r} is {'missing' if name in made.lines else 'none of this claim'}"
+    for name in sorted(outcome.lines.keys() & made.lines.keys()):
+        one, other = outcome.lines[name], made.lines[name]
+        for part in ("median", "low", "high"):
+            for number, pair in enumerate(
+                zip(getattr(one, part), getattr(other, part), strict=False), start=1
+            ):
+                if not _alike(*pair):
+                    said, should = pair
+                    yield f"{name}, {part}, point {number} is {said}; measured again {should}"
+        if one.across != other.across:
+            yield f"{name}: across is not as measured again"
 
 
 def _unlike(claim: Claim, outcome: Outcome, trial: Trial, place: int) -> Iterator[str]:

@@ -29,6 +29,7 @@ from benchmark.results.components import Components, current
 from benchmark.results.tables import StoreError, above_zero, read, text_of, word
 from benchmark.running.threads import one_thread
 from benchmark.running.timing import best_of, best_time
+from survey_data.leftovers import remove_leftovers
 from survey_data.locks import held_in_turn
 from survey_data.whole_files import replace_file
 
@@ -156,7 +157,9 @@ def update(
     components = current(known)
     first = {name: preset.conditions[0] for name, preset in known.presets.items()}
     planned = [cell for cell in cells(parts=known) if cell.condition == first[cell.dataset]]
-    there = times_of_code(directory, known, components)
+    with _held(directory):  # also where nothing is missing: what a killed process left goes
+        remove_leftovers(directory, TIMES)
+        there = times_of_code(directory, known, components)
     missing = [cell for cell in planned if _pipeline(cell) not in there]
     with terminal_progress() if progress is None else nullcontext(progress) as report:
         done = 0

@@ -1,63 +1,21 @@
-"""Kinds of files: where sound ones come from, and what the command that takes them says."""
+"""Kinds of files that people write or keep: facts, record, tables to import, bibliographies."""
 
 from __future__ import annotations
 
 import shutil
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import survey_data
 from benchmark.claims import outcomes
 from benchmark.curves import record as curves
-from benchmark.datasets import export, export_verification
 from benchmark.results import recorded
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import times
 from survey_data import recorded_facts
 from survey_data.descriptor import DATA_DIRECTORY
-
-#: Why a file that is not as it was may be taken.
-SAME = "reads as before: bytes that mean nothing"
-OFFERED = (
-    "is another sound table: nobody knows what it should say, its plan shows every cell that "
-    "differs, and nothing is written unasked"
-)
-OTHERS = (
-    "is another sound set of tables: one without a manifest has nothing to be held against, and "
-    "our own has one"
-)
-OWN = "is another sound file of this machine's own times, which are no part of what is published"
-
-
-class RefusedError(ValueError):
-    """What the command says in other ways than by an error."""
-
-
-@dataclass(frozen=True)
-class Kind:
-    """One kind of files.
-
-    Attributes
-    ----------
-    name
-        Of the kind.
-    share
-        Of the cases, in hundredths.
-    make
-        Puts sound files into a directory; returns those to damage.
-    read
-        What the command reads of the directory; raises where it refuses.
-    differing
-        Why a result that differs may be taken; empty where it may not.
-    """
-
-    name: str
-    share: int
-    make: Callable[[Path], list[Path]]
-    read: Callable[[Path], Any]
-    differing: str = ""
+from tests.faults.kind import OFFERED, OTHERS, OWN, Kind, RefusedError
 
 
 def _facts(folder: Path) -> list[Path]:
@@ -146,17 +104,6 @@ def _read_bibliography(folder: Path) -> Any:
     return survey_data.import_bibliography(folder / "survey.bib").to_dict()
 
 
-def _export(folder: Path) -> list[Path]:
-    export.export("pd-slit", folder / "out", conditions=["nominal"], n=6)
-    return sorted(path for path in (folder / "out").rglob("*") if path.is_file())
-
-
-def _verify(folder: Path) -> Any:
-    if wrong := export_verification.verify(folder / "out"):
-        raise RefusedError(": ".join(wrong[0]))
-    return []
-
-
 def _times(folder: Path) -> list[Path]:
     rows = [
         times.Time("pd-slit", name, "lsq", 3.5, 1.2, 0.7, "0123abcd")
@@ -170,13 +117,12 @@ def _named(name: str) -> Callable[[Path], Any]:
     return lambda folder: _plan(folder, name)
 
 
-KINDS = (
-    Kind("facts, with their manifest", 20, _facts, _read_facts),
-    Kind("survey tables of others (`survey check --data`)", 15, _tables, _unguarded, OTHERS),
-    Kind("published record, with its manifest", 20, _record, _read_record),
-    Kind("table to import, CSV", 12, _offered, _named("theirs.csv"), OFFERED),
-    Kind("table to import, XLSX", 13, _workbook, _named("theirs.xlsx"), OFFERED),
-    Kind("bibliography", 6, _bibliography, _read_bibliography, OFFERED),
-    Kind("export of a data set", 9, _export, _verify),
-    Kind("times of this machine", 5, _times, times.read_times, OWN),
+GIVEN = (
+    Kind("facts, with their manifest", 11, _facts, _read_facts),
+    Kind("survey tables of others (`survey check --data`)", 8, _tables, _unguarded, OTHERS),
+    Kind("published record, with its manifest", 11, _record, _read_record),
+    Kind("table to import, CSV", 8, _offered, _named("theirs.csv"), OFFERED),
+    Kind("table to import, XLSX", 9, _workbook, _named("theirs.xlsx"), OFFERED),
+    Kind("bibliography", 3, _bibliography, _read_bibliography, OFFERED),
+    Kind("times of this machine", 2, _times, times.read_times, OWN),
 )

@@ -31,11 +31,20 @@ from algorithms.calibration.coded.identity_kernel import (
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
 
-#: Of a spot's variance by design, then of one that is not known: degrees of freedom, px^2, and cost
-#: of that it is so; cost of a spot unexplained and of an aperture dark; odds asked for; room for a
-#: displacement and for a spot. Costs, odds and room are logarithms.
-Noise = tuple[float, float, float, float, float, float, float, float, float, float, float]
-_UNEXPLAINED, _DARK, _ODDS, _MASK, _VIEW = 6, 7, 8, 9, 10
+#: Of a spot's variance by design, then of one not known: degrees of freedom, px^2, and the cost
+#: that it is so; cost of a spot unexplained, and of an aperture dark on a broken mask; odds asked
+#: for; room for a displacement and for a spot; cost of an aperture dark on a whole mask, and share
+#: of broken ones; deviation of the logarithm of a width by design, 0 where widths are no code, and
+#: of one that dirt or a neighbour changes, and share of such. Costs, odds and room are logarithms.
+Noise = tuple[
+    *tuple[float, float, float],
+    *tuple[float, float, float],
+    *tuple[float, float, float, float, float],
+    *tuple[float, float],
+    *tuple[float, float, float],
+]
+_UNEXPLAINED, _DARK, _ODDS, _MASK, _VIEW, _WHOLE, _BROKEN = 6, 7, 8, 9, 10, 11, 12
+_WIDTH, _ODD_WIDTH, _ODD = 13, 14, 15
 
 #: What is said of a list: read, nothing to read, several places that it may show.
 READ, NOTHING, SEVERAL = 0, 1, 2
@@ -90,9 +99,44 @@ def _agreement(dimensions: int, squares: float, noise: Noise) -> float:
 
 
 @compiled
+def _closed(dark_ones: int, noise: Noise) -> float:
+    """Logarithm of the odds of apertures being dark: on whole masks hardly any is."""
+    whole, broken = -dark_ones * noise[_WHOLE], -dark_ones * noise[_DARK]
+    return math.log((1.0 - noise[_BROKEN]) * math.exp(whole) + noise[_BROKEN] * math.exp(broken))
+
+
+@compiled
+def _of_width(off: float, noise: Noise) -> float:
+    """Logarithm of the density of a width's residual, over that of one nothing is known of."""
+    design, odd = off / noise[_WIDTH], off / noise[_ODD_WIDTH]
+    told = (1.0 - noise[_ODD]) * math.exp(-0.5 * design * design) / noise[_WIDTH]
+    told += noise[_ODD] * math.exp(-0.5 * odd * odd) / noise[_ODD_WIDTH]
+    return math.log(max(told * noise[_ODD_WIDTH], noise[_ODD] * 1e-3))
+
+
+@compiled
+def _widths(spots: Floats, count: int, places: Floats, partners: Indices, noise: Noise) -> float:
+    """Evidence that widths told by light give for the partners: about their median, as they lie."""
+    off = np.empty(count)
+    number = 0
+    for s in range(count):
+        if partners[s] >= 0:
+            off[number] = spots[s, 2] - places[partners[s], 2]
+            number += 1
+    middle = np.median(off[:number])
+    found = 0.0
+    for s in range(number):
+        found += _of_width(off[s] - middle, noise)
+    return found
+
+
+@compiled
 def _at_most(count: int, left: int, noise: Noise) -> float:
     """Evidence for a place that leaves so many of the spots: no place that does has more."""
-    return _agreement(max(2 * (count - left) - 2, 0), 0.0, noise) - left * noise[_UNEXPLAINED]
+    found = _agreement(max(2 * (count - left) - 2, 0), 0.0, noise) - left * noise[_UNEXPLAINED]
+    if noise[_WIDTH] > 0.0:
+        found += (count - left) * _of_width(0.0, noise)
+    return found
 
 
 @compiled
@@ -128,10 +172,12 @@ def _evidence(  # noqa: PLR0917 - Numba takes no keyword-only ones
                 squares += (spots[s, 1] - places[partners[s], 1] - y) ** 2
         at[0], at[1] = x, y
     found = _agreement(2 * (count - left) - 2, squares, noise) - left * noise[_UNEXPLAINED]
+    if noise[_WIDTH] > 0.0:
+        found += _widths(spots, count, places, partners, noise)
     if found < least:
         return -math.inf
     closed = dark(count, at, int(min((found - least) / noise[_DARK], 1e6)), code, view, partners)
-    found -= closed * noise[_DARK]
+    found += _closed(closed, noise)
     return found if found >= least else -math.inf
 
 

@@ -65,8 +65,11 @@ _DEVIATIONS, _FREEDOM = 5.0, 30.0
 _WIDE_DEVIATIONS, _WIDE_FREEDOM, _NOISY = 2.0, 4.0, 1e4
 #: Spots of noisy lists may lie so many tolerances off.
 _WIDEST = 4.0
-#: One spot in so many is stray light, and one aperture in so many closed or not seen.
-_STRAY, _CLOSED = 100.0, 5.0
+#: One spot in so many is stray light. One aperture in so many is closed or not seen: of whole masks
+#: and of broken ones, which are such a share.
+_STRAY, _CLOSED, _BROKEN = 100.0, (100.0, 5.0), 0.1
+#: Deviation of the logarithm of a width that dirt or a neighbour changes, and share of such.
+_ODD = (0.35, 0.1)
 #: Share of the calibration samples whose code must be read.
 _ENOUGH = 0.5
 #: Rounds of reading the code and placing the apertures.
@@ -317,8 +320,11 @@ class CodedMask(ForwardModel):
         faults, verdicts = np.empty((2, len(lists)), dtype=np.int64)
         partners = np.empty(lists.shape[:2], dtype=np.int64)
         self.search()(lists, counts, code, drawn.view, self.share, found, faults)
-        code, order = table.code_of(places, drawn.widths, drawn.reach, drawn.widest, size)
-        noise = cast("Noise", (*drawn.noise[:8], math.log(self.odds), *drawn.noise[8:]))
+        code, order = table.code_of(places, drawn.widths, drawn.reach, drawn.widest, math.inf)
+        width = 0.0 if self.size_tolerance is None else self.size_tolerance / _DEVIATIONS
+        noise = cast(
+            "Noise", (*drawn.noise[:8], math.log(self.odds), *drawn.noise[8:], width, *_ODD)
+        )
         rules = (self.agreeing, self.share)
         evidence_kernel.decide(
             lists, counts, code, drawn.view, rules, noise, found, partners, verdicts
@@ -358,9 +364,11 @@ class CodedMask(ForwardModel):
                 (tolerance / _WIDE_DEVIATIONS) ** 2,
                 math.log(_NOISY),
                 area + math.log(_STRAY),
-                math.log(_CLOSED),
+                math.log(_CLOSED[1]),
                 math.log(float(np.prod(np.ptp(rows[:, :2], axis=0) + self.size_px))),
                 area,
+                math.log(_CLOSED[0]),
+                _BROKEN,
             ),
         )
 

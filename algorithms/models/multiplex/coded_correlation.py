@@ -80,15 +80,15 @@ class CodedCorrelation(CodedMask):
     fall. It is exact at every displacement that brings one of the first spots upon an aperture;
     of equal peaks that with the fewest dark apertures is taken.
     That place is compared with every other one that is nearly as likely, decided exactly, not among
-    those tried: ``log p = log t(r) - left log(100 A) - dark log 5``, r what the n spots it explains
-    are from their apertures less their mean, t the density of residuals of the design's deviation
-    (a fifth of the tolerance) or, of one list in ten thousand, of one that the list alone tells; A
-    the detector's area. It is kept if it is `odds` times as likely as any other. Then
-    ``D = sum(p_i - a_i - o_i) / n`` over the n spots that agree is the least-squares displacement,
-    and so direction, of all of them: parallel light moves every spot alike. Spots far from the
-    median are left out. o_i are offsets of the built apertures, predicted from how spots of one
-    frame lie to each other (best linear unbiased; no error of the turntable enters); focal length,
-    centre, turns and tilts are fitted to D by least squares of the angles, through the cover glass.
+    those tried: ``p = t(r) (100 A)^-left (0.9 0.01^dark + 0.1 0.2^dark)``, r what the n spots it
+    explains are from their apertures less their mean, t the density of residuals of the design's
+    deviation (a fifth of the tolerance) or, of one list in ten thousand, of one that the list alone
+    tells; A the detector's area. It is kept if it is `odds` times as likely as any other. Then ``D
+    = sum(p_i - a_i - o_i) / n`` over the n spots that agree is the least-squares displacement, and
+    so direction, of all of them: parallel light moves every spot alike. Spots far from the median
+    are left out. o_i are offsets of the built apertures, predicted from how spots of one frame lie
+    to each other (best linear unbiased; no error of the turntable enters); focal length, centre,
+    turns and tilts are fitted to D by least squares of the angles, through the cover glass.
 
     Shapes: lists ``(x_px, y_px, light)`` of spots (N, 3 K), light 0 and last for none, to unit
     vectors (N, 3). No row leans on another: lost in space, in one frame.

@@ -159,7 +159,8 @@ def evidence_everywhere(spots, model):
         inside[partner[kept]] = False
         left = len(spots) - len(kept)
         told = residuals_density(squares, 2 * len(kept) - 2, model._drawn.tolerance)
-        told -= left * math.log(100.0 * SIZE**2) + inside.sum() * math.log(5.0)
+        told -= left * math.log(100.0 * SIZE**2)
+        told += math.log(0.9 * 0.01 ** inside.sum() + 0.1 * 0.2 ** inside.sum())
         at.append(here)
         found.append(told)
     return np.array(at), np.array(found)

@@ -55,7 +55,9 @@ def test_nothing_overlaps_in_a_figure_of_the_survey(name: str, width: float) -> 
 
 
 @pytest.mark.parametrize(("rows", "columns"), PAIRS)
-@pytest.mark.parametrize("width", [322.0, 680.0, 1100.0])
+@pytest.mark.parametrize(
+    "width", [322.0, *[pytest.param(wide, marks=pytest.mark.slow) for wide in (680.0, 1100.0)]]
+)
 def test_nothing_overlaps_in_a_matrix(rows: str, columns: str, width: float) -> None:
     drawing = evidence_map(facts(), {}, rows, columns).draw(width)
     assert meeting(drawing) == []

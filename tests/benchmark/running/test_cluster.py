@@ -103,6 +103,7 @@ def test_two_local_workers_do_too(expected: dict[Path, bytes], tmp_path: Path) -
     assert contents(Store(tmp_path)) == expected
 
 
+@pytest.mark.slow
 def test_a_worker_killed_after_its_first_result_loses_nothing(
     scheduler: str, log: Path, expected: dict[Path, bytes], tmp_path: Path
 ) -> None:
@@ -144,6 +145,7 @@ def test_a_worker_killed_after_its_first_result_loses_nothing(
     assert os.getpid() not in others
 
 
+@pytest.mark.slow
 def test_a_task_that_kills_every_worker_ends_the_run_and_the_next_does_what_is_missing(
     scheduler: str, log: Path, expected: dict[Path, bytes], tmp_path: Path
 ) -> None:

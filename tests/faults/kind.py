@@ -1,0 +1,56 @@
+"""What a kind of files is: where sound ones come from, and what a command says of them."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+#: Why a file that is not as it was may be taken.
+SAME = "reads as before: bytes that mean nothing"
+OFFERED = (
+    "is another sound table: nobody knows what it should say, its plan shows every cell that "
+    "differs, and nothing is written unasked"
+)
+OTHERS = (
+    "is another sound set of tables: one without a manifest has nothing to be held against, and "
+    "our own has one"
+)
+OWN = "is another sound file of this machine's own times, which are no part of what is published"
+
+
+class RefusedError(ValueError):
+    """What the command says in other ways than by an error."""
+
+
+@dataclass(frozen=True)
+class Kind:
+    """One kind of files.
+
+    Attributes
+    ----------
+    name
+        Of the kind.
+    share
+        Of the cases, in hundredths.
+    make
+        Puts sound files into a directory; returns those to damage.
+    read
+        What the command reads of the directory; raises where it refuses.
+    differing
+        Why a result that differs may be taken; empty where it may not.
+    may
+        Whether this one may (what was read, what is read of the sound files).
+    forge
+        Changes something and makes all digests fit, and returns how; None for plain damage.
+    """
+
+    name: str
+    share: int
+    make: Callable[[Path], list[Path]]
+    read: Callable[[Path], Any]
+    differing: str = ""
+    may: Callable[[Any, Any], bool] = lambda _result, _reference: True
+    forge: Callable[[random.Random, Path], str] | None = None
