@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 _LAGS = 200
 #: Least share of the residuals' variance that is tried for the readings' own, and how many are.
 _QUIETEST, _SHARES = 1e-3, 13
+#: Of the readings that any share follows, how many one must: a series may begin a row later.
+_FOLLOWED = 0.99
 
 
 def correlated_steps(residuals: Floats) -> Floats:
@@ -44,7 +46,8 @@ def heard(
 
     Residuals have the noise of the calibration's reference, too; readings that follow each other
     are compared by the gyroscope alone. The share of the residuals' variance that makes the
-    readings likeliest: tried along a geometric series, with a parabola through the best three.
+    readings likeliest: tried along a geometric series, with a parabola through the best three. No
+    share is taken with which some readings cannot be followed that can with another.
 
     Parameters
     ----------
@@ -66,11 +69,11 @@ def heard(
 
     by = ExtendedKalman(model.considered())
     shares = np.geomspace(_QUIETEST, 1.0, _SHARES)
-    told = []
+    told, followed = [], []
     for share in shares:
         space = model.space(noise=np.maximum(share * model.noise_, least))
         belief: Belief | None = None
-        total = 0.0
+        total, rows = 0.0, 0
         for row, read in enumerate(features):
             if belief is None or not np.isfinite(apart_s[row]):
                 belief = space.started(by, model.starts_, read, known[row], model.considered())
@@ -79,11 +82,14 @@ def heard(
             belief = by.update(space, belief, read[None], known[row])
             if np.isfinite(belief.log_likelihood[0]):
                 total += float(belief.log_likelihood[0])
-        told.append(total)
-    best = min(max(int(np.argmax(told)), 1), _SHARES - 2)
-    before, here, after = told[best - 1 : best + 2]
+                rows += 1
+        told.append(total / max(rows, 1))
+        followed.append(rows)
+    likely = np.where(np.array(followed) >= _FOLLOWED * max(followed), told, -np.inf)
+    best = min(max(int(np.argmax(likely)), 1), _SHARES - 2)
+    before, here, after = likely[best - 1 : best + 2]
     bend = before - 2.0 * here + after
-    shift = 0.5 * (before - after) / bend if bend < 0 else 0.0
+    shift = 0.5 * (before - after) / bend if -np.inf < bend < 0 else 0.0
     step = np.log(shares[1] / shares[0])
     share = min(float(shares[best] * np.exp(np.clip(shift, -1.0, 1.0) * step)), 1.0)
     return np.asarray(np.maximum(share * model.noise_, least))

@@ -145,7 +145,8 @@ class SunSpace:
     ) -> Belief | None:
         """Belief after a first reading (m,), from the best of directions (G, 3); None without one.
 
-        A reading that no direction explains begins nothing: squares of what is left are chi-square.
+        A reading that no direction explains begins nothing: squares of what is left are chi-square,
+        in units of the noise and of what is considered.
 
         Gauss-Newton steps of the update, all from the same prior (iterated Kalman update).
         """
@@ -169,7 +170,9 @@ class SunSpace:
                 return None
             step, covariance, _, _ = algebra.updated(prior, slopes, noise, innovation, estimated)
             state = self.moved(first, step)
-        left = (read - self.measured(state, known)[0]) ** 2 / np.diagonal(noise[0])
+        left, slopes = self._read(state, known)
+        unsure = slopes[0][:, list(considered)] ** 2 @ np.diagonal(prior[0])[list(considered)]
+        left = (read - left[0]) ** 2 / (np.diagonal(noise[0]) + unsure)
         if not left.sum() <= len(left) + _FAR * np.sqrt(2.0 * len(left)):
             return None
         return by.begin(self, state, covariance)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import uvicorn
 
 from api.cli.commands.serve import address, listen
-from api.http.connections import bounds
+from api.http.server.connections import bounds
 from tests.speed.service import empty_app
 
 

@@ -30,7 +30,7 @@ from urllib.parse import urlencode
 import uvicorn
 from fastapi import FastAPI
 
-from api.http.connections import bounds
+from api.http.server.connections import bounds
 from api.http.service import create_app
 from registry.studies import facts
 from tests.speed.verdicts import Verdict, broken

@@ -17,9 +17,9 @@ from uvicorn.supervisors import Multiprocess
 from api.cli.working import working_directory
 from api.cli.wrong_call import WrongCallError
 from api.guide import site
-from api.http import serving
-from api.http.connections import bounds
-from api.http.renewal import Renewed, beside, renewed_after
+from api.http.server import serving
+from api.http.server.connections import bounds
+from api.http.server.renewal import Renewed, beside, renewed_after
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
@@ -89,7 +89,7 @@ def serve(
 def _serve_by_many(listener: socket.socket, workers: int) -> None:
     """Serve by several processes that share a listening socket, until a signal ends them."""
     config = uvicorn.Config(
-        "api.http.serving:application",
+        "api.http.server.serving:application",
         factory=True,
         workers=workers,
         timeout_worker_healthcheck=60,  # loading takes seconds, and more on a busy machine

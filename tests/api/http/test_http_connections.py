@@ -7,7 +7,7 @@ from contextlib import ExitStack
 
 import pytest
 
-from api.http.connections import BoundedProtocol
+from api.http.server.connections import BoundedProtocol
 from tests.speed.service import serving
 
 

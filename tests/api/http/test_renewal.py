@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from fastapi import FastAPI
 
-from api.http.renewal import Renewed, renewed_after
+from api.http.server.renewal import Renewed, renewed_after
 
 
 def saying(word):
@@ -57,7 +57,7 @@ def test_a_command_that_cannot_start_is_an_error():
 
 SERVICE = """
 import sys, time
-from api.http.renewal import Renewed, renewed_after
+from api.http.server.renewal import Renewed, renewed_after
 writing = "import os, time; open('pid', 'w').write(str(os.getpid())); time.sleep(600)"
 command = sys.executable, "-c", writing
 with renewed_after(command, Renewed(None), lambda: None):

@@ -1,0 +1,1 @@
+"""What serves the service: an application a process, bounded connections, renewal in place."""
