@@ -42,12 +42,17 @@ class Answer:
 
 @dataclass
 class Load:
-    """What came of it: answers, and resident memory (seconds, bytes)."""
+    """What came of it: answers, and memory (seconds, bytes), of its own and resident.
+
+    A process' own memory is what no file backs. Pages of files, its libraries among them, are
+    resident as long as the system has room for them: they come and go without its doing.
+    """
 
     rate: float
     seconds: float
     answers: list[Answer] = field(default_factory=list)
     memory: list[tuple[float, int]] = field(default_factory=list)
+    resident: list[tuple[float, int]] = field(default_factory=list)
 
 
 @contextmanager
@@ -117,7 +122,9 @@ def load(
 
     def watch() -> None:
         while not ended.wait(_MEMORY_EVERY_S):
-            found.memory.append((time.monotonic() - start, resident(process)))
+            at, (own, resident) = time.monotonic() - start, memory(process)
+            found.memory.append((at, own))
+            found.resident.append((at, resident))
 
     threads = [threading.Thread(target=ask) for _ in range(_ASKING)]
     watching = threading.Thread(target=watch)
@@ -130,12 +137,14 @@ def load(
     return found
 
 
-def resident(process: int) -> int:
-    """Return the resident memory of a process, bytes."""
-    for line in Path(f"/proc/{process}/status").read_text().splitlines():
-        if line.startswith("VmRSS:"):
-            return int(line.split()[1]) * 1024
-    raise RuntimeError(f"process {process} has ended")
+def memory(process: int) -> tuple[int, int]:
+    """Return a process' own and its resident memory, bytes."""
+    told = Path(f"/proc/{process}/status").read_text().splitlines()
+    kilobytes = {line.split(":")[0]: int(line.split()[1]) for line in told if line.endswith(" kB")}
+    if "VmRSS" not in kilobytes:
+        raise RuntimeError(f"process {process} has ended")
+    own = kilobytes["RssAnon"] + kilobytes["RssShmem"]
+    return own * 1024, kilobytes["VmRSS"] * 1024
 
 
 def _connected(address: str) -> HTTPConnection:

@@ -40,7 +40,7 @@ def quick_share(took: Sequence[float]) -> float:
 
 
 def memory_growth(load: Load) -> float | None:
-    """Return how much memory rose from ten minutes on to the end; None where that is too short."""
+    """Return how much its own memory rose from ten minutes on; None for too short a run."""
     early = [m for at, m in load.memory if LEVEL_AFTER_S <= at < LEVEL_AFTER_S + WINDOW_S]
     late = [m for at, m in load.memory if at >= load.seconds - WINDOW_S]
     if not early or not late or load.seconds < LEVEL_AFTER_S + 2 * WINDOW_S:
@@ -73,7 +73,8 @@ def report(load: Load) -> str:
             f"{late:.2%} of the requests."
         ),
         "",
-        f"Memory after {_minutes(load)}; {level}.",
+        f"Memory of its own, which no file backs, after {_minutes(load.memory)}; {level}.",
+        f"Resident, with pages of files: {_minutes(load.resident)}.",
         "",
         "| requests | number | median, ms | 99 % below, ms | longest, ms |",
         "| --- | ---: | ---: | ---: | ---: |",
@@ -87,10 +88,10 @@ def report(load: Load) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _minutes(load: Load) -> str:
+def _minutes(memory: Sequence[tuple[float, int]]) -> str:
     said = []
     for minute in (1, 5, 10, 20, 30, 40, 50, 60):
-        near = [m for at, m in load.memory if 60 * minute - 30 <= at < 60 * minute + 30]
+        near = [m for at, m in memory if 60 * minute - 30 <= at < 60 * minute + 30]
         if near:
             said.append(f"{minute} min {statistics.mean(near) / 1e6:.0f} MB")
     return ", ".join(said) or "less than a minute"

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import os
 import random
 
+import numpy as np
 import pytest
 
-from tests.faults_load.driving import Answer, Load
+from tests.faults_load.driving import Answer, Load, memory
 from tests.faults_load.report import failures, report
 from tests.faults_load.requests import KINDS, Names, drawn
 
@@ -19,7 +21,7 @@ def load(memory: float = 1.0, status: int = 200, slow: int = 0) -> Load:
     ]
     answers.append(Answer("a study", "/v1/studies/y", 3600.0, 0.002, 0.0, status))
     seen = [(30.0 * n, int(2e8 * (memory if n > 100 else 1.0))) for n in range(120)]
-    return Load(20.0, 3600.0, answers, seen)
+    return Load(20.0, 3600.0, answers, seen, seen)
 
 
 def test_a_good_hour_has_no_failures() -> None:
@@ -39,6 +41,13 @@ def test_a_good_hour_has_no_failures() -> None:
 )
 def test_each_fault_is_told(changes: dict[str, float], said: str) -> None:
     assert failures(load(**changes)) == [said]
+
+
+def test_pages_of_files_are_no_memory_of_its_own() -> None:
+    own, resident = memory(os.getpid())
+    assert 0 < own < resident
+    held = np.ones(2**24)
+    assert memory(os.getpid())[0] - own > 0.9 * held.nbytes
 
 
 def test_every_kind_is_drawn_and_a_seed_draws_the_same_again() -> None:

@@ -10,6 +10,7 @@ from kalman_runs import (
     GYROSCOPE,
     SPACES,
     STEP_S,
+    cube,
     drawn,
     first_doubt,
     pinhole,
@@ -17,6 +18,7 @@ from kalman_runs import (
 )
 from scipy.stats import chi2
 
+from algorithms.filtering.drift import GAINS, MOTION, Drift
 from algorithms.filtering.filters import (
     CUBATURE,
     AdaptiveKalman,
@@ -261,6 +263,19 @@ def test_a_reading_that_no_direction_explains_begins_nothing() -> None:
     assert begun is not None
     np.testing.assert_allclose(begun.states[0, 6:9], sun[0], atol=2e-3)
     assert space.started(by, starts, read + 20.0 * np.arange(6), known) is None
+
+
+def test_what_is_considered_explains_a_first_reading_that_its_noise_does_not() -> None:
+    gains = [Drift(GAINS + k, 0.02, 0.0) for k in range(6)]
+    space = SunSpace(cube(), 1e-6 * np.eye(6), GYROSCOPE, gains)
+    considered = tuple(range(MOTION, MOTION + 6))
+    by = ExtendedKalman(considered)
+    sun = np.array([[0.6, 0.0, 0.8]])
+    known = np.r_[np.zeros(3), 1.0, 0.0, 0.0, 0.0]
+    read = space.measured(space.states_towards(sun), known)[0]
+    read *= np.array([1.02, 1.0, 1.0, 1.0, 0.98, 1.0])  # aged by a deviation each
+    assert space.started(by, sun, read, known, considered) is not None
+    assert space.started(by, sun, read + 5.0 * np.eye(6)[1], known, considered) is None
 
 
 def test_gains_that_drift_are_found_by_the_filter_that_has_them_in_its_state() -> None:
