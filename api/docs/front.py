@@ -204,12 +204,13 @@ def _advice() -> str:
             best += error == least
             worse += [error / least] if error > least else []
     silent = len(tasks) - best - len(worse)
+    often = f", and {_times(silent)} it answers too seldom to be ranked" if silent else ""
     return (
         f"**What is advised is seldom what measures best.** Asked for each of the survey's "
         f"{len(tasks)} tasks, the calibration that its advice and the studies put first is the "
         f"best one measured for that sensor {_times(best)}; {_times(len(worse))} it errs "
-        f"{min(worse):.2g} to {max(worse):.2g} times as much, and {_times(silent)} it answers too "
-        "seldom to be ranked (`sunatlas recommend --task Volume`)."
+        f"{min(worse):.2g} to {max(worse):.2g} times as much{often} "
+        "(`sunatlas recommend --task Volume`)."
     )
 
 
@@ -237,6 +238,7 @@ def _poses() -> str:
     return (
         f"**Few sensors need the poses they are given.** Of the {len(rows)} leading calibrations "
         f"made on a bench, {enough} are within 10 % of the error that no number of poses improves "
-        f"with {few} random poses or fewer; {never} do not come so near with all of theirs "
+        f"with {few} random poses or fewer; {never} {'does' if never == 1 else 'do'} "
+        "not come so near with all of theirs "
         "([docs/learning-curves.md](docs/learning-curves.md))."
     )
