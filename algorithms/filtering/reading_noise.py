@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from algorithms.contract import Floats
 
 if TYPE_CHECKING:
     from algorithms.filtering.filters import Belief
-    from algorithms.filtering.sequence import SunFilter
+    from algorithms.filtering.sun_space import SunSpace
 
 #: Longest correlation of residuals that is looked for, in steps.
 _LAGS = 200
@@ -18,6 +18,21 @@ _LAGS = 200
 _QUIETEST, _SHARES = 1e-3, 13
 #: Of the readings that any share follows, how many one must: a series may begin a row later.
 _FOLLOWED = 0.99
+
+
+class Learnt(Protocol):
+    """A filter that has learnt how its sensor reads a Sun."""
+
+    noise_: Floats
+    starts_: Floats
+
+    def space(self, years: float = 0.0, noise: Floats | None = None) -> SunSpace:
+        """Return its state space, with this noise of readings."""
+        ...
+
+    def considered(self) -> tuple[int, ...]:
+        """Which errors of the state are considered."""
+        ...
 
 
 def correlated_steps(residuals: Floats) -> Floats:
@@ -39,9 +54,7 @@ def correlated_steps(residuals: Floats) -> Floats:
     return steps
 
 
-def heard(
-    model: SunFilter, features: Floats, known: Floats, apart_s: Floats, least: Floats
-) -> Floats:
+def heard(model: Learnt, features: Floats, known: Floats, apart_s: Floats, least: Floats) -> Floats:
     """Lower the noise of a calibration's residuals to what the readings themselves leave of it.
 
     Residuals have the noise of the calibration's reference, too; readings that follow each other
@@ -51,7 +64,7 @@ def heard(
 
     Parameters
     ----------
-    model : SunFilter
+    model : Learnt
         With everything learnt but its noise, of which it has the residuals'.
     features, known : ndarray, shapes (n, m) and (n, 7)
         In the order of time.
