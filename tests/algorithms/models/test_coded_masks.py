@@ -140,12 +140,9 @@ def evidence_everywhere(spots, model):
     for named in (spots[:, None, :2] - places).reshape(-1, 2):
         here = named
         for _ in range(2):
-            off = spots[:, None, :2] - here - places
-            partner = np.where(
-                np.abs(off).max(axis=2).min(axis=1) <= widest,
-                np.abs(off).max(axis=2).argmin(axis=1),
-                -1,
-            )
+            off = np.abs(spots[:, None, :2] - here - places)
+            away = np.maximum(off[:, :, 0], off[:, :, 1])
+            partner = np.where(away.min(axis=1) <= widest, away.argmin(axis=1), -1)
             kept = np.flatnonzero(partner >= 0)
             if 2 * len(kept) < len(spots):
                 break
@@ -255,7 +252,7 @@ def test_a_mask_without_a_code_is_not_read(cls):
     assert np.isnan(reading.displacement).all()
     assert reading.ambiguous.all()
     with pytest.raises(UnusableDataError, match="code"):
-        model.fit(features, sun)
+        model.fit(features[:20], sun[:20])
 
 
 @pytest.mark.parametrize("cls", MODELS)
