@@ -148,7 +148,7 @@ def write_recorded(
     """
     entries = read(folder)
     recorded = entries is not None or start
-    entries = dict(entries or {})
+    entries = _as_left(folder, entries or {}) if recorded else {}
     encoded = {k: v.encode() if isinstance(v, str) else v for k, v in contents.items()}
     for name, data in encoded.items():
         if data is None:
@@ -167,6 +167,29 @@ def write_recorded(
     if recorded:
         settle(folder)
     return changed
+
+
+def _as_left(folder: Path, entries: Mapping[str, Entry]) -> dict[str, Entry]:
+    """Return a manifest's entries, and of files that a killed command has dealt with its own.
+
+    The next command need not deal with them again: a file that is taken away is away.
+    """
+    found = dict(entries)
+    try:
+        coming = read(folder, NEXT)
+    except FileRefusedError:
+        return found  # damaged, it tells nothing
+    if coming is None:
+        return found
+    for name in {*entries, *coming}:
+        entry = coming.get(name)
+        if entry == entries.get(name) or list(_of_file(folder, name, entry, False)):
+            continue
+        if entry is None:
+            del found[name]
+        else:
+            found[name] = entry
+    return found
 
 
 def renew(folder: Path, names: Collection[str]) -> list[str]:

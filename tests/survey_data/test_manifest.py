@@ -1,6 +1,7 @@
 """What was changed by hand is named by file, row and column; what a command wrote passes."""
 
 import shutil
+from pathlib import Path
 
 import pytest
 
@@ -115,6 +116,27 @@ def test_what_a_kill_leaves_is_no_change_by_hand_and_the_next_run_ends_it(
     assert told(folder) == []
     assert not (folder / NEXT).exists()
     assert (folder / "inner/said.json").read_text() == "{}\n"
+
+
+def test_the_next_command_need_not_take_away_what_a_killed_one_took(folder, monkeypatch):
+    """Who drops a file knows no more of it the next time: the coming manifest does."""
+    changed = TABLE.replace("red", "rot")
+    real = Path.unlink
+
+    def dies(path, *, missing_ok=False):
+        real(path, missing_ok=missing_ok)
+        if path.name == "said.json":
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(Path, "unlink", dies)
+    with pytest.raises(KeyboardInterrupt):
+        write_recorded(folder, {"inner/said.json": None, "table.csv": changed})
+    monkeypatch.undo()
+    assert not (folder / "inner/said.json").exists()
+    write_recorded(folder, {"table.csv": changed})
+    assert not (folder / NEXT).exists()
+    assert "inner/said.json" not in manifest.read(folder)
+    assert [str(p) for p in differences(folder, ("table.csv",))] == []
 
 
 def test_settling_finishes_or_drops_what_a_kill_left(folder):
