@@ -5,14 +5,13 @@ from __future__ import annotations
 import csv
 import io
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
 
 import survey_data
-import survey_data.validation.validate as validation
 from survey_data.descriptor import DATA_DIRECTORY, DESCRIPTOR_FILE, file_name, table_names
 
 
@@ -54,22 +53,6 @@ def copy_data(directory: Path) -> Copy:
     for name in (DESCRIPTOR_FILE, *map(file_name, table_names())):
         shutil.copyfile(DATA_DIRECTORY / name, directory / name)
     return Copy(directory)
-
-
-@pytest.fixture(scope="session", autouse=True)
-def _same_cells_are_checked_once() -> Iterator[None]:
-    """Most tests begin with tables as they are shipped, half a second of frictionless each."""
-    check, known = validation._check_schema, {}
-
-    def checked(sound):
-        key = repr({table: (records.header, records.rows) for table, records in sound.items()})
-        if key not in known:
-            known[key] = check(sound)
-        return list(known[key])
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(validation, "_check_schema", checked)
-        yield
 
 
 @pytest.fixture(scope="session")

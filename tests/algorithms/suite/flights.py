@@ -9,7 +9,7 @@ import numpy as np
 from algorithms.angles import sun_from_angles
 from algorithms.contract import FeatureKind, SensorGeometry
 
-STEPS, STEP_S = 180, 10.0
+STEPS, STEP_S = 120, 10.0
 
 
 def path(kind: FeatureKind) -> np.ndarray:

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from expectations import assert_documented, assert_metadata, assert_rejects, same, wrong_arrays
-from shared_fits import learnt
+from shared_fits import learnt, learnt_again, witnessed
 
 from algorithms.angles import separation_deg
 from algorithms.calibration.saving import stage_document, stage_of
@@ -62,18 +62,20 @@ def check_fitted_attributes_appear_with_fit(cls, model, cal):
     assert fitted
     assert all(name.endswith("_") and not name.startswith("_") for name in fitted)
     assert not any(hasattr(model, name) for name in fitted)
-    assert model.fit(cal.features, cal.sun, cal.context) is model
-    assert all(hasattr(model, name) for name in fitted)
-    assert repr(model)
+    seen = witnessed(model, cal)
+    before, after = seen.attributes
+    assert not before & set(fitted)
+    assert seen.returned is seen.model
+    assert after >= set(fitted)
+    assert repr(seen.model)
 
 
 @model_check
 def check_parameters_are_plain_and_kept(cls, model, cal):
-    before = json.dumps(parameters(model), allow_nan=False)
-    model.fit(cal.features, cal.sun, cal.context)
-    model.predict(cal.features, cal.context)
-    assert json.dumps(parameters(model), allow_nan=False) == before
-    assert model == cls(**parameters(model))
+    seen = witnessed(model, cal)
+    before, after = seen.told
+    assert after == before == json.dumps(parameters(model), allow_nan=False)
+    assert seen.model == model == cls(**parameters(model))
 
 
 @model_check
@@ -173,22 +175,15 @@ def check_a_refused_fit_leaves_no_trace(cls, model, cal):
 
 @model_check
 def check_model_is_deterministic(cls, model, cal):
-    model, first = learnt(model, cal)
-    same(model.predict(cal.features, cal.context), first)
-    same(
-        cls(**parameters(model))
-        .fit(cal.features, cal.sun, cal.context)
-        .predict(cal.features, cal.context),
-        first,
-    )
+    fitted, first = learnt(model, cal)
+    same(fitted.predict(cal.features, cal.context), first)
+    same(learnt_again(model, cal), first)
 
 
 @model_check
 def check_fit_forgets_the_fit_before(cls, model, cal):
     _, expected = learnt(model, cal)
-    half = cal.of(slice(None, None, 2))
-    other = cls(**parameters(model)).fit(half.features, half.sun, half.context)
-    same(other.fit(cal.features, cal.sun, cal.context).predict(cal.features, cal.context), expected)
+    same(learnt_again(model, cal), expected)
 
 
 @model_check
@@ -202,12 +197,11 @@ def check_model_batch_of_one_equals_batch_of_many(cls, model, cal):
 
 @model_check
 def check_model_leaves_input_alone(cls, model, cal):
-    features, sun = cal.features.copy(), cal.sun.copy()
-    context = {name: column.copy() for name, column in cal.context.items()}
-    model.fit(features, sun, context).predict(features, context)
-    same(features, cal.features)
-    same(sun, cal.sun)
-    for name, column in context.items():
+    given = witnessed(model, cal).given
+    same(given.features, cal.features)
+    same(given.sun, cal.sun)
+    assert given.context.keys() == cal.context.keys()
+    for name, column in given.context.items():
         same(column, cal.context[name])
 
 
@@ -227,11 +221,10 @@ def check_model_layouts_and_dtypes_agree(cls, model, cal):
 
 @model_check
 def check_model_survives_pickling(cls, model, cal):
-    again = pickle.loads(pickle.dumps(model))
-    assert again == model
-    model, expected = learnt(model, cal)
-    same(again.fit(cal.features, cal.sun, cal.context).predict(cal.features, cal.context), expected)
-    same(pickle.loads(pickle.dumps(model)).predict(cal.features, cal.context), expected)
+    assert pickle.loads(pickle.dumps(model)) == model
+    fitted, expected = learnt(model, cal)
+    same(learnt_again(model, cal), expected)
+    same(pickle.loads(pickle.dumps(fitted)).predict(cal.features, cal.context), expected)
 
 
 @model_check

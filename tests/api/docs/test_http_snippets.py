@@ -13,7 +13,8 @@ SNIPPETS = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), 
 
 @pytest.fixture(scope="module")
 def address(atlas):
-    with serving([atlas.app]) as (connection,):
+    # the application has loaded what it answers, or does with its first answer
+    with serving([atlas.app], lifespan="off") as (connection,):
         yield f"http://{connection.host}:{connection.port}"
 
 

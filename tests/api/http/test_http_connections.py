@@ -21,7 +21,8 @@ class Small(BoundedProtocol):
 
 @pytest.fixture
 def place(atlas, request):
-    with serving([atlas.app], http=request.param) as (connection,):
+    # what the application answers is loaded with its first answer, not once more by every server
+    with serving([atlas.app], http=request.param, lifespan="off") as (connection,):
         yield connection.host, connection.port
 
 
