@@ -30,7 +30,7 @@ FIRST_S, WHOLE_S = 1.0, 6.0
 #: Pictures that take longest first, so that they are asked for soonest after the start.
 PAGES = (
     *(f"/datasets/{name}" for name in SLOWEST),
-    *("/", "/figures", "/studies/Liebe2001", "/leaderboard", "/compare", "/glossary"),
+    *("/", "/figures", "/studies/Liebe2001", "/datasets", "/compare", "/glossary"),
 )
 _PAINTED = "performance.getEntriesByName('first-contentful-paint')[0]?.startTime ?? null"
 
