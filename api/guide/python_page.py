@@ -65,13 +65,17 @@ def interface() -> str:
 
 
 def _public(module: ModuleType) -> Iterator[Any]:
-    """Give the public classes and functions of a module, of a package what it says it has."""
+    """Give the public classes and functions of a module, of a package what it says it has.
+
+    What a package loads with its first use is loaded: else the page would tell of what happens to
+    be there already.
+    """
     listed: Sequence[str] | None = getattr(module, "__all__", None)
+    names = [name for name in vars(module) if not name.startswith("_")]
     found = [
         one
-        for name, one in vars(module).items()
-        if (name in listed if listed is not None else not name.startswith("_"))
-        and (inspect.isclass(one) or inspect.isfunction(one) or hasattr(one, "__wrapped__"))
+        for one in (getattr(module, name) for name in (names if listed is None else listed))
+        if (inspect.isclass(one) or inspect.isfunction(one) or hasattr(one, "__wrapped__"))
         and (listed is not None or getattr(one, "__module__", "") == module.__name__)
         and inspect.getdoc(one)
     ]

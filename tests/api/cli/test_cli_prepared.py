@@ -89,7 +89,7 @@ def test_facts_read_as_text_are_those_of_the_frames():
 
 
 @pytest.mark.slow
-def test_an_answer_from_what_is_kept_imports_nothing_heavy(tmp_path):
+def test_an_answer_from_what_is_kept_imports_nothing_heavy_but_numpy(tmp_path):
     command = [sys.executable, "-X", "importtime", "-m", "api.cli.command_line", "recommend"]
     environment = {**os.environ, "SUNATLAS_STORE": str(tmp_path)}
     shown = [
