@@ -40,6 +40,43 @@ def test_a_board_is_that_of_the_service_in_its_order(atlas: Client) -> None:
     assert names == [(row["extractor"], row["model"]) for row in rows]
 
 
+def test_the_leaderboard_is_that_of_the_service_in_the_order_asked_for(atlas: Client) -> None:
+    rows = atlas.walk("/v1/leaderboard/architectures?limit=500")
+    by_name = [f"{row['detector']} + {row['mask']}" for row in rows]
+    orders = {
+        "": sorted(rows, key=lambda row: row["rms_deg"]),
+        "?order=error": sorted(rows, key=lambda row: row["rms_deg"]),
+        "?order=bound": sorted(rows, key=lambda row: row["over_bound"]),
+        "?order=name": rows,
+    }
+    for asked, expected in orders.items():
+        html = atlas.get(f"/leaderboard{asked}", accept="text/html").text
+        shown = re.findall(r'<td class="first"><a href="/architectures/[^"]+">([^<]+)<', html)
+        assert shown == [f"{row['detector']} + {row['mask']}" for row in expected]
+        assert shown != by_name or asked == "?order=name"
+        assert atlas.get(f"/leaderboard.json{asked}").json()["items"] == expected
+    page = text_of(html)
+    for row in rows:
+        assert row["dataset"] in page
+        assert f"{degrees(row['rms_deg'])}{' =' if row['tie'] else ''}" in page
+    table = atlas.table("/leaderboard.csv?order=name")
+    assert table == atlas.table("/v1/leaderboard/architectures?limit=500")
+
+
+def test_the_leaderboard_counts_parts_as_the_service_does(atlas: Client) -> None:
+    told = atlas.get("/v1/leaderboard/overview").json()
+    html = atlas.get("/leaderboard", accept="text/html").text
+    for role in ("extractor", "compensation", "model"):
+        section = html[html.index(f'id="{role}s"') :]
+        section = section[: section.index("</section>")]
+        parts = [part for part in told["parts"] if part["role"] == role]
+        names = re.findall(r'<td class="first"><a href="[^"]+">([^<]+)<', section)
+        assert names == [part["part"] for part in parts]
+        assert f"{100 * parts[0]['share_10']:.0f} %" in section
+    refused = atlas.get("/leaderboard?order=taste", accept="application/json")
+    assert refused.status_code == 422
+
+
 def test_a_condition_of_another_data_set_is_refused_with_the_nearest(atlas: Client) -> None:
     refused = atlas.get("/datasets/ccd-lens?condition=ghosts", accept="application/json")
     assert refused.status_code == 422
