@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Mapping
 from html import unescape
+from typing import Any
 
 import pytest
 
+from api.http.service import create_app
+from api.pages import dataset, sensors
 from api.pages.numbers import counted, degrees, number, percent, times
 from api.pages.terms import explained, glossary, shown
+from benchmark.leaderboard.architectures import architectures
 from registry.studies import facts
 from tests.api.conftest import Client
 from tests.api.pages.addresses import KINDS
@@ -134,6 +139,68 @@ def test_comparison_needs_two_and_takes_four(atlas: Client) -> None:
     assert atlas.get(f"/compare?{five}").status_code == 422
     told = atlas.get("/compare.json?architecture=CMOS:Encoded&architecture=PD:Maskless").json()
     assert [item["detector"] for item in told["items"]] == ["CMOS", "PD"]
+
+
+def test_comparison_names_what_is_far_finer_under_a_condition(atlas: Client) -> None:
+    asked = "architecture=CMOS:Multi-Ap.&architecture=CMOS:Single-Ap."
+    items = atlas.get(f"/v1/compare?{asked}").json()["items"]
+    page = text_of(atlas.get(f"/compare?{asked}", accept="text/html").text)
+    told = [t for item in items for t in item["conditions"].values()]
+    finer = [t["finer"] for t in told if t["finer"]]
+    assert len(finer) > 1
+    for f in finer:
+        by = f"({f['extractor']} → {f['model']})"
+        if f["availability"] < 0.95:
+            words = "Far finer on the part it answers"
+            by = f"on {percent(f['availability'])} of the samples {by}"
+        else:
+            words = "Far finer otherwise calibrated"
+        assert f"{words} : {degrees(f['rms_deg'])} {by}" in page.replace(":", " :").replace(
+            "  ", " "
+        )
+    seldom = [t for t in told if t["availability"] < 0.95]
+    assert all(f"answers {percent(t['availability'])}" in page for t in seldom)
+
+
+def finer_built(board: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """The best of each architecture, some with a far finer one beside, as once there were."""
+    finer = {"dataset": "ccd-lens", "extractor": "bcm", "model": "lut", "rms_deg": 0.000123}
+    finer["availability"] = 0.789
+    return [
+        {**row, **{f"finer_{name}": value for name, value in finer.items()}}
+        if row["dataset"] == "ccd-lens"
+        else row
+        for row in architectures(board)
+    ]
+
+
+@pytest.mark.parametrize("address", ["/datasets", "/leaderboard", "/detectors/CCD"])
+def test_what_is_far_finer_on_a_part_stands_beside_the_best(
+    atlas: Client, client_of: Callable[..., Client], monkeypatch: pytest.MonkeyPatch, address: str
+) -> None:
+    monkeypatch.setattr(dataset, "best_of_each", finer_built)
+    monkeypatch.setattr(sensors, "architectures", finer_built)
+    fresh = client_of(create_app(atlas.app.state.knowledge))
+    html = fresh.get(address, accept="text/html").text
+    said = "Far finer on the part it answers : 0.000123° on 78.9 % of the samples (bcm → lut)"
+    assert text_of(html).count(said) == 1
+    link = html[: html.index("Far finer on the part it answers")].rpartition("<a ")[2]
+    assert "/glossary#term-finer" in link
+
+
+def test_a_card_of_the_answer_names_what_is_far_finer_with_its_share(atlas: Client) -> None:
+    """Asked to survive ageing, one architecture errs by degrees but for most of its samples."""
+    told = atlas.get("/v1/recommendations?survive=ageing&limit=500").json()["architectures"]
+    seldom = [a for a in told if a["best"]["measured"] and a["best"]["measured"]["finer"]]
+    assert seldom
+    for a in seldom:
+        asked = f"/?survive=ageing&detector={a['detector']}&mask={a['mask']}"
+        html = atlas.get(asked, accept="text/html").text
+        card = text_of(html[html.index('class="best-one"') :].partition("</a>")[0])
+        measured, finer = a["best"]["measured"], a["best"]["measured"]["finer"]
+        assert f"errs {degrees(measured['error_deg'])} at best, over " in card
+        share = f"{degrees(finer['error_deg'])} on {percent(finer['availability'])} of the samples"
+        assert f"Far finer on the part it answers: {share}" in card
 
 
 def test_search_leads_to_the_page_of_what_it_finds(atlas: Client) -> None:
