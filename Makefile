@@ -112,6 +112,7 @@ leaderboard: $(SERVING) ## bring scores and leaderboard up to date with code and
 	$(BIN)/sunatlas leaderboard update --workers $(WORKERS)
 	$(BIN)/python -m benchmark.leaderboard.holding
 	$(BIN)/python -m benchmark.curves benchmark/published $(WORKERS)
+	$(BIN)/python -m api.pictures --publish
 
 docs: $(DEVELOPING) ## regenerate the generated parts of docs/
 	$(BIN)/python -m api.docs.documentation

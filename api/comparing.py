@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from benchmark.leaderboard.architectures import architectures as best_of_each
+from registry.measured import Partly, finer_for
 from registry.taxonomy import InvalidValueError
 from survey_data.nearest import nearest
 
@@ -23,6 +24,7 @@ _SCORE = (
     "reason",
 )
 _CURVE = ("needed_poses", "needed_low", "needed_high", "poses", "floor_error_deg")
+_FINER = ("dataset", "extractor", "model", "rms_deg", "availability")
 _RING = ("inner_deg", "outer_deg", "rms_deg")
 
 
@@ -46,7 +48,7 @@ def compare_pipelines(
         (None where it has none, as all but the leaders); ``conditions``, its error and availability
         by condition; ``rings``, its error by angle off the boresight. Numbers are None where
         undefined; ``reason`` says why a pipeline has no score. ``over_least`` is its error over the
-        least of those compared.
+        least of those compared. ``finer`` is of architectures alone, and None here.
 
     Raises
     ------
@@ -85,7 +87,11 @@ def compare_architectures(known: Knowledge, architectures: Sequence[str]) -> dic
     dict
         As `compare_pipelines`, with ``dataset`` and ``condition`` None, as each item has its own:
         of several data sets of an architecture the one whose best pipeline errs least. Fields of
-        view differ (``half_fov_deg``); ``rings`` compare at equal angles.
+        view differ (``half_fov_deg``); ``rings`` compare at equal angles. ``finer`` is what errs
+        far less on the part of the samples that it answers, by the leaderboard's rule; that of a
+        condition is any pipeline of the data set that errs far less there and answers half of the
+        samples or more, as another than the nominal best is chosen where that condition is asked
+        for (`registry.measured.finer_for`). None where nothing does.
 
     Raises
     ------
@@ -124,14 +130,32 @@ def _architecture(known: Knowledge, name: str, best: Mapping[str, Any] | None) -
             "reason": without,
             "conditions": {},
             "rings": [],
+            "finer": None,
         }
     wanted = f"{best['extractor']}{SEPARATOR}{best['model']}"
-    rows = {
-        row["condition"]: row
-        for row in known.measurements.board_rows(best["dataset"])
-        if _name(row) == wanted
-    }
-    return _item(known, rows, known.measurements.presets[best["dataset"]].conditions[0])
+    board = known.measurements.board_rows(best["dataset"])
+    rows = {row["condition"]: row for row in board if _name(row) == wanted}
+    item = _item(known, rows, known.measurements.presets[best["dataset"]].conditions[0])
+    for condition, told in item["conditions"].items():
+        others = [row for row in board if row["condition"] == condition and _name(row) != wanted]
+        told["finer"] = _finer(others, told["rms_deg"])
+    finer = {name: best[f"finer_{name}"] for name in _FINER}
+    return {**item, "finer": None if finer["dataset"] is None else finer}
+
+
+def _finer(rows: Sequence[Mapping[str, Any]], error_deg: float | None) -> dict[str, Any] | None:
+    """Return which of some pipelines errs far less than an error, where it answers."""
+    if error_deg is None:
+        return None
+    found = finer_for(
+        error_deg,
+        [
+            Partly(row["rms_deg"], row["availability"] or 0.0, row)
+            for row in rows
+            if row["rms_deg"] is not None
+        ],
+    )
+    return None if found is None else {name: found.of[name] for name in _FINER}
 
 
 def _item(
@@ -158,9 +182,10 @@ def _item(
         **{name: row[name] for name in _SCORE},
         **{name: curve.get(name) for name in _CURVE},
         "conditions": {
-            name: {what: scored[what] for what in ("rms_deg", "availability")}
+            name: {**{what: scored[what] for what in ("rms_deg", "availability")}, "finer": None}
             for name, scored in rows.items()
         },
+        "finer": None,
         "rings": _rings(row),
     }
 

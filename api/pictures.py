@@ -1,9 +1,14 @@
-"""Pictures of the data sets, drawn by processes of their own and kept in the working store.
+"""Pictures of the data sets: published with the code, and drawn where the code is another.
 
-Drawing simulates, which takes seconds of a processor: within the service it would hold up all
-other answers. `python -m api.pictures DIRECTORY [NAME...]` draws what is not there yet; without
-names all, giving way to everything else on the machine once the slowest are there. What is kept
-lies below a digest of all code that makes it; it may be deleted at any time.
+Drawing simulates, which takes up to 20 s of a processor, as optics are tabulated first. So every
+picture lies in `PUBLISHED`, named by what it shows: the data set's digest and that of the code that
+draws. `python -m api.pictures --publish` draws those that lack and removes those of other code.
+
+Where the code has been changed since, pictures are drawn by processes of their own, within the
+service it would hold up all other answers, and kept in the working store.
+`python -m api.pictures DIRECTORY [NAME...]` draws what is not there yet; without names all, giving
+way to everything else on the machine once the slowest are there. What is kept there lies below a
+digest of all code that makes it; it may be deleted at any time.
 """
 
 from __future__ import annotations
@@ -25,6 +30,8 @@ from survey_data.leftovers import temporary_directory
 from survey_data.locks import held_in_turn
 from survey_data.whole_files import replace_file
 
+#: Pictures that come with the code, ``<data set>.<digest of what it shows>.png``.
+PUBLISHED = Path(__file__).resolve().parents[1] / "benchmark" / "datasets" / "pictures"
 FOLDER = "pictures"
 #: What takes longest is drawn first: it is what somebody would wait for longest.
 SLOWEST = ("cmos-encoded-sizes", "ccd-orbit", "ccd-multi-aperture", "cmos-compound-eye")
@@ -35,6 +42,8 @@ AT_ONCE = 2
 
 _ROOT = Path(__file__).resolve().parents[1]
 _MAKERS = ("algorithms", "benchmark", "survey_data")
+#: What a picture is made by, beside the data set.
+_DRAWN_BY = ("benchmark.datasets.preview", "benchmark.datasets.preview_sheet", "benchmark.drawing")
 _DRAWING_WITH = ("matplotlib", "numpy", "scipy", "opencv-python-headless")
 
 
@@ -53,6 +62,20 @@ def digest() -> str:
 def place(directory: Path, name: str) -> Path:
     """Return where the picture of a data set is kept in a working store."""
     return directory / FOLDER / digest() / f"{name}.png"
+
+
+def published(name: str) -> Path:
+    """Return where the published picture of a data set lies, if it is of today's code."""
+    return PUBLISHED / f"{name}.{_shown(name)}.png"
+
+
+@cache
+def _shown(name: str) -> str:
+    from benchmark import datasets  # noqa: PLC0415 - slow, and not needed to find what is kept
+    from benchmark.canonical import digest as digest_of  # noqa: PLC0415 - as above
+    from benchmark.results.digests import dataset_digest, modules_digest  # noqa: PLC0415 - as above
+
+    return digest_of([dataset_digest(datasets.get(name)), modules_digest(*_DRAWN_BY)])[:16]
 
 
 class Pictures:
@@ -76,6 +99,8 @@ class Pictures:
         RuntimeError
             Where the process that draws it fails; its message is in the log of the service.
         """
+        with suppress(OSError):
+            return published(name).read_bytes()
         with self._locks.setdefault(name, threading.Lock()):
             if self._directory is not None:
                 with suppress(OSError):
@@ -113,6 +138,20 @@ def draw(directory: Path, names: Iterable[str]) -> None:
                 replace_file(path, preview_png(datasets.get(name)))
 
 
+def publish() -> None:
+    """Draw the pictures that are not published as the code is now; remove all others."""
+    from benchmark import datasets  # noqa: PLC0415 - as in `draw`
+    from benchmark.datasets.preview import preview_png  # noqa: PLC0415 - as in `draw`
+
+    PUBLISHED.mkdir(exist_ok=True)
+    wanted = {name: published(name) for name in datasets.names()}
+    for name, path in wanted.items():
+        if not path.is_file():
+            replace_file(path, preview_png(datasets.get(name)))
+    for found in set(PUBLISHED.glob("*.png")) - set(wanted.values()):
+        found.unlink()
+
+
 def forget_others(directory: Path) -> None:
     """Remove pictures of other code, but the newest."""
     folder = directory / FOLDER
@@ -126,12 +165,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Draw; the exit status."""
     end_with_coordinator()
     directory, *names = arguments or sys.argv[1:]
+    if directory == "--publish":
+        publish()
+        return 0
     if names:
         draw(Path(directory), names)
         return 0
     from benchmark import datasets  # noqa: PLC0415 - as in `draw`
 
-    every = datasets.names()
+    every = [name for name in datasets.names() if not published(name).is_file()]
+    if not every:
+        return 0
     draw(Path(directory), (name for name in SLOWEST if name in every))
     # For those somebody may be waiting; of the others none takes long.
     with suppress(OSError):

@@ -60,7 +60,8 @@ export function boardAddress({ dataset, condition }) {
 export function finerContent(m) {
   if (!m?.finer) return null;
   const { dataset, extractor, model, error_deg: error, availability } = m.finer;
-  return h("div", { class: "below finer" }, h("strong", {}, "Far finer on the part it answers: "),
+  return h("div", { class: "below finer" }, h("strong", {},
+      h("a", { class: "term", href: "/glossary#term-finer", title: "far finer on the part it answers" }, "Far finer on the part it answers"), ": "),
     h("a", { href: `/datasets/${encodeURIComponent(dataset)}#board`, title: "The board it stands on" }, degrees(error)),
     ` on ${percent(availability)} of the samples (${extractor} → ${model})`);
 }

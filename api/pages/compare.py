@@ -19,6 +19,7 @@ from api.http.problems import Problem, Violation
 from api.pages.charts.lines import Line, LineChart
 from api.pages.sensors import best_built
 from api.pages.serving import PageRouter, View
+from benchmark.metrics.score import AVAILABLE
 from registry.taxonomy import InvalidValueError
 
 router = PageRouter()
@@ -66,6 +67,7 @@ async def compare(known: Known, query: Annotated[CompareQuery, Query()]) -> View
         ways=_ways(known, query.dataset),
         conditions=known.measurements.presets[query.dataset].conditions if query.dataset else (),
         every_condition=list(dict.fromkeys(c for i in items for c in i["conditions"])),
+        available=AVAILABLE,
         chart=_chart(items, names),
     )
 

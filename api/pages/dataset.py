@@ -21,7 +21,9 @@ from api.pages import boards
 from api.pages.charts.heat import heat_map
 from api.pages.charts.lines import Line, LineChart
 from api.pages.serving import PageRouter, View
+from benchmark.leaderboard.architectures import architectures as best_of_each
 from benchmark.leaderboard.holding import sentences, table
+from benchmark.metrics.score import AVAILABLE
 from survey_data.nearest import nearest
 
 router = PageRouter()
@@ -55,7 +57,12 @@ async def datasets(known: Known) -> View:
     for row in boards.first_rows(known):
         if row["rank"] == 1:
             leaders.setdefault(row["dataset"], row)
-    return View("datasets.html", answer, leaders=leaders)
+    finer = {
+        board["name"]: best
+        for board in known.measurements.leaderboard["datasets"]
+        for best in best_of_each({"datasets": [board]})
+    }
+    return View("datasets.html", answer, leaders=leaders, finer=finer, available=AVAILABLE)
 
 
 @router.page("/datasets/{name}")

@@ -17,6 +17,7 @@ NAVIGATION = (
     ("/studies", "Studies"),
     ("/algorithms", "Algorithms"),
     ("/datasets", "Data sets"),
+    ("/leaderboard", "Leaderboard"),
     ("/claims", "Claims"),
     ("/figures", "Figures"),
     ("/compare", "Compare"),

@@ -10,6 +10,7 @@ from api.pages import (
     dataset,
     figures,
     glossary_page,
+    leaderboard,
     search,
     sensors,
     study,
@@ -20,7 +21,7 @@ ROUTERS = (
         kind.router
         for kind in (
             *(answer, study, algorithm, dataset, sensors, claim, compare, search),
-            glossary_page,
+            *(glossary_page, leaderboard),
         )
     ),
     *figures.ROUTERS,

@@ -9,13 +9,14 @@ from pathlib import Path
 import pytest
 
 from api import pictures
-from api.pictures import Pictures, place
+from api.pictures import SLOWEST, Pictures, place
 from benchmark import datasets
 from benchmark.datasets.preview import preview_png
+from benchmark.results import digests
 
 
 @pytest.fixture
-def drawn(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+def drawn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """What was drawn beside, each in a moment; a store that is a file takes nothing."""
     names: list[str] = []
 
@@ -27,10 +28,64 @@ def drawn(monkeypatch: pytest.MonkeyPatch) -> list[str]:
             path.write_bytes(name.encode())
 
     monkeypatch.setattr(pictures, "_drawn_beside", draw)
+    monkeypatch.setattr(pictures, "published", lambda _: tmp_path / "of other code")
     return names
 
 
-def test_another_process_draws_what_the_data_set_draws(tmp_path: Path) -> None:
+def test_every_data_set_s_picture_is_published_as_the_code_is_now() -> None:
+    wanted = {pictures.published(name).name for name in datasets.names()}
+    found = {path.name for path in pictures.PUBLISHED.iterdir()}
+    assert found == wanted, "renew them: python -m api.pictures --publish"
+
+
+def test_what_is_published_is_drawn_by_nobody(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(pictures, "_drawn_beside", lambda *_: pytest.fail("was drawn"))
+    monkeypatch.setattr(pictures, "draw", lambda *_: pytest.fail("was drawn"))
+    name = SLOWEST[0]
+    assert Pictures(tmp_path).png(name) == pictures.published(name).read_bytes()
+    assert pictures.main([str(tmp_path)]) == 0
+    assert not list(tmp_path.iterdir())
+
+
+def test_of_other_code_nothing_published_is_shown(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Neither of another data set's code or parameters, nor drawn by other code."""
+    name = datasets.names()[-1]
+    now = pictures.published(name)
+    for changed in ("dataset_digest", "modules_digest"):
+        with monkeypatch.context() as patched:
+            patched.setattr(digests, changed, lambda *_: "another")
+            pictures._shown.cache_clear()
+            other = pictures.published(name)
+        assert other != now
+        assert not other.is_file()
+    pictures._shown.cache_clear()
+    assert pictures.published(name) == now
+
+
+def test_publishing_draws_what_lacks_and_removes_what_is_of_other_code(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = tmp_path / "published"
+    monkeypatch.setattr(pictures, "PUBLISHED", folder)
+    monkeypatch.setattr(datasets, "names", lambda: ("psd-single-aperture", "qpd-single-aperture"))
+    folder.mkdir()
+    kept, lacking = map(pictures.published, datasets.names())
+    kept.write_bytes(b"drawn before")
+    (folder / "psd-single-aperture.0123456789abcdef.png").write_bytes(b"of other code")
+    assert pictures.main(["--publish"]) == 0
+    assert set(folder.iterdir()) == {kept, lacking}
+    assert kept.read_bytes() == b"drawn before"
+    assert lacking.read_bytes() == preview_png(datasets.get("qpd-single-aperture"))
+
+
+def test_another_process_draws_what_the_data_set_draws(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(pictures, "PUBLISHED", tmp_path / "nothing is published")
     name = datasets.names()[-1]
     assert Pictures(tmp_path).png(name) == preview_png(datasets.get(name))
     assert place(tmp_path, name).is_file()
@@ -60,6 +115,7 @@ def test_a_store_that_takes_nothing_is_done_without(tmp_path: Path, drawn: list[
 
 def test_what_is_not_drawn_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(pictures, "_drawn_beside", lambda *_: None)
+    monkeypatch.setattr(pictures, "published", lambda _: tmp_path / "of other code")
     with pytest.raises(RuntimeError, match="the picture of a was not drawn"):
         Pictures(tmp_path).png("a")
 

@@ -10,6 +10,7 @@ from api.comparing import FEWEST, MOST, SEPARATOR
 from api.http.models.base import Shape, TableQuestion
 from api.http.models.parameters import GIVEN, OneOf
 from api.http.models.words import Condition, DatasetName
+from registry.measured import FINER
 from registry.studies import facts
 
 Word = TypeVar("Word")
@@ -59,11 +60,26 @@ class CompareQuery(TableQuestion):
     )
 
 
+class FinerPipeline(Shape):
+    """A pipeline of the same architecture that errs far less."""
+
+    dataset: str
+    extractor: str
+    model: str
+    rms_deg: float
+    availability: float = Field(description="Share of the samples that its error is of.")
+
+
 class ConditionError(Shape):
     """Error under a condition."""
 
     rms_deg: float | None
     availability: float | None
+    finer: FinerPipeline | None = Field(
+        description="Of an architecture: the pipeline of the data set that errs least under this "
+        "condition of those that answer half of the samples or more; null unless the error is more "
+        f"than {FINER:g} times as large."
+    )
 
 
 class RingError(Shape):
@@ -112,6 +128,11 @@ class Compared(Shape):
     needed_high: int | None
     poses: int | None = Field(description="Poses that the data set gives; null without a curve.")
     floor_error_deg: float | None = Field(description="Where its learning curve ends.")
+    finer: FinerPipeline | None = Field(
+        description="Of an architecture: what errs least of the pipelines that answer half of the "
+        "samples or more, but too seldom to rank first; null unless the error is more than "
+        f"{FINER:g} times as large."
+    )
     conditions: dict[str, ConditionError] = Field(description="Its error by condition.")
     rings: list[RingError] = Field(description="Its error by angle off the boresight.")
 

@@ -17,6 +17,8 @@ KINDS = {
     "chain": "/algorithms/optical%20+%20spm",
     "data sets": "/datasets",
     "data set": "/datasets/cmos-single-aperture",
+    "leaderboard": "/leaderboard",
+    "leaderboard, in another order": "/leaderboard?order=bound",
     "detectors": "/detectors",
     "detector": "/detectors/CMOS",
     "masks": "/masks",

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Mapping
 from html import unescape
+from typing import Any
 
 import pytest
 
+from api.http.service import create_app
+from api.pages import dataset, sensors
 from api.pages.numbers import counted, degrees, number, percent, times
 from api.pages.terms import explained, glossary, shown
+from benchmark.leaderboard.architectures import architectures
 from registry.studies import facts
 from tests.api.conftest import Client
 from tests.api.pages.addresses import KINDS
@@ -38,6 +43,43 @@ def test_a_board_is_that_of_the_service_in_its_order(atlas: Client) -> None:
     board = html[html.index('id="board"') : html.index('id="heat"')]
     names = re.findall(r'<td class="first">.*?>([^<]+)</a> → .*?>([^<]+)</a>', board)
     assert names == [(row["extractor"], row["model"]) for row in rows]
+
+
+def test_the_leaderboard_is_that_of_the_service_in_the_order_asked_for(atlas: Client) -> None:
+    rows = atlas.walk("/v1/leaderboard/architectures?limit=500")
+    by_name = [f"{row['detector']} + {row['mask']}" for row in rows]
+    orders = {
+        "": sorted(rows, key=lambda row: row["rms_deg"]),
+        "?order=error": sorted(rows, key=lambda row: row["rms_deg"]),
+        "?order=bound": sorted(rows, key=lambda row: row["over_bound"]),
+        "?order=name": rows,
+    }
+    for asked, expected in orders.items():
+        html = atlas.get(f"/leaderboard{asked}", accept="text/html").text
+        shown = re.findall(r'<td class="first"><a href="/architectures/[^"]+">([^<]+)<', html)
+        assert shown == [f"{row['detector']} + {row['mask']}" for row in expected]
+        assert shown != by_name or asked == "?order=name"
+        assert atlas.get(f"/leaderboard.json{asked}").json()["items"] == expected
+    page = text_of(html)
+    for row in rows:
+        assert row["dataset"] in page
+        assert f"{degrees(row['rms_deg'])}{' =' if row['tie'] else ''}" in page
+    table = atlas.table("/leaderboard.csv?order=name")
+    assert table == atlas.table("/v1/leaderboard/architectures?limit=500")
+
+
+def test_the_leaderboard_counts_parts_as_the_service_does(atlas: Client) -> None:
+    told = atlas.get("/v1/leaderboard/overview").json()
+    html = atlas.get("/leaderboard", accept="text/html").text
+    for role in ("extractor", "compensation", "model"):
+        section = html[html.index(f'id="{role}s"') :]
+        section = section[: section.index("</section>")]
+        parts = [part for part in told["parts"] if part["role"] == role]
+        names = re.findall(r'<td class="first"><a href="[^"]+">([^<]+)<', section)
+        assert names == [part["part"] for part in parts]
+        assert f"{100 * parts[0]['share_10']:.0f} %" in section
+    refused = atlas.get("/leaderboard?order=taste", accept="application/json")
+    assert refused.status_code == 422
 
 
 def test_a_condition_of_another_data_set_is_refused_with_the_nearest(atlas: Client) -> None:
@@ -97,6 +139,68 @@ def test_comparison_needs_two_and_takes_four(atlas: Client) -> None:
     assert atlas.get(f"/compare?{five}").status_code == 422
     told = atlas.get("/compare.json?architecture=CMOS:Encoded&architecture=PD:Maskless").json()
     assert [item["detector"] for item in told["items"]] == ["CMOS", "PD"]
+
+
+def test_comparison_names_what_is_far_finer_under_a_condition(atlas: Client) -> None:
+    asked = "architecture=CMOS:Multi-Ap.&architecture=CMOS:Single-Ap."
+    items = atlas.get(f"/v1/compare?{asked}").json()["items"]
+    page = text_of(atlas.get(f"/compare?{asked}", accept="text/html").text)
+    told = [t for item in items for t in item["conditions"].values()]
+    finer = [t["finer"] for t in told if t["finer"]]
+    assert len(finer) > 1
+    for f in finer:
+        by = f"({f['extractor']} → {f['model']})"
+        if f["availability"] < 0.95:
+            words = "Far finer on the part it answers"
+            by = f"on {percent(f['availability'])} of the samples {by}"
+        else:
+            words = "Far finer otherwise calibrated"
+        assert f"{words} : {degrees(f['rms_deg'])} {by}" in page.replace(":", " :").replace(
+            "  ", " "
+        )
+    seldom = [t for t in told if t["availability"] < 0.95]
+    assert all(f"answers {percent(t['availability'])}" in page for t in seldom)
+
+
+def finer_built(board: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """The best of each architecture, some with a far finer one beside, as once there were."""
+    finer = {"dataset": "ccd-lens", "extractor": "bcm", "model": "lut", "rms_deg": 0.000123}
+    finer["availability"] = 0.789
+    return [
+        {**row, **{f"finer_{name}": value for name, value in finer.items()}}
+        if row["dataset"] == "ccd-lens"
+        else row
+        for row in architectures(board)
+    ]
+
+
+@pytest.mark.parametrize("address", ["/datasets", "/leaderboard", "/detectors/CCD"])
+def test_what_is_far_finer_on_a_part_stands_beside_the_best(
+    atlas: Client, client_of: Callable[..., Client], monkeypatch: pytest.MonkeyPatch, address: str
+) -> None:
+    monkeypatch.setattr(dataset, "best_of_each", finer_built)
+    monkeypatch.setattr(sensors, "architectures", finer_built)
+    fresh = client_of(create_app(atlas.app.state.knowledge))
+    html = fresh.get(address, accept="text/html").text
+    said = "Far finer on the part it answers : 0.000123° on 78.9 % of the samples (bcm → lut)"
+    assert text_of(html).count(said) == 1
+    link = html[: html.index("Far finer on the part it answers")].rpartition("<a ")[2]
+    assert "/glossary#term-finer" in link
+
+
+def test_a_card_of_the_answer_names_what_is_far_finer_with_its_share(atlas: Client) -> None:
+    """Asked to survive ageing, one architecture errs by degrees but for most of its samples."""
+    told = atlas.get("/v1/recommendations?survive=ageing&limit=500").json()["architectures"]
+    seldom = [a for a in told if a["best"]["measured"] and a["best"]["measured"]["finer"]]
+    assert seldom
+    for a in seldom:
+        asked = f"/?survive=ageing&detector={a['detector']}&mask={a['mask']}"
+        html = atlas.get(asked, accept="text/html").text
+        card = text_of(html[html.index('class="best-one"') :].partition("</a>")[0])
+        measured, finer = a["best"]["measured"], a["best"]["measured"]["finer"]
+        assert f"errs {degrees(measured['error_deg'])} at best, over " in card
+        share = f"{degrees(finer['error_deg'])} on {percent(finer['availability'])} of the samples"
+        assert f"Far finer on the part it answers: {share}" in card
 
 
 def test_search_leads_to_the_page_of_what_it_finds(atlas: Client) -> None:

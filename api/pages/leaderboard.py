@@ -1,0 +1,61 @@
+"""/leaderboard: the best of every architecture on all boards, and what comes near the bound."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Annotated, Any, Literal
+
+from fastapi import Query
+from pydantic import Field
+
+from api.columns import ARCHITECTURES
+from api.http.answers import Answer
+from api.http.dependencies import Known
+from api.http.models.base import Question
+from api.http.models.parameters import GIVEN
+from api.pages.sensors import best_built
+from api.pages.serving import PageRouter, View
+from benchmark.leaderboard.architectures import STANDARD_ERRORS
+from benchmark.leaderboard.overview import ROLES, overview
+from benchmark.leaderboard.summaries import tally
+
+router = PageRouter()
+
+Row = Mapping[str, Any]
+
+#: What rows are put in order by, and the column; names where there is none.
+ORDERS = {"error": "rms_deg", "bound": "over_bound", "name": None}
+
+
+class LeaderboardQuery(Question):
+    """In which order."""
+
+    order: Annotated[Literal["error", "bound", "name"] | None, GIVEN] = Field(
+        None, description="By the error, which is the default, by it over the bound, or by name."
+    )
+
+
+@router.page("/leaderboard")
+async def leaderboard(known: Known, query: Annotated[LeaderboardQuery, Query()]) -> View:
+    """Every architecture by its best pipeline, and the parts of pipelines.
+
+    As CSV: the architectures, with the columns of `/v1/leaderboard/architectures`.
+    """
+    order = query.order or "error"
+    rows = _ordered(best_built(known), ORDERS[order])
+    document = {"items": rows, **overview(known.measurements.leaderboard)}
+    return View(
+        "leaderboard.html",
+        Answer(document, ARCHITECTURES, lambda: rows),
+        order=order,
+        tally=tally(rows),
+        roles=ROLES,
+        standard_errors=STANDARD_ERRORS,
+    )
+
+
+def _ordered(rows: Sequence[Row], column: str | None) -> list[Row]:
+    """Return rows by a column, those without a number last; as they are where there is none."""
+    if column is None:
+        return list(rows)
+    return sorted(rows, key=lambda row: (row[column] is None, row[column] or 0.0))
