@@ -48,7 +48,7 @@ def test_squares_are_those_of_the_errors_in_units_of_what_is_stated(monkeypatch,
 
 
 def test_methods_that_state_a_covariance_are_measured_on_spots_and_grids(capsys):
-    """The three of single spots and that of many, as the table prints them; the others are named."""
+    """The three of single spots and that of many; who states none is named below the table."""
     rows = [
         row
         for chosen in sets()

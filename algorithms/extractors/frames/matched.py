@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, Self
+from typing import ClassVar, Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from algorithms.contract import (
     AboutExtractor,
@@ -39,6 +39,8 @@ _EVEN = 0.01
 #: Mean square of what lit pixels depart from a shape by, over their variance, above which the spot
 #: is of another shape: by how much the answer is off then, noise does not tell.
 _MISFIT = 1.5
+#: Noise that nothing tells.
+_UNTOLD = np.empty((0, 2))
 
 
 @dataclass(frozen=True)
@@ -137,8 +139,8 @@ class MatchedProfile(Extractor):
     def extract(self, observations: ArrayLike) -> Floats:
         """Centres (N, 2) in frames (N, H, W); ValueError on wrong input."""
         frames = as_frames(observations)
-        found, _ = self._found(frames)
-        uneven = np.flatnonzero(found[:, 2] > _EVEN)
+        found = self._found(frames)
+        uneven = np.flatnonzero(found[:, 5] > _EVEN)
         if len(uneven):
             judged = judge(frames[uneven], found[uneven, :2], self.light, self.longest_px)
             found[uneven[refused(judged.doubts)]] = np.nan
@@ -152,22 +154,18 @@ class MatchedProfile(Extractor):
         the spot is not round or the background not even, where under 32 pixels are lit and where
         `light` is "any". Bad pixels are replaced by their neighbours.
         """
-        from algorithms.extractors.frames import radial_covariance_kernel as kernel  # noqa: PLC0415 - Numba, at first use
-
         frames = frames_to_measure(observations, bad, self.about.name)
-        found, maxima = self._found(frames)
+        judged = judge(frames, self._found(frames)[:, :2], self.light, self.longest_px, bad)
+        found = self._found(frames, judged.noise)
         doubts = np.where(np.isnan(found[:, 0]), int(Doubt.NO_SPOT), 0).astype(np.int64)
-        judged = judge(frames, found[:, :2], self.light, self.longest_px, bad)
-        uneven = found[:, 2] > _EVEN
+        uneven = found[:, 5] > _EVEN
         doubts[uneven] = judged.doubts[uneven]
         found[refused(doubts)] = np.nan
-        covariance = np.empty((len(frames), 2, 2))
-        kernel.matched_covariances(frames, maxima, found, judged.noise, _MISFIT, covariance)
-        centres = found[:, :2].copy()
+        centres, covariance = found[:, :2].copy(), found[:, [2, 4, 4, 3]].reshape(-1, 2, 2)
         return Measurement(centres, stated(covariance, centres, judged), doubts)
 
-    def _found(self, frames: Frames) -> tuple[Floats, NDArray[Any]]:
-        """Return what `radial_kernel.matched_centres` writes, and the largest of each row."""
+    def _found(self, frames: Frames, noise: Floats = _UNTOLD) -> Floats:
+        """Return what `radial_kernel.matched_centres` writes, with covariances where noise is."""
         from algorithms.extractors.frames import radial_kernel  # noqa: PLC0415 - Numba, at first use
         from algorithms.kernels import moments  # noqa: PLC0415 - Numba, at first use
 
@@ -177,9 +175,11 @@ class MatchedProfile(Extractor):
         moments.unusable(frames, frames.dtype.kind == "f", unusable)
         maxima[unusable] = 0
         found = np.empty((len(frames), radial_kernel.MATCHED))
-        radial_kernel.matched_centres(frames, maxima, self.threshold, _SPREAD, self.steps, found)
+        radial_kernel.matched_centres(
+            frames, maxima, self.threshold, _SPREAD, self.steps, noise, _MISFIT, found
+        )
         found[unusable] = np.nan
-        return found, maxima
+        return found
 
 
 @dataclass(frozen=True)

@@ -17,17 +17,17 @@ from algorithms.contract import Floats
 #: Width of a ring, px, at a contrast of one, and its limits.
 _WIDTH, _FINEST, _COARSEST = 1.05, 0.15, 0.5
 #: Rings to each side that a straight line through the profile is fitted to.
-NEAR = 3
+_NEAR = 3
 #: Columns of the sums of a ring, of the running sums and of the profile: see where they are made.
-SUMS, RUNNING, PROFILE = 6, 7, 7
-#: Pixels of a lit region below which its rings do not tell whether they are even.
-_ENOUGH = 12.0
+_SUMS, _RUNNING, _PROFILE = 6, 7, 7
+#: Pixels of a lit region below which its rings do not tell whether they are even, nor its profile.
+_ENOUGH, _RESOLVED = 12.0, 32.0
 #: Columns that `matched_centres` writes.
-MATCHED = 4
+MATCHED = 6
 
 
 @compiled
-def border(frame: NDArray[Any]) -> tuple[float, float]:
+def _border(frame: NDArray[Any]) -> tuple[float, float]:
     """Mean and variance of the outermost pixels."""
     height, width = frame.shape
     first = float(frame[0, 0])
@@ -101,7 +101,7 @@ def _lit_spot(
 
 
 @compiled
-def pixels_near(  # noqa: PLR0917 - Numba takes no keyword-only ones
+def _pixels_near(  # noqa: PLR0917 - Numba takes no keyword-only ones
     frame: NDArray[Any], x: float, y: float, base: float, reach: float, pixels: Floats
 ) -> int:
     """List the pixels within `reach` of (x, y) and return how many there are.
@@ -134,7 +134,7 @@ def pixels_near(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def ring_sums(pixels: Floats, count: int, scale: float, sums: Floats) -> None:
+def _ring_sums(pixels: Floats, count: int, scale: float, sums: Floats) -> None:
     """Add to each ring's row of `sums` its pixels' ``1, r, u, u^2, c, s``; rings per px `scale`."""
     c = pixels[0, :count]
     s = pixels[1, :count]
@@ -152,7 +152,7 @@ def ring_sums(pixels: Floats, count: int, scale: float, sums: Floats) -> None:
 
 
 @compiled
-def running_sums(sums: Floats, rings: int, running: Floats) -> None:
+def _running_sums(sums: Floats, rings: int, running: Floats) -> None:
     """Sum over the rings before one, those before the first and after the last repeated.
 
     Rows of `running` (7, >= rings + 2 near + 1): ``n, r, r^2, u, u r, c, s``, a ring's pixels all
@@ -160,7 +160,7 @@ def running_sums(sums: Floats, rings: int, running: Floats) -> None:
     """
     n_, r_, rr_, u_, ur_ = running[0], running[1], running[2], running[3], running[4]
     c_, s_ = running[5], running[6]
-    running[:, : NEAR + 1] = 0.0
+    running[:, : _NEAR + 1] = 0.0
     n, r, rr, u, ur, c, s = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for q in range(rings):
         at = sums[q]
@@ -172,7 +172,7 @@ def running_sums(sums: Floats, rings: int, running: Floats) -> None:
         ur += at[2] * mean
         c += at[4]
         s += at[5]
-        after = q + NEAR + 1
+        after = q + _NEAR + 1
         n_[after] = n
         r_[after] = r
         rr_[after] = rr
@@ -181,12 +181,12 @@ def running_sums(sums: Floats, rings: int, running: Floats) -> None:
         c_[after] = c
         s_[after] = s
     for k in range(len(running)):
-        last = running[k, rings + NEAR]
-        running[k, rings + NEAR + 1 : rings + 2 * NEAR + 1] = last
+        last = running[k, rings + _NEAR]
+        running[k, rings + _NEAR + 1 : rings + 2 * _NEAR + 1] = last
 
 
 @compiled
-def profile_of(  # noqa: PLR0917 - the formulas in their order
+def _profile(  # noqa: PLR0917 - the formulas in their order
     sums: Floats, running: Floats, rings: int, ring: float, noise: float, lines: Floats, out: Floats
 ) -> float:
     """Light against distance, ring by ring, and what a pixel's departure from it counts.
@@ -198,7 +198,7 @@ def profile_of(  # noqa: PLR0917 - the formulas in their order
 
     Return the square of what light within a ring scatters by, over the brightest ring's.
     """
-    wide = 2 * NEAR + 1
+    wide = 2 * _NEAR + 1
     slopes, means, levels, spreads, shares = lines[0], lines[1], lines[2], lines[3], lines[6]
     n_, r_, rr_, u_, ur_ = running[0], running[1], running[2], running[3], running[4]
     c_, s_ = running[5], running[6]
@@ -210,22 +210,22 @@ def profile_of(  # noqa: PLR0917 - the formulas in their order
         spread = rr_[wide + q] - rr_[q] - n * mean * mean
         rise = ur_[wide + q] - ur_[q] - n * mean * level
         single = spread <= 1e-9 * n
-        slopes[NEAR + q] = 0.0 if single else rise / spread
+        slopes[_NEAR + q] = 0.0 if single else rise / spread
         spreads[q] = 0.0 if single else spread
-        means[NEAR + q] = mean
+        means[_NEAR + q] = mean
         levels[q] = level
         shares[q] = inverse
-    for q in range(NEAR):
-        slopes[q], means[q] = slopes[NEAR], means[NEAR]
-        slopes[NEAR + rings + q] = slopes[NEAR + rings - 1]
-        means[NEAR + rings + q] = means[NEAR + rings - 1]
+    for q in range(_NEAR):
+        slopes[q], means[q] = slopes[_NEAR], means[_NEAR]
+        slopes[_NEAR + rings + q] = slopes[_NEAR + rings - 1]
+        means[_NEAR + rings + q] = means[_NEAR + rings - 1]
     excess = 0.0
     light = 0.0
     for q in range(rings):
         at = sums[q]
         others = max(at[0] - 1.0, 0.0)
         u = at[2] / max(at[0], 1.0)
-        slope = slopes[NEAR + q]
+        slope = slopes[_NEAR + q]
         excess += at[3] - at[2] * u - others * noise - slope * slope * at[0] * ring * ring / 12.0
         light += others * max(u, 0.0)
     gain = max(excess / light, 0.0) if light > 0 else 0.0
@@ -236,16 +236,16 @@ def profile_of(  # noqa: PLR0917 - the formulas in their order
     floor = 1e-12 * brightest * brightest + 1e-300
     bends, weights = lines[4], lines[5]
     for q in range(rings):
-        apart = max(means[q + 2 * NEAR] - means[q], 1e-9)
-        bends[q] = 0.5 * (slopes[q + 2 * NEAR] - slopes[q]) / apart
-        slope = slopes[NEAR + q]
+        apart = max(means[q + 2 * _NEAR] - means[q], 1e-9)
+        bends[q] = 0.5 * (slopes[q + 2 * _NEAR] - slopes[q]) / apart
+        slope = slopes[_NEAR + q]
         variance = noise + gain * max(levels[q], 0.0) + floor
         # Of the squared slope, what its own noise explains is no slope.
         sure = slope * slope * spreads[q]
         weights[q] = 0.0 if sure <= variance else slope / variance * (1.0 - variance / sure)
     for q in range(rings):
         inverse = shares[q]
-        slope, mean, bend = slopes[NEAR + q], means[NEAR + q], bends[q]
+        slope, mean, bend = slopes[_NEAR + q], means[_NEAR + q], bends[q]
         at = out[q]
         at[0] = levels[q] - bend * spreads[q] * inverse - slope * mean + bend * mean * mean
         at[1] = slope - 2 * bend * mean
@@ -264,11 +264,8 @@ def _step(pixels: Floats, count: int, scale: float, profile: Floats) -> tuple[fl
     s_ = pixels[1, :count]
     r_ = pixels[2, :count]
     u_ = pixels[3, :count]
-    a_xx = 0.0
-    a_xy = 0.0
-    a_yy = 0.0
-    b_x = 0.0
-    b_y = 0.0
+    a_xx, a_xy, a_yy = 0.0, 0.0, 0.0
+    b_x, b_y = 0.0, 0.0
     for p in range(count):
         c, s, r = c_[p], s_[p], r_[p]
         at = profile[np.uint32(r * scale)]
@@ -290,23 +287,38 @@ def _step(pixels: Floats, count: int, scale: float, profile: Floats) -> tuple[fl
 
 
 @compiled
-def rings_of(radius: float, height: float, noise: float) -> tuple[float, float, float, int]:
-    """Reach of a spot's rings, their width, how many there are to a px, and how many in all.
+def _sure(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    pixels: Floats, count: int, scale: float, profile: Floats, noise: Floats, out: Floats
+) -> float:
+    """Write the covariance xx, yy, xy of a step's end; return how pixels depart from the profile.
 
-    What a straight line misses of the profile grows with the rings' width: to keep it in the same
-    proportion to the noise, finer rings for spots that are higher above it.
+    By the mean square over their variance: `noise` is that of a dark pixel, and what light adds.
     """
-    contrast = height / math.sqrt(noise) if noise > 0 else np.inf
-    ring = min(max(_WIDTH * contrast ** (-1.0 / 3.0), _FINEST), _COARSEST)
-    reach = 1.1 * radius + 3.5
-    scale = 1.0 / ring
-    return reach, ring, scale, int(reach * scale) + 2
-
-
-@compiled
-def most_rings(height: int, width: int) -> int:
-    """Return how many rings a frame of this size can ask for."""
-    return int((1.2 * math.hypot(height, width) + 4.0) / _FINEST) + 3
+    a_xx, a_xy, a_yy = 0.0, 0.0, 0.0
+    b_xx, b_xy, b_yy = 0.0, 0.0, 0.0
+    squares = 0.0
+    for p in range(count):
+        c, s, r = pixels[0, p], pixels[1, p], pixels[2, p]
+        at = profile[np.uint32(r * scale)]
+        light = at[0] + (at[1] + at[2] * r) * r
+        variance = noise[0] + noise[1] * max(light, 0.0)
+        squares += (pixels[3, p] - light) ** 2 / variance
+        c_own, s_own = c - at[5], s - at[6]
+        a_xx += at[4] * c * c_own
+        a_xy += at[4] * 0.5 * (c * s_own + s * c_own)
+        a_yy += at[4] * s * s_own
+        weight = at[3] * at[3] * variance
+        b_xx += weight * c_own * c_own
+        b_xy += weight * c_own * s_own
+        b_yy += weight * s_own * s_own
+    determinant = a_xx * a_yy - a_xy * a_xy
+    if not determinant > 1e-12 * a_xx * a_yy:
+        return np.inf
+    a, b, d = a_yy / determinant, -a_xy / determinant, a_xx / determinant
+    out[0] = a * a * b_xx + 2.0 * a * b * b_xy + b * b * b_yy
+    out[1] = b * b * b_xx + 2.0 * b * d * b_xy + d * d * b_yy
+    out[2] = a * b * b_xx + (a * d + b * b) * b_xy + b * d * b_yy
+    return squares / count
 
 
 @compiled
@@ -316,28 +328,34 @@ def matched_centres(  # noqa: PLR0917 - Numba takes no keyword-only ones
     threshold: float,
     spread: float,
     steps: int,
+    noises: Floats,
+    misfit: float,
     out: Floats,
 ) -> None:
-    """Write the centre of each frame's spot to `out` (N, 4); NaN where there is not one.
+    """Write the centre of each frame's spot to `out` (N, 6); NaN where there is not one.
 
-    Columns: x, y; the square of what the light within a ring scatters by beyond the dark pixels'
-    noise, over the brightest ring's: infinite where a spot of a few pixels does not tell; and the
-    radius of a disc of as many pixels as are lit.
+    Columns: x, y; their covariance xx, yy, xy; and the square of what the light within a ring
+    scatters by beyond the dark pixels' noise, over the brightest ring's: infinite where a spot of a
+    few pixels does not tell.
 
     `maxima` (N, H) are the rows' largest values, `threshold` the fraction of the peak above which
-    pixels start the search, `spread` the limit of `_lit_spot`.
+    pixels start the search, `spread` the limit of `_lit_spot`. `noises` (N, 2) are the variance of
+    a dark pixel, and what a unit of light adds to it, NaN where not told; of (0, 2) no covariance
+    is looked for. It is NaN, too, where the mean square of what pixels depart from the profile by,
+    over their variance, is over `misfit`, and where a spot has too few for rings to show it.
     """
     count, height, width = frames.shape
-    most = most_rings(height, width)
+    widest = 1.2 * math.hypot(height, width) + 4.0
+    most = int(widest / _FINEST) + 3
     pixels = np.empty((4, height * width))
-    sums = np.empty((most, SUMS))
-    profile = np.empty((most, PROFILE))
-    running = np.empty((RUNNING, most + 2 * NEAR + 1))
-    lines = np.empty((7, most + 2 * NEAR))
+    sums = np.empty((most, _SUMS))
+    profile = np.empty((most, _PROFILE))
+    running = np.empty((_RUNNING, most + 2 * _NEAR + 1))
+    lines, sure = np.empty((7, most + 2 * _NEAR)), np.empty(3)
     for k in range(count):
         frame = frames[k]
         out[k] = np.nan
-        base, noise = border(frame)
+        base, noise = _border(frame)
         peak = float(maxima[k].max())
         if not peak > base:
             continue
@@ -345,15 +363,21 @@ def matched_centres(  # noqa: PLR0917 - Numba takes no keyword-only ones
         x, y, radius = _lit_spot(frame, maxima[k], cut, spread)
         if radius == 0.0:
             continue
-        reach, ring, scale, rings = rings_of(radius, peak - base, noise)
+        # What a straight line misses of the profile grows with the rings' width: to keep it in
+        # the same proportion to the noise, finer rings for brighter spots.
+        contrast = (peak - base) / math.sqrt(noise) if noise > 0 else np.inf
+        ring = min(max(_WIDTH * contrast ** (-1.0 / 3.0), _FINEST), _COARSEST)
+        reach = 1.1 * radius + 3.5
+        scale = 1.0 / ring
+        rings = int(reach * scale) + 2
         found = True
         uneven = np.inf
         for _ in range(steps):
             sums[:rings] = 0.0
-            near = pixels_near(frame, x, y, base, reach, pixels)
-            ring_sums(pixels, near, scale, sums)
-            running_sums(sums, rings, running)
-            uneven = profile_of(sums, running, rings, ring, noise, lines, profile)
+            near = _pixels_near(frame, x, y, base, reach, pixels)
+            _ring_sums(pixels, near, scale, sums)
+            _running_sums(sums, rings, running)
+            uneven = _profile(sums, running, rings, ring, noise, lines, profile)
             move_x, move_y, found = _step(pixels, near, scale, profile)
             found = found and abs(move_x) <= radius and abs(move_y) <= radius
             if not found:
@@ -363,5 +387,13 @@ def matched_centres(  # noqa: PLR0917 - Numba takes no keyword-only ones
         if found:
             out[k, 0] = x
             out[k, 1] = y
-            out[k, 2] = uneven if math.pi * radius * radius >= _ENOUGH else np.inf
-            out[k, 3] = radius
+            area = math.pi * radius * radius
+            out[k, 5] = uneven if area >= _ENOUGH else np.inf
+            if len(noises) > 0 and np.isfinite(noises[k, 0]) and area >= _RESOLVED:
+                sums[:rings] = 0.0
+                near = _pixels_near(frame, x, y, base, reach, pixels)
+                _ring_sums(pixels, near, scale, sums)
+                _running_sums(sums, rings, running)
+                _profile(sums, running, rings, ring, noise, lines, profile)
+                if _sure(pixels, near, scale, profile, noises[k], sure) <= misfit:
+                    out[k, 2:5] = sure

@@ -264,7 +264,7 @@ def test_the_border_of_a_frame_is_its_mean_and_variance(shape):
     frame = noise(shape)
     rim = np.ones(shape, dtype=bool)
     rim[1:-1, 1:-1] = False
-    assert radial_kernel.border(frame) == pytest.approx((frame[rim].mean(), frame[rim].var()))
+    assert radial_kernel._border(frame) == pytest.approx((frame[rim].mean(), frame[rim].var()))
 
 
 @pytest.mark.parametrize("shape", SHAPES)
@@ -273,7 +273,7 @@ def test_pixels_near_a_point_are_listed_with_direction_and_distance(shape):
     rows, columns = np.indices(shape)
     pixels = np.empty((4, frame.size))
     for x, y, reach in ((3.2, 2.7, 2.0), (0.1, 4.0, 3.3), (shape[1] - 1.0, shape[0] - 1.0, 4.0)):
-        count = radial_kernel.pixels_near(frame, x, y, 7.0, reach, pixels)
+        count = radial_kernel._pixels_near(frame, x, y, 7.0, reach, pixels)
         away = np.hypot(columns - x, rows - y)
         near = away <= reach
         assert count == near.sum()
@@ -315,14 +315,14 @@ def test_rings_sum_their_pixels_and_running_sums_go_on_at_both_ends():
     turn = rng.uniform(0, 7, count)
     pixels = np.vstack([np.cos(turn), np.sin(turn), r, rng.uniform(0, 9, count)])
     sums = np.zeros((rings, 6))
-    radial_kernel.ring_sums(pixels, count, scale, sums)
+    radial_kernel._ring_sums(pixels, count, scale, sums)
     of = np.floor(r * scale).astype(int)
     values = np.vstack([np.ones(count), r, pixels[3], pixels[3] ** 2, *pixels[:2]])
     expected = [[v[of == q].sum() for v in values] for q in range(rings)]
     np.testing.assert_allclose(sums, expected)
     near = 3
     running = np.full((7, rings + 2 * near + 1), np.nan)
-    radial_kernel.running_sums(sums, rings, running)
+    radial_kernel._running_sums(sums, rings, running)
     mean = sums[:, 1] / np.maximum(sums[:, 0], 1)
     each = [sums[:, 0], sums[:, 1], sums[:, 1] * mean, sums[:, 2], sums[:, 2] * mean]
     for row, one in zip(running, [*each, sums[:, 4], sums[:, 5]], strict=True):
