@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from operator import attrgetter, itemgetter
+from typing import TYPE_CHECKING
 
 from registry.designs import Kept
 from registry.judging import KeptPlace
 from registry.measured import Measured
 from registry.ranking import Regret
+
+if TYPE_CHECKING:
+    from registry.ranked_designs import RankedPlace
 
 LEAST_RATIO = 1.1
 """Errors nearer to each other than this contradict nothing."""
@@ -52,11 +57,7 @@ def against_literature(place: KeptPlace, usual: Kept | None) -> str | None:
     )
 
 
-def against_advice(
-    places: Sequence[KeptPlace],
-    least: Callable[[str], Sequence[tuple[float, int]]],
-    tasks: Sequence[str],
-) -> tuple[str, ...]:
+def against_advice(places: Sequence[RankedPlace], tasks: Sequence[str]) -> tuple[str, ...]:
     """Say where an architecture that is not advised does better at a task than those advised.
 
     Of the tasks, accuracy, precision and field of view are measured here: by the error over the
@@ -64,20 +65,12 @@ def against_advice(
 
     Parameters
     ----------
-    places : sequence of KeptPlace
-    least : callable
-        Gives the least "repeatability" or "field" (negated) on each of the places, infinite where
-        there is none, and the position of the design that has it
-        (`registry.ranked_designs.RankedDesigns.least`).
+    places : sequence of RankedPlace
     tasks : sequence of str
         Those asked for; none means all.
     """
     found = []
-    for task, number, unit in (
-        ("Accuracy", "error", "deg"),
-        ("Precision", "repeatability", "deg of repeatability"),
-        ("FOV", "field", "deg of field"),
-    ):
+    for task, number, unit in _MEASURED:
         if tasks and task not in tasks:
             continue
         is_advised = [task in place.advised_tasks for place in places]
@@ -85,13 +78,13 @@ def against_advice(
             continue
         advised: list[Reached] = []
         others: list[Reached] = []
-        values = map(_least_error, places) if number == "error" else least(number)
-        for place, meant, (value, design) in zip(places, is_advised, values, strict=True):
-            if math.isfinite(value):
+        for place, meant in zip(places, is_advised, strict=True):
+            value, design = number(place)
+            if value < math.inf:
                 (advised if meant else others).append((value, place, design))
         if not advised or not others:
             continue
-        first, other = (min(side, key=lambda item: item[0]) for side in (advised, others))
+        first, other = (min(side, key=itemgetter(0)) for side in (advised, others))
         if abs(first[0]) == abs(other[0]) or first[0] <= other[0]:
             continue
         ratio = first[0] / other[0] if first[0] > 0 else other[0] / first[0]
@@ -124,7 +117,7 @@ def regret_words(regret: Regret) -> str:
 
 def _where(item: Reached) -> str:
     _, place, design = item
-    row = place.question.kept(design).row
+    row = place.judged.kept(design).row
     return f"{architecture_words(place)} ({'' if row is None else _pipeline(row)})"
 
 
@@ -152,5 +145,13 @@ def _times(worse: Kept, better: Kept) -> str:
     return f", {worse.error_deg / better.error_deg:.3g} times less"
 
 
-def _least_error(place: KeptPlace) -> tuple[float, int]:
+def _least_error(place: RankedPlace) -> tuple[float, int]:
     return place.error_deg, place.best_at
+
+
+_MEASURED: tuple[tuple[str, Callable[[RankedPlace], tuple[float, int]], str], ...] = (
+    ("Accuracy", _least_error, "deg"),
+    ("Precision", attrgetter("repeatability"), "deg of repeatability"),
+    ("FOV", attrgetter("field"), "deg of field"),
+)
+"""Tasks that are measured here: what of an architecture tells, the least the best, and in what."""

@@ -12,18 +12,25 @@ import weakref
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from registry.designs import Design, DesignTable, Limits, Place
-from registry.judged_columns import PipelineColumns
+from registry.designs import NOTHING, Design, DesignTable, Kept, Limits, Place
+from registry.judged_columns import Judgements, PipelineColumns
 from registry.kept_answers import KeptAnswers
+
+if TYPE_CHECKING:
+    from registry.ranked_designs import RankedPlace
 
 Flags = NDArray[np.bool_]
 Numbers = NDArray[np.float64]
 Positions = NDArray[np.int64]
 Words = NDArray[np.uint64]
+
+#: Architectures as they were ranked, of a kilobyte or two each.
+MOST_PLACES = 4096
 
 WORD_BITS = 64
 _LARGEST_KEY = 63
@@ -35,20 +42,51 @@ class Best:
 
     Attributes
     ----------
+    columns : the designs
+    judgements : what their pipelines are judged by
     row : position of the pipeline, shape (designs,); -1 where none keeps them
     error : the error it is judged by; infinite where there is none
     order : of the designs, the least error first, measured ones first of the same, shape (designs,)
     rank : of the error, equal errors alike
     at_order : the design at each place of that order
-    kept : designs (bits) of which one keeps them
+    keeping : designs (bits) of which one keeps them
     """
 
+    columns: DesignColumns
+    judgements: Judgements
     row: Positions
     error: Numbers
     order: Positions
     rank: Positions
     at_order: Positions
-    kept: int
+    keeping: int
+
+    @cached_property
+    def repeatability_deg(self) -> Numbers:
+        """Spread of the answers to one pose, of each design; infinite where it is not judged.
+
+        An answer in steps repeats exactly, which says nothing: the pipelines have none then.
+        """
+        return self._of_designs(self.columns.repeatability_deg)
+
+    @cached_property
+    def negated_half_field_deg(self) -> Numbers:
+        """Half field of each design, the widest the least; infinite where it is not judged."""
+        return self._of_designs(-self.columns.half_fov_deg)
+
+    def _of_designs(self, of_rows: Numbers) -> Numbers:
+        known = (self.row >= 0) & np.isfinite(self.error)
+        found = np.full(len(self.row), np.inf)
+        found[known] = of_rows[self.row[known]]
+        found[np.isnan(found)] = np.inf
+        return found
+
+    def kept(self, at: int) -> Kept:
+        """Return a design, given by position, with what it is judged by."""
+        row, columns = int(self.row[at]), self.columns
+        if row < 0:
+            return Kept(at, row, columns.designs[at], None, NOTHING)
+        return Kept(at, row, columns.designs[at], columns.rows[row], self.judgements.of(row))
 
 
 class DesignColumns(PipelineColumns):
@@ -85,6 +123,8 @@ class DesignColumns(PipelineColumns):
         self._having = self._values()
         self._untried: dict[str, tuple[tuple[str, str], ...]] = {}
         self._best: KeptAnswers[Best] = KeptAnswers()
+        self._stated: KeptAnswers[int] = KeptAnswers()
+        self.ranked_places: KeptAnswers[RankedPlace] = KeptAnswers(MOST_PLACES)
         self.design_bits = max(1, len(self.designs).bit_length())
         self.support_bits = max(1, (studies**3).bit_length())
         place_bits = max(1, len(places).bit_length())
@@ -152,6 +192,9 @@ class DesignColumns(PipelineColumns):
 
     def stated(self, studies: int) -> int:
         """Return the designs (bits) that nothing measures and one of some studies stands for."""
+        return self._stated.get(studies, lambda: self._standing_for(studies))
+
+    def _standing_for(self, studies: int) -> int:
         words = self.words_of([studies])
         found = np.zeros(len(self.designs), bool)
         found[self.unmeasured] = (self._unmeasured_taken & words).any(axis=0)
@@ -211,7 +254,7 @@ class DesignColumns(PipelineColumns):
         order = np.empty_like(at_order)
         order[at_order] = np.arange(len(at_order))
         _, rank = np.unique(error, return_inverse=True)
-        return Best(row, error, order, rank, at_order, self.bits(row >= 0))
+        return Best(self, judged, row, error, order, rank, at_order, self.bits(row >= 0))
 
     def untried(self, hazard: str) -> tuple[tuple[str, str], ...]:
         """Return the architectures that no data set tries a hazard on."""

@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from registry.advice import ADVISING, Advice
-from registry.designs import NOTHING, AdviceFor, DesignTable, Kept, Limits, Place
+from registry.designs import AdviceFor, DesignTable, Kept, Limits, Place
 from registry.measured import Measured, Partly
 from registry.requirements import EXCLUDE, Requirements
 
@@ -32,7 +32,8 @@ class KeptPlace:
 
     ``advice`` is what advises it for what is asked: for any task or accuracy if neither is.
     ``studies`` are those of its studies (bits) that have what is asked of studies, ``stated``
-    those of them whose stated numbers keep the limits too.
+    those of them whose stated numbers keep the limits too. ``judged`` says what its designs are
+    judged by.
     """
 
     place: Place
@@ -40,14 +41,19 @@ class KeptPlace:
     stated: int
     advice: tuple[Advice, ...]
     advised_tasks: frozenset[str]
-    question: Question
+    judged: Best
     best_at: int
     error_deg: float
 
     @cached_property
     def best(self) -> Kept:
         """The design that errs least; its error is ``error_deg``, its position ``best_at``."""
-        return self.question.kept(self.best_at)
+        return self.judged.kept(self.best_at)
+
+    @cached_property
+    def backing(self) -> int:
+        """How many of its studies have what is asked of studies."""
+        return self.studies.bit_count()
 
     def taken(self, kept: Kept) -> int:
         """Return the studies (bits) that stand for a calibration and meet the requirements."""
@@ -103,7 +109,7 @@ class Question:
     def meeting(self) -> int:
         """The designs (bits) that meet the requirements."""
         columns, largest = self.columns, self.asked.max_error_deg
-        kept = self.best.kept
+        kept = self.best.keeping
         if largest is not None:
             kept &= columns.bits(self.best.error <= largest)
         kept |= columns.stated(self.all_stated)
@@ -153,11 +159,7 @@ class Question:
 
     def kept(self, at: int) -> Kept:
         """Return a design that meets the requirements, with what it is judged by."""
-        row = int(self.best.row[at])
-        columns = self.columns
-        if row < 0:
-            return Kept(at, row, columns.designs[at], None, NOTHING)
-        return Kept(at, row, columns.designs[at], columns.rows[row], self.judgements.of(row))
+        return self.best.kept(at)
 
     @cached_property
     def finest(self) -> Mapping[int, int]:
@@ -179,10 +181,14 @@ class Question:
     @cached_property
     def advice(self) -> Sequence[AdviceFor]:
         """Of each place the advice for the tasks and accuracies asked for; for any if none is."""
-        asked = tuple(self.asked.include.get(name) for name in ADVISING)
         return self.table.advice.get(
-            asked, lambda: [self._advice(place.advice) for place in self.table.places]
+            self.advising, lambda: [self._advice(place.advice) for place in self.table.places]
         )
+
+    @property
+    def advising(self) -> tuple[tuple[str, ...] | None, ...]:
+        """What advice depends on: the tasks and accuracies asked for."""
+        return tuple(self.asked.include.get(name) for name in ADVISING)
 
     def _advice(self, advice: Iterable[Advice]) -> AdviceFor:
         include = self.asked.include

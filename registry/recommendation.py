@@ -219,7 +219,7 @@ def recommendation(
         requirements=asked,
         sort=ranked.sort,
         count=len(ranked.places),
-        designs=len(ranked.at),
+        designs=ranked.count,
         architectures=tuple(
             _architecture(at, place, found, paths, calibrations)
             for at, place in enumerate(ranked.places[:limit])
@@ -247,7 +247,7 @@ class Answered:
     def contradictions(self) -> tuple[str, ...]:
         """Where an architecture that is not advised does better at a task than those advised."""
         tasks = self.question.asked.include.get("task", ())
-        return against_advice(self.ranked.places, self.ranked.least, tasks)
+        return against_advice(self.ranked.places, tasks)
 
     @cached_property
     def regret(self) -> Regret | None:
@@ -336,7 +336,7 @@ def _architecture(
         studies=paths.studies(place.studies),
         best=_calibration(best, place.best, place, found, paths),
         pareto=at in found.pareto,
-        contradiction=against_literature(place, found.ranked.usual(place)),
+        contradiction=against_literature(place, place.usual),
         count=len(place.designs),
         calibrations=tuple(
             _calibration(i, found.question.kept(design), place, found, paths)

@@ -106,7 +106,7 @@ class Pieces:
             (
                 *(b'{"requirements":', encoded(asked.to_dict())),
                 *(b',"sort":', encoded(ranked.sort)),
-                b',"count":%d,"designs":%d' % (len(ranked.places), len(ranked.at)),
+                b',"count":%d,"designs":%d' % (len(ranked.places), ranked.count),
                 *(b',"architectures":[', self._listed(found, limit, calibrations)),
                 *(b'],"contradictions":', encoded(found.contradictions)),
                 b',"regret":',
@@ -182,7 +182,7 @@ class Pieces:
             "advice": [advice.to_dict() for advice in place.advice],
         }
         after = {
-            "contradiction": against_literature(place, found.ranked.usual(place)),
+            "contradiction": against_literature(place, place.usual),
             "count": len(place.designs),
         }
         question = found.question
