@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from operator import attrgetter, itemgetter
+from operator import attrgetter
 from typing import TYPE_CHECKING
 
 from registry.designs import Kept
@@ -18,9 +18,8 @@ if TYPE_CHECKING:
 LEAST_RATIO = 1.1
 """Errors nearer to each other than this contradict nothing."""
 
-
-Reached = tuple[float, KeptPlace, int]
-"""A number, the architecture on which it is reached, and by which design."""
+Reached = tuple[float, int]
+"""A number reached on an architecture, infinite where none is, and the position of the design."""
 
 
 def design_words(kept: Kept) -> str:
@@ -70,31 +69,26 @@ def against_advice(places: Sequence[RankedPlace], tasks: Sequence[str]) -> tuple
         Those asked for; none means all.
     """
     found = []
-    for task, number, unit in _MEASURED:
+    for task, reached, unit in _MEASURED:
         if tasks and task not in tasks:
             continue
-        is_advised = [task in place.advised_tasks for place in places]
-        if all(is_advised) or not any(is_advised):
+        advised = [place for place in places if task in place.advised_tasks]
+        if not advised or len(advised) == len(places):
             continue
-        advised: list[Reached] = []
-        others: list[Reached] = []
-        for place, meant in zip(places, is_advised, strict=True):
-            value, design = number(place)
-            if value < math.inf:
-                (advised if meant else others).append((value, place, design))
-        if not advised or not others:
+        others = [place for place in places if task not in place.advised_tasks]
+        first, other = (min(side, key=lambda at: reached(at)[0]) for side in (advised, others))
+        mine, theirs = reached(first)[0], reached(other)[0]
+        if math.isinf(mine) or mine <= theirs or abs(mine) == abs(theirs):
             continue
-        first, other = (min(side, key=itemgetter(0)) for side in (advised, others))
-        if abs(first[0]) == abs(other[0]) or first[0] <= other[0]:
-            continue
-        ratio = first[0] / other[0] if first[0] > 0 else other[0] / first[0]
+        ratio = mine / theirs if mine > 0 else theirs / mine
         if ratio < LEAST_RATIO:
             continue
-        named = ", ".join(architecture_words(item[1]) for item in advised)
+        named = ", ".join(architecture_words(at) for at in advised if math.isfinite(reached(at)[0]))
         found.append(
             f"The survey advises {named} for {task}; the best of them measured here, "
-            f"{_where(first)}, reaches {abs(first[0]):.3g} {unit}; {_where(other)}, which it does "
-            f"not advise for that, {abs(other[0]):.3g}"
+            f"{_where(first, reached(first)[1])}, reaches {abs(mine):.3g} {unit}; "
+            f"{_where(other, reached(other)[1])}, which it does not advise for that, "
+            f"{abs(theirs):.3g}"
         )
     return tuple(found)
 
@@ -115,8 +109,7 @@ def regret_words(regret: Regret) -> str:
     )
 
 
-def _where(item: Reached) -> str:
-    _, place, design = item
+def _where(place: KeptPlace, design: int) -> str:
     row = place.judged.kept(design).row
     return f"{architecture_words(place)} ({'' if row is None else _pipeline(row)})"
 
@@ -145,11 +138,11 @@ def _times(worse: Kept, better: Kept) -> str:
     return f", {worse.error_deg / better.error_deg:.3g} times less"
 
 
-def _least_error(place: RankedPlace) -> tuple[float, int]:
+def _least_error(place: RankedPlace) -> Reached:
     return place.error_deg, place.best_at
 
 
-_MEASURED: tuple[tuple[str, Callable[[RankedPlace], tuple[float, int]], str], ...] = (
+_MEASURED: tuple[tuple[str, Callable[[RankedPlace], Reached], str], ...] = (
     ("Accuracy", _least_error, "deg"),
     ("Precision", attrgetter("repeatability"), "deg of repeatability"),
     ("FOV", attrgetter("field"), "deg of field"),

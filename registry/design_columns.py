@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from registry.designs import NOTHING, Design, DesignTable, Kept, Limits, Place
-from registry.judged_columns import Judgements, PipelineColumns
+from registry.judged_columns import Judgements, PipelineColumns, begins
 from registry.kept_answers import KeptAnswers
 
 if TYPE_CHECKING:
@@ -245,7 +245,7 @@ class DesignColumns(PipelineColumns):
         judged = self.judgements(limits.hazards, limits.half_field_deg)
         by_error = judged.by_error[judged.keeping(limits)[judged.by_error]]
         designs = self.design_of[by_error]
-        first = by_error[np.diff(designs, prepend=-1) != 0]
+        first = by_error[begins(designs)]
         row = np.full(len(self.designs), -1)
         row[self.design_of[first]] = first
         error = np.full(len(self.designs), np.inf)

@@ -117,7 +117,7 @@ class PathColumns:
         if not self._size:
             return Taken((), (), ())
         words = np.bitwise_or.reduceat(studies.take(self._paths, axis=1), self._starts, axis=1)
-        at = np.flatnonzero(words.any(axis=0))
+        at = np.bitwise_or.reduce(words, axis=0).nonzero()[0]
         rows = np.ascontiguousarray(words.take(at, axis=1).T)
         sets = rows.view(f"V{8 * rows.shape[1]}").ravel().tolist()
         _, nodes, links, _ = self._firsts.tolist()

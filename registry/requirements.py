@@ -183,8 +183,8 @@ class Requirements:
 
     def to_dict(self) -> dict[str, object]:
         """Return the parameters that ask something, as they are passed in."""
-        asked = {name: self.asked(name) for name in self.names}
-        return {n: list(v) if isinstance(v, tuple) else v for n, v in asked.items()}
+        asked = ((name, self.asked(name)) for name in PARAMETERS)
+        return {n: list(v) if isinstance(v, tuple) else v for n, v in asked if v is not None}
 
 
 def _texts(name: str, value: object) -> tuple[str, ...]:
