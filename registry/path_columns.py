@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import itertools
 import weakref
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -23,9 +23,10 @@ from registry.ranked_designs import RankedDesigns
 Words = NDArray[np.uint64]
 Positions = NDArray[np.int64]
 
-Sets = Sequence[tuple[int, bytes]]
-"""Positions, each with a set of studies as bytes, the lowest first."""
+Sets = Sequence[bytes]
+"""Sets of studies, each behind the position of its path, node or link, in `POSITION_BYTES`."""
 
+POSITION_BYTES = 8
 
 #: Sets of designs whose paths are kept, of some 600 bytes each.
 MOST_SETS = 4096
@@ -67,7 +68,8 @@ class PathColumns:
         self._paths = np.array([at for kind in steps for step in kind for at in step], int)
         lengths = [len(step) for kind in steps for step in kind]
         self._starts = np.array([0, *itertools.accumulate(lengths)][:-1], int)
-        self._firsts = np.array([0, *itertools.accumulate(len(kind) for kind in steps)], int)
+        self._first_node = len(steps[0])
+        self._first_link = self._first_node + len(steps[1])
 
     def taken(self, ranked: RankedDesigns) -> Taken:
         """Return the paths that lead to the designs of an answer, their nodes and their links.
@@ -118,21 +120,15 @@ class PathColumns:
             return Taken((), (), ())
         words = np.bitwise_or.reduceat(studies.take(self._paths, axis=1), self._starts, axis=1)
         at = np.bitwise_or.reduce(words, axis=0).nonzero()[0]
-        rows = np.ascontiguousarray(words.take(at, axis=1).T)
-        sets = rows.view(f"V{8 * rows.shape[1]}").ravel().tolist()
-        _, nodes, links, _ = self._firsts.tolist()
-        first_node, first_link = np.searchsorted(at, (nodes, links)).tolist()
-        return Taken(
-            list(zip(at[:first_node].tolist(), sets[:first_node], strict=True)),
-            list(
-                zip(
-                    (at[first_node:first_link] - nodes).tolist(),
-                    sets[first_node:first_link],
-                    strict=True,
-                )
-            ),
-            list(zip((at[first_link:] - links).tolist(), sets[first_link:], strict=True)),
-        )
+        node, link = self._first_node, self._first_link
+        first_node, first_link = np.searchsorted(at, (node, link)).tolist()
+        rows = np.empty((len(at), 1 + len(words)), "<u8")
+        rows[:, 0] = at
+        rows[first_node:first_link, 0] -= node
+        rows[first_link:, 0] -= link
+        rows[:, 1:] = words.take(at, axis=1).T
+        sets = rows.view(f"V{rows.itemsize * rows.shape[1]}").ravel().tolist()
+        return Taken(sets[:first_node], sets[first_node:first_link], sets[first_link:])
 
 
 @dataclass(frozen=True)
@@ -148,6 +144,13 @@ class Taken:
     paths: Sets
     nodes: Sets
     links: Sets
+
+
+def unpacked(sets: Sets) -> Iterator[tuple[int, int]]:
+    """Yield the positions of sets, each with its studies (bits)."""
+    for packed in sets:
+        position, studies = packed[:POSITION_BYTES], packed[POSITION_BYTES:]
+        yield int.from_bytes(position, "little"), int.from_bytes(studies, "little")
 
 
 def _paths_by_step(steps_of_paths: Sequence[Sequence[int]]) -> list[list[int]]:

@@ -212,6 +212,8 @@ def recommendation(
     found: Answered, limit: int | None = None, calibrations: int | None = None
 ) -> Recommendation:
     """Return an answer as objects, with the first architectures and calibrations of each."""
+    from registry.path_columns import unpacked  # noqa: PLC0415 - NumPy
+
     ranked, taken, asked = found.ranked, found.taken, found.question.asked
     paths = path_table(found.question.table.facts)
     lost = found.regret
@@ -227,9 +229,9 @@ def recommendation(
         contradictions=found.contradictions,
         regret=None if lost is None else lost.to_dict(regret_words(lost)),
         untried=found.untried,
-        paths=paths.study_paths(taken.paths),
-        nodes=tuple(paths.node(at, int.from_bytes(bits, "little")) for at, bits in taken.nodes),
-        links=tuple(paths.link(at, int.from_bytes(bits, "little")) for at, bits in taken.links),
+        paths=paths.study_paths(unpacked(taken.paths)),
+        nodes=tuple(paths.node(*of) for of in unpacked(taken.nodes)),
+        links=tuple(paths.link(*of) for of in unpacked(taken.links)),
         left_out=paths.left_out,
         blocked=found.blocked,
     )

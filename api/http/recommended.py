@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import hashlib
 import weakref
-from collections.abc import Callable, Hashable, Iterable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from typing import Any, Generic, NamedTuple, TypeVar
 
 from pydantic_core import to_json
@@ -20,6 +20,7 @@ from registry.contradiction import against_literature, regret_words
 from registry.design_columns import design_columns
 from registry.designs import DesignTable, Kept
 from registry.judging import OF_STUDIES
+from registry.path_columns import POSITION_BYTES, Sets
 from registry.paths import PATH_LEVELS, path_table
 from registry.ranked_designs import RankedPlace
 from registry.ranking import support
@@ -129,21 +130,36 @@ class Pieces:
         self, found: Answered, limit: int | None, calibrations: int | None
     ) -> EncodedAnswer:
         """Return an answer, with the first architectures and the first calibrations of each."""
-        question, ranked, taken = found.question, found.ranked, found.taken
-        asked = question.asked
-        lost = found.regret
-        blocked = found.blocked
-        untried = {
-            hazard: [{"detector": detector, "mask": mask} for detector, mask in pairs]
-            for hazard, pairs in found.untried.items()
-        }
-        start = (
-            *(b'{"requirements":', encoded(asked.to_dict())),
+        listed: list[bytes] = []
+        digests: list[bytes] = []
+        for at, piece in enumerate(self._listed(found, limit, calibrations)):
+            rank = b'%b{"rank":%d,' % (b"," if at else b"", at + 1)
+            pareto = b',"pareto":true,' if at in found.pareto else b',"pareto":false,'
+            listed += (rank, piece.before, pareto, piece.after)
+            digests += (rank, piece.digest, pareto)
+        start, end = self._asked(found), self._behind_it(found)
+        return EncodedAnswer(
+            b"".join((*start, *listed, *end)), digest_of(b"".join((*start, *digests, *end)))
+        )
+
+    def _asked(self, found: Answered) -> tuple[bytes, ...]:
+        """Return what stands before the architectures."""
+        ranked = found.ranked
+        return (
+            *(b'{"requirements":', encoded(found.question.asked.to_dict())),
             *(b',"sort":', encoded(ranked.sort)),
             b',"count":%d,"designs":%d' % (len(ranked.places), ranked.count),
             b',"architectures":[',
         )
-        end = (
+
+    def _behind_it(self, found: Answered) -> tuple[bytes, ...]:
+        """Return what follows the architectures: what contradicts them, and the studies behind."""
+        taken, lost, blocked = found.taken, found.regret, found.blocked
+        untried = {
+            hazard: [{"detector": detector, "mask": mask} for detector, mask in pairs]
+            for hazard, pairs in found.untried.items()
+        }
+        return (
             *(b'],"contradictions":', encoded(found.contradictions)),
             *(b',"regret":', encoded(None if lost is None else lost.to_dict(regret_words(lost)))),
             *(b',"untried":', encoded(untried)),
@@ -153,34 +169,19 @@ class Pieces:
             *(b'],"left_out":', self._left_out),
             *(b',"blocked":', encoded(None if blocked is None else blocked.to_dict()), b"}"),
         )
-        listed: list[bytes] = []
-        digests: list[bytes] = []
-        pieces = self._listed(found, limit, calibrations)
-        for at, piece in enumerate(pieces):
-            rank = b'%b{"rank":%d,' % (b"," if at else b"", at + 1)
-            pareto = b',"pareto":true,' if at in found.pareto else b',"pareto":false,'
-            listed += (rank, piece.before, pareto, piece.after)
-            digests += (rank, piece.digest, pareto)
-        return EncodedAnswer(
-            b"".join((*start, *listed, *end)),
-            digest_of(b"".join((*start, *digests, *end))),
-        )
 
     def studies(self, bits: bytes) -> bytes:
         """Return the keys of a set of studies, quoted and with commas between them."""
         found = b"".join([keys[byte] for keys, byte in zip(self._studies, bits, strict=True)])
         return found[:-1]
 
-    def _sets(
-        self, kind: str, sets: Iterable[tuple[int, bytes]], make: Callable[[int, bytes], bytes]
-    ) -> bytes:
+    def _sets(self, kind: str, sets: Sets, make: Callable[[int, bytes], bytes]) -> bytes:
         kept = self._behind[kind]
         found = [*map(kept.get, sets)]
-        pieces = (
-            kept.keep(key, make(*key)) if piece is None else piece
-            for key, piece in zip(sets, found, strict=True)
+        return b",".join(
+            kept.keep(packed, make(*_unpacked(packed))) if piece is None else piece
+            for packed, piece in zip(sets, found, strict=True)
         )
-        return b",".join(pieces)
 
     def _path(self, at: int, bits: bytes) -> bytes:
         return self._path_heads[at] + self.studies(bits) + b"]}"
@@ -337,6 +338,11 @@ def _head(about: dict[str, str]) -> bytes:
 def _doubled(text: str) -> str:
     """Return text for a template in which % stands for what is put in."""
     return text.replace("%", "%%")
+
+
+def _unpacked(packed: bytes) -> tuple[int, bytes]:
+    """Return the position of a set of studies, and the set."""
+    return int.from_bytes(packed[:POSITION_BYTES], "little"), packed[POSITION_BYTES:]
 
 
 def _count(bits: bytes) -> int:
