@@ -76,13 +76,14 @@ def against_advice(places: Sequence[RankedPlace], tasks: Sequence[str]) -> tuple
         if not advised or len(advised) == len(places):
             continue
         others = [place for place in places if task not in place.advised_tasks]
-        first, other = (min(side, key=lambda at: reached(at)[0]) for side in (advised, others))
-        mine, theirs = reached(first)[0], reached(other)[0]
+        of_advised, of_others = ([reached(at)[0] for at in side] for side in (advised, others))
+        mine, theirs = min(of_advised), min(of_others)
         if math.isinf(mine) or mine <= theirs or abs(mine) == abs(theirs):
             continue
         ratio = mine / theirs if mine > 0 else theirs / mine
         if ratio < LEAST_RATIO:
             continue
+        first, other = advised[of_advised.index(mine)], others[of_others.index(theirs)]
         named = ", ".join(architecture_words(at) for at in advised if math.isfinite(reached(at)[0]))
         found.append(
             f"The survey advises {named} for {task}; the best of them measured here, "

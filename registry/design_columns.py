@@ -10,7 +10,7 @@ from __future__ import annotations
 import itertools
 import weakref
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -44,6 +44,7 @@ class Best:
     ----------
     columns : the designs
     judgements : what their pipelines are judged by
+    limits : that they keep
     row : position of the pipeline, shape (designs,); -1 where none keeps them
     error : the error it is judged by; infinite where there is none
     order : of the designs, the least error first, measured ones first of the same, shape (designs,)
@@ -54,12 +55,14 @@ class Best:
 
     columns: DesignColumns
     judgements: Judgements
+    limits: Limits
     row: Positions
     error: Numbers
     order: Positions
     rank: Positions
     at_order: Positions
     keeping: int
+    _finest: KeptAnswers[Mapping[int, int]] = field(default_factory=lambda: KeptAnswers(16))
 
     @cached_property
     def repeatability_deg(self) -> Numbers:
@@ -80,6 +83,15 @@ class Best:
         found[known] = of_rows[self.row[known]]
         found[np.isnan(found)] = np.inf
         return found
+
+    def finest(self, designs: int) -> Mapping[int, int]:
+        """Return what errs least of the pipelines that answer too seldom, by place.
+
+        Of some designs (bits); both by position.
+        """
+        return self._finest.get(
+            designs, lambda: self.judgements.finest(self.limits, self.columns.flags(designs))
+        )
 
     def kept(self, at: int) -> Kept:
         """Return a design, given by position, with what it is judged by."""
@@ -254,7 +266,7 @@ class DesignColumns(PipelineColumns):
         order = np.empty_like(at_order)
         order[at_order] = np.arange(len(at_order))
         _, rank = np.unique(error, return_inverse=True)
-        return Best(self, judged, row, error, order, rank, at_order, self.bits(row >= 0))
+        return Best(self, judged, limits, row, error, order, rank, at_order, self.bits(row >= 0))
 
     def untried(self, hazard: str) -> tuple[tuple[str, str], ...]:
         """Return the architectures that no data set tries a hazard on."""

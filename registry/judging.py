@@ -170,7 +170,7 @@ class Question:
         allowed = self.columns.every
         for name in ("model", "exclude_model", "extractor", "exclude_extractor", "properties"):
             allowed &= self.having.get(name, allowed)
-        return self.judgements.finest(self.judged_by, self.columns.flags(allowed))
+        return self.best.finest(allowed)
 
     def partly(self, place: int) -> tuple[Partly[Measured], ...]:
         """Return the finest pipeline that answers too seldom on a place, if there is one."""

@@ -9,7 +9,6 @@ import itertools
 import weakref
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,10 +17,9 @@ from registry.design_columns import DesignColumns, design_columns
 from registry.designs import DesignTable
 from registry.kept_answers import KeptAnswers
 from registry.paths import PathTable, path_table
-from registry.ranked_designs import RankedDesigns
+from registry.ranked_designs import RankedDesigns, RankedPlace
 
 Words = NDArray[np.uint64]
-Positions = NDArray[np.int64]
 
 Sets = Sequence[bytes]
 """Sets of studies, each behind the position of its path, node or link, in `POSITION_BYTES`."""
@@ -68,8 +66,7 @@ class PathColumns:
         self._paths = np.array([at for kind in steps for step in kind for at in step], int)
         lengths = [len(step) for kind in steps for step in kind]
         self._starts = np.array([0, *itertools.accumulate(lengths)][:-1], int)
-        self._first_node = len(steps[0])
-        self._first_link = self._first_node + len(steps[1])
+        self._firsts = np.array([len(steps[0]), len(steps[0]) + len(steps[1])])
 
     def taken(self, ranked: RankedDesigns) -> Taken:
         """Return the paths that lead to the designs of an answer, their nodes and their links.
@@ -77,12 +74,12 @@ class PathColumns:
         A study counts that meets what is asked; where a design is not measured, one whose stated
         numbers keep the limits.
         """
-        question = ranked.question
+        question, leading = ranked.question, self._leading
         by_row = by_study = 0
         for place in ranked.places:
-            measured, others = self._leading.get(place.meeting, partial(self._led, place.designs))
-            by_row |= measured
-            by_study |= others
+            led = leading.find(place.meeting) or leading.keep(place.meeting, self._led(place))
+            by_row |= led[0]
+            by_study |= led[1]
         among = self._of_tasks(question.asked.include, question.asked.exclude)
         every, stated = question.studies, question.all_stated
         if stated == every:
@@ -92,9 +89,9 @@ class PathColumns:
             studies |= self._standing_on(by_study & among, stated)
         return self._present(studies)
 
-    def _led(self, designs: Positions) -> tuple[int, int]:
-        """Return the paths (bits) that lead to the measured ones of some designs, to the others."""
-        found = np.bitwise_or.reduce(self._of_design[designs], axis=0).tobytes()
+    def _led(self, place: RankedPlace) -> tuple[int, int]:
+        """Return the paths (bits) that lead to its measured designs, and those to the others."""
+        found = np.bitwise_or.reduce(self._of_design[place.designs], axis=0).tobytes()
         by_row, by_study = found[: self._bytes], found[self._bytes :]
         return int.from_bytes(by_row, "little"), int.from_bytes(by_study, "little")
 
@@ -120,8 +117,8 @@ class PathColumns:
             return Taken((), (), ())
         words = np.bitwise_or.reduceat(studies.take(self._paths, axis=1), self._starts, axis=1)
         at = np.bitwise_or.reduce(words, axis=0).nonzero()[0]
-        node, link = self._first_node, self._first_link
-        first_node, first_link = np.searchsorted(at, (node, link)).tolist()
+        node, link = self._firsts.tolist()
+        first_node, first_link = at.searchsorted(self._firsts).tolist()
         rows = np.empty((len(at), 1 + len(words)), "<u8")
         rows[:, 0] = at
         rows[first_node:first_link, 0] -= node

@@ -183,8 +183,13 @@ class Requirements:
 
     def to_dict(self) -> dict[str, object]:
         """Return the parameters that ask something, as they are passed in."""
-        asked = ((name, self.asked(name)) for name in PARAMETERS)
-        return {n: list(v) if isinstance(v, tuple) else v for n, v in asked if v is not None}
+        asked: dict[str, tuple[str, ...] | float | None] = {
+            **self.include,
+            **{EXCLUDE + attribute: values for attribute, values in self.exclude.items()},
+            **{name: getattr(self, name) for name in (*LIMITS, *LISTS)},
+        }
+        told = ((name, asked.get(name)) for name in PARAMETERS)
+        return {n: list(v) if isinstance(v, tuple) else v for n, v in told if v}
 
 
 def _texts(name: str, value: object) -> tuple[str, ...]:

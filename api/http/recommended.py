@@ -30,8 +30,9 @@ from registry.recommendation import Answered
 #: thousand questions make. Twice as many would spare a third of the writing, and fill for an hour.
 MOST_BYTES = 8 * 2**20
 
-#: What a key and its place in a dictionary weigh, roughly.
+#: What a key and its place in a dictionary weigh, roughly, and an architecture as it is ranked.
 _KEY_BYTES = 200
+_PLACE_BYTES = 1500
 
 
 def encoded(value: Any) -> bytes:
@@ -58,7 +59,8 @@ class ArchitecturePiece:
         self.digest = hashlib.sha256(b"%d,%b%b" % (len(before), before, after)).digest()
 
     def __len__(self) -> int:
-        return len(self.before) + len(self.after) + len(self.digest)
+        """Return the bytes that keeping it takes, with the ranked architecture in its key."""
+        return len(self.before) + len(self.after) + len(self.digest) + _PLACE_BYTES
 
 
 Piece = TypeVar("Piece", bytes, ArchitecturePiece)
@@ -177,11 +179,10 @@ class Pieces:
 
     def _sets(self, kind: str, sets: Sets, make: Callable[[int, bytes], bytes]) -> bytes:
         kept = self._behind[kind]
-        found = [*map(kept.get, sets)]
-        return b",".join(
-            kept.keep(packed, make(*_unpacked(packed))) if piece is None else piece
-            for packed, piece in zip(sets, found, strict=True)
-        )
+        pieces = [piece for piece in map(kept.get, sets) if piece is not None]
+        if len(pieces) < len(sets):
+            pieces = [kept.get(key) or kept.keep(key, make(*_unpacked(key))) for key in sets]
+        return b",".join(pieces)
 
     def _path(self, at: int, bits: bytes) -> bytes:
         return self._path_heads[at] + self.studies(bits) + b"]}"
@@ -206,7 +207,10 @@ class Pieces:
         listed: list[ArchitecturePiece] = []
         for place in found.ranked.places[:limit]:
             key = (place, finest.get(place.number), context)
-            listed.append(get(key) or keep(key, self._architecture(place, found, calibrations)))
+            piece = get(key)
+            if piece is None:
+                piece = keep(key, self._architecture(place, found, calibrations))
+            listed.append(piece)
         return listed
 
     def _architecture(
