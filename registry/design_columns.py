@@ -12,7 +12,6 @@ import weakref
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,16 +20,10 @@ from registry.designs import NOTHING, Design, DesignTable, Kept, Limits, Place
 from registry.judged_columns import Judgements, PipelineColumns, begins
 from registry.kept_answers import KeptAnswers
 
-if TYPE_CHECKING:
-    from registry.ranked_designs import RankedPlace
-
 Flags = NDArray[np.bool_]
 Numbers = NDArray[np.float64]
 Positions = NDArray[np.int64]
 Words = NDArray[np.uint64]
-
-#: Architectures as they were ranked, of a kilobyte or two each.
-MOST_PLACES = 4096
 
 WORD_BITS = 64
 _LARGEST_KEY = 63
@@ -136,7 +129,6 @@ class DesignColumns(PipelineColumns):
         self._untried: dict[str, tuple[tuple[str, str], ...]] = {}
         self._best: KeptAnswers[Best] = KeptAnswers()
         self._stated: KeptAnswers[int] = KeptAnswers()
-        self.ranked_places: KeptAnswers[RankedPlace] = KeptAnswers(MOST_PLACES)
         self.design_bits = max(1, len(self.designs).bit_length())
         self.support_bits = max(1, (studies**3).bit_length())
         place_bits = max(1, len(places).bit_length())

@@ -8,6 +8,7 @@ Only who answers imports this module: it needs NumPy.
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -16,12 +17,16 @@ from operator import attrgetter
 import numpy as np
 from numpy.typing import NDArray
 
-from registry.designs import Kept
+from registry.designs import DesignTable, Kept
 from registry.judging import KeptPlace, Question
+from registry.kept_answers import KeptAnswers
 from registry.ranking import Sort, key_of
 
 Numbers = NDArray[np.float64]
 Positions = NDArray[np.int64]
+
+#: Architectures that are kept as they were ranked, of a kilobyte or two each.
+MOST_PLACES = 4096
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,6 +82,19 @@ class RankedPlace(KeptPlace):
         return float(least), int(self.judged.at_order[order])
 
 
+_PLACES: weakref.WeakKeyDictionary[DesignTable, KeptAnswers[RankedPlace]] = (
+    weakref.WeakKeyDictionary()
+)
+
+
+def kept_places(table: DesignTable) -> KeptAnswers[RankedPlace]:
+    """Return the architectures of a table as questions had them ranked."""
+    found = _PLACES.get(table)
+    if found is None:
+        found = _PLACES[table] = KeptAnswers(MOST_PLACES)
+    return found
+
+
 class RankedDesigns:
     """Designs (bits) that meet a question, best first; equals in the order of the table.
 
@@ -101,7 +119,7 @@ class RankedDesigns:
         question, meeting, sort = self.question, self._meeting, self.sort
         best, studies, all_stated = question.best, question.studies, question.all_stated
         advising = question.advising
-        kept = question.columns.ranked_places
+        kept = kept_places(question.table)
         for number, (place, of_place) in enumerate(
             zip(question.table.places, question.columns.of_place, strict=True)
         ):

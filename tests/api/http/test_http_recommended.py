@@ -73,6 +73,20 @@ def test_what_is_kept_is_bounded_and_changes_no_answer(
         assert sum(kept.get(other) is not None for other in range(100)) < 10
 
 
+def test_digests_tell_answers_apart_whatever_was_asked_before(known: Knowledge) -> None:
+    """Workers have been asked different things: an answer has one ETag all the same."""
+    questions = list(drawn_requirements(60, SEED + 2, known.facts))
+    told: dict[str, bytes] = {}
+    digests = []
+    for order in (questions, questions[::-1]):
+        measured = Measurements(known.measured.rows)
+        found = [encoded_answer(answered(q, measured, facts=known.facts), 3, 2) for q in order]
+        digests.append({answer.body: answer.digest for answer in found})
+        told |= {answer.digest: answer.body for answer in found}
+    assert digests[0] == digests[1]
+    assert len(told) == len(digests[0]) > 30
+
+
 @pytest.mark.parametrize(
     ("query", "status"),
     [
