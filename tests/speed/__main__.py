@@ -22,13 +22,14 @@ NAMES = (
     "simulator",
     "extractors",
     "robustness",
+    "covariances",
     "models",
     "recommendations",
     "startup",
     "service",
 )
 #: Those of them that draw what they measure on: `run(seed)`.
-SEEDED = frozenset({"robustness"})
+SEEDED = frozenset({"robustness", "covariances"})
 
 Harness = Callable[[], Sequence[Verdict]]
 

@@ -16,6 +16,8 @@ from algorithms.compiled import compiled
 from algorithms.contract import Floats
 
 _PARAMETERS = 6  # amplitude, x, y, sigma x, sigma y, background
+#: Widths within which pixels are lit; pixels beyond that tell the noise of a dark one.
+_LIT, _TELL = 3.0, 30.0
 
 
 @compiled
@@ -213,24 +215,63 @@ def fit_gaussians(  # noqa: C901 - one loop, its kernel's steps in order
 
 
 @compiled
-def covariances(fits: Floats, noise: Floats, height: int, width: int, out: Floats) -> None:
+def _own_noise(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    frame: NDArray[Any], p: Floats, x: Floats, y: Floats, dark: float, gain: float
+) -> tuple[float, float, float]:
+    """Variance of a dark pixel, what light adds, and what lit ones depart by over their variance.
+
+    Of what the fit `p` leaves: within three of its widths pixels are lit. `dark` and `gain` are the
+    variances that the last of the three is over.
+    """
+    lit, light, unlit = 0.0, 0.0, 0.0
+    lit_squares, dark_squares, misfit = 0.0, 0.0, 0.0
+    for i in range(frame.shape[0]):
+        v = ((i - p[2]) / p[4]) ** 2
+        for j in range(frame.shape[1]):
+            own = p[0] * x[0, j] * y[0, i]
+            e = frame[i, j] - p[5] - own
+            if v + ((j - p[1]) / p[3]) ** 2 < _LIT * _LIT:
+                lit += 1.0
+                light += own
+                lit_squares += e * e
+                misfit += e * e / (dark + gain * own)
+            else:
+                unlit += 1.0
+                dark_squares += e * e
+    own_dark = dark_squares / unlit if unlit >= _TELL else dark
+    own_gain = max(lit_squares - lit * own_dark, 0.0) / light if light > 0.0 else 0.0
+    return own_dark, own_gain, misfit / max(lit, 1.0)
+
+
+@compiled
+def covariances(
+    frames: NDArray[Any], fits: Floats, noise: Floats, misfit: float, out: Floats
+) -> None:
     """Write the covariance of the centres of `fits` (N, 6) to `out` (N, 2, 2).
 
     With N the normal matrix, g a pixel's derivatives and v its variance, ``N^-1 (sum v g g^T)
-    N^-1``: pixels count alike in the fit, whatever their noise. `noise` (N, 2) is the variance of a
-    dark pixel, and what a unit of the fitted light adds to it; NaN for those that are passed over.
+    N^-1``: pixels count alike in the fit, whatever their noise. v is what pixels of `frames`
+    (N, H, W) depart from the fit by.
+
+    `noise` (N, 2) is the variance of a dark pixel, and what a unit of light adds to it, as seen
+    without any fit; NaN for those that are passed over. Where lit pixels depart by a mean square of
+    more than `misfit` of that, the light is no Gaussian, and the covariance NaN.
     """
+    _, height, width = frames.shape
     x, y = np.empty((3, width)), np.empty((3, height))
     right = np.zeros(_PARAMETERS)
     matrix = np.empty((_PARAMETERS, _PARAMETERS))
     moves = np.empty((2, _PARAMETERS))
     for k in range(len(fits)):
         out[k] = np.nan
-        p, dark, gain = fits[k], noise[k, 0], noise[k, 1]
-        if not (np.isfinite(dark) and np.isfinite(p[0])):
+        p = fits[k]
+        if not (np.isfinite(noise[k, 0]) and np.isfinite(p[0])):
             continue
         _factors(p, 0, x)
         _factors(p, 1, y)
+        dark, gain, departs = _own_noise(frames[k], p, x, y, noise[k, 0], noise[k, 1])
+        if departs > misfit:
+            continue
         _normal_matrix(p, x, y, matrix)
         good = True
         for axis in range(2):

@@ -26,6 +26,7 @@ from algorithms.extractors.frames.one_light import (
     longest_px_of,
     refused,
     require_light,
+    stated,
 )
 from algorithms.inputs import Frames, as_frames, require_positive
 from algorithms.measurement import Doubt, Measurement
@@ -35,6 +36,11 @@ _SPREAD = 3.0
 #: Square of what light within rings scatters by, over the brightest ring's, up to which there is
 #: one round light: another one that moves the centre by a pixel leaves more.
 _EVEN = 0.01
+#: Mean square of what lit pixels depart from a shape by, over their variance, above which the spot
+#: is of another shape: by how much the answer is off then, noise does not tell.
+_MISFIT = 1.5
+#: Noise that nothing tells.
+_UNTOLD = np.empty((0, 2))
 
 
 @dataclass(frozen=True)
@@ -105,7 +111,7 @@ class MatchedProfile(Extractor):
         name="matched-profile",
         taxonomy="None",
         origin="ours",
-        version=4,
+        version=5,
         observation=Observation.FRAMES,
         kind=FeatureKind.SPOT,
     )
@@ -132,36 +138,48 @@ class MatchedProfile(Extractor):
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Centres (N, 2) in frames (N, H, W); ValueError on wrong input."""
-        return self.measure(as_frames(observations)).features
+        frames = as_frames(observations)
+        found = self._found(frames)
+        uneven = np.flatnonzero(found[:, 5] > _EVEN)
+        if len(uneven):
+            judged = judge(frames[uneven], found[uneven, :2], self.light, self.longest_px)
+            found[uneven[refused(judged.doubts)]] = np.nan
+        return found[:, :2].copy()
 
     def measure(self, observations: ArrayLike, bad: ArrayLike | None = None) -> Measurement:
         """Centres, covariances and doubts of frames (N, H, W) or of one.
 
-        The covariance is that of the step, with the squares of what pixels depart from the profile
-        by for their variances. Bad pixels are replaced by their neighbours.
+        The covariance is that of the step, with the noise that registration shows. It is NaN where
+        pixels depart from the profile by more or registration finds the centre elsewhere, so that
+        the spot is not round or the background not even, where under 32 pixels are lit and where
+        `light` is "any". Bad pixels are replaced by their neighbours.
         """
+        frames = frames_to_measure(observations, bad, self.about.name)
+        judged = judge(frames, self._found(frames)[:, :2], self.light, self.longest_px, bad)
+        found = self._found(frames, judged.noise)
+        doubts = np.where(np.isnan(found[:, 0]), int(Doubt.NO_SPOT), 0).astype(np.int64)
+        uneven = found[:, 5] > _EVEN
+        doubts[uneven] = judged.doubts[uneven]
+        found[refused(doubts)] = np.nan
+        centres, covariance = found[:, :2].copy(), found[:, [2, 4, 4, 3]].reshape(-1, 2, 2)
+        return Measurement(centres, stated(covariance, centres, judged), doubts)
+
+    def _found(self, frames: Frames, noise: Floats = _UNTOLD) -> Floats:
+        """Return what `radial_kernel.matched_centres` writes, with covariances where noise is."""
         from algorithms.extractors.frames import radial_kernel  # noqa: PLC0415 - Numba, at first use
         from algorithms.kernels import moments  # noqa: PLC0415 - Numba, at first use
 
-        frames = frames_to_measure(observations, bad, self.about.name)
         maxima = np.empty(frames.shape[:2], dtype=frames.dtype)
         moments.row_maxima(frames, maxima)
         unusable = np.empty(len(frames), dtype=np.bool_)
         moments.unusable(frames, frames.dtype.kind == "f", unusable)
         maxima[unusable] = 0
         found = np.empty((len(frames), radial_kernel.MATCHED))
-        radial_kernel.matched_centres(frames, maxima, self.threshold, _SPREAD, self.steps, found)
+        radial_kernel.matched_centres(
+            frames, maxima, self.threshold, _SPREAD, self.steps, noise, _MISFIT, found
+        )
         found[unusable] = np.nan
-        centres, covariance = found[:, :2], found[:, [2, 4, 4, 3]]
-        doubts = np.where(np.isnan(centres[:, 0]), int(Doubt.NO_SPOT), 0).astype(np.int64)
-        uneven = np.flatnonzero(found[:, 5] > _EVEN)
-        if len(uneven):
-            doubts[uneven] = judge(
-                frames[uneven], centres[uneven], self.light, self.longest_px, bad
-            ).doubts
-        nothing = refused(doubts)
-        centres[nothing], covariance[nothing] = np.nan, np.nan
-        return Measurement(centres, covariance.reshape(-1, 2, 2), doubts)
+        return found
 
 
 @dataclass(frozen=True)
@@ -224,7 +242,7 @@ class GaussianFit(Extractor):
         name="gaussian-fit",
         taxonomy="None",
         origin="ours",
-        version=2,
+        version=3,
         observation=Observation.FRAMES,
         kind=FeatureKind.SPOT,
     )
@@ -255,8 +273,10 @@ class GaussianFit(Extractor):
     def measure(self, observations: ArrayLike, bad: ArrayLike | None = None) -> Measurement:
         """Centres, covariances and doubts of frames (N, H, W) or of one.
 
-        The covariance is that of the linearised fit, with the variance of pixels that registration
-        shows: NaN where `light` is "any". Bad pixels are replaced by their neighbours.
+        The covariance is that of the linearised fit, with the variance that pixels depart from it
+        by. It is NaN where that is more than the noise that registration shows, or registration
+        finds the centre elsewhere, so that the spot is no Gaussian or the background not even, and
+        where `light` is "any". Bad pixels are replaced by their neighbours.
         """
         from algorithms.extractors.frames import gaussian_kernel  # noqa: PLC0415 - Numba, at first use
 
@@ -265,9 +285,8 @@ class GaussianFit(Extractor):
         covariance = np.empty((len(frames), 2, 2))
         nothing = np.isnan(centres[:, :1])
         noise = np.where(nothing, np.nan, judged.noise)
-        _, height, width = frames.shape
-        gaussian_kernel.covariances(fitted, noise, height, width, covariance)
-        return Measurement(centres, covariance, judged.doubts)
+        gaussian_kernel.covariances(frames, fitted, noise, _MISFIT, covariance)
+        return Measurement(centres, stated(covariance, centres, judged), judged.doubts)
 
     def _answers(
         self, frames: Frames, bad: ArrayLike | None = None

@@ -24,6 +24,8 @@ and stars, as lenses and slits make them; all that is asked is that there is lig
 #: An answer further than this, px, and so many standard deviations from the registered centre is
 #: of something else.
 _APART_PX, _APART = 0.5, 3.0
+#: Deviations of its own from which an answer is too far from the registered centre to state them.
+_CONTRADICTED = 2.0
 #: The middle of silicon's sunlight; the steepest rays' tangent that spots are expected of.
 _MIDDLE_MM, _STEEPEST = 6e-4, 2.5
 #: Half axes that are allowed over those of the design.
@@ -80,10 +82,13 @@ class Judged(NamedTuple):
         NO_SPOT where there is none, or it is of something else than the light.
     noise
         (N, 2) variance of a dark pixel, and what a unit of light adds to it; NaN where not told.
+    centres
+        (N, 2) centres that registration finds, px; NaN where it finds none or was not asked.
     """
 
     doubts: NDArray[np.int64]
     noise: Floats
+    centres: Floats
 
 
 def judge(
@@ -111,7 +116,7 @@ def judge(
     Returns
     -------
     Judged
-        Doubts and noise of each frame.
+        Doubts, noise and registered centre of each frame.
 
     Examples
     --------
@@ -122,21 +127,35 @@ def judge(
     <Doubt.CUT: 4>
     """
     doubts = np.full(len(frames), int(Doubt.NO_SPOT), dtype=np.int64)
-    noise = np.full((len(frames), 2), np.nan)
+    noise, registered = np.full((2, len(frames), 2), np.nan)
     seen = np.flatnonzero(np.isfinite(centres).all(axis=1))
     if not len(seen):
-        return Judged(doubts, noise)
+        return Judged(doubts, noise, registered)
     some = frames if len(seen) == len(frames) else frames[seen]
     if light == "any":
         doubts[seen] = _unlit(some)
     else:
-        doubts[seen], noise[seen] = _elsewhere(some, centres[seen], longest_px, bad)
-    return Judged(doubts, noise)
+        doubts[seen], noise[seen], registered[seen] = _elsewhere(
+            some, centres[seen], longest_px, bad
+        )
+    return Judged(doubts, noise, registered)
 
 
 def refused(doubts: NDArray[np.int64]) -> NDArray[np.bool_]:
     """Return where doubts leave no answer; SATURATED and GHOST may stand beside one."""
     return np.asarray((doubts & ~int(Doubt.SATURATED | Doubt.GHOST)) != 0)
+
+
+def stated(covariance: Floats, centres: Floats, judged: Judged) -> Floats:
+    """Return covariances (N, 2, 2) of centres (N, 2), NaN where registration contradicts them.
+
+    It assumes no shape and no flat background: a centre that is two of its own deviations away is
+    off by something that the method's covariance does not know of.
+    """
+    deviations = np.sqrt(np.diagonal(covariance, axis1=1, axis2=2))
+    apart = np.abs(centres - judged.centres) / deviations
+    near = apart.max(axis=1) <= _CONTRADICTED
+    return np.where(near[:, None, None], covariance, np.nan)
 
 
 def agreed(
@@ -156,7 +175,8 @@ def _elsewhere(
     room = _APART_PX + _APART * found.deviations.max(axis=1)
     # registration's own NaN carries its reason already
     apart = np.abs(centres - found.features).max(axis=1) > room
-    return Judged(found.doubts | np.where(apart, int(Doubt.NO_SPOT), 0), noise)
+    doubts = found.doubts | np.where(apart, int(Doubt.NO_SPOT), 0)
+    return Judged(doubts, noise, found.features)
 
 
 def _unlit(frames: Frames) -> NDArray[np.int64]:

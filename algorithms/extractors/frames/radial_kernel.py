@@ -20,8 +20,8 @@ _WIDTH, _FINEST, _COARSEST = 1.05, 0.15, 0.5
 _NEAR = 3
 #: Columns of the sums of a ring, of the running sums and of the profile: see where they are made.
 _SUMS, _RUNNING, _PROFILE = 6, 7, 7
-#: Pixels of a lit region below which its rings do not tell whether they are even.
-_ENOUGH = 12.0
+#: Pixels of a lit region below which its rings do not tell whether they are even, nor its profile.
+_ENOUGH, _RESOLVED = 12.0, 32.0
 #: Columns that `matched_centres` writes.
 MATCHED = 6
 
@@ -258,30 +258,20 @@ def _profile(  # noqa: PLR0917 - the formulas in their order
 
 
 @compiled
-def _step(
-    pixels: Floats, count: int, scale: float, profile: Floats, sure: Floats
-) -> tuple[float, float, bool]:
-    """One Gauss-Newton step of the centre to where the profile fits, and whether there is one.
-
-    Its covariance goes to `sure`: xx, yy, xy.
-    """
+def _step(pixels: Floats, count: int, scale: float, profile: Floats) -> tuple[float, float, bool]:
+    """One Gauss-Newton step of the centre to where the profile fits, and whether there is one."""
     c_ = pixels[0, :count]
     s_ = pixels[1, :count]
     r_ = pixels[2, :count]
     u_ = pixels[3, :count]
-    a_xx = 0.0
-    a_xy = 0.0
-    a_yy = 0.0
-    b_x = 0.0
-    b_y = 0.0
-    squares = 0.0
+    a_xx, a_xy, a_yy = 0.0, 0.0, 0.0
+    b_x, b_y = 0.0, 0.0
     for p in range(count):
         c, s, r = c_[p], s_[p], r_[p]
         at = profile[np.uint32(r * scale)]
         departure = at[3] * (u_[p] - at[0] - (at[1] + at[2] * r) * r)
         b_x -= departure * c
         b_y -= departure * s
-        squares += departure * departure
         # The profile takes up what the pixels near have in common.
         a_xx += at[4] * c * (c - at[5])
         a_xy += at[4] * (c * s - 0.5 * (c * at[6] + s * at[5]))
@@ -289,15 +279,46 @@ def _step(
     determinant = a_xx * a_yy - a_xy * a_xy
     if not determinant > 1e-12 * a_xx * a_yy:
         return 0.0, 0.0, False
-    a, b, d = a_yy / determinant, -a_xy / determinant, a_xx / determinant
-    half = 0.5 * squares  # all around the spot, half of them is along either axis
-    sure[0], sure[1] = half * (a * a + b * b), half * (b * b + d * d)
-    sure[2] = half * b * (a + d)
     return (
         (a_yy * b_x - a_xy * b_y) / determinant,
         (a_xx * b_y - a_xy * b_x) / determinant,
         True,
     )
+
+
+@compiled
+def _sure(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    pixels: Floats, count: int, scale: float, profile: Floats, noise: Floats, out: Floats
+) -> float:
+    """Write the covariance xx, yy, xy of a step's end; return how pixels depart from the profile.
+
+    By the mean square over their variance: `noise` is that of a dark pixel, and what light adds.
+    """
+    a_xx, a_xy, a_yy = 0.0, 0.0, 0.0
+    b_xx, b_xy, b_yy = 0.0, 0.0, 0.0
+    squares = 0.0
+    for p in range(count):
+        c, s, r = pixels[0, p], pixels[1, p], pixels[2, p]
+        at = profile[np.uint32(r * scale)]
+        light = at[0] + (at[1] + at[2] * r) * r
+        variance = noise[0] + noise[1] * max(light, 0.0)
+        squares += (pixels[3, p] - light) ** 2 / variance
+        c_own, s_own = c - at[5], s - at[6]
+        a_xx += at[4] * c * c_own
+        a_xy += at[4] * 0.5 * (c * s_own + s * c_own)
+        a_yy += at[4] * s * s_own
+        weight = at[3] * at[3] * variance
+        b_xx += weight * c_own * c_own
+        b_xy += weight * c_own * s_own
+        b_yy += weight * s_own * s_own
+    determinant = a_xx * a_yy - a_xy * a_xy
+    if not determinant > 1e-12 * a_xx * a_yy:
+        return np.inf
+    a, b, d = a_yy / determinant, -a_xy / determinant, a_xx / determinant
+    out[0] = a * a * b_xx + 2.0 * a * b * b_xy + b * b * b_yy
+    out[1] = b * b * b_xx + 2.0 * b * d * b_xy + d * d * b_yy
+    out[2] = a * b * b_xx + (a * d + b * b) * b_xy + b * d * b_yy
+    return squares / count
 
 
 @compiled
@@ -307,6 +328,8 @@ def matched_centres(  # noqa: PLR0917 - Numba takes no keyword-only ones
     threshold: float,
     spread: float,
     steps: int,
+    noises: Floats,
+    misfit: float,
     out: Floats,
 ) -> None:
     """Write the centre of each frame's spot to `out` (N, 6); NaN where there is not one.
@@ -316,7 +339,10 @@ def matched_centres(  # noqa: PLR0917 - Numba takes no keyword-only ones
     few pixels does not tell.
 
     `maxima` (N, H) are the rows' largest values, `threshold` the fraction of the peak above which
-    pixels start the search, `spread` the limit of `_lit_spot`.
+    pixels start the search, `spread` the limit of `_lit_spot`. `noises` (N, 2) are the variance of
+    a dark pixel, and what a unit of light adds to it, NaN where not told; of (0, 2) no covariance
+    is looked for. It is NaN, too, where the mean square of what pixels depart from the profile by,
+    over their variance, is over `misfit`, and where a spot has too few for rings to show it.
     """
     count, height, width = frames.shape
     widest = 1.2 * math.hypot(height, width) + 4.0
@@ -325,8 +351,7 @@ def matched_centres(  # noqa: PLR0917 - Numba takes no keyword-only ones
     sums = np.empty((most, _SUMS))
     profile = np.empty((most, _PROFILE))
     running = np.empty((_RUNNING, most + 2 * _NEAR + 1))
-    lines = np.empty((7, most + 2 * _NEAR))
-    sure = np.empty(3)
+    lines, sure = np.empty((7, most + 2 * _NEAR)), np.empty(3)
     for k in range(count):
         frame = frames[k]
         out[k] = np.nan
@@ -353,7 +378,7 @@ def matched_centres(  # noqa: PLR0917 - Numba takes no keyword-only ones
             _ring_sums(pixels, near, scale, sums)
             _running_sums(sums, rings, running)
             uneven = _profile(sums, running, rings, ring, noise, lines, profile)
-            move_x, move_y, found = _step(pixels, near, scale, profile, sure)
+            move_x, move_y, found = _step(pixels, near, scale, profile)
             found = found and abs(move_x) <= radius and abs(move_y) <= radius
             if not found:
                 break
@@ -362,5 +387,13 @@ def matched_centres(  # noqa: PLR0917 - Numba takes no keyword-only ones
         if found:
             out[k, 0] = x
             out[k, 1] = y
-            out[k, 2:5] = sure
-            out[k, 5] = uneven if math.pi * radius * radius >= _ENOUGH else np.inf
+            area = math.pi * radius * radius
+            out[k, 5] = uneven if area >= _ENOUGH else np.inf
+            if len(noises) > 0 and np.isfinite(noises[k, 0]) and area >= _RESOLVED:
+                sums[:rings] = 0.0
+                near = _pixels_near(frame, x, y, base, reach, pixels)
+                _ring_sums(pixels, near, scale, sums)
+                _running_sums(sums, rings, running)
+                _profile(sums, running, rings, ring, noise, lines, profile)
+                if _sure(pixels, near, scale, profile, noises[k], sure) <= misfit:
+                    out[k, 2:5] = sure

@@ -168,3 +168,32 @@ def test_designs_without_images_of_apertures_are_refused():
         WeightedSpots.for_sensor(design)
     with pytest.raises(ValueError, match="faulty_lines"):
         WeightedSpots(grid(2, 16.0), faulty_lines=-1)
+
+
+def strangers(rng, apertures, frames, places):
+    """Add the light of three spots of no aperture to each frame, near or upon the others."""
+    half = max(abs(x) for x, _, _ in apertures) + 3.0
+    spoilt = frames.copy()
+    for k, place in enumerate(places):
+        for _ in range(3):
+            at = [(*rng.uniform(-half, half, 2), WIDTH)]
+            spoilt[k] += light(at, place, frames.shape[1:]) - BACKGROUND
+    return spoilt
+
+
+@pytest.mark.parametrize("spoil", [None, strangers])
+def test_the_covariance_is_that_of_the_errors_also_beside_light_of_no_aperture(spoil):
+    """Normalised errors squared average 2 for two coordinates: of 320, within 17 % (3 sigma)."""
+    rng = np.random.default_rng(311)
+    apertures, frames, places = draw(rng, 5, 16.0, 40)
+    if spoil is not None:
+        frames = spoil(rng, apertures, frames, places)
+    many = noisy(np.repeat(frames, 8, axis=0), rng).astype(np.uint16)
+    found = WeightedSpots(apertures, blur_px=2.0).measure(many)
+    errors = found.features - np.repeat(places, 8, axis=0)
+    answered = np.isfinite(errors[:, 0])
+    assert answered.mean() > 0.97
+    np.testing.assert_array_equal(np.isfinite(found.covariance).all(axis=(1, 2)), answered)
+    inverse = np.linalg.inv(found.covariance[answered])
+    squares = np.einsum("ni,nij,nj->n", errors[answered], inverse, errors[answered])
+    assert 1.66 < squares.mean() < 2.34

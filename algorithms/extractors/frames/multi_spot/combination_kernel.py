@@ -11,11 +11,14 @@ from algorithms.compiled import compiled
 from algorithms.contract import Floats
 
 #: Deviations by which a spot may be away from the others, and its misfit above theirs.
-_AWAY, _MISFIT = 5.0, 8.0
+_AWAY, _MISFIT = 4.0, 8.0
 #: Least number of spots of which one can be told to disagree.
 _VOTERS = 4
 #: Turns of finding what spots scatter more than noise, and weights from it.
 _TURNS = 3
+#: Deviations of the scatter of N spots above which it is more than noise: what is below, cut off at
+#: zero, would make every answer seem less sure than it is.
+_MORE = 2.0
 
 
 @compiled
@@ -52,12 +55,14 @@ def _weighted(values: Floats, variances: Floats, used: NDArray[np.bool_]) -> tup
     """
     common = 0.0
     for turn in range(_TURNS + 1):
+        number = 0
         weight = 0.0
         squares = 0.0
         total = 0.0
         for a in range(values.size):
             if used[a]:
                 w = 1.0 / (variances[a] + common)
+                number += 1
                 weight += w
                 squares += w * w
                 total += w * values[a]
@@ -66,11 +71,15 @@ def _weighted(values: Floats, variances: Floats, used: NDArray[np.bool_]) -> tup
         if turn == _TURNS or not free > 1e-12 * weight:
             break
         spread = 0.0  # less what the variances alone explain, under these weights
+        explained = 0.0
         for a in range(values.size):
             if used[a]:
                 w = 1.0 / (variances[a] + common)
-                spread += w * (values[a] - mean) ** 2 - w * (1.0 - w / weight) * variances[a]
-        common = max(spread / free, 0.0)
+                spread += w * (values[a] - mean) ** 2
+                explained += w * (1.0 - w / weight) * variances[a]
+        if turn == 0 and spread < explained * (1.0 + _MORE * math.sqrt(2.0 / (number - 1))):
+            break
+        common = max((spread - explained) / free, 0.0)
     return mean, 1.0 / weight
 
 

@@ -209,14 +209,19 @@ def _variances(  # noqa: PLR0917 - Numba takes no keyword-only ones
     noise: float,
     kept: NDArray[np.bool_],
 ) -> tuple[float, bool]:
-    """Variance of lit pixels over their light, and whether more pixels were found to be bad."""
+    """Variance of lit pixels over their light, and whether more pixels were found to be bad.
+
+    The variance is that of the median spot: light that is no spot's own makes one or two scatter.
+    """
     gain = 0.0
     changed = False
+    gains = np.empty(ends.size)
     for turn in range(2):
-        excess = 0.0
-        light = 0.0
+        told = 0
         begin = 0
         for s in range(ends.size):
+            excess = 0.0
+            light = 0.0
             for p in range(begin, ends[s] if shares[s] > 0.0 else begin):
                 if not kept[p]:
                     continue
@@ -233,7 +238,10 @@ def _variances(  # noqa: PLR0917 - Numba takes no keyword-only ones
                 excess += e * e - noise
                 light += value
             begin = ends[s]
-        gain = max(excess / light, 0.0) if light > 0.0 else 0.0
+            if light > 0.0:
+                gains[told] = excess / light
+                told += 1
+        gain = max(float(np.median(gains[:told])), 0.0) if told > 0 else 0.0
     return gain, changed
 
 
@@ -253,6 +261,7 @@ def _step(  # noqa: PLR0917 - Numba takes no keyword-only ones
     a_yy = 0.0
     b_x = 0.0
     b_y = 0.0
+    squares = 0.0
     misfit = 0.0
     number = 0
     for p in range(own.shape[1]):
@@ -275,6 +284,7 @@ def _step(  # noqa: PLR0917 - Numba takes no keyword-only ones
         gx, gy = own[_GX, p], own[_GY, p]
         b_x -= weight * gx * e
         b_y -= weight * gy * e
+        squares += weight * weight * variance * (gx * gx + gy * gy)
         a_xx += weight * slope * gx * gx
         a_xy += weight * slope * gx * gy
         a_yy += weight * slope * gy * gy
@@ -283,7 +293,8 @@ def _step(  # noqa: PLR0917 - Numba takes no keyword-only ones
         return False
     out[0] = (a_yy * b_x - a_xy * b_y) / determinant
     out[1] = (a_xx * b_y - a_xy * b_x) / determinant
-    out[2] = 0.5 * (a_xx + a_yy) / determinant
+    # all around the spot, half of the squares is along either axis
+    out[2] = 0.25 * squares * (a_xx * a_xx + a_yy * a_yy + 2.0 * a_xy * a_xy) / determinant**2
     out[3] = misfit / max(number, 1)
     return True
 

@@ -16,6 +16,8 @@ from algorithms.contract import Floats
 _WIDER, _MARGIN, _RING = 0.1, 3.0, 1.5
 #: Deviations of the background's slope from which it is one.
 _SLOPE = 3.0
+#: Deviations of a ring's variance from the median one from which other light is in it.
+_UNEVEN = 5.0
 #: Rows of a pixel's numbers: column, row, light, distance from its spot's middle.
 _X, _Y, _U, _R = 0, 1, 2, 3
 
@@ -26,31 +28,34 @@ def _shape(
 ) -> tuple[float, float, float, float]:
     """Metric (xx, xy, yy) of determinant one that makes the spots round, and their radius in it.
 
-    Of the light above the level within `half` pixels of each spot's middle.
+    Of the light above the level within `half` pixels of each spot's middle: its second moments and
+    its pixels are those of the median spot, for light that is no spot's own lies beside one or two.
     """
     height, width = frame.shape
-    xx = 0.0
-    xy = 0.0
-    yy = 0.0
-    light = 0.0
-    pixels = 0
+    forms = np.zeros((4, spots.shape[0]))
     for s in range(spots.shape[0]):
         x, y = spots[s, 0], spots[s, 1]
         column, line = round(x), round(y)
+        xx = 0.0
+        xy = 0.0
+        yy = 0.0
+        light = 0.0
         for i in range(max(line - half, 0), min(line + half + 1, height)):
             for j in range(max(column - half, 0), min(column + half + 1, width)):
                 u = frame[i, j] - level
                 if u > 0.0:
-                    pixels += 1
+                    forms[3, s] += 1.0
                     light += u
                     xx += u * (j - x) * (j - x)
                     xy += u * (j - x) * (i - y)
                     yy += u * (i - y) * (i - y)
+        if light > 0.0:
+            forms[0, s], forms[1, s], forms[2, s] = xx / light, xy / light, yy / light
+    xx, xy, yy = np.median(forms[0]), np.median(forms[1]), np.median(forms[2])
     root = math.sqrt(max(xx * yy - xy * xy, 0.0))
-    area = pixels / spots.shape[0]
     if not root > 1e-3 * (xx + yy):
         return 0.0, 0.0, 0.0, 0.0
-    return yy / root, -xy / root, xx / root, math.sqrt(area / math.pi)
+    return yy / root, -xy / root, xx / root, math.sqrt(np.median(forms[3]) / math.pi)
 
 
 @compiled
@@ -87,36 +92,57 @@ def _gather(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
+def _background(own: Floats, ring: float, mean: float, spread: float) -> tuple[float, float, int]:
+    """Mean and variance of a spot's pixels beyond `ring`, and how many are not left out.
+
+    Those further from the mean than `spread` are, once; where that is infinite, those that stand
+    out by four deviations.
+    """
+    variance = 0.0
+    n = 0
+    for turn in range(2):
+        n = 0
+        total = 0.0
+        square = 0.0
+        for p in range(own.shape[1]):
+            u = own[_U, p] - mean
+            if own[_R, p] > ring and abs(u) <= spread:
+                n += 1
+                total += u
+                square += u * u
+        total /= max(n, 1)
+        mean += total
+        variance = max(square / max(n, 1) - total * total, 0.0)
+        if turn == 0 and spread == math.inf:
+            spread = 4.0 * math.sqrt(variance)
+    return mean, variance, n
+
+
+@compiled
 def _flatten(pixels: Floats, ends: NDArray[np.int64], ring: float, lights: Floats) -> float:
     """Take off each spot's background and the slope of all, seen beyond `ring`; write the light.
 
     Pixels that stand out of a spot's ring by four deviations are not of its background. Returns
-    the variance of a background pixel.
+    the variance of a background pixel: the median spot's, for light that is no spot's own lies
+    beside one or two.
     """
+    grounds = np.empty((3, ends.size))
+    begin = 0
+    for s in range(ends.size):
+        mean, variance, n = _background(pixels[:, begin : ends[s]], ring, 0.0, math.inf)
+        grounds[0, s], grounds[1, s], grounds[2, s] = mean, variance, n
+        begin = ends[s]
+    noise = float(np.median(grounds[1]))
     sums = np.zeros(9)  # n, x, y, xx, xy, yy, u, ux, uy about the first pixel
-    squares = 0.0
     begin = 0
     for s in range(ends.size):
         own = pixels[:, begin : ends[s]]
-        mean = 0.0
-        variance = 0.0
-        spread = math.inf
-        n = 0
-        for _ in range(2):
-            n = 0
-            total = 0.0
-            square = 0.0
-            for p in range(own.shape[1]):
-                u = own[_U, p] - mean
-                if own[_R, p] > ring and abs(u) <= spread:
-                    n += 1
-                    total += u
-                    square += u * u
-            total /= max(n, 1)
-            mean += total
-            variance = max(square / max(n, 1) - total * total, 0.0)
-            spread = 4.0 * math.sqrt(variance)
-        squares += variance * n
+        mean, n = grounds[0, s], grounds[2, s]
+        spread = 4.0 * math.sqrt(grounds[1, s])
+        if grounds[1, s] > noise * (1.0 + _UNEVEN * math.sqrt(2.0 / max(n, 1.0))):
+            spread = 4.0 * math.sqrt(noise)
+            beyond = own[_U][own[_R] > ring]
+            mean, _, _ = _background(own, ring, float(np.median(beyond)), spread)
         light = 0.0
         for p in range(own.shape[1]):
             u = own[_U, p]
@@ -136,7 +162,6 @@ def _flatten(pixels: Floats, ends: NDArray[np.int64], ring: float, lights: Float
             light += u - mean
         lights[s] = light
         begin = ends[s]
-    noise = squares / max(float(sums[0]), 1.0)
     slope_x, slope_y, sure = _slope(sums)
     if sure > _SLOPE * _SLOPE * 2.0 * noise:  # its chi square, of two degrees of freedom
         _tilt(pixels, ends, slope_x, slope_y)

@@ -31,7 +31,7 @@ from algorithms.extractors.frames.multi_spot.aperture_pattern import (
     frame_levels,
     lattice,
 )
-from algorithms.extractors.frames.multi_spot.pattern_doubts import without_covariance
+from algorithms.extractors.frames.multi_spot.pattern_doubts import pattern_doubts
 from algorithms.extractors.frames.one_light import (
     agreed,
     frames_to_measure,
@@ -95,8 +95,9 @@ class WeightedSpots(Extractor):
     outline. The variance v grows with the light by the factor that explains how lit pixels
     scatter. The background is that beyond the spots' rims, with a slope where it shows one. Pixels
     six deviations off are left out; so are spots of which the misfit or the place is far from the
-    others' median. Where places scatter more than noise explains, apertures are off: their
-    variance is added to each.
+    others' median. Where places scatter more than noise explains, by two deviations, apertures are
+    off: their variance is added to each. Moments, noise and that factor are those of the median
+    spot: light beside one or two that is no spot's own changes nothing for the others.
 
     What a spline of 0.65 px misses of sharp rims or rings does not average where all spots fall
     alike on the pixels: 0.0003 px of a disc seven pixels wide, 0.001 to 0.002 px of strong rings.
@@ -130,7 +131,7 @@ class WeightedSpots(Extractor):
         name="weighted-spots",
         taxonomy="None",
         origin="ours",
-        version=2,
+        version=3,
         needs=PATTERN_NEEDS,
         observation=Observation.FRAMES,
         kind=FeatureKind.SPOT,
@@ -170,14 +171,18 @@ class WeightedSpots(Extractor):
         return self._combined(as_frames(observations))[0]
 
     def measure(self, observations: ArrayLike, bad: ArrayLike | None = None) -> Measurement:
-        """Positions and doubts of frames (N, H, W) or of one; no covariance is stated.
+        """Positions, covariances and doubts of frames (N, H, W) or of one.
 
-        AMBIGUOUS_PATTERN where another identity of the spots explains a frame nearly as well.
-        Bad pixels are replaced by their neighbours.
+        The covariance is that of the weighted mean, x and y apart. AMBIGUOUS_PATTERN where another
+        identity of the spots explains a frame nearly as well. Bad pixels are replaced by their
+        neighbours.
         """
         frames = frames_to_measure(observations, bad, self.about.name)
-        found, *_, pattern = self._combined(frames)
-        return without_covariance(found, pattern)
+        found, _, sure, pattern = self._combined(frames)
+        covariance = np.zeros((len(found), 2, 2))
+        covariance[:, [0, 1], [0, 1]] = sure
+        covariance[np.isnan(found[:, 0])] = np.nan
+        return Measurement(found, covariance, pattern_doubts(found, pattern))
 
     def spots(self, observations: ArrayLike) -> Floats:
         """Centres (N, A, 2) of each aperture's spot in frames (N, H, W), px.
@@ -187,7 +192,8 @@ class WeightedSpots(Extractor):
         """
         return self._combined(as_frames(observations))[1]
 
-    def _combined(self, frames: Frames) -> tuple[Floats, Floats, Pattern]:
+    def _combined(self, frames: Frames) -> tuple[Floats, Floats, Floats, Pattern]:
+        """Positions (N, 2), centres (N, A, 2), variances of positions (N, 2), and the pattern."""
         from algorithms.extractors.frames.multi_spot import combination_kernel  # noqa: PLC0415 - Numba, at first use
 
         levels = frame_levels(frames, self.apertures_px, self.threshold)
@@ -210,7 +216,7 @@ class WeightedSpots(Extractor):
             place = known[0, :2]
             found = agreed(frames, found + place, longest_px=self.longest_px) - place
             centres[np.isnan(found[:, 0])] = np.nan
-        return found, centres, pattern
+        return found, centres, sure, pattern
 
     def _centres(
         self, frames: NDArray[Any], levels: Levels, starts: Floats

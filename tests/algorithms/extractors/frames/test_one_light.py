@@ -128,12 +128,52 @@ def test_parameters_that_are_none_are_refused():
         MatchedProfile(longest_px=-1.0)
 
 
-@pytest.mark.parametrize("name", ["gaussian-fit", "matched-profile", "mirror"])
-def test_the_covariance_is_about_that_of_the_errors(name):
+def gaussians(count, rng):
+    """Frames of Gaussian spots, and where they are."""
+    rows, columns = np.mgrid[:SIZE, :SIZE]
+    centres = rng.uniform(26, 37, (count, 2))
+    light = [np.exp(-((columns - x) ** 2 + (rows - y) ** 2) / 18.0) for x, y in centres]
+    return read(light, rng), centres
+
+
+@pytest.mark.parametrize(
+    ("name", "own"), [("gaussian-fit", False), ("matched-profile", True), ("mirror", True)]
+)
+def test_the_covariance_is_about_that_of_the_errors(name, own):
     """Of 300 frames, two coordinates' normalised errors squared average 2 within a third."""
-    frames, centres = scenes("one", 300, np.random.default_rng(775))
+    rng = np.random.default_rng(775)
+    frames, centres = scenes("one", 300, rng) if own else gaussians(300, rng)
     found = METHODS[name].measure(frames)
     errors = found.features - centres
-    squares = np.einsum("ni,nij,nj->n", errors, np.linalg.inv(found.covariance), errors)
+    stated = np.isfinite(found.covariance).all(axis=(1, 2))
+    assert stated.mean() > 0.9, "registration's noise, which tells misfits, is uncertain itself"
+    inverse = np.linalg.inv(found.covariance[stated])
+    squares = np.einsum("ni,nij,nj->n", errors[stated], inverse, errors[stated])
     assert 1.4 < squares.mean() < 2.7
     np.testing.assert_array_equal(found.features, METHODS[name].extract(frames))
+
+
+@pytest.mark.parametrize("spoilt", ["shape", "slope", "dead"])
+def test_no_covariance_is_stated_where_the_light_is_of_another_shape(spoilt):
+    """What a fit of the wrong shape errs by, noise does not tell; a mirror asks for no shape."""
+    rng = np.random.default_rng(776)
+    rows, columns = np.mgrid[:SIZE, :SIZE]
+    centres = rng.uniform(28, 35, (40, 2))
+    stretch = 1.6 if spoilt == "shape" else 1.0
+    light = np.array(
+        [ndtr((7 - np.hypot((columns - x) / stretch, rows - y)) / 0.7) for x, y in centres]
+    )
+    if spoilt == "slope":
+        light += 0.3 * columns / SIZE
+    frames = read(light, rng)
+    if spoilt == "dead":
+        frames[:, [28, 31, 34], [33, 30, 32]] = 0
+    for name, answers in (("matched-profile", 0.9), ("gaussian-fit", 0.9), ("mirror", 0.0)):
+        found = METHODS[name].measure(frames)
+        answered = np.isfinite(found.features[:, 0])
+        stated = np.isfinite(found.covariance).all(axis=(1, 2))
+        if name == "mirror":
+            np.testing.assert_array_equal(stated, answered)
+        else:
+            assert answered.mean() >= answers
+            assert not stated.any()
