@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 from registry.designs import Kept
 from registry.judging import KeptPlace
-from registry.measured import Measured
 from registry.ranking import Regret
 
 if TYPE_CHECKING:
@@ -25,11 +24,6 @@ Reached = tuple[float, int]
 def design_words(kept: Kept) -> str:
     """Return a calibration in words: extractor, stages."""
     return " > ".join((kept.design.extractor, *kept.design.stages))
-
-
-def architecture_words(place: KeptPlace) -> str:
-    """Return an architecture in words."""
-    return " + ".join(place.place.architecture)
 
 
 def against_literature(place: KeptPlace, usual: Kept | None) -> str | None:
@@ -84,7 +78,7 @@ def against_advice(places: Sequence[RankedPlace], tasks: Sequence[str]) -> tuple
         if ratio < LEAST_RATIO:
             continue
         first, other = advised[of_advised.index(mine)], others[of_others.index(theirs)]
-        named = ", ".join(architecture_words(at) for at in advised if math.isfinite(reached(at)[0]))
+        named = ", ".join(at.words for at in advised if math.isfinite(reached(at)[0]))
         found.append(
             f"The survey advises {named} for {task}; the best of them measured here, "
             f"{_where(first, reached(first)[1])}, reaches {abs(mine):.3g} {unit}; "
@@ -111,12 +105,9 @@ def regret_words(regret: Regret) -> str:
 
 
 def _where(place: KeptPlace, design: int) -> str:
-    row = place.judged.kept(design).row
-    return f"{architecture_words(place)} ({'' if row is None else _pipeline(row)})"
-
-
-def _pipeline(row: Measured) -> str:
-    return f"{row.extractor} > {row.model} on {row.dataset}"
+    row = place.judged.pipeline(design)
+    pipeline = "" if row is None else f"{row.extractor} > {row.model} on {row.dataset}"
+    return f"{place.words} ({pipeline})"
 
 
 def _error(kept: Kept) -> str:

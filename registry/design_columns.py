@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from registry.designs import NOTHING, Design, DesignTable, Kept, Limits, Place
 from registry.judged_columns import Judgements, PipelineColumns, begins
 from registry.kept_answers import KeptAnswers
+from registry.measured import Measured
 
 Flags = NDArray[np.bool_]
 Numbers = NDArray[np.float64]
@@ -86,12 +87,17 @@ class Best:
             designs, lambda: self.judgements.finest(self.limits, self.columns.flags(designs))
         )
 
-    def kept(self, at: int) -> Kept:
+    def pipeline(self, design: int) -> Measured | None:
+        """Return the best pipeline of a design, given by position; None for none."""
+        row = int(self.row[design])
+        return None if row < 0 else self.columns.rows[row]
+
+    def kept(self, design: int) -> Kept:
         """Return a design, given by position, with what it is judged by."""
-        row, columns = int(self.row[at]), self.columns
-        if row < 0:
-            return Kept(at, row, columns.designs[at], None, NOTHING)
-        return Kept(at, row, columns.designs[at], columns.rows[row], self.judgements.of(row))
+        row, columns = int(self.row[design]), self.columns
+        pipeline = self.pipeline(design)
+        judged = NOTHING if pipeline is None else self.judgements.of(row)
+        return Kept(design, row, columns.designs[design], pipeline, judged)
 
 
 class DesignColumns(PipelineColumns):

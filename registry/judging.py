@@ -51,6 +51,11 @@ class KeptPlace:
         return self.judged.kept(self.best_at)
 
     @cached_property
+    def words(self) -> str:
+        """The architecture in words."""
+        return " + ".join(self.place.architecture)
+
+    @cached_property
     def backing(self) -> int:
         """How many of its studies have what is asked of studies."""
         return self.studies.bit_count()
@@ -74,12 +79,14 @@ class Question:
         self.columns = design_columns(table)
         self.asked = requirements
         self.studies = self._meeting_studies()
-        self._of_studies = any(
-            attribute in OF_STUDIES for attribute in (*requirements.include, *requirements.exclude)
+        self._of_studies = not all(
+            side.keys().isdisjoint(OF_STUDIES)
+            for side in (requirements.include, requirements.exclude)
         )
-        self.limits = tuple(n for n in _MEASURED if requirements.asked(n) is not None)
+        self.limits = tuple(n for n in _MEASURED if getattr(requirements, n))
         self.judged_by = self.limits_of(requirements)
         self._stated = {name: self._stated_within(name) for name in self.limits}
+        # Where nothing is measured, a study's own numbers have to keep all limits.
         self.all_stated = self.studies
         for name in self.limits:
             self.all_stated &= self._stated[name]

@@ -48,6 +48,7 @@ class PathColumns:
         self._size = len(table.paths)
         self._bytes = self._size // 8 + 1
         self._studies = columns.words_of(table.sets)
+        self._among: KeptAnswers[Words] = KeptAnswers()
         # Of each design the paths (bits) that lead to it: in the first half of a row where it is
         # measured, in the second where it is not.
         leading = (
@@ -66,7 +67,10 @@ class PathColumns:
         self._paths = np.array([at for kind in steps for step in kind for at in step], int)
         lengths = [len(step) for kind in steps for step in kind]
         self._starts = np.array([0, *itertools.accumulate(lengths)][:-1], int)
-        self._firsts = np.array([len(steps[0]), len(steps[0]) + len(steps[1])])
+        self._firsts = np.cumsum([len(kind) for kind in steps])[:-1]
+        # Sets as they are told: each behind its position among those of its kind.
+        self._told = np.zeros((len(lengths), 1 + columns.words), "<u8")
+        self._told[:, 0] = np.concatenate([np.arange(len(kind)) for kind in steps])
 
     def taken(self, ranked: RankedDesigns) -> Taken:
         """Return the paths that lead to the designs of an answer, their nodes and their links.
@@ -107,9 +111,10 @@ class PathColumns:
 
     def _standing_on(self, paths: int, among: int) -> Words:
         """Return the studies on each path, of some paths (bits) and of some studies (bits)."""
+        studies = self._among.get(among, lambda: self._studies & self.columns.words_of([among]))
         data = np.frombuffer(paths.to_bytes(self._bytes, "little"), np.uint8)
         flags = np.unpackbits(data, count=self._size, bitorder="little").view(bool)
-        return np.where(flags, self._studies & self.columns.words_of([among]), 0)
+        return np.where(flags, studies, 0)
 
     def _present(self, studies: Words) -> Taken:
         """Return the sets that are not empty; `studies` is of paths, shape (words, paths)."""
@@ -117,14 +122,10 @@ class PathColumns:
             return Taken((), (), ())
         words = np.bitwise_or.reduceat(studies.take(self._paths, axis=1), self._starts, axis=1)
         at = np.bitwise_or.reduce(words, axis=0).nonzero()[0]
-        node, link = self._firsts.tolist()
-        first_node, first_link = at.searchsorted(self._firsts).tolist()
-        rows = np.empty((len(at), 1 + len(words)), "<u8")
-        rows[:, 0] = at
-        rows[first_node:first_link, 0] -= node
-        rows[first_link:, 0] -= link
+        rows = self._told.take(at, axis=0)
         rows[:, 1:] = words.take(at, axis=1).T
         sets = rows.view(f"V{rows.itemsize * rows.shape[1]}").ravel().tolist()
+        first_node, first_link = at.searchsorted(self._firsts).tolist()
         return Taken(sets[:first_node], sets[first_node:first_link], sets[first_link:])
 
 
