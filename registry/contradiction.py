@@ -4,28 +4,26 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from operator import attrgetter
+from typing import TYPE_CHECKING
 
 from registry.designs import Kept
 from registry.judging import KeptPlace
-from registry.measured import Measured
 from registry.ranking import Regret
+
+if TYPE_CHECKING:
+    from registry.ranked_designs import RankedPlace
 
 LEAST_RATIO = 1.1
 """Errors nearer to each other than this contradict nothing."""
 
-
-Reached = tuple[float, KeptPlace, int]
-"""A number, the architecture on which it is reached, and by which design."""
+Reached = tuple[float, int]
+"""A number reached on an architecture, infinite where none is, and the position of the design."""
 
 
 def design_words(kept: Kept) -> str:
     """Return a calibration in words: extractor, stages."""
     return " > ".join((kept.design.extractor, *kept.design.stages))
-
-
-def architecture_words(place: KeptPlace) -> str:
-    """Return an architecture in words."""
-    return " + ".join(place.place.architecture)
 
 
 def against_literature(place: KeptPlace, usual: Kept | None) -> str | None:
@@ -52,11 +50,7 @@ def against_literature(place: KeptPlace, usual: Kept | None) -> str | None:
     )
 
 
-def against_advice(
-    places: Sequence[KeptPlace],
-    least: Callable[[str], Sequence[tuple[float, int]]],
-    tasks: Sequence[str],
-) -> tuple[str, ...]:
+def against_advice(places: Sequence[RankedPlace], tasks: Sequence[str]) -> tuple[str, ...]:
     """Say where an architecture that is not advised does better at a task than those advised.
 
     Of the tasks, accuracy, precision and field of view are measured here: by the error over the
@@ -64,44 +58,32 @@ def against_advice(
 
     Parameters
     ----------
-    places : sequence of KeptPlace
-    least : callable
-        Gives the least "repeatability" or "field" (negated) on each of the places, infinite where
-        there is none, and the position of the design that has it
-        (`registry.ranked_designs.RankedDesigns.least`).
+    places : sequence of RankedPlace
     tasks : sequence of str
         Those asked for; none means all.
     """
     found = []
-    for task, number, unit in (
-        ("Accuracy", "error", "deg"),
-        ("Precision", "repeatability", "deg of repeatability"),
-        ("FOV", "field", "deg of field"),
-    ):
+    for task, reached, unit in _MEASURED:
         if tasks and task not in tasks:
             continue
-        is_advised = [task in place.advised_tasks for place in places]
-        if all(is_advised) or not any(is_advised):
+        advised = [place for place in places if task in place.advised_tasks]
+        if not advised or len(advised) == len(places):
             continue
-        advised: list[Reached] = []
-        others: list[Reached] = []
-        values = map(_least_error, places) if number == "error" else least(number)
-        for place, meant, (value, design) in zip(places, is_advised, values, strict=True):
-            if math.isfinite(value):
-                (advised if meant else others).append((value, place, design))
-        if not advised or not others:
+        others = [place for place in places if task not in place.advised_tasks]
+        of_advised, of_others = ([reached(at)[0] for at in side] for side in (advised, others))
+        mine, theirs = min(of_advised), min(of_others)
+        if math.isinf(mine) or mine <= theirs or abs(mine) == abs(theirs):
             continue
-        first, other = (min(side, key=lambda item: item[0]) for side in (advised, others))
-        if abs(first[0]) == abs(other[0]) or first[0] <= other[0]:
-            continue
-        ratio = first[0] / other[0] if first[0] > 0 else other[0] / first[0]
+        ratio = mine / theirs if mine > 0 else theirs / mine
         if ratio < LEAST_RATIO:
             continue
-        named = ", ".join(architecture_words(item[1]) for item in advised)
+        first, other = advised[of_advised.index(mine)], others[of_others.index(theirs)]
+        named = ", ".join(at.words for at in advised if math.isfinite(reached(at)[0]))
         found.append(
             f"The survey advises {named} for {task}; the best of them measured here, "
-            f"{_where(first)}, reaches {abs(first[0]):.3g} {unit}; {_where(other)}, which it does "
-            f"not advise for that, {abs(other[0]):.3g}"
+            f"{_where(first, reached(first)[1])}, reaches {abs(mine):.3g} {unit}; "
+            f"{_where(other, reached(other)[1])}, which it does not advise for that, "
+            f"{abs(theirs):.3g}"
         )
     return tuple(found)
 
@@ -122,14 +104,10 @@ def regret_words(regret: Regret) -> str:
     )
 
 
-def _where(item: Reached) -> str:
-    _, place, design = item
-    row = place.question.kept(design).row
-    return f"{architecture_words(place)} ({'' if row is None else _pipeline(row)})"
-
-
-def _pipeline(row: Measured) -> str:
-    return f"{row.extractor} > {row.model} on {row.dataset}"
+def _where(place: KeptPlace, design: int) -> str:
+    row = place.judged.pipeline(design)
+    pipeline = "" if row is None else f"{row.extractor} > {row.model} on {row.dataset}"
+    return f"{place.words} ({pipeline})"
 
 
 def _error(kept: Kept) -> str:
@@ -152,5 +130,13 @@ def _times(worse: Kept, better: Kept) -> str:
     return f", {worse.error_deg / better.error_deg:.3g} times less"
 
 
-def _least_error(place: KeptPlace) -> tuple[float, int]:
+def _least_error(place: RankedPlace) -> Reached:
     return place.error_deg, place.best_at
+
+
+_MEASURED: tuple[tuple[str, Callable[[RankedPlace], Reached], str], ...] = (
+    ("Accuracy", _least_error, "deg"),
+    ("Precision", attrgetter("repeatability"), "deg of repeatability"),
+    ("FOV", attrgetter("field"), "deg of field"),
+)
+"""Tasks that are measured here: what of an architecture tells, the least the best, and in what."""

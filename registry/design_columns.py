@@ -10,15 +10,16 @@ from __future__ import annotations
 import itertools
 import weakref
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from registry.designs import Design, DesignTable, Limits, Place
-from registry.judged_columns import PipelineColumns
+from registry.designs import NOTHING, Design, DesignTable, Kept, Limits, Place
+from registry.judged_columns import Judgements, PipelineColumns, begins
 from registry.kept_answers import KeptAnswers
+from registry.measured import Measured
 
 Flags = NDArray[np.bool_]
 Numbers = NDArray[np.float64]
@@ -35,20 +36,68 @@ class Best:
 
     Attributes
     ----------
+    columns : the designs
+    judgements : what their pipelines are judged by
+    limits : that they keep
     row : position of the pipeline, shape (designs,); -1 where none keeps them
     error : the error it is judged by; infinite where there is none
     order : of the designs, the least error first, measured ones first of the same, shape (designs,)
     rank : of the error, equal errors alike
     at_order : the design at each place of that order
-    kept : designs (bits) of which one keeps them
+    keeping : designs (bits) of which one keeps them
     """
 
+    columns: DesignColumns
+    judgements: Judgements
+    limits: Limits
     row: Positions
     error: Numbers
     order: Positions
     rank: Positions
     at_order: Positions
-    kept: int
+    keeping: int
+    _finest: KeptAnswers[Mapping[int, int]] = field(default_factory=lambda: KeptAnswers(16))
+
+    @cached_property
+    def repeatability_deg(self) -> Numbers:
+        """Spread of the answers to one pose, of each design; infinite where it is not judged.
+
+        An answer in steps repeats exactly, which says nothing: the pipelines have none then.
+        """
+        return self._of_designs(self.columns.repeatability_deg)
+
+    @cached_property
+    def negated_half_field_deg(self) -> Numbers:
+        """Half field of each design, the widest the least; infinite where it is not judged."""
+        return self._of_designs(-self.columns.half_fov_deg)
+
+    def _of_designs(self, of_rows: Numbers) -> Numbers:
+        known = (self.row >= 0) & np.isfinite(self.error)
+        found = np.full(len(self.row), np.inf)
+        found[known] = of_rows[self.row[known]]
+        found[np.isnan(found)] = np.inf
+        return found
+
+    def finest(self, designs: int) -> Mapping[int, int]:
+        """Return what errs least of the pipelines that answer too seldom, by place.
+
+        Of some designs (bits); both by position.
+        """
+        return self._finest.get(
+            designs, lambda: self.judgements.finest(self.limits, self.columns.flags(designs))
+        )
+
+    def pipeline(self, design: int) -> Measured | None:
+        """Return the best pipeline of a design, given by position; None for none."""
+        row = int(self.row[design])
+        return None if row < 0 else self.columns.rows[row]
+
+    def kept(self, design: int) -> Kept:
+        """Return a design, given by position, with what it is judged by."""
+        row, columns = int(self.row[design]), self.columns
+        pipeline = self.pipeline(design)
+        judged = NOTHING if pipeline is None else self.judgements.of(row)
+        return Kept(design, row, columns.designs[design], pipeline, judged)
 
 
 class DesignColumns(PipelineColumns):
@@ -85,6 +134,7 @@ class DesignColumns(PipelineColumns):
         self._having = self._values()
         self._untried: dict[str, tuple[tuple[str, str], ...]] = {}
         self._best: KeptAnswers[Best] = KeptAnswers()
+        self._stated: KeptAnswers[int] = KeptAnswers()
         self.design_bits = max(1, len(self.designs).bit_length())
         self.support_bits = max(1, (studies**3).bit_length())
         place_bits = max(1, len(places).bit_length())
@@ -152,6 +202,9 @@ class DesignColumns(PipelineColumns):
 
     def stated(self, studies: int) -> int:
         """Return the designs (bits) that nothing measures and one of some studies stands for."""
+        return self._stated.get(studies, lambda: self._standing_for(studies))
+
+    def _standing_for(self, studies: int) -> int:
         words = self.words_of([studies])
         found = np.zeros(len(self.designs), bool)
         found[self.unmeasured] = (self._unmeasured_taken & words).any(axis=0)
@@ -202,7 +255,7 @@ class DesignColumns(PipelineColumns):
         judged = self.judgements(limits.hazards, limits.half_field_deg)
         by_error = judged.by_error[judged.keeping(limits)[judged.by_error]]
         designs = self.design_of[by_error]
-        first = by_error[np.diff(designs, prepend=-1) != 0]
+        first = by_error[begins(designs)]
         row = np.full(len(self.designs), -1)
         row[self.design_of[first]] = first
         error = np.full(len(self.designs), np.inf)
@@ -211,7 +264,7 @@ class DesignColumns(PipelineColumns):
         order = np.empty_like(at_order)
         order[at_order] = np.arange(len(at_order))
         _, rank = np.unique(error, return_inverse=True)
-        return Best(row, error, order, rank, at_order, self.bits(row >= 0))
+        return Best(self, judged, limits, row, error, order, rank, at_order, self.bits(row >= 0))
 
     def untried(self, hazard: str) -> tuple[tuple[str, str], ...]:
         """Return the architectures that no data set tries a hazard on."""

@@ -193,24 +193,24 @@ class Judgements:
         order = np.lexsort((largest[named], places))
         return named[order], places[order]
 
-    def finest(self, limits: Limits, among: Flags) -> dict[int, int]:
+    def finest(self, limits: Limits, designs: Flags) -> dict[int, int]:
         """Return what errs least of what answers too seldom, by place; both by position.
 
         Parameters
         ----------
         limits : of these hazards and this field; those on answers and time are kept
-        among : those that may be named
+        designs : those whose pipelines may be named
         """
         columns, (rows, places) = self.columns, self._seldom
         if not len(rows):
             return {}
-        among = among[rows]
+        among = designs[columns.design_of[rows]]
         if limits.min_availability is not None:
             among &= self.availability[rows] >= limits.min_availability
         if limits.max_latency_us is not None:
             among &= columns.latency_us[rows] <= limits.max_latency_us
         rows, places = rows[among], places[among]
-        first = np.diff(places, prepend=-1) != 0
+        first = begins(places)
         return dict(zip(places[first].tolist(), rows[first].tolist(), strict=True))
 
     def partly_of(self, row: int) -> Partly[Measured] | None:
@@ -264,6 +264,13 @@ class Scores:
         for edge, error in reversed(self.cones):
             found = np.where((edge >= half) & ~np.isnan(error), error, found)
         return found
+
+
+def begins(values: Positions) -> Flags:
+    """Say of ascending values which are the first of equal ones."""
+    found = np.ones(len(values), bool)
+    np.not_equal(values[1:], values[:-1], out=found[1:])
+    return found
 
 
 def numbers(values: Iterable[float | None]) -> Numbers:

@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from registry.advice import ADVISING, Advice
-from registry.designs import NOTHING, AdviceFor, DesignTable, Kept, Limits, Place
+from registry.designs import AdviceFor, DesignTable, Kept, Limits, Place
 from registry.measured import Measured, Partly
 from registry.requirements import EXCLUDE, Requirements
 
@@ -32,7 +32,8 @@ class KeptPlace:
 
     ``advice`` is what advises it for what is asked: for any task or accuracy if neither is.
     ``studies`` are those of its studies (bits) that have what is asked of studies, ``stated``
-    those of them whose stated numbers keep the limits too.
+    those of them whose stated numbers keep the limits too. ``judged`` says what its designs are
+    judged by.
     """
 
     place: Place
@@ -40,14 +41,24 @@ class KeptPlace:
     stated: int
     advice: tuple[Advice, ...]
     advised_tasks: frozenset[str]
-    question: Question
+    judged: Best
     best_at: int
     error_deg: float
 
     @cached_property
     def best(self) -> Kept:
         """The design that errs least; its error is ``error_deg``, its position ``best_at``."""
-        return self.question.kept(self.best_at)
+        return self.judged.kept(self.best_at)
+
+    @cached_property
+    def words(self) -> str:
+        """The architecture in words."""
+        return " + ".join(self.place.architecture)
+
+    @cached_property
+    def backing(self) -> int:
+        """How many of its studies have what is asked of studies."""
+        return self.studies.bit_count()
 
     def taken(self, kept: Kept) -> int:
         """Return the studies (bits) that stand for a calibration and meet the requirements."""
@@ -68,12 +79,14 @@ class Question:
         self.columns = design_columns(table)
         self.asked = requirements
         self.studies = self._meeting_studies()
-        self._of_studies = any(
-            attribute in OF_STUDIES for attribute in (*requirements.include, *requirements.exclude)
+        self._of_studies = not all(
+            side.keys().isdisjoint(OF_STUDIES)
+            for side in (requirements.include, requirements.exclude)
         )
-        self.limits = tuple(n for n in _MEASURED if requirements.asked(n) is not None)
+        self.limits = tuple(n for n in _MEASURED if getattr(requirements, n))
         self.judged_by = self.limits_of(requirements)
         self._stated = {name: self._stated_within(name) for name in self.limits}
+        # Where nothing is measured, a study's own numbers have to keep all limits.
         self.all_stated = self.studies
         for name in self.limits:
             self.all_stated &= self._stated[name]
@@ -103,7 +116,7 @@ class Question:
     def meeting(self) -> int:
         """The designs (bits) that meet the requirements."""
         columns, largest = self.columns, self.asked.max_error_deg
-        kept = self.best.kept
+        kept = self.best.keeping
         if largest is not None:
             kept &= columns.bits(self.best.error <= largest)
         kept |= columns.stated(self.all_stated)
@@ -153,11 +166,7 @@ class Question:
 
     def kept(self, at: int) -> Kept:
         """Return a design that meets the requirements, with what it is judged by."""
-        row = int(self.best.row[at])
-        columns = self.columns
-        if row < 0:
-            return Kept(at, row, columns.designs[at], None, NOTHING)
-        return Kept(at, row, columns.designs[at], columns.rows[row], self.judgements.of(row))
+        return self.best.kept(at)
 
     @cached_property
     def finest(self) -> Mapping[int, int]:
@@ -168,7 +177,7 @@ class Question:
         allowed = self.columns.every
         for name in ("model", "exclude_model", "extractor", "exclude_extractor", "properties"):
             allowed &= self.having.get(name, allowed)
-        return self.judgements.finest(self.judged_by, self.columns.rows_of(allowed))
+        return self.best.finest(allowed)
 
     def partly(self, place: int) -> tuple[Partly[Measured], ...]:
         """Return the finest pipeline that answers too seldom on a place, if there is one."""
@@ -179,10 +188,14 @@ class Question:
     @cached_property
     def advice(self) -> Sequence[AdviceFor]:
         """Of each place the advice for the tasks and accuracies asked for; for any if none is."""
-        asked = tuple(self.asked.include.get(name) for name in ADVISING)
         return self.table.advice.get(
-            asked, lambda: [self._advice(place.advice) for place in self.table.places]
+            self.advising, lambda: [self._advice(place.advice) for place in self.table.places]
         )
+
+    @property
+    def advising(self) -> tuple[tuple[str, ...] | None, ...]:
+        """What advice depends on: the tasks and accuracies asked for."""
+        return tuple(self.asked.include.get(name) for name in ADVISING)
 
     def _advice(self, advice: Iterable[Advice]) -> AdviceFor:
         include = self.asked.include

@@ -25,12 +25,18 @@ class KeptAnswers(Generic[Made]):
     def get(self, key: Hashable, make: Callable[[], Made]) -> Made:
         """Return what is kept under a key, made now where nothing is."""
         found = self._kept.get(key)
-        if found is None:
-            found = make()
-            if len(self._kept) >= (MOST_KEPT if self.most is None else self.most):
-                self._kept.clear()
-            self._kept[key] = found
-        return found
+        return self.keep(key, make()) if found is None else found
+
+    def find(self, key: Hashable) -> Made | None:
+        """Return what is kept under a key; None where nothing is."""
+        return self._kept.get(key)
+
+    def keep(self, key: Hashable, made: Made) -> Made:
+        """Keep what was made, and return it."""
+        if len(self._kept) >= (MOST_KEPT if self.most is None else self.most):
+            self._kept.clear()
+        self._kept[key] = made
+        return made
 
     def __len__(self) -> int:
         return len(self._kept)

@@ -7,35 +7,35 @@ from __future__ import annotations
 
 import itertools
 import weakref
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from registry.design_columns import WORD_BITS, DesignColumns, design_columns
+from registry.design_columns import DesignColumns, design_columns
 from registry.designs import DesignTable
+from registry.kept_answers import KeptAnswers
 from registry.paths import PathTable, path_table
-from registry.ranked_designs import RankedDesigns
+from registry.ranked_designs import RankedDesigns, RankedPlace
 
 Words = NDArray[np.uint64]
-Positions = NDArray[np.int64]
 
-Sets = Sequence[tuple[int, bytes]]
-"""Positions, each with a set of studies as bytes, the lowest first."""
+Sets = Sequence[bytes]
+"""Sets of studies, each behind the position of its path, node or link, in `POSITION_BYTES`."""
 
+POSITION_BYTES = 8
 
-@dataclass(frozen=True)
-class _Steps:
-    """Which paths make up each node, or each link, in chart order: `paths` from `starts` on."""
-
-    paths: Positions
-    starts: Positions
+#: Sets of designs whose paths are kept, of some 600 bytes each.
+MOST_SETS = 4096
 
 
 class PathColumns:
     """The paths of a table as they belong to the designs of another.
+
+    What an answer tells of paths, nodes and links it tells of studies: those of a path, and those
+    of all paths through a node or along a link. They are found together, as sets one after
+    another: paths in the order of the taxonomy, nodes in chart order, links in chart order.
 
     Parameters
     ----------
@@ -44,113 +44,120 @@ class PathColumns:
     """
 
     def __init__(self, table: PathTable, columns: DesignColumns) -> None:
-        self.table = table
         self.columns = columns
-        self._sets = columns.words_of(table.sets)
-        words = len(table.paths) // WORD_BITS + 1
-        data = b"".join(
-            sum(1 << at for at in (table.of(design) if design.taken else ())).to_bytes(
-                8 * words, "little"
-            )
+        self._size = len(table.paths)
+        self._bytes = self._size // 8 + 1
+        self._studies = columns.words_of(table.sets)
+        self._among: KeptAnswers[Words] = KeptAnswers()
+        # Of each design the paths (bits) that lead to it: in the first half of a row where it is
+        # measured, in the second where it is not.
+        leading = (
+            sum(1 << at for at in (table.of(design) if design.taken else ()))
+            << (0 if design.rows else 8 * self._bytes)
             for design in columns.designs
         )
-        self._of_design = np.frombuffer(data, "<u8").reshape(-1, words)
-        self._tasks: dict[str, NDArray[np.bool_]] = {}
+        data = b"".join(paths.to_bytes(2 * self._bytes, "little") for paths in leading)
+        self._of_design = np.frombuffer(data, np.uint8).reshape(-1, 2 * self._bytes)
+        self._leading: KeptAnswers[tuple[int, int]] = KeptAnswers(MOST_SETS)
+        self._of_task: dict[str, int] = {}
         for at, path in enumerate(table.paths):
-            self._tasks.setdefault(path[0], np.zeros(len(table.paths), bool))[at] = True
-        self._nodes = _steps(table.nodes_on)
-        self._links = _steps(table.links_on)
+            self._of_task[path[0]] = self._of_task.get(path[0], 0) | 1 << at
+        kinds = ([[at] for at in range(self._size)], table.nodes_on, table.links_on)
+        steps = [_paths_by_step(kind) for kind in kinds]
+        self._paths = np.array([at for kind in steps for step in kind for at in step], int)
+        lengths = [len(step) for kind in steps for step in kind]
+        self._starts = np.array([0, *itertools.accumulate(lengths)][:-1], int)
+        self._firsts = np.cumsum([len(kind) for kind in steps])[:-1]
+        # Sets as they are told: each behind its position among those of its kind.
+        self._told = np.zeros((len(lengths), 1 + columns.words), "<u8")
+        self._told[:, 0] = np.concatenate([np.arange(len(kind)) for kind in steps])
 
     def taken(self, ranked: RankedDesigns) -> Taken:
-        """Return the paths that lead to the designs of an answer.
+        """Return the paths that lead to the designs of an answer, their nodes and their links.
 
         A study counts that meets what is asked; where a design is not measured, one whose stated
         numbers keep the limits.
         """
-        question, columns = ranked.question, self.columns
-        measured = columns.measured[ranked.at]
-        by_row = self._leading_to(ranked.at[measured])
-        by_study = self._leading_to(ranked.at[~measured])
+        question, leading = ranked.question, self._leading
+        by_row = by_study = 0
+        for place in ranked.places:
+            led = leading.find(place.meeting) or leading.keep(place.meeting, self._led(place))
+            by_row |= led[0]
+            by_study |= led[1]
         among = self._of_tasks(question.asked.include, question.asked.exclude)
-        if among is not None:
-            by_row, by_study = by_row & among, by_study & among
-        studies = self._sets & np.where(by_row, columns.words_of([question.studies]), 0)
-        studies |= self._sets & np.where(by_study, columns.words_of([question.all_stated]), 0)
-        return Taken(self, studies)
+        every, stated = question.studies, question.all_stated
+        if stated == every:
+            studies = self._standing_on((by_row | by_study) & among, every)
+        else:
+            studies = self._standing_on(by_row & among, every)
+            studies |= self._standing_on(by_study & among, stated)
+        return self._present(studies)
 
-    def _leading_to(self, designs: Positions) -> NDArray[np.bool_]:
-        leading = np.bitwise_or.reduce(self._of_design[designs], axis=0)
-        size = len(self.table.paths)
-        return np.unpackbits(leading.view(np.uint8), count=size, bitorder="little").view(bool)
+    def _led(self, place: RankedPlace) -> tuple[int, int]:
+        """Return the paths (bits) that lead to its measured designs, and those to the others."""
+        found = np.bitwise_or.reduce(self._of_design[place.designs], axis=0).tobytes()
+        by_row, by_study = found[: self._bytes], found[self._bytes :]
+        return int.from_bytes(by_row, "little"), int.from_bytes(by_study, "little")
 
     def _of_tasks(
         self, include: Mapping[str, Iterable[str]], exclude: Mapping[str, Iterable[str]]
-    ) -> NDArray[np.bool_] | None:
-        if "task" not in include and "task" not in exclude:
-            return None
-        tasks = set(include.get("task", self._tasks)) - set(exclude.get("task", ()))
-        found = np.zeros(len(self.table.paths), bool)
-        for task in tasks & self._tasks.keys():
-            found |= self._tasks[task]
+    ) -> int:
+        """Return the paths (bits) from a task that is asked for."""
+        tasks = set(include.get("task", self._of_task)) - set(exclude.get("task", ()))
+        found = 0
+        for task in tasks & self._of_task.keys():
+            found |= self._of_task[task]
         return found
 
-    @property
-    def nodes(self) -> _Steps:
-        """Paths by node."""
-        return self._nodes
+    def _standing_on(self, paths: int, among: int) -> Words:
+        """Return the studies on each path, of some paths (bits) and of some studies (bits)."""
+        studies = self._among.get(among, lambda: self._studies & self.columns.words_of([among]))
+        data = np.frombuffer(paths.to_bytes(self._bytes, "little"), np.uint8)
+        flags = np.unpackbits(data, count=self._size, bitorder="little").view(bool)
+        return np.where(flags, studies, 0)
 
-    @property
-    def links(self) -> _Steps:
-        """Paths by link."""
-        return self._links
+    def _present(self, studies: Words) -> Taken:
+        """Return the sets that are not empty; `studies` is of paths, shape (words, paths)."""
+        if not self._size:
+            return Taken((), (), ())
+        words = np.bitwise_or.reduceat(studies.take(self._paths, axis=1), self._starts, axis=1)
+        at = np.bitwise_or.reduce(words, axis=0).nonzero()[0]
+        rows = self._told.take(at, axis=0)
+        rows[:, 1:] = words.take(at, axis=1).T
+        sets = rows.view(f"V{rows.itemsize * rows.shape[1]}").ravel().tolist()
+        first_node, first_link = at.searchsorted(self._firsts).tolist()
+        return Taken(sets[:first_node], sets[first_node:first_link], sets[first_link:])
 
 
+@dataclass(frozen=True)
 class Taken:
-    """The paths behind an answer with the studies that took them, and their nodes and links."""
+    """The paths behind an answer with the studies that took them, and their nodes and links.
 
-    def __init__(self, columns: PathColumns, studies: Words) -> None:
-        self._columns = columns
-        self._studies = studies
+    Attributes
+    ----------
+    paths : in the order of the taxonomy
+    nodes, links : in chart order
+    """
 
-    @cached_property
-    def paths(self) -> Sets:
-        """Paths, in the order of the taxonomy."""
-        return _present(self._studies)
-
-    @cached_property
-    def nodes(self) -> Sets:
-        """Nodes, in chart order."""
-        return self._along(self._columns.nodes)
-
-    @cached_property
-    def links(self) -> Sets:
-        """Links, in chart order."""
-        return self._along(self._columns.links)
-
-    def _along(self, steps: _Steps) -> Sets:
-        if not len(steps.starts):
-            return ()
-        studies = np.bitwise_or.reduceat(self._studies[:, steps.paths], steps.starts, axis=1)
-        return _present(studies)
+    paths: Sets
+    nodes: Sets
+    links: Sets
 
 
-def _present(studies: Words) -> Sets:
-    """Return the sets that are not empty, with their positions; `studies` is (words, sets)."""
-    at = np.flatnonzero(studies.any(axis=0))
-    rows = np.ascontiguousarray(studies[:, at].T)
-    sets = rows.view(f"V{8 * rows.shape[1]}").ravel()
-    return list(zip(at.tolist(), sets.tolist(), strict=True))
+def unpacked(sets: Sets) -> Iterator[tuple[int, int]]:
+    """Yield the positions of sets, each with its studies (bits)."""
+    for packed in sets:
+        position, studies = packed[:POSITION_BYTES], packed[POSITION_BYTES:]
+        yield int.from_bytes(position, "little"), int.from_bytes(studies, "little")
 
 
-def _steps(steps_of_paths: Sequence[Sequence[int]]) -> _Steps:
-    """Return the paths by step; every step is on one at least."""
-    pairs = sorted((step, path) for path, steps in enumerate(steps_of_paths) for step in steps)
-    starts = [0, *itertools.accumulate(len(list(same)) for _, same in _grouped(pairs))]
-    return _Steps(np.array([path for _, path in pairs], int), np.array(starts[:-1], int))
-
-
-def _grouped(pairs: Sequence[tuple[int, int]]) -> Iterable[tuple[int, Iterable[tuple[int, int]]]]:
-    return itertools.groupby(pairs, key=lambda pair: pair[0])
+def _paths_by_step(steps_of_paths: Sequence[Sequence[int]]) -> list[list[int]]:
+    """Return the paths of each step; every step is on one at least."""
+    found: dict[int, list[int]] = {}
+    for path, steps in enumerate(steps_of_paths):
+        for step in steps:
+            found.setdefault(step, []).append(path)
+    return [found[step] for step in sorted(found)]
 
 
 _COLUMNS: weakref.WeakKeyDictionary[DesignTable, PathColumns] = weakref.WeakKeyDictionary()

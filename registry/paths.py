@@ -139,12 +139,12 @@ class PathTable:
             if not set(kinds("model", self.paths[at][3])).isdisjoint(design.stages)
         )
 
-    def study_paths(self, taken: Iterable[tuple[int, bytes]]) -> tuple[StudyPath, ...]:
-        """Return paths, given by position, with the studies (bits, as bytes) that took them."""
+    def study_paths(self, taken: Iterable[tuple[int, int]]) -> tuple[StudyPath, ...]:
+        """Return paths, given by position, with the studies (bits) that took them."""
         return tuple(
             StudyPath(
                 *(task, detector, mask, model, extractor),
-                studies=self.studies(int.from_bytes(bits, "little")),
+                studies=self.studies(bits),
             )
             for at, bits in taken
             for task, detector, mask, model, extractor in (self.paths[at],)

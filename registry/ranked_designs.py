@@ -1,38 +1,98 @@
 """The designs that meet requirements, ranked: all of them at once, as columns.
 
 `RankedDesigns` is what every answer is made of, as objects (`registry.recommendation`) and as
-bytes (`api.http.recommended`). Only who answers imports this module: it needs NumPy.
+bytes (`api.http.recommended`). Two questions often differ in few places: an architecture that is
+left with the same designs and the same studies is ranked once, and kept for the next question.
+Only who answers imports this module: it needs NumPy.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import weakref
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from operator import attrgetter
 
 import numpy as np
 from numpy.typing import NDArray
 
-from registry.designs import Kept
+from registry.designs import DesignTable, Kept
 from registry.judging import KeptPlace, Question
+from registry.kept_answers import KeptAnswers
 from registry.ranking import Sort, key_of
 
 Numbers = NDArray[np.float64]
 Positions = NDArray[np.int64]
 
-_NONE = np.iinfo(np.int64).max
+#: Architectures that are kept as they were ranked, of a kilobyte or two each.
+MOST_PLACES = 4096
 
 
 @dataclass(frozen=True, eq=False)
 class RankedPlace(KeptPlace):
-    """An architecture among the ranked; ``designs`` are the positions of its calibrations.
+    """An architecture among the ranked, the same object for all questions that leave it the same.
 
-    ``number`` is its position in the table, ``segment`` that among those that meet requirements.
+    Attributes
+    ----------
+    number : its position in the table
+    meeting : its designs (bits) that meet the requirements
+    designs : their positions, best first
+    key : what it is ranked by among others
     """
 
     number: int
-    segment: int
-    designs: Positions  # best first
+    meeting: int
+    designs: Positions
+    key: tuple[float, ...]
+
+    @cached_property
+    def usual(self) -> Kept | None:
+        """The measured calibration that most studies stand for; None for none.
+
+        Of several the one that errs least, then the first.
+        """
+        columns, rank = self.judged.columns, self.judged.rank
+        backed = [
+            (-taken, rank[design], at)
+            for at, design in enumerate(self.designs.tolist())
+            if columns.measured[design]
+            and (taken := (columns.designs[design].taken & self.studies).bit_count())
+        ]
+        return self.judged.kept(int(self.designs[min(backed)[-1]])) if backed else None
+
+    @cached_property
+    def repeatability(self) -> tuple[float, int]:
+        """The least repeatability in degrees, and the position of the design that has it.
+
+        Of measured designs that answer often enough to be judged; infinite where none has any.
+        """
+        return self._least(self.judged.repeatability_deg)
+
+    @cached_property
+    def field(self) -> tuple[float, int]:
+        """The widest full field in degrees, negated; else as the repeatability."""
+        half_deg, design = self._least(self.judged.negated_half_field_deg)
+        return 2 * half_deg, design
+
+    def _least(self, of_designs: Numbers) -> tuple[float, int]:
+        values = of_designs[self.designs]
+        least = values.min()
+        order = self.judged.order[self.designs[values == least]].min()
+        return float(least), int(self.judged.at_order[order])
+
+
+_PLACES: weakref.WeakKeyDictionary[DesignTable, KeptAnswers[RankedPlace]] = (
+    weakref.WeakKeyDictionary()
+)
+
+
+def kept_places(table: DesignTable) -> KeptAnswers[RankedPlace]:
+    """Return the architectures of a table as questions had them ranked."""
+    found = _PLACES.get(table)
+    if found is None:
+        found = _PLACES[table] = KeptAnswers(MOST_PLACES)
+    return found
 
 
 class RankedDesigns:
@@ -44,76 +104,63 @@ class RankedDesigns:
     Attributes
     ----------
     places : the architectures, best first
-    at : positions of the designs, in the order of the table
+    count : how many designs they have together
     """
 
     def __init__(self, question: Question, designs: int, sort: Sort) -> None:
         self.question = question
         self.sort = sort
-        columns = question.columns
-        self.at = np.flatnonzero(columns.flags(designs))
-        of = columns.place_of[self.at]
-        self._starts = np.flatnonzero(np.diff(of, prepend=-1))
-        self._numbers: list[int] = of[self._starts].tolist()
-        self._order = question.best.order[self.at]
-        self.places: Sequence[RankedPlace] = self._ranked() if len(self.at) else ()
+        self.count = designs.bit_count()
+        self._meeting = designs
+        self.places: Sequence[RankedPlace] = sorted(self._places(), key=attrgetter("key"))
+
+    def _places(self) -> Iterator[RankedPlace]:
+        """Yield the architectures in the order of the table."""
+        question, meeting, sort = self.question, self._meeting, self.sort
+        best, studies, all_stated = question.best, question.studies, question.all_stated
+        advising = question.advising
+        kept = kept_places(question.table)
+        for number, (place, of_place) in enumerate(
+            zip(question.table.places, question.columns.of_place, strict=True)
+        ):
+            designs = meeting & of_place
+            if designs:
+                has = (place.studies & studies, place.studies & all_stated)
+                # All that its ranking depends on.
+                key = (best, sort, advising, number, designs, *has)
+                yield kept.find(key) or kept.keep(key, self._ranked(number, designs, *has))
+
+    def _ranked(self, number: int, meeting: int, studies: int, stated: int) -> RankedPlace:
+        question, best = self.question, self.question.best
+        positions, segments = self._by_key
+        start, end = segments[number : number + 2]
+        designs = positions[start:end].copy()  # the rest of the positions need not be kept
+        least = int(best.at_order[best.order[designs].min()])
+        error = float(best.error[least])
+        advice, tasks = question.advice[number]
+        key = key_of(self.sort, bool(advice), studies.bit_count(), error)
+        return RankedPlace(
+            question.table.places[number],
+            *(studies, stated, advice, tasks, best, least, error),
+            *(number, meeting, designs, key),
+        )
 
     @cached_property
-    def _standing(self) -> tuple[Positions, Positions]:
-        """How many studies stand for the stages of each design, and for its extractor too."""
-        columns, question = self.question.columns, self.question
-        every = columns.words_of([question.studies])
-        if question.all_stated != question.studies:
-            stated = columns.words_of([question.all_stated])
-            every = np.where(columns.measured, every, stated)
-        with_model = np.bitwise_count(columns.with_model & every).sum(axis=0, dtype=np.int64)
-        taken = np.bitwise_count(columns.taken & every).sum(axis=0, dtype=np.int64)
-        return with_model, taken
-
-    def _ranked(self) -> list[RankedPlace]:
-        question, sort = self.question, self.sort
-        table, best = question.table, question.best
-        numbers = self._numbers
-        studies = [table.places[number].studies & question.studies for number in numbers]
-        many = np.zeros(len(table.places), np.int64)
-        many[numbers] = [bits.bit_count() for bits in studies]
-        designs, segments = self._by_key(many)
-        least_at = best.at_order[np.minimum.reduceat(self._order, self._starts)]
-        least, errors = least_at.tolist(), best.error[least_at].tolist()
-        found = [
-            RankedPlace(
-                table.places[number],
-                bits,
-                table.places[number].studies & question.all_stated,
-                *question.advice[number],
-                question,
-                least[segment],
-                errors[segment],
-                number,
-                segment,
-                designs[segments[segment] : segments[segment + 1]],
-            )
-            for segment, (number, bits) in enumerate(zip(numbers, studies, strict=True))
-        ]
-        found.sort(
-            key=lambda place: key_of(
-                sort, bool(place.advice), place.studies.bit_count(), place.error_deg
-            )
-        )
-        return found
-
-    def _by_key(self, many: Positions) -> tuple[Positions, list[int]]:
-        """Return all designs by place and rank, and where each place begins.
+    def _by_key(self) -> tuple[Positions, list[int]]:
+        """All designs by place and rank, and where each place of the table begins.
 
         What designs are ranked by goes into one number each, the most important part in its
         highest bits: sorting those is many times quicker than sorting by one part after another.
         The cube root of the support, which rises with it, can be left out.
         """
-        columns, at, best = self.question.columns, self.at, self.question.best
-        with_model, taken = self._standing
+        question, best = self.question, self.question.best
+        columns, places = question.columns, question.table.places
+        at = np.flatnonzero(columns.flags(self._meeting))
         of = columns.place_of[at]
+        many = np.array([(place.studies & question.studies).bit_count() for place in places], int)
+        with_model, taken = self._standing(at)
         most = (1 << columns.support_bits) - 1
-        backing = (most - many[of] * with_model[at] * taken[at], columns.support_bits)
+        backing = (most - many[of] * with_model * taken, columns.support_bits)
         error = (best.rank[at], columns.design_bits)
         advised = (columns.not_advised[at], 1)
         parts = {
@@ -122,54 +169,23 @@ class RankedDesigns:
             "advice": ((columns.not_stated[at], 1), advised, backing, error),
         }[self.sort]
         key = of.astype(np.int64)
-        for values, bits in (*parts, (self._order, columns.design_bits)):
+        for values, bits in (*parts, (best.order[at], columns.design_bits)):
             key = (key << bits) | values
         key.sort()
         order = key & ((1 << columns.design_bits) - 1)
-        return best.at_order[order], [*self._starts.tolist(), len(at)]
+        return best.at_order[order], np.searchsorted(of, np.arange(len(places) + 1)).tolist()
+
+    def _standing(self, at: Positions) -> tuple[Positions, Positions]:
+        """Return how many studies stand for the stages of designs, and for their extractor too."""
+        columns, question = self.question.columns, self.question
+        every = columns.words_of([question.studies])
+        if question.all_stated != question.studies:
+            stated = columns.words_of([question.all_stated])
+            every = np.where(columns.measured[at], every, stated)
+        with_model = np.bitwise_count(columns.with_model[:, at] & every).sum(axis=0, dtype=np.int64)
+        taken = np.bitwise_count(columns.taken[:, at] & every).sum(axis=0, dtype=np.int64)
+        return with_model, taken
 
     def first(self) -> Kept | None:
         """Return the first calibration of the first architecture."""
         return self.question.kept(int(self.places[0].designs[0])) if self.places else None
-
-    def usual(self, place: RankedPlace) -> Kept | None:
-        """Return the measured calibration that most studies stand for; None for none.
-
-        Of several the one that errs least, then the first.
-        """
-        taken = self._standing[1][place.designs]
-        backed = np.flatnonzero((taken > 0) & self.question.columns.measured[place.designs])
-        if not len(backed):
-            return None
-        rank = self.question.best.rank[place.designs[backed]]
-        first = np.lexsort((rank, -taken[backed]))[0]
-        return self.question.kept(int(place.designs[backed[first]]))
-
-    def least(self, number: str) -> list[tuple[float, int]]:
-        """Return the least of a number on each architecture, in ranked order, and who has it.
-
-        Infinite where none has it; the design by its position.
-
-        Parameters
-        ----------
-        number : "repeatability" (deg; more than 0, since an answer in steps says nothing) or
-            "field" (full, deg, negated: the largest is the best); of measured designs that answer
-            often enough to be judged
-        """
-        if not self.places:
-            return []
-        columns, best = self.question.columns, self.question.best
-        row = best.row[self.at]
-        of_rows = {
-            "repeatability": columns.repeatability_deg,
-            "field": -2 * columns.half_fov_deg,
-        }[number]
-        values = np.full(len(row), np.inf)
-        known = (row >= 0) & np.isfinite(best.error[self.at])
-        values[known] = of_rows[row[known]]
-        values[np.isnan(values)] = np.inf
-        least = np.minimum.reduceat(values, self._starts)
-        reached = values == np.repeat(least, np.diff(self._starts, append=len(row)))
-        order = np.minimum.reduceat(np.where(reached, self._order, _NONE), self._starts)
-        found = list(zip(least.tolist(), best.at_order[order].tolist(), strict=True))
-        return [found[place.segment] for place in self.places]

@@ -44,13 +44,14 @@ def key_of(sort: Sort, advised: bool, backing: float, error: float) -> tuple[flo
 
 def pareto(places: Sequence[KeptPlace]) -> frozenset[int]:
     """Return the positions of the architectures that none beats in both support and error."""
-    costs = [(-place.studies.bit_count(), place.error_deg) for place in places]
-    beaten = math.nan
-    found: dict[tuple[int, float], bool] = {}
+    costs = [(-place.backing, place.error_deg) for place in places]
+    least = math.nan
+    unbeaten: set[tuple[int, float]] = set()
     for cost in sorted(set(costs)):  # whoever beats one comes before it
-        found[cost] = not beaten <= cost[1]
-        beaten = cost[1] if math.isnan(beaten) else min(beaten, cost[1])
-    return frozenset(at for at, cost in enumerate(costs) if found[cost])
+        if not least <= cost[1]:
+            unbeaten.add(cost)
+            least = cost[1]
+    return frozenset(at for at, cost in enumerate(costs) if cost in unbeaten)
 
 
 @dataclass(frozen=True)

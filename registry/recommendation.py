@@ -212,6 +212,8 @@ def recommendation(
     found: Answered, limit: int | None = None, calibrations: int | None = None
 ) -> Recommendation:
     """Return an answer as objects, with the first architectures and calibrations of each."""
+    from registry.path_columns import unpacked  # noqa: PLC0415 - NumPy
+
     ranked, taken, asked = found.ranked, found.taken, found.question.asked
     paths = path_table(found.question.table.facts)
     lost = found.regret
@@ -219,7 +221,7 @@ def recommendation(
         requirements=asked,
         sort=ranked.sort,
         count=len(ranked.places),
-        designs=len(ranked.at),
+        designs=ranked.count,
         architectures=tuple(
             _architecture(at, place, found, paths, calibrations)
             for at, place in enumerate(ranked.places[:limit])
@@ -227,9 +229,9 @@ def recommendation(
         contradictions=found.contradictions,
         regret=None if lost is None else lost.to_dict(regret_words(lost)),
         untried=found.untried,
-        paths=paths.study_paths(taken.paths),
-        nodes=tuple(paths.node(at, int.from_bytes(bits, "little")) for at, bits in taken.nodes),
-        links=tuple(paths.link(at, int.from_bytes(bits, "little")) for at, bits in taken.links),
+        paths=paths.study_paths(unpacked(taken.paths)),
+        nodes=tuple(paths.node(*of) for of in unpacked(taken.nodes)),
+        links=tuple(paths.link(*of) for of in unpacked(taken.links)),
         left_out=paths.left_out,
         blocked=found.blocked,
     )
@@ -247,7 +249,7 @@ class Answered:
     def contradictions(self) -> tuple[str, ...]:
         """Where an architecture that is not advised does better at a task than those advised."""
         tasks = self.question.asked.include.get("task", ())
-        return against_advice(self.ranked.places, self.ranked.least, tasks)
+        return against_advice(self.ranked.places, tasks)
 
     @cached_property
     def regret(self) -> Regret | None:
@@ -336,7 +338,7 @@ def _architecture(
         studies=paths.studies(place.studies),
         best=_calibration(best, place.best, place, found, paths),
         pareto=at in found.pareto,
-        contradiction=against_literature(place, found.ranked.usual(place)),
+        contradiction=against_literature(place, place.usual),
         count=len(place.designs),
         calibrations=tuple(
             _calibration(i, found.question.kept(design), place, found, paths)

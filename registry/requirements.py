@@ -43,6 +43,8 @@ LISTS = ("survive", "properties")
 PARAMETERS = (*ATTRIBUTES, *(EXCLUDE + attribute for attribute in ATTRIBUTES), *LIMITS, *LISTS)
 """The names of all requirements, in the order in which they are reported."""
 
+_KNOWN = frozenset(PARAMETERS)
+
 
 @dataclass(frozen=True)
 class Requirements:
@@ -93,7 +95,7 @@ class Requirements:
         limits: dict[str, float] = {}
         lists: dict[str, tuple[str, ...]] = {}
         for name, value in parameters.items():
-            if name not in PARAMETERS:
+            if name not in _KNOWN:
                 raise unknown_name("parameter", name, PARAMETERS)
             if value is None:
                 continue
@@ -183,15 +185,20 @@ class Requirements:
 
     def to_dict(self) -> dict[str, object]:
         """Return the parameters that ask something, as they are passed in."""
-        asked = {name: self.asked(name) for name in self.names}
-        return {n: list(v) if isinstance(v, tuple) else v for n, v in asked.items()}
+        asked: dict[str, tuple[str, ...] | float | None] = {
+            **self.include,
+            **{EXCLUDE + attribute: values for attribute, values in self.exclude.items()},
+            **{name: getattr(self, name) for name in (*LIMITS, *LISTS)},
+        }
+        told = ((name, asked.get(name)) for name in PARAMETERS)
+        return {n: list(v) if isinstance(v, tuple) else v for n, v in told if v}
 
 
 def _texts(name: str, value: object) -> tuple[str, ...]:
     if isinstance(value, str):
         return (value,)
     if isinstance(value, Collection) and all(isinstance(item, str) for item in value):
-        return tuple(dict.fromkeys(str(item) for item in value))
+        return tuple(dict.fromkeys(map(str, value)))
     raise InvalidValueError(name, value, "a value of the taxonomy or a list of them")
 
 

@@ -33,6 +33,8 @@ class Answer(JSONResponse):
     """
 
     offered: ClassVar = (JSON, CSV)
+    digest: str | None = None
+    """Of the JSON, where making it has told."""
 
     def __init__(
         self,
@@ -58,8 +60,9 @@ class Answer(JSONResponse):
 
     def representation(self, wanted: str) -> Representation:
         """Return the answer in a media type."""
-        body = self.table().encode() if wanted == CSV else bytes(self.body)
-        return Representation(body, CONTENT_TYPES[wanted], self.links)
+        if wanted == CSV:
+            return Representation(self.table().encode(), CONTENT_TYPES[CSV], self.links)
+        return Representation(bytes(self.body), CONTENT_TYPES[JSON], self.links, digest=self.digest)
 
 
 def listing(

@@ -37,13 +37,15 @@ NOT_MODIFIED = {"description": "The bytes of the ETag in If-None-Match are still
 
 
 def describe(app: FastAPI, routes: Sequence[APIRoute]) -> dict[str, Any]:
-    """Return the OpenAPI document of `app`, which serves `routes`.
+    """Return the OpenAPI document of `app`, which serves `routes`, in their order.
 
     The examples are what is answered and refused now.
     """
     document = get_openapi(
         title=app.title, version=app.version, description=app.description, routes=app.routes
     )
+    paths = document["paths"]
+    document["paths"] = {r.path: paths[r.path] for r in routes if r.path in paths}
     components = document["components"]["schemas"]
     for replaced in ("HTTPValidationError", "ValidationError"):
         components.pop(replaced, None)

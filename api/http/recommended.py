@@ -8,16 +8,19 @@ or a path. What is kept is bounded, and does not depend on who asked.
 
 from __future__ import annotations
 
+import hashlib
 import weakref
-from collections.abc import Callable, Hashable, Iterable, Sequence
-from typing import Any
+from collections.abc import Callable, Hashable, Sequence
+from typing import Any, Generic, NamedTuple, TypeVar
 
 from pydantic_core import to_json
 
+from api.http.representations import digest_of
 from registry.contradiction import against_literature, regret_words
 from registry.design_columns import design_columns
 from registry.designs import DesignTable, Kept
 from registry.judging import OF_STUDIES
+from registry.path_columns import POSITION_BYTES, Sets
 from registry.paths import PATH_LEVELS, path_table
 from registry.ranked_designs import RankedPlace
 from registry.ranking import support
@@ -27,8 +30,9 @@ from registry.recommendation import Answered
 #: thousand questions make. Twice as many would spare a third of the writing, and fill for an hour.
 MOST_BYTES = 8 * 2**20
 
-#: What a key and its place in a dictionary weigh, roughly.
+#: What a key and its place in a dictionary weigh, roughly, and an architecture as it is ranked.
 _KEY_BYTES = 200
+_PLACE_BYTES = 1500
 
 
 def encoded(value: Any) -> bytes:
@@ -36,7 +40,33 @@ def encoded(value: Any) -> bytes:
     return to_json(value, inf_nan_mode="null")
 
 
-class KeptPieces:
+class EncodedAnswer(NamedTuple):
+    """An answer as JSON, with a digest of it that was cheaper than one of all its bytes."""
+
+    body: bytes
+    digest: str
+
+
+class ArchitecturePiece:
+    """An architecture without its rank, in two parts between which `pareto` belongs.
+
+    Most bytes of an answer are such pieces: each is hashed once, not once an answer.
+    """
+
+    def __init__(self, before: bytes, after: bytes) -> None:
+        self.before = before
+        self.after = after
+        self.digest = hashlib.sha256(b"%d,%b%b" % (len(before), before, after)).digest()
+
+    def __len__(self) -> int:
+        """Return the bytes that keeping it takes, with the ranked architecture in its key."""
+        return len(self.before) + len(self.after) + len(self.digest) + _PLACE_BYTES
+
+
+Piece = TypeVar("Piece", bytes, ArchitecturePiece)
+
+
+class KeptPieces(Generic[Piece]):
     """Pieces by what they depend on, bounded by their bytes.
 
     Parameters
@@ -46,11 +76,15 @@ class KeptPieces:
 
     def __init__(self, most_bytes: int | None = None) -> None:
         self._most = MOST_BYTES if most_bytes is None else most_bytes
-        self._pieces: dict[Hashable, bytes] = {}
+        self._pieces: dict[Hashable, Piece] = {}
         self._bytes = 0
-        self.get = self._pieces.get
 
-    def keep(self, key: Hashable, piece: bytes) -> bytes:
+    @property
+    def get(self) -> Callable[[Hashable], Piece | None]:
+        """What returns what is kept under a key; None where nothing is."""
+        return self._pieces.get
+
+    def keep(self, key: Hashable, piece: Piece) -> Piece:
         """Keep a piece, and return it."""
         self._bytes += len(piece) + _KEY_BYTES
         if self._bytes > self._most:
@@ -73,9 +107,11 @@ class Pieces:
         self._size = 8 * columns.words
         self._studies = _by_byte(table.facts.keys, self._size)
         self._left_out = encoded([left.to_dict() for left in paths.left_out])
-        self._architectures = KeptPieces()
-        self._measured = KeptPieces()
-        self._behind = {name: KeptPieces() for name in ("paths", "nodes", "links")}
+        self._architectures: KeptPieces[ArchitecturePiece] = KeptPieces()
+        self._measured: KeptPieces[bytes] = KeptPieces()
+        self._behind: dict[str, KeptPieces[bytes]] = {
+            name: KeptPieces() for name in ("paths", "nodes", "links")
+        }
         self._heads: list[bytes | None] = [None] * len(columns.designs)
         self._path_heads = [
             _head(dict(zip(PATH_LEVELS, path, strict=True))) + b',"studies":['
@@ -92,32 +128,48 @@ class Pieces:
             for source, target in paths.links
         ]
 
-    def document(self, found: Answered, limit: int | None, calibrations: int | None) -> bytes:
+    def document(
+        self, found: Answered, limit: int | None, calibrations: int | None
+    ) -> EncodedAnswer:
         """Return an answer, with the first architectures and the first calibrations of each."""
-        question, ranked, taken = found.question, found.ranked, found.taken
-        asked = question.asked
-        lost = found.regret
-        blocked = found.blocked
+        listed: list[bytes] = []
+        digests: list[bytes] = []
+        for at, piece in enumerate(self._listed(found, limit, calibrations)):
+            rank = b'%b{"rank":%d,' % (b"," if at else b"", at + 1)
+            pareto = b',"pareto":true,' if at in found.pareto else b',"pareto":false,'
+            listed += (rank, piece.before, pareto, piece.after)
+            digests += (rank, piece.digest, pareto)
+        start, end = self._asked(found), self._behind_it(found)
+        return EncodedAnswer(
+            b"".join((*start, *listed, *end)), digest_of(b"".join((*start, *digests, *end)))
+        )
+
+    def _asked(self, found: Answered) -> tuple[bytes, ...]:
+        """Return what stands before the architectures."""
+        ranked = found.ranked
+        return (
+            *(b'{"requirements":', encoded(found.question.asked.to_dict())),
+            *(b',"sort":', encoded(ranked.sort)),
+            b',"count":%d,"designs":%d' % (len(ranked.places), ranked.count),
+            b',"architectures":[',
+        )
+
+    def _behind_it(self, found: Answered) -> tuple[bytes, ...]:
+        """Return what follows the architectures: what contradicts them, and the studies behind."""
+        taken, lost, blocked = found.taken, found.regret, found.blocked
         untried = {
             hazard: [{"detector": detector, "mask": mask} for detector, mask in pairs]
             for hazard, pairs in found.untried.items()
         }
-        return b"".join(
-            (
-                *(b'{"requirements":', encoded(asked.to_dict())),
-                *(b',"sort":', encoded(ranked.sort)),
-                b',"count":%d,"designs":%d' % (len(ranked.places), len(ranked.at)),
-                *(b',"architectures":[', self._listed(found, limit, calibrations)),
-                *(b'],"contradictions":', encoded(found.contradictions)),
-                b',"regret":',
-                encoded(None if lost is None else lost.to_dict(regret_words(lost))),
-                *(b',"untried":', encoded(untried)),
-                *(b',"paths":[', self._sets("paths", taken.paths, self._path)),
-                *(b'],"nodes":[', self._sets("nodes", taken.nodes, self._node)),
-                *(b'],"links":[', self._sets("links", taken.links, self._link)),
-                *(b'],"left_out":', self._left_out),
-                *(b',"blocked":', encoded(None if blocked is None else blocked.to_dict()), b"}"),
-            )
+        return (
+            *(b'],"contradictions":', encoded(found.contradictions)),
+            *(b',"regret":', encoded(None if lost is None else lost.to_dict(regret_words(lost)))),
+            *(b',"untried":', encoded(untried)),
+            *(b',"paths":[', self._sets("paths", taken.paths, self._path)),
+            *(b'],"nodes":[', self._sets("nodes", taken.nodes, self._node)),
+            *(b'],"links":[', self._sets("links", taken.links, self._link)),
+            *(b'],"left_out":', self._left_out),
+            *(b',"blocked":', encoded(None if blocked is None else blocked.to_dict()), b"}"),
         )
 
     def studies(self, bits: bytes) -> bytes:
@@ -125,12 +177,12 @@ class Pieces:
         found = b"".join([keys[byte] for keys, byte in zip(self._studies, bits, strict=True)])
         return found[:-1]
 
-    def _sets(
-        self, kind: str, sets: Iterable[tuple[int, bytes]], make: Callable[[int, bytes], bytes]
-    ) -> bytes:
+    def _sets(self, kind: str, sets: Sets, make: Callable[[int, bytes], bytes]) -> bytes:
         kept = self._behind[kind]
-        get, keep = kept.get, kept.keep
-        return b",".join([get(key) or keep(key, make(*key)) for key in sets])
+        pieces = [piece for piece in map(kept.get, sets) if piece is not None]
+        if len(pieces) < len(sets):
+            pieces = [kept.get(key) or kept.keep(key, make(*_unpacked(key))) for key in sets]
+        return b",".join(pieces)
 
     def _path(self, at: int, bits: bytes) -> bytes:
         return self._path_heads[at] + self.studies(bits) + b"]}"
@@ -141,33 +193,29 @@ class Pieces:
     def _link(self, at: int, bits: bytes) -> bytes:
         return self._link_heads[at] % _count(bits) + self.studies(bits) + b"]}"
 
-    def _listed(self, found: Answered, limit: int | None, calibrations: int | None) -> bytes:
-        question, sort = found.question, found.ranked.sort
-        columns, meeting = question.columns, question.meeting
-        asked, judged = question.asked, question.judged_by
-        # All that an architecture's piece depends on, beside its own designs and studies.
+    def _listed(
+        self, found: Answered, limit: int | None, calibrations: int | None
+    ) -> list[ArchitecturePiece]:
+        question, finest = found.question, found.question.finest
+        asked = question.asked
+        # All that an architecture's piece depends on, beside the architecture as it is ranked.
         context = (
-            *(sort, calibrations, judged.hazards, columns.half_field(judged.half_field_deg)),
-            *(judged.min_availability, judged.max_latency_us, question.limits),
-            *(bool(asked.properties), *(asked.include.get(name) for name in OF_STUDIES)),
+            *(calibrations, question.limits, bool(asked.properties)),
+            *(asked.include.get(name) for name in OF_STUDIES),
         )
         get, keep = self._architectures.get, self._architectures.keep
-        beaten = found.pareto
-        listed: list[bytes] = []
-        for at, place in enumerate(found.ranked.places[:limit]):
-            designs = meeting & columns.of_place[place.number]
-            finest = question.finest.get(place.number)
-            key = (context, place.number, designs, place.studies, place.stated, finest)
-            piece = get(key) or keep(key, self._architecture(place, found, calibrations))
-            before, _, after = piece.partition(b"\n")
-            listed += (
-                *(b",{" if at else b"{", b'"rank":%d,' % (at + 1), before),
-                *(b',"pareto":true,' if at in beaten else b',"pareto":false,', after),
-            )
-        return b"".join(listed)
+        listed: list[ArchitecturePiece] = []
+        for place in found.ranked.places[:limit]:
+            key = (place, finest.get(place.number), context)
+            piece = get(key)
+            if piece is None:
+                piece = keep(key, self._architecture(place, found, calibrations))
+            listed.append(piece)
+        return listed
 
-    def _architecture(self, place: RankedPlace, found: Answered, most: int | None) -> bytes:
-        """Return an architecture without its rank; a line feed stands where `pareto` belongs."""
+    def _architecture(
+        self, place: RankedPlace, found: Answered, most: int | None
+    ) -> ArchitecturePiece:
         detector, mask = place.place.architecture
         best = int((place.designs == place.best_at).argmax())
         tasks = [
@@ -182,7 +230,7 @@ class Pieces:
             "advice": [advice.to_dict() for advice in place.advice],
         }
         after = {
-            "contradiction": against_literature(place, found.ranked.usual(place)),
+            "contradiction": against_literature(place, place.usual),
             "count": len(place.designs),
         }
         question = found.question
@@ -194,13 +242,11 @@ class Pieces:
             self._calibration(at, question.kept(design), place, found, basis)
             for at, design in enumerate(place.designs[:most].tolist())
         ]
-        return b"".join(
-            (
-                *(encoded(before)[1:-1], b',"studies":[', self._of_bits(place.studies)),
-                *(b'],"best":', self._calibration(best, place.best, place, found, basis)),
-                *(b"\n", encoded(after)[1:-1]),
-                *(b',"calibrations":[', b",".join(calibrations), b"]}"),
-            )
+        studies = self._of_bits(place.studies)
+        errs_least = self._calibration(best, place.best, place, found, basis)
+        return ArchitecturePiece(
+            b"".join((encoded(before)[1:-1], b',"studies":[', studies, b'],"best":', errs_least)),
+            b"".join((encoded(after)[1:-1], b',"calibrations":[', b",".join(calibrations), b"]}")),
         )
 
     def _calibration(
@@ -261,7 +307,7 @@ _PIECES: weakref.WeakKeyDictionary[DesignTable, Pieces] = weakref.WeakKeyDiction
 
 def encoded_answer(
     found: Answered, limit: int | None = None, calibrations: int | None = None
-) -> bytes:
+) -> EncodedAnswer:
     """Return an answer as JSON.
 
     Parameters
@@ -296,6 +342,11 @@ def _head(about: dict[str, str]) -> bytes:
 def _doubled(text: str) -> str:
     """Return text for a template in which % stands for what is put in."""
     return text.replace("%", "%%")
+
+
+def _unpacked(packed: bytes) -> tuple[int, bytes]:
+    """Return the position of a set of studies, and the set."""
+    return int.from_bytes(packed[:POSITION_BYTES], "little"), packed[POSITION_BYTES:]
 
 
 def _count(bits: bytes) -> int:

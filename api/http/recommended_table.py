@@ -22,7 +22,7 @@ from survey_data.csv_writing import csv_text
 MEASURED = tuple(name for name in RECOMMENDATIONS if name.startswith("measured_"))
 _NOT_MEASURED = "," * (len(MEASURED) - 1)
 
-_PIECES: weakref.WeakKeyDictionary[DesignTable, KeptPieces] = weakref.WeakKeyDictionary()
+_PIECES: weakref.WeakKeyDictionary[DesignTable, KeptPieces[bytes]] = weakref.WeakKeyDictionary()
 
 
 def table_text(found: Answered, limit: int | None = None, calibrations: int | None = None) -> str:

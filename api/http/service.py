@@ -21,6 +21,7 @@ from api.http.knowledge import Knowledge
 from api.http.openapi import describe
 from api.http.representations import RepresentationCache
 from api.http.routers import ROUTERS as SERVICE
+from api.http.routers import recommendations
 from api.pages.routers import ROUTERS as PAGES
 
 DESCRIPTION = (
@@ -56,7 +57,8 @@ def create_app(knowledge: Knowledge | None = None) -> FastAPI:
     )
     app.state.knowledge = Knowledge() if knowledge is None else knowledge
     app.state.kept = RepresentationCache()
-    for router in ROUTERS:
+    # Routes are tried one after another: first what is asked most, and is to be answered at once.
+    for router in sorted(ROUTERS, key=lambda one: one is not recommendations.router):
         app.include_router(router)
     handlers.install(app, ROUTES)
     app.add_middleware(middleware.EveryResponse)

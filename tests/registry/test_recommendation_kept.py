@@ -6,8 +6,11 @@ import pytest
 from scores import pipeline
 
 from registry import paths
+from registry.designs import design_table
 from registry.measured import Measured, Measurements, Score
-from registry.recommendation import recommend
+from registry.ranked_designs import RankedPlace, kept_places
+from registry.ranking import Sort
+from registry.recommendation import answered, recommend
 from registry.studies import Facts
 
 Rows = list[Mapping[str, list[str]]]
@@ -48,3 +51,40 @@ def test_what_was_judged_for_one_question_does_not_tell_for_another(
     kept = Measurements(rows)
     for _ in range(2):
         assert [recommend(ask, kept, facts=facts).to_dict() for ask in asks] == fresh
+
+
+def test_an_architecture_is_ranked_once_for_all_questions_that_leave_it_the_same(
+    facts_of: Callable[[Rows], Facts],
+) -> None:
+    facts = facts_of([STUDY, {**STUDY, "detector": ["CCD"]}, {**STUDY, "error": ["Electrical"]}])
+    rows = Measurements([pipeline(), pipeline(extractor="b", extractor_taxonomy="BCM")])
+
+    def place(sort: Sort = "advice", **asked: object) -> RankedPlace:
+        found = answered(asked, rows, sort=sort, facts=facts).ranked.places
+        return next(place for place in found if place.place.architecture[0] == "CMOS")
+
+    first = place()
+    assert place(exclude_detector="CCD") is place(exclude_task="Accuracy") is first
+    assert place(max_error_deg=180.0).designs.tolist() == first.designs.tolist()
+    others = (
+        place("measured"),
+        place(task="Cost"),  # advised or not for that alone
+        place(exclude_error="Electrical"),  # one study less
+        place(exclude_extractor="BCTM"),  # a calibration less
+        place(min_availability=0.5),  # judged by what keeps it
+    )
+    assert first not in others
+    assert others[2].studies == first.studies & ~0b100
+
+
+def test_ranked_architectures_that_are_kept_are_never_many(
+    facts_of: Callable[[Rows], Facts], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    facts = facts_of([STUDY, {**STUDY, "detector": ["CCD"]}, {**STUDY, "detector": ["PSD"]}])
+    monkeypatch.setattr("registry.ranked_designs.MOST_PLACES", 2)
+    monkeypatch.setattr("registry.path_columns.MOST_SETS", 2)
+    measured = Measurements([pipeline(), pipeline(extractor="b")])
+    for ask in ({}, {"exclude_detector": ["CCD"]}, {"task": ["Cost"]}, {}):
+        told = recommend(ask, measured, facts=facts).to_dict()
+        assert told == recommend(ask, list(measured.rows), facts=facts).to_dict()
+        assert len(kept_places(design_table(facts, measured))) <= 2

@@ -21,6 +21,7 @@ from api.http.recommended import encoded_answer
 from api.http.recommended_table import table_text
 from api.recommending import rows
 from registry.recommendation import Answered, answered, recommendation
+from registry.requirements import PARAMETERS
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
@@ -75,9 +76,9 @@ class Recommended(Answer):
 
     def render(self, content: Any) -> bytes:  # noqa: ARG002 - the document is not needed
         """Return the JSON."""
-        return encoded_answer(
-            self._found, self._requirements.limit, self._requirements.calibrations
-        )
+        asked = self._requirements
+        body, self.digest = encoded_answer(self._found, asked.limit, asked.calibrations)
+        return body
 
     def table(self) -> str:
         """Return the CSV."""
@@ -98,7 +99,7 @@ class Recommended(Answer):
 
 
 def _answer(requirements: Requirements, known: Knowledge) -> Recommended:
-    about_answer = {"limit", "calibrations", "sort", "format"}
-    asked = {name: value for name, value in requirements if name not in about_answer}
+    given = requirements.model_fields_set
+    asked = {name: getattr(requirements, name) for name in PARAMETERS if name in given}
     found = answered(asked, known.measured, sort=requirements.sort, facts=known.facts)
     return Recommended(requirements, found)

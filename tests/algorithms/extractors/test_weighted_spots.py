@@ -197,3 +197,11 @@ def test_the_covariance_is_that_of_the_errors_also_beside_light_of_no_aperture(s
     inverse = np.linalg.inv(found.covariance[answered])
     squares = np.einsum("ni,nij,nj->n", errors[answered], inverse, errors[answered])
     assert 1.66 < squares.mean() < 2.34
+
+
+def test_one_aperture_states_no_covariance():
+    rng = np.random.default_rng(312)
+    apertures, frames, places = draw(rng, 1, 16.0, 10)
+    found = WeightedSpots(apertures, blur_px=2.0).measure(noisy(frames, rng).astype(np.uint16))
+    assert np.abs(found.features - places).max() < 0.1
+    assert np.isnan(found.covariance).all()

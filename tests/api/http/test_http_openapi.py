@@ -7,6 +7,8 @@ import json
 import jsonschema
 import pytest
 
+from api.http.service import ROUTES
+
 PROBLEM = "application/problem+json"
 
 
@@ -24,6 +26,12 @@ def validator(document, schema):
 @pytest.fixture(scope="module")
 def document(atlas):
     return atlas.get("/openapi.json").json()
+
+
+def test_paths_stand_in_the_order_of_the_documentation(document):
+    """Not in that in which they are tried."""
+    documented = dict.fromkeys(route.path for route in ROUTES if route.include_in_schema)
+    assert list(document["paths"]) == list(documented)
 
 
 def test_every_endpoint_of_the_contract_is_documented(document):

@@ -50,7 +50,9 @@ def test_pieces_make_the_bytes_of_the_document(known: Knowledge, questions: int)
         told = recommend(question, known.measured, sort=sort, facts=known.facts, **shown)
         document = told.to_dict()
         blocked += document["blocked"] is not None
-        assert encoded_answer(found, **shown) == to_json(document, inf_nan_mode="null"), question
+        assert encoded_answer(found, **shown).body == to_json(document, inf_nan_mode="null"), (
+            question
+        )
         assert table_text(found, **shown) == csv_of(RECOMMENDATIONS, rows(document)), question
     assert questions / 30 < blocked < questions / 2
 
@@ -63,12 +65,26 @@ def test_what_is_kept_is_bounded_and_changes_no_answer(
     for number, drawn in enumerate(drawn_requirements(12, SEED + 1, known.facts)):
         found = answered(drawn, measured, facts=known.facts)
         told = recommend(drawn, known.measured, facts=known.facts)
-        assert encoded_answer(found) == to_json(told.to_dict(), inf_nan_mode="null"), number
-    kept = KeptPieces()
+        assert encoded_answer(found).body == to_json(told.to_dict(), inf_nan_mode="null"), number
+    kept: KeptPieces[bytes] = KeptPieces()
     for number in range(100):
         assert kept.keep(number, b"x" * 500) == b"x" * 500
         assert kept.get(number) is not None
         assert sum(kept.get(other) is not None for other in range(100)) < 10
+
+
+def test_digests_tell_answers_apart_whatever_was_asked_before(known: Knowledge) -> None:
+    """Workers have been asked different things: an answer has one ETag all the same."""
+    questions = list(drawn_requirements(60, SEED + 2, known.facts))
+    told: dict[str, bytes] = {}
+    digests = []
+    for order in (questions, questions[::-1]):
+        measured = Measurements(known.measured.rows)
+        found = [encoded_answer(answered(q, measured, facts=known.facts), 3, 2) for q in order]
+        digests.append({answer.body: answer.digest for answer in found})
+        told |= {answer.digest: answer.body for answer in found}
+    assert digests[0] == digests[1]
+    assert len(told) == len(digests[0]) > 30
 
 
 @pytest.mark.parametrize(

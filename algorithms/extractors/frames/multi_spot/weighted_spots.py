@@ -173,15 +173,16 @@ class WeightedSpots(Extractor):
     def measure(self, observations: ArrayLike, bad: ArrayLike | None = None) -> Measurement:
         """Positions, covariances and doubts of frames (N, H, W) or of one.
 
-        The covariance is that of the weighted mean, x and y apart. AMBIGUOUS_PATTERN where another
-        identity of the spots explains a frame nearly as well. Bad pixels are replaced by their
-        neighbours.
+        The covariance is that of the weighted mean, x and y apart; with one aperture none is
+        stated, for no other spot tells noise from what a profile misses of the image.
+        AMBIGUOUS_PATTERN where another identity of the spots explains a frame nearly as well. Bad
+        pixels are replaced by their neighbours.
         """
         frames = frames_to_measure(observations, bad, self.about.name)
         found, _, sure, pattern = self._combined(frames)
         covariance = np.zeros((len(found), 2, 2))
         covariance[:, [0, 1], [0, 1]] = sure
-        covariance[np.isnan(found[:, 0])] = np.nan
+        covariance[np.isnan(sure[:, 0]) | np.isnan(found[:, 0])] = np.nan
         return Measurement(found, covariance, pattern_doubts(found, pattern))
 
     def spots(self, observations: ArrayLike) -> Floats:
@@ -216,6 +217,7 @@ class WeightedSpots(Extractor):
             place = known[0, :2]
             found = agreed(frames, found + place, longest_px=self.longest_px) - place
             centres[np.isnan(found[:, 0])] = np.nan
+            sure[:] = np.nan
         return found, centres, sure, pattern
 
     def _centres(
