@@ -196,6 +196,6 @@ def test_a_pipeline_that_answers_too_seldom_has_no_error_and_says_so():
 
 def test_no_calibration_is_called_none():
     """The best that survives ageing has an extractor of ours, which the survey has no name for."""
-    shown = words(text("recommend", "--survive", "ageing"))
+    shown = words(text("--survive", "ageing"))
     assert "mirror (ours) > Camera" in shown
     assert "None >" not in shown
