@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from registry.designs import Kept
 from registry.judging import KeptPlace
 from registry.ranking import Regret
+from registry.taxonomy import NO_IMPLEMENTATION_STATED as NONE
 
 if TYPE_CHECKING:
     from registry.ranked_designs import RankedPlace
@@ -17,13 +18,28 @@ if TYPE_CHECKING:
 LEAST_RATIO = 1.1
 """Errors nearer to each other than this contradict nothing."""
 
+#: How methods begin that take signals as they are, and what that is called.
+_DIRECT, _AS_READ = "direct", "no extraction"
+
 Reached = tuple[float, int]
 """A number reached on an architecture, infinite where none is, and the position of the design."""
 
 
+def calibration_words(extractor: str, stages: Sequence[str], run_by: str | None) -> str:
+    """Return a calibration in words: extractor, stages.
+
+    What the survey has no extractor for is named by the method `run_by` that measured it: one of
+    ours, or signals taken as they are.
+    """
+    if extractor == NONE:
+        extractor = f"{run_by} (ours)" if run_by and not run_by.startswith(_DIRECT) else _AS_READ
+    return " > ".join((extractor, *("no model" if stage == NONE else stage for stage in stages)))
+
+
 def design_words(kept: Kept) -> str:
-    """Return a calibration in words: extractor, stages."""
-    return " > ".join((kept.design.extractor, *kept.design.stages))
+    """Return a calibration that is kept in words."""
+    run_by = None if kept.row is None else kept.row.extractor
+    return calibration_words(kept.design.extractor, kept.design.stages, run_by)
 
 
 def against_literature(place: KeptPlace, usual: Kept | None) -> str | None:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from api.cli.tables import prose, table
-from registry.taxonomy import NO_IMPLEMENTATION_STATED as NONE
+from registry.contradiction import calibration_words
 
 ORDERS = {
     "advice": "what the survey advises first",
@@ -17,7 +17,6 @@ ORDERS = {
 _NARROW = 30
 _LABEL = 13  # columns before the text of a labelled paragraph
 _HEADINGS = ("", "calibration", "advised", "studies", "measured, deg")
-_DIRECT = "direct"
 _INDENT = "    "
 
 
@@ -163,15 +162,9 @@ def _over(measured: Mapping[str, Any], unit: str) -> str:
 
 
 def _way(calibration: Mapping[str, Any]) -> str:
-    extractor, model = calibration["extractor"], calibration["model"]
-    stages = (*calibration["compensations"], "no model" if model == NONE else model)
-    return " > ".join((_unmapped(calibration) if extractor == NONE else extractor, *stages))
-
-
-def _unmapped(calibration: Mapping[str, Any]) -> str:
-    """Name what the survey has no extractor for: a method of ours, or signals taken as they are."""
-    ours = (calibration["measured"] or {}).get("extractor") or _DIRECT
-    return "no extraction" if ours.startswith(_DIRECT) else f"{ours} (ours)"
+    stages = (*calibration["compensations"], calibration["model"])
+    run_by = (calibration["measured"] or {}).get("extractor")
+    return calibration_words(calibration["extractor"], stages, run_by)
 
 
 def _many(number: int, one: str, several: str | None = None) -> str:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 import pytest
 from scores import pipeline
 
+from registry.contradiction import calibration_words
 from registry.flows import chart
 from registry.judging import Question
 from registry.recommendation import recommend
@@ -199,3 +200,18 @@ def test_the_worst_question_is_explained_by_a_few_answers(
     assert answer.blocked is not None
     assert len(answer.blocked.constraints) > 1
     assert 1 < len(answers) < 300
+
+
+@pytest.mark.parametrize(
+    ("extractor", "stages", "run_by", "words"),
+    [
+        ("BCTM", ("SPM",), "bctm", "BCTM > SPM"),
+        ("None", ("SECM/Solar", "Camera"), "mirror", "mirror (ours) > SECM/Solar > Camera"),
+        ("None", ("Polynomial",), "direct-currents", "no extraction > Polynomial"),
+        ("None", ("None",), None, "no extraction > no model"),
+    ],
+)
+def test_what_the_survey_has_no_name_for_is_never_called_none(
+    extractor: str, stages: tuple[str, ...], run_by: str | None, words: str
+) -> None:
+    assert calibration_words(extractor, stages, run_by) == words

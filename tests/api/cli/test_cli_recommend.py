@@ -192,3 +192,10 @@ def test_a_pipeline_that_answers_too_seldom_has_no_error_and_says_so():
     assert "A > B > C: answers too seldom (d, hot); nominal 0.5 deg; 2346 times" in shown
     assert "answers 25 %" in shown
     assert "1 A > B > C no none answers too seldom, hot 1 A > B > C no none no" in shown
+
+
+def test_no_calibration_is_called_none():
+    """The best that survives ageing has an extractor of ours, which the survey has no name for."""
+    shown = words(text("--survive", "ageing"))
+    assert "mirror (ours) > Camera" in shown
+    assert "None >" not in shown
