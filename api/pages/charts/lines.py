@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -21,15 +22,22 @@ class Line:
     Attributes
     ----------
     name : in the legend
-    points : (across, up); up is None where there is nothing
+    points : (across, up); up is None where there is nothing, also where NaN was given
     band : (across, low, high) around it, if any
     bound : whether it is a limit, which is dashed
     """
 
     name: str
     points: Sequence[tuple[float, float | None]]
-    band: Sequence[tuple[float, float, float]] = ()
+    band: Sequence[tuple[float, float | None, float | None]] = ()
     bound: bool = False
+
+    def __post_init__(self) -> None:
+        told = [(x, _told(y)) for x, y in self.points]
+        object.__setattr__(self, "points", told)
+        band = [(x, _told(low), _told(high)) for x, low, high in self.band]
+        whole = [(x, *((a, b) if None not in {a, b} else (None, None))) for x, a, b in band]
+        object.__setattr__(self, "band", whole)
 
     def at(self, across: float) -> float | None:
         """Return its value at a place; None where it has none."""
@@ -50,7 +58,8 @@ class LineChart:
     def __html__(self) -> str:
         """Return the SVG."""
         bands = [(x, y) for line in self.lines for x, low, high in line.band for y in (low, high)]
-        places = [(x, y) for line in self.lines for x, y in line.points if y is not None] + bands
+        given = [point for line in self.lines for point in line.points] + bands
+        places = [(x, y) for x, y in given if y is not None]
         log_up = self.log_up and all(y > 0 for _, y in places)
         log_across = self.log_across and all(x > 0 for x, _ in places)
         across = scale((x for x, _ in places), LEFT, WIDTH - RIGHT, logarithmic=log_across)
@@ -60,9 +69,10 @@ class LineChart:
         for line in self.lines:
             kind = "limit" if line.bound else f"line{number_of % SHADES}"
             number_of += not line.bound
-            if line.band:
-                edge = [f"{across.at(x)} {up.at(high)}" for x, _, high in line.band]
-                edge += [f"{across.at(x)} {up.at(low)}" for x, low, _ in reversed(line.band)]
+            lows = _runs([(x, low) for x, low, _ in line.band])
+            highs = _runs([(x, high) for x, _, high in line.band])
+            for low, high in zip(lows, highs, strict=True):
+                edge = [f"{across.at(x)} {up.at(y)}" for x, y in (*high, *reversed(low))]
                 parts.append(
                     Markup('<path class="band {}" d="M{}Z"/>').format(kind, "L".join(edge))
                 )
@@ -92,6 +102,10 @@ class LineChart:
     def drawn(self) -> bool:
         """Whether there is anything to draw."""
         return any(y is not None for line in self.lines for _, y in line.points)
+
+
+def _told(value: float | None) -> float | None:
+    return None if value is None or not math.isfinite(value) else value
 
 
 def _runs(points: Sequence[tuple[float, float | None]]) -> list[list[tuple[float, float]]]:

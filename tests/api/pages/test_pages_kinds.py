@@ -156,5 +156,6 @@ def test_every_one_of_a_kind_has_its_page(atlas: Client, kind: str) -> None:
         response = atlas.get(address, accept="text/html")
         assert response.status_code == 200, address
         assert not re.search(r">\s*None\s*<", response.text), address
+        assert not re.search(r'(?i)\b(?:d|c?[xy]|transform)="[^"]*\bnan\b', response.text), address
         page = Page(response.text)
         assert page.unmatched == [], address
