@@ -35,3 +35,16 @@ def test_no_claim_draws_what_was_not_measured(atlas: Client) -> None:
         page = atlas.get(f"/claims/{claim['id']}", accept="text/html").text
         for drawing in re.findall(r"<svg.*?</svg>", page, re.DOTALL):
             assert "nan" not in " ".join(_PLACES.findall(drawing)).lower(), claim["id"]
+
+
+def test_what_is_told_of_a_claim_that_holds_is_no_excuse(atlas: Client) -> None:
+    told = {claim["id"]: claim for claim in atlas.get("/v1/claims").json()["items"]}
+    headings = {
+        verdict: atlas.get(f"/claims/{key}", accept="text/html").text
+        for key, claim in told.items()
+        for verdict in [claim["verdict"]]
+        if claim["explanation"]
+    }
+    assert {"reproduced", "refuted"} <= set(headings)
+    assert "Why not wholly so" not in headings["reproduced"]
+    assert "Why not wholly so" in headings["refuted"]
