@@ -149,10 +149,11 @@ class MatchedProfile(Extractor):
     def measure(self, observations: ArrayLike, bad: ArrayLike | None = None) -> Measurement:
         """Centres, covariances and doubts of frames (N, H, W) or of one.
 
-        The covariance is that of the step, with the noise that registration shows. It is NaN where
-        pixels depart from the profile by more or registration finds the centre elsewhere, so that
-        the spot is not round or the background not even, where under 32 pixels are lit and where
-        `light` is "any". Bad pixels are replaced by their neighbours.
+        The covariance is that of the step, with the noise that registration shows, times the mean
+        square of what pixels depart from the profile by over it. It is NaN where that is more than
+        noise explains or registration finds the centre elsewhere, so that the spot is not round or
+        the background not even, where under 32 pixels are lit and where `light` is "any". Bad
+        pixels are replaced by their neighbours.
         """
         frames = frames_to_measure(observations, bad, self.about.name)
         judged = judge(frames, self._found(frames)[:, :2], self.light, self.longest_px, bad)

@@ -292,11 +292,11 @@ def _sure(  # noqa: PLR0917 - Numba takes no keyword-only ones
 ) -> float:
     """Write the covariance xx, yy, xy of a step's end; return how pixels depart from the profile.
 
-    By the mean square over their variance: `noise` is that of a dark pixel, and what light adds.
+    By the mean square over their variance, which multiplies the covariance: `noise` is the variance
+    of a dark pixel, and what light adds.
     """
-    a_xx, a_xy, a_yy = 0.0, 0.0, 0.0
+    a_xx, a_xy, a_yy, squares = 0.0, 0.0, 0.0, 0.0
     b_xx, b_xy, b_yy = 0.0, 0.0, 0.0
-    squares = 0.0
     for p in range(count):
         c, s, r = pixels[0, p], pixels[1, p], pixels[2, p]
         at = profile[np.uint32(r * scale)]
@@ -314,11 +314,12 @@ def _sure(  # noqa: PLR0917 - Numba takes no keyword-only ones
     determinant = a_xx * a_yy - a_xy * a_xy
     if not determinant > 1e-12 * a_xx * a_yy:
         return np.inf
+    departs = squares / count
     a, b, d = a_yy / determinant, -a_xy / determinant, a_xx / determinant
-    out[0] = a * a * b_xx + 2.0 * a * b * b_xy + b * b * b_yy
-    out[1] = b * b * b_xx + 2.0 * b * d * b_xy + d * d * b_yy
-    out[2] = a * b * b_xx + (a * d + b * b) * b_xy + b * d * b_yy
-    return squares / count
+    out[0] = departs * (a * a * b_xx + 2.0 * a * b * b_xy + b * b * b_yy)
+    out[1] = departs * (b * b * b_xx + 2.0 * b * d * b_xy + d * d * b_yy)
+    out[2] = departs * (a * b * b_xx + (a * d + b * b) * b_xy + b * d * b_yy)
+    return departs
 
 
 @compiled
