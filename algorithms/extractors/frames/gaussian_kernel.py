@@ -254,8 +254,8 @@ def covariances(
     (N, H, W) depart from the fit by.
 
     `noise` (N, 2) is the variance of a dark pixel, and what a unit of light adds to it, as seen
-    without any fit; NaN for those that are passed over. Where lit pixels depart by a mean square of
-    more than `misfit` of that, the light is no Gaussian, and the covariance NaN.
+    without any fit; NaN or zero for those that are passed over. Where lit pixels depart by a mean
+    square of more than `misfit` of that, the light is no Gaussian, and the covariance NaN.
     """
     _, height, width = frames.shape
     x, y = np.empty((3, width)), np.empty((3, height))
@@ -265,7 +265,7 @@ def covariances(
     for k in range(len(fits)):
         out[k] = np.nan
         p = fits[k]
-        if not (np.isfinite(noise[k, 0]) and np.isfinite(p[0])):
+        if not (noise[k, 0] > 0.0 and np.isfinite(p[0])):
             continue
         _factors(p, 0, x)
         _factors(p, 1, y)

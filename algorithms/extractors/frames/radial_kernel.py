@@ -341,8 +341,8 @@ def matched_centres(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
     `maxima` (N, H) are the rows' largest values, `threshold` the fraction of the peak above which
     pixels start the search, `spread` the limit of `_lit_spot`. `noises` (N, 2) are the variance of
-    a dark pixel, and what a unit of light adds to it, NaN where not told; of (0, 2) no covariance
-    is looked for. It is NaN, too, where the mean square of what pixels depart from the profile by,
+    a dark pixel, and what a unit of light adds to it, NaN or zero where not told; of (0, 2) no
+    covariance is looked for. It is NaN, too, where the mean square of what pixels depart from the profile by,
     over their variance, is over `misfit`, and where a spot has too few for rings to show it.
     """
     count, height, width = frames.shape
@@ -390,7 +390,7 @@ def matched_centres(  # noqa: PLR0917 - Numba takes no keyword-only ones
             out[k, 1] = y
             area = math.pi * radius * radius
             out[k, 5] = uneven if area >= _ENOUGH else np.inf
-            if len(noises) > 0 and np.isfinite(noises[k, 0]) and area >= _RESOLVED:
+            if len(noises) > 0 and noises[k, 0] > 0.0 and area >= _RESOLVED:
                 sums[:rings] = 0.0
                 near = _pixels_near(frame, x, y, base, reach, pixels)
                 _ring_sums(pixels, near, scale, sums)

@@ -70,8 +70,8 @@ def _weighted(values: Floats, variances: Floats, used: NDArray[np.bool_]) -> tup
         free = weight - squares / weight
         if turn == _TURNS or not free > 1e-12 * weight:
             break
-        spread = 0.0  # less what the variances alone explain, under these weights
-        explained = 0.0
+        spread = 0.0
+        explained = 0.0  # by the variances alone, under these weights
         for a in range(values.size):
             if used[a]:
                 w = 1.0 / (variances[a] + common)

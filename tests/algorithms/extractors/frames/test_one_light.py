@@ -153,6 +153,18 @@ def test_the_covariance_is_about_that_of_the_errors(name, own):
     np.testing.assert_array_equal(found.features, METHODS[name].extract(frames))
 
 
+@pytest.mark.parametrize("dark", [0.0, 50.0])
+@pytest.mark.parametrize("name", ["gaussian-fit", "matched-profile", "mirror"])
+def test_frames_without_noise_are_answered(name, dark):
+    """Nothing scatters that an error could be told by: no covariance, or next to none."""
+    line = np.exp(-((np.arange(SIZE) - 31.4) ** 2) / 18.0)
+    for light, centre in ((disc(30.3, 31.6), [30.3, 31.6]), (np.outer(line, line), [31.4, 31.4])):
+        found = METHODS[name].measure(dark + 900.0 * light)
+        assert not (found.covariance > 1e-6).any()
+        if np.isfinite(found.features).all():
+            np.testing.assert_allclose(found.features[0], centre, atol=0.02)
+
+
 @pytest.mark.parametrize("spoilt", ["shape", "slope", "dead"])
 def test_no_covariance_is_stated_where_the_light_is_of_another_shape(spoilt):
     """What a fit of the wrong shape errs by, noise does not tell; a mirror asks for no shape."""
