@@ -13,6 +13,7 @@ digest of all code that makes it; it may be deleted at any time.
 
 from __future__ import annotations
 
+import argparse
 import hashlib
 import os
 import shutil
@@ -164,24 +165,31 @@ def forget_others(directory: Path) -> None:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Draw; the exit status."""
     end_with_coordinator()
-    directory, *names = arguments or sys.argv[1:]
-    if directory == "--publish":
+    parser = argparse.ArgumentParser(prog="python -m api.pictures", description="Draw data sets.")
+    parser.add_argument("directory", nargs="?", type=Path, help="of the working store")
+    parser.add_argument("names", nargs="*", metavar="NAME", help="data sets (default: all)")
+    parser.add_argument("--publish", action="store_true", help="those that come with the code")
+    given = parser.parse_args(arguments)
+    if given.publish == (given.directory is not None):
+        parser.error("either --publish or a directory has to be given")
+    if given.publish:
         publish()
         return 0
+    directory, names = given.directory, given.names
     if names:
-        draw(Path(directory), names)
+        draw(directory, names)
         return 0
     from benchmark import datasets  # noqa: PLC0415 - as in `draw`
 
     every = [name for name in datasets.names() if not published(name).is_file()]
     if not every:
         return 0
-    draw(Path(directory), (name for name in SLOWEST if name in every))
+    draw(directory, (name for name in SLOWEST if name in every))
     # For those somebody may be waiting; of the others none takes long.
     with suppress(OSError):
         os.nice(10)
-    draw(Path(directory), every)
-    forget_others(Path(directory))
+    draw(directory, every)
+    forget_others(directory)
     return 0
 
 

@@ -130,3 +130,11 @@ def test_pictures_of_older_code_are_removed_but_the_newest(tmp_path: Path) -> No
     pictures.forget_others(tmp_path)
     left = {found.name for found in (tmp_path / pictures.FOLDER).iterdir()}
     assert left == {"older3", "older4", "older5", pictures.digest()}
+
+
+@pytest.mark.parametrize("arguments", [[], ["--publsh"], ["--publish", "store"]])
+def test_what_is_to_be_drawn_has_to_be_said(arguments, capsys):
+    with pytest.raises(SystemExit) as ended:
+        pictures.main(arguments)
+    assert ended.value.code == 2
+    assert "python -m api.pictures: error: " in capsys.readouterr().err

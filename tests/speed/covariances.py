@@ -17,13 +17,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from algorithms.contract import Extractor, Observation
-from algorithms.discovery import discover_extractors
+from algorithms.contract import Extractor
 from algorithms.extractors.frames.mirror.extractor import MirrorRegistration
 from benchmark.reference.frame_sets import FRAME_SETS, FrameSet
 from benchmark.running.threads import one_thread
 from tests.speed.extractors import single_spot
-from tests.speed.robustness import frames_of
+from tests.speed.robustness import frames_of, grid_extractors
 from tests.speed.robustness_grids import GRID_SETS, GridSet
 from tests.speed.verdicts import Verdict, broken
 
@@ -63,19 +62,10 @@ def extractors(chosen: FrameSet | GridSet) -> dict[str, Extractor]:
     """
     if isinstance(chosen, FrameSet):
         made = single_spot(chosen.shape.half_px, chosen.size_px)
-        found = {name: one for name, one in made.items() if one.about.origin == "ours"}
-        return {**found, MirrorRegistration.about.name: MirrorRegistration()}
-    found = {}
-    for name, extractor in discover_extractors().items():
-        about = extractor.about
-        if about.origin == "ours" and about.observation is Observation.FRAMES:
-            try:
-                made_one = extractor.for_sensor(chosen.geometry())
-            except ValueError:  # not a method for many spots
-                continue
-            if hasattr(made_one, "apertures_px"):
-                found[name] = made_one
-    return found
+        made[MirrorRegistration.about.name] = MirrorRegistration()
+    else:
+        made = grid_extractors(chosen)
+    return {name: one for name, one in made.items() if one.about.origin == "ours"}
 
 
 def measure(chosen: FrameSet | GridSet, seed: int, asked: int) -> list[Calibrated]:

@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from algorithms.contract import Floats, Observation
+from algorithms.contract import Extractor, Floats, Observation
 from algorithms.discovery import discover_extractors
 from algorithms.extractors.frames.mirror.extractor import MirrorRegistration
 from benchmark.reference.frame_sets import FRAME_SETS, FrameSet, Scenes
@@ -64,6 +64,11 @@ def methods(chosen: FrameSet) -> dict[str, Method]:
 
 def grid_methods(chosen: GridSet) -> dict[str, Method]:
     """Return the methods that know a pattern of apertures, by name; no peer does."""
+    return {name: made.extract for name, made in grid_extractors(chosen).items()}
+
+
+def grid_extractors(chosen: GridSet) -> dict[str, Extractor]:
+    """Return the extractors that know a pattern of apertures, by name, made for a set's sensor."""
     found = {}
     for name, extractor in discover_extractors().items():
         if extractor.about.observation is not Observation.FRAMES:
@@ -73,7 +78,7 @@ def grid_methods(chosen: GridSet) -> dict[str, Method]:
         except ValueError:  # not a method for many spots
             continue
         if hasattr(made, "apertures_px"):
-            found[name] = made.extract
+            found[name] = made
     return found
 
 

@@ -342,8 +342,8 @@ def matched_centres(  # noqa: PLR0917 - Numba takes no keyword-only ones
     `maxima` (N, H) are the rows' largest values, `threshold` the fraction of the peak above which
     pixels start the search, `spread` the limit of `_lit_spot`. `noises` (N, 2) are the variance of
     a dark pixel, and what a unit of light adds to it, NaN or zero where not told; of (0, 2) no
-    covariance is looked for. It is NaN, too, where the mean square of what pixels depart from the profile by,
-    over their variance, is over `misfit`, and where a spot has too few for rings to show it.
+    covariance is looked for. It is NaN, too, where what pixels depart from the profile by has a
+    mean square over `misfit` of their variance, and where a spot has too few for rings to show it.
     """
     count, height, width = frames.shape
     widest = 1.2 * math.hypot(height, width) + 4.0

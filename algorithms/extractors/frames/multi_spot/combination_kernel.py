@@ -50,8 +50,8 @@ def _leave_out(values: Floats, noise: Floats, limit: float, used: NDArray[np.boo
 def _weighted(values: Floats, variances: Floats, used: NDArray[np.bool_]) -> tuple[float, float]:
     """Mean of the values used, weighted by their variances, and its own variance.
 
-    What they scatter more than their variances say, places of apertures are off: it is added to
-    all of them alike.
+    What they scatter more than their variances say, surely, places of apertures are off: it is
+    added to all of them alike.
     """
     common = 0.0
     for turn in range(_TURNS + 1):
