@@ -15,6 +15,7 @@ import uvicorn
 from playwright.sync_api import Browser, expect, sync_playwright
 
 from api.http.service import create_app
+from tests.api.page.delivery import InPieces
 from tests.api.page.visiting import NARROW, PATIENCE_MS, WIDE, Visit
 
 NAMES = ("chromium", "chromium-browser", "google-chrome")
@@ -25,7 +26,8 @@ QUIET = ["--disable-gpu", "--disable-quic", "--no-first-run", "--disable-backgro
 def address() -> Iterator[str]:
     with socket.socket() as listener:
         listener.bind(("127.0.0.1", 0))
-        server = uvicorn.Server(uvicorn.Config(create_app(), log_level="warning", ws="none"))
+        service = InPieces(create_app())
+        server = uvicorn.Server(uvicorn.Config(service, log_level="warning", ws="none"))
         thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]}, daemon=True)
         thread.start()
         deadline = time.monotonic() + PATIENCE_MS / 1e3

@@ -9,6 +9,7 @@ import pytest
 from playwright.sync_api import Browser
 
 from tests.api.figures.geometry import Shape, overlap
+from tests.api.page.visiting import follow
 
 pytestmark = pytest.mark.slow
 
@@ -103,7 +104,7 @@ def test_figures_are_read_without_javascript_in_both_schemes_and_on_paper(
     assert page.locator(".figure-table tbody tr").count() > 50
     page.get_by_text("Only some of the studies").click()
     page.get_by_label("Detector").select_option("CMOS")
-    page.get_by_role("button", name="Show").click()
+    follow(page.get_by_role("button", name="Show"))
     assert "detector=CMOS" in page.url
     assert page.locator("svg.wide a.mark").count() < 80
     page.emulate_media(media="print")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.api.page.visiting import Visit, build_guide
+from tests.api.page.visiting import Visit, build_guide, follow
 
 pytestmark = pytest.mark.slow
 
@@ -31,7 +31,7 @@ def test_a_reader_searches_and_finds_without_a_network(wide: Visit) -> None:
     wide.page.keyboard.press("Enter")
     results = wide.page.locator("#search-results li")
     results.nth(4).wait_for()  # found pages are listed one by one; a fifth is enough
-    results.get_by_role("link").first.click()
+    follow(results.get_by_role("link").first)
     wide.page.wait_for_load_state("networkidle")
     assert "/guide/" in wide.page.url
     assert "albedo" in wide.page.locator("article").inner_text().lower()
@@ -41,7 +41,7 @@ def test_a_reader_searches_and_finds_without_a_network(wide: Visit) -> None:
 
 def test_the_tutorial_is_reached_from_the_start_and_equations_are_drawn(wide: Visit) -> None:
     go(wide, "")
-    wide.page.locator("article").get_by_role("link", name="From a question").click()
+    follow(wide.page.locator("article").get_by_role("link", name="From a question"))
     assert wide.page.locator("h1").inner_text().startswith("From a question")
     assert wide.page.locator("pre").count() > 15
     go(wide, "models/geometric.html#equations")

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
-from tests.api.page.visiting import PATIENCE_MS, WIDE, Visit, get_json, tab_to
+from tests.api.page.visiting import PATIENCE_MS, WIDE, Visit, follow, get_json, tab_to
 
 pytestmark = pytest.mark.slow
 
@@ -66,10 +66,10 @@ def test_find_a_study_see_how_it_runs_and_its_board(wide: Visit) -> None:
     page.goto(wide.address + "/search")
     page.locator("#q").fill("Chang2008")
     page.locator("#q").press("Enter")
-    page.locator(".hits a").first.click()
+    follow(page.locator(".hits a").first)
     expect(page.locator("h1")).to_contain_text("image centroiding algorithm")
     expect(page.locator(".copyable code")).to_have_text("sunatlas run Chang2008")
-    page.get_by_role("link", name="cmos-single-aperture", exact=True).first.click()
+    follow(page.get_by_role("link", name="cmos-single-aperture", exact=True).first)
     expect(page.locator("h1")).to_have_text("cmos-single-aperture")
     expect(page.locator("#board ~ table tbody tr")).to_have_count(25)
     page.locator('select[name="condition"]').select_option("hot")
@@ -84,7 +84,7 @@ def test_compare(wide: Visit) -> None:
     picks = page.locator('select[name="architecture"]')
     picks.nth(0).select_option("CMOS:Encoded")
     picks.nth(1).select_option("QPD:Single-Ap.")
-    page.get_by_role("button", name="Compare", exact=True).first.click()
+    follow(page.get_by_role("button", name="Compare", exact=True).first)
     heads = page.locator(".side thead th")
     expect(heads).to_have_count(2)
     assert [text.strip() for text in heads.all_inner_texts()] == [
@@ -92,13 +92,12 @@ def test_compare(wide: Visit) -> None:
         "QPD + Single-Ap.",
     ]
     page.locator('select[name="dataset"]').select_option("ccd-lens")
-    page.get_by_role("button", name="Compare", exact=True).last.or_(
-        page.get_by_role("button", name="Choose its pipelines")
-    ).last.click()
+    choose = page.get_by_role("button", name="Choose its pipelines")
+    follow(page.get_by_role("button", name="Compare", exact=True).last.or_(choose).last)
     ways = page.locator('select[name="pipeline"]')
     ways.nth(0).select_option(index=1)
     ways.nth(1).select_option(index=2)
-    page.get_by_role("button", name="Compare", exact=True).last.click()
+    follow(page.get_by_role("button", name="Compare", exact=True).last)
     expect(page.locator(".side thead th")).to_have_count(2)
     expect(page.locator("svg.plot")).to_be_visible()
 
@@ -106,11 +105,11 @@ def test_compare(wide: Visit) -> None:
 def test_read_a_claim(wide: Visit) -> None:
     page = wide.page
     page.goto(wide.address + "/claims")
-    page.locator(".verdict.refuted").first.click()
+    follow(page.locator(".verdict.refuted").first)
     told = get_json(f"{wide.address}/v1/claims?verdict=refuted")
     rows = page.locator("tbody tr")
     expect(rows).to_have_count(told["total"])
-    rows.first.locator("a").first.click()
+    follow(rows.first.locator("a").first)
     claim = get_json(f"{wide.address}/v1/claims/{told['items'][0]['id']}")
     expect(page.locator("h1")).to_contain_text(claim["statement"])
     assert page.locator("#rules ~ table tbody tr").count() == len(claim["rules"])
@@ -185,7 +184,7 @@ def test_without_a_script_tables_are_read_and_questions_asked(plain: Page, addre
     assert plain.locator(".architecture").count() == 10
     assert plain.get_by_text("Loading").is_hidden()
     plain.locator('select[name="task"]').select_option("Cost")
-    plain.get_by_role("button", name="Show the answer").click()
+    follow(plain.get_by_role("button", name="Show the answer"))
     found = get_json(f"{address}/v1/recommendations?task=Cost&limit=500")
     count = f"{found['count']} architectures"
     assert count in plain.locator("#summary").inner_text()
@@ -193,10 +192,10 @@ def test_without_a_script_tables_are_read_and_questions_asked(plain: Page, addre
     assert plain.locator(".architecture strong").first.inner_text() == (
         f"{first['detector']} + {first['mask']}"
     )
-    plain.locator("table a", has_text="calibrations").first.click()
+    follow(plain.locator("table a", has_text="calibrations").first)
     assert plain.locator(".calibration").count() > 3
-    plain.locator("nav a", has_text="Data sets").click()
-    plain.locator("tbody a").first.click()
+    follow(plain.locator("nav a", has_text="Data sets"))
+    follow(plain.locator("tbody a").first)
     assert plain.locator("#board ~ table tbody tr").count() > 5
 
 

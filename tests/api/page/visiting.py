@@ -11,7 +11,7 @@ from typing import Any
 from urllib.parse import parse_qs, urlsplit
 from urllib.request import urlopen
 
-from playwright.sync_api import ConsoleMessage, Page
+from playwright.sync_api import ConsoleMessage, Locator, Page
 
 from api.guide import site
 
@@ -77,6 +77,16 @@ def build_guide() -> None:
 def get_json(address: str) -> Any:
     with urlopen(address, timeout=PATIENCE_MS / 1e3) as response:
         return json.load(response)
+
+
+def follow(link: Locator) -> None:
+    """Click what leads to another page, and wait until the whole of that page is there.
+
+    A click alone returns as soon as the first bytes come, and what is then counted once, without
+    waiting, may stand further down.
+    """
+    with link.page.expect_navigation():
+        link.click()
 
 
 def tab_to(page: Page, selector: str, most: int = 250) -> None:
