@@ -12,6 +12,7 @@ from tests.api.pages.addresses import BESIDE, KINDS
 pytestmark = pytest.mark.slow
 
 AXE = (files("axe_playwright_python") / "axe.min.js").read_text(encoding="utf-8")
+PLACES = {**KINDS, **BESIDE}
 SERIOUS = {"serious", "critical"}
 
 
@@ -20,22 +21,21 @@ def _built(_own_working_store: None) -> None:
     build_guide()
 
 
+@pytest.mark.parametrize("kind", PLACES)
 @pytest.mark.parametrize("visit", ["wide", "narrow", "dark"])
-def test_no_page_has_a_serious_issue(visit: str, request: pytest.FixtureRequest) -> None:
+def test_no_page_has_a_serious_issue(visit: str, kind: str, request: pytest.FixtureRequest) -> None:
     visited: Visit = request.getfixturevalue(visit)
     page = visited.page
-    found = []
-    for kind, path in {**KINDS, **BESIDE}.items():
-        page.goto(visited.address + path)
-        if kind.startswith("answer"):
-            page.wait_for_function("() => document.documentElement.dataset.live")
-        page.evaluate(AXE)
-        result = page.evaluate("() => axe.run(document, {resultTypes: ['violations']})")
-        found += [
-            (kind, issue["id"], node["target"], node["failureSummary"])
-            for issue in result["violations"]
-            if issue["impact"] in SERIOUS
-            for node in issue["nodes"][:3]
-        ]
-        assert len(result["passes"]) > 10, kind  # or it has not looked
+    page.goto(visited.address + PLACES[kind])
+    if kind.startswith("answer"):
+        page.wait_for_function("() => document.documentElement.dataset.live")
+    page.evaluate(AXE)
+    result = page.evaluate("() => axe.run(document, {resultTypes: ['violations']})")
+    found = [
+        (issue["id"], node["target"], node["failureSummary"])
+        for issue in result["violations"]
+        if issue["impact"] in SERIOUS
+        for node in issue["nodes"][:3]
+    ]
+    assert len(result["passes"]) > 10  # or it has not looked
     assert found == []
