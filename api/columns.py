@@ -138,6 +138,7 @@ COMPARISON = (
     *("over_least", "bound_deg", "over_bound", "over_bound_se", "floor_deg", "low_deg", "high_deg"),
     *("availability", "false_sun", "latency_us", "time_ratio", "needed_poses", "needed_low"),
     *("needed_high", "poses", "floor_error_deg", "half_fov_deg", "rank", "status", "reason"),
+    *("finer_dataset", "finer_extractor", "finer_model", "finer_rms_deg", "finer_availability"),
 )
 ADVICE = (
     *("id", "requirement", "value", "detector", "mask", "model_category", "extractor"),

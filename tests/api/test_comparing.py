@@ -1,8 +1,13 @@
 """Comparisons say what the boards, curves and studies say; what does not fit is refused."""
 
+import csv
+import io
+
 import pytest
 
-from api import comparing
+from api import columns, comparing
+from api.cells import cell
+from api.columns import csv_of
 from api.comparing import compare_architectures, compare_pipelines
 from api.http.knowledge import Knowledge
 from api.http.measurements import Measurements
@@ -98,6 +103,9 @@ def test_what_is_far_finer_on_a_part_of_the_samples_stands_beside_the_best(known
     one, other = compare_architectures(known, ["CMOS:Multi-Ap.", "CMOS:Single-Ap."])["items"]
     assert one["finer"] == {name.removeprefix("finer_"): value for name, value in FINER.items()}
     assert other["finer"] is None
+    told, nothing = csv.DictReader(io.StringIO(csv_of(columns.COMPARISON, [one, other])))
+    assert {name: told[name] for name in FINER} == {n: cell(v) for n, v in FINER.items()}
+    assert {nothing[name] for name in FINER} == {""}
 
 
 def test_architectures_that_only_studies_have_are_shown_without_numbers(tmp_path):

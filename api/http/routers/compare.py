@@ -23,7 +23,8 @@ async def compare(known: Known, query: Annotated[CompareQuery, Query()]) -> Answ
     """Two to four pipelines of a data set, or architectures, with all that tells them apart.
 
     That is error, bound, availability, times, calibration poses, errors by condition and by angle,
-    and the studies behind each. As CSV: a row each, without errors by condition and angle.
+    and the studies behind each. As CSV: a row each, without errors by condition and angle; what is
+    far finer on the part that it answers stands in columns of its own.
     """
     try:
         document = _compared(known, query)

@@ -240,3 +240,15 @@ def test_the_scheme_follows_the_system_until_it_is_chosen(dark: Visit) -> None:
     assert page.evaluate(theme) == "light"
     dark.go()
     assert page.evaluate(theme) == "light", "the choice is remembered"
+
+
+def test_the_masthead_keeps_to_one_line_above_what_sticks_below_it(wide: Visit) -> None:
+    page = wide.go("/")
+    for width in (901, 1060, 1061, 1140, 1141, 1280, 1600):
+        page.set_viewport_size({"width": width, "height": 900})
+        bottom, top = page.evaluate(
+            "() => [document.querySelector('.masthead').getBoundingClientRect().height,"
+            " parseFloat(getComputedStyle(document.querySelector('#requirements')).top)]"
+        )
+        assert bottom < top, width
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
