@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import pickle
 import shutil
 import ssl
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from fcntl import LOCK_EX, flock
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -118,9 +120,21 @@ FRAMES = ("cmos-single-aperture", "pd-slit")
 
 
 @pytest.fixture(scope="session")
-def built(tmp_path_factory: pytest.TempPathFactory) -> Bundle:
-    """A bundle with every table, and samples of two data sets; nobody changes it."""
-    return build(tmp_path_factory.mktemp("deposit") / "bundle", frames=FRAMES)
+def built(tmp_path_factory: pytest.TempPathFactory, worker_id: str) -> Bundle:
+    """A bundle with every table, and samples of two data sets; nobody changes it.
+
+    It takes seconds to build: what one worker has built is there for all.
+    """
+    run = tmp_path_factory.getbasetemp()
+    place = (run if worker_id == "master" else run.parent) / "deposit"
+    place.mkdir(exist_ok=True)
+    kept = place / "bundle.pickle"
+    with (place / "lock").open("w") as lock:
+        flock(lock, LOCK_EX)
+        if not kept.exists():
+            made = build(place / "bundle", frames=FRAMES)
+            kept.write_bytes(pickle.dumps(made))
+        return pickle.loads(kept.read_bytes())  # type: ignore[no-any-return]
 
 
 @pytest.fixture

@@ -214,7 +214,7 @@ def test_what_measures_a_task_is_of_its_data_and_methods_alone() -> None:
 def test_an_address_where_nothing_answers_is_named(
     address: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    monkeypatch.setattr(dask_cluster, "_PATIENCE_S", 1)
+    monkeypatch.setattr(dask_cluster, "_PATIENCE_S", 0.2)
     with pytest.raises(ClusterError, match=f"no Dask scheduler answers at {address}"):
         measured(Store(tmp_path), scheduler=address)
 
