@@ -49,7 +49,7 @@ function group(attribute, vocabulary, counts) {
     chosen.classList.toggle("set", words.length > 0);
   });
   const open = state.include[attribute].length + state.exclude[attribute].length > 0
-    || (OPEN_AT_FIRST.has(attribute) && matchMedia("(min-width: 901px)").matches);
+    || (OPEN_AT_FIRST.has(attribute) && matchMedia("(min-width: 1141px)").matches);
   return h("details", { class: "group", open, "data-group": attribute },
     h("summary", {}, ATTRIBUTE_NAMES[attribute], chosen),
     split

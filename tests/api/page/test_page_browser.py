@@ -252,3 +252,18 @@ def test_the_masthead_keeps_to_one_line_above_what_sticks_below_it(wide: Visit) 
         )
         assert bottom < top, width
         assert page.evaluate("document.documentElement.scrollWidth") <= width
+
+
+@pytest.mark.parametrize("width", [701, 900, 1000, 1140, 1141])
+def test_between_phone_and_desk_no_word_of_the_answer_runs_over_its_cell(
+    wide: Visit, width: int
+) -> None:
+    wide.page.set_viewport_size({"width": width, "height": 900})
+    page = wide.go("/?task=Accuracy&detector=CMOS&min_fov_deg=100")
+    assert page.locator("#requirements-form").is_visible() == (width > 1140)
+    over = page.locator(".architectures td, .architectures th").evaluate_all(
+        "cells => cells.filter(cell => cell.scrollWidth > cell.clientWidth)"
+        ".map(cell => cell.textContent)"
+    )
+    assert over == []
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
