@@ -1,6 +1,6 @@
 /* The leaderboard: every pipeline on a data set, against the physical bound. */
 
-import { byId, choice, copyable, h, problemNotice } from "./dom.js";
+import { byId, choice, coded, copyable, h, problemNotice } from "./dom.js";
 import { judged } from "./judged.js";
 import { address, getAll, getJson, saveCsv } from "./service.js";
 import { show, state } from "./state.js";
@@ -193,9 +193,9 @@ function draw() {
   const floored = rows.find((r) => r.floor_deg > 0);
   const url = address(`/v1/leaderboard/${encodeURIComponent(dataset)}`, { condition, field_deg: field || null, limit: 500 });
   byId("board-card").replaceChildren(h("div", { class: "dataset-card" },
-    card && h("p", {}, card.description),
+    card && h("p", {}, coded(card.description)),
     card?.stands_for?.idealisation && h("p", {}, h("strong", {}, "An idealisation"), `: ${card.stands_for.idealisation}`),
-    card?.setups?.[condition]?.description && h("p", {}, h("strong", {}, condition), `: ${card.setups[condition].description}`),
+    card?.setups?.[condition]?.description && h("p", {}, h("strong", {}, condition), ": ", coded(card.setups[condition].description)),
     h("p", { class: "bound-line" }, "Cramér–Rao bound: ", h("strong", {}, degrees(bound)), " RMS",
       floored && [" · with the unit unknown but for flat and dark readings ", h("strong", {}, degrees(floored.bound_unit_deg)), " · ", h("span", { title: FLOOR }, "accuracy floor "), h("strong", {}, degrees(floored.floor_deg))],
       card && [` · version ${card.version}`, card.follows?.length > 0 && [" · follows ", card.follows.map((k, i) => [i > 0 && ", ", h("a", { href: `/studies/${encodeURIComponent(k)}` }, k)])]]),

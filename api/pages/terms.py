@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 
@@ -20,6 +21,7 @@ NONE = "None"
 LABEL = "survey label"
 """The term that says what a label of the survey's source is."""
 
+_LITERAL = re.compile(r"(?P<quotes>``?)(?P<code>[^`]+)(?P=quotes)")
 _LABEL = re.compile(r"\b(?:sec|tab|eq|fe|model|alg):[\w-]+")
 WITHOUT = {
     "mask": "no mask",
@@ -80,9 +82,24 @@ def term(name: str, text: str | None = None) -> Markup:
     return link.format(id=known.id, short=known.short, text=text or name)
 
 
+def coded(text: str, prose: Callable[[str], Markup] = Markup.escape) -> Markup:
+    """Return a text, what stands between backquotes as code and the rest by `prose`."""
+    parts, at = [], 0
+    for found in _LITERAL.finditer(text):
+        code = Markup("<code>{}</code>").format(found["code"])
+        parts += [prose(text[at : found.start()]), code]
+        at = found.end()
+    return Markup("").join([*parts, prose(text[at:])])
+
+
 def explained(text: str) -> Markup:
-    """Return a text, each abbreviation's first place in it with its meaning."""
+    """Return a text, each abbreviation's first place in it with its meaning, literals as code."""
     met: set[str] = set()
+    return coded(text, lambda prose: _explained(prose, met))
+
+
+def _explained(text: str, met: set[str]) -> Markup:
+    """Return a text with the meanings of abbreviations not `met` before, which it adds there."""
     parts: list[Markup] = []
     at = 0
     for found in _abbreviations().finditer(text):
@@ -133,5 +150,5 @@ def labelled(text: str) -> Markup:
     return Markup("").join([*parts, Markup.escape(text[at:])])
 
 
-GIVEN = (term, explained, shown, named, named_here, value, labelled)
+GIVEN = (term, coded, explained, shown, named, named_here, value, labelled)
 """What templates are given as filters."""

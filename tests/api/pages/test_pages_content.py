@@ -234,6 +234,23 @@ def test_an_abbreviation_is_explained_at_its_first_place_and_no_part_of_a_name_i
     assert shown("None", "mask") == "no mask"
 
 
+def test_what_stands_between_backquotes_is_code_and_nothing_else_of_a_text_changes() -> None:
+    assert explained("RMS of `RMS_deg`: ``a < b``, one ` alone") == (
+        f"{explained('RMS')} of <code>RMS_deg</code>: <code>a &lt; b</code>, one ` alone"
+    )
+
+
+@pytest.mark.parametrize(
+    "path",
+    ["/algorithms/escm", "/datasets/cmos-encoded", "/datasets/qpd-maskless-pyramid",
+     "/search?q=sqrt"],
+)  # fmt: skip
+def test_no_page_shows_the_backquotes_of_its_sources(atlas: Client, path: str) -> None:
+    page = atlas.get(path, accept="text/html").text
+    assert "<code>" in page
+    assert "`" not in re.sub(r"<(script|style|pre)\b.*?</\1>", "", page, flags=re.DOTALL)
+
+
 def test_numbers_have_three_digits_no_exponent_and_a_dash_for_none() -> None:
     assert [number(x) for x in (0.0123456, 123.4, 2e-7, 0.0, None)] == [
         "0.0123",
