@@ -18,6 +18,10 @@ from survey_data.nearest import nearest
 #: Every split of a dataset.
 SPLITS = ("calibration", "test", "repeat")
 
+#: In the place of a condition: the first one's readings, calibrated with the directions that drawn
+#: benches give, in turn. No preset has a condition of this name.
+ON_BENCH = "on-bench"
+
 
 @dataclass(frozen=True, order=True)
 class Cell:
@@ -45,6 +49,11 @@ class Samples(Protocol):
     @property
     def sun(self) -> Floats:
         """Unit vectors (N, 3): true ones, in the calibration split its reference's."""
+        ...
+
+    @property
+    def truth(self) -> Floats:
+        """Unit vectors (N, 3): where the Sun or lamp truly stood."""
         ...
 
     @property
@@ -96,6 +105,11 @@ class Preset(Protocol):
     @property
     def name(self) -> str:
         """Unique name."""
+        ...
+
+    @property
+    def unit(self) -> int:
+        """Which unit of its sensor is seen; 0 is the standard one."""
         ...
 
     @property

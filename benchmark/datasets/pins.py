@@ -10,6 +10,9 @@ Place = tuple[str, str, str]  # (dataset, condition, split)
 #: Bounds come out of linear algebra, whose last bits are other ones on other processors.
 BOUND_TOLERANCE = 1e-4
 
+#: What a board states once of its data set's test split.
+BOARD_FACTS = ("bound_unit_deg", "bench_deg", "bench_aligned_deg", "boresight_deg", "oracle_deg")
+
 
 @dataclass(frozen=True)
 class Pin:
@@ -31,6 +34,8 @@ class Pin:
     head_bound_deg, head_hash
         The same bound, and the hash, of the first `benchmark.datasets.samples.HEAD` samples: what
         a check in seconds compares.
+    bound_unit_deg, bench_deg, bench_aligned_deg, boresight_deg, oracle_deg
+        What a board states once of the test split (`benchmark.datasets.controls.board_facts`).
     data_hash
         `benchmark.datasets.samples.samples_hash`.
     """
@@ -45,6 +50,11 @@ class Pin:
     observable: int | None = None
     bound_deg: float | None = None
     head_bound_deg: float | None = None
+    bound_unit_deg: float | None = None
+    bench_deg: float | None = None
+    bench_aligned_deg: float | None = None
+    boresight_deg: float | None = None
+    oracle_deg: float | None = None
 
     @property
     def place(self) -> Place:
@@ -56,7 +66,7 @@ class Pin:
         for name in ("n", "data_hash", "head_hash", "observable"):
             if getattr(self, name) != getattr(other, name):
                 return f"{name} {getattr(other, name)}, pinned {getattr(self, name)}"
-        for name in ("bound_deg", "head_bound_deg"):
+        for name in ("bound_deg", "head_bound_deg", *BOARD_FACTS):
             pinned, found = getattr(self, name), getattr(other, name)
             if not alike(pinned, found):
                 return f"{name} {found}, pinned {pinned}"

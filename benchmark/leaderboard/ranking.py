@@ -51,7 +51,7 @@ def order(numbers: Row, identity: object) -> tuple[Any, ...]:
     By error; those that answer fewer than 95 % of the observable samples come behind all others,
     those without an error last. `identity` decides between equals.
     """
-    error = numbers["rms_deg"]
+    error = numbers["charged_deg"]
     return (error is None, not is_available(numbers), error or 0.0, identity)
 
 

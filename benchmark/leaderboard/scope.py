@@ -5,7 +5,10 @@
    it, or, where none gives an error (a method of blooming waits for light that blooms), with those
    of the leading pipelines, with all where it has none of them; the `LEADING` first pipelines;
    every pipeline that a mapped study used on such a sensor.
-3. The `LEADING` first pipelines under the first condition on `UNITS` units.
+3. Under the first condition on other units: what errs at most `CLOSE` times as much as the first
+   on the standard unit can lead the board, and is scored on `UNITS` units; what errs at most
+   `BEHIND` times as much on `UNITS_BEHIND`. What is further behind is scored no further.
+4. The `LEADING` first pipelines on these units again, calibrated on drawn benches (`ON_BENCH`).
 
 What another condition does to a pipeline far behind under the first one helps nobody choose;
 `sunatlas benchmark` measures it for whoever asks.
@@ -14,13 +17,15 @@ What another condition does to a pipeline far behind under the first one helps n
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
+from dataclasses import replace
 from functools import cache
 from itertools import groupby
 from types import MappingProxyType
 from typing import Any
 
-from benchmark.contract import Cell
+from benchmark.contract import ON_BENCH, Cell
 from benchmark.leaderboard.ranking import order
+from benchmark.metrics.score import is_available
 from benchmark.plan.combinations import cells, scorable
 from benchmark.plan.parts import Parts, installed
 from registry.resolution import resolve_all
@@ -29,9 +34,14 @@ Row = Mapping[str, Any]
 #: Keys of studies by detector, mask, extractor and model of a pipeline that they used.
 Studied = Mapping[tuple[str, str, str, str], tuple[str, ...]]
 
-#: Units that leading pipelines are scored on, the standard one among them.
-UNITS = 5
-#: Pipelines of a board that are.
+#: Times the first one's error on the standard unit up to which a pipeline can lead its board.
+CLOSE = 1.5
+#: Units that such pipelines are scored on, the standard one among them.
+UNITS = 10
+#: Times the first one's error up to which a pipeline is scored on `UNITS_BEHIND` units.
+BEHIND = 4.0
+UNITS_BEHIND = 5
+#: Pipelines of a board that are scored under every condition, and on drawn benches.
 LEADING = 5
 
 
@@ -72,7 +82,7 @@ def followers(
         preset = parts.presets[dataset]
         board = list(group)
         ranked = sorted(
-            (cell for cell in board if scores[cell]["rms_deg"] is not None),
+            (cell for cell in board if scores[cell]["charged_deg"] is not None),
             key=lambda cell: order(scores[cell], cell),
         )
         leading = ranked[:LEADING]
@@ -89,11 +99,33 @@ def followers(
             for cell in kept
         ]
         found += [
-            Cell(dataset, cell.condition, cell.extractor, cell.model, unit)
+            replace(cell, unit=unit)
+            for cell, units in _units(ranked, scores)
+            for unit in range(1, units)
+        ]
+        found += [
+            replace(cell, condition=ON_BENCH, unit=unit)
             for cell in leading
-            for unit in range(1, UNITS)
+            for unit in range(UNITS)
         ]
     return sorted(found)
+
+
+def _units(ranked: list[Cell], scores: Mapping[Cell, Row]) -> Iterator[tuple[Cell, int]]:
+    """Give of each pipeline that is not far behind the first the number of its units.
+
+    What answers too seldom to be ranked is not held against the first: it stays on one unit.
+    """
+    if not ranked:
+        return
+    first = scores[ranked[0]]
+    for cell in ranked:
+        if is_available(scores[cell]) == is_available(first):
+            times = scores[cell]["charged_deg"] / first["charged_deg"]
+            if times <= CLOSE:
+                yield cell, UNITS
+            elif times <= BEHIND:
+                yield cell, UNITS_BEHIND
 
 
 def wanted(scores: Mapping[Cell, Row], parts: Parts) -> frozenset[Cell]:

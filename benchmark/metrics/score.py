@@ -2,7 +2,8 @@
 
 A sample is *observable* where its direction can be told at all (`benchmark.metrics.bounds`). Errors
 are those of the answers to observable samples; that an observable sample has no answer lowers the
-availability, and that an unobservable one has is a false Sun.
+availability, and that an unobservable one has is a false Sun. What false Suns cost is charged: the
+rank is by the error over all answers, whether the sample was observable or not.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from algorithms.contract import Floats
 from benchmark.metrics.rings import RINGS, ring_errors
 
 #: Raised when a metric's definition changes: scores of two versions never stand side by side.
-METRIC_VERSION = 3
+METRIC_VERSION = 4
 
 #: Share of observable samples that a pipeline has to answer to be ranked among its like.
 AVAILABLE = 0.95
@@ -27,6 +28,7 @@ SIGNIFICANT_DIGITS = 5
 RING_DIGITS = 4
 _UNIT_TOLERANCE = 1e-6
 _ROUNDING_DEG = 1e-12
+_FEWEST_ALIGNED = 3
 
 
 @dataclass(frozen=True)
@@ -43,6 +45,10 @@ class Score:
     #: answered share of the samples that are not observable
     false_sun: float
     rms_deg: float
+    #: root mean square over all answers, those to samples that are not observable among them
+    charged_deg: float
+    #: `rms_deg` that is left after the best rotation of all answers onto the truth
+    aligned_deg: float
     median_deg: float
     p95_deg: float
     p997_deg: float
@@ -63,8 +69,6 @@ class Score:
     bound_unit_deg: float
     #: `rms_deg` over `bound_unit_deg`
     over_bound_unit: float
-    #: least accuracy: root of the squares of `bound_unit_deg` and of the calibration's own error
-    floor_deg: float
     #: rms error by off-axis angle, one a ring of `benchmark.metrics.rings.RINGS`
     rings_deg: tuple[float, ...]
 
@@ -112,13 +116,11 @@ def score(
     repeated: ArrayLike | None = None,
     *,
     bound_unit_deg: ArrayLike | None = None,
-    reference_error_deg: float = 0.0,
 ) -> Score:
     """Score predictions against the truth and the Cramer-Rao bounds.
 
-    Precision and accuracy are two numbers. Noise alone limits how precise an answer is, and
-    `bound_deg` says how far; how accurate it is, a calibration limits, too, which knows the unit as
-    far as its flats and darks tell and directions as well as its own reference does: `floor_deg`.
+    Noise alone limits how precise an answer is (`bound_deg`); a calibration that knows the unit as
+    far as its flats and darks tell limits its accuracy a little more (`bound_unit_deg`).
 
     Parameters
     ----------
@@ -136,14 +138,11 @@ def score(
         where there are none.
     bound_unit_deg
         As `bound_deg`, with the unit unknown but for flats and darks; None where there is none.
-    reference_error_deg
-        Systematic error of the directions that the calibration was given, root mean square.
 
     Raises
     ------
     ValueError
-        On another shape, no samples, a row partly NaN, a prediction that is not a unit vector, or
-        an error of the reference that is negative or not finite.
+        On another shape, no samples, a row partly NaN, or a prediction that is not a unit vector.
     """
     truth = _vectors(sun, "sun")
     guess = _vectors(predicted, "predicted")
@@ -156,8 +155,6 @@ def score(
             f"bound_deg and observable must have shape ({len(truth)},), and bound_unit_deg, too; "
             f"got {bound.shape}, {seen.shape} and {unit_bound.shape}"
         )
-    if not 0 <= reference_error_deg < math.inf:
-        raise ValueError(f"reference_error_deg must not be negative; got {reference_error_deg}")
     answered = _answered(guess)
     judged = answered & seen
     error = separation_deg(guess[judged], truth[judged])
@@ -168,6 +165,8 @@ def score(
         availability=_share(answered[seen]),
         false_sun=_share(answered[~seen]),
         rms_deg=_rms(error),
+        charged_deg=_rms(separation_deg(guess[answered], truth[answered])),
+        aligned_deg=_rms(aligned_error_deg(guess[judged], truth[judged])),
         median_deg=_quantile(error, 0.5),
         p95_deg=_quantile(error, 0.95),
         p997_deg=_quantile(error, 0.997),
@@ -182,9 +181,27 @@ def score(
         over_bound_se=over_bound_se,
         bound_unit_deg=rms_bound_unit,
         over_bound_unit=over_bound_unit,
-        floor_deg=math.hypot(rms_bound_unit, reference_error_deg),
         rings_deg=ring_errors(truth[seen], answered[seen], separation_deg(guess, truth)[seen]),
     )
+
+
+def aligned_error_deg(predicted: ArrayLike, sun: ArrayLike) -> Floats:
+    """Errors (N,) in degrees that the best rotation leaves, as an alignment in flight does.
+
+    The rotation is the one that least squares give (Wahba's problem, by singular values); of fewer
+    than three directions it is not told, and errors stay what they are.
+
+    Parameters
+    ----------
+    predicted, sun
+        Unit vectors (N, 3).
+    """
+    p, s = np.asarray(predicted, np.float64), np.asarray(sun, np.float64)
+    if len(p) < _FEWEST_ALIGNED:
+        return separation_deg(p, s)
+    u, _, vt = np.linalg.svd(s.T @ p)
+    turn = u @ np.diag([1.0, 1.0, float(np.sign(np.linalg.det(u) * np.linalg.det(vt)))]) @ vt
+    return separation_deg(p @ turn.T, s)
 
 
 def repeatability_deg(repeated: ArrayLike) -> float:

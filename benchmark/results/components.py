@@ -23,7 +23,7 @@ from survey_data.json_reading import members, read_json, require_kind
 #: Layout of the stored files; raised when a field changes its meaning.
 SCHEMA_VERSION = 2
 #: Numbers of older metrics than this cannot be told apart from today's columns.
-OLDEST_METRIC = 2
+OLDEST_METRIC = 4
 
 #: What a cell's key is made of, in order.
 KEYED = ("harness", "dataset", "extractor", "model")

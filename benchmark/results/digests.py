@@ -18,6 +18,10 @@ _COMPONENT_DIGITS = 16
 #: Modules that turn data and implementations into numbers.
 _HARNESS = (
     "algorithms.pipeline",
+    "algorithms.references",
+    "benchmark.datasets.benches",
+    "benchmark.datasets.corrected",
+    "benchmark.datasets.method_bound",
     "benchmark.metrics.rings",
     "benchmark.metrics.score",
     "benchmark.running.generated",

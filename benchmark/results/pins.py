@@ -7,8 +7,8 @@ from dataclasses import asdict
 from pathlib import Path
 
 from benchmark.contract import SPLITS
-from benchmark.datasets.pins import Pin, Place
-from benchmark.results.tables import StoreError, above_zero, count, read, text_of, word
+from benchmark.datasets.pins import BOARD_FACTS, Pin, Place
+from benchmark.results.tables import StoreError, above_zero, count, read, size, text_of, word
 
 _COLUMNS = {
     "dataset": word,
@@ -19,6 +19,7 @@ _COLUMNS = {
     "observable": count,
     "bound_deg": above_zero,
     "head_bound_deg": above_zero,
+    **dict.fromkeys(BOARD_FACTS, size),
     "data_hash": word,
     "head_hash": word,
 }
@@ -53,7 +54,7 @@ def _contradiction(pin: Pin) -> str:
     if pin.split != "test":
         told = [
             name
-            for name in ("observable", "bound_deg", "head_bound_deg")
+            for name in ("observable", "bound_deg", "head_bound_deg", *BOARD_FACTS)
             if getattr(pin, name) is not None
         ]
         return f"{told[0]} belongs to the split test alone" if told else ""

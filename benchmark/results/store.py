@@ -65,8 +65,6 @@ _SCORE_COLUMNS: Mapping[str, Reader] = {
     **dict.fromkeys(("bias_alpha_deg", "bias_beta_deg"), number),
     "reason": str,
 }
-#: Columns of scores that came with metric 3.
-_LATER = ("bound_unit_deg", "over_bound_unit", "floor_deg")
 #: Numbers of a row of a sweep.
 SWEPT = (
     *("found_fraction", "kept_fraction", "wrong_fraction"),
@@ -146,7 +144,7 @@ class Store:
             raise StoreError(f"{folder}: expected a directory of tables")
         found: dict[Cell, Row] = {}
         for path in sorted(self.scores_directory.glob("*.csv")):
-            for line, row in read(path, _SCORE_COLUMNS, _LATER):
+            for line, row in read(path, _SCORE_COLUMNS):
                 if row["unit"] is None:
                     raise StoreError(f"{path}, line {line}: expected a number in unit")
                 names = (row.pop(name) for name in ("condition", "extractor", "model", "unit"))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -94,9 +94,7 @@ def text_of(columns: Sequence[str], rows: Iterable[Mapping[str, Any]]) -> str:
     return csv_text(columns, ([spelt(row.get(name)) for name in columns] for row in rows))
 
 
-def read(
-    path: Path, columns: Mapping[str, Reader], later: Collection[str] = ()
-) -> list[tuple[int, Row]]:
+def read(path: Path, columns: Mapping[str, Reader]) -> list[tuple[int, Row]]:
     """Read (line number, row) of a table; nothing where there is no file.
 
     Parameters
@@ -105,8 +103,6 @@ def read(
         Of the file.
     columns
         What each column holds, in the order of the header.
-    later
-        Columns that an older file may be without: None in each of its rows.
 
     Raises
     ------
@@ -124,9 +120,8 @@ def read(
     found: list[tuple[int, Row]] = []
     try:
         header = next(lines, [])
-        missing = {name: None for name in columns if name in later and name not in header}
-        readers = [(name, reader) for name, reader in columns.items() if name not in missing]
-        if header != [name for name, _ in readers]:
+        readers = list(columns.items())
+        if header != list(columns):
             raise StoreError(
                 f"{path}, line 1: expected the columns {', '.join(columns)}; "
                 f"got {', '.join(header) or 'none'}"
@@ -135,7 +130,7 @@ def read(
             where = f"{path}, line {lines.line_num}"
             if len(cells) != len(readers):
                 raise StoreError(f"{where}: expected {len(readers)} cells, got {len(cells)}")
-            found.append((lines.line_num, {**_row(cells, readers, where), **missing}))
+            found.append((lines.line_num, _row(cells, readers, where)))
     except csv.Error as error:
         raise StoreError(f"{path}, line {lines.line_num}: not CSV ({error})") from error
     if not text.endswith("\n"):

@@ -74,6 +74,7 @@ class _Reading:
         if preset.observation is Observation.FRAMES:
             brightest = max(float(np.max(seen)), 1.0)
             method.measure((seen * (255.0 / brightest)).astype(np.uint8))
+        if seen.dtype != np.float64:  # as corrected readings are
             method.measure(seen.astype(np.float64))
         return bool(np.isfinite(found).all(axis=1).any())
 

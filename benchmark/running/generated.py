@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from collections import OrderedDict
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, field, replace
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from algorithms.contract import Floats
+from algorithms.contract import Extractor, Floats
+from algorithms.pipeline import extracted
+from algorithms.references import ReferenceCorrection
 from benchmark.canonical import digest
 from benchmark.contract import SPLITS, Bound, Preset, Samples
+from benchmark.datasets.controls import board_facts
+from benchmark.datasets.corrected import corrected, correction
 from benchmark.datasets.pins import Pin
 from benchmark.datasets.samples import HEAD, head_hash, samples_hash
 from benchmark.metrics.score import stored
@@ -21,6 +25,10 @@ from benchmark.simulator.light.memory import memory
 _KEPT = 2
 #: Bytes of kept observations from which on only one dataset is: a worker stays below 1.5 GB.
 _KEPT_BYTES = 128 * 2**20
+#: Bytes from which on corrected observations are not kept but made again for each extractor, so
+#: many samples at a time.
+_CORRECTED_BYTES = 256 * 2**20
+_BATCH = 16
 
 
 @dataclass(frozen=True)
@@ -32,14 +40,21 @@ class Generated:
     preset
         Of unit 0.
     splits
-        Samples by split; another unit than the standard one has no split ``repeat``.
+        Samples by split; another unit than the standard one has no split ``repeat``. They are
+        corrected by the unit's references already where there is no `correction`.
     bound_deg, bound_unit_deg
         Cramer-Rao bounds (N,) of the test split, with the unit known and unknown; None for another
         unit, and the second where there is none.
     observable
         Test samples (N,) whose direction is observable.
     pins
-        Of the standard unit; none for another.
+        Of the standard unit, of the data before correction; none for another.
+    bound
+        As a whole, of the standard unit; None for another.
+    correction
+        By the unit's references, of samples that would take too much memory corrected.
+    features
+        What extractors found, by their names and splits: for who asks for the same again.
     """
 
     preset: Preset
@@ -48,6 +63,9 @@ class Generated:
     bound_unit_deg: Floats | None
     observable: NDArray[np.bool_]
     pins: tuple[Pin, ...]
+    bound: Bound | None = None
+    correction: ReferenceCorrection | None = None
+    features: dict[tuple[str, str], Floats] = field(default_factory=dict)
 
 
 _Place = tuple[str, str, int, str]  # dataset, condition, unit, digest of the parameters
@@ -81,14 +99,58 @@ def generated(
         seen_by = preset.as_unit(unit) if unit else preset
         wanted = SPLITS if not unit else ("calibration", "test")
         splits = {split: seen_by.generate(condition, split) for split in wanted}
-        for samples in splits.values():  # methods share them, and what they find in them
-            np.asarray(samples.observations).flags.writeable = False
         if unit:
-            _kept[place] = _of_another_unit(preset, condition, splits, all_observable)
+            data = _of_another_unit(preset, condition, splits, all_observable)
         else:  # its bound, which scores need, tells what is observable
-            _kept[place] = _of_unit_zero(preset, condition, splits)
+            data = _of_unit_zero(preset, condition, splits)
+        left = _corrected_once(data.splits, correction(seen_by, condition))
+        _kept[place] = replace(data, correction=left)
     _kept.move_to_end(place)
     return _kept[place]
+
+
+def found_features(data: Generated, extractor: Extractor, split: str) -> Floats:
+    """Return what an extractor finds in a split (N, F), found once for all who ask."""
+    place = extractor.about.name, split
+    if place not in data.features:
+        samples = data.splits[split]
+        step = len(samples.sun) if data.correction is None else _BATCH
+        parts = (_part(samples, start, start + step) for start in range(0, len(samples.sun), step))
+        ready = (corrected(data.correction, part) for part in parts)
+        found = [extracted(extractor, one.observations, one.origin_px) for one in ready]
+        data.features[place] = found[0] if len(found) == 1 else np.concatenate(found)
+    return data.features[place]
+
+
+def _part(samples: Samples, start: int, stop: int) -> Samples:
+    """Return some of the samples, as extractors look at them."""
+    rows = slice(start, stop)
+    origin = samples.origin_px
+    return cast(
+        "Samples",
+        replace(
+            cast("Any", samples),
+            observations=samples.observations[rows],
+            sun=samples.sun[rows],
+            origin_px=None if origin is None else origin[rows],
+            context=None,
+            true_sun=None,
+        ),
+    )
+
+
+def _corrected_once(
+    splits: dict[str, Samples], by: ReferenceCorrection | None
+) -> ReferenceCorrection | None:
+    """Put corrected samples in the place of those read; return what is left to correct by."""
+    size = 8 * sum(np.asarray(samples.observations).size for samples in splits.values())
+    later = by if size > _CORRECTED_BYTES else None
+    for split, samples in splits.items():
+        if later is None:
+            splits[split] = corrected(by, samples)
+        # methods share them, and what they find in them
+        np.asarray(splits[split].observations).flags.writeable = False
+    return later
 
 
 def forget() -> None:
@@ -116,7 +178,7 @@ def _of_unit_zero(preset: Preset, condition: str, splits: dict[str, Samples]) ->
     pins = tuple(_pin(preset, condition, split, splits[split], bound) for split in SPLITS)
     unit = bound.unit_angle_deg
     unit_angle = None if unit is None else np.asarray(unit)
-    return Generated(preset, splits, angle, unit_angle, observable, pins)
+    return Generated(preset, splits, angle, unit_angle, observable, pins, bound)
 
 
 def _of_another_unit(
@@ -140,6 +202,7 @@ def _pin(preset: Preset, condition: str, split: str, samples: Samples, bound: Bo
             "observable": int(np.asarray(bound.observable, dtype=np.bool_).sum()),
             "bound_deg": rms_bound(bound),
             "head_bound_deg": rms_bound(bound, HEAD),
+            **board_facts(preset, condition, np.asarray(samples.sun), bound),
         }
     return Pin(
         preset.name,

@@ -11,12 +11,12 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
-from benchmark.contract import Cell
+from benchmark.contract import ON_BENCH, Cell
 from benchmark.datasets.pins import Pin, Place
 from benchmark.metrics.score import METRICS
 from benchmark.plan.parts import Parts
 from benchmark.results.tables import Row
-from benchmark.running.task import Task, TaskResult
+from benchmark.running.task import Task, TaskResult, data_condition
 
 
 @dataclass(frozen=True)
@@ -70,16 +70,18 @@ def tasks_of(cells: Iterable[Cell], parts: Parts, pins: Mapping[Place, Pin]) -> 
             parts.extractor(extractor),
             tuple(parts.model(cell.model) for cell in group),
             unit,
-            _all_observable(pins, dataset, condition),
+            _all_observable(pins, dataset, data_condition(parts.preset(dataset), condition)),
         )
-        for (dataset, unit, condition, extractor), group in groupby(
-            sorted(cells, key=_order), key=lambda cell: _order(cell)[:4]
+        for (dataset, unit, _, condition, extractor), group in groupby(
+            sorted(cells, key=_order), key=lambda cell: _order(cell)[:5]
         )
     ]
 
 
-def _order(cell: Cell) -> tuple[str, int, str, str, str]:
-    return cell.dataset, cell.unit, cell.condition, cell.extractor, cell.model
+def _order(cell: Cell) -> tuple[str, int, bool, str, str, str]:
+    """Put drawn benches first: who has just measured the first condition still has its data."""
+    not_bench = cell.condition != ON_BENCH
+    return cell.dataset, cell.unit, not_bench, cell.condition, cell.extractor, cell.model
 
 
 def _all_observable(pins: Mapping[Place, Pin], dataset: str, condition: str) -> bool:

@@ -6,18 +6,27 @@ becomes an outcome with its reason.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from algorithms.chain import Scored
 from algorithms.contract import Extractor, Floats, UnusableDataError
-from algorithms.pipeline import Pipeline, extracted
-from benchmark.contract import Preset
+from algorithms.pipeline import Pipeline
+from benchmark.contract import ON_BENCH, Preset
+from benchmark.datasets.benches import reported
+from benchmark.datasets.method_bound import method_bound_deg
 from benchmark.datasets.pins import Pin
-from benchmark.metrics.score import Score, score
-from benchmark.running.generated import Generated, generated
+from benchmark.metrics.score import Score, score, separation_deg
+from benchmark.running.generated import Generated, found_features, generated
 from benchmark.running.threads import one_thread
+
+#: Benches that each unit of a leading pipeline is calibrated on beside a perfect one.
+BENCHES = 2
 
 
 @dataclass(frozen=True)
@@ -49,13 +58,17 @@ class Outcome:
 
     `refused`: the model's ``fit`` raised UnusableDataError, its contract's word for data it cannot
     work on. That is a result of method and data, as repeatable as a score; any other error is a
-    failure, tried again by the next run.
+    failure, tried again by the next run. `sample_errors_deg` are the errors (N,) of the test
+    samples under the first condition, NaN without an answer, and `found` says where (N,) the
+    extractor gave features; None under other conditions.
     """
 
     model: str
     reason: str
     score: Score | None = None
     refused: bool = False
+    sample_errors_deg: Floats | None = None
+    found: NDArray[np.bool_] | None = None
 
 
 @dataclass(frozen=True)
@@ -69,61 +82,119 @@ class TaskResult:
 
 def measure(task: Task) -> TaskResult:
     """Score every model of a task; never raises for an implementation's error."""
+    condition = data_condition(task.preset, task.condition)
     with one_thread():
         try:
-            data = generated(
-                task.preset, task.condition, task.unit, all_observable=task.all_observable
-            )
+            data = generated(task.preset, condition, task.unit, all_observable=task.all_observable)
         except Exception as error:  # noqa: BLE001 - any error of a dataset is a row with its reason
             return _failed(task, error, "generating data")
         try:
-            extractor = task.extractor.for_sensor(task.preset.geometry_for(task.condition))
-            features = {
-                split: extracted(extractor, samples.observations, samples.origin_px)
-                for split, samples in data.splits.items()
-            }
+            extractor = task.extractor.for_sensor(task.preset.geometry_for(condition))
+            features = {split: found_features(data, extractor, split) for split in data.splits}
         except Exception as error:  # noqa: BLE001 - likewise of an extractor
             return _failed(task, error, "extracting", data.pins)
-        outcomes = tuple(_outcome(task, extractor, model, features, data) for model in task.models)
+        scored = _on_benches if task.condition == ON_BENCH else _own
+        outcomes = tuple(
+            _outcome(partial(scored, task, extractor, model, features, data), model.about.name)
+            for model in task.models
+        )
         return TaskResult(task, data.pins, outcomes)
 
 
-def _outcome(
+def data_condition(preset: Preset, condition: str) -> str:
+    """Return the condition whose readings a cell's condition is about."""
+    return preset.conditions[0] if condition == ON_BENCH else condition
+
+
+def _outcome(scored: Callable[[], Outcome], name: str) -> Outcome:
+    """Calibrate and score one pipeline on the features its extractor found."""
+    try:
+        return scored()
+    except UnusableDataError as error:
+        return Outcome(name, reason_of(error), refused=True)
+    except Exception as error:  # noqa: BLE001 - any error of a model is a row with its reason
+        return Outcome(name, reason_of(error))
+
+
+def _own(
     task: Task,
     extractor: Extractor,
-    model_class: Scored,
+    model: Scored,
     features: dict[str, Floats],
     data: Generated,
 ) -> Outcome:
-    """Calibrate and score one pipeline on the features its extractor found."""
-    name = model_class.about.name
-    try:
-        geometry = task.preset.geometry_for(task.condition)
-        model = model_class.for_sensor(geometry, extractor.about.kind)
-        pipeline = Pipeline(extractor, model)
-        try:
-            known = data.splits["calibration"]
-            pipeline.fit_features(features["calibration"], known.sun, known.context)
-        except UnusableDataError as error:
-            return Outcome(name, reason_of(error), refused=True)
-        predicted = pipeline.predict_features(features["test"], data.splits["test"].context)
-        repeated = None
-        if "repeat" in features:
-            again = data.splits["repeat"].context
-            repeated = _repeated(pipeline.predict_features(features["repeat"], again), data)
-        truth = data.splits["test"].sun
-        result = score(
-            predicted,
-            truth,
-            data.bound_deg,
-            data.observable,
-            repeated,
-            bound_unit_deg=data.bound_unit_deg,
-            reference_error_deg=task.preset.reference_error_deg(task.condition),
-        )
-    except Exception as error:  # noqa: BLE001 - any error of a model is a row with its reason
-        return Outcome(name, reason_of(error))
-    return Outcome(name, "", result)
+    """Score a pipeline that was told the true directions of its calibration."""
+    pipeline = _pipeline(task, extractor, model)
+    _fit(pipeline, features, data, data.splits["calibration"].truth)
+    repeated = None
+    if "repeat" in features:
+        again = data.splits["repeat"].context
+        repeated = _repeated(pipeline.predict_features(features["repeat"], again), data)
+    test = data.splits["test"]
+    answers = pipeline.predict_features(features["test"], test.context)
+    posterior = _posterior_deg(task, model, data)
+    found = score(
+        answers,
+        test.sun,
+        data.bound_deg if posterior is None else posterior,
+        data.observable,
+        repeated,
+        bound_unit_deg=data.bound_unit_deg if posterior is None else posterior,
+    )
+    if task.condition != task.preset.conditions[0]:
+        return Outcome(model.about.name, "", found)
+    return Outcome(
+        model.about.name,
+        "",
+        found,
+        sample_errors_deg=separation_deg(answers, test.sun),
+        found=np.asarray(np.isfinite(features["test"]).all(axis=1)),
+    )
+
+
+def _posterior_deg(task: Task, model: Scored, data: Generated) -> Floats | None:
+    """Bound (N,) of a method that knows the samples before or other instruments; None else."""
+    if data.bound is None or not model.about.context:
+        return None
+    context = frozenset(model.about.context)
+    return method_bound_deg(task.preset, task.condition, context, data.bound)
+
+
+def _on_benches(
+    task: Task,
+    extractor: Extractor,
+    model: Scored,
+    features: dict[str, Floats],
+    data: Generated,
+) -> Outcome:
+    """Score a pipeline calibrated with the directions of drawn benches; errors are pooled."""
+    on_bench = task.preset.as_unit(task.unit)
+    known, test = data.splits["calibration"].truth, data.splits["test"]
+    answers = []
+    for draw in range(BENCHES):
+        told = reported(on_bench, task.preset.conditions[0], np.asarray(known), draw)
+        pipeline = _pipeline(task, extractor, model)
+        _fit(pipeline, features, data, told)
+        answers.append(pipeline.predict_features(features["test"], test.context))
+    each = [score(answer, test.sun, None, data.observable) for answer in answers]
+    pooled = score(
+        np.concatenate(answers),
+        np.tile(test.sun, (BENCHES, 1)),
+        None,
+        np.tile(data.observable, BENCHES),
+    )
+    aligned = math.sqrt(float(np.mean([one.aligned_deg**2 for one in each])))
+    return Outcome(model.about.name, "", replace(pooled, aligned_deg=aligned))
+
+
+def _pipeline(task: Task, extractor: Extractor, model: Scored) -> Pipeline:
+    geometry = task.preset.geometry_for(data_condition(task.preset, task.condition))
+    return Pipeline(extractor, model.for_sensor(geometry, extractor.about.kind))
+
+
+def _fit(pipeline: Pipeline, features: dict[str, Floats], data: Generated, sun: Floats) -> None:
+    """Fit to the calibration's features; UnusableDataError where the model refuses them."""
+    pipeline.fit_features(features["calibration"], sun, data.splits["calibration"].context)
 
 
 def _repeated(predicted: Floats, data: Generated) -> Floats:

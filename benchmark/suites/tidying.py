@@ -14,6 +14,7 @@ from benchmark.results.components import current
 from benchmark.results.record import opened
 from benchmark.results.store import Store
 from benchmark.running import durations, pinning, times
+from benchmark.running.task import data_condition
 from survey_data.leftovers import temporary_directory
 
 
@@ -58,10 +59,10 @@ def tidy(store: Store, *, parts: Parts | None = None) -> Tidied:
         there = len(record.scores), len(record.pins)
 
         def is_current(cell: Cell) -> bool:
-            return replace(cell, unit=0) in planned and record.outdated(cell, components) in (
-                (),
-                ("failed",),
-            )
+            read = data_condition(known.preset(cell.dataset), cell.condition)
+            if replace(cell, unit=0, condition=read) not in planned:
+                return False
+            return record.outdated(cell, components) in ((), ("failed",))
 
         def is_pinned(place: Place) -> bool:
             return place in places and record.is_pinned(place, components)

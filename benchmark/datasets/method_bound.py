@@ -1,0 +1,30 @@
+"""The bound that holds for a method by what it reads: samples before, other instruments."""
+
+from __future__ import annotations
+
+from algorithms.contract import Floats
+from benchmark.contract import Bound, Preset
+
+
+def method_bound_deg(
+    preset: Preset, condition: str, context: frozenset[str], bound: Bound
+) -> Floats | None:
+    """Return the bound (N,) in degrees of a method that reads more than one sample's signal.
+
+    Parameters
+    ----------
+    preset, condition
+        Whose test split it is.
+    context
+        Columns that the method reads beside the features.
+    bound
+        Of single samples.
+
+    Returns
+    -------
+    ndarray or None
+        None where the single samples' bound holds: of readings apart, and of methods that read
+        nothing else.
+    """
+    posterior = getattr(preset, "posterior_bound_deg", None)
+    return None if posterior is None else posterior(condition, context, bound)
