@@ -59,13 +59,13 @@ def _same_scores_are_read_once() -> Iterator[None]:
 
     read, known = store.read, {}
 
-    def kept(path, columns, later=()):
+    def kept(path, columns):
         if not path.is_file():
-            return read(path, columns, later)
+            return read(path, columns)
         digest = hashlib.blake2b(path.read_bytes()).digest()
-        key = (path.name, digest, tuple(columns.items()), tuple(later))
+        key = (path.name, digest, tuple(columns.items()))
         if key not in known:
-            known[key] = read(path, columns, later)
+            known[key] = read(path, columns)
         return [(line, dict(row)) for line, row in known[key]]
 
     with pytest.MonkeyPatch.context() as patch:

@@ -50,7 +50,7 @@ def board_facts(
         "bench_deg": stored(preset.reference_error_deg(condition)),
         "bench_aligned_deg": stored(aligned_bench_deg(preset, condition, sun)),
         "boresight_deg": _rms(separation_deg(np.tile(BORESIGHT, (len(sun), 1)), sun)[seen]),
-        "oracle_deg": _rms(separation_deg(oracle(preset, condition, sun, bound), sun)[seen]),
+        "oracle_deg": _rms(_found(separation_deg(oracle(preset, condition, sun, bound), sun))),
     }
 
 
@@ -59,11 +59,15 @@ def oracle(preset: Preset, condition: str, sun: Floats, bound: Bound) -> Floats:
     noise = generator(preset.name, preset.version, condition, "oracle").standard_normal(
         (len(sun), 2)
     )
-    seen = np.asarray(bound.observable, dtype=np.bool_)
-    size = np.radians(np.where(seen, bound.angle_deg, np.nan)) / math.sqrt(2.0)
+    known = np.asarray(bound.observable, dtype=np.bool_) & np.isfinite(bound.angle_deg)
+    size = np.radians(np.where(known, bound.angle_deg, np.nan)) / math.sqrt(2.0)
     first, second = tangent_axes(sun)
     moved = sun + size[:, None] * (noise[:, :1] * first + noise[:, 1:] * second)
     return cast("Floats", moved / np.linalg.norm(moved, axis=1, keepdims=True))
+
+
+def _found(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    return values[np.isfinite(values)]
 
 
 def _rms(values: NDArray[np.float64]) -> float | None:

@@ -22,8 +22,6 @@ from survey_data.json_reading import members, read_json, require_kind
 
 #: Layout of the stored files; raised when a field changes its meaning.
 SCHEMA_VERSION = 2
-#: Numbers of older metrics than this cannot be told apart from today's columns.
-OLDEST_METRIC = 4
 
 #: What a cell's key is made of, in order.
 KEYED = ("harness", "dataset", "extractor", "model")
@@ -51,7 +49,7 @@ class Components:
     series
         Of reference features.
     metric
-        Version of the metric that the numbers are by; those of an older one are out of date.
+        Version of the metric that the numbers are by.
     """
 
     harness: str = ""
@@ -61,17 +59,11 @@ class Components:
     series: Mapping[str, Facts] = field(default_factory=dict)
     metric: int = METRIC_VERSION
 
-    @property
-    def _harness(self) -> str:
-        """Digest of the harness, with the metric's version where it is an older one."""
-        older = self.metric != METRIC_VERSION
-        return f"{self.harness}, metric {self.metric}" if older else self.harness
-
     def cell_key(self, cell: Cell) -> str:
         """Everything a cell's numbers depend on, in one word; ComponentsError naming what lacks."""
         return "-".join(
             (
-                self._harness,
+                self.harness,
                 self.digest("datasets", cell.dataset),
                 self.digest("extractors", cell.extractor),
                 self.digest("models", cell.model),
@@ -89,7 +81,7 @@ class Components:
         """Return the same of a point of a sweep; what no series fits has the series `""`."""
         return "-".join(
             (
-                self._harness,
+                self.harness,
                 self.digest("series", series) if series else "",
                 self.digest("extractors", extractor),
             )
@@ -120,7 +112,7 @@ class Components:
 
     def differences(self, other: Components) -> list[tuple[str, str, str]]:
         """Return (component, digest here, digest there) of what is not alike; empty for none."""
-        here, there = self._harness, other._harness
+        here, there = self.harness, other.harness
         found = [] if here == there else [("harness", here, there)]
         for kind in _KINDS:
             ours, theirs = getattr(self, kind), getattr(other, kind)
@@ -147,12 +139,10 @@ class Components:
     def read(cls, path: Path) -> Components:
         """Return what a file holds; none where there is no file.
 
-        The file of an older metric is read, too: its numbers are out of date.
-
         Raises
         ------
         ComponentsError
-            For another layout, or a metric older than `OLDEST_METRIC` or newer than this one.
+            For another layout, or another metric than this one.
         """
         try:
             held = read_json(path)
@@ -164,9 +154,8 @@ class Components:
         if (
             not isinstance(held, dict)
             or held.get("schema") != SCHEMA_VERSION
-            or not isinstance(metric, int)
             or isinstance(metric, bool)
-            or not OLDEST_METRIC <= metric <= METRIC_VERSION
+            or metric != METRIC_VERSION
         ):
             raise ComponentsError(
                 f"{path}: expected schema {SCHEMA_VERSION} and metric {METRIC_VERSION}; delete "

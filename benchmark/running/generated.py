@@ -54,7 +54,7 @@ class Generated:
     correction
         By the unit's references, of samples that would take too much memory corrected.
     features
-        What extractors found, by their names and splits: for who asks for the same again.
+        What extractors found, by their classes and splits: for who asks for the same again.
     """
 
     preset: Preset
@@ -65,7 +65,7 @@ class Generated:
     pins: tuple[Pin, ...]
     bound: Bound | None = None
     correction: ReferenceCorrection | None = None
-    features: dict[tuple[str, str], Floats] = field(default_factory=dict)
+    features: dict[tuple[type[Extractor], str], Floats] = field(default_factory=dict)
 
 
 _Place = tuple[str, str, int, str]  # dataset, condition, unit, digest of the parameters
@@ -111,7 +111,7 @@ def generated(
 
 def found_features(data: Generated, extractor: Extractor, split: str) -> Floats:
     """Return what an extractor finds in a split (N, F), found once for all who ask."""
-    place = extractor.about.name, split
+    place = type(extractor), split
     if place not in data.features:
         samples = data.splits[split]
         step = len(samples.sun) if data.correction is None else _BATCH

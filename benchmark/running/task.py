@@ -71,6 +71,14 @@ class Outcome:
     found: NDArray[np.bool_] | None = None
 
 
+class RefusedError(Exception):
+    """A model's ``fit`` refused its calibration: a result, unlike a refusal to predict."""
+
+    def __init__(self, reason: UnusableDataError) -> None:
+        super().__init__(str(reason))
+        self.reason = reason
+
+
 @dataclass(frozen=True)
 class TaskResult:
     """What a worker hands back; pins are of the standard unit only."""
@@ -110,8 +118,8 @@ def _outcome(scored: Callable[[], Outcome], name: str) -> Outcome:
     """Calibrate and score one pipeline on the features its extractor found."""
     try:
         return scored()
-    except UnusableDataError as error:
-        return Outcome(name, reason_of(error), refused=True)
+    except RefusedError as error:
+        return Outcome(name, reason_of(error.reason), refused=True)
     except Exception as error:  # noqa: BLE001 - any error of a model is a row with its reason
         return Outcome(name, reason_of(error))
 
@@ -193,8 +201,11 @@ def _pipeline(task: Task, extractor: Extractor, model: Scored) -> Pipeline:
 
 
 def _fit(pipeline: Pipeline, features: dict[str, Floats], data: Generated, sun: Floats) -> None:
-    """Fit to the calibration's features; UnusableDataError where the model refuses them."""
-    pipeline.fit_features(features["calibration"], sun, data.splits["calibration"].context)
+    """Fit to the calibration's features; RefusedError where the model refuses them."""
+    try:
+        pipeline.fit_features(features["calibration"], sun, data.splits["calibration"].context)
+    except UnusableDataError as error:
+        raise RefusedError(error) from error
 
 
 def _repeated(predicted: Floats, data: Generated) -> Floats:

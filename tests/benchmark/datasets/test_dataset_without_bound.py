@@ -58,8 +58,8 @@ def test_errors_are_scored_and_ranked_and_everything_named_bound_is_null(
         assert 0 < row["rms_deg"] < 5
         assert 0 < row["repeatability_deg"] < 5
         names = ("bound_deg", "over_bound", "over_bound_se")
-        names += ("bound_unit_deg", "over_bound_unit", "floor_deg")
-        assert [row[name] for name in names] == [None] * 6
+        names += ("bound_unit_deg", "over_bound_unit")
+        assert [row[name] for name in names] == [None] * 5
         assert row["availability"] == 1
     assert {pin.bound_deg for pin in store.pins().values()} == {None}
     board = board_of(store)

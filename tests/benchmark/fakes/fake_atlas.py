@@ -47,6 +47,19 @@ class FakeSamples:
     sun: Any
     origin_px: Any = None
     context: Any = None
+    true_sun: Any = None
+
+    @property
+    def truth(self) -> Any:
+        return self.sun if self.true_sun is None else self.true_sun
+
+
+@dataclass(frozen=True)
+class FakeSetup:
+    """A condition without a bench, of a sensor that has no references."""
+
+    bench: Any = None
+    sensor: Any = None
 
 
 @dataclass(frozen=True)
@@ -141,6 +154,9 @@ class Diodes:
         currents = (1.0 + gain) * (sun @ NORMALS.T) + self.noise(condition) * noise
         currents[10:, 0] += self.late
         return FakeSamples(currents[:n], sun[:n])
+
+    def condition(self, name: str) -> FakeSetup:
+        return FakeSetup()
 
     def references(self, condition: str) -> dict[str, Any]:
         return {}

@@ -13,7 +13,7 @@ from benchmark.results.store import SWEPT
 
 def numbers(rms: float | None = 0.5, **more: Any) -> dict[str, Any]:
     """Return a score: nothing but an error and full availability."""
-    plain = {**dict.fromkeys(METRICS), "rms_deg": rms, "availability": 1.0}
+    plain = {**dict.fromkeys(METRICS), "rms_deg": rms, "charged_deg": rms, "availability": 1.0}
     return {"status": "ok", **plain, "reason": "", **more}
 
 

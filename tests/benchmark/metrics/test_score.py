@@ -91,7 +91,7 @@ def test_errors_are_of_answers_to_observable_samples_and_shares_count_the_rest(s
         assert getattr(result, name) == pytest.approx(value, rel=1e-6, nan_ok=True), name
 
 
-def test_an_unobservable_sample_moves_no_error_however_wrong_its_answer():
+def test_an_answer_to_an_unobservable_sample_is_charged_and_moves_no_other_error():
     rng = np.random.default_rng(1)
     sun = cone(rng, 200)
     predicted = tangent_noise(rng, sun, 0.3)
@@ -100,11 +100,13 @@ def test_an_unobservable_sample_moves_no_error_however_wrong_its_answer():
     plain = score(predicted, sun, observable=seen, **bounds)
     predicted[~seen] = -sun[~seen]
     wrong = score(predicted, sun, observable=seen, **bounds)
-    assert wrong == plain
+    assert wrong == replace(plain, charged_deg=wrong.charged_deg)
+    everything = np.concatenate([separation_deg(predicted, sun)[seen], np.full(50, 180.0)])
+    assert wrong.charged_deg == pytest.approx(np.sqrt(np.mean(everything**2)))
     predicted[~seen] = np.nan
     silent = score(predicted, sun, observable=seen, **bounds)
     assert (plain.false_sun, silent.false_sun) == (1.0, 0.0)
-    assert silent == replace(plain, false_sun=0.0)
+    assert silent == replace(plain, false_sun=0.0, charged_deg=plain.rms_deg)
 
 
 def test_axis_errors_leave_out_directions_behind_the_detector():
@@ -127,34 +129,40 @@ def test_the_bound_is_taken_over_samples_both_found_and_observable():
     assert (result.availability, result.false_sun) == (pytest.approx(2 / 3), 1.0)
 
 
-def test_the_second_bound_and_the_floor_are_over_the_same_samples():
+def test_the_second_bound_is_over_the_same_samples():
     sun = np.array([[0.0, 0.0, 1.0]] * 4)
     predicted = rotated(sun, [1, 0, 0], 3.0)
     predicted[0] = np.nan
     seen = np.array([True, True, True, False])
     bounds = {"bound_deg": np.ones(4), "bound_unit_deg": np.array([100.0, 1.0, 2.0, np.inf])}
-    result = score(predicted, sun, observable=seen, **bounds, reference_error_deg=1.5)
+    result = score(predicted, sun, observable=seen, **bounds)
     unit = np.sqrt((1 + 4) / 2)
     assert (result.bound_deg, result.over_bound) == (1.0, pytest.approx(3.0))
     assert result.bound_unit_deg == pytest.approx(unit)
     assert result.over_bound_unit == pytest.approx(3 / unit)
-    assert result.floor_deg == pytest.approx(np.sqrt(unit**2 + 1.5**2))
-    perfect = score(predicted, sun, observable=seen, **bounds)
-    assert perfect.floor_deg == perfect.bound_unit_deg
 
 
-def test_without_the_second_bound_there_is_no_floor_and_the_first_stands():
+def test_without_the_second_bound_the_first_stands():
     sun = np.array([[0.0, 0.0, 1.0]] * 2)
-    row = score(sun, sun, np.ones(2), np.ones(2, bool), reference_error_deg=0.1).row()
-    names = ("bound_deg", "bound_unit_deg", "over_bound_unit", "floor_deg")
-    assert [row[name] for name in names] == [1.0, None, None, None]
+    row = score(sun, sun, np.ones(2), np.ones(2, bool)).row()
+    assert [row[name] for name in ("bound_deg", "bound_unit_deg", "over_bound_unit")] == [
+        1.0,
+        None,
+        None,
+    ]
 
 
-@pytest.mark.parametrize("wrong", [-0.1, np.inf, np.nan])
-def test_a_reference_s_error_is_a_size(wrong):
-    sun = np.array([[0.0, 0.0, 1.0]])
-    with pytest.raises(ValueError, match="reference_error_deg must not be negative"):
-        score(sun, sun, None, [True], reference_error_deg=wrong)
+def test_a_misalignment_is_all_that_alignment_takes_away():
+    rng = np.random.default_rng(3)
+    sun = cone(rng, 300)
+    noisy = tangent_noise(rng, sun, 0.05)
+    turned = rotated(noisy, [1.0, -2.0, 0.5], 0.7)
+    plain, off = (score(p, sun, None, np.ones(300, bool)) for p in (noisy, turned))
+    assert off.rms_deg > 0.4
+    assert off.aligned_deg == pytest.approx(plain.aligned_deg, rel=1e-6)
+    best, _ = Rotation.align_vectors(sun, turned)
+    left = separation_deg(best.apply(turned), sun)
+    assert off.aligned_deg == pytest.approx(np.sqrt(np.mean(left**2)), rel=1e-9)
 
 
 def test_without_a_bound_the_errors_stand_and_nothing_is_compared():
@@ -202,7 +210,10 @@ def test_nothing_observable_leaves_only_false_suns():
     predicted = sun.copy()
     predicted[0] = np.nan
     row = score(predicted, sun, np.full(4, np.inf), np.zeros(4, bool)).row()
-    assert {name: value for name, value in row.items() if value is not None} == {"false_sun": 0.75}
+    assert {name: value for name, value in row.items() if value is not None} == {
+        "false_sun": 0.75,
+        "charged_deg": 0.0,
+    }
     assert not is_available(row)
 
 
