@@ -7,12 +7,12 @@ and from both the pixels that are of no use. One stage serves every method.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from algorithms.contract import Floats
+from algorithms.kernels.reference_correction import correct, replace_bad
 
 #: A pixel is bad whose response to the flat's light is less or more than these times the median...
 LEAST_RESPONSE, LARGEST_RESPONSE = 0.5, 2.0
@@ -20,8 +20,6 @@ LEAST_RESPONSE, LARGEST_RESPONSE = 0.5, 2.0
 HOT_SHARE = 0.1
 #: Dimensions of a detector whose elements have neighbours that can stand in for a bad one.
 _PROFILE, _FRAME = 1, 2
-#: A profile of fewer elements is a handful of photodiodes: none can stand in for another.
-_FEWEST_PIXELS = 32
 
 
 @dataclass(frozen=True)
@@ -31,7 +29,7 @@ class ReferenceCorrection:
     ``corrected = (reading - dark) / gain``, the relative gain being ``(flat - dark)`` over its mean
     over good elements. Saturated readings stay one plateau: they become ``full_scale`` less the
     median dark reading. A bad pixel gets the mean of its good neighbours (8 of a frame, 4 of a
-    profile); one without any stays NaN-free at 0, the level of darkness.
+    profile); without any it is 0, the level of darkness.
 
     Parameters
     ----------
@@ -63,7 +61,8 @@ class ReferenceCorrection:
     bad: NDArray[np.bool_] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        dark, flat = np.asarray(self.dark, np.float64), np.asarray(self.flat, np.float64)
+        dark = np.ascontiguousarray(self.dark, np.float64)
+        flat = np.asarray(self.flat, np.float64)
         if dark.shape != flat.shape or dark.ndim not in {_PROFILE, _FRAME}:
             raise ValueError(
                 "dark and flat must be of one detector, of one or two dimensions; got shapes "
@@ -80,6 +79,7 @@ class ReferenceCorrection:
             bad |= (light < LEAST_RESPONSE * middle) | (light > LARGEST_RESPONSE * middle)
             bad |= dark - np.median(dark) > HOT_SHARE * middle
         gain = light / float(light[~bad].mean())
+        object.__setattr__(self, "dark", dark)
         object.__setattr__(self, "bad", bad)
         object.__setattr__(self, "gain", np.where(bad, 1.0, gain))
 
@@ -102,52 +102,32 @@ class ReferenceCorrection:
         shape = self.dark.shape
         if given.ndim != len(shape) + 1 or (origin_px is None and given.shape[1:] != shape):
             raise ValueError(f"observations must have shape (N, *{shape}); got {given.shape}")
-        if origin_px is None:
-            return self._of(given, self.dark, self.gain, self.bad)
-        origin = np.asarray(origin_px, dtype=np.int64)
-        places = self._windows(given.shape, origin)
-        return self._of(given, self.dark[places], self.gain[places], self.bad[places])
+        origin = np.zeros((len(given), 2), dtype=np.int64)
+        if origin_px is not None:
+            origin = self._within(given.shape, np.asarray(origin_px, dtype=np.int64))
+        # profiles and currents are frames of one row
+        rows = (1, *shape)[-2:]
+        windows = given.reshape(len(given), *((1, *given.shape[1:])[-2:]))
+        found = np.empty(windows.shape, dtype=np.float64)
+        scale = np.inf if self.full_scale is None else self.full_scale
+        plateau = scale - float(np.median(self.dark))
+        dark, gain = self.dark.reshape(rows), self.gain.reshape(rows)
+        correct(windows, origin, dark, gain, scale, plateau, found)
+        if self.bad.any():
+            bad = self.bad.reshape(rows)
+            reach = (1, 1) if len(shape) == _FRAME else (0, 2)
+            replace_bad(found, origin, bad, np.argwhere(bad), *reach)
+        return found.reshape(given.shape)
 
-    def _windows(
-        self, shape: tuple[int, ...], origin: NDArray[np.int64]
-    ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Return the rows (N, H, 1) and columns (N, 1, W) of the detector in each window."""
+    def _within(self, shape: tuple[int, ...], origin: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Return the places (N, 2) of windows; ValueError where one is not on the detector."""
+        if len(shape) != _FRAME + 1:
+            raise ValueError("only frames have windows; leave origin_px=None")
         count, height, width = shape
         rows, columns = self.dark.shape
         if origin.shape != (count, 2):
             raise ValueError(f"origin_px must have shape ({count}, 2); got {origin.shape}")
         last = origin + np.array([width, height])
-        if (origin < 0).any() or (last > (columns, rows)).any():
+        if (origin < 0).any() or (last > np.array([columns, rows])).any():
             raise ValueError(f"a window of {width} by {height} reaches beyond {columns} by {rows}")
-        down = origin[:, 1, None, None] + np.arange(height)[None, :, None]
-        across = origin[:, 0, None, None] + np.arange(width)[None, None, :]
-        return down, across
-
-    def _of(
-        self, given: NDArray[Any], dark: Floats, gain: Floats, bad: NDArray[np.bool_]
-    ) -> Floats:
-        found = (given - dark) / gain
-        if self.full_scale is not None:
-            found[given >= self.full_scale] = self.full_scale - float(np.median(self.dark))
-        if bad.any():
-            mask = np.broadcast_to(bad, found.shape)
-            samples = np.flatnonzero(mask.reshape(len(found), -1).any(axis=1))
-            found[samples] = _replaced(found[samples], mask[samples])
-        return found
-
-
-def _replaced(values: Floats, bad: NDArray[np.bool_]) -> Floats:
-    """Replace bad elements by the mean of the good ones beside them; 0 where there are none."""
-    reach = (2,) if values.ndim == _FRAME else (1, 1)
-    padding = [(0, 0), *((size, size) for size in reach)]
-    light = np.pad(np.where(bad, 0.0, values), padding)
-    good = np.pad(~bad, padding)
-    total, count = np.zeros(values.shape), np.zeros(values.shape)
-    for shift in np.ndindex(*(2 * size + 1 for size in reach)):
-        place = (
-            slice(None),
-            *(slice(s, s + n) for s, n in zip(shift, values.shape[1:], strict=True)),
-        )
-        total += light[place]
-        count += good[place]
-    return np.where(bad, total / np.maximum(count, 1), values)
+        return origin

@@ -6,9 +6,11 @@
    of the leading pipelines, with all where it has none of them; the `LEADING` first pipelines;
    every pipeline that a mapped study used on such a sensor.
 3. Under the first condition on other units: what errs at most `CLOSE` times as much as the first
-   on the standard unit can lead the board, and is scored on `UNITS` units; what errs at most
-   `BEHIND` times as much on `UNITS_BEHIND`. What is further behind is scored no further.
-4. The `LEADING` first pipelines on these units again, calibrated on drawn benches (`ON_BENCH`).
+   on the standard unit can lead the board, and the first `MOST` of these are scored on `UNITS`
+   units; of the others that err at most `BEHIND` times as much the first `MOST` on
+   `UNITS_BEHIND`. What is further behind is scored no further.
+4. Of the `LEADING` first pipelines those that can lead or are not far behind on `UNITS` units
+   again, calibrated on drawn benches (`ON_BENCH`).
 
 What another condition does to a pipeline far behind under the first one helps nobody choose;
 `sunatlas benchmark` measures it for whoever asks.
@@ -41,6 +43,8 @@ UNITS = 10
 #: Times the first one's error up to which a pipeline is scored on `UNITS_BEHIND` units.
 BEHIND = 4.0
 UNITS_BEHIND = 5
+#: Pipelines of a board that are scored on so many units each.
+MOST = 20
 #: Pipelines of a board that are scored under every condition, and on drawn benches.
 LEADING = 5
 
@@ -98,14 +102,14 @@ def followers(
             for condition in preset.conditions[1:]
             for cell in kept
         ]
+        units = dict(_units(ranked, scores))
         found += [
-            replace(cell, unit=unit)
-            for cell, units in _units(ranked, scores)
-            for unit in range(1, units)
+            replace(cell, unit=unit) for cell, number in units.items() for unit in range(1, number)
         ]
         found += [
             replace(cell, condition=ON_BENCH, unit=unit)
             for cell in leading
+            if cell in units
             for unit in range(UNITS)
         ]
     return sorted(found)
@@ -119,13 +123,14 @@ def _units(ranked: list[Cell], scores: Mapping[Cell, Row]) -> Iterator[tuple[Cel
     if not ranked:
         return
     first = scores[ranked[0]]
+    room = {UNITS: MOST, UNITS_BEHIND: MOST}
     for cell in ranked:
         if is_available(scores[cell]) == is_available(first):
             times = scores[cell]["charged_deg"] / first["charged_deg"]
-            if times <= CLOSE:
-                yield cell, UNITS
-            elif times <= BEHIND:
-                yield cell, UNITS_BEHIND
+            number = UNITS if times <= CLOSE and room[UNITS] else UNITS_BEHIND
+            if times <= BEHIND and room[number]:
+                room[number] -= 1
+                yield cell, number
 
 
 def wanted(scores: Mapping[Cell, Row], parts: Parts) -> frozenset[Cell]:

@@ -17,6 +17,7 @@ from benchmark.results.closure import closure_digest, module_path, syntax_digest
 _COMPONENT_DIGITS = 16
 #: Modules that turn data and implementations into numbers.
 _HARNESS = (
+    "algorithms.kernels.reference_correction",
     "algorithms.pipeline",
     "algorithms.references",
     "benchmark.datasets.benches",

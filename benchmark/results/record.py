@@ -19,6 +19,8 @@ from benchmark.datasets.pins import Pin, Place
 from benchmark.results import recorded
 from benchmark.results.components import Components
 from benchmark.results.journal import Journal
+from benchmark.results.sample_records import is_sample_record, sample_records, take
+from benchmark.results.samples import SampleErrors
 from benchmark.results.store import Store
 from benchmark.results.tables import Row, StoreError
 from survey_data.leftovers import remove_leftovers
@@ -63,6 +65,8 @@ class Record:
         self._score_keys = {cell: known.cell_key(cell) for cell in self.scores}
         self._pin_keys = {place: known.digest("datasets", place[0]) for place in self.pins}
         self._swept_keys = {point: known.point_key(point[0], point[3]) for point in self.swept}
+        #: Errors of samples, of what was measured and is not written yet.
+        self.samples = SampleErrors()
         self._changed = False
         self._read_journal()
 
@@ -107,6 +111,7 @@ class Record:
         pins: Iterable[Pin] = (),
         scores: Mapping[Cell, Row] | None = None,
         swept: Iterable[Row] = (),
+        samples: SampleErrors | None = None,
     ) -> None:
         """Take in what was measured with these components; on return it survives a power cut."""
         records: list[Row] = [
@@ -116,6 +121,7 @@ class Record:
             {"cell": asdict(cell), "score": row, "key": components.cell_key(cell)}
             for cell, row in (scores or {}).items()
         ]
+        records += sample_records(samples) if samples else []
         records += [
             {"swept": row, "key": components.point_key(row["series"], row["extractor"])}
             for row in swept
@@ -184,6 +190,7 @@ class Record:
         )
         if self._changed or used != self._components:
             self.store.write(scores, pins, order(swept) if order else swept, used)
+            self.samples.write(self.store.directory, scores.__contains__)
         self._journal.remove()
 
     def cut_torn(self) -> None:
@@ -197,19 +204,21 @@ class Record:
     def _take(self, record: Any, where: str) -> None:
         self._changed = True
         try:
-            fields, key = set(record), record["key"]
+            fields, key = set(record), record.get("key")
             if fields == {"pin", "key"}:
                 pin = Pin(**record["pin"])
                 self.pins[pin.place], self._pin_keys[pin.place] = pin, key
             elif fields == {"cell", "score", "key"}:
                 cell = Cell(**record["cell"])
                 self.scores[cell], self._score_keys[cell] = record["score"], key
+            elif is_sample_record(record):
+                take(record, self.samples)
             elif fields == {"swept", "key"}:
                 point = point_of(record["swept"])
                 self.swept[point], self._swept_keys[point] = record["swept"], key
             else:
                 raise StoreError(f"{where}: not a record of the journal; fields {sorted(fields)}")
-        except (TypeError, KeyError) as error:
+        except (TypeError, KeyError, ValueError) as error:
             raise StoreError(f"{where}: not a record of the journal ({error!r})") from error
 
 

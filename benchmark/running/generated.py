@@ -25,10 +25,10 @@ from benchmark.simulator.light.memory import memory
 _KEPT = 2
 #: Bytes of kept observations from which on only one dataset is: a worker stays below 1.5 GB.
 _KEPT_BYTES = 128 * 2**20
-#: Bytes from which on corrected observations are not kept but made again for each extractor, so
-#: many samples at a time.
+#: Bytes from which on corrected observations are not kept but made again for each extractor, some
+#: samples at a time.
 _CORRECTED_BYTES = 256 * 2**20
-_BATCH = 16
+_BATCH_BYTES = 32 * 2**20
 
 
 @dataclass(frozen=True)
@@ -114,7 +114,9 @@ def found_features(data: Generated, extractor: Extractor, split: str) -> Floats:
     place = type(extractor), split
     if place not in data.features:
         samples = data.splits[split]
-        step = len(samples.sun) if data.correction is None else _BATCH
+        step = len(samples.sun)
+        if data.correction is not None:
+            step = max(1, _BATCH_BYTES // (8 * int(np.prod(samples.observations.shape[1:]))))
         parts = (_part(samples, start, start + step) for start in range(0, len(samples.sun), step))
         ready = (corrected(data.correction, part) for part in parts)
         found = [extracted(extractor, one.observations, one.origin_px) for one in ready]

@@ -15,6 +15,7 @@ from benchmark.contract import ON_BENCH, Cell
 from benchmark.datasets.pins import Pin, Place
 from benchmark.metrics.score import METRICS
 from benchmark.plan.parts import Parts
+from benchmark.results.samples import CONDITION, Directions, SampleErrors
 from benchmark.results.tables import Row
 from benchmark.running.task import Task, TaskResult, data_condition
 
@@ -97,6 +98,19 @@ def cells_of(result: TaskResult) -> list[Cell]:
         Cell(task.preset.name, task.condition, extractor, outcome.model, task.unit)
         for outcome in result.outcomes
     ]
+
+
+def samples_of(result: TaskResult) -> SampleErrors:
+    """Return the errors of samples of the outcomes that have them, and what the samples are."""
+    found = SampleErrors()
+    if result.task.condition != CONDITION:
+        return found
+    if result.directions is not None:
+        found.directions[result.task.preset.name] = Directions(*result.directions)
+    for cell, outcome in zip(cells_of(result), result.outcomes, strict=True):
+        if outcome.sample_errors_deg is not None and outcome.found is not None:
+            found.add(cell, outcome.sample_errors_deg, outcome.found)
+    return found
 
 
 def numbers_of(result: TaskResult) -> list[Row]:

@@ -22,7 +22,7 @@ from benchmark.results.record import Record, opened
 from benchmark.results.store import Store
 from benchmark.running.backend import outcomes
 from benchmark.running.durations import Durations
-from benchmark.running.planned import FollowUp, cells_of, numbers_of, tasks_of
+from benchmark.running.planned import FollowUp, cells_of, numbers_of, samples_of, tasks_of
 from benchmark.running.task import TaskResult
 
 
@@ -219,7 +219,7 @@ def _keep_all(
             task = result.task
             scores = dict(zip(cells_of(result), numbers_of(result), strict=True))
             new = [pin for pin in result.pins if not record.is_pinned(pin.place, components)]
-            record.keep(components, pins=new, scores=scores)
+            record.keep(components, pins=new, scores=scores, samples=samples_of(result))
             what = f"{task.preset.name} {task.condition} {task.extractor.about.name}"
             counted.add(len(scores), what)
     except KeyboardInterrupt as error:

@@ -81,11 +81,16 @@ class RefusedError(Exception):
 
 @dataclass(frozen=True)
 class TaskResult:
-    """What a worker hands back; pins are of the standard unit only."""
+    """What a worker hands back; pins are of the standard unit only.
+
+    `directions` are true ones (N, 3) of the test samples, which of them are observable and their
+    bounds (N,), of the standard unit.
+    """
 
     task: Task
     pins: tuple[Pin, ...]
     outcomes: tuple[Outcome, ...]
+    directions: tuple[Floats, NDArray[np.bool_], Floats] | None = None
 
 
 def measure(task: Task) -> TaskResult:
@@ -106,7 +111,10 @@ def measure(task: Task) -> TaskResult:
             _outcome(partial(scored, task, extractor, model, features, data), model.about.name)
             for model in task.models
         )
-        return TaskResult(task, data.pins, outcomes)
+        directions = None
+        if data.bound_deg is not None:
+            directions = data.splits["test"].sun, data.observable, data.bound_deg
+        return TaskResult(task, data.pins, outcomes, directions)
 
 
 def data_condition(preset: Preset, condition: str) -> str:
