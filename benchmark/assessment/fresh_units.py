@@ -1,0 +1,129 @@
+"""`python -m benchmark.assessment.fresh_units`: do the boards' leaders lead on units nobody saw?
+
+The first group of every board, which its leader and what is not told apart from it are in, is
+scored on five units more. Printed is for each board whether its leader is in the first group there,
+too, and how much more it errs than the first on these units.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import groupby
+
+import numpy as np
+
+from benchmark.contract import Cell
+from benchmark.leaderboard import scope
+from benchmark.metrics import paired
+from benchmark.metrics.score import is_available
+from benchmark.plan.parts import Parts, installed
+from benchmark.processes import call_to_end
+from benchmark.results.store import PUBLISHED, Store
+from benchmark.results.tables import Row
+from benchmark.running.run import run
+from survey_data.leftovers import temporary_directory
+
+#: Units that no board is made of.
+FRESH = range(scope.UNITS, scope.UNITS + 5)
+
+
+@dataclass(frozen=True)
+class Held:
+    """How the first group of one board did on fresh units.
+
+    Attributes
+    ----------
+    dataset
+        Of the board.
+    pipelines, first
+        How many are on the board, and how many in its first group.
+    leader
+        Chosen on the board's own units.
+    holds
+        Whether it is in the first group on the fresh units, by the same test.
+    over
+        Geometric mean there of its errors over those of the first there.
+    """
+
+    dataset: str
+    pipelines: int
+    first: int
+    leader: Cell
+    holds: bool
+    over: float
+
+
+def first_groups(scores: Mapping[Cell, Row], parts: Parts) -> dict[str, list[Cell]]:
+    """Return the first group of each board, its leader first; cells of the standard unit."""
+    found = {}
+    ranked = (cell for cell in scope.first(parts) if _ranks(scores.get(cell)))
+    for dataset, group in groupby(ranked, key=lambda cell: cell.dataset):
+        board = list(group)
+        logs = _logs(board, scores, range(scope.UNITS))
+        enough = np.isfinite(logs).sum(axis=1) == np.isfinite(logs).sum(axis=1).max()
+        means = np.where(enough, np.nanmean(logs, axis=1), np.inf)
+        leader = int(np.argmin(means))
+        groups = paired.groups(logs, leader)
+        first = [cell for cell, one in zip(board, groups, strict=True) if one == 1]
+        found[dataset] = [board[leader], *(cell for cell in first if cell != board[leader])]
+    return found
+
+
+def held(store: Store, workers: int = 1, *, parts: Parts | None = None) -> list[Held]:
+    """Score the first group of every board on the fresh units; nothing is written to the store."""
+    known = parts or installed()
+    scores = store.scores()
+    groups = first_groups(scores, known)
+    wanted = [replace(c, unit=unit) for cells in groups.values() for c in cells for unit in FRESH]
+    with temporary_directory() as temporary:
+        fresh = Store(temporary)
+        run(wanted, fresh, workers, parts=known)
+        measured = fresh.scores()
+    found = []
+    for dataset, cells in groups.items():
+        logs = _logs(cells, measured, FRESH)
+        best = int(np.argmin(np.nanmean(logs, axis=1)))
+        holds = not paired.separated(logs, best)[0]
+        over = float(paired.over(logs, best)[0])
+        pipelines = sum(cell.dataset == dataset for cell in scope.first(known))
+        found.append(Held(dataset, pipelines, len(cells), cells[0], holds, over))
+    return found
+
+
+def _ranks(row: Row | None) -> bool:
+    return row is not None and row["charged_deg"] is not None and is_available(row)
+
+
+def _logs(cells: Sequence[Cell], scores: Mapping[Cell, Row], units: Iterable[int]) -> np.ndarray:
+    errors = [
+        [scores.get(replace(cell, unit=unit), {"charged_deg": None})["charged_deg"] for unit in units]
+        for cell in cells
+    ]
+    return paired.logarithms(errors)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Print a line a board; exit code 1 where fewer than 38 of 40 leaders hold."""
+    parser = argparse.ArgumentParser(description=main.__doc__)
+    parser.add_argument("--workers", type=int, default=1)
+    found = held(Store(PUBLISHED), parser.parse_args(arguments).workers)
+    for one in found:
+        sys.stdout.write(
+            f"{one.dataset}: {one.first} of {one.pipelines} in the first group; "
+            f"{one.leader.extractor} + {one.leader.model} "
+            f"{'holds' if one.holds else 'is behind'} on fresh units, {one.over:.3f} of the first\n"
+        )
+    holding = sum(one.holds for one in found)
+    small = sum(one.first < 0.1 * one.pipelines for one in found)
+    sys.stdout.write(
+        f"{holding} of {len(found)} leaders are in the first group on units {FRESH[0]} to "
+        f"{FRESH[-1]}; on {small} boards the first group has fewer than 10 % of the pipelines\n"
+    )
+    return 0 if holding >= 0.95 * len(found) else 1
+
+
+if __name__ == "__main__":
+    call_to_end(main)
