@@ -14,13 +14,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.contract import FeatureKind, Floats
+from algorithms.references import ReferenceCorrection
 from benchmark.datasets.calibration import Bench
+from benchmark.datasets.corrected import correction
 from benchmark.datasets.preset import BATCH, Preset
 from benchmark.simulator.flight.drift import AssemblyDrift, PhotodiodeDrift
 from benchmark.simulator.masks.errors import MaskErrors
 from benchmark.simulator.optics.projection import Camera
-from benchmark.simulator.readout.detectors import CurrentReadout
+from benchmark.simulator.readout.detectors import CurrentReadout, PixelArray
 from benchmark.simulator.readout.noise import NoiseStreams
+from benchmark.simulator.sensor import UnitSpread
 from benchmark.simulator.sensors.lens_camera import LensCamera
 from benchmark.simulator.sensors.light_to_frequency import FrequencyCounter
 
@@ -114,6 +117,28 @@ def still_observations(
     )
 
 
+def known_unit(preset: Preset, condition: str) -> ReferenceCorrection | None:
+    """Return the correction by the unit's true dark signals and gains; None without references.
+
+    As `benchmark.datasets.corrected.correction`, from one dark and one flat reading without noise
+    and with finer steps of the converter.
+    """
+    by = correction(preset, condition)
+    sensor = _finely_referred(preset.condition(condition).sensor)
+    if by is None or not isinstance(sensor, UnitSpread):
+        return None
+    still = cast("np.random.Generator", Still())
+    once = replace(preset.offered, flats=1, darks=1)
+    pattern = preset.fixed_pattern(condition)
+    read = sensor.reference_readings(pattern, once, NoiseStreams(still, still, still))
+    dark, flat = (
+        next(values for name, values in read.items() if name.startswith(kind))
+        for kind in ("dark_", "flat_")
+    )
+    steps = 2.0**_FINER_BITS if by.pixels else 1.0
+    return replace(by, dark=dark / steps, flat=flat / steps)
+
+
 def true_places(preset: Preset, condition: str, kind: FeatureKind, sun: Floats) -> Floats | None:
     """(N, 2) spots as geometry puts them for Suns (N, 3), in pixels: no light, no pixels.
 
@@ -177,6 +202,21 @@ def _finely_read(value: Any) -> Any:
     if isinstance(value, FrequencyCounter):
         return replace(value, gate_s=value.gate_s * 2.0**_FINER_BITS)
     return _rebuilt(value, _finely_read, {})
+
+
+def _finely_referred(value: Any) -> Any:
+    """Return a sensor whose readings have finer steps, pixels' too: in digital numbers so small."""
+    if isinstance(value, PixelArray):
+        steps = 2.0**_FINER_BITS
+        return replace(
+            value,
+            gain_e_per_dn=value.gain_e_per_dn / steps,
+            offset_dn=value.offset_dn * steps,
+            bits=value.bits + _FINER_BITS,
+        )
+    if isinstance(value, CurrentReadout | FrequencyCounter):
+        return _finely_read(value)
+    return _rebuilt(value, _finely_referred, {})
 
 
 def _rebuilt(value: Any, of_parts: Any, fixed: dict[str, float]) -> Any:
