@@ -1,8 +1,8 @@
 """Which pipelines have a learning curve: the leaders of each board, by one rule.
 
 Of the standard unit under a data set's first condition, of pipelines that answer often enough to
-be ranked: the one whose error is the smallest multiple of its bound, then the best pipeline of each
-of the next other models, until there are `LEADING`.
+be ranked: the one with the smallest own error, then the best pipeline of each of the next other
+models, until there are `LEADING`.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ def leaders(scores: Iterable[Row], conditions: Mapping[str, str]) -> list[Leader
         if (
             row["condition"] == conditions.get(row["dataset"])
             and row["unit"] == 0
-            and row["over_bound"] is not None
+            and row["charged_deg"] is not None
             and is_available(row)
         ):
             boards.setdefault(row["dataset"], []).append(row)
@@ -69,7 +69,7 @@ def leaders(scores: Iterable[Row], conditions: Mapping[str, str]) -> list[Leader
     for name in sorted(boards):
         best: dict[str, Row] = {}
         for row in sorted(
-            boards[name], key=lambda row: (row["over_bound"], row["extractor"], row["model"])
+            boards[name], key=lambda row: (row["charged_deg"], row["extractor"], row["model"])
         ):
             best.setdefault(row["model"], row)
         for place, row in enumerate(list(best.values())[:LEADING], start=1):
