@@ -221,15 +221,14 @@ class _Chain:
             "perfect": self._answers([told], asked),
             "perfect_dense": self._answers([told, more], asked),
         }
-        found = [
-            perfected.true_places(preset, self._condition, kind, one.truth)
-            for one in (self.calibration, self.test)
+        known = [
+            (perfected.true_features(preset, self._condition, kind, sun, found), sun, context)
+            for found, sun, context in (told, asked)
         ]
-        if found[0] is None or found[1] is None:
-            return answers
-        known = _as_found(found[0], told), _as_found(found[1], asked)
-        answers["places"] = self._answers([known[0]], known[1])
-        answers["places_dense"] = self._answers([*known], known[1])
+        true = [(places, sun, context) for places, sun, context in known if places is not None]
+        if len(true) == len(known):
+            answers["places"] = self._answers(true[:1], true[1])
+            answers["places_dense"] = self._answers(true, true[1])
         return answers
 
     def _still(
@@ -261,12 +260,6 @@ class _Chain:
 
 
 _SPLITS = ("calibration", "test")
-
-
-def _as_found(places: Floats, told: _Told) -> _Told:
-    """Return true places with what is known beside, nothing where the extractor finds nothing."""
-    there = np.isfinite(told[0]).all(axis=1, keepdims=True)
-    return np.where(there, places, np.nan), told[1], told[2]
 
 
 def _judged(errors: Mapping[str, Floats], observable: NDArray[np.bool_]) -> Held:

@@ -25,8 +25,8 @@ PARTS: Mapping[str, str] = {
     "calibration_noise": "noise of the calibration's readings",
     "noise": "noise of the readings",
     "references": "noise of the dark and flat readings",
-    "fixed_pattern": "the fixed pattern",
-    "surroundings": "Earth light, temperature drift and ageing",
+    "fixed_pattern": "the fixed pattern of elements and mask",
+    "surroundings": "the orbit (Earth light, drift, ageing)",
     "poses": "the number of calibration poses",
     "extractor": "the extractor's bias",
     "model": "the model's form",
@@ -37,7 +37,7 @@ _WITHOUT: Mapping[str, str] = {
     "calibration_noise": "with a noise-free calibration",
     "noise": "with noise-free readings",
     "references": "with the unit's true dark signals and gains",
-    "fixed_pattern": "with identical detector elements",
+    "fixed_pattern": "with identical detector elements and the mask as drawn",
     "surroundings": "without Earth light, drift and ageing",
 }
 

@@ -67,7 +67,8 @@ def test_still_readings_are_the_same_every_time_and_noisy_ones_spread_around_the
 def test_true_places_are_a_projection_of_the_directions(name):
     preset, condition = _first(name)
     sun = preset.scene(condition, "test").sun
-    places = perfected.true_places(preset, condition, FeatureKind.SPOT, sun)
+    found = np.zeros((len(sun), 2))
+    places = perfected.true_features(preset, condition, FeatureKind.SPOT, sun, found)
     design = preset.geometry_for(condition)
     model = BuiltPinhole.for_sensor(design, FeatureKind.SPOT)
     glass = preset.condition(condition).sensor.camera.glass.thickness_mm
@@ -79,7 +80,22 @@ def test_true_places_are_a_projection_of_the_directions(name):
 def test_currents_and_balances_have_no_places():
     preset, condition = _first("qpd-single-aperture")
     sun = preset.scene(condition, "test").sun
-    assert perfected.true_places(preset, condition, FeatureKind.BALANCE, sun) is None
+    found = np.zeros((len(sun), 2))
+    assert perfected.true_features(preset, condition, FeatureKind.BALANCE, sun, found) is None
+
+
+def test_spots_of_a_list_go_to_where_their_apertures_cast_light_and_others_stay():
+    preset, condition = _first("cmos-encoded")
+    drawn = perfected.without_fixed_pattern(preset, condition)
+    geometry = preset.geometry_for(condition)
+    sun = np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 1.0]])
+    hole = np.array(geometry.apertures)[0, :2] / geometry.pixel_pitch_mm
+    camera = drawn.condition(condition).sensor.camera
+    true = hole + camera.spot_mm(sun[:1])[0] / geometry.pixel_pitch_mm + geometry.centre_px
+    found = np.array([[*(true + 0.4), 9.0, -500.0, -500.0, 1.0], [np.nan] * 6])
+    moved = perfected.true_features(drawn, condition, FeatureKind.SPOTS, sun, found)
+    np.testing.assert_allclose(moved[0], [*true, 9.0, -500.0, -500.0, 1.0], atol=1e-9)
+    assert np.isnan(moved[1]).all()
 
 
 def test_what_is_not_there_is_not_made_perfect():
