@@ -70,9 +70,11 @@ def sentences() -> str:
 
 def headline_table() -> str:
     """Set the numbers that mapped studies are known for beside the same methods here."""
-    rows, said = [], []
+    rows, said, pins = [], [], Store().pins()
     for row in headlines(Store().rows(), _conditions()):
         stands = f"{row['extractor']} + {row['model']}" if row["dataset"] else "nothing"
+        pin = pins.get((row["dataset"], _conditions().get(row["dataset"], ""), "test"))
+        bench = None if pin is None or row["kind"] == "precision" else pin.bench_deg
         rows.append(
             (
                 row["study"],
@@ -84,13 +86,13 @@ def headline_table() -> str:
                 if row["our_deg"] is None
                 else f"{_angle(row['our_deg'])} ({row['our_statistic']})",
                 "–" if row["ratio"] is None else f"{row['ratio']:.2g}",
-                _angle(row["floor_deg"]),
+                _angle(bench),
                 "–" if row["availability"] is None else f"{100 * row['availability']:.0f} %",
             )
         )
         said.append(f"- {row['study']}, {row['kind']}: {row['difference']}")
     header = ("study", "its number is", "published", "data set", "stands for it", "ours", "ratio")
-    return table((*header, "floor", "answered"), rows) + "\n\n" + "\n".join(said)
+    return table((*header, "bench adds", "answered"), rows) + "\n\n" + "\n".join(said)
 
 
 def _angle(degrees: float | None) -> str:

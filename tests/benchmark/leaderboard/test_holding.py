@@ -92,9 +92,9 @@ def test_spots_of_a_list_go_to_where_their_apertures_cast_light_and_others_stay(
     hole = np.array(geometry.apertures)[0, :2] / geometry.pixel_pitch_mm
     camera = drawn.condition(condition).sensor.camera
     true = hole + camera.spot_mm(sun[:1])[0] / geometry.pixel_pitch_mm + geometry.centre_px
-    found = np.array([[*(true + 0.4), 9.0, -500.0, -500.0, 1.0], [np.nan] * 6])
+    found = np.array([[*(true + 0.4), 9.0, -9999.0, -9999.0, 1.0], [np.nan] * 6])
     moved = perfected.true_features(drawn, condition, FeatureKind.SPOTS, sun, found)
-    np.testing.assert_allclose(moved[0], [*true, 9.0, -500.0, -500.0, 1.0], atol=1e-9)
+    np.testing.assert_allclose(moved[0], [*true, 9.0, -9999.0, -9999.0, 1.0], atol=1e-9)
     assert np.isnan(moved[1]).all()
 
 
