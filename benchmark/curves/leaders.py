@@ -2,7 +2,7 @@
 
 Of the standard unit under a data set's first condition, of pipelines that answer often enough to
 be ranked: the one with the smallest own error, then the best pipeline of each of the next other
-models, until there are `LEADING`.
+models, until there are `LEADING`. A model that gives the same numbers as one before is no other.
 """
 
 from __future__ import annotations
@@ -17,6 +17,8 @@ Row = Mapping[str, Any]
 
 #: Pipelines of a board, each with another model.
 LEADING = 3
+#: Numbers that twins share.
+_SHARED = ("charged_deg", "median_deg", "max_deg", "availability")
 
 
 @dataclass(frozen=True, order=True)
@@ -72,6 +74,8 @@ def leaders(scores: Iterable[Row], conditions: Mapping[str, str]) -> list[Leader
             boards[name], key=lambda row: (row["charged_deg"], row["extractor"], row["model"])
         ):
             best.setdefault(row["model"], row)
-        for place, row in enumerate(list(best.values())[:LEADING], start=1):
+        others = {tuple(row[name] for name in _SHARED): row for row in reversed(best.values())}
+        apart = list(reversed(others.values()))
+        for place, row in enumerate(apart[:LEADING], start=1):
             found.append(Leader(name, place, row["condition"], row["extractor"], row["model"]))
     return found

@@ -107,11 +107,14 @@ def test_all_draws_share_the_whole_split_and_units_differ(learnt):
 def scored(**errors):
     """Rows of a board by model; what answers too rarely or is of another condition is none."""
     plain = {"dataset": "d", "condition": "c", "unit": 0, "extractor": "e", "availability": 1.0}
-    return [{**plain, "model": model, "charged_deg": error} for model, error in errors.items()]
+    return [
+        {**plain, "model": model, **dict.fromkeys(("charged_deg", "median_deg", "max_deg"), error)}
+        for model, error in errors.items()
+    ]
 
 
 def test_leaders_are_the_best_pipelines_of_three_models():
-    rows = scored(a=3.0, b=1.0, c=2.0, f=4.0)
+    rows = scored(a=3.0, b=1.0, c=2.0, f=4.0, twin_of_c=2.0)
     rows += [{**row, "extractor": "other", "charged_deg": 0.9} for row in scored(b=0.0)]
     rows += [
         {**scored(x=0.1)[0], "availability": 0.94},
