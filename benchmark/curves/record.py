@@ -24,6 +24,7 @@ SCHEMA_VERSION = 2
 
 #: Modules between data and methods, and what is kept of a curve.
 _CODE = (
+    "algorithms.kernels.reference_correction",
     "algorithms.pipeline",
     "algorithms.references",
     "benchmark.curves.draws",

@@ -9,8 +9,8 @@ from algorithms.pipeline import extracted
 from algorithms.references import ReferenceCorrection
 from benchmark.contract import Samples
 
-#: Bytes of corrected observations from which on they are made so many samples at a time.
-LARGE_BYTES, FEW = 256 * 2**20, 16
+#: Bytes of corrected observations above which they are made in parts, and bytes of a part.
+_LARGE_BYTES, _PART_BYTES = 256 * 2**20, 16 * 2**20
 _FRAME = 2
 
 
@@ -29,10 +29,11 @@ def features_of(
         Their `benchmark.datasets.corrected.correction`; None leaves them as they are.
     """
     count, origin = len(samples.sun), samples.origin_px
-    large = by is not None and 8 * np.asarray(samples.observations).size > LARGE_BYTES
-    step = FEW if large else max(count, 1)
+    size, step = 8 * np.asarray(samples.observations).size, count
+    if by is not None and size > _LARGE_BYTES:
+        step = max(1, count * _PART_BYTES // size)
     found = []
-    for rows in (slice(start, start + step) for start in range(0, max(count, 1), step)):
+    for rows in (slice(start, start + step) for start in range(0, count, step)):
         read, first = samples.observations[rows], None if origin is None else origin[rows]
         if by is not None:
             read = by.corrected(read, first if by.dark.ndim == _FRAME else None)
