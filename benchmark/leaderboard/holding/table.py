@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
 from contextlib import closing
-from functools import partial
 from pathlib import Path
 from statistics import geometric_mean
 from typing import Any, cast
@@ -128,13 +127,17 @@ def renew(
         known = {name: row for name, row in rows(path).items() if name in leading}
         wanted = [n for n in leading if n in only] if only is not None else behind(known, leading)
         progress(0, len(wanted), "")
-        work, scores = partial(measured, parts=parts), [leading[name] for name in wanted]
-        with closing(as_completed(work, scores, min(workers, max(len(wanted), 1)))) as found:
+        tasks = [(leading[name], parts) for name in wanted]
+        with closing(as_completed(_measured, tasks, workers if len(tasks) > 1 else 1)) as found:
             for done, row in enumerate(found, start=1):
                 known[row["dataset"]] = row
                 replace_file(path, text_of(list(_COLUMNS), [known[n] for n in sorted(known)]))
                 progress(done, len(wanted), row["dataset"])
     return wanted
+
+
+def _measured(task: tuple[Mapping[str, Any], Parts]) -> Row:
+    return measured(*task)
 
 
 def measured(score: Mapping[str, Any], parts: Parts) -> Row:

@@ -174,7 +174,7 @@ def test_only_what_is_behind_is_measured_and_what_is_gone_is_dropped(tmp_path, m
     path = tmp_path / "held_back.csv"
     measured = []
 
-    def pretend(score, parts):
+    def pretend(score, _):
         measured.append(score["dataset"])
         return {**_row(), **score}
 
