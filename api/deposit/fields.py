@@ -154,6 +154,10 @@ _FIELDS: dict[str, tuple[Type, str]] = {
         "string",
         "fitted: where a law fitted to the curve ends; all: the error with all poses; none.",
     ),
+    "bench_deg": (
+        "number",
+        "Fixed error of the standard bench's directions over the field, degrees.",
+    ),
     "floor_error_deg": ("number", "The floor, root mean square over the units, degrees."),
     "floor_low_deg": ("number", "Where nine in ten fitted floors lie, from, degrees."),
     "floor_high_deg": ("number", "Where nine in ten fitted floors lie, to, degrees."),

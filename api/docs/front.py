@@ -157,9 +157,9 @@ def _distance() -> str:
     held = Counter(PARTS[one.leading] for one in judged if not one.near)
     (most, count), *_ = held.most_common()
     return (
-        f"**Most sensors are far from what their light allows.** On {near} of {len(judged)} data "
-        f"sets the best calibration comes within {NEAR:g} of the Cramer-Rao bound; of the other "
-        f"{len(judged) - near}, {count} are held back most by {most} "
+        f"**What light allows.** On {near} of {len(judged)} data sets the own error of the best "
+        f"pipeline is within {NEAR:g} times the Cramer-Rao bound for a unit known by its dark and "
+        f"flat readings; of the other {len(judged) - near}, {count} are held back by {most} "
         "([docs/limits.md](docs/limits.md))."
     )
 

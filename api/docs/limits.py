@@ -9,32 +9,40 @@ from typing import Any
 from api.docs.markdown import table
 from benchmark.leaderboard.headlines import headlines
 from benchmark.leaderboard.holding import table as holding
-from benchmark.leaderboard.holding.sentences import NEAR, PARTS, verdict
+from benchmark.leaderboard.holding.measure import WORSE
+from benchmark.leaderboard.holding.sentences import NEAR, PARTS, bound_of, verdict
 from benchmark.leaderboard.realism import realism
 from benchmark.results.store import Store
 
 
 def standings() -> str:
     """Set every data set's best pipeline beside its bound and the built sensors' accuracy."""
-    built, scores = _built(), _leaders()
+    built, pins = _built(), Store().pins()
     rows = []
     for name, row in holding.rows().items():
-        judged = verdict(row)
-        held = "–" if judged.near else PARTS[judged.leading]
+        judged, bound = verdict(row), bound_of(row)
+        pin = pins.get((name, row["condition"], "test"))
         rows.append(
             (
                 f"[{name}](datasets.md#{name})",
                 f"{row['extractor']} + {row['model']}",
                 _number(row["rms_deg"]),
-                _number(row["bound_deg"]),
-                f"{row['rms_deg'] / row['bound_deg']:.3g}",
-                _floor(scores.get(name)),
+                _number(bound),
+                f"{row['rms_deg'] / bound:.3g}",
+                "–" if judged.near else PARTS[judged.leading],
+                _number(pin.bench_deg if pin else None),
                 _sensors(built.get(name)),
-                held,
             )
         )
-    header = ("data set", "best pipeline", "rms error (deg)", "bound (deg)", "ratio", "floor (deg)")
-    return table((*header, "built sensors' accuracy (deg rms)", "held back by"), rows)
+    header = (
+        "data set",
+        "best pipeline",
+        "own error (deg)",
+        "bound (deg)",
+        "ratio",
+        "held back by",
+    )
+    return table((*header, "bench adds (deg)", "built sensors' accuracy (deg rms)"), rows)
 
 
 def contributions() -> str:
@@ -42,9 +50,10 @@ def contributions() -> str:
     rows = []
     for name, row in holding.rows().items():
         parts = verdict(row).parts_deg
-        cells = (_number(parts[part]) if part in parts else "–" for part in PARTS)
-        rows.append((name, _number(row["as_is_deg"]), *cells))
-    return table(("data set", "as it is", *(part.replace("_", " ") for part in PARTS)), rows)
+        errors = (_number(row[f"{variant}_deg"]) for variant in ("as_is", *WORSE))
+        rows.append((name, *errors, *(_number(parts.get(part)) for part in PARTS)))
+    columns = (part.replace("_", " ") for part in PARTS)
+    return table(("data set", "own error", "on a bench", "uncorrected", *columns), rows)
 
 
 def sentences() -> str:
@@ -55,15 +64,17 @@ def sentences() -> str:
         explained = (built.get(name) or {}).get("sentence")
         lines.append(f"- {said}" + (f" Beside built sensors: {explained}" if explained else ""))
     near = sum(verdict(row).near for row in holding.rows().values())
-    counted = f"{near} of {len(lines)} best pipelines are within {NEAR:g} of their bounds."
+    counted = f"{near} of {len(lines)} best pipelines are within {NEAR:g} times their bounds."
     return counted + "\n\n" + "\n".join(lines)
 
 
 def headline_table() -> str:
     """Set the numbers that mapped studies are known for beside the same methods here."""
-    rows, said = [], []
+    rows, said, pins = [], [], Store().pins()
     for row in headlines(Store().rows(), _conditions()):
         stands = f"{row['extractor']} + {row['model']}" if row["dataset"] else "nothing"
+        pin = pins.get((row["dataset"], _conditions().get(row["dataset"], ""), "test"))
+        bench = None if pin is None or row["kind"] == "precision" else pin.bench_deg
         rows.append(
             (
                 row["study"],
@@ -75,13 +86,13 @@ def headline_table() -> str:
                 if row["our_deg"] is None
                 else f"{_angle(row['our_deg'])} ({row['our_statistic']})",
                 "–" if row["ratio"] is None else f"{row['ratio']:.2g}",
-                _angle(row["floor_deg"]),
+                _angle(bench),
                 "–" if row["availability"] is None else f"{100 * row['availability']:.0f} %",
             )
         )
         said.append(f"- {row['study']}, {row['kind']}: {row['difference']}")
     header = ("study", "its number is", "published", "data set", "stands for it", "ours", "ratio")
-    return table((*header, "floor", "answered"), rows) + "\n\n" + "\n".join(said)
+    return table((*header, "bench adds", "answered"), rows) + "\n\n" + "\n".join(said)
 
 
 def _angle(degrees: float | None) -> str:
@@ -89,11 +100,6 @@ def _angle(degrees: float | None) -> str:
     if degrees is None:
         return "–"
     return f"{degrees:.2g} deg" if degrees >= 1 / 500 else f"{degrees * 3600:.2g} arcsec"
-
-
-@cache
-def _leaders() -> Mapping[str, Mapping[str, Any]]:
-    return holding.leaders(Store().rows(), _conditions())
 
 
 @cache
@@ -105,11 +111,6 @@ def _conditions() -> Mapping[str, str]:
     return {name: row["condition"] for name, row in holding.rows().items()}
 
 
-def _floor(score: Mapping[str, Any] | None) -> str:
-    floor = None if score is None else score["floor_deg"]
-    return "–" if floor is None else _number(floor)
-
-
 def _sensors(beside: Mapping[str, Any] | None) -> str:
     sensors = (beside or {}).get("sensors", ())
     known = [sensor for sensor in sensors if sensor["accuracy_rms_deg"] is not None]
@@ -117,5 +118,7 @@ def _sensors(beside: Mapping[str, Any] | None) -> str:
     return "; ".join(said) or "none published"
 
 
-def _number(value: float) -> str:
+def _number(value: float | None) -> str:
+    if value is None:
+        return "–"
     return f"{value:.2g}" if value >= 1e-6 else "0"

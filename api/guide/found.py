@@ -8,7 +8,7 @@ from api.docs import front
 from api.docs.markdown import table
 from benchmark.claims.ledger import Entry, ledger
 from benchmark.leaderboard.holding import table as holding
-from benchmark.leaderboard.holding.sentences import PARTS, verdict
+from benchmark.leaderboard.holding.sentences import NEAR, PARTS, verdict
 
 #: Claims that came out and that change what one builds; a choice, the others stand on their page.
 USEFUL = ("C04", "C12", "C15", "C24", "C29", "C30", "C32", "C34", "C39", "C45", "C51", "C55")
@@ -60,8 +60,8 @@ def held_back() -> str:
     counted = Counter(PARTS[one.leading] for one in judged if not one.near)
     rows = [(part, str(number)) for part, number in sorted(counted.items(), key=_most_first)]
     return (
-        f"Of {len(judged)} best pipelines {near} come near enough to their bounds. The others are "
-        "held back most by:\n\n" + table(("part of the chain", "data sets"), rows)
+        f"The own error of {near} of {len(judged)} best pipelines is within {NEAR:g} times the "
+        "bound. The others are held back by:\n\n" + table(("part of the chain", "data sets"), rows)
     )
 
 

@@ -1,7 +1,8 @@
 """Networks on orbits and units they were not trained on, beside an albedo model and nothing.
 
 ``python -m benchmark.assessment.networks`` prints all of it, in some minutes. Everything that is
-compared is calibrated on the same samples.
+compared is calibrated on the same samples with their true directions, and on readings corrected by
+the unit's references: errors are own errors.
 """
 
 from __future__ import annotations
@@ -22,9 +23,10 @@ from algorithms.extractors.frames.multi_spot.multiple_centroids import MultipleC
 from algorithms.models.neural_network.axis_networks import AxisNetworks
 from algorithms.models.neural_network.deep_signals import DeepSignals
 from algorithms.models.physics_informed.assembled_faces import AssembledFaces
-from algorithms.pipeline import extracted
 from benchmark import datasets
 from benchmark.datasets.conditions.flight import FlightPreset, Span
+from benchmark.datasets.corrected import correction
+from benchmark.datasets.features import features_of
 from benchmark.datasets.fields import AngleField
 from benchmark.datasets.preset import Preset
 from benchmark.simulator.light.environment import Earth
@@ -74,7 +76,7 @@ class Measured:
 
 @dataclass(frozen=True)
 class Part:
-    """Features of a split, with the Suns and what else is known."""
+    """Features of a split, with the true Suns and what else is known."""
 
     features: Floats
     sun: Floats
@@ -83,14 +85,15 @@ class Part:
 
     @classmethod
     def of(cls, preset: Preset, condition: str, split: str) -> Part:
-        """Return a split of a data set, its signals read as they are."""
-        samples = preset.generate(condition, split)
-        features = extracted(
-            DirectSignals.for_sensor(preset.geometry), samples.observations, samples.origin_px
+        """Return a split of a data set with its signals."""
+        samples, reader = (
+            preset.generate(condition, split),
+            DirectSignals.for_sensor(preset.geometry),
         )
+        features = features_of(reader, samples, correction(preset, condition))
         context = samples.context or {}
         dark = np.asarray(context.get("eclipse", np.zeros(len(samples.sun))), dtype=np.bool_)
-        return cls(features, samples.sun, context, ~dark)
+        return cls(features, samples.truth, context, ~dark)
 
 
 Method = Callable[[SensorGeometry, Part, Part], Floats]
@@ -229,12 +232,12 @@ def fields(name: str = MANY_SPOTS, reach_deg: float = X_FOV_DEG) -> Iterator[Mea
     wider = AngleField(reach_deg, steps=15, test_samples=200)
     preset = replace(preset, directions=wider)
     extractor = MultipleCentroids.for_sensor(preset.geometry)
-    split_parts = []
+    by, split_parts = correction(preset, "nominal"), []
     for split in ("calibration", "test"):
         samples = preset.generate("nominal", split)
-        found = extracted(extractor, samples.observations, samples.origin_px)
-        inside = np.abs(tangents_from_sun(samples.sun)).max(axis=1) <= edge
-        split_parts.append((found, samples.sun, inside))
+        found = features_of(extractor, samples, by)
+        inside = np.abs(tangents_from_sun(samples.truth)).max(axis=1) <= edge
+        split_parts.append((found, samples.truth, inside))
     (found, sun, inside), (asked, truth, tested) = split_parts
     for mode, rows in (("S-FOV", inside), ("X-FOV", np.ones_like(inside))):
         model = AxisNetworks().fit(found[rows], sun[rows])

@@ -24,8 +24,9 @@ from algorithms.models.lut.error_tables import SMOOTHINGS
 from algorithms.models.non_physical.fourier_balance import MAX_HARMONICS
 from algorithms.models.non_physical.polynomial import MAX_DEGREE
 from algorithms.models.non_physical.signal_polynomial import MAX_DEGREE as MAX_SIGNAL_DEGREE
-from algorithms.pipeline import extracted
 from benchmark.contract import Cell, Preset, UnknownNameError
+from benchmark.datasets.corrected import correction
+from benchmark.datasets.features import features_of
 from benchmark.plan.combinations import cells
 from benchmark.plan.parts import installed
 
@@ -81,7 +82,7 @@ class Choice:
 
 @dataclass(frozen=True)
 class Known:
-    """Features (n, F) and Suns (n, 3) of both splits."""
+    """Features (n, F) of corrected readings and true Suns (n, 3) of both splits."""
 
     features: Floats
     sun: Floats
@@ -119,10 +120,11 @@ def known(preset: Preset, extractor: type[Extractor]) -> Known | None:
     """Return what an extractor finds at nominal; None where that is too little to compare."""
     made = extractor.for_sensor(preset.geometry)
     splits = [preset.generate(NOMINAL, split) for split in ("calibration", "test")]
-    told, asked = (extracted(made, split.observations, split.origin_px) for split in splits)
+    by = correction(preset, NOMINAL)
+    told, asked = (features_of(made, split, by) for split in splits)
     if np.isfinite(told).all(axis=1).mean() < _FOUND:
         return None
-    return Known(told, splits[0].sun, asked, splits[1].sun)
+    return Known(told, splits[0].truth, asked, splits[1].truth)
 
 
 def chosen_and_best(

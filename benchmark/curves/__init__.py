@@ -1,1 +1,1 @@
-"""Learning curves: error of each data set's leaders against the poses that calibrate them."""
+"""Learning curves: own error of each data set's leaders against the poses that calibrate them."""

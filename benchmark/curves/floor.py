@@ -1,7 +1,7 @@
 """Where a learning curve ends: its floor, and from how many poses on it is near.
 
 The squared error of a calibration on K poses is modelled as ``f^2 + a K^-b``: what no pose takes
-away (noise of the test readings, the reference's fixed errors, what the model cannot say), and what
+away (noise of the test readings, what extractor and model get wrong), and what
 poses do. For a linear least squares fit of p parameters to readings of variance s^2 the excess is
 ``s^2 p / K``, b = 1; that of a table between whose poses is interpolated falls faster. The floor is
 f and not the error with all poses: by the latter every curve would have reached its floor.

@@ -1,8 +1,8 @@
 """Which pipelines have a learning curve: the leaders of each board, by one rule.
 
 Of the standard unit under a data set's first condition, of pipelines that answer often enough to
-be ranked: the one whose error is the smallest multiple of its bound, then the best pipeline of each
-of the next other models, until there are `LEADING`.
+be ranked: the one with the smallest own error, then the best pipeline of each of the next other
+models, until there are `LEADING`. A model that gives the same numbers as one before is no other.
 """
 
 from __future__ import annotations
@@ -17,6 +17,8 @@ Row = Mapping[str, Any]
 
 #: Pipelines of a board, each with another model.
 LEADING = 3
+#: Numbers that twins share.
+_SHARED = ("charged_deg", "median_deg", "max_deg", "availability")
 
 
 @dataclass(frozen=True, order=True)
@@ -61,7 +63,7 @@ def leaders(scores: Iterable[Row], conditions: Mapping[str, str]) -> list[Leader
         if (
             row["condition"] == conditions.get(row["dataset"])
             and row["unit"] == 0
-            and row["over_bound"] is not None
+            and row["charged_deg"] is not None
             and is_available(row)
         ):
             boards.setdefault(row["dataset"], []).append(row)
@@ -69,9 +71,11 @@ def leaders(scores: Iterable[Row], conditions: Mapping[str, str]) -> list[Leader
     for name in sorted(boards):
         best: dict[str, Row] = {}
         for row in sorted(
-            boards[name], key=lambda row: (row["over_bound"], row["extractor"], row["model"])
+            boards[name], key=lambda row: (row["charged_deg"], row["extractor"], row["model"])
         ):
             best.setdefault(row["model"], row)
-        for place, row in enumerate(list(best.values())[:LEADING], start=1):
+        others = {tuple(row[name] for name in _SHARED): row for row in reversed(best.values())}
+        apart = list(reversed(others.values()))
+        for place, row in enumerate(apart[:LEADING], start=1):
             found.append(Leader(name, place, row["condition"], row["extractor"], row["model"]))
     return found

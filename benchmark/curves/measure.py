@@ -1,7 +1,8 @@
 """What one worker does: a data set's leaders calibrated on growing subsets of its poses.
 
-Features are found once for each unit of the sensor; a subset only fits the model anew. The error
-is that of the whole test split.
+Features are found once for each unit of the sensor, in readings corrected by its references; a
+subset only fits the model anew, to the true directions of its poses: the error over the whole test
+split is the own error, without a bench's.
 """
 
 from __future__ import annotations
@@ -15,10 +16,12 @@ from numpy.typing import NDArray
 
 from algorithms.chain import Scored
 from algorithms.contract import Context, Extractor, Floats, UnusableDataError
-from algorithms.pipeline import Pipeline, extracted
+from algorithms.pipeline import Pipeline
 from benchmark.contract import Preset
 from benchmark.curves.draws import Rows, sizes, subsets
 from benchmark.curves.leaders import Leader
+from benchmark.datasets.corrected import correction
+from benchmark.datasets.features import features_of
 from benchmark.metrics.score import score
 from benchmark.running.task import reason_of
 from benchmark.running.threads import one_thread
@@ -82,7 +85,7 @@ class Learnt:
 
 @dataclass(frozen=True)
 class _Part:
-    """One split as a unit sees it: features by extractor, Suns, and what else is known."""
+    """One split as a unit sees it: features by extractor, true Suns, and what else is known."""
 
     features: Mapping[str, Floats]
     sun: Floats
@@ -136,12 +139,9 @@ def _observable(task: Task, condition: str) -> NDArray[np.bool_] | None:
 
 def _part(preset: Preset, condition: str, split: str, extractors: Mapping[str, Extractor]) -> _Part:
     """Generate one split and keep what is found in it: frames are let go before the next."""
-    samples = preset.generate(condition, split)
-    features = {
-        name: extracted(extractor, samples.observations, samples.origin_px)
-        for name, extractor in extractors.items()
-    }
-    return _Part(features, samples.sun, samples.context)
+    samples, by = preset.generate(condition, split), correction(preset, condition)
+    features = {name: features_of(extractor, samples, by) for name, extractor in extractors.items()}
+    return _Part(features, samples.truth, samples.context)
 
 
 @dataclass(frozen=True)

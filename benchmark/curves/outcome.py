@@ -18,7 +18,7 @@ from benchmark.metrics.score import AVAILABLE, stored
 _CURVE_DIGITS, _SHARE_DIGITS = 4, 3
 
 
-def row_of(learnt: Learnt, bound_deg: float) -> Row:
+def row_of(learnt: Learnt, bound_deg: float, bench_deg: float | None) -> Row:
     """Say what is kept of one pipeline's errors.
 
     A draw is near the floor where its error is at most `NEAR` floors of its unit and it answers as
@@ -30,6 +30,8 @@ def row_of(learnt: Learnt, bound_deg: float) -> Row:
         The errors.
     bound_deg
         Cramer-Rao bound that the board's score of the pipeline has, root mean square.
+    bench_deg
+        Fixed error of the standard bench's directions, root mean square; None where none is pinned.
 
     Returns
     -------
@@ -37,7 +39,8 @@ def row_of(learnt: Learnt, bound_deg: float) -> Row:
         ``dataset`` to ``model``, ``poses`` (all of them), ``in_order``; ``floor`` (``fitted``,
         ``all`` or, where there is none, ``none``), ``floor_error_deg`` with ``floor_low_deg`` and
         ``floor_high_deg`` (of both units, root mean square), ``exponent``, ``misfit``,
-        ``bound_deg``, ``all_deg`` (by unit, with all poses); by draw, unit after unit, ``needed``,
+        ``bound_deg``, ``bench_deg``, ``all_deg`` (by unit, with all poses); by draw, unit after
+        unit, ``needed``,
         ``error_from`` (the error alone is near) and ``answers_from`` (answers alone are enough),
         null where all poses are too few; ``points``, of each size ``[poses, median, least and
         largest error, median availability, refused draws]``, and ``refusal``, the reason of the
@@ -63,6 +66,7 @@ def row_of(learnt: Learnt, bound_deg: float) -> Row:
         "in_order": learnt.in_order,
         **_said(floor),
         "bound_deg": bound_deg,
+        "bench_deg": bench_deg,
         "all_deg": [stored(error) for error in learnt.rms_deg[:, 0, -1].tolist()],
         "needed": _from(steps, near & answered),
         "error_from": _from(steps, near),

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 Row = Mapping[str, Any]
 
-_ABOUT = "Error of each data set's leaders against the poses that calibrate them"
+_ABOUT = "Own error of each data set's leaders against the poses that calibrate them"
 _COLUMNS = 5
 #: Points: a panel with its names and ticks, the same around its axes, and the whole picture's rim.
 _WIDTH, _HEIGHT = 236, 224
@@ -23,7 +23,8 @@ _LEFT, _RIGHT, _TOP, _BOTTOM = 44, 12, 66, 30
 _MARGIN, _HEAD, _FOOT = 12, 78, 22
 #: Three that every kind of colour vision tells apart (Okabe and Ito), and dark to light greys.
 _PLACES = ("#0072b2", "#d55e00", "#009e73")
-_INK, _FAINT, _GRID = "#1a1d21", "#5c6570", "#e3e7eb"
+_INK, _FAINT, _GRID, _BENCH = "#1a1d21", "#5c6570", "#e3e7eb", "#cc79a7"
+_BENCH_DASHES = (0, (6, 2, 1, 2))
 #: Share of the test split below which a curve is dotted.
 _ANSWERED = 0.95
 #: An axis ends so many times above the highest floor, and shows a bound so many below the lowest.
@@ -53,11 +54,11 @@ def figure(rows: Sequence[Row]) -> Figure:
     drawn = Figure(figsize=(width / 72, height / 72), dpi=72, facecolor="white")
     place: dict[str, Any] = {"ha": "left", "va": "baseline"}
     left = _MARGIN / width
-    title = "Error against calibration poses, leaders of every data set"
+    title = "Own error against calibration poses, leaders of every data set"
     drawn.text(left, 1 - 22 / height, title, size=15, weight="bold", color=_INK, **place)
     said = (
-        "across: calibration poses; upwards: rms error over the test split, degrees; line: median "
-        "of the draws on two units, band: least to largest"
+        "across: calibration poses with true directions; upwards: rms error over the test split, "
+        "degrees; line: median of the draws on two units, band: least to largest"
     )
     drawn.text(left, 1 - 39 / height, said, size=10, color=_FAINT, **place)
     _legend(drawn, (left, 1 - 49 / height))
@@ -112,6 +113,9 @@ def _fill(axes: Axes, name: str, leaders: Sequence[Row]) -> None:
     axes.spines["bottom"].set_color(_FAINT)
     axes.patch.set_visible(False)
     _bound(axes, leaders[0], low)
+    bench = leaders[0]["bench_deg"]
+    if bench and low <= bench <= high:
+        axes.plot(axes.get_xlim(), [bench] * 2, color=_BENCH, lw=1.1, ls=_BENCH_DASHES, zorder=1)
     for row, colour in zip(leaders, _PLACES, strict=False):
         end = row["points"][-1]["middle_deg"]
         away = f" ({end:.2g} deg, above)" if end and end > high else ""
@@ -217,6 +221,7 @@ def _legend(drawn: Figure, corner: tuple[float, float]) -> None:
         Line2D([], [], label="less than 95 % answered", **rare),
         Line2D([], [], label="poses needed to be within 10 % of the floor", **_dots(_FAINT)),
         Line2D([], [], color=_INK, lw=1.1, ls=(0, (3, 2)), label="Cramer-Rao bound"),
+        Line2D([], [], color=_BENCH, lw=1.1, ls=_BENCH_DASHES, label="error a bench adds"),
     ]
     drawn.legend(
         handles=entries,

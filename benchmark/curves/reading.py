@@ -25,7 +25,7 @@ _MEMBERS: Mapping[str, type | tuple[type, ...]] = {
     **dict.fromkeys(("place", "poses"), int),
     "in_order": bool,
     **dict.fromkeys(("floor_error_deg", "floor_low_deg", "floor_high_deg"), _ANGLE),
-    **dict.fromkeys(("exponent", "misfit", "bound_deg"), _ANGLE),
+    **dict.fromkeys(("exponent", "misfit", "bound_deg", "bench_deg"), _ANGLE),
     **dict.fromkeys(("all_deg", "needed", "error_from", "answers_from", "points"), list),
 }
 

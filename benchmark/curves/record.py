@@ -20,15 +20,19 @@ from survey_data.json_reading import members, read_json
 
 NAME = "curves.json"
 #: Layout of the file; raised when a member changes its meaning.
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 
 #: Modules between data and methods, and what is kept of a curve.
 _CODE = (
+    "algorithms.kernels.reference_correction",
     "algorithms.pipeline",
+    "algorithms.references",
     "benchmark.curves.draws",
     "benchmark.curves.floor",
     "benchmark.curves.measure",
     "benchmark.curves.outcome",
+    "benchmark.datasets.corrected",
+    "benchmark.datasets.features",
     "benchmark.metrics.score",
 )
 _DIGITS = 16

@@ -110,7 +110,7 @@ def _updated(
     old = {leader for leader, _ in record.stale(stored, leading, components)}
     rows = {leader: stored[leader] for leader in leading if leader not in old}
     missing = [leader for leader in leading if leader in old]
-    bounds = _bounds(store, leading)
+    bounds, pins = _bounds(store, leading), store.pins()
     code = record.code_digest()
     with terminal_progress("learning") if progress is None else nullcontext(progress) as report:
         report(0, len(missing), "")
@@ -118,7 +118,9 @@ def _updated(
         for learnt in _measured(tasks_of(missing, known, store), workers):
             for one in learnt:
                 key = record.key_of(one.leader, components, code)
-                rows[one.leader] = {**row_of(one, bounds[one.leader]), "key": key}
+                pin = pins.get((one.leader.dataset, one.leader.condition, "test"))
+                row = row_of(one, bounds[one.leader], pin.bench_deg if pin else None)
+                rows[one.leader] = {**row, "key": key}
             done += len(learnt)
             report(done, len(missing), learnt[0].leader.dataset)
             record.write(rows.values(), directory)
@@ -176,14 +178,13 @@ def _components(parts: Parts, found: Sequence[Leader]) -> Components:
 
 
 def _bounds(store: Store, found: Sequence[Leader]) -> dict[Leader, float]:
-    """Bound that each leader's score has."""
-    scores = store.scores()
-    return {
-        leader: scores[Cell(leader.dataset, leader.condition, leader.extractor, leader.model)][
-            "bound_deg"
-        ]
-        for leader in found
-    }
+    """Bound of each leader's score: of a unit known by its references, where there is one."""
+    scores, bounds = store.scores(), {}
+    for leader in found:
+        row = scores[Cell(leader.dataset, leader.condition, leader.extractor, leader.model)]
+        unit = row["bound_unit_deg"]
+        bounds[leader] = row["bound_deg"] if unit is None else unit
+    return bounds
 
 
 def _measured(tasks: Sequence[Task], workers: int) -> Iterator[list[Learnt]]:

@@ -131,8 +131,8 @@ def headlines(
     -------
     list of dict
         In the order of the table, with its columns and ``our_deg`` (None where nothing is
-        measured), ``our_statistic``, ``ratio`` (ours over the published one), ``bound_deg``,
-        ``floor_deg`` (accuracy alone: what the bench's reference leaves) and ``availability``.
+        measured), ``our_statistic``, ``ratio`` (ours over the published one), ``bound_deg`` and
+        ``availability``. Our accuracy is the own error: that of a perfect bench.
     """
     scores = {
         (row["dataset"], row["extractor"], row["model"]): row
@@ -154,6 +154,5 @@ def _beside(one: Headline, score: Row | None) -> dict[str, Any]:
         "our_statistic": named,
         "ratio": None if ours is None or one.published_deg is None else ours / one.published_deg,
         "bound_deg": None if score is None else score["bound_deg"],
-        "floor_deg": None if score is None or one.kind == "precision" else score["floor_deg"],
         "availability": None if score is None else score["availability"],
     }

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from algorithms.contract import Floats
-from algorithms.pipeline import extracted
+from benchmark.datasets.corrected import correction
+from benchmark.datasets.features import features_of
 from benchmark.drawing import plain_style
 from benchmark.metrics.score import separation_deg
 from benchmark.plan.parts import installed
@@ -36,7 +37,7 @@ _MINUTES = 135.0
 
 
 def along(dataset: str, extractor: str, single: str, filtered: str) -> dict[str, Floats]:
-    """Errors along the test split under nominal conditions, degrees.
+    """Own errors along the test split under nominal conditions, degrees.
 
     Parameters
     ----------
@@ -54,12 +55,13 @@ def along(dataset: str, extractor: str, single: str, filtered: str) -> dict[str,
     preset = parts.presets[dataset]
     reader = parts.extractor(extractor).for_sensor(preset.geometry)
     known, test = (preset.generate("nominal", split) for split in ("calibration", "test"))
-    features = [extracted(reader, part.observations, part.origin_px) for part in (known, test)]
+    by = correction(preset, "nominal")
+    features = [features_of(reader, part, by) for part in (known, test)]
     kind = reader.about.kind
     still = parts.model(single).for_sensor(preset.geometry, kind)
-    still.fit(features[0], known.sun, known.context)
+    still.fit(features[0], known.truth, known.context)
     model = cast("SunFilter", parts.model(filtered).for_sensor(preset.geometry, kind))
-    model.fit(features[0], known.sun, known.context)
+    model.fit(features[0], known.truth, known.context)
     track = model.track(features[1], test.context)
     context: Any = test.context
     eclipse = np.asarray(context["eclipse"], dtype=np.float64)

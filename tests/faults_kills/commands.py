@@ -191,7 +191,7 @@ def hold_back(*datasets: str) -> None:
     """`python -m benchmark.leaderboard.holding` of scores that are given."""
     _give(table, "measured", small.held_back)
     score = {"condition": "quiet", "extractor": "one", "model": "two", "rms_deg": 0.05}
-    score |= {"bound_deg": 0.005, "answered": 40, "judged": 40}
+    score |= {"bound_deg": 0.005, "bound_unit_deg": 0.005, "answered": 40, "judged": 40}
     leading = {f"set-{n}": {"dataset": f"set-{n}", **score} for n in range(8)}
     program(
         lambda: table.renew(leading, small.parts(), only=datasets or None, path=Path("held.csv"))

@@ -1,4 +1,4 @@
-"""Learning curves: error of the leaders against the poses that calibrate them."""
+"""Learning curves: own error of the leaders against the poses that calibrate them."""
 
 from __future__ import annotations
 
@@ -69,9 +69,15 @@ class Curve(Shape):
     floor_high_deg: float | None = Field(description="To.")
     exponent: float | None = Field(description="b of the law.")
     misfit: float | None = Field(description="By how much the law misses the errors, relative.")
-    bound_deg: float = Field(description="Cramer-Rao bound of the pipeline's published score.")
+    bound_deg: float = Field(
+        description="Cramer-Rao bound of the pipeline's published score, for a unit that is known "
+        "by its dark and flat readings where there are any."
+    )
+    bench_deg: float | None = Field(
+        description="Fixed error of the standard bench's directions, which the curve is without."
+    )
     over_bound: float | None = Field(description="Floor over bound.")
-    all_deg: list[float | None] = Field(description="Error with all poses, by unit.")
+    all_deg: list[float | None] = Field(description="Own error with all poses, by unit.")
     draws: int = Field(description="Draws of poses, over all units.")
     reached: int = Field(description="Draws that come within 10 % of the floor.")
     needed_poses: int | None = Field(

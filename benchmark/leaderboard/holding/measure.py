@@ -1,4 +1,4 @@
-"""One pipeline scored again and again, one part of the chain made perfect at a time."""
+"""One pipeline's own error, measured again with one part of the chain made perfect at a time."""
 
 from __future__ import annotations
 
@@ -11,20 +11,27 @@ from numpy.typing import NDArray
 
 from algorithms.chain import Scored
 from algorithms.contract import Extractor, Floats, UnusableDataError
-from algorithms.pipeline import Pipeline, extracted
+from algorithms.pipeline import Pipeline
+from algorithms.references import ReferenceCorrection
+from benchmark.datasets.benches import reported
+from benchmark.datasets.corrected import correction
+from benchmark.datasets.features import features_of
 from benchmark.datasets.preset import Preset
 from benchmark.datasets.samples import Samples
 from benchmark.leaderboard.holding import perfected
 from benchmark.metrics.score import separation_deg
+from benchmark.running.task import BENCHES
 from benchmark.running.threads import one_thread
 from benchmark.simulator.light.memory import memory
 
 #: What is made perfect by itself, all else as it is.
-SINGLE = ("reference", "lamp", "calibration_noise", "noise", "fixed_pattern", "surroundings")
+SINGLE = ("lamp", "calibration_noise", "noise", "references", "fixed_pattern", "surroundings")
 #: All of that perfect; then fitted to the test poses as well; the same of the true places.
 JOINT = ("perfect", "perfect_dense", "places", "places_dense")
+#: What is made worse: directions that benches give, readings without correction.
+WORSE = ("bench", "uncorrected")
 #: Everything that is scored.
-VARIANTS = ("as_is", *SINGLE, *JOINT)
+VARIANTS = ("as_is", *WORSE, *SINGLE, *JOINT)
 
 #: What a calibration is told: features, Suns, context.
 _Told = tuple[Floats, Floats, Mapping[str, NDArray[Any]] | None]
@@ -55,7 +62,10 @@ def held(
     *,
     all_observable: bool = False,
 ) -> Held:
-    """Score a pipeline on a data set as it is and with parts of the chain made perfect.
+    """Score a pipeline as it is, with parts of the chain made perfect, and with two made worse.
+
+    As it is, the calibration has the true directions of its poses, and readings are corrected by
+    the unit's references.
 
     Parameters
     ----------
@@ -75,10 +85,12 @@ def held(
 
     Notes
     -----
-    - ``reference``: the calibration is told the true directions of the same readings.
+    - ``bench``: the calibration has the directions that `BENCHES` drawn benches give, pooled.
+    - ``uncorrected``: readings are not corrected by the unit's references.
     - ``lamp``: its lamp shines evenly and steadily, the Sun's mean light.
     - ``calibration_noise``, ``noise``: readings of the calibration, or of the test poses, are
       medians, under mean stray light (`perfected.still_observations`).
+    - ``references``: readings are corrected by the unit's true dark signals and gains.
     - ``fixed_pattern``: of a unit whose elements are alike.
     - ``surroundings``: no light from the Earth, no drift, no ageing.
     - ``perfect``: all of these. What error is left is the extractor's and the model's.
@@ -89,11 +101,11 @@ def held(
     """
     with one_thread():
         memory.remember((preset.name, 0), preset.name)
-        answers, sun = _Chain(preset, condition, extractor, model).answers()
-        seen = np.ones(len(sun), dtype=np.bool_)
+        errors = _Chain(preset, condition, extractor, model).errors()
+        seen = np.ones(len(errors["as_is"]), dtype=np.bool_)
         if not all_observable:
             seen &= np.asarray(preset.bound(condition, "test").observable)
-        return _judged(answers, sun, seen)
+        return _judged(errors, seen)
 
 
 def directions(
@@ -107,13 +119,15 @@ def directions(
     with one_thread():
         memory.remember((preset.name, 0), preset.name)
         chain = _Chain(preset, condition, extractor, model)
-        calibration, test = chain.samples()
-        answers = chain.perfect(calibration, test) | chain.as_is(calibration, test)
+        answers = {**chain.as_is(), **chain.perfect()}
         shown = {name: answers[name] for name in ("as_is", "perfect")}
-        return test.truth, {name: given for name, given in shown.items() if given is not None}
+        given = {name: found for name, found in shown.items() if found is not None}
+        return chain.test.truth, given
 
 
 class _Chain:
+    """A pipeline with the samples of both splits, and what is found in them as it is."""
+
     def __init__(
         self, preset: Preset, condition: str, extractor: type[Extractor], model: Scored
     ) -> None:
@@ -121,64 +135,100 @@ class _Chain:
         self._geometry = preset.geometry_for(condition)
         self._extractor = extractor.for_sensor(self._geometry)
         self._model = model
+        self._by = correction(preset, condition)
+        self.calibration, self.test = (preset.generate(condition, split) for split in _SPLITS)
+        self._told, self._asked = (
+            self._seen(samples, self._by) for samples in (self.calibration, self.test)
+        )
 
-    def samples(self) -> tuple[Samples, Samples]:
-        """Calibration and test split as they are."""
-        calibration, test = (self._preset.generate(self._condition, split) for split in _SPLITS)
-        return calibration, test
+    def errors(self) -> dict[str, Floats]:
+        """Errors (N,) by variant, degrees; NaN where there is no answer.
 
-    def answers(self) -> tuple[dict[str, Floats | None], Floats]:
-        """Directions (N, 3) by variant, and the true ones."""
-        calibration, test = self.samples()
-        answers = self.as_is(calibration, test)
-        told, asked = self._told(calibration), self._told(test)
-        still_told = self._told(self._still(self._preset, calibration, "calibration"))
-        still_asked = self._told(self._still(self._preset, test, "test"))
-        answers |= {
-            "reference": self._answers([(told[0], calibration.truth, told[2])], asked),
-            "calibration_noise": self._answers([still_told], asked),
-            "noise": self._answers([told], still_asked),
+        Raises
+        ------
+        UnusableDataError
+            Where the model refuses the calibration as it is.
+        """
+        answers = self.as_is()
+        if answers["as_is"] is None:
+            raise UnusableDataError("the model refuses the calibration as it is")
+        answers |= {**self._readings(), **self._units(), **self.perfect()}
+        errors = {
+            name: separation_deg(given, self.test.truth)
+            for name, given in answers.items()
+            if given is not None
         }
-        lit = perfected.without_lamp_errors(self._preset, self._condition)
+        on_benches = [given for given in self._on_benches() if given is not None]
+        if len(on_benches) == BENCHES:
+            each = [separation_deg(given, self.test.truth) for given in on_benches]
+            errors["bench"] = np.sqrt(np.mean(np.square(each), axis=0))
+        return errors
+
+    def as_is(self) -> dict[str, Floats | None]:
+        """Answers of the chain as it is."""
+        return {"as_is": self._answers([self._told], self._asked)}
+
+    def _on_benches(self) -> list[Floats | None]:
+        """Answers of calibrations with the directions that drawn benches give."""
+        found, truth, context = self._told
+        drawn = (reported(self._preset, self._condition, truth, draw) for draw in range(BENCHES))
+        return [self._answers([(found, sun, context)], self._asked) for sun in drawn]
+
+    def _readings(self) -> dict[str, Floats | None]:
+        """Answers with other readings of the same unit: still, evenly lit, corrected otherwise."""
+        preset, condition = self._preset, self._condition
+        still_told = self._seen(self._still(preset, self.calibration, "calibration"), self._by)
+        still_asked = self._seen(self._still(preset, self.test, "test"), self._by)
+        answers = {
+            "calibration_noise": self._answers([still_told], self._asked),
+            "noise": self._answers([self._told], still_asked),
+        }
+        if self._by is not None:
+            known = perfected.known_unit(preset, condition)
+            for name, by in (("references", known), ("uncorrected", None)):
+                told, asked = self._seen(self.calibration, by), self._seen(self.test, by)
+                answers[name] = self._answers([told], asked)
+        lit = perfected.without_lamp_errors(preset, condition)
         if lit is not None:
-            seen = self._told(lit.generate(self._condition, "calibration"))
-            answers["lamp"] = self._answers([seen], asked)
+            told = self._seen(lit.generate(condition, "calibration"), self._by)
+            answers["lamp"] = self._answers([told], self._asked)
+        return answers
+
+    def _units(self) -> dict[str, Floats | None]:
+        """Answers of other units, or elsewhere."""
+        condition, answers = self._condition, {}
         others = {
-            "fixed_pattern": perfected.without_fixed_pattern(self._preset, self._condition),
-            "surroundings": perfected.without_surroundings(self._preset, self._condition),
+            "fixed_pattern": perfected.without_fixed_pattern(self._preset, condition),
+            "surroundings": perfected.without_surroundings(self._preset, condition),
         }
         for name, other in others.items():
             if other is not None:
-                both = [self._told(other.generate(self._condition, s)) for s in _SPLITS]
-                answers[name] = self._answers([both[0]], both[1])
-        answers |= self.perfect(calibration, test)
-        return answers, test.truth
+                by = correction(other, condition)
+                told, asked = (self._seen(other.generate(condition, s), by) for s in _SPLITS)
+                answers[name] = self._answers([told], asked)
+        return answers
 
-    def as_is(self, calibration: Samples, test: Samples) -> dict[str, Floats | None]:
-        """Answers of the chain as it is."""
-        return {"as_is": self._answers([self._told(calibration)], self._told(test))}
-
-    def perfect(self, calibration: Samples, test: Samples) -> dict[str, Floats | None]:
+    def perfect(self) -> dict[str, Floats | None]:
         """Answers of the chain of which only extractor and model are what they are."""
         preset, kind = perfected.perfect(self._preset, self._condition), self._extractor.about.kind
+        by = perfected.known_unit(preset, self._condition)
         told, asked = (
-            self._told(self._still(preset, replace(samples, sun=samples.truth), split))
-            for samples, split in zip((calibration, test), _SPLITS, strict=True)
+            self._seen(self._still(preset, samples, split), by)
+            for samples, split in zip((self.calibration, self.test), _SPLITS, strict=True)
         )
-        more = self._told(self._still(preset, test, "test", before_lamp=True))
+        more = self._seen(self._still(preset, self.test, "test", before_lamp=True), by)
         answers = {
             "perfect": self._answers([told], asked),
             "perfect_dense": self._answers([told, more], asked),
         }
-        found = [
-            perfected.true_places(preset, self._condition, kind, one.truth)
-            for one in (calibration, test)
+        known = [
+            (perfected.true_features(preset, self._condition, kind, sun, found), sun, context)
+            for found, sun, context in (told, asked)
         ]
-        if found[0] is None or found[1] is None:
-            return answers
-        known = _as_found(found[0], told), _as_found(found[1], asked)
-        answers["places"] = self._answers([known[0]], known[1])
-        answers["places_dense"] = self._answers([*known], known[1])
+        true = [(places, sun, context) for places, sun, context in known if places is not None]
+        if len(true) == len(known):
+            answers["places"] = self._answers(true[:1], true[1])
+            answers["places_dense"] = self._answers(true, true[1])
         return answers
 
     def _still(
@@ -191,9 +241,8 @@ class _Chain:
         beside = samples.context if context is None else context(self._condition, split)
         return replace(samples, observations=read, context=beside)
 
-    def _told(self, samples: Samples) -> _Told:
-        found = extracted(self._extractor, samples.observations, samples.origin_px)
-        return found, samples.sun, samples.context
+    def _seen(self, samples: Samples, by: ReferenceCorrection | None) -> _Told:
+        return features_of(self._extractor, samples, by), samples.truth, samples.context
 
     def _answers(self, known: Sequence[_Told], asked: _Told) -> Floats | None:
         """Return directions (N, 3) by a model fitted to all that is known; None if it refuses."""
@@ -213,22 +262,7 @@ class _Chain:
 _SPLITS = ("calibration", "test")
 
 
-def _as_found(places: Floats, told: _Told) -> _Told:
-    """Return true places with what is known beside, nothing where the extractor finds nothing."""
-    there = np.isfinite(told[0]).all(axis=1, keepdims=True)
-    return np.where(there, places, np.nan), told[1], told[2]
-
-
-def _judged(
-    answers: Mapping[str, Floats | None], sun: Floats, observable: NDArray[np.bool_]
-) -> Held:
-    if answers["as_is"] is None:
-        raise UnusableDataError("the model refuses the calibration as it is")
-    known = {name: given for name, given in answers.items() if given is not None}
-    judged = np.logical_and.reduce([np.isfinite(a).all(axis=1) for a in known.values()])
-    judged &= observable
-    errors = {
-        name: float(np.sqrt(np.mean(separation_deg(given[judged], sun[judged]) ** 2)))
-        for name, given in known.items()
-    }
-    return Held({name: errors.get(name) for name in VARIANTS}, int(judged.sum()))
+def _judged(errors: Mapping[str, Floats], observable: NDArray[np.bool_]) -> Held:
+    judged = np.logical_and.reduce([observable, *map(np.isfinite, errors.values())])
+    pooled = {name: float(np.sqrt(np.mean(error[judged] ** 2))) for name, error in errors.items()}
+    return Held({name: pooled.get(name) for name in VARIANTS}, int(judged.sum()))

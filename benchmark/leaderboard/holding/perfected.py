@@ -14,15 +14,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.contract import FeatureKind, Floats
+from algorithms.references import ReferenceCorrection
+from algorithms.spot_lists import SPOT_COLUMNS
 from benchmark.datasets.calibration import Bench
+from benchmark.datasets.corrected import correction
 from benchmark.datasets.preset import BATCH, Preset
 from benchmark.simulator.flight.drift import AssemblyDrift, PhotodiodeDrift
 from benchmark.simulator.masks.errors import MaskErrors
 from benchmark.simulator.optics.projection import Camera
-from benchmark.simulator.readout.detectors import CurrentReadout
+from benchmark.simulator.readout.detectors import CurrentReadout, PixelArray
 from benchmark.simulator.readout.noise import NoiseStreams
+from benchmark.simulator.sensor import UnitSpread
 from benchmark.simulator.sensors.lens_camera import LensCamera
 from benchmark.simulator.sensors.light_to_frequency import FrequencyCounter
+from benchmark.simulator.sensors.multi_spot_frames import MultiSpotSensor
 
 #: What elements of a sensor differ by from each other: gains, dark signals, thresholds, normals.
 SPREADS = frozenset(
@@ -38,6 +43,8 @@ _LAMP = ("lamp_level", "lamp_drift_per_hour", "lamp_uneven", "lamp_flicker")
 _NO_ERRORS = ("pose_s", "lamp_diameter_deg")
 #: Bits more that make a converter's steps vanish; doubles have enough for them.
 _FINER_BITS = 16
+#: A spot this near to where an aperture casts its light is that aperture's.
+_SAME_SPOT_PX = 3.0
 #: Two halves of 32 random bits, each the median: what is drawn by inverting a distribution.
 _MEDIANS = 0x8000_0000_8000_0000
 
@@ -114,22 +121,71 @@ def still_observations(
     )
 
 
-def true_places(preset: Preset, condition: str, kind: FeatureKind, sun: Floats) -> Floats | None:
-    """(N, 2) spots as geometry puts them for Suns (N, 3), in pixels: no light, no pixels.
+def known_unit(preset: Preset, condition: str) -> ReferenceCorrection | None:
+    """Return the correction by the unit's true dark signals and gains; None without references.
 
-    Behind a mask, where the ray through the middle of the mask's origin from the Sun's centre
-    falls; behind a lens, the image of that centre. None for other features than spots.
+    As `benchmark.datasets.corrected.correction`, from one dark and one flat reading without noise
+    and with finer steps of the converter.
     """
-    camera = getattr(preset.condition(condition).sensor, "camera", None)
-    if kind is not FeatureKind.SPOT:
+    by = correction(preset, condition)
+    sensor = _finely_referred(preset.condition(condition).sensor)
+    if by is None or not isinstance(sensor, UnitSpread):
         return None
-    if isinstance(camera, LensCamera):
-        return camera.image_px(sun)
-    pitch = preset.geometry_for(condition).pixel_pitch_mm
-    if not isinstance(camera, Camera) or pitch is None:
+    still = cast("np.random.Generator", Still())
+    once = replace(preset.offered, flats=1, darks=1)
+    pattern = preset.fixed_pattern(condition)
+    read = sensor.reference_readings(pattern, once, NoiseStreams(still, still, still))
+    dark, flat = (
+        next(values for name, values in read.items() if name.startswith(kind))
+        for kind in ("dark_", "flat_")
+    )
+    steps = 2.0**_FINER_BITS if by.pixels else 1.0
+    return replace(by, dark=dark / steps, flat=flat / steps)
+
+
+def true_features(
+    preset: Preset, condition: str, kind: FeatureKind, sun: Floats, found: Floats
+) -> Floats | None:
+    """Return features (N, F) with spots where geometry puts them: no light, no pixels.
+
+    Behind a mask, where the ray through the middle of an aperture from the Sun's centre falls;
+    behind a lens, the image of that centre. Rows where nothing is found stay so; a spot of a list
+    that is no aperture's (farther than `_SAME_SPOT_PX` from all) stays where it was found. None for
+    other features than spots.
+
+    Parameters
+    ----------
+    preset, condition
+        Of the data set.
+    kind
+        Of the features.
+    sun
+        True directions (N, 3).
+    found
+        Features (N, F) that an extractor found.
+    """
+    sensor, geometry = preset.condition(condition).sensor, preset.geometry_for(condition)
+    camera, pitch = getattr(sensor, "camera", None), geometry.pixel_pitch_mm
+    if kind is FeatureKind.SPOT and isinstance(camera, LensCamera):
+        places = camera.image_px(sun)
+    elif isinstance(camera, Camera) and pitch is not None:
+        places = camera.spot_mm(sun) / pitch + (geometry.centre_px or (0.0, 0.0))
+    else:
         return None
-    centre = preset.geometry_for(condition).centre_px or (0.0, 0.0)
-    return np.asarray(camera.spot_mm(sun) / pitch + centre)
+    there = np.asarray(np.isfinite(found).all(axis=1))
+    if kind is FeatureKind.SPOT:
+        return np.where(there[:, None], places, np.nan)
+    if kind is not FeatureKind.SPOTS or not isinstance(sensor, MultiSpotSensor):
+        return None
+    holes = preset.fixed_pattern(condition)["apertures"][:, 1:3]
+    lists = found.reshape(len(found), -1, SPOT_COLUMNS).copy()
+    for row in np.flatnonzero(there):
+        true = holes + places[row]
+        off = np.linalg.norm(lists[row, :, None, :2] - true, axis=2)
+        nearest = off.argmin(axis=1)
+        near = off.min(axis=1) <= _SAME_SPOT_PX
+        lists[row, near, :2] = true[nearest[near]]
+    return np.asarray(lists.reshape(found.shape))
 
 
 class Still:
@@ -177,6 +233,21 @@ def _finely_read(value: Any) -> Any:
     if isinstance(value, FrequencyCounter):
         return replace(value, gate_s=value.gate_s * 2.0**_FINER_BITS)
     return _rebuilt(value, _finely_read, {})
+
+
+def _finely_referred(value: Any) -> Any:
+    """Return a sensor whose readings have finer steps, pixels' too: in digital numbers so small."""
+    if isinstance(value, PixelArray):
+        steps = 2.0**_FINER_BITS
+        return replace(
+            value,
+            gain_e_per_dn=value.gain_e_per_dn / steps,
+            offset_dn=value.offset_dn * steps,
+            bits=value.bits + _FINER_BITS,
+        )
+    if isinstance(value, CurrentReadout | FrequencyCounter):
+        return _finely_read(value)
+    return _rebuilt(value, _finely_referred, {})
 
 
 def _rebuilt(value: Any, of_parts: Any, fixed: dict[str, float]) -> Any:

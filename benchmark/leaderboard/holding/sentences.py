@@ -16,28 +16,29 @@ from benchmark.leaderboard.holding.measure import SINGLE
 
 Row = Mapping[str, Any]
 
-#: A pipeline this close to its bound is not held back by anything.
-NEAR = 1.5
+#: A pipeline whose own error is at most so many times its bound is not held back by anything.
+NEAR = 2.0
 
 #: Every part, in the order of ties, with what it is called.
 PARTS: Mapping[str, str] = {
-    "reference": "the calibration's own reference",
-    "lamp": "the lamp of the calibration",
+    "lamp": "the calibration's lamp",
     "calibration_noise": "noise of the calibration's readings",
     "noise": "noise of the readings",
-    "fixed_pattern": "the fixed pattern",
-    "surroundings": "what changes in orbit",
-    "poses": "the distance between the calibration's poses",
-    "extractor": "the extractor's systematic error",
-    "model": "the model",
+    "references": "noise of the dark and flat readings",
+    "fixed_pattern": "the fixed pattern of elements and mask",
+    "surroundings": "the orbit (Earth light, drift, ageing)",
+    "poses": "the number of calibration poses",
+    "extractor": "the extractor's bias",
+    "model": "the model's form",
+    "method": "the method itself (extractor and model are not told apart)",
 }
 _WITHOUT: Mapping[str, str] = {
-    "reference": "told the calibration's directions rightly it errs by",
-    "lamp": "calibrated before an even, steady lamp it errs by",
-    "calibration_noise": "calibrated without noise it errs by",
-    "noise": "read without noise it errs by",
-    "fixed_pattern": "on a unit whose elements are alike it errs by",
-    "surroundings": "without light from the Earth, drift and ageing it errs by",
+    "lamp": "with an even, steady lamp",
+    "calibration_noise": "with a noise-free calibration",
+    "noise": "with noise-free readings",
+    "references": "with the unit's true dark signals and gains",
+    "fixed_pattern": "with identical detector elements and the mask as drawn",
+    "surroundings": "without Earth light, drift and ageing",
 }
 
 
@@ -63,21 +64,26 @@ class Verdict:
     sentence: str
 
 
+def bound_of(row: Row) -> float:
+    """Return the bound a pipeline is held against, degrees.
+
+    For a unit known by its dark and flat readings; for a known unit where there are none.
+    """
+    unit = row["bound_unit_deg"]
+    return float(row["bound_deg"] if unit is None else unit)
+
+
 def verdict(row: Row) -> Verdict:
     """Judge a row of `benchmark.leaderboard.holding.table`."""
     parts = contributions(row)
-    ranked = sorted(parts, key=lambda part: -parts[part])
-    ratio = row["rms_deg"] / row["bound_deg"]
-    said = f"`{row['dataset']}`: {row['extractor']} + {row['model']} errs by "
+    leading = max(parts, key=lambda part: parts[part])
+    ratio = row["rms_deg"] / bound_of(row)
+    said = f"`{row['dataset']}`: the own error of {row['extractor']} + {row['model']} is "
     said += f"{degrees(row['rms_deg'])}, {times(ratio)} its bound"
     if ratio <= NEAR:
-        return Verdict(True, parts, ranked[0], f"{said}: within {NEAR:g} of it.")
-    measured, after = _measured(row, ranked[0])
-    said += f"{_judged(row)}; {measured}: {_blame(row, parts, ranked[0])}."
-    if after is not None and after > NEAR * row["bound_deg"] and len(ranked) > 1:
-        second = ranked[1]
-        said += f" Next comes {PARTS[second]}, {degrees(parts[second])}."
-    return Verdict(False, parts, ranked[0], said)
+        return Verdict(True, parts, leading, f"{said}.")
+    said += f"{_judged(row)}; {_measured(row, leading)}: {_blame(row, parts, leading)}."
+    return Verdict(False, parts, leading, said)
 
 
 def contributions(row: Row) -> dict[str, float]:
@@ -97,7 +103,7 @@ def contributions(row: Row) -> dict[str, float]:
         rest = min(rest, dense)
     places = error["places"] if dense is None else error["places_dense"]
     if places is None:
-        return {**found, "model": rest}
+        return {**found, "method": rest}
     model = min(places, rest)
     return {**found, "extractor": _root(rest, model), "model": model}
 
@@ -119,36 +125,31 @@ def _root(whole: float, part: float) -> float:
     return math.sqrt(max(whole**2 - part**2, 0.0))
 
 
-def _measured(row: Row, part: str) -> tuple[str, float | None]:
-    """Say what was measured of a part, and what error is left without it; None where all is."""
-    bound = row["bound_deg"]
+def _measured(row: Row, part: str) -> str:
+    """Say what error is left with a part made perfect."""
     if part in _WITHOUT:
-        left = row[f"{part}_deg"]
-        return f"{_WITHOUT[part]} {degrees(left)} ({times(left / bound)})", left
-    rest = row["perfect_deg"]
-    still = "even" if rest > row["as_is_deg"] else "still"
-    said = f"with calibration, unit and readings perfect it {still} errs by "
-    said += f"{degrees(rest)} ({times(rest / bound)}), "
-    dense = row["perfect_dense_deg"]
-    if part == "poses":
-        return f"{said}fitted to the test poses as well by {degrees(dense)}", dense
+        return f"{_WITHOUT[part]} it is {_against(row, part)}"
+    said = f"with calibration, unit and readings perfect it is {_against(row, 'perfect')}"
     if part == "extractor":
-        places = row["places_deg"]
-        return f"{said}with the spots' true places by {degrees(places)}", places
-    if row["places_deg"] is not None:
-        return f"{said}with the spots' true places still by {degrees(row['places_deg'])}", None
-    if dense is not None:
-        return f"{said}fitted to the test poses as well by {degrees(dense)}", None
-    return said.removesuffix(", "), None
+        return f"{said}, with the spots' true positions {degrees(row['places_deg'])}"
+    if row["places_deg"] is not None and part == "model":
+        return f"{said}, with the spots' true positions {_against(row, 'places')}"
+    if row["perfect_dense_deg"] is not None:
+        return f"{said}, fitted to the test poses as well {degrees(row['perfect_dense_deg'])}"
+    return said
+
+
+def _against(row: Row, variant: str) -> str:
+    error = row[f"{variant}_deg"]
+    return f"{degrees(error)} ({times(error / bound_of(row))})"
 
 
 def _blame(row: Row, parts: Mapping[str, float], part: str) -> str:
     most = parts[part] ** 2 > 0.5 * row["as_is_deg"] ** 2
-    if part == "noise" and parts[part] > NEAR * row["bound_deg"]:
-        name = f"noise, {times(parts[part] / row['bound_deg'])} what the bound allows, "
-        name += "by an extractor that does not use all light"
-    else:
-        name = PARTS[part]
+    ratio = parts[part] / bound_of(row)
+    name = PARTS[part]
+    if part == "noise" and ratio > NEAR:
+        name = f"noise, {times(ratio)} what the bound allows (the extractor does not use all light)"
     return f"{name} holds it back" + ("" if most else " most")
 
 

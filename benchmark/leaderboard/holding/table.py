@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
+from contextlib import closing
 from pathlib import Path
+from statistics import geometric_mean
 from typing import Any, cast
 
 from benchmark.datasets.preset import Preset
@@ -22,13 +24,16 @@ from benchmark.results.tables import (
     text_of,
     word,
 )
+from benchmark.running.workers import as_completed
 from survey_data.locks import held_alone
 from survey_data.whole_files import replace_file
 
 PATH = Path(__file__).with_name("held_back.csv")
 
 #: Which score the row is of, as the record has it.
-_SCORE = ("condition", "extractor", "model", "rms_deg", "bound_deg")
+_SCORE = ("condition", "extractor", "model", "rms_deg", "bound_deg", "bound_unit_deg")
+#: Data set, extractor, model.
+Place = tuple[str, str, str]
 _COLUMNS: Mapping[str, Reader] = {
     "dataset": word,
     "condition": word,
@@ -36,6 +41,7 @@ _COLUMNS: Mapping[str, Reader] = {
     "model": word,
     "rms_deg": size,
     "bound_deg": size,
+    "bound_unit_deg": size,
     "answered": count,
     "judged": count,
     **{f"{name}_deg": size for name in VARIANTS},
@@ -52,24 +58,37 @@ def rows(path: Path = PATH) -> dict[str, Row]:
 
 
 def leaders(scores: Iterable[Mapping[str, Any]], conditions: Mapping[str, str]) -> dict[str, Row]:
-    """Return of each data set the score that ranks first under one condition.
+    """Return of each data set the score, on the standard unit, of the pipeline that leads it.
+
+    By the geometric mean of its errors over the units that it was scored on.
 
     Parameters
     ----------
     scores
-        Rows as `Store.rows` gives them.
+        Rows of all units, as `Store.rows` gives them.
     conditions
         The condition by data set.
     """
-    best: dict[str, tuple[Any, Row]] = {}
+    errors: dict[Place, list[float | None]] = {}
+    standard: dict[Place, Row] = {}
     for row in scores:
-        name = row["dataset"]
-        if row["condition"] != conditions.get(name) or row["unit"] or row["rms_deg"] is None:
-            continue
-        place = order(row, (row["extractor"], row["model"]))
-        if name not in best or place < best[name][0]:
-            best[name] = place, dict(row)
+        place = row["dataset"], row["extractor"], row["model"]
+        if row["condition"] == conditions.get(row["dataset"]):
+            errors.setdefault(place, []).append(row["charged_deg"])
+            if row["unit"] == 0 and row["rms_deg"] is not None:
+                standard[place] = dict(row)
+    best: dict[str, tuple[Any, Row]] = {}
+    for (name, *pipeline), row in standard.items():
+        own = _own_deg(errors[name, pipeline[0], pipeline[1]])
+        place_of = order({**row, "charged_deg": own}, pipeline)
+        if name not in best or place_of < best[name][0]:
+            best[name] = place_of, row
     return {name: best[name][1] for name in sorted(best)}
+
+
+def _own_deg(errors: Collection[float | None]) -> float | None:
+    known = [error for error in errors if error is not None and error > 0]
+    return geometric_mean(known) if len(known) == len(errors) else None
 
 
 def behind(known: Mapping[str, Row], leading: Mapping[str, Row]) -> list[str]:
@@ -87,6 +106,7 @@ def renew(
     *,
     only: Collection[str] | None = None,
     path: Path = PATH,
+    workers: int = 1,
     progress: ProgressCallback = silent,
 ) -> list[str]:
     """Measure what is behind, or the data sets named; return their names.
@@ -96,18 +116,28 @@ def renew(
 
     Raises
     ------
+    ValueError
+        For less than one worker.
     HeldError
         When another process renews the table.
     """
+    if workers < 1:
+        raise ValueError(f"workers must be at least 1; got {workers}")
     with held_alone(path):
         known = {name: row for name, row in rows(path).items() if name in leading}
         wanted = [n for n in leading if n in only] if only is not None else behind(known, leading)
-        for done, name in enumerate(wanted):
-            progress(done, len(wanted), name)
-            known[name] = measured(leading[name], parts)
-            replace_file(path, text_of(list(_COLUMNS), [known[n] for n in sorted(known)]))
-    progress(len(wanted), len(wanted), "")
+        progress(0, len(wanted), "")
+        tasks = [(leading[name], parts) for name in wanted]
+        with closing(as_completed(_measured, tasks, workers if len(tasks) > 1 else 1)) as found:
+            for done, row in enumerate(found, start=1):
+                known[row["dataset"]] = row
+                replace_file(path, text_of(list(_COLUMNS), [known[n] for n in sorted(known)]))
+                progress(done, len(wanted), row["dataset"])
     return wanted
+
+
+def _measured(task: tuple[Mapping[str, Any], Parts]) -> Row:
+    return measured(*task)
 
 
 def measured(score: Mapping[str, Any], parts: Parts) -> Row:

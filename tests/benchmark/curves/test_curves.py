@@ -24,7 +24,7 @@ from benchmark.results.components import current
 from benchmark.results.store import Store
 
 LEADER = Leader("fake-plane", 1, "nominal", "fake-readings", "fake-lines")
-BOUND = float(np.sqrt(mean_square(np.inf)))
+BOUND, BENCH = float(np.sqrt(mean_square(np.inf))), 0.5
 
 
 def task(preset=None, *models):
@@ -55,7 +55,7 @@ def test_least_squares_learns_as_its_covariance_says(learnt):
 
 
 def test_its_floor_and_the_poses_it_needs_are_those_of_the_closed_form(learnt):
-    row = row_of(learnt, BOUND)
+    row = row_of(learnt, BOUND, BENCH)
     assert row["floor"] == "fitted"
     assert row["floor_error_deg"] == pytest.approx(BOUND, rel=0.05)
     assert row["floor_low_deg"] <= row["floor_error_deg"] <= row["floor_high_deg"]
@@ -70,11 +70,11 @@ def test_its_floor_and_the_poses_it_needs_are_those_of_the_closed_form(learnt):
 
 
 def test_a_refusal_is_recorded_with_its_reason(learnt):
-    row = row_of(learnt, BOUND)
+    row = row_of(learnt, BOUND, BENCH)
     assert row["points"][0] == [4, None, None, None, None, len(UNITS) * DRAWS]
     assert row["points"][1][-1] == 0
     assert row["refusal"] == "UnusableDataError: fake-lines needs 6 poses; got 4"
-    refused = row_of(measure(task(Plane(poses=5)))[0], BOUND)
+    refused = row_of(measure(task(Plane(poses=5)))[0], BOUND, BENCH)
     assert refused["floor"] == "none"
     assert refused["needed"] == [None] * len(UNITS) * DRAWS
     assert summary(refused)["over_bound"] is None
@@ -82,7 +82,7 @@ def test_a_refusal_is_recorded_with_its_reason(learnt):
 
 def test_what_answers_half_of_the_field_is_never_near():
     (found,) = measure(task(None, Guess))
-    row = row_of(found, BOUND)
+    row = row_of(found, BOUND, BENCH)
     assert row["floor"] == "none"
     assert row["points"][-1][4] == pytest.approx(0.5, abs=0.05)
     assert summary(row)["reached"] == 0
@@ -92,7 +92,7 @@ def test_flights_are_told_in_order_and_end_with_all_poses():
     """`Lines` raises where poses with a time do not follow one another."""
     flown = measure(task(Plane(context_columns=("time_s",))))[0]
     assert flown.in_order
-    row = row_of(flown, BOUND)
+    row = row_of(flown, BOUND, BENCH)
     assert row["floor"] == "all"
     assert row["floor_low_deg"] is None
 
@@ -104,20 +104,23 @@ def test_all_draws_share_the_whole_split_and_units_differ(learnt):
     assert len({*learnt.rms_deg[:, :, 5].ravel()}) == len(UNITS) * DRAWS
 
 
-def scored(**over_bound):
+def scored(**errors):
     """Rows of a board by model; what answers too rarely or is of another condition is none."""
     plain = {"dataset": "d", "condition": "c", "unit": 0, "extractor": "e", "availability": 1.0}
-    return [{**plain, "model": model, "over_bound": over} for model, over in over_bound.items()]
+    return [
+        {**plain, "model": model, **dict.fromkeys(("charged_deg", "median_deg", "max_deg"), error)}
+        for model, error in errors.items()
+    ]
 
 
 def test_leaders_are_the_best_pipelines_of_three_models():
-    rows = scored(a=3.0, b=1.0, c=2.0, f=4.0)
-    rows += [{**row, "extractor": "other", "over_bound": 0.9} for row in scored(b=0.0)]
+    rows = scored(a=3.0, b=1.0, c=2.0, f=4.0, twin_of_c=2.0)
+    rows += [{**row, "extractor": "other", "charged_deg": 0.9} for row in scored(b=0.0)]
     rows += [
         {**scored(x=0.1)[0], "availability": 0.94},
         {**scored(y=0.1)[0], "unit": 1},
         {**scored(z=0.1)[0], "condition": "else"},
-        {**scored(n=0.1)[0], "over_bound": None},
+        {**scored(n=0.1)[0], "charged_deg": None},
     ]
     found = leaders(rows, {"d": "c"})
     assert [(one.place, one.extractor, one.model) for one in found] == [
@@ -141,13 +144,14 @@ def store(tmp_path):
     """A record with a score for every pipeline."""
     scores = {
         Cell(name, "nominal", "fake-readings", model): numbers(
-            BOUND, over_bound=place, bound_deg=BOUND
+            BOUND, charged_deg=float(place), bound_deg=BOUND
         )
         for name in PARTS.presets
         for place, model in enumerate(PARTS.models, start=1)
     }
     pins = [
-        Pin(n, "nominal", "test", 1, 2000, "h", "hh", 2000, BOUND, BOUND) for n in PARTS.presets
+        Pin(n, "nominal", "test", 1, 2000, "h", "hh", 2000, BOUND, BOUND, bench_deg=BENCH)
+        for n in PARTS.presets
     ]
     Store(tmp_path).write(scores, pins, [], current(PARTS))
     return tmp_path
@@ -158,6 +162,7 @@ def test_the_file_is_the_same_for_any_number_of_workers_and_nothing_is_measured_
     path = store / record.NAME
     text = path.read_bytes()
     assert (first.planned, first.computed) == (4, 4)
+    assert {row["bench_deg"] for row in record.read(store).values()} == {BENCH}
     assert update(store, 1, silent, parts=PARTS).computed == 0
     assert path.read_bytes() == text
     path.unlink()
@@ -189,7 +194,7 @@ def test_what_is_of_other_code_data_or_leaders_is_named_and_renewed_alone(store)
 def test_a_file_of_something_else_is_named(tmp_path):
     assert record.read(tmp_path) == {}
     path = tmp_path / record.NAME
-    for text in ("[", "[]", '{"schema": 1, "curves": [{"dataset": "d"}]}', '{"schema": 0}'):
+    for text in ("[", "[]", '{"schema": 2, "curves": [{"dataset": "d"}]}', '{"schema": 1}'):
         path.write_text(text)
         with pytest.raises(record.CurvesError, match=r"curves\.json"):
             record.read(tmp_path)

@@ -73,7 +73,7 @@ def test_measured_again_they_are_the_same(rows):
     for task in tasks_of(chosen, parts, store):
         for learnt in measure(task):
             known = {name: value for name, value in rows[learnt.leader].items() if name != "key"}
-            again = row_of(learnt, known["bound_deg"])
+            again = row_of(learnt, known["bound_deg"], known["bench_deg"])
             for name in ("needed", "error_from", "answers_from", "floor", "refusal", "poses"):
                 assert again[name] == known[name], name
             for point, before in zip(again["points"], known["points"], strict=True):

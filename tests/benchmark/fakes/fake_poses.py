@@ -1,14 +1,17 @@
 """A sensor whose learning curve has a closed form: three lines fitted to noisy directions.
 
 A reading (1, x, y) of places uniform in a square; the Sun stands at ``(x, y, 1)``, made a unit
-vector, in a small field, where angles are lengths. The calibration's directions have errors of
-`NOISE` a tangent axis, readings of the test errors of `SHAKE`: least squares of p = 3 parameters an
-axis errs by ``2 SHAKE^2 + 2 NOISE^2 p / K`` in the mean square after K poses.
+vector, in a small field, where angles are lengths. Readings of the calibration have errors of
+`NOISE` a tangent axis, far less than the field, those of the test errors of `SHAKE`: least squares
+of p = 3 parameters an axis errs by ``2 SHAKE^2 + 2 NOISE^2 p / K`` in the mean square after K
+poses.
+What the calibration says of directions is wrong by far more, and may not be used.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from types import SimpleNamespace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -61,19 +64,26 @@ class Plane:
     def parameters(self, condition: str) -> dict[str, Any]:
         return {"version": self.version, "poses": self.poses, "unit": self.unit}
 
+    def condition(self, name: str) -> Any:
+        return SimpleNamespace(sensor=None, bench=None)
+
+    def references(self, condition: str) -> dict[str, Any]:
+        return {}
+
     def generate(self, condition: str, split: str, n: int | None = None) -> FakeSamples:
         rng = np.random.default_rng([*f"{self.name} {split} {self.unit}".encode()])
         count = self.poses if split == "calibration" else 2000
         place = rng.uniform(-HALF, HALF, (count, 2))
         off = rng.standard_normal((count, 2))
         test = split != "calibration"
-        read = np.column_stack([np.ones(count), place + (SHAKE * off if test else 0.0)])
-        sun = np.column_stack([place if test else place + NOISE * off, np.ones(count)])
+        read = np.column_stack([np.ones(count), place + (SHAKE if test else NOISE) * off])
+        sun = np.column_stack([place, np.ones(count)])
         sun /= np.linalg.norm(sun, axis=1, keepdims=True)
+        said = sun if test else np.roll(sun, 1, axis=0)
         context = None
         if self.context_columns:
             context = {name: np.arange(count, dtype=float) for name in self.context_columns}
-        return FakeSamples(read[:n], sun[:n], None, context)
+        return FakeSamples(read[:n], said[:n], None, context, sun[:n])
 
     def bound(self, condition: str, split: str = "test", n: int | None = None) -> FakeBound:
         angle = np.full(2000, np.rad2deg(np.sqrt(2.0) * SHAKE))[:n]
