@@ -22,7 +22,9 @@ LINEAR, LOG_SIGMOID, TANH = 0, 1, 2
 _BLOCK = 64
 """Samples whose activations stay in the first cache; inner loops run along them."""
 _ROWS = 32
-"""Rows of derivatives that stay in the first cache; a multiple of eight that divides a block."""
+"""Rows of derivatives that stay in the first cache; a multiple of four that divides a block."""
+_TOGETHER = 8
+"""Products are summed up in matrices of a multiple of so many columns."""
 _FARTHEST = 32.0
 """Sums beyond are taken for this: both functions are flat there to 2e-14."""
 _SHARE, _SQUARINGS = 1.0 / 128.0, 7
@@ -206,59 +208,56 @@ def _mean_square(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def _add_products(normal: Floats, gradient: Floats, rows: Floats, errors: Floats) -> None:
-    """Add products of rows (R, P) to the upper triangle (P, P), and with their errors (P,)."""
-    for p in range(len(gradient)):
-        line, total = normal[p, p:], gradient[p]
-        for r in range(0, len(errors), 8):
-            a, b, c, d = rows[r, p], rows[r + 1, p], rows[r + 2, p], rows[r + 3, p]
-            e, f, g, h = rows[r + 4, p], rows[r + 5, p], rows[r + 6, p], rows[r + 7, p]
-            total += a * errors[r] + b * errors[r + 1] + c * errors[r + 2] + d * errors[r + 3]
-            total += e * errors[r + 4] + f * errors[r + 5] + g * errors[r + 6] + h * errors[r + 7]
-            # sliced one by one: contiguous for the compiler
-            one, two, three, four = rows[r, p:], rows[r + 1, p:], rows[r + 2, p:], rows[r + 3, p:]
-            five, six = rows[r + 4, p:], rows[r + 5, p:]
-            seven, eight = rows[r + 6, p:], rows[r + 7, p:]
+def _add_products(products: Floats, rows: Floats) -> None:
+    """Add products of the columns of rows (R, C) to the upper triangle (C, C).
+
+    Four lines at a time share what is read of four rows; they start and end (C) at multiples of
+    `_TOGETHER`, so that the compiler takes several elements at a time.
+    """
+    for p in range(0, len(products), 4):
+        left = p // _TOGETHER * _TOGETHER
+        # sliced one by one: contiguous for the compiler
+        line, line1, line2 = products[p, left:], products[p + 1, left:], products[p + 2, left:]
+        line3 = products[p + 3, left:]
+        for r in range(0, len(rows), 4):
+            row, row1, row2 = rows[r, left:], rows[r + 1, left:], rows[r + 2, left:]
+            row3 = rows[r + 3, left:]
+            at, at1, at2, at3 = rows[r, p:], rows[r + 1, p:], rows[r + 2, p:], rows[r + 3, p:]
+            a, b, c, d = at[0], at1[0], at2[0], at3[0]
+            e, f, g, h = at[1], at1[1], at2[1], at3[1]
+            i, j, k, m = at[2], at1[2], at2[2], at3[2]
+            n, o, s, t = at[3], at1[3], at2[3], at3[3]
             for q in range(len(line)):
-                more = line[q] + (a * one[q] + b * two[q] + c * three[q] + d * four[q])
-                line[q] = more + (e * five[q] + f * six[q] + g * seven[q] + h * eight[q])
-        gradient[p] = total
+                u, v, w, x = row[q], row1[q], row2[q], row3[q]
+                line[q] += a * u + b * v + c * w + d * x
+                line1[q] += e * u + f * v + g * w + h * x
+                line2[q] += i * u + j * v + k * w + m * x
+                line3[q] += n * u + o * v + s * w + t * x
 
 
 @compiled
 def _normal_equations(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    inputs: Floats,
-    wanted: Floats,
-    weights: Floats,
-    widths: Layers,
-    kinds: Layers,
-    units: Floats,
-    normal: Floats,
-    gradient: Floats,
+    inputs: Floats, wanted: Floats, weights: Floats, widths: Layers, kinds: Layers, products: Floats
 ) -> None:
-    """Mean products of derivatives (P, P; the upper triangle) and with the errors (P,)."""
-    count, outputs, everything = len(weights), wanted.shape[1], len(units)
-    normal[:] = 0.0
-    gradient[:] = 0.0
-    # sample by sample, output by output
-    rows, errors = np.zeros((_BLOCK, outputs, count)), np.zeros((_BLOCK, outputs))
-    listed, off = rows.reshape(-1, count), errors.reshape(-1)
-    slopes = np.empty((everything, _BLOCK))
+    """Mean products (C, C; the upper triangle) of derivatives; with the errors in column P < C."""
+    count, outputs, everything = len(weights), wanted.shape[1], np.sum(widths)
+    products[:] = 0.0
+    rows = np.zeros((_BLOCK, outputs, len(products)))  # sample by sample, output by output
+    listed = rows.reshape(-1, len(products))
+    units, slopes = np.empty((everything, _BLOCK)), np.empty((everything, _BLOCK))
     for start in range(0, len(inputs), _BLOCK):
         size = min(_BLOCK, len(inputs) - start)
         seen, falling = units[:, :size], slopes[:, :size]
         _forward(inputs[start : start + size], weights, widths, kinds, seen)
         for output in range(outputs):
-            _derivatives(seen, output, weights, widths, kinds, falling, rows[:size, output])
-            found = seen[everything - outputs + output]
-            errors[:size, output] = found - wanted[start : start + size, output]
+            found = rows[:size, output]
+            _derivatives(seen, output, weights, widths, kinds, falling, found[:, :count])
+            answer = seen[everything - outputs + output]
+            found[:, count] = answer - wanted[start : start + size, output]
         rows[size:] = 0.0
-        errors[size:] = 0.0
         for first in range(0, size * outputs, _ROWS):
-            part = slice(first, first + _ROWS)
-            _add_products(normal, gradient, listed[part], off[part])
-    gradient /= len(inputs)
-    normal /= len(inputs)
+            _add_products(products, listed[first : first + _ROWS])
+    products /= len(inputs)
 
 
 @compiled
@@ -322,9 +321,10 @@ def _lower(  # noqa: PLR0917 - Numba takes no keyword-only ones
     The error is `cost` itself where no step lowers it.
     """
     count = len(here)
-    normal, factor = np.empty((count, count)), np.empty((count, count))
-    gradient = np.empty(count)
-    _normal_equations(inputs, wanted, here, widths, kinds, units, normal, gradient)
+    wide, factor = (count // _TOGETHER + 1) * _TOGETHER, np.empty((count, count))
+    products = np.empty((wide, wide))
+    _normal_equations(inputs, wanted, here, widths, kinds, products)
+    normal, gradient = products[:count, :count], products[:count, count].copy()
     mean = 0.0
     for p in range(count):
         mean += normal[p, p]

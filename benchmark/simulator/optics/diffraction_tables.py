@@ -339,7 +339,7 @@ class RoundPattern:
         return shifts, weights, (corner * self.cell_mm * per_mm, share)
 
 
-@memory.tables(24)
+@memory.tables(40)
 def _tables(pattern: RoundPattern) -> Floats:
     steps, _ = pattern.scales(np.zeros(1))
     across = landing(np.zeros(1), pattern.layers())[0, 1]
