@@ -1,8 +1,8 @@
-"""`python -m benchmark.assessment.fresh_units`: do the boards' leaders lead on units nobody saw?
+"""`python -m benchmark.assessment.fresh_units`: leaders of boards on units nobody has seen.
 
-The first group of every board, which its leader and what is not told apart from it are in, is
-scored on five units more. Printed is for each board whether its leader is in the first group there,
-too, and how much more it errs than the first on these units.
+The first group of every board, its leader and what is not told apart from it, is scored on five
+more units. Printed is for each board whether its leader is in the first group there, too, and how
+much more it errs than the first on these units.
 """
 
 from __future__ import annotations
@@ -99,7 +99,10 @@ def _ranks(row: Row | None) -> bool:
 
 def _logs(cells: Sequence[Cell], scores: Mapping[Cell, Row], units: Iterable[int]) -> np.ndarray:
     errors = [
-        [scores.get(replace(cell, unit=unit), {"charged_deg": None})["charged_deg"] for unit in units]
+        [
+            scores.get(replace(cell, unit=unit), {"charged_deg": None})["charged_deg"]
+            for unit in units
+        ]
         for cell in cells
     ]
     return paired.logarithms(errors)

@@ -1,36 +1,32 @@
 """The best pipeline of each architecture: how far it is from its bound, and how sure that is.
 
 An architecture is a detector with a mask; of its data sets the one counts whose best pipeline errs
-least under the first condition. Two numbers say how sure that is. The standard error of the ratio
-to the bound is what the test samples leave open; the errors on the other units of the sensor are
-what another specimen does. A runner-up that either of them does not tell apart is a tie.
+least under the first condition. What is chosen on some units is quoted on others: the best of many
+is partly the luckiest. A runner-up that the paired test of the board does not tell apart is a tie.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from benchmark.leaderboard.ranking import Spread
 from benchmark.metrics.score import is_available
 from registry.measured import Partly, finer_for
 
 Board = Mapping[str, Any]
 Row = Mapping[str, Any]
 
-#: Standard errors within which two ratios to the bound are not told apart.
-STANDARD_ERRORS = 2.0
-
 #: Members that are those of the best pipeline's score.
 _OF_SCORE = (
     *("dataset", "half_fov_deg", "extractor", "model", "studies", "rms_deg", "bound_deg"),
-    *("over_bound", "over_bound_se", "bound_unit_deg", "over_bound_unit", "floor_deg"),
-    *("availability", "unit_rms_deg"),
+    *("own_deg", "own_se", "on_bench_deg", "on_bench_basis", "over_bound", "over_bound_se"),
+    *("bound_unit_deg", "over_bound_unit", "availability", "unit_rms_deg"),
 )
 #: Members of a pipeline that errs far less on what it answers, named `finer_...`.
 _OF_FINER = ("dataset", "extractor", "model", "rms_deg", "over_bound", "availability")
 #: Members of the runner-up, named `runner_up_...`.
-_OF_RUNNER_UP = ("extractor", "model", "rms_deg", "over_bound", "over_bound_se", "unit_rms_deg")
+_OF_RUNNER_UP = ("extractor", "model", "own_deg", "unit_rms_deg")
 
 
 def architectures(board: Board) -> list[dict[str, Any]]:
@@ -45,16 +41,17 @@ def architectures(board: Board) -> list[dict[str, Any]]:
     -------
     list of dict
         By detector and mask: ``detector``, ``mask``, ``datasets`` (those compared), the best
-        pipeline's ``dataset``, names, ``studies`` that used it, ``half_fov_deg`` and score on the
-        standard unit (null where nothing has an error); ``others_low_deg`` and
-        ``others_high_deg``, its smallest and largest error on the other units (null where one of
-        them gives none); the pipeline that ranks next on the same data set as ``runner_up_...``;
-        ``tie`` and what it is by: ``tie_by_samples`` (the ratios to the bound differ by less than
-        `STANDARD_ERRORS` of their difference, taken as independent though they see the same
-        samples), ``tie_by_units`` (the errors on the units overlap, as shared ranks do); on
-        how many of ``units_compared`` units the best errs less, ``units_ahead``; and as
-        ``finer_...`` the pipeline that errs least of those that answer half of the samples or more
-        but too seldom to rank first, where the best errs far more (`registry.measured.finer_for`).
+        pipeline's ``dataset``, names, ``studies`` that used it, ``half_fov_deg``, ``own_deg`` with
+        its relative standard error ``own_se``, its error on a bench, and its score on the standard
+        unit (null where nothing has an error); ``quoted_deg``, the error on the odd units of what
+        errs least on the even ones, data set and pipeline; ``others_low_deg`` and
+        ``others_high_deg``, its smallest and largest error on the units other than the standard
+        one (null where one of them gives none); the pipeline that ranks next on the same data set,
+        twins aside, as ``runner_up_...``; ``tie`` (whether the board does not tell it apart) and
+        ``first_group`` (how many it does not); on how many of ``units_compared`` units the best
+        errs less, ``units_ahead``; and as ``finer_...`` the pipeline that errs least of those that
+        answer half of the samples or more but too seldom to rank first, where the best errs far
+        more (`registry.measured.finer_for`).
     """
     by: dict[tuple[str, str], list[Mapping[str, Any]]] = {}
     for dataset in board["datasets"]:
@@ -79,8 +76,7 @@ def first_boards(board: Board) -> Iterator[tuple[Mapping[str, Any], list[Row]]]:
 
 def _best(datasets: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     ranked = [
-        # Shared ranks stay in the order of the standard unit's errors.
-        sorted((row for row in rows if row["rank"] is not None), key=_order)
+        sorted((row for row in rows if row["rank"] is not None and not row["twin_of"]), key=_order)
         for _, rows in first_boards({"datasets": datasets})
     ]
     leading = min((rows for rows in ranked if rows), key=lambda rows: _order(rows[0]), default=[])
@@ -92,39 +88,50 @@ def _best(datasets: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     return {
         **{name: best.get(name) for name in _OF_SCORE},
         "studies": list(best.get("studies", ())),
+        "quoted_deg": _quoted(ranked),
         "others_low_deg": min(others) if known else None,
         "others_high_deg": max(others) if known else None,
         **{f"runner_up_{name}": next_one.get(name) for name in _OF_RUNNER_UP},
+        "first_group": sum(row["group"] == 1 for row in leading),
         **_tie(best, next_one),
         **{f"finer_{name}": finer.get(name) for name in _OF_FINER},
     }
 
 
+def _quoted(ranked: Sequence[Sequence[Row]]) -> float | None:
+    """Return the error on the odd units of what errs least on the even ones; None for one unit."""
+    candidates = [
+        (even.own_deg, odd.own_deg)
+        for rows in ranked
+        for row in rows
+        if row["group"] is not None and is_available(row)
+        for even, odd in [
+            (Spread(tuple(row["unit_rms_deg"][::2])), Spread(tuple(row["unit_rms_deg"][1::2])))
+        ]
+        if even.own_deg is not None and odd.own_deg is not None
+    ]
+    return min(candidates)[1] if candidates else None
+
+
 def _finer(best: Row, ranked: Sequence[Sequence[Row]]) -> Row:
     """Return what errs far less than the best, answering seldom; nothing where nothing does."""
     seldom = (
-        Partly(row["rms_deg"], row["availability"] or 0.0, row)
+        Partly(row["charged_deg"], row["availability"] or 0.0, row)
         for rows in ranked
         for row in rows
         if not is_available(row)
     )
-    found = finer_for(best["rms_deg"], seldom)
+    found = finer_for(best["own_deg"], seldom)
     return {} if found is None else found.of
 
 
-def _order(row: Row) -> tuple[bool, float, str, str]:
-    return not is_available(row), row["rms_deg"], row["extractor"], row["model"]
+def _order(row: Row) -> tuple[bool, bool, float, str, str]:
+    alone = row["group"] is None
+    return not is_available(row), alone, row["own_deg"], row["extractor"], row["model"]
 
 
 def _tie(best: Row, runner_up: Row) -> dict[str, Any]:
-    """Say what does not tell the runner-up from the best."""
-    if not runner_up or is_available(best) != is_available(runner_up):
-        found = {"tie_by_samples": False, "tie_by_units": False}
-    else:
-        found = {
-            "tie_by_samples": _within(best, runner_up),
-            "tie_by_units": best["rank"] == runner_up["rank"],
-        }
+    """Say whether the runner-up is told apart from the best, and on how many units it errs more."""
     pairs = [
         (one, other)
         for one, other in zip(
@@ -132,17 +139,9 @@ def _tie(best: Row, runner_up: Row) -> dict[str, Any]:
         )
         if one is not None and other is not None
     ]
+    group = best.get("group")
     return {
-        "tie": any(found.values()),
-        **found,
+        "tie": group is not None and group == runner_up.get("group"),
         "units_ahead": sum(one < other for one, other in pairs) if pairs else None,
         "units_compared": len(pairs),
     }
-
-
-def _within(best: Row, runner_up: Row) -> bool:
-    ratios = best["over_bound"], runner_up["over_bound"]
-    errors = best["over_bound_se"], runner_up["over_bound_se"]
-    if None in ratios or None in errors:
-        return False
-    return bool(abs(ratios[1] - ratios[0]) <= STANDARD_ERRORS * math.hypot(*errors))

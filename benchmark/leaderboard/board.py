@@ -7,14 +7,18 @@ the same for the same rows.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import groupby
 from typing import Any
 
-from benchmark.contract import Cell
+from benchmark.contract import ON_BENCH, Cell
+from benchmark.datasets import get, names
+from benchmark.datasets.corrected import references_used
+from benchmark.datasets.pins import Pin, Place
 from benchmark.datasets.realism import standing
-from benchmark.leaderboard.ranking import order, ranks, spreads
-from benchmark.leaderboard.scope import UNITS, Studied, studies_of_pipelines
+from benchmark.leaderboard.beside import expected_on_bench, on_bench, twins_of
+from benchmark.leaderboard.ranking import Judged, judged, order, spreads
+from benchmark.leaderboard.scope import BEHIND, UNITS, Studied, studies_of_pipelines
 from benchmark.metrics.rings import EDGES_DEG, field_error, widest_field
 from benchmark.metrics.score import METRIC_VERSION, is_available
 from benchmark.results.components import SCHEMA_VERSION
@@ -25,6 +29,8 @@ Row = Mapping[str, Any]
 Times = Mapping[tuple[str, str, str], Mapping[str, float | None]]
 
 NOMINAL = "nominal"
+#: An error that no board shows unasked.
+HOPELESS_DEG = 10.0
 
 UNTIMED: Mapping[str, float | None] = {"latency_us": None, "time_ratio": None}
 
@@ -34,6 +40,7 @@ def build(
     times: Times | None = None,
     swept: Iterable[Row] = (),
     studied: Studied | None = None,
+    pins: Mapping[Place, Pin] | None = None,
 ) -> dict[str, Any]:
     """Rank stored rows within each dataset and condition.
 
@@ -47,6 +54,8 @@ def build(
         Rows of sweeps as `Store.swept` gives them.
     studied
         Mapped studies by the pipelines they used (`scope.studies_of_pipelines`); none by default.
+    pins
+        Pinned data, which say what a board states once; none by default.
 
     Returns
     -------
@@ -54,41 +63,61 @@ def build(
         ``schema``, ``metric_version``, ``units`` (how many leading pipelines are scored on),
         ``sweeps`` (as given) and ``datasets``: each with ``name``, ``version``, ``detector``,
         ``mask``, ``idealisation`` (why it stands for no built sensor, null where it does),
-        ``conditions`` (the nominal one first) and ``rows``. A row is the score row of
-        the standard unit with ``rank`` (null where there is no error), ``tied`` (whether others
-        share it), ``best_of_extractor`` (whether no other pipeline of its extractor ranks before
-        it there), ``studies`` (keys of those that used it on such a sensor), the errors of all
-        units ``unit_rms_deg`` and their range ``low_deg`` to ``high_deg`` (null where one unit is
-        scored), and times.
+        ``conditions`` (the nominal one first), what its first condition's board states once
+        (``smallest_ratio`` that it tells apart, ``quoted_deg`` of its leader on units that did not
+        choose it, ``references`` used, ``bench_deg`` and ``bench_aligned_deg`` that a calibration
+        bench adds, ``controls``, ``folded``: how many rows are far behind) and ``rows``. A row is
+        the score row of the standard unit with ``rank`` (null where there is no error), ``group``
+        (1 for what is not told apart from the leader), ``tied`` (whether others share the rank),
+        ``best_of_extractor`` (whether no other pipeline of its extractor ranks before it there),
+        ``own_deg`` (geometric mean over units of the error over all answers), ``own_se`` (its
+        relative standard error), the errors of all units ``unit_rms_deg`` and their range
+        ``low_deg`` to ``high_deg`` (null where one unit is scored), ``on_bench_deg`` and
+        ``on_bench_basis`` (measured on drawn benches, or estimated), ``twin_of`` (a pipeline with
+        the same numbers throughout), ``folded``, ``studies`` (keys of those that used it on such a
+        sensor) and times.
     """
     every = list(rows)
-    spread = spreads(every)
-    standard = sorted((row for row in every if row["unit"] == 0), key=_order)
+    spread, benches = spreads(every), on_bench(every)
+    twins = twins_of(every)
+    standard = [row for row in every if row["unit"] == 0 and row["condition"] != ON_BENCH]
+    standard.sort(key=_order)
     datasets = []
     for name, of_dataset in groupby(standard, key=lambda row: row["dataset"]):
         listed: list[dict[str, Any]] = []
-        conditions = []
+        conditions: list[str] = []
+        facts: dict[str, Any] = {}
         for condition, group in groupby(of_dataset, key=lambda row: row["condition"]):
-            conditions.append(condition)
             board = list(group)
-            ranked: list[dict[str, Any]] = []
-            found = [spread.get(_cell(row)) for row in board]
-            for row, known, (rank, tied) in zip(board, found, ranks(board, found), strict=True):
-                errors = list(known.errors_deg) if known else None
-                complete = known is not None and None not in known.errors_deg
-                ranked.append(
-                    {
-                        "rank": rank,
-                        "tied": tied,
-                        **row,
-                        "studies": list((studied or {}).get(_used(row), ())),
-                        "unit_rms_deg": errors,
-                        "low_deg": known.low_deg if known and complete else None,
-                        "high_deg": known.high_deg if known and complete else None,
-                        **_times(row, times),
-                    }
-                )
-            listed += best_of_extractors_first(ranked)
+            known = [spread[_cell(row)] for row in board]
+            found = judged(board, known)
+            pin = (pins or {}).get((name, condition, "test"))
+            bench_deg = None if pin is None or conditions else pin.bench_deg
+            ranked = [
+                {
+                    "rank": found.places[at].rank,
+                    "group": found.places[at].group,
+                    "tied": found.places[at].tied,
+                    **board[at],
+                    "own_deg": known[at].own_deg,
+                    "own_se": known[at].own_se,
+                    "studies": list((studied or {}).get(_used(board[at]), ())),
+                    "unit_rms_deg": list(known[at].errors_deg),
+                    "low_deg": known[at].low_deg,
+                    "high_deg": known[at].high_deg,
+                    **expected_on_bench(
+                        known[at].own_deg, bench_deg, benches.get(_cell(board[at]))
+                    ),
+                    "twin_of": twins.get((*_used(board[at])[2:], name)),
+                    **_times(board[at], times),
+                }
+                for at in found.order
+            ]
+            folded = _with_folded(ranked)
+            if not conditions:
+                facts = _facts(name, found, pin, folded)
+            conditions.append(condition)
+            listed += best_of_extractors_first(folded)
         datasets.append(
             {
                 "name": name,
@@ -97,6 +126,7 @@ def build(
                 "mask": listed[0]["mask"],
                 "idealisation": standing(name).idealisation or None,
                 "conditions": conditions,
+                **facts,
                 "rows": listed,
             }
         )
@@ -109,6 +139,38 @@ def build(
     }
 
 
+def _facts(name: str, found: Judged, pin: Pin | None, rows: Sequence[Row]) -> dict[str, Any]:
+    """Return what the board of a data set's first condition states once."""
+    controls = {"oracle": "oracle_deg", "boresight": "boresight_deg"}
+    return {
+        "smallest_ratio": found.smallest_ratio,
+        "quoted_deg": found.quoted_deg,
+        "references": references_used(get(name)) if name in names() else None,
+        "bench_deg": None if pin is None else pin.bench_deg,
+        "bench_aligned_deg": None if pin is None else pin.bench_aligned_deg,
+        "bound_unit_deg": None if pin is None else pin.bound_unit_deg,
+        "controls": [
+            {"name": control, "rms_deg": None if pin is None else getattr(pin, column)}
+            for control, column in controls.items()
+        ],
+        "folded": sum(row["folded"] for row in rows),
+    }
+
+
+def _with_folded(ranked: Sequence[Row]) -> list[dict[str, Any]]:
+    """Say of each ranked row of a board whether it is too far behind to be shown unasked."""
+    first = next((row["own_deg"] for row in ranked if row["own_deg"]), None)
+    return [
+        {
+            **row,
+            "folded": row["own_deg"] is None
+            or row["own_deg"] > HOPELESS_DEG
+            or (first is not None and row["own_deg"] > BEHIND * first),
+        }
+        for row in ranked
+    ]
+
+
 def board_of(store: Store, times: Times | None = None) -> dict[str, Any]:
     """Build the leaderboard of a store, with the studies that used its pipelines.
 
@@ -117,7 +179,8 @@ def board_of(store: Store, times: Times | None = None) -> dict[str, Any]:
     StoreError, ComponentsError
         For a file that cannot be read.
     """
-    return build(store.rows(unit=None), times, store.swept(), studies_of_pipelines())
+    rows, swept = store.rows(unit=None), store.swept()
+    return build(rows, times, swept, studies_of_pipelines(), store.pins())
 
 
 def best_of_extractors_first(ranked: Iterable[Row]) -> list[dict[str, Any]]:
@@ -217,7 +280,7 @@ def _kept_field(row: Row, largest_deg: float) -> int | None:
 
 
 def _by_field(row: Row) -> tuple[Any, ...]:
-    return order({**row, "rms_deg": row["field_rms_deg"]}, (row["extractor"], row["model"]))
+    return order({**row, "charged_deg": row["field_rms_deg"]}, (row["extractor"], row["model"]))
 
 
 def _by_error(row: Row) -> tuple[Any, ...]:

@@ -22,17 +22,17 @@ ROLES: tuple[Role, ...] = get_args(Role)
 WITHIN = (1.5, 3.0, 10.0)
 
 SAYS = (
-    "A board is a data set under its first condition, on the standard unit. A part - an extractor, "
+    "A board is a data set under its first condition. A part - an extractor, "
     "a compensation, a model - ran on a board where any pipeline with it is scored there, refused "
     "ones among them. It is judged there by the one of these pipelines that comes nearest to the "
     "bound and answers at least 95 % of the observable samples, so its partners are at their best, "
     "too; a chain such as optical + lut counts for each of its members. A share is the number of "
-    "boards on which that pipeline errs at most 1.5, 3 or 10 times the Cramer-Rao bound, over "
+    "boards on which that pipeline errs at most 1.5, 3 or 10 times the Cramer-Rao bound on the "
+    "standard unit, over "
     "all boards with a bound on which the part ran: every board counts once, whatever its sensor, "
     "and one without an answer counts as far. The median is over the boards where it has one. "
     "Parts run on different boards, some of which nothing comes near; the last column is on how "
-    "many of a part's boards any pipeline comes within 10. The bound takes one sample at a time, "
-    "so filters, which know those before, may fall below it."
+    "many of a part's boards any pipeline comes within 10."
 )
 
 
@@ -72,7 +72,7 @@ def overview(board: Board) -> dict[str, Any]:
                 best[place] = min((r for r in (known, ratio) if r is not None), default=None)
         front = min(
             (row for row in rows if row["rank"] is not None),
-            key=lambda row: (not is_available(row), row["rms_deg"], row["extractor"], row["model"]),
+            key=lambda row: (not is_available(row), row["rank"], row["own_deg"], row["extractor"]),
             default=None,
         )
         leading = {(role, part) for role, part, _ in _parts(front)} if front else set()

@@ -13,7 +13,7 @@ from typing import Any
 
 from benchmark.leaderboard import summaries
 from benchmark.leaderboard.architectures import architectures, first_boards
-from benchmark.leaderboard.scope import LEADING, UNITS
+from benchmark.leaderboard.scope import BEHIND, CLOSE, UNITS, UNITS_BEHIND
 from benchmark.results.tables import spelt, text_of
 from benchmark.sweeps import tables as sweep_tables
 from survey_data.whole_files import replace_file
@@ -34,8 +34,10 @@ SHOWN = {
     "model": "Model",
     "best_of_extractor": "Best of extractor",
     "studies": "Studies",
-    "rms_deg": "RMS (deg)",
-    "units": f"{UNITS} units (deg)",
+    "own_deg": "Own error (deg)",
+    "units": "Units (deg)",
+    "on_bench_deg": "On a bench (deg)",
+    "rms_deg": "RMS, standard unit (deg)",
     "median_deg": "Median (deg)",
     "p997_deg": "99.7 % (deg)",
     "repeatability_deg": "Repeatability (deg)",
@@ -44,32 +46,33 @@ SHOWN = {
     "over_bound_se": "±",
     "bound_unit_deg": "Bound, unit unknown (deg)",
     "over_bound_unit": "RMS / that",
-    "floor_deg": "Floor (deg)",
     "availability": "Answered",
     "false_sun": "False Suns",
 }
 _BEST = (
-    *("best_of_extractor", "studies", "rank", "rms_deg", "units", "over_bound", "floor_deg"),
+    *("best_of_extractor", "studies", "rank", "own_deg", "units", "on_bench_deg", "over_bound"),
     *("repeatability_deg", *_SHARES),
 )
 #: Pipelines that are not the best of their extractor are on the page down to this rank.
 _RANKS = 3
 
 LEGEND = (
-    "Error is the angle between the predicted and the true direction of the Sun, over the test "
-    "samples whose direction is observable and that are answered; answered is the share of the "
-    "observable ones, false Suns that of the others that are answered all the same. Bound is the "
-    "Cramer-Rao lower bound of that angle (root mean square) over the same samples, ± the standard "
-    "error of the ratio to it; it takes the unit as known, and one sample at a time: filters, "
-    "which know the samples before, may go below it. With the unit unknown but for flat and "
-    "dark readings it is the second bound, and the floor adds the systematic error of the "
-    "calibration's own reference to that: precision and accuracy are two numbers. Repeatability is "
-    "the standard deviation of answers to a pose held still. Pipelines that answer less than 95 % "
-    f"rank behind all others. The first {LEADING} of a data set's nominal condition are scored on "
-    f"{UNITS} units built alike: where their errors overlap those of the first of them they share "
-    "its rank, marked =. The best pipeline of each extractor stands first, the others "
-    "behind. Studies is the number of mapped studies that used a pipeline on such a sensor, or for "
-    "which it stands in where they do not state theirs."
+    "Own error is the angle between the predicted and the true direction of the Sun, root mean "
+    "square, of a pipeline calibrated with true directions: what sensor and method are good for. "
+    "It is the geometric mean over units of the sensor and includes answers to samples whose "
+    "direction cannot be told (false Suns cost what they err). Readings are corrected by the "
+    "unit's dark and flat readings. On a bench is the error expected when calibrated on the "
+    "standard bench: the root of the squares of own error and bench. Bound is the Cramer-Rao lower "
+    "bound over the same samples, ± the standard error of the ratio to it, with the unit known; "
+    "the second bound knows the unit by its dark and flat readings. Answered is the share of the "
+    "observable samples, false Suns that of the others that are answered all the same. "
+    "Repeatability is the standard deviation of answers to a pose held still. Pipelines that "
+    "answer less than 95 % rank behind all others. Under the first condition what errs at most "
+    f"{CLOSE:g} times as much as the first is scored on {UNITS} units, what errs at most "
+    f"{BEHIND:g} times as much on {UNITS_BEHIND}; those that a paired test over the units does not "
+    "tell apart share a rank, marked =. The best pipeline of each extractor stands first, the "
+    "others behind. Studies is the number of mapped studies that used a pipeline on such a sensor, "
+    "or for which it stands in where they do not state theirs."
 )
 
 
@@ -138,7 +141,8 @@ def page(board: Board) -> str:
     ]
     for dataset, rows in first_boards(board):
         for row in rows:
-            if row["rank"] is not None and (row["best_of_extractor"] or row["rank"] <= _RANKS):
+            listed = row["rank"] is not None and not (row["twin_of"] or row["folded"])
+            if listed and (row["best_of_extractor"] or row["rank"] <= _RANKS):
                 texts = (shown(column, row) for column in _BEST)
                 pipeline = f"{row['extractor']} + {row['model']}"
                 lines.append(f"| {dataset['name']} | {pipeline} | {' | '.join(texts)} |")

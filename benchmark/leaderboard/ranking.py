@@ -1,8 +1,9 @@
-"""Ranks: by error among pipelines that answer, and shared where units built alike disagree.
+"""Ranks: by own error over units among pipelines that answer, shared where nothing tells apart.
 
-A rank that rests on one unit of a sensor says as much of that unit as of the pipelines. The
-leading pipelines of each data set's first condition are scored on several units; a pipeline whose
-errors on them overlap those of the best one before it shares its rank.
+What can lead a board is scored on ten units of the sensor, what is behind on five. Pipelines rank
+by the geometric mean of their errors over these; those that a paired test does not tell apart from
+the first share its rank (`benchmark.metrics.paired`). What was scored on one unit alone is further
+behind than units differ.
 """
 
 from __future__ import annotations
@@ -12,10 +13,15 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from benchmark.contract import Cell
-from benchmark.metrics.score import is_available
+from benchmark.metrics import paired
+from benchmark.metrics.score import is_available, stored
 
 Row = Mapping[str, Any]
+
+_LEAST_DEG = 1e-12
 
 
 @dataclass(frozen=True)
@@ -25,84 +31,165 @@ class Spread:
     Attributes
     ----------
     errors_deg
-        Root mean square error by unit, the standard one first; None where a unit gives none.
+        Root mean square error over all answers by unit, the standard one first; None where a unit
+        gives none.
     """
 
     errors_deg: tuple[float | None, ...]
 
     @property
-    def low_deg(self) -> float:
-        """Smallest error of a unit; 0 where one gives none: nothing is known of it."""
-        return min(0.0 if error is None else error for error in self.errors_deg)
+    def known_deg(self) -> tuple[float, ...]:
+        """Errors of the units that give one."""
+        return tuple(error for error in self.errors_deg if error is not None)
 
     @property
-    def high_deg(self) -> float:
-        """Largest error of a unit; infinite where one gives none."""
-        return max(math.inf if error is None else error for error in self.errors_deg)
+    def complete(self) -> bool:
+        """Whether there are several units, and every one gives an error."""
+        return len(self.errors_deg) > 1 and None not in self.errors_deg
 
-    def overlaps(self, other: Spread) -> bool:
-        """Say whether there are units of which either pipeline is the better."""
-        return self.low_deg <= other.high_deg and other.low_deg <= self.high_deg
+    @property
+    def own_deg(self) -> float | None:
+        """Geometric mean over units; None where none gives an error."""
+        logs = [math.log(max(error, _LEAST_DEG)) for error in self.known_deg]
+        return stored(math.exp(math.fsum(logs) / len(logs))) if logs else None
+
+    @property
+    def own_se(self) -> float | None:
+        """Relative standard error of that mean; None for fewer than two units."""
+        logs = np.log(np.maximum(self.known_deg, _LEAST_DEG))
+        return stored(float(np.std(logs, ddof=1)) / math.sqrt(len(logs))) if len(logs) > 1 else None
+
+    @property
+    def low_deg(self) -> float | None:
+        """Smallest error of a unit; None for one unit, and where one gives none."""
+        return min(self.known_deg) if self.complete else None
+
+    @property
+    def high_deg(self) -> float | None:
+        """Largest error of a unit, likewise."""
+        return max(self.known_deg) if self.complete else None
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a pipeline stands on its board.
+
+    Attributes
+    ----------
+    rank
+        Of the first of its group; None without an error.
+    group
+        1 for what is not told apart from the leader, 2 for what is not told apart from the best of
+        the others, and so on; None where it was scored on too few units, or on other units than
+        the board's first condition has.
+    tied
+        Whether others share its rank.
+    """
+
+    rank: int | None
+    group: int | None
+    tied: bool
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A board in order.
+
+    Attributes
+    ----------
+    order
+        Positions of the rows, best first.
+    places
+        By position.
+    smallest_ratio
+        Ratio to the leader from which on the board tells apart in nine of ten cases; None where
+        nothing was compared.
+    quoted_deg
+        Error on the odd units of the pipeline that leads on the even ones; None for one unit.
+    """
+
+    order: tuple[int, ...]
+    places: tuple[Place, ...]
+    smallest_ratio: float | None = None
+    quoted_deg: float | None = None
 
 
 def order(numbers: Row, identity: object) -> tuple[Any, ...]:
     """Return the place of a score among those of its board: a key to sort by.
 
-    By error; those that answer fewer than 95 % of the observable samples come behind all others,
-    those without an error last. `identity` decides between equals.
+    By error over all answers; those that answer fewer than 95 % of the observable samples come
+    behind all others, those without an error last. `identity` decides between equals.
     """
     error = numbers["charged_deg"]
     return (error is None, not is_available(numbers), error or 0.0, identity)
 
 
 def spreads(rows: Iterable[Row]) -> dict[Cell, Spread]:
-    """Return the spread of every pipeline that was scored on more units than one.
+    """Return the errors of every pipeline of the standard unit, by unit; rows are of all units."""
+    errors: dict[Cell, dict[int, float | None]] = {}
+    for row in rows:
+        cell = Cell(row["dataset"], row["condition"], row["extractor"], row["model"])
+        errors.setdefault(cell, {})[row["unit"]] = row["charged_deg"]
+    return {
+        cell: Spread(tuple(by_unit[unit] for unit in sorted(by_unit)))
+        for cell, by_unit in errors.items()
+        if 0 in by_unit
+    }
+
+
+def judged(rows: Sequence[Row], spread: Sequence[Spread]) -> Judged:
+    """Order the rows of a board, and group what is not told apart.
 
     Parameters
     ----------
     rows
-        Of all units.
-    """
-    errors: dict[Cell, dict[int, float | None]] = {}
-    for row in rows:
-        cell = Cell(row["dataset"], row["condition"], row["extractor"], row["model"])
-        errors.setdefault(cell, {})[row["unit"]] = row["rms_deg"]
-    return {
-        cell: Spread(tuple(by_unit[unit] for unit in sorted(by_unit)))
-        for cell, by_unit in errors.items()
-        if len(by_unit) > 1 and 0 in by_unit
-    }
-
-
-def ranks(ordered: Sequence[Row], spread: Sequence[Spread | None]) -> list[tuple[int | None, bool]]:
-    """Give the rank of each row of a board, and whether it is shared.
-
-    A row joins those before it where its spread overlaps that of the first of them; rows behind
-    take the rank of their place. Without a spread a row stands alone, without an error it has no
-    rank. Pipelines that answer enough and those that do not never share one.
-
-    Parameters
-    ----------
-    ordered
-        Rows of the standard unit, sorted by `order`.
+        Of the standard unit.
     spread
-        Of each row; None where it was scored on one unit.
+        Errors of each row's pipeline.
     """
-    found: list[int | None] = []
-    first = 0
-    for place, row in enumerate(ordered):
-        if row["rms_deg"] is None:
-            found.append(None)
-            continue
-        best, mine = spread[first], spread[place]
-        shared = (
-            place > 0
-            and best is not None
-            and mine is not None
-            and mine.overlaps(best)
-            and is_available(row) == is_available(ordered[first])
-        )
-        if not shared:
-            first = place
-        found.append(first + 1)
-    return [(rank, rank is not None and found.count(rank) > 1) for rank in found]
+    known = [at for at, row in enumerate(rows) if row["charged_deg"] is not None]
+    ranked = [at for at in known if is_available(rows[at])] or known
+    tested = [at for at in ranked if len(spread[at].known_deg) >= paired.FEWEST_UNITS]
+    groups: dict[int, int] = {}
+    smallest = quoted = None
+    if tested:
+        logs = paired.logarithms([spread[at].errors_deg for at in tested])
+        leader = _leader(logs)
+        found = paired.groups(logs, leader)
+        groups = {at: group for at, group in zip(tested, found, strict=True) if group is not None}
+        smallest = paired.smallest_ratio(logs, leader)
+        chosen = _leader(logs[:, ::2])
+        odd = logs[chosen, 1::2]
+        quoted = math.exp(float(np.nanmean(odd))) if np.isfinite(odd).any() else None
+    behind = 1 + max(groups.values(), default=0)
+
+    def key(at: int) -> tuple[Any, ...]:
+        row, own = rows[at], spread[at].own_deg
+        identity = row["extractor"], row["model"]
+        listed = at in ranked
+        return (own is None, not listed, groups.get(at, behind), own or 0.0, identity)
+
+    ordered = sorted(range(len(rows)), key=key)
+    places: dict[int, Place] = {}
+    first_of: dict[int, int] = {}
+    for number, at in enumerate(ordered, start=1):
+        group = groups.get(at)
+        rank = number if group is None else first_of.setdefault(group, number)
+        places[at] = Place(None if rows[at]["charged_deg"] is None else rank, group, tied=False)
+    shared = {group for group in groups.values() if list(groups.values()).count(group) > 1}
+    return Judged(
+        tuple(ordered),
+        tuple(
+            Place(places[at].rank, places[at].group, tied=places[at].group in shared)
+            for at in range(len(rows))
+        ),
+        None if smallest is None else stored(smallest),
+        None if quoted is None else stored(quoted),
+    )
+
+
+def _leader(logs: np.ndarray) -> int:
+    """Position of the least mean of those with the most units; the first of equals."""
+    units = np.isfinite(logs).sum(axis=1)
+    full = np.flatnonzero(units == units.max())
+    return int(full[np.argmin(np.nanmean(logs[full], axis=1))])

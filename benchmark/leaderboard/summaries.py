@@ -1,35 +1,35 @@
-"""What the leaderboard comes to, as Markdown: the best of each architecture, and the parts."""
+"""Leaderboard summary as Markdown: the best of each architecture, and the parts."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from benchmark.leaderboard.architectures import STANDARD_ERRORS
 from benchmark.leaderboard.overview import ROLES, WITHIN, suffix
 
 Row = Mapping[str, Any]
 
 #: What the table of architectures shows, and how sure it is.
 ARCHITECTURES = (
-    "The best pipeline of each architecture - a detector and a mask - under the nominal condition, "
-    "of its data sets the one with the least error. × bound is the RMS error over the Cramer-Rao "
-    "bound, ± the standard error of that ratio. Other units are the least and the largest error "
-    "on sensors built alike other than the one that ranks are by. = marks a pipeline whose "
-    f"runner-up is not told apart: their ratios differ by no more than {STANDARD_ERRORS:g} "
-    "standard errors, or their errors on the units overlap; ahead says on how many of these units "
-    "it beats the runner-up. What errs far less, but answers too seldom to rank first, stands in "
-    "brackets with the share that it answers."
+    "The best pipeline of each architecture (a detector and a mask) under the nominal condition, "
+    "of its data sets the one with the smallest error. Own error: calibrated with true directions, "
+    "the geometric mean over sensor units, ± its standard error. Quoted: the error on the odd "
+    "units of what errs least on the even ones. On a bench: expected when calibrated on the "
+    "standard bench. × bound: RMS error over the Cramer-Rao bound on the standard unit. = marks a "
+    "pipeline whose runner-up a paired test over the units does not tell apart; group is how many "
+    "it does not. Pipelines that err far less but answer fewer than 95 % of the samples stand in "
+    "brackets with the share that they answer."
 )
 
 _HEADINGS = {
     "architecture": "---",
     "best pipeline": "---",
     "data set": "---",
-    "RMS, deg": "---:",
+    "own error, deg": "---:",
+    "quoted, deg": "---:",
+    "on a bench, deg": "---:",
     "× bound": "---:",
-    "other units, deg": "---:",
-    "ahead": "---:",
+    "group": "---:",
     "studies": "---:",
 }
 
@@ -46,7 +46,7 @@ def tally(rows: Sequence[Row]) -> str:
         for limit in WITHIN
     )
     ties = sum(row["tie"] for row in rows)
-    return f"Of {len(rows)} architectures {', '.join(near)} times the bound; {ties} ties."
+    return f"Of {len(rows)} architectures {', '.join(near)} times the bound; {ties} are ties."
 
 
 def overview_tables(document: Mapping[str, Any]) -> str:
@@ -71,19 +71,19 @@ def overview_tables(document: Mapping[str, Any]) -> str:
 
 def _architecture(row: Row) -> Sequence[str]:
     if row["extractor"] is None:
-        return f"{row['detector']}, {row['mask']}", "none has an error", *["-"] * 6
-    ratio, error = row["over_bound"], row["over_bound_se"]
+        return f"{row['detector']}, {row['mask']}", "none has an error", *["-"] * 7
+    error = row["own_se"]
     several = len(row["datasets"])
     return (
         f"{row['detector']}, {row['mask']}",
         f"{row['extractor']} + {row['model']}{_finer(row)}",
         row["dataset"] + (f" (of {several})" if several > 1 else ""),
-        f"{digits(row['rms_deg'])}{'=' if row['tie'] else ''}",
-        f"{digits(ratio)}{'' if error is None else f' ± {error:.2g}'}",
-        f"{digits(row['others_low_deg'])} to {digits(row['others_high_deg'])}"
-        if row["others_low_deg"] is not None
-        else "-",
-        f"{row['units_ahead']} of {row['units_compared']}" if row["units_compared"] else "-",
+        f"{digits(row['own_deg'])}{'=' if row['tie'] else ''}"
+        + ("" if error is None else f" ± {100 * error:.1f} %"),
+        digits(row["quoted_deg"]),
+        digits(row["on_bench_deg"]),
+        digits(row["over_bound"]),
+        str(row["first_group"] or "-"),
         str(len(row["studies"]) or "-"),
     )
 
