@@ -7,9 +7,7 @@ becomes an outcome with its reason.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -93,10 +91,8 @@ def measure(task: Task) -> TaskResult:
             features = {split: found_features(data, extractor, split) for split in data.splits}
         except Exception as error:  # noqa: BLE001 - likewise of an extractor
             return _failed(task, error, "extracting", data.pins)
-        scored = _on_benches if task.condition == ON_BENCH else _own
         outcomes = tuple(
-            _outcome(partial(scored, task, extractor, model, features, data), model.about.name)
-            for model in task.models
+            measured_on(task, extractor, model, features, data) for model in task.models
         )
         return TaskResult(task, data.pins, outcomes)
 
@@ -106,10 +102,18 @@ def data_condition(preset: Preset, condition: str) -> str:
     return preset.conditions[0] if condition == ON_BENCH else condition
 
 
-def _outcome(scored: Callable[[], Outcome], name: str) -> Outcome:
-    """Calibrate and score one pipeline on the features its extractor found."""
+def measured_on(
+    task: Task,
+    extractor: Extractor,
+    model: Scored,
+    features: dict[str, Floats],
+    data: Generated,
+) -> Outcome:
+    """Calibrate and score one pipeline on the features (N, F) its extractor found, by split."""
+    scored = _on_benches if task.condition == ON_BENCH else _own
+    name = model.about.name
     try:
-        return scored()
+        return scored(task, extractor, model, features, data)
     except UnusableDataError as error:
         return Outcome(name, reason_of(error), refused=True)
     except Exception as error:  # noqa: BLE001 - any error of a model is a row with its reason
