@@ -52,10 +52,8 @@ class Sensitive:
     columns: dict[str, tuple[Any, Any]]
 
     def __str__(self) -> str:
-        name, (before, after) = next(
-            ((name, self.columns[name]) for name in ("charged_deg", "rms_deg") if name in self.columns),
-            next(iter(self.columns.items())),
-        )
+        name = "charged_deg" if "charged_deg" in self.columns else next(iter(self.columns))
+        before, after = self.columns[name]
         return (
             f"{self.cell} ({self.inputs}): {name} {before} -> {after}, "
             f"{len(self.columns)} columns differ"
@@ -227,7 +225,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if not asked.all:
         known = {replace(cell, unit=0) for cell in Store().scores()}
         wanted = [cell for cell in wanted if cell in known]
-    done = search(wanted, parts, lambda one: print(one, flush=True), draw=asked.draw)
+    done = search(wanted, parts, lambda one: sys.stdout.write(f"{one}\n"), draw=asked.draw)
     sys.stdout.write(f"{done.cells} cells, {len(done.sensitive)} differences\n")
     return 1 if done.sensitive else 0
 

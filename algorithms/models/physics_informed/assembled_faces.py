@@ -259,9 +259,7 @@ class AssembledFaces(FacesModel):
         cost = np.zeros(len(light))
         for face, axis in enumerate(self.normals_):
             cosine = sun[:, 0] * axis[0] + sun[:, 1] * axis[1] + sun[:, 2] * axis[2]
-            value, slope = bent_and_slope(
-                cosine, self.responses_[face], _BEND * self.noise_[face]
-            )
+            value, slope = bent_and_slope(cosine, self.responses_[face], _BEND * self.noise_[face])
             residual = (light[:, face] - level * value) / self.noise_[face]
             # of level * f(n . v / level): f s + f' (n - c s)
             rows = [
