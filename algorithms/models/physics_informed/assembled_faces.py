@@ -65,7 +65,8 @@ class AssembledFaces(FacesModel):
         Where each face looks.
     responses_ : ndarray, shape (K, 4)
         Of each face ``b``: its signal is ``b_0 + b_1 c + b_2 c^2 + b_3 c^3`` at the cosine c of
-        incidence, nothing where that is negative or the Sun behind; in the signals' unit.
+        incidence, bent softly to nothing where that is negative or the Sun behind; in the signals'
+        unit.
     dark_ : ndarray, shape (K,)
         Signal of each face in the dark; 0 where no sample left it so.
     noise_ : ndarray, shape (K,)
