@@ -15,6 +15,9 @@ Candidate = TypeVar("Candidate")
 
 FOLDS = 5
 
+EQUAL = 1e-6
+"""Relative difference of two errors below which the setting that comes first is taken."""
+
 #: Most blocks of neighbouring poses that are dealt out to the folds.
 _BLOCKS = 500
 #: Distances of unit vectors are told apart to this: equal ones must stay equal on every processor.
@@ -160,7 +163,7 @@ def best(
     Parameters
     ----------
     candidates : sequence
-        In the order of preference: of equals the first is taken.
+        In the order of preference: of equals, to a relative 1e-6, the first is taken.
     error : callable
         Error of one; NaN, infinity or UnusableDataError where it cannot be fitted.
     by : str
@@ -190,5 +193,6 @@ def best(
         raise refusal or UnusableDataError(
             f"{by} needs samples of several poses to choose its settings by leaving some out"
         )
-    size, number = min(found)
+    least = min(size for size, _ in found)
+    size, number = next(one for one in found if one[0] <= least * (1.0 + EQUAL))
     return candidates[number], size

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from algorithms.calibration.blocks import splits
+from algorithms.calibration.blocks import EQUAL, splits
 from algorithms.calibration.conditioning import WORST_CONDITION
 from algorithms.contract import Floats, UnusableDataError
 
@@ -110,6 +110,8 @@ def _variances(r: Floats, design: Floats, sizes: list[int]) -> Floats:
 def chosen(errors: Floats, by: str) -> Choice:
     """Return the order with the smallest mean of squared errors; the smaller of equals.
 
+    Equal is what differs by less than 1e-6, relative: rounding does not choose an order.
+
     Parameters
     ----------
     errors : ndarray, shape (orders,)
@@ -127,5 +129,5 @@ def chosen(errors: Floats, by: str) -> Choice:
             f"{by} needs more samples at different features: those given do not settle the "
             "smallest order when some are left out to compare orders"
         )
-    order = int(np.argmin(errors))
+    order = int(np.argmax(errors <= np.nanmin(errors) * (1.0 + EQUAL)))
     return Choice(order, float(np.sqrt(errors[order])))

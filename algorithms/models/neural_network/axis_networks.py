@@ -15,6 +15,7 @@ from algorithms.models.neural_network.training import (
     Network,
     Training,
     held_out,
+    on_grid,
     require_training,
     trained,
 )
@@ -132,6 +133,7 @@ class AxisNetworks(CalibratedModel):
 
         del context
         by = self.about.name
+        features, sun = on_grid(features, sun)
         self.middle_, self.half_range_ = feature_scaling(features, by)
         inputs, held = self._scaled(features), held_out(sun)
         self.reach_deg_ = np.empty(2)

@@ -25,7 +25,7 @@ from algorithms.models.neural_network.direction_errors import (
     learn_correction,
     least_squares,
 )
-from algorithms.models.neural_network.training import require_training
+from algorithms.models.neural_network.training import on_grid, require_training
 from algorithms.row_arithmetic import normalised
 
 MAX_SIGNALS = 8
@@ -159,6 +159,7 @@ class DeepSignals(FacesModel):
         """Fit the direction, then train on what it leaves, samples (n, K) of Suns (n, 3)."""
         del context
         by = self.about.name
+        features, sun = on_grid(features, sun)
         low, high = features.min(axis=0), features.max(axis=0)
         half = (high - low) / 2.0
         if not (half > 0).any():

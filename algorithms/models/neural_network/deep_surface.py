@@ -17,7 +17,7 @@ from algorithms.models.neural_network.direction_errors import (
     learn_correction,
     least_squares,
 )
-from algorithms.models.neural_network.training import require_training
+from algorithms.models.neural_network.training import on_grid, require_training
 from algorithms.models.nominal_projection import POSITIONS
 from algorithms.models.non_physical.regression_axes import feature_scaling
 from algorithms.row_arithmetic import normalised
@@ -125,6 +125,7 @@ class DeepSurface(CalibratedModel):
         """Fit the surfaces, then train on what they leave, samples (n, 2) of Suns (n, 3)."""
         del context
         by = self.about.name
+        features, sun = on_grid(features, sun)
         self.middle_, self.half_range_ = feature_scaling(features, by)
         inputs = self._scaled(features)
         tangents = sun[:, :2] / sun[:, 2:]

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from algorithms.calibration.blocks import folds
 from algorithms.contract import Floats, UnusableDataError
 from algorithms.inputs import require_samples
+from algorithms.row_arithmetic import normalised
 
 TRIAL_STEPS = 30
 """Steps of every start, after which only the best goes on."""
@@ -27,6 +28,8 @@ _SMALL = 0.1
 _OWN, _OTHERS, _OF_SIGMOIDS = 3.0, 0.2, 2.0
 #: Fold whose samples are held out.
 _HELD = 0
+#: Steps of the grid that training data are rounded to: a column's range, or a unit, has so many.
+_GRID = 2.0**22
 
 
 @dataclass(frozen=True)
@@ -139,6 +142,33 @@ class Trained:
     held: float
     fitted: float
     steps: int
+
+
+def on_grid(features: Floats, sun: Floats) -> tuple[Floats, Floats]:
+    """Round training data to a grid of 2**-22 of each column's range, and of unit vectors.
+
+    Training amplifies any difference until it shows. What it is given must therefore be the same
+    bits where other sums of the same readings differ by a rounding; the grid is far finer than
+    noise. Its steps are powers of two, so that they do not change with a rounding either.
+
+    Parameters
+    ----------
+    features : ndarray, shape (n, F)
+        Finite.
+    sun : ndarray, shape (n, 3)
+        Unit vectors.
+
+    Examples
+    --------
+    >>> features, sun = on_grid(np.array([[0.1], [0.9]]), np.eye(3)[:2])
+    >>> bool((features == on_grid(features * (1 + 1e-15), sun)[0]).all())
+    True
+    """
+    spread = features.max(axis=0) - features.min(axis=0)
+    # half way between powers of two for a spread that is one: counts often are
+    power = np.floor(np.log2(np.where(spread > 0, spread, 1.0) * np.sqrt(2.0)))
+    step = np.ldexp(1.0 / _GRID, power.astype(np.int64))
+    return np.round(features / step) * step, normalised(np.round(sun * _GRID) / _GRID)
 
 
 def held_out(sun: Floats) -> NDArray[np.bool_]:

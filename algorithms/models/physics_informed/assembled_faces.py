@@ -18,15 +18,18 @@ from algorithms.row_arithmetic import normalised
 
 Sharing = Literal["common", "each"]
 
-ITERATIONS = 40
+ITERATIONS = 100
 """Most steps towards a direction; ten are usual."""
 
 #: Smallest step, over its vector, that is still taken.
 _AT_REST = 1e-13
 #: Of the equations' diagonal, over its mean, at the first step and at least.
 _FIRST_DAMPING, _LEAST_DAMPING = 1e-4, 1e-12
-#: Deviations above darkness, and cosine below the horizon, up to which a face pulls towards it.
-_PULLS, _HORIZON = 2.0, 0.3
+#: Rise of the sum of squares, relative, that is still none: rounding must not choose the path.
+_EQUAL = 1e-12
+#: Width of the bend between dark and lit, over the face's noise: the equations are smooth there,
+#: so that steps come to rest where the least sum is, on every processor.
+_BEND = 0.5
 #: Of the equations of the first vector, so that what is open is nothing.
 _LEAST_START = 1e-6
 #: Standard deviation of a direction from which on it is none: the lit faces leave it open.
@@ -62,7 +65,8 @@ class AssembledFaces(FacesModel):
         Where each face looks.
     responses_ : ndarray, shape (K, 4)
         Of each face ``b``: its signal is ``b_0 + b_1 c + b_2 c^2 + b_3 c^3`` at the cosine c of
-        incidence, nothing where that is negative or the Sun behind; in the signals' unit.
+        incidence, bent softly to nothing where that is negative or the Sun behind; in the signals'
+        unit.
     dark_ : ndarray, shape (K,)
         Signal of each face in the dark; 0 where no sample left it so.
     noise_ : ndarray, shape (K,)
@@ -208,7 +212,7 @@ class AssembledFaces(FacesModel):
             step[resting] = 0.0
             tried = vector + step
             found = self._equations(tried, light)
-            better = found[2] <= cost
+            better = found[2] <= cost * (1.0 + _EQUAL)
             small = (step**2).sum(axis=1) <= _AT_REST**2 * (vector**2).sum(axis=1)
             for kept, new in zip((vector, normal, right, cost), (tried, *found), strict=True):
                 kept[better] = new[better]
@@ -256,11 +260,8 @@ class AssembledFaces(FacesModel):
         cost = np.zeros(len(light))
         for face, axis in enumerate(self.normals_):
             cosine = sun[:, 0] * axis[0] + sun[:, 1] * axis[1] + sun[:, 2] * axis[2]
-            value, slope = cubic_and_slope(cosine, self.responses_[face])
+            value, slope = bent_and_slope(cosine, self.responses_[face], _BEND * self.noise_[face])
             residual = (light[:, face] - level * value) / self.noise_[face]
-            # a face that is lit although it should be dark pulls the direction over its horizon
-            pulls = (value == 0.0) & (residual > _PULLS) & (cosine > -_HORIZON)
-            slope = np.where(pulls, self.responses_[face, 1], slope)
             # of level * f(n . v / level): f s + f' (n - c s)
             rows = [
                 (value * sun[:, k] + slope * (axis[k] - cosine * sun[:, k])) / self.noise_[face]
@@ -274,13 +275,22 @@ class AssembledFaces(FacesModel):
         return normal, right, cost + residual * residual
 
 
-def cubic_and_slope(cosine: Floats, coefficients: Floats) -> tuple[Floats, Floats]:
-    """Response at cosines of incidence (N,), nothing below zero or from behind; its derivative."""
+def bent_and_slope(cosine: Floats, coefficients: Floats, width: float) -> tuple[Floats, Floats]:
+    """Response at cosines of incidence (N,), bent softly to nothing in the dark; its derivative.
+
+    Behind the face the cubic goes on as a straight line, so that there is no jump; a value v
+    becomes ``w log(1 + exp(v / w))`` of width w, in the signals' unit.
+    """
     b0, b1, b2, b3 = coefficients
-    value = ((b3 * cosine + b2) * cosine + b1) * cosine + b0
-    lit = (cosine > 0) & (value > 0)
-    slope = (3.0 * b3 * cosine + 2.0 * b2) * cosine + b1
-    return np.where(lit, value, 0.0), np.where(lit, slope, 0.0)
+    front = np.maximum(cosine, 0.0)
+    # a line that rises towards the front, whatever the fit says of grazing light
+    rise = max(float(b1), 0.1 * float(coefficients.sum()))
+    value = ((b3 * front + b2) * front + b1) * front + b0 + rise * (cosine - front)
+    slope = np.where(cosine > 0, (3.0 * b3 * front + 2.0 * b2) * front + b1, rise)
+    ratio = value / width
+    decay = np.exp(-np.abs(ratio))
+    share = np.where(ratio > 0, 1.0, decay) / (1.0 + decay)
+    return width * (np.maximum(ratio, 0.0) + np.log1p(decay)), slope * share
 
 
 def inverted(signal: Floats, coefficients: Floats) -> Floats:

@@ -1,0 +1,234 @@
+"""A search for cells whose published digits hang on rounding.
+
+Sums in another order, as another processor or library makes them, have other last bits. Each cell
+is measured as it is and with inputs that differ by as little; every published digit must stay.
+`python -m benchmark.suites.perturbation DATASET...` searches under all conditions of data sets.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import groupby
+from typing import Any, cast
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from algorithms.contract import Extractor, Floats
+from benchmark.contract import Cell, Samples
+from benchmark.plan.combinations import cells as planned
+from benchmark.plan.parts import Parts, installed
+from benchmark.results.store import Store
+from benchmark.running.generated import Generated, found_features, generated
+from benchmark.running.task import Outcome, Task, data_condition, measured_on
+from benchmark.running.threads import one_thread
+from benchmark.seeds import generator
+
+#: Relative standard deviation of what is added: some hundred times a rounding.
+SIZE = 1e-13
+
+
+@dataclass(frozen=True)
+class Sensitive:
+    """A cell whose numbers another rounding changes.
+
+    Attributes
+    ----------
+    cell
+        Which.
+    inputs
+        What was perturbed: ``"features"`` (and the calibration's directions) or
+        ``"observations"``.
+    columns
+        Stored columns that differ, each with its value as it is and as perturbed; ``reason`` where
+        one of the two is refused.
+    """
+
+    cell: Cell
+    inputs: str
+    columns: dict[str, tuple[Any, Any]]
+
+    def __str__(self) -> str:
+        name = "charged_deg" if "charged_deg" in self.columns else next(iter(self.columns))
+        before, after = self.columns[name]
+        return (
+            f"{self.cell} ({self.inputs}): {name} {before} -> {after}, "
+            f"{len(self.columns)} columns differ"
+        )
+
+
+@dataclass(frozen=True)
+class Searched:
+    """What a search looked at, and what it found."""
+
+    cells: int
+    sensitive: tuple[Sensitive, ...]
+
+
+def search(
+    cells: Iterable[Cell],
+    parts: Parts,
+    told: Callable[[Sensitive], None] = lambda _: None,
+    *,
+    observations: bool = True,
+    draw: int = 0,
+) -> Searched:
+    """Measure cells as they are and perturbed; name those that differ in a stored digit.
+
+    Parameters
+    ----------
+    cells
+        Which; of one data set, condition, unit and extractor those share the extraction.
+    parts
+        Data sets and implementations.
+    told
+        Called with each finding at once.
+    observations
+        Whether to perturb what extractors read, too; it takes a second extraction.
+    draw
+        Number of the random draw; another one is another search.
+    """
+    count, found = 0, []
+    order = sorted(set(cells), key=lambda cell: (*_extraction(cell), cell.model))
+    with one_thread():
+        for _, group in groupby(order, key=_extraction):
+            board = list(group)
+            count += len(board)
+            for finding in _of_one_extraction(board, parts, observations, draw):
+                told(finding)
+                found.append(finding)
+    return Searched(count, tuple(found))
+
+
+def perturbed(values: ArrayLike, *names: str | int) -> Floats:
+    """Return values with relative noise of `SIZE`; whole numbers, zeros and NaN stay as they are.
+
+    A whole number is a count or a sum of counts, exact in any order.
+
+    Parameters
+    ----------
+    values
+        Of any shape.
+    names
+        Of the random stream.
+
+    Examples
+    --------
+    >>> perturbed([2.0, 0.5, np.nan], "test") == [2.0, 0.5, np.nan]
+    array([ True, False, False])
+    """
+    given = np.asarray(values, dtype=np.float64)
+    noise = generator("perturbation", *names).standard_normal(given.shape)
+    return np.where(given == np.round(given), given, given * (1.0 + SIZE * noise))
+
+
+class _Perturbing:
+    """An extractor that reads its observations perturbed."""
+
+    def __init__(self, extractor: Extractor, *names: str | int) -> None:
+        self.about, self.features = extractor.about, extractor.features
+        self._extractor, self._names = extractor, names
+
+    def extract(self, observations: ArrayLike) -> Floats:
+        """Features (N, F) of observations that differ by a rounding."""
+        given = np.asarray(observations)
+        if given.dtype.kind != "f":
+            return self._extractor.extract(given)
+        moved = perturbed(given, *self._names).astype(given.dtype)
+        return self._extractor.extract(moved)
+
+
+def _extraction(cell: Cell) -> tuple[str, str, int, str]:
+    """Name what cells of one extraction share."""
+    return cell.dataset, cell.condition, cell.unit, cell.extractor
+
+
+def _of_one_extraction(
+    board: Sequence[Cell], parts: Parts, observations: bool, draw: int
+) -> Iterator[Sensitive]:
+    cell = board[0]
+    preset, made = parts.preset(cell.dataset), parts.extractor(cell.extractor)
+    models = tuple(parts.model(one.model) for one in board)
+    task = Task(preset, cell.condition, made, models, cell.unit)
+    condition = data_condition(preset, cell.condition)
+    data = generated(preset, condition, cell.unit)
+    extractor = made.for_sensor(preset.geometry_for(condition))
+    names = (cell.dataset, cell.condition, cell.unit, cell.extractor, draw)
+    features = {split: found_features(data, extractor, split) for split in data.splits}
+    variants = {"features": _moved_features(data, features, *names)}
+    if observations:
+        moved = cast("Extractor", _Perturbing(extractor, *names))
+        fresh = replace(data, features={})
+        again = {split: found_features(fresh, moved, split) for split in data.splits}
+        if any(not np.array_equal(again[s], features[s], equal_nan=True) for s in features):
+            variants["observations"] = (data, again)
+    for one, model in zip(board, models, strict=True):
+        before = _stored(measured_on(task, extractor, model, features, data))
+        for inputs, (given, moved_features) in variants.items():
+            after = _stored(measured_on(task, extractor, model, moved_features, given))
+            differ = {
+                name: (before.get(name), after.get(name))
+                for name in before | after
+                if before.get(name) != after.get(name)
+            }
+            if differ:
+                yield Sensitive(one, inputs, differ)
+
+
+def _moved_features(
+    data: Generated, features: dict[str, Floats], *names: str | int
+) -> tuple[Generated, dict[str, Floats]]:
+    """Perturb features of every split, and the directions that the calibration is given."""
+    known = cast("Any", data.splits["calibration"])
+    truth = perturbed(known.truth, *names, "directions")
+    truth /= np.linalg.norm(truth, axis=1, keepdims=True)
+    told = cast("Samples", _Told(known, truth))
+    moved = {split: perturbed(found, *names, split) for split, found in features.items()}
+    return replace(data, splits={**data.splits, "calibration": told}), moved
+
+
+@dataclass(frozen=True)
+class _Told:
+    """Calibration samples with other directions: what fits read of them."""
+
+    samples: Samples
+    truth: Floats
+
+    @property
+    def context(self) -> Any:
+        return self.samples.context
+
+
+def _stored(outcome: Outcome) -> dict[str, Any]:
+    return {"reason": outcome.reason} if outcome.score is None else outcome.score.row()
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Search the published cells of data sets; 1 where a cell hangs on rounding."""
+    parser = argparse.ArgumentParser(prog="python -m benchmark.suites.perturbation")
+    parser.add_argument("datasets", nargs="*", help="names; all by default")
+    parser.add_argument("--condition", action="append", help="of the data sets; all by default")
+    parser.add_argument("--extractor", action="append", help="all by default")
+    parser.add_argument("--model", action="append", help="all by default")
+    parser.add_argument("--draw", type=int, default=0, help="another number is another search")
+    parser.add_argument(
+        "--all", action="store_true", help="compatible cells, not only those of the record"
+    )
+    asked = parser.parse_args(arguments)
+    parts = installed()
+    wanted = planned(
+        asked.datasets or None, asked.condition, asked.extractor, asked.model, parts=parts
+    )
+    if not asked.all:
+        known = {replace(cell, unit=0) for cell in Store().scores()}
+        wanted = [cell for cell in wanted if cell in known]
+    done = search(wanted, parts, lambda one: sys.stdout.write(f"{one}\n"), draw=asked.draw)
+    sys.stdout.write(f"{done.cells} cells, {len(done.sensitive)} differences\n")
+    return 1 if done.sensitive else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
