@@ -33,7 +33,8 @@ class MirrorRegistration(Extractor):
     ----------
     longest_px : float or None
         Longest half axis that the outline of one spot has, px, positive: outlines up to it are of
-        one spot, whatever their shape. None where no design tells.
+        one spot, whatever their shape; half of the detector behind a slit. None where no design
+        tells.
 
     Raises
     ------
@@ -104,7 +105,7 @@ class MirrorRegistration(Extractor):
         name="mirror",
         taxonomy="None",
         origin="ours",
-        version=3,
+        version=4,
         observation=Observation.FRAMES,
         kind=FeatureKind.SPOT,
     )
@@ -119,7 +120,11 @@ class MirrorRegistration(Extractor):
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
         """Return the estimator; UnsuitableDesignError for designs without a single spot."""
         require_one_spot(geometry, cls.about.name)
-        return cls(longest_px_of(geometry))
+        longest, centre = longest_px_of(geometry), geometry.centre_px
+        slit = geometry.aperture_width_mm is not None and geometry.aperture_shape is None
+        if longest is None and slit and centre is not None:
+            longest = max(centre)  # half of the detector: of a slit no design says how long it is
+        return cls(longest)
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Centres (N, 2) in frames (N, H, W); ValueError on wrong input."""
