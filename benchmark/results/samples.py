@@ -1,0 +1,381 @@
+"""Errors sample by sample: two Parquet files a data set, beside the record's tables.
+
+``samples/<dataset>.parquet`` has one row a sample of every cell measured under `CONDITION`
+(`COLUMNS`), sorted by extractor, model, unit and sample. ``samples/<dataset>.directions.parquet``
+says what the samples are: the direction of the Sun, whether it is observable, and the bound
+(`DIRECTION_COLUMNS`). All units of a data set see the same directions; the bound is unit 0's.
+
+An error is kept to a part in 2,000, less than the noise of one answer needs, and NaN says that
+there is no answer; `DOUBTS` says why. The bytes depend on the numbers and the version of pyarrow.
+"""
+
+from __future__ import annotations
+
+from base64 import b64decode, b64encode
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from benchmark.contract import Cell
+from benchmark.results import parquet_tables, recorded
+from benchmark.results.store import PUBLISHED
+from benchmark.results.tables import StoreError
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Kind = TypeVar("Kind", bound=np.generic)
+
+#: The condition whose errors are kept.
+CONDITION = "nominal"
+FOLDER = "samples"
+
+#: Codes of the column `doubt`.
+DOUBTS: Mapping[int, str] = {
+    0: "answered",
+    1: "no answer: the extractor found no features",
+    2: "no answer: the model refused the features, as outside of what it was calibrated for",
+}
+ANSWERED, NOT_FOUND, REFUSED = DOUBTS
+
+#: Columns of the errors and of the directions, with the type of each as Arrow spells it.
+COLUMNS: Mapping[str, str] = {
+    "extractor": "string",
+    "model": "string",
+    "unit": "int8",
+    "sample": "int16",
+    "error_deg": "float",
+    "doubt": "int8",
+}
+DIRECTION_COLUMNS: Mapping[str, str] = {
+    "sample": "int16",
+    "sun_x": "float",
+    "sun_y": "float",
+    "sun_z": "float",
+    "observable": "bool",
+    "bound_deg": "float",
+}
+_NAMES = ("extractor", "model")
+_MANTISSA_BITS = 10  # of 23: a part in 2,000
+
+
+@dataclass(frozen=True)
+class CellErrors:
+    """Errors of one cell, as they are kept.
+
+    Attributes
+    ----------
+    error_deg
+        (N,) float32 in degrees, rounded to a part in 2,000; NaN where there is no answer.
+    doubt
+        (N,) int8, codes of `DOUBTS`.
+    """
+
+    error_deg: NDArray[np.float32]
+    doubt: NDArray[np.int8]
+
+    @classmethod
+    def of(cls, error_deg: ArrayLike, found: ArrayLike) -> CellErrors:
+        """Round errors and say of each missing one why it is.
+
+        Parameters
+        ----------
+        error_deg
+            (N,) from 0 to 180 degrees; NaN where the pipeline gave no answer.
+        found
+            (N,) of bool: whether the extractor found features.
+
+        Raises
+        ------
+        ValueError
+            On another shape, no samples, or an error outside of 0 to 180 degrees.
+        """
+        error = np.asarray(error_deg, dtype=np.float64)
+        seen = np.asarray(found, dtype=np.bool_)
+        if error.ndim != 1 or not error.size or seen.shape != error.shape:
+            raise ValueError(
+                f"error_deg and found must have one shape (N,); got {error.shape}, {seen.shape}"
+            )
+        missing = np.isnan(error)
+        if not ((error >= 0.0) & (error <= 180.0) | missing).all():
+            raise ValueError("error_deg must be from 0 to 180 degrees, or NaN for no answer")
+        doubt = np.where(missing, np.where(seen, REFUSED, NOT_FOUND), ANSWERED)
+        return cls(_rounded(error), doubt.astype(np.int8))
+
+    def spelt(self) -> dict[str, str]:
+        """Spell the arrays for a journal, each in base 64."""
+        return {"error_deg": _spelt(self.error_deg), "doubt": _spelt(self.doubt)}
+
+    @classmethod
+    def read(cls, fields: Mapping[str, str]) -> CellErrors:
+        """Read what `spelt` wrote; ValueError or KeyError for anything else."""
+        return cls(_unspelt(fields["error_deg"], np.float32), _unspelt(fields["doubt"], np.int8))
+
+
+@dataclass(frozen=True)
+class Directions:
+    """Samples of a data set's test split.
+
+    Attributes
+    ----------
+    sun
+        (N, 3) true unit vectors to the Sun.
+    observable
+        (N,) of bool: whether the direction can be told at all.
+    bound_deg
+        (N,) Cramer-Rao standard deviation of the angle in degrees; not finite where there is none.
+    """
+
+    sun: NDArray[Any]
+    observable: NDArray[Any]
+    bound_deg: NDArray[Any]
+
+    def __post_init__(self) -> None:
+        shapes = self.sun.shape, self.observable.shape, self.bound_deg.shape
+        count = self.observable.shape
+        if len(count) != 1 or not count[0] or shapes != ((*count, 3), count, count):
+            raise ValueError(
+                "sun, observable and bound_deg must have shapes (N, 3), (N,) and (N,); "
+                f"got {', '.join(map(str, shapes))}"
+            )
+
+    def spelt(self) -> dict[str, str]:
+        """Spell the arrays for a journal, each in base 64."""
+        return {
+            "sun": _spelt(np.asarray(self.sun, dtype=np.float64)),
+            "observable": _spelt(np.asarray(self.observable, dtype=np.bool_)),
+            "bound_deg": _spelt(np.asarray(self.bound_deg, dtype=np.float64)),
+        }
+
+    @classmethod
+    def read(cls, fields: Mapping[str, str]) -> Directions:
+        """Read what `spelt` wrote; ValueError or KeyError for anything else."""
+        return cls(
+            _unspelt(fields["sun"], np.float64).reshape(-1, 3),
+            _unspelt(fields["observable"], np.bool_),
+            _unspelt(fields["bound_deg"], np.float64),
+        )
+
+
+class SampleErrors:
+    """Errors that one run measures, collected to be written beside the record.
+
+    Attributes
+    ----------
+    cells
+        Errors by cell.
+    directions
+        Samples by data set.
+    """
+
+    def __init__(self) -> None:
+        self.cells: dict[Cell, CellErrors] = {}
+        self.directions: dict[str, Directions] = {}
+
+    def add(self, cell: Cell, error_deg: ArrayLike, found: ArrayLike) -> None:
+        """Take in a cell's errors, as `CellErrors.of`; ValueError for another condition."""
+        self.keep(cell, CellErrors.of(error_deg, found))
+
+    def keep(self, cell: Cell, errors: CellErrors) -> None:
+        """Take in a cell's errors; ValueError for another condition than `CONDITION`."""
+        if cell.condition != CONDITION:
+            raise ValueError(f"errors are kept of {CONDITION!r} alone; got {cell}")
+        self.cells[cell] = errors
+
+    def write(self, directory: Path, keep: Callable[[Cell], bool]) -> bool:
+        """Write what was collected over what the record has; return whether a file changed.
+
+        Cells that were not measured now stay as they are on disk. Each file is written whole or
+        not at all, and only where its numbers change.
+
+        Parameters
+        ----------
+        directory
+            Of the record.
+        keep
+            Says of a cell, collected or on disk, whether the record still has it.
+
+        Raises
+        ------
+        StoreError
+            For a file that cannot be read; nothing has been written.
+        ValueError
+            Where a data set's cells have other samples than its directions say, or it has none.
+        """
+        contents: dict[str, str | bytes | None] = {}
+        measured = {cell.dataset for cell in self.cells}
+        for name in sorted({*_stored(directory), *measured, *self.directions}):
+            before = _cells_on_disk(directory, name)
+            now = {cell: self.cells[cell] for cell in self.cells if cell.dataset == name}
+            wanted = {cell: found for cell, found in (before | now).items() if keep(cell)}
+            errors, directions = path_of(name), path_of(name, directions=True)
+            if not wanted:
+                contents |= {errors: None, directions: None}
+                continue
+            known = _directions_on_disk(directory, name)
+            if name in self.directions:
+                known = _of_directions(self.directions[name])
+            if known is None:
+                raise ValueError(f"no directions of the samples of {name}")
+            _require_samples(wanted, len(known["sample"]))
+            contents |= _changed(directory / errors, errors, _of_cells(wanted), COLUMNS)
+            contents |= _changed(directory / directions, directions, known, DIRECTION_COLUMNS)
+        return recorded.write(directory, contents) if contents else False
+
+
+def path_of(dataset: str, *, directions: bool = False) -> str:
+    """Return where a data set's errors, or its directions, are in a record; relative, POSIX."""
+    return f"{FOLDER}/{dataset}{'.directions' if directions else ''}.parquet"
+
+
+def datasets(directory: Path = PUBLISHED) -> tuple[str, ...]:
+    """Return the names of the data sets whose errors a record has, sorted."""
+    return tuple(sorted(n for n in _stored(directory) if (directory / path_of(n)).is_file()))
+
+
+def read(dataset: str, directory: Path = PUBLISHED) -> pd.DataFrame:
+    """Return the errors of a data set, sorted by extractor, model, unit and sample.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Of `COLUMNS`; extractor and model are categories.
+
+    Raises
+    ------
+    FileNotFoundError
+        Where the record has none of this data set.
+    StoreError
+        For a file that is damaged, holds other columns or types, or values that no run writes.
+    """
+    path = directory / path_of(dataset)
+    table = parquet_tables.read(path, COLUMNS, names=_NAMES)
+    error, doubt = table["error_deg"].to_numpy(), table["doubt"].to_numpy()
+    _require(path, bool((np.isnan(error) | ((error >= 0) & (error <= 180))).all()), "error_deg")
+    _require(path, bool(((doubt == ANSWERED) == ~np.isnan(error)).all()), "doubt")
+    _require(path, bool(np.isin(doubt, list(DOUBTS)).all()), "doubt")
+    order = [table[name].cat.codes.to_numpy().astype(np.int64) for name in _NAMES]
+    order += [table[name].to_numpy().astype(np.int64) for name in ("unit", "sample")]
+    _require(path, all(bool((column >= 0).all()) for column in order), "unit and sample")
+    start = order[3] == 0  # of a cell: its samples count from 0
+    _require(path, bool(start[:1].all() and ((np.diff(order[3]) == 1) | start[1:]).all()), "sample")
+    named = ((str(x), str(m)) for x, m in zip(*(table[n][start] for n in _NAMES), strict=True))
+    cells = [(*names, int(u)) for names, u in zip(named, order[2][start], strict=True)]
+    _require(path, all(a < b for a, b in pairwise(cells)), "order of rows")
+    same = [column[1:] == column[:-1] for column in order[:3]]
+    _require(path, bool((np.logical_and.reduce(same) | start[1:]).all()), "sample")
+    return table
+
+
+def read_directions(dataset: str, directory: Path = PUBLISHED) -> pd.DataFrame:
+    """Return the samples of a data set, by number: `DIRECTION_COLUMNS`. Errors as `read`."""
+    path = directory / path_of(dataset, directions=True)
+    table = parquet_tables.read(path, DIRECTION_COLUMNS)
+    _require(path, table["sample"].tolist() == list(range(len(table))), "sample")
+    length = np.linalg.norm(table[["sun_x", "sun_y", "sun_z"]].to_numpy(), axis=1)
+    _require(path, bool((np.abs(length - 1.0) < 1e-5).all()), "sun_x, sun_y and sun_z")
+    bound = table["bound_deg"].to_numpy()
+    _require(path, bool((np.isnan(bound) | (bound > 0)).all()), "bound_deg")
+    return table
+
+
+def _spelt(array: NDArray[Any]) -> str:
+    return b64encode(array.tobytes()).decode()
+
+
+def _unspelt(text: str, kind: type[Kind]) -> NDArray[Kind]:
+    return np.frombuffer(b64decode(text, validate=True), dtype=kind)
+
+
+def _require(path: Path, holds: bool, what: str) -> None:
+    if not holds:
+        raise StoreError(f"{path}: values of {what} that no run writes")
+
+
+def _rounded(values: NDArray[np.float64]) -> NDArray[np.float32]:
+    """Round to `_MANTISSA_BITS` bits behind the point of the mantissa, ties up; NaN stays NaN."""
+    spare = 23 - _MANTISSA_BITS
+    bits = np.asarray(values, dtype=np.float32).view(np.uint32)
+    rounded = ((bits + np.uint32(1 << (spare - 1))) >> spare << spare).view(np.float32)
+    return np.where(np.isnan(values), np.float32(np.nan), rounded).astype(np.float32)
+
+
+def _stored(directory: Path) -> set[str]:
+    """Return the data sets that a record has files of."""
+    return {path.name.partition(".")[0] for path in (directory / FOLDER).glob("*.parquet")}
+
+
+def _cells_on_disk(directory: Path, dataset: str) -> dict[Cell, CellErrors]:
+    try:
+        table = read(dataset, directory)
+    except FileNotFoundError:
+        return {}
+    names = [table[name].astype(str).to_numpy() for name in _NAMES]
+    unit, error, doubt = (table[name].to_numpy() for name in ("unit", "error_deg", "doubt"))
+    starts = [*np.flatnonzero(table["sample"].to_numpy() == 0).tolist(), len(table)]
+    return {
+        Cell(dataset, CONDITION, str(names[0][a]), str(names[1][a]), int(unit[a])): CellErrors(
+            error[a:b], doubt[a:b]
+        )
+        for a, b in pairwise(starts)
+    }
+
+
+def _directions_on_disk(directory: Path, dataset: str) -> dict[str, Any] | None:
+    try:
+        table = read_directions(dataset, directory)
+    except FileNotFoundError:
+        return None
+    return {name: table[name].to_numpy() for name in DIRECTION_COLUMNS}
+
+
+def _of_directions(directions: Directions) -> dict[str, Any]:
+    bound = np.asarray(directions.bound_deg, dtype=np.float32)
+    sun = np.asarray(directions.sun, dtype=np.float32)
+    return {
+        "sample": np.arange(len(bound), dtype=np.int16),
+        **{f"sun_{axis}": np.ascontiguousarray(sun[:, k]) for k, axis in enumerate("xyz")},
+        "observable": np.asarray(directions.observable, dtype=np.bool_),
+        "bound_deg": np.where(np.isfinite(bound), bound, np.float32(np.nan)),
+    }
+
+
+def _of_cells(cells: Mapping[Cell, CellErrors]) -> dict[str, Any]:
+    ordered = sorted(cells, key=lambda cell: (cell.extractor, cell.model, cell.unit))
+    sizes = [cells[cell].error_deg.size for cell in ordered]
+    return {
+        **{name: np.repeat([getattr(cell, name) for cell in ordered], sizes) for name in _NAMES},
+        "unit": np.repeat(np.array([cell.unit for cell in ordered], dtype=np.int8), sizes),
+        "sample": np.concatenate([np.arange(size, dtype=np.int16) for size in sizes]),
+        "error_deg": np.concatenate([cells[cell].error_deg for cell in ordered]),
+        "doubt": np.concatenate([cells[cell].doubt for cell in ordered]),
+    }
+
+
+def _require_samples(cells: Mapping[Cell, CellErrors], count: int) -> None:
+    for cell, errors in cells.items():
+        if errors.error_deg.size != count:
+            raise ValueError(f"{cell} has {errors.error_deg.size} samples; expected {count}")
+
+
+def _changed(
+    path: Path, name: str, columns: Mapping[str, Any], types: Mapping[str, str]
+) -> dict[str, bytes]:
+    """Return a file's new bytes by its name; nothing where it holds these numbers already.
+
+    So that another version of pyarrow does not change a record.
+    """
+    try:
+        held = parquet_tables.read(path, types)
+    except FileNotFoundError:
+        return {name: parquet_tables.spelt(columns, types)}
+    same = len(held) == len(columns["sample"]) and all(
+        np.array_equal(held[key].to_numpy(), columns[key], equal_nan=kind == "float")
+        for key, kind in types.items()
+    )
+    return {} if same else {name: parquet_tables.spelt(columns, types)}
