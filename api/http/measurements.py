@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from api.columns import SAMPLE_ERRORS
+from api.deposit.identity import version
 from benchmark.curves import record as curves
 from benchmark.datasets.pins import Pin
 from benchmark.leaderboard.board import build
@@ -53,6 +54,11 @@ class Measurements:
     def digest(self) -> str | None:
         """SHA-256 of the manifest of the published files; None where there is none."""
         return manifest.digest(self._store.directory)
+
+    @property
+    def record(self) -> Mapping[str, str | None]:
+        """Which record this is: version of the atlas, and `digest`."""
+        return {"version": version(), "sha256": self.digest}
 
     @cached_property
     def _every_unit(self) -> Sequence[Row]:

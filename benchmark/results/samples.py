@@ -235,7 +235,12 @@ def path_of(dataset: str, *, directions: bool = False) -> str:
 
 def datasets(directory: Path = PUBLISHED) -> tuple[str, ...]:
     """Return the names of the data sets whose errors a record has, sorted."""
-    return tuple(sorted(n for n in _stored(directory) if (directory / path_of(n)).is_file()))
+    return tuple(sorted(n for n in _stored(directory) if is_there(n, directory)))
+
+
+def is_there(dataset: str, directory: Path = PUBLISHED) -> bool:
+    """Say whether a record has the errors of a data set."""
+    return (directory / path_of(dataset)).is_file()
 
 
 def read(dataset: str, directory: Path = PUBLISHED) -> pd.DataFrame:

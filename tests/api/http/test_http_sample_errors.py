@@ -107,3 +107,11 @@ def test_an_unknown_name_is_answered_with_the_nearest(client):
     answer = client.get(f"/v1/datasets/{NAME}s/errors")
     assert answer.status_code == 404
     assert answer.json()["errors"][0]["nearest"] == NAME
+
+
+def test_the_page_of_the_data_set_links_the_files_where_there_are_some(client):
+    assert (
+        f"/v1/datasets/{NAME}/errors.parquet"
+        in client.get(f"/datasets/{NAME}", accept="text/html").text
+    )
+    assert "errors.parquet" not in client.get("/datasets/ccd-slit", accept="text/html").text
