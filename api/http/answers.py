@@ -112,14 +112,15 @@ class Columns(Response):
     ----------
     content : the file's bytes
     name : that a client is told to save it under
+    status_code : which FastAPI documents by its default
     """
 
     media_type = PARQUET
     offered: ClassVar = (PARQUET,)
 
-    def __init__(self, content: bytes, name: str) -> None:
+    def __init__(self, content: bytes, name: str, status_code: int = 200) -> None:
         self.saved_as = {"Content-Disposition": f'attachment; filename="{name}"'}
-        super().__init__(content, headers=self.saved_as)
+        super().__init__(content, status_code, self.saved_as)
 
     def representation(self, wanted: str) -> Representation:
         """Return the file."""
