@@ -30,6 +30,7 @@ TABLES = {
     "/v1/datasets": columns.DATASETS,
     "/v1/datasets?limit=1": columns.DATASETS,
     "/v1/datasets/pd-orbit": columns.DATASET,
+    "/v1/datasets/pd-orbit/errors": columns.SAMPLE_ERRORS,
     "/v1/realism": columns.REALISM,
     "/v1/leaderboard": columns.LEADERBOARD,
     "/v1/leaderboard/architectures": columns.ARCHITECTURES,
