@@ -70,6 +70,10 @@ DATASETS = (
     *("splits_calibration_samples", "splits_test_samples", "splits_repeat_samples", "preview"),
 )
 DATASET = ("condition", "split", "samples", "data_hash", "bound_deg")
+SAMPLE_ERRORS = (
+    *("extractor", "model", "unit", "sample", "sun_x", "sun_y", "sun_z", "observable"),
+    *("bound_deg", "error_deg", "doubt"),
+)
 REALISM = (
     *("dataset", "extractor", "model", "half_fov_deg", "rms_deg", "bound_deg"),
     *("repeatability_deg", "id", "name", "fov_full_deg", "accuracy_deg", "accuracy_kind"),

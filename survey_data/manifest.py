@@ -43,7 +43,9 @@ class Entry:
 
     @classmethod
     def of(cls, name: str, data: bytes) -> Entry:
-        """Digest what a file of this name holds."""
+        """Digest what a file of this name holds; of one that is not text, only the bytes."""
+        if name.endswith(".parquet"):
+            return cls(hashlib.sha256(data).hexdigest(), b"", b"")
         rows = b"".join(_short(line, _ROW) for line in data.split(b"\n"))
         table = _columns(data) if name.endswith(".csv") else []
         columns = b"".join(_short(cells, _COLUMN) for _, cells in table)
@@ -250,6 +252,9 @@ def _of_file(folder: Path, name: str, entry: Entry | None, wanted: bool) -> Iter
     if entry is None:
         yield Problem(name, None, None, f"the file is not in {FILE}: no command wrote it")
     elif hashlib.sha256(data).hexdigest() != entry.sha256:
+        if not entry.rows:
+            yield Problem(name, None, None, f"the file is {BY_HAND}")
+            return
         yield from _places(name, data, entry)
 
 

@@ -74,7 +74,7 @@ def differences(
         fill(
             made,
             who,
-            Sources(survey, measured_tables(published)),
+            Sources(survey, published, measured_tables(published)),
             rows,
             other_forms=partial(_as_in, bundle),
         )

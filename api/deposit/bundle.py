@@ -21,6 +21,7 @@ from api.deposit.bibliography import bibtex, ris
 from api.deposit.citation import of_dataset
 from api.deposit.crate import CRATE, crate
 from api.deposit.database import DATABASE, write_database
+from api.deposit.errors import write_errors
 from api.deposit.frames import write_frames
 from api.deposit.identity import Identity, identity
 from api.deposit.package import DESCRIPTOR, NAME, package
@@ -39,6 +40,7 @@ from benchmark.datasets.checksums import (
 )
 from benchmark.progress import ProgressCallback, silent
 from benchmark.results.store import PUBLISHED, Store
+from survey_data.manifest import digest
 from survey_data.whole_files import replacing
 
 SURVEY = Path(survey_data.__file__).parent
@@ -69,9 +71,10 @@ OF_DIGESTS = frozenset({CHECKSUMS, CRATE, DESCRIPTOR})
 
 @dataclass(frozen=True)
 class Sources:
-    """What a bundle is made of: directory of the survey's tables, and the measured ones."""
+    """What a bundle is made of: directories of tables and of results, and the measured tables."""
 
     survey: Path
+    published: Path
     measured: list[MeasuredTable]
 
 
@@ -99,8 +102,6 @@ def build(
         Where `out` holds anything but an earlier bundle, or the survey's tables have problems.
     FileNotFoundError
         Where there are no published results, or a licence is missing.
-    MissingLibraryError
-        Where pyarrow is not installed.
     ValueError
         Where a table cannot be read or has a column nothing is known of.
     """
@@ -115,7 +116,7 @@ def build(
             "see `sunatlas survey check`"
         )
     who = identity()
-    sources = Sources(survey, measured_tables(published))
+    sources = Sources(survey, published, measured_tables(published))
     pins = Store(published).pins()
     out.parent.mkdir(parents=True, exist_ok=True)
     with replacing(out, archive) as (bundle, zipped):
@@ -161,14 +162,15 @@ def fill(
     measured = [*sources.measured, *([frames_table(exported)] if exported else [])]
     for table in measured:
         _write(bundle / "benchmark" / f"{table.name}.csv", table.text)
-    descriptor = package(bundle, who, described, measured, exported)
+    errors = write_errors(bundle, sources.published)
+    descriptor = package(bundle, who, described, measured, exported, errors=errors)
     _write_json(bundle / DESCRIPTOR, descriptor)
     other_forms(bundle, descriptor)
     _write_bibliography(bundle)
     _write(bundle / "LICENSE", who.code_licence)
     for folder in ("survey", BIBLIOGRAPHY):
         _write(bundle / folder / "LICENSE", who.data_licence)
-    _write(bundle / "CITATION.cff", of_dataset(who.citation))
+    _write(bundle / "CITATION.cff", of_dataset(who.citation, digest(sources.published)))
     _write(bundle / "README.md", readme(who, descriptor))
     # The crate tells the checksum of every other file, so that a list of all comes after it, and
     # neither of the two stands in the other's way: the list has the crate, the crate not the list.

@@ -85,10 +85,20 @@ def authors(text: str, where: str | Path) -> tuple[Author, ...]:
     return tuple(_author(entry, f"{where}, author {n}") for n, entry in enumerate(listed, start=1))
 
 
-def of_dataset(text: str) -> str:
-    """Return a CITATION.cff whose `type` says that it goes with a data set, not with code."""
-    document = yaml.safe_load(text)
-    return str(yaml.safe_dump({**document, "type": "dataset"}, sort_keys=False, allow_unicode=True))
+def of_dataset(text: str, record: str | None = None) -> str:
+    """Return a CITATION.cff whose `type` says that it goes with a data set, not with code.
+
+    Parameters
+    ----------
+    text : of the project's own
+    record : SHA-256 of the published results' manifest, to be named as an identifier
+    """
+    document = {**yaml.safe_load(text), "type": "dataset"}
+    if record is not None:
+        said = "SHA-256 of the manifest of the published results, as the leaderboard shows it"
+        named = {"type": "other", "value": f"sha256:{record}", "description": said}
+        document["identifiers"] = [*document.get("identifiers", ()), named]
+    return str(yaml.safe_dump(document, sort_keys=False, allow_unicode=True))
 
 
 def _author(entry: Any, where: str) -> Author:

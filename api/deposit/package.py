@@ -28,6 +28,8 @@ def package(
     survey: Mapping[str, Any],
     measured: Sequence[MeasuredTable],
     exported: Sequence[Mapping[str, Any]] = (),
+    *,
+    errors: Sequence[Mapping[str, str]] = (),
 ) -> dict[str, Any]:
     """Describe the tables and samples that lie in `directory`.
 
@@ -38,6 +40,7 @@ def package(
     survey : the survey's own descriptor, paths relative to its directory
     measured : the measured tables
     exported : of each file of samples dataset, condition, split, file, samples, samples_of
+    errors : of each file of errors name, title, description, path
     """
     resources = [
         _located(directory, f"survey/{resource['path']}", {**resource, "licenses": [CC_BY]})
@@ -62,6 +65,7 @@ def package(
         for table in measured
     ]
     resources += [_of_samples(directory, row) for row in exported]
+    resources += [_of_errors(directory, row) for row in errors]
     return {
         "$schema": PROFILE,
         "name": NAME,
@@ -99,6 +103,18 @@ def _of_samples(directory: Path, row: Mapping[str, Any]) -> dict[str, Any]:
         "path": row["file"],
         "format": "npz",
         "mediatype": "application/zip",
+        "licenses": [MIT],
+        "bytes": file.stat().st_size,
+        "hash": f"sha256:{sha256(file)}",
+    }
+
+
+def _of_errors(directory: Path, row: Mapping[str, str]) -> dict[str, Any]:
+    file = directory / row["path"]
+    return {
+        **row,
+        "format": "parquet",
+        "mediatype": "application/vnd.apache.parquet",
         "licenses": [MIT],
         "bytes": file.stat().st_size,
         "hash": f"sha256:{sha256(file)}",

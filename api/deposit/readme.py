@@ -91,6 +91,8 @@ Released {who.released.isoformat()}.
 | place | what |
 |---|---|
 | `survey/`, `benchmark/` | every table as CSV, listed below |
+| `benchmark/samples/` | errors of every pipeline sample by sample, and the directions of the \
+samples, as Parquet, two files a data set |
 | `parquet/` | the same tables as Parquet, one file each |
 | `{DATABASE}` | the same tables in one SQLite file, with keys; in it `{TABLES}` and \
 `{COLUMNS}` say what each holds |

@@ -10,6 +10,7 @@ from typing import Any
 from typer.testing import CliRunner
 
 from api.cli.command_line import COMMANDS, app, load
+from api.http.negotiation import PARQUET
 from api.http.reference import columns, target, words
 from api.http.service import create_app
 
@@ -86,7 +87,7 @@ def _ask(service: Any, method: str, target: str, body: Any = None) -> tuple[int,
 
 def _exchange(request: str, body: Any, answer: tuple[int, str, str]) -> str:
     status, media_type, text = answer
-    if media_type.startswith("image/"):
+    if media_type.startswith(("image/", PARQUET)):
         return f"```http\n{request}\n```\n\n{status}, `{media_type}`."
     asked = "" if body is None else f"\n\n{json.dumps(body, ensure_ascii=False)}"
     if "json" in media_type:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from api.deposit import errors
 from api.deposit.tables import measured_tables
 from api.docs.markdown import table
 from benchmark.results.store import PUBLISHED
@@ -23,10 +24,15 @@ def facts() -> str:
 
 def measurements() -> str:
     """Describe the measured tables, as the deposit brings them."""
-    return "\n\n".join(
+    tables = [
         _table(one.name, f"{one.name}.csv", one.title, one.description, one.schema)
         for one in measured_tables(PUBLISHED)
-    )
+    ]
+    samples = [
+        _table(name, path, title, "Parquet.", schema)
+        for name, (path, title, schema) in errors.KINDS.items()
+    ]
+    return "\n\n".join([*tables, *samples])
 
 
 def _table(name: str, path: str, title: str, description: str, schema: Row) -> str:

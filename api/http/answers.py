@@ -12,7 +12,7 @@ from pydantic_core import to_json
 
 from api.columns import csv_of, flat
 from api.http.direct import direct
-from api.http.negotiation import CONTENT_TYPES, CSV, JSON, PNG, wanted_type
+from api.http.negotiation import CONTENT_TYPES, CSV, JSON, PARQUET, PNG, wanted_type
 from api.http.pagination import Page
 from api.http.representations import Representation, RepresentationCache
 from api.http.requests import StrictRequest
@@ -103,6 +103,29 @@ class Picture(Response):
     def representation(self, wanted: str) -> Representation:
         """Return the picture."""
         return Representation(bytes(self.body), wanted, {"Vary": "Accept"}, compressible=False)
+
+
+class Columns(Response):
+    """A Parquet file, to be saved under a name.
+
+    Parameters
+    ----------
+    content : the file's bytes
+    name : that a client is told to save it under
+    status_code : which FastAPI documents by its default
+    """
+
+    media_type = PARQUET
+    offered: ClassVar = (PARQUET,)
+
+    def __init__(self, content: bytes, name: str, status_code: int = 200) -> None:
+        self.saved_as = {"Content-Disposition": f'attachment; filename="{name}"'}
+        super().__init__(content, status_code, self.saved_as)
+
+    def representation(self, wanted: str) -> Representation:
+        """Return the file."""
+        headers = {"Vary": "Accept", **self.saved_as}
+        return Representation(bytes(self.body), wanted, headers, compressible=False)
 
 
 class Kept(Protocol):

@@ -2,22 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from functools import cached_property
+from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from api.columns import SAMPLE_ERRORS
+from api.deposit.identity import version
 from benchmark.curves import record as curves
 from benchmark.datasets.pins import Pin
 from benchmark.leaderboard.board import build
 from benchmark.leaderboard.scope import Studied, studies_of_pipelines
-from benchmark.results import recorded
+from benchmark.results import recorded, samples
 from benchmark.results.pipelines import pipelines
 from benchmark.results.store import PUBLISHED, Store
 from registry.measured import Measured
 from survey_data import manifest
+from survey_data.file_bytes import read_bytes
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from benchmark.claims.ledger import Entry
     from benchmark.datasets import Preset
     from benchmark.running.times import Place, Time
@@ -49,6 +54,11 @@ class Measurements:
     def digest(self) -> str | None:
         """SHA-256 of the manifest of the published files; None where there is none."""
         return manifest.digest(self._store.directory)
+
+    @property
+    def record(self) -> Mapping[str, str | None]:
+        """Which record this is: version of the atlas, and `digest`."""
+        return {"version": version(), "sha256": self.digest}
 
     @cached_property
     def _every_unit(self) -> Sequence[Row]:
@@ -217,6 +227,34 @@ class Measurements:
             for condition in self.presets[dataset].conditions
             if (pin := self._pin(dataset, condition, "test")) and pin.bound_deg is not None
         }
+
+    def file(self, path: str) -> bytes:
+        """Return the bytes of a published file; FileNotFoundError where there is none.
+
+        Parameters
+        ----------
+        path : relative to the published files
+        """
+        return read_bytes(self._store.directory / path)
+
+    @cached_property
+    def sample_errors(self) -> Callable[[str], pd.DataFrame]:
+        """Give a data set's errors with what its samples are; no rows where there are none.
+
+        The last that was asked for stays in memory.
+        """
+        import pandas as pd  # noqa: PLC0415 - half a second that only this needs
+
+        @lru_cache(1)
+        def read(dataset: str) -> pd.DataFrame:
+            directory = self._store.directory
+            try:
+                found = samples.read(dataset, directory)
+            except FileNotFoundError:
+                return pd.DataFrame(columns=list(SAMPLE_ERRORS))
+            return found.merge(samples.read_directions(dataset, directory), on="sample", how="left")
+
+        return read
 
     def board_rows(self, dataset: str | None = None) -> Sequence[Row]:
         """Rows of the leaderboard, of one data set or of all."""

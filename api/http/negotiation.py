@@ -12,6 +12,7 @@ from api.http.problems import Problem, Violation
 JSON = "application/json"
 CSV = "text/csv"
 PNG = "image/png"
+PARQUET = "application/vnd.apache.parquet"
 FORMATS = {"json": JSON, "csv": CSV}
 """What `format` in a query calls them."""
 CONTENT_TYPES = {JSON: "application/json", CSV: "text/csv; charset=utf-8; header=present"}

@@ -24,6 +24,7 @@ from api.pages.serving import PageRouter, View
 from benchmark.leaderboard.architectures import architectures as best_of_each
 from benchmark.leaderboard.holding import sentences, table
 from benchmark.metrics.score import AVAILABLE
+from benchmark.results import samples
 from survey_data.nearest import nearest
 
 router = PageRouter()
@@ -90,6 +91,7 @@ async def dataset(
         Answer(document, BOARD_COLUMNS, lambda: board),
         condition=condition,
         shown=shown,
+        sampled=samples.is_there(name, known.measurements.directory),
         field=_field(board),
         heat=heat_map(every, card["conditions"], condition, WARM),
         curve=_curve(known, name),

@@ -51,6 +51,7 @@ async def leaderboard(known: Known, query: Annotated[LeaderboardQuery, Query()])
         tally=tally(rows),
         roles=ROLES,
         standard_errors=STANDARD_ERRORS,
+        record=known.measurements.record,
     )
 
 

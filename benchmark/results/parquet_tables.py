@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 #: More rows than a table has; a damaged or hostile file is refused before it fills the memory.
 MOST_ROWS = 10_000_000
 
+_ENCODINGS = {"float": "BYTE_STREAM_SPLIT", "int16": "DELTA_BINARY_PACKED", "int8": "PLAIN"}
+
 
 def read(path: Path, columns: Mapping[str, str], names: Collection[str] = ()) -> pd.DataFrame:
     """Return a table that has these columns, of these types, and at least one row.
@@ -40,33 +42,18 @@ def read(path: Path, columns: Mapping[str, str], names: Collection[str] = ()) ->
         For a file that is damaged, has other columns or types, nulls, no rows or more than
         `MOST_ROWS`.
     """
-    import pyarrow as pa  # noqa: PLC0415 - a fifth of a second that few commands need
-    from pyarrow import parquet  # noqa: PLC0415 - as above
-
     try:
         data = read_bytes(path)
     except FileRefusedError as error:
         raise StoreError(str(error)) from error
     try:
-        file = parquet.ParquetFile(
-            io.BytesIO(data), read_dictionary=list(names), page_checksum_verification=True
-        )
-        held = [(field.name, _type(field.type)) for field in file.schema_arrow]
-        if held != list(columns.items()):
-            raise StoreError(
-                f"{path}: expected the columns {_listed(columns.items())}; got {_listed(held)}"
-            )
-        if not 0 < file.metadata.num_rows <= MOST_ROWS:
-            raise StoreError(
-                f"{path}: expected 1 to {MOST_ROWS} rows, got {file.metadata.num_rows}"
-            )
-        table = file.read()
-        if any(column.null_count for column in table.columns):
-            raise StoreError(f"{path}: expected a value in every cell, got nulls")
-        return table.to_pandas()
-    except (pa.ArrowException, OSError) as error:
+        said, found = _read(data, columns, names)
+    except (OSError, ValueError) as error:  # all that Arrow raises for a damaged file
         reason = " ".join(str(error).split())
         raise StoreError(f"{path}: not a whole Parquet file ({reason})") from error
+    if found is None:
+        raise StoreError(f"{path}: expected {said}")
+    return found
 
 
 def spelt(columns: Mapping[str, Any], types: Mapping[str, str]) -> bytes:
@@ -83,19 +70,38 @@ def spelt(columns: Mapping[str, Any], types: Mapping[str, str]) -> bytes:
         pa.Table.from_arrays(arrays, schema=schema),
         buffer,
         compression="zstd",
-        compression_level=9,
+        compression_level=19,
         row_group_size=MOST_ROWS,
         use_dictionary=[name for name, kind in types.items() if kind == "string"],
         column_encoding={
-            name: "BYTE_STREAM_SPLIT" if kind == "float" else "DELTA_BINARY_PACKED"
-            for name, kind in types.items()
-            if kind in {"float", "int8", "int16"}
+            name: _ENCODINGS[kind] for name, kind in types.items() if kind in _ENCODINGS
         },
         write_statistics=False,
         write_page_checksum=True,
         store_schema=False,
     )
     return buffer.getvalue()
+
+
+def _read(
+    data: bytes, columns: Mapping[str, str], names: Collection[str]
+) -> tuple[str, pd.DataFrame | None]:
+    """Return a table, or what was expected of it and what it is instead."""
+    from pyarrow import parquet  # noqa: PLC0415 - a fifth of a second that few commands need
+
+    file = parquet.ParquetFile(io.BytesIO(data))
+    held = [(field.name, _type(field.type)) for field in file.schema_arrow]
+    rows = file.metadata.num_rows
+    if held != list(columns.items()):
+        return f"the columns {_listed(columns.items())}; got {_listed(held)}", None
+    if not 0 < rows <= MOST_ROWS:
+        return f"1 to {MOST_ROWS} rows, got {rows}", None
+    table = parquet.ParquetFile(
+        io.BytesIO(data), read_dictionary=list(names), page_checksum_verification=True
+    ).read()
+    if any(column.null_count for column in table.columns):
+        return "a value in every cell, got nulls", None
+    return "", table.to_pandas()
 
 
 def _type(kind: Any) -> str:

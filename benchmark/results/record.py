@@ -8,6 +8,7 @@ process writes at a time.
 
 from __future__ import annotations
 
+import binascii
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from dataclasses import asdict
@@ -19,8 +20,7 @@ from benchmark.datasets.pins import Pin, Place
 from benchmark.results import recorded
 from benchmark.results.components import Components
 from benchmark.results.journal import Journal
-from benchmark.results.sample_records import is_sample_record, sample_records, take
-from benchmark.results.samples import SampleErrors
+from benchmark.results.samples import CellErrors, Directions, SampleErrors
 from benchmark.results.store import Store
 from benchmark.results.tables import Row, StoreError
 from survey_data.leftovers import remove_leftovers
@@ -51,6 +51,8 @@ class Record:
     ----------
     scores, pins, swept
         All that is known, journal included.
+    errors
+        What the journal holds sample by sample; the rest stays on disk.
     """
 
     def __init__(self, store: Store) -> None:
@@ -61,12 +63,11 @@ class Record:
         self.scores: dict[Cell, Row] = store.scores()
         self.pins: dict[Place, Pin] = store.pins()
         self.swept: dict[Point, Row] = {point_of(row): row for row in store.swept()}
+        self.errors = SampleErrors()
         known = self._components
         self._score_keys = {cell: known.cell_key(cell) for cell in self.scores}
         self._pin_keys = {place: known.digest("datasets", place[0]) for place in self.pins}
         self._swept_keys = {point: known.point_key(point[0], point[3]) for point in self.swept}
-        #: Errors of samples, of what was measured and is not written yet.
-        self.samples = SampleErrors()
         self._changed = False
         self._read_journal()
 
@@ -111,9 +112,22 @@ class Record:
         pins: Iterable[Pin] = (),
         scores: Mapping[Cell, Row] | None = None,
         swept: Iterable[Row] = (),
-        samples: SampleErrors | None = None,
+        errors: Mapping[Cell, CellErrors] | None = None,
+        directions: Mapping[str, Directions] | None = None,
     ) -> None:
-        """Take in what was measured with these components; on return it survives a power cut."""
+        """Take in what was measured with these components; on return it survives a power cut.
+
+        Parameters
+        ----------
+        components
+            Of what was measured.
+        pins, scores, swept
+            Numbers.
+        errors
+            Of cells in `scores`, sample by sample (`benchmark.results.samples`).
+        directions
+            Samples that the errors are of, by data set.
+        """
         records: list[Row] = [
             {"pin": asdict(pin), "key": components.digest("datasets", pin.dataset)} for pin in pins
         ]
@@ -121,7 +135,12 @@ class Record:
             {"cell": asdict(cell), "score": row, "key": components.cell_key(cell)}
             for cell, row in (scores or {}).items()
         ]
-        records += sample_records(samples) if samples else []
+        records += [
+            {"errors_of": asdict(cell), **found.spelt()} for cell, found in (errors or {}).items()
+        ]
+        records += [
+            {"directions_of": name, **known.spelt()} for name, known in (directions or {}).items()
+        ]
         records += [
             {"swept": row, "key": components.point_key(row["series"], row["extractor"])}
             for row in swept
@@ -190,7 +209,10 @@ class Record:
         )
         if self._changed or used != self._components:
             self.store.write(scores, pins, order(swept) if order else swept, used)
-            self.samples.write(self.store.directory, scores.__contains__)
+            self.errors.write(
+                self.store.directory,
+                lambda cell: cell in scores and scores[cell]["status"] == "ok",
+            )
         self._journal.remove()
 
     def cut_torn(self) -> None:
@@ -204,22 +226,32 @@ class Record:
     def _take(self, record: Any, where: str) -> None:
         self._changed = True
         try:
-            fields, key = set(record), record.get("key")
+            if self._took_errors(record):
+                return
+            fields, key = set(record), record["key"]
             if fields == {"pin", "key"}:
                 pin = Pin(**record["pin"])
                 self.pins[pin.place], self._pin_keys[pin.place] = pin, key
             elif fields == {"cell", "score", "key"}:
                 cell = Cell(**record["cell"])
                 self.scores[cell], self._score_keys[cell] = record["score"], key
-            elif is_sample_record(record):
-                take(record, self.samples)
             elif fields == {"swept", "key"}:
                 point = point_of(record["swept"])
                 self.swept[point], self._swept_keys[point] = record["swept"], key
             else:
                 raise StoreError(f"{where}: not a record of the journal; fields {sorted(fields)}")
-        except (TypeError, KeyError, ValueError) as error:
+        except (TypeError, KeyError, binascii.Error) as error:
             raise StoreError(f"{where}: not a record of the journal ({error!r})") from error
+
+    def _took_errors(self, record: Any) -> bool:
+        """Take in a record of errors or of directions; return whether it is one."""
+        if "errors_of" in record:
+            self.errors.keep(Cell(**record["errors_of"]), CellErrors.read(record))
+        elif "directions_of" in record:
+            self.errors.directions[record["directions_of"]] = Directions.read(record)
+        else:
+            return False
+        return True
 
 
 def point_of(row: Mapping[str, Any]) -> Point:
@@ -247,7 +279,7 @@ def opened(store: Store) -> Iterator[Record]:
             stack.enter_context(held_alone(directory / "store"))
         except HeldError as error:
             raise StoreLockedError(error.holder, store.directory) from error
-        for place in (store.directory, store.scores_directory, directory):
+        for place in (store.directory, store.scores_directory, store.samples_directory, directory):
             remove_leftovers(place)
         recorded.require_unchanged(store.directory)
         record = Record(store)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 from benchmark.results.tables import StoreError
@@ -13,7 +14,7 @@ from survey_data.problems import Problem
 COMMAND = "python -m benchmark.suites.taking_over"
 
 #: Suffixes of the files that a record is made of.
-_KINDS = frozenset({".csv", ".json", ".md"})
+_KINDS = frozenset({".csv", ".json", ".md", ".parquet"})
 #: Running times are of a machine, and may stand in its working store.
 _OF_A_MACHINE = "times.csv"
 
@@ -60,7 +61,7 @@ def require_unchanged(folder: Path, *, required: bool = False) -> None:
         )
 
 
-def write(folder: Path, contents: dict[str, str | None], *, start: bool = False) -> bool:
+def write(folder: Path, contents: Mapping[str, str | bytes | None], *, start: bool = False) -> bool:
     """Write files of a record and take them into its manifest, as `manifest.write_recorded`.
 
     Raises

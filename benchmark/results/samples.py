@@ -11,10 +11,12 @@ there is no answer; `DOUBTS` says why. The bytes depend on the numbers and the v
 
 from __future__ import annotations
 
+from base64 import b64decode, b64encode
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -26,6 +28,8 @@ from benchmark.results.tables import StoreError
 
 if TYPE_CHECKING:
     import pandas as pd
+
+Kind = TypeVar("Kind", bound=np.generic)
 
 #: The condition whose errors are kept.
 CONDITION = "nominal"
@@ -103,6 +107,15 @@ class CellErrors:
         doubt = np.where(missing, np.where(seen, REFUSED, NOT_FOUND), ANSWERED)
         return cls(_rounded(error), doubt.astype(np.int8))
 
+    def spelt(self) -> dict[str, str]:
+        """Spell the arrays for a journal, each in base 64."""
+        return {"error_deg": _spelt(self.error_deg), "doubt": _spelt(self.doubt)}
+
+    @classmethod
+    def read(cls, fields: Mapping[str, str]) -> CellErrors:
+        """Read what `spelt` wrote; ValueError or KeyError for anything else."""
+        return cls(_unspelt(fields["error_deg"], np.float32), _unspelt(fields["doubt"], np.int8))
+
 
 @dataclass(frozen=True)
 class Directions:
@@ -130,6 +143,23 @@ class Directions:
                 "sun, observable and bound_deg must have shapes (N, 3), (N,) and (N,); "
                 f"got {', '.join(map(str, shapes))}"
             )
+
+    def spelt(self) -> dict[str, str]:
+        """Spell the arrays for a journal, each in base 64."""
+        return {
+            "sun": _spelt(np.asarray(self.sun, dtype=np.float64)),
+            "observable": _spelt(np.asarray(self.observable, dtype=np.bool_)),
+            "bound_deg": _spelt(np.asarray(self.bound_deg, dtype=np.float64)),
+        }
+
+    @classmethod
+    def read(cls, fields: Mapping[str, str]) -> Directions:
+        """Read what `spelt` wrote; ValueError or KeyError for anything else."""
+        return cls(
+            _unspelt(fields["sun"], np.float64).reshape(-1, 3),
+            _unspelt(fields["observable"], np.bool_),
+            _unspelt(fields["bound_deg"], np.float64),
+        )
 
 
 class SampleErrors:
@@ -205,7 +235,12 @@ def path_of(dataset: str, *, directions: bool = False) -> str:
 
 def datasets(directory: Path = PUBLISHED) -> tuple[str, ...]:
     """Return the names of the data sets whose errors a record has, sorted."""
-    return tuple(sorted(n for n in _stored(directory) if (directory / path_of(n)).is_file()))
+    return tuple(sorted(n for n in _stored(directory) if is_there(n, directory)))
+
+
+def is_there(dataset: str, directory: Path = PUBLISHED) -> bool:
+    """Say whether a record has the errors of a data set."""
+    return (directory / path_of(dataset)).is_file()
 
 
 def read(dataset: str, directory: Path = PUBLISHED) -> pd.DataFrame:
@@ -236,7 +271,7 @@ def read(dataset: str, directory: Path = PUBLISHED) -> pd.DataFrame:
     _require(path, bool(start[:1].all() and ((np.diff(order[3]) == 1) | start[1:]).all()), "sample")
     named = ((str(x), str(m)) for x, m in zip(*(table[n][start] for n in _NAMES), strict=True))
     cells = [(*names, int(u)) for names, u in zip(named, order[2][start], strict=True)]
-    _require(path, all(a < b for a, b in zip(cells, cells[1:], strict=False)), "order of rows")
+    _require(path, all(a < b for a, b in pairwise(cells)), "order of rows")
     same = [column[1:] == column[:-1] for column in order[:3]]
     _require(path, bool((np.logical_and.reduce(same) | start[1:]).all()), "sample")
     return table
@@ -252,6 +287,14 @@ def read_directions(dataset: str, directory: Path = PUBLISHED) -> pd.DataFrame:
     bound = table["bound_deg"].to_numpy()
     _require(path, bool((np.isnan(bound) | (bound > 0)).all()), "bound_deg")
     return table
+
+
+def _spelt(array: NDArray[Any]) -> str:
+    return b64encode(array.tobytes()).decode()
+
+
+def _unspelt(text: str, kind: type[Kind]) -> NDArray[Kind]:
+    return np.frombuffer(b64decode(text, validate=True), dtype=kind)
 
 
 def _require(path: Path, holds: bool, what: str) -> None:
@@ -284,7 +327,7 @@ def _cells_on_disk(directory: Path, dataset: str) -> dict[Cell, CellErrors]:
         Cell(dataset, CONDITION, str(names[0][a]), str(names[1][a]), int(unit[a])): CellErrors(
             error[a:b], doubt[a:b]
         )
-        for a, b in zip(starts, starts[1:], strict=False)
+        for a, b in pairwise(starts)
     }
 
 

@@ -3,6 +3,8 @@
 A store is a directory:
 
 - ``scores/<dataset>.csv``: one row a pipeline, condition and unit; numbers only.
+- ``samples/<dataset>.parquet``: the errors behind scores, sample by sample
+  (`benchmark.results.samples`).
 - ``sweeps.csv``: one row an extractor and point of a sweep (`benchmark.sweeps`).
 - ``pins.csv``: hash and bound of each generated split (`benchmark.results.pins`).
 - ``components.json``: facts and digests of what the numbers are of.
@@ -106,6 +108,11 @@ class Store:
     def scores_directory(self) -> Path:
         """Where the tables of scores are."""
         return self.directory / "scores"
+
+    @property
+    def samples_directory(self) -> Path:
+        """Where the errors sample by sample are."""
+        return self.directory / "samples"
 
     @property
     def sweeps_path(self) -> Path:

@@ -219,7 +219,14 @@ def _keep_all(
             task = result.task
             scores = dict(zip(cells_of(result), numbers_of(result), strict=True))
             new = [pin for pin in result.pins if not record.is_pinned(pin.place, components)]
-            record.keep(components, pins=new, scores=scores, samples=samples_of(result))
+            samples = samples_of(result)
+            record.keep(
+                components,
+                pins=new,
+                scores=scores,
+                errors=samples.cells,
+                directions=samples.directions,
+            )
             what = f"{task.preset.name} {task.condition} {task.extractor.about.name}"
             counted.add(len(scores), what)
     except KeyboardInterrupt as error:

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from benchmark.claims import outcomes
 from benchmark.curves import record as curves
-from benchmark.results import recorded
+from benchmark.results import recorded, samples
 from benchmark.results.store import PUBLISHED, Store
 from survey_data import manifest, recorded_facts
 from survey_data.problems import SurveyDataError
@@ -54,6 +54,9 @@ def renew(directory: Path) -> list[str]:
     store = Store(directory)
     store.rows(unit=None)
     store.swept()
+    for name in samples.datasets(directory):
+        samples.read(name, directory)
+        samples.read_directions(name, directory)
     curves.read(directory)
     outcomes.read(directory / "claims")
     return manifest.renew(directory, recorded.names(directory))

@@ -11,8 +11,12 @@ from api.cli import completion
 from api.cli.asking import ask, knowledge
 from api.cli.measuring import AVAILABLE_WORKERS, ManyWorkersOption
 from api.cli.tables import Format, FormatOption, emit, say
-from api.columns import DATASET, DATASETS, REALISM
+from api.cli.wrong_call import WrongCallError
+from api.columns import DATASET, DATASETS, REALISM, SAMPLE_ERRORS, csv_of
+from api.http.models.samples import SampleErrorsQuery
+from api.http.routers.datasets import errors as dataset_errors
 from api.http.routers.realism import realism as besides_built
+from api.http.sample_errors import chosen, rows_of
 from benchmark import datasets
 from benchmark.contract import UnknownNameError
 from benchmark.datasets import coverage as covered
@@ -20,6 +24,7 @@ from benchmark.datasets import export as dataset_export
 from benchmark.datasets import export_verification
 from benchmark.plan.parts import installed
 from benchmark.progress import terminal_progress
+from benchmark.results import samples
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import pinning
 from survey_data.whole_files import replace_file
@@ -127,6 +132,65 @@ def export(
         if file["kind"] == "arrays" and pinned not in (None, file["data_hash"]):
             typer.echo(f"note: {file['path']} differs from the published data {pinned}", err=True)
     typer.echo(f"wrote {made.directory}", err=True)
+
+
+@app.command()
+def errors(
+    name: NameArgument,
+    *,
+    extractor: Annotated[
+        list[str] | None,
+        typer.Option(
+            autocompletion=completion.extractors,
+            help="Only this extractor; may be repeated.",
+            show_default=False,
+        ),
+    ] = None,
+    model: Annotated[
+        list[str] | None,
+        typer.Option(
+            autocompletion=completion.models,
+            help="Only this model; may be repeated.",
+            show_default=False,
+        ),
+    ] = None,
+    unit: Annotated[
+        int | None,
+        typer.Option(help="Only this unit of the sensor; 0 is the standard one."),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="File to write them to, as CSV; a .parquet is the published file, of all "
+            "pipelines and units.",
+            show_default=False,
+        ),
+    ] = None,
+    form: FormatOption = Format.TABLE,
+) -> None:
+    """Show the published errors of pipelines sample by sample, under the nominal condition.
+
+    By extractor, model, unit and sample, with the direction of the Sun; `doubt` says why there is
+    no answer. A data set has up to a million: name a pipeline, or write them to a file.
+    """
+    query = {"extractor": extractor or [], "model": model or [], "unit": unit}
+    ask(dataset_errors, {**query, "limit": 1}, name=name)  # refuses what does not fit
+    measured = knowledge().measurements
+    if out is not None and out.suffix == ".parquet":
+        if extractor or model or unit is not None:
+            raise WrongCallError("a .parquet has all pipelines and units; give a .csv for some")
+        try:
+            replace_file(out, measured.file(samples.path_of(name)))
+        except FileNotFoundError:
+            raise WrongCallError(f"no errors of {name} are published") from None
+    given = {key: value for key, value in query.items() if value is not None}
+    rows = rows_of(chosen(measured, name, SampleErrorsQuery.model_validate(given)))
+    if out is None:
+        emit(rows, SAMPLE_ERRORS, form, title=f"{len(rows)} errors")
+        return
+    if out.suffix != ".parquet":
+        replace_file(out, csv_of(SAMPLE_ERRORS, rows))
+    typer.echo(f"wrote {out}", err=True)
 
 
 @app.command()

@@ -270,7 +270,7 @@ def _check(workers: int, form: Format, kernels: tuple[str, ...], *, stored_only:
 
 def _architectures(query: Mapping[str, list[str] | None], form: Format) -> None:
     """Print the best pipeline of each architecture, as the service answers it."""
-    from api.cli.asking import ask  # noqa: PLC0415 - slow; measuring does without it
+    from api.cli.asking import ask, knowledge  # noqa: PLC0415 - slow; measuring does without it
     from api.http.models.parameters import LARGEST_PAGE  # noqa: PLC0415
     from api.http.routers.leaderboard import architectures  # noqa: PLC0415
 
@@ -280,6 +280,8 @@ def _architectures(query: Mapping[str, list[str] | None], form: Format) -> None:
         raise WrongCallError("nothing is published of such architectures")
     if form is Format.TABLE:
         typer.echo(architectures_text(rows, line_width()), nl=False)
+        record = knowledge().measurements.record
+        typer.echo(f"Record: version {record['version']}, sha256 {record['sha256']}", err=True)
     else:
         emit(rows, ARCHITECTURES, form, document=answer.document)
 

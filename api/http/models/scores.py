@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import ConfigDict, Field
 
 from api import columns
-from api.http.models.base import Listing, OpenShape, TableQuestion
+from api.http.models.base import Listing, OpenShape, Shape, TableQuestion
 from api.http.models.parameters import (
     DEFAULT_PAGE,
     FIELDS,
@@ -186,6 +186,16 @@ class LeaderboardDataset(OpenShape):
     rows: list[LeaderboardRow]
 
 
+class RecordNamed(Shape):
+    """Which record a leaderboard shows."""
+
+    version: str = Field(description="Of the atlas; its tag is `v` and this.")
+    sha256: str | None = Field(
+        description="Of manifest.json of the record, which names every file of it by its digest; "
+        "null where there is none."
+    )
+
+
 class Leaderboard(OpenShape):
     """The published leaderboard; no schema and no data sets where none is published."""
 
@@ -193,6 +203,7 @@ class Leaderboard(OpenShape):
 
     schema_version: int | str | None = Field(alias="schema")
     datasets: list[LeaderboardDataset]
+    record: RecordNamed
 
 
 class LeaderboardRows(Listing):

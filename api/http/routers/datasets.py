@@ -7,12 +7,16 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Query
 
 from api import columns
-from api.http.answers import Answer, AnswerRoute, Picture, listing
+from api.http.answers import Answer, AnswerRoute, Columns, Picture, listing
 from api.http.dependencies import AS_ACCEPTED, NO_PARAMETERS, Known, TableOnly
 from api.http.models.base import Selected
 from api.http.models.datasets import DatasetDetail, Datasets, DatasetsQuery
+from api.http.models.samples import SampleErrors, SampleErrorsQuery
 from api.http.models.words import DatasetName
 from api.http.pagination import ordered, page
+from api.http.problems import Problem
+from api.http.sample_errors import chosen, rows_of
+from benchmark.results import samples
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
@@ -61,3 +65,56 @@ def dataset_preview(known: Known, name: Name) -> Picture:
     by their time. Where it is not drawn yet, who asks for it waits, and nobody else.
     """
     return Picture(known.pictures.png(name))
+
+
+@router.get(
+    "/datasets/{name}/errors",
+    summary="Errors sample by sample",
+    response_model=SampleErrors | Selected,
+)
+async def errors(known: Known, name: Name, query: Annotated[SampleErrorsQuery, Query()]) -> Answer:
+    """Error of every pipeline on every sample of the test split, under the nominal condition.
+
+    By extractor, model, unit and sample, with the sample's direction and bound. The whole table is
+    one file: /v1/datasets/{name}/errors.parquet.
+    """
+    found = chosen(known.measurements, name, query)
+    shown = page(range(len(found)), f"/v1/datasets/{name}/errors", query)
+    items = rows_of(found.iloc[list(shown.items)])
+    return listing(shown, items, columns.SAMPLE_ERRORS, fields=query.fields)
+
+
+@router.get(
+    "/datasets/{name}/errors.parquet",
+    summary="Errors sample by sample, as one file",
+    response_class=Columns,
+    dependencies=[NO_PARAMETERS],
+)
+def errors_file(known: Known, name: Name) -> Columns:
+    """All errors of a data set, as published.
+
+    Columns: extractor, model, unit, sample, error_deg (NaN: no answer) and doubt.
+    """
+    return _file(known, samples.path_of(name), f"{name}.errors.parquet")
+
+
+@router.get(
+    "/datasets/{name}/directions.parquet",
+    summary="What the samples are, as one file",
+    response_class=Columns,
+    dependencies=[NO_PARAMETERS],
+)
+def directions_file(known: Known, name: Name) -> Columns:
+    """Directions of a data set's test samples, as published, for the errors to be joined with.
+
+    Columns: sample, sun_x, sun_y, sun_z, observable and bound_deg (NaN: none).
+    """
+    path = samples.path_of(name, directions=True)
+    return _file(known, path, f"{name}.directions.parquet")
+
+
+def _file(known: Known, path: str, name: str) -> Columns:
+    try:
+        return Columns(known.measurements.file(path), name)
+    except FileNotFoundError:
+        raise Problem(404, "not-published", f"no {name} is published") from None

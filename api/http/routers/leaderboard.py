@@ -41,6 +41,7 @@ async def leaderboard(
     units built alike overlap. Sweeps are at /v1/sweeps.
     """
     board = {k: v for k, v in known.measurements.leaderboard.items() if k != "sweeps"}
+    board["record"] = known.measurements.record
     return Answer(board, columns.LEADERBOARD, known.measurements.board_rows)
 
 

@@ -11,12 +11,15 @@ from typer.testing import CliRunner
 
 from api.cli.command_line import app
 from api.cli.commands import dataset
+from api.http.knowledge import Knowledge
+from api.http.measurements import Measurements
 from benchmark import datasets
-from benchmark.contract import SPLITS
+from benchmark.contract import SPLITS, Cell
 from benchmark.datasets.coverage import coverage
 from benchmark.datasets.preview import preview_png
 from benchmark.datasets.preview_overlay import overlay_png
 from benchmark.plan.parts import installed
+from benchmark.results.samples import Directions, SampleErrors
 from benchmark.results.store import Store
 from benchmark.running import pinning
 from benchmark.running.pinning import Pinned
@@ -266,3 +269,46 @@ def test_realism_sets_datasets_beside_built_sensors_in_every_format():
     ]
     assert rows[1]["explanation"] == ideal["idealisation"]
     assert "Tsinghua N-slit sensor" in sunatlas(*asked).stdout
+
+
+@pytest.fixture
+def sampled(tmp_path, monkeypatch):
+    """A record with errors of one pipeline on two units, which the command shows."""
+    found = SampleErrors()
+    found.directions[APERTURE] = Directions(np.eye(3)[:2], np.ones(2, bool), np.full(2, 0.5))
+    for unit in (0, 4):
+        cell = Cell(APERTURE, "nominal", "bctm", "pinhole", unit)
+        found.add(cell, [0.25 + unit, np.nan], [True, False])
+    found.write(tmp_path, lambda _cell: True)
+    known = Knowledge(Measurements(tmp_path))
+    monkeypatch.setattr(dataset, "knowledge", lambda: known)
+    return tmp_path / "samples" / f"{APERTURE}.parquet"
+
+
+def test_errors_are_shown_and_saved_as_csv_and_as_the_published_file(sampled, tmp_path):
+    out = tmp_path / "some.csv"
+    assert sunatlas("errors", APERTURE, "--unit", 4, "--out", out).exit_code == 0
+    table = pd.read_csv(out)
+    assert table["unit"].tolist() == [4, 4]
+    assert table["error_deg"].tolist()[0] == 4.25
+    assert table["doubt"].tolist() == [0, 1]
+    shown = json.loads(sunatlas("errors", APERTURE, "--format", "json").stdout)
+    assert [row["error_deg"] for row in shown] == [0.25, None, 4.25, None]
+    whole = tmp_path / "all.parquet"
+    assert sunatlas("errors", APERTURE, "--out", whole).exit_code == 0
+    assert whole.read_bytes() == sampled.read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ((APERTURE, "--unit", 4, "--out", "x.parquet"), "has all pipelines"),
+        (("ccd-slit", "--out", "x.parquet"), "no errors of ccd-slit"),
+        ((f"{APERTURE}s",), APERTURE),
+        ((APERTURE, "--extractor", "bctn"), "bctm"),
+    ],
+)
+def test_errors_refuse_what_they_cannot_give(sampled, arguments, said):
+    shown = sunatlas("errors", *arguments)
+    assert shown.exit_code != 0
+    assert said in f"{shown.stderr}{shown.exception}"

@@ -4,11 +4,14 @@ import json
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 from fake_results import cell, components, numbers, pin, swept
 
+from benchmark.results import recorded, samples
 from benchmark.results.journal import chained
 from benchmark.results.record import Record, StoreLockedError, opened, point_of
+from benchmark.results.samples import CellErrors, Directions
 from benchmark.results.store import Store
 from benchmark.results.tables import StoreError
 
@@ -38,6 +41,28 @@ def test_what_is_kept_is_known_to_the_next_before_anything_is_written(store):
     assert record.is_scored(cell("a"), components())
     assert record.is_pinned(pin().place, components())
     assert record.is_swept(POINT, components())
+
+
+def test_errors_sample_by_sample_survive_a_kill_and_follow_their_scores(store):
+    one, other = cell("a", condition="nominal"), cell("b", condition="nominal")
+    errors = CellErrors.of([0.1, 0.2], [True, True])
+    record = Record(store)
+    record.keep(
+        components(),
+        pins=[pin()],
+        scores={one: numbers(), other: numbers(None, status="refused", reason="x")},
+        errors={one: errors},
+        directions={one.dataset: Directions(np.eye(3)[:2], np.ones(2, bool), np.full(2, 0.01))},
+    )
+    Record(store).write(components())
+    assert samples.read(one.dataset, store.directory)["error_deg"].tolist() == [
+        *errors.error_deg.tolist()
+    ]
+    assert not recorded.changes(store.directory, required=True)
+    again = Record(store)
+    again.drop(scores=lambda cell: cell != one)
+    again.write(components())
+    assert samples.datasets(store.directory) == ()
 
 
 def test_what_was_measured_with_other_code_is_not_of_the_code_as_it_is(store):

@@ -1,0 +1,210 @@
+"""Errors sample by sample: what is written is read back, by us and by pandas."""
+
+import math
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pyarrow as pa
+import pytest
+from pyarrow import parquet
+
+from benchmark.contract import Cell
+from benchmark.results import recorded, samples
+from benchmark.results.samples import CellErrors, Directions, SampleErrors
+from benchmark.results.tables import StoreError
+
+SUN = np.array([[0.0, 0.0, 1.0], [0.6, 0.0, 0.8], [0.0, -0.8, 0.6], [1.0, 0.0, 0.0]])
+CELLS = [Cell("lamp", "nominal", *names) for names in (("b", "y", 0), ("a", "x", 3), ("a", "x", 0))]
+ERRORS = np.array([0.0123456, math.nan, 180.0, math.nan])
+FOUND = np.array([True, True, True, False])
+
+
+def everything(_cell: Cell) -> bool:
+    return True
+
+
+def collected(*cells: Cell, factor: float = 1.0) -> SampleErrors:
+    found = SampleErrors()
+    found.directions["lamp"] = Directions(
+        SUN, np.array([True, True, True, False]), np.array([0.01, 0.02, 0.03, math.inf])
+    )
+    for cell in cells or CELLS:
+        found.add(cell, ERRORS * factor, FOUND)
+    return found
+
+
+@pytest.fixture
+def record(tmp_path: Path) -> Path:
+    recorded.write(tmp_path, {"pins.csv": "dataset\n"}, start=True)
+    collected().write(tmp_path, everything)
+    return tmp_path
+
+
+def test_pandas_reads_rows_sorted_with_errors_and_doubts(record: Path) -> None:
+    found = pd.read_parquet(record / "samples" / "lamp.parquet")
+    assert list(found.columns) == list(samples.COLUMNS)
+    cells = found[["extractor", "model", "unit"]].drop_duplicates().to_numpy().tolist()
+    assert cells == [["a", "x", 0], ["a", "x", 3], ["b", "y", 0]]
+    first = found[:4]
+    assert first["sample"].tolist() == [0, 1, 2, 3]
+    assert first["doubt"].tolist() == [0, 2, 0, 1]
+    np.testing.assert_allclose(first["error_deg"], ERRORS, rtol=1 / 2048)
+
+
+def test_pandas_reads_what_the_samples_are(record: Path) -> None:
+    found = pd.read_parquet(record / "samples" / "lamp.directions.parquet")
+    np.testing.assert_allclose(found[["sun_x", "sun_y", "sun_z"]], SUN, atol=1e-7)
+    assert found["observable"].tolist() == [True, True, True, False]
+    np.testing.assert_allclose(found["bound_deg"], [0.01, 0.02, 0.03, math.nan], rtol=1e-7)
+
+
+def test_what_is_read_equals_what_pandas_reads(record: Path) -> None:
+    for read, name in (
+        (samples.read, "lamp"),
+        (samples.read_directions, "lamp.directions"),
+    ):
+        expected = pd.read_parquet(record / "samples" / f"{name}.parquet")
+        pd.testing.assert_frame_equal(
+            read("lamp", record), expected, check_dtype=False, check_categorical=False
+        )
+    assert samples.datasets(record) == ("lamp",)
+
+
+@pytest.mark.parametrize("size", [1e-9, 3e-5, 0.0021, 0.5, 7.3, 179.99])
+def test_an_error_is_kept_to_a_part_in_two_thousand(size: float) -> None:
+    values = size * np.random.default_rng(0).uniform(0.1, 1.0, 500)
+    kept = CellErrors.of(values, np.ones(500, bool)).error_deg
+    assert float(np.max(np.abs(kept / values - 1.0))) <= 1 / 2048 + 1e-6
+
+
+def test_two_records_of_the_same_numbers_have_the_same_bytes(tmp_path: Path) -> None:
+    data = []
+    for folder, cells in (("one", CELLS), ("two", CELLS[::-1])):
+        collected(*cells).write(tmp_path / folder, everything)
+        data.append(
+            [p.read_bytes() for p in sorted((tmp_path / folder / "samples").glob("*.parquet"))]
+        )
+    assert len(data[0]) == 2
+    assert data[0] == data[1]
+
+
+def test_the_manifest_names_a_changed_file(record: Path) -> None:
+    assert not recorded.changes(record, required=True)
+    path = record / "samples" / "lamp.parquet"
+    path.write_bytes(path.read_bytes() + b"\n")
+    assert [str(p.file) for p in recorded.changes(record)] == ["samples/lamp.parquet"]
+
+
+def test_cells_not_measured_now_stay_and_unwanted_ones_go(record: Path) -> None:
+    before = samples.read("lamp", record)
+    now = collected(CELLS[0], factor=0.5)
+    assert now.write(record, lambda cell: cell != CELLS[2])
+    found = samples.read("lamp", record)
+    assert found[["extractor", "unit"]].drop_duplicates().to_numpy().tolist() == [
+        ["a", 3],
+        ["b", 0],
+    ]
+    assert found[:4]["error_deg"].equals(before[:4]["error_deg"])
+    np.testing.assert_allclose(found["error_deg"][4:6], ERRORS[:2] * 0.5, rtol=1 / 2048)
+    assert not now.write(record, lambda cell: cell != CELLS[2])
+    assert SampleErrors().write(record, lambda _cell: False)
+    assert samples.datasets(record) == ()
+    assert not recorded.changes(record, required=True)
+
+
+def test_the_journal_brings_errors_and_directions_back() -> None:
+    errors = CellErrors.of(ERRORS, FOUND)
+    again = CellErrors.read(errors.spelt())
+    np.testing.assert_array_equal(again.error_deg, errors.error_deg)
+    np.testing.assert_array_equal(again.doubt, errors.doubt)
+    directions = collected().directions["lamp"]
+    known = Directions.read(directions.spelt())
+    for name in ("sun", "observable", "bound_deg"):
+        np.testing.assert_array_equal(getattr(known, name), getattr(directions, name))
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3, 0.9, 0.99])
+def test_a_truncated_file_is_refused(record: Path, share: float) -> None:
+    path = record / "samples" / "lamp.parquet"
+    data = path.read_bytes()
+    path.write_bytes(data[: int(len(data) * share)])
+    with pytest.raises(StoreError, match=r"lamp\.parquet: not a whole Parquet file"):
+        samples.read("lamp", record)
+
+
+def test_no_changed_byte_passes_unseen_or_crashes(record: Path) -> None:
+    path = record / "samples" / "lamp.parquet"
+    data, before = path.read_bytes(), samples.read("lamp", record)
+    for place in range(0, len(data), 3):
+        path.write_bytes(data[:place] + bytes([data[place] ^ 0x55]) + data[place + 1 :])
+        with suppress(StoreError):
+            assert samples.read("lamp", record).equals(before)
+
+
+def _written(record: Path, **changes: Any) -> None:
+    table = pd.read_parquet(record / "samples" / "lamp.parquet")
+    kinds = dict(samples.COLUMNS) | {n: str(k) for n, k in changes.items() if isinstance(k, str)}
+    for name, values in changes.items():
+        if not isinstance(values, str):
+            table[name] = values
+    schema = pa.schema([(name, pa.type_for_alias(kind)) for name, kind in kinds.items()])
+    columns = [pa.array(list(table[field.name]), type=field.type) for field in schema]
+    path = record / "samples" / "lamp.parquet"
+    parquet.write_table(pa.Table.from_arrays(columns, schema=schema), path)
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"error_deg": "double"}, r"error_deg \(double\)"),
+        ({"unit": "int64"}, r"unit \(int64\)"),
+        ({"error_deg": [-1.0] * 12}, "values of error_deg"),
+        ({"error_deg": [200.0] * 12}, "values of error_deg"),
+        ({"error_deg": [1.0] * 12}, "values of doubt"),
+        ({"doubt": [7] * 12}, "values of doubt"),
+        ({"sample": [0, 1, 2, 2] * 3}, "values of sample"),
+        ({"sample": [1, 2, 3, 4] * 3}, "values of sample"),
+        ({"unit": [0] * 12}, "order of rows"),
+        ({"extractor": [None] * 12}, "nulls"),
+    ],
+)
+def test_other_types_and_values_are_refused(
+    record: Path, changes: dict[str, Any], said: str
+) -> None:
+    _written(record, **changes)
+    with pytest.raises(StoreError, match=said):
+        samples.read("lamp", record)
+
+
+def test_other_columns_are_refused(record: Path) -> None:
+    path = record / "samples" / "lamp.parquet"
+    pd.read_parquet(path).drop(columns="doubt").to_parquet(path)
+    with pytest.raises(StoreError, match="expected the columns extractor"):
+        samples.read("lamp", record)
+
+
+@pytest.mark.parametrize(
+    ("error", "found"),
+    [([0.1, 0.2], [True]), ([[0.1]], [[True]]), ([], []), ([-0.1], [True]), ([math.inf], [True])],
+)
+def test_errors_that_are_none_are_refused(error: list[float], found: list[bool]) -> None:
+    with pytest.raises(ValueError, match="error_deg"):
+        CellErrors.of(error, found)
+
+
+def test_only_the_first_condition_is_kept() -> None:
+    with pytest.raises(ValueError, match="nominal"):
+        SampleErrors().add(Cell("lamp", "hot", "a", "x"), [0.1], [True])
+
+
+def test_cells_need_the_samples_that_directions_say(tmp_path: Path) -> None:
+    wrong = collected()
+    wrong.add(Cell("lamp", "nominal", "c", "x"), [0.1], [True])
+    with pytest.raises(ValueError, match="has 1 samples; expected 4"):
+        wrong.write(tmp_path, everything)
+    wrong.directions.clear()
+    with pytest.raises(ValueError, match="no directions"):
+        wrong.write(tmp_path, everything)
