@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from benchmark.claims.experiments.coarse import c24_filter_in_orbit as c24
+from benchmark.claims.experiments.coarse import c25_drifting_assembly as c25
 from benchmark.claims.experiments.fits import c05_overfitting as c05
 from benchmark.claims.experiments.fits import c07_periodic_error as c07
 from benchmark.claims.experiments.fits.poses import Poses
@@ -103,3 +104,27 @@ def test_true_directions_come_with_the_same_readings(preset):
     np.testing.assert_array_equal(truly.observations, told.observations)
     assert np.abs(told.sun - told.true_sun).max() > 1e-5
     np.testing.assert_allclose(truly.sun, told.true_sun, atol=1e-15)
+
+
+def test_an_assembly_that_is_better_left_alone_refutes():
+    """C25: tracking makes a sensor worse that hardly drifts, and takes up none of the drift."""
+    still = c25.Pair(kept=0.10, tracked=0.20, kept_last=0.10, tracked_last=0.20)
+    moving = c25.Pair(kept=0.15, tracked=0.25, kept_last=0.15, tracked_last=0.25)
+    made = [c25.values(still, moving, still)] * 8
+    assert standings("C25", made) == ({"corrects": "fails", "drift": "fails"}, "refuted")
+    tracked = c25.Pair(kept=0.50, tracked=0.20, kept_last=0.50, tracked_last=0.20)
+    assert standings("C25", [c25.values(tracked, tracked, still)] * 8)[1] == "reproduced"
+
+
+@pytest.mark.parametrize(
+    ("claim", "lost", "kept"),
+    [
+        ("C02", {"refines": 1.002}, {"refines": 1.05}),
+        ("C15", {"corrects": 1.4}, {"corrects": 2.5}),
+        ("C33", {"arcseconds": 40.0, "field": math.nan}, {"arcseconds": 5.0, "field": 100.0}),
+    ],
+)
+def test_an_effect_that_nobody_would_notice_does_not_count(claim, lost, kept):
+    for one, said in ((lost, "refuted"), (kept, "reproduced")):
+        spread = [{name: value * (1 + 1e-4 * n) for name, value in one.items()} for n in range(6)]
+        assert standings(claim, spread)[1] == said
