@@ -153,7 +153,7 @@ def _claims(entries: Sequence[Entry]) -> list[MeasuredTable]:
         _table(
             "claim_rules",
             "Rules of the claims",
-            "What was decided before anything was measured, and what the trials say of it.",
+            "What has to hold for each claim, and what the trials say of it.",
             claims.rules(entries),
             primary=("claim", "rule"),
             foreign=claimed,

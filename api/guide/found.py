@@ -11,7 +11,7 @@ from benchmark.leaderboard.holding import table as holding
 from benchmark.leaderboard.holding.sentences import NEAR, PARTS, verdict
 
 #: Claims that came out and that change what one builds; a choice, the others stand on their page.
-USEFUL = ("C04", "C12", "C15", "C24", "C29", "C30", "C32", "C34", "C39", "C45", "C51", "C55")
+USEFUL = ("C04", "C15", "C24", "C29", "C32", "C34", "C45", "C46", "C47", "C51", "C53")
 
 
 def findings() -> str:

@@ -69,7 +69,7 @@ class Outcome:
 
 
 def plan_digest(claim: Claim) -> str:
-    """Digest of what was decided ahead: trials, which, what differs between them, rules."""
+    """Digest of what decides: trials, which, what differs between them, rules."""
     rules = [{k: v for k, v in asdict(rule).items() if k != "upper"} for rule in claim.rules]
     uppers = [None if math.isnan(rule.upper) else rule.upper for rule in claim.rules]
     return digest([claim.id, FIRST_TRIAL, claim.trials, claim.replicate, rules, uppers])

@@ -1,4 +1,4 @@
-"""What decides a claim, stated before anything was measured: `rules.csv` and `trials.csv`.
+"""What decides a claim: `rules.csv` and `trials.csv`.
 
 `claims` joins them with the survey's statements (`survey_data/claims.csv`).
 """
@@ -36,7 +36,7 @@ _Number = TypeVar("_Number", int, float)
 #: Fewer trials decide nothing.
 FEWEST_TRIALS = 5
 #: Number of the first trial. Those from 0 on were looked at while experiments were written and
-#: settings settled; verdicts come from units and random draws that nobody had seen by then.
+#: settings settled; verdicts come from other units and random draws.
 FIRST_TRIAL = 1000
 
 

@@ -47,11 +47,10 @@ def claims(
 ) -> None:
     """Show the survey's claims about algorithms, with verdicts.
 
-    Each was tried on at least five units or seeds, by rules that were committed before anything
-    was measured: reproduced where all of them hold with 95 % confidence, partly where some do,
-    refuted where none does and one fails, not testable here where these trials cannot tell.
-    Nothing is measured now. With an ID: the rules with their numbers; JSON has every trial.
-    Method and plots: docs/claims.md.
+    Each was tried on at least five units or seeds, by rules with limits: reproduced where all of
+    them hold with 95 % confidence, partly where some do, refuted where none does and one fails,
+    not testable here where these trials cannot tell. Nothing is measured now. With an ID: the
+    rules with their numbers; JSON has every trial. Method and plots: docs/claims.md.
     """
     if claim is not None:
         if verdict or search:

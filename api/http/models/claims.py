@@ -47,7 +47,7 @@ class ClaimsQuery(TableQuestion):
 
 
 class ClaimRule(Shape):
-    """One thing that has to hold, decided before anything was measured."""
+    """One thing that has to hold for a claim."""
 
     rule: str
     statistic: str = Field(description="What is computed in every trial.")

@@ -23,7 +23,7 @@ router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class
 async def claims(known: Known, query: Annotated[ClaimsQuery, Query()]) -> Answer:
     """Every statement of the survey about algorithms, as an experiment with a verdict.
 
-    What decides was written down before anything was measured. As CSV: a row a claim.
+    What decides is stated as rules with limits. As CSV: a row a claim.
     """
     found = [entry for entry in known.measurements.claims.values() if _is_wanted(entry, query)]
     items = ordered([entry.to_dict() for entry in found], query.sort)

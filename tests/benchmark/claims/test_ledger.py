@@ -1,4 +1,4 @@
-"""The ledger of claims: what was decided ahead, what came out, and that it is of this code."""
+"""The ledger of claims: what decides, what came out, and that it is of this code."""
 
 import dataclasses
 import json

@@ -1,8 +1,9 @@
 """C29: the same Earth before a digital sensor and before an analog one (Xie2013).
 
 The pinhole camera on CMOS with its thresholded centroid, and the photodiode cube by least squares
-over its calibrated faces, each calibrated on the ground and tested with and without the sunlit
-Earth in view. What albedo adds is ``sqrt(rms_with^2 - rms_without^2)``, 0 where it is no larger.
+over its calibrated faces, each calibrated on the ground, told the true directions, and tested with
+and without the sunlit Earth in view. What albedo adds is ``sqrt(rms_with^2 - rms_without^2)``, 0
+where it is no larger.
 """
 
 from __future__ import annotations
@@ -15,7 +16,8 @@ from algorithms.models.non_physical.polynomial import SurfacePolynomial
 from algorithms.models.physics_informed.assembled_faces import AssembledFaces
 from benchmark.claims.benches import Seen, ratio, rms
 from benchmark.claims.experiment import Trial
-from benchmark.contract import Preset
+from benchmark.claims.truth import told_truly
+from benchmark.datasets.preset import Preset
 from benchmark.datasets.standard import cmos_single_aperture_pinhole, pd_maskless_cube
 
 #: Less than this cannot be told from nothing, deg: the least that a test of 400 samples resolves.
@@ -41,7 +43,9 @@ def trial(number: int) -> Trial:
 def _errors(preset: Preset, number: int, *, digital: bool) -> tuple[float, float]:
     extractor = ThresholdedCentroid if digital else DirectSignals
     model = SurfacePolynomial if digital else AssembledFaces
-    bare, earth = (Seen(preset, condition, number) for condition in ("nominal", "albedo"))
+    bare, earth = (
+        Seen(told_truly(preset), condition, number) for condition in ("nominal", "albedo")
+    )
     calibrated = bare.calibrated(extractor, model)
     return rms(bare.errors_of(calibrated, extractor)), rms(earth.errors_of(calibrated, extractor))
 

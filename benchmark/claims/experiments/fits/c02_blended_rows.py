@@ -3,10 +3,10 @@
 The quadrant sensor of `qpd-single-aperture` is given the study's field of +-64 degrees: its
 aperture comes down from 1 mm to 0.45 mm, so that the balance is not saturated before 65.8 degrees,
 and its quadrants grow to hold the light. It is calibrated at every whole degree, as the study's
-table is, so that a node of the table is a pose, or nearly. The plain table is `lut`, which
-interpolates between the four nodes around; the other is `lut-polynomial` with the study's 8th
-degree. Both choose their smoothing by the same calibration samples, as they ship. A third line
-shows the table without smoothing: every node as it was measured.
+table is, and told the true directions, so that a node of the table is a pose, or nearly. The plain
+table is `lut`, which interpolates between the four nodes around; the other is `lut-polynomial` with
+the study's 8th degree. Both choose their smoothing by the same calibration samples, as they ship. A
+third line shows the table without smoothing: every node as it was measured.
 """
 
 from __future__ import annotations
@@ -19,8 +19,9 @@ from algorithms.models.lut.blended_polynomials import BlendedPolynomials
 from algorithms.models.lut.lookup_table import ErrorTable
 from benchmark.claims.benches import Seen, middles, ratio, rms, rms_within
 from benchmark.claims.experiment import Line, Trial
-from benchmark.contract import Preset
+from benchmark.claims.truth import told_truly
 from benchmark.datasets.fields import AngleField
+from benchmark.datasets.preset import Preset
 from benchmark.datasets.standard import qpd_single_aperture
 from benchmark.simulator.sensors.quadrants import QuadrantSensor
 
@@ -35,7 +36,7 @@ EDGES_DEG = (0.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 72.0)
 
 def trial(number: int) -> Trial:
     """Measure one unit."""
-    seen = Seen(_wide(), unit=number)
+    seen = Seen(told_truly(_wide()), unit=number)
     kind = VoltageBalance.about.kind
     table = ErrorTable.for_sensor(seen.preset.geometry, kind)
     rows = BlendedPolynomials.for_sensor(seen.preset.geometry, kind)

@@ -1,15 +1,17 @@
-"""C07: a Fourier series beside a polynomial where the error is periodic (Pentke2022).
+"""C07: how much of a periodic error a Fourier series takes up, and at what cost (Pentke2022).
 
 To the balances of a quadrant photodiode and a position-sensitive device a wave is added, along each
-axis with a phase of its own: 0.005 high, which is some tenths of a degree, and of a period drawn
-for each unit between 0.6 and 1.2, two to three waves over the field. Both models see the same
-balances. `fourier-balance` takes as many harmonics as its calibration samples prefer, at most
-seven; the polynomial is `polynomial-1d` of as many coefficients, which is how both are compared and
-timed. Lines show every number of coefficients. Errors and run times are geometric means of both
-sensors, run times those of 20,000 rows.
+axis with a phase of its own: 0.005 high, which is some tenths of a degree, and one to four waves
+over the field, drawn for each unit. `fourier-balance` and `polynomial-1d` each choose their size
+from the calibration samples, which are told the true directions. The error that the wave adds, in
+the mean square, is compared with what it adds to a Fourier series that was calibrated without it;
+the share that is gone was captured. Lines show that share by the number of waves, the phases as
+drawn. Of both sensors means are taken; run times are those of 20,000 rows.
 """
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -18,59 +20,95 @@ from algorithms.extractors.currents.photodiode import VoltageBalance
 from algorithms.models.non_physical.fourier_balance import FourierBalance
 from algorithms.models.non_physical.polynomial import AxisPolynomial
 from benchmark.claims.benches import Seen, ratio, rms, times_s
-from benchmark.claims.experiment import Trial
+from benchmark.claims.experiment import Sketch, Trial
 from benchmark.claims.experiments.fits.means import geometric
 from benchmark.claims.experiments.fits.poses import Poses, errors, many
-from benchmark.contract import Preset
+from benchmark.claims.truth import told_truly
+from benchmark.datasets.preset import Preset
 from benchmark.datasets.standard import psd_single_aperture, qpd_single_aperture
 from benchmark.seeds import generator
 
+SKETCH = Sketch(log_up=False)
 HEIGHT = 0.005
-PERIODS = (0.6, 1.2)
-#: Seven make 16 coefficients an axis, as many as a polynomial of the highest order, 15.
-HARMONICS = range(1, 8)
-COEFFICIENTS = tuple(2 + 2 * n for n in HARMONICS)
+#: Over the field: between what a polynomial of few terms follows and the series' highest order.
+WAVES = (1.0, 4.0)
+SHOWN = (0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Of one sensor and wave: shares captured, the polynomial's error over the series', times."""
+
+    series: float
+    polynomial: float
+    better: float
+    slower: float
 
 
 def trial(number: int) -> Trial:
     """Measure one unit of both sensors."""
-    sensors = [
-        _sensor(module.PRESET, number) for module in (qpd_single_aperture, psd_single_aperture)
-    ]
-    captures, costs, series, polynomials = zip(*sensors, strict=True)
+    sensors = [_Sensor(m.PRESET, number) for m in (qpd_single_aperture, psd_single_aperture)]
+    found = [sensor.measured(sensor.waves, timed=True) for sensor in sensors]
+    shown = [[sensor.measured(waves) for waves in SHOWN] for sensor in sensors]
+    pairs = list(zip(*shown, strict=True))
     return Trial(
-        {"captures": geometric(captures), "costs": geometric(costs)},
         {
-            "Fourier series": (COEFFICIENTS, list(map(geometric, zip(*series, strict=True)))),
-            "polynomial": (COEFFICIENTS, list(map(geometric, zip(*polynomials, strict=True)))),
+            "captures": float(np.mean([one.series for one in found])),
+            "better": geometric([one.better for one in found]),
+            "costs": geometric([one.slower for one in found]),
+        },
+        {
+            "Fourier series": (SHOWN, [float(np.mean([o.series for o in p])) for p in pairs]),
+            "polynomial": (SHOWN, [float(np.mean([o.polynomial for o in p])) for p in pairs]),
         },
     )
 
 
-def _sensor(preset: Preset, number: int) -> tuple[float, float, list[float], list[float]]:
-    """Error and run time beside the other's, and both models' errors by their size."""
-    rng = generator("claims", "C07", preset.name, number)
-    period, phases = rng.uniform(*PERIODS), rng.uniform(0.0, 2.0 * np.pi, 2)
-    seen = Seen(preset, unit=number)
-    known, asked = (
-        poses.moved(_wave(poses.features, period, phases))
-        for poses in (Poses.of(seen, VoltageBalance, s) for s in ("calibration", "test"))
-    )
-    series = [rms(errors(FourierBalance(harmonics=n), known, asked)) for n in HARMONICS]
-    curves = [rms(errors(AxisPolynomial(degree=2 * n + 1), known, asked)) for n in HARMONICS]
-    free = FourierBalance()
-    free.fit(known.features, known.sun)
-    chosen = min(int(free.coefficients_.shape[1]) // 2 - 1, HARMONICS[-1])
-    fourier, polynomial = FourierBalance(harmonics=chosen), AxisPolynomial(degree=2 * chosen + 1)
-    for model in (fourier, polynomial):
-        model.fit(known.features, known.sun)
-    rows = many(asked.features)
-    taken = times_s(
-        fourier=lambda: fourier.predict(rows), polynomial=lambda: polynomial.predict(rows)
-    )
-    at = HARMONICS.index(chosen)
-    return ratio(curves[at], series[at]), ratio(*taken.values()), series, curves
+def captured(waved: float, plain: float, unknowing: float) -> float:
+    """Share of a wave's mean squared error that a fit takes up.
+
+    From the error with the wave fitted, the error with no wave at all, and that of a wave which
+    the fit knew nothing of; 1 for all of it, 0 for none, below 0 where the fit is worse off.
+    """
+    return 1.0 - ratio(waved**2 - plain**2, unknowing**2 - plain**2)
 
 
-def _wave(balances: Floats, period: float, phases: Floats) -> Floats:
-    return np.asarray(HEIGHT * np.sin(2.0 * np.pi * balances / period + phases))
+class _Sensor:
+    """One unit, told the true directions, and the wave drawn for it."""
+
+    def __init__(self, preset: Preset, unit: int) -> None:
+        rng = generator("claims", "C07", preset.name, unit)
+        self.waves, self.phases = float(rng.uniform(*WAVES)), rng.uniform(0.0, 2.0 * np.pi, 2)
+        seen = Seen(told_truly(preset), unit=unit)
+        splits = (Poses.of(seen, VoltageBalance, split) for split in ("calibration", "test"))
+        self.known, self.asked = splits
+        self.field = float(np.nanmax(self.known.features) - np.nanmin(self.known.features))
+        self.plain = rms(errors(FourierBalance(), self.known, self.asked))
+        self.plain_polynomial = rms(errors(AxisPolynomial(), self.known, self.asked))
+
+    def measured(self, waves: float, timed: bool = False) -> Measured:
+        """Measure both models under so many waves over the field; run times where timed."""
+        known, asked = (
+            poses.moved(self._wave(poses.features, waves)) for poses in (self.known, self.asked)
+        )
+        unknowing = rms(errors(FourierBalance(extrapolation=0.1), self.known, asked))
+        fourier, polynomial = FourierBalance(), AxisPolynomial()
+        series, powers = (rms(errors(model, known, asked)) for model in (fourier, polynomial))
+        slower = float("nan")
+        if timed:
+            rows = many(asked.features)
+            taken = times_s(
+                fourier=lambda: fourier.predict(rows), polynomial=lambda: polynomial.predict(rows)
+            )
+            slower = ratio(*taken.values())
+        return Measured(
+            captured(series, self.plain, unknowing),
+            captured(powers, self.plain_polynomial, unknowing),
+            ratio(powers, series),
+            slower,
+        )
+
+    def _wave(self, balances: Floats, waves: float) -> Floats:
+        return np.asarray(
+            HEIGHT * np.sin(2.0 * np.pi * waves * balances / self.field + self.phases)
+        )

@@ -1,13 +1,13 @@
 """C35: a network shown only Suns whose spots are all in sight, or all Suns (Rufino2009b).
 
 Frames of `cmos-multi-aperture` are read by MCAM, which finds every aperture's spot. In S-FOV mode
-calibration and test are those frames that show all 100 spots, in X-FOV mode all frames. Both train
-`ann` on the displacement of the whole pattern, averaged over the spots there are. The third line is
-X-FOV with the plain mean of the spots in sight as the network's input, as the study has it, which
-jumps by half a pitch where a row of spots leaves. Field is the share of the test Suns that get an
-answer. Nobody's apertures are dark here, so MCAM need not allow for that (`faulty_lines`): else it
-takes the frames whose outer rows are out of sight for ambiguous ones. Poses stand every 10 degrees
-instead of 12, so that some are at the edge of either field.
+calibration (told the true directions) and test are those frames that show all 100 spots, in X-FOV
+mode all frames. Both train `ann` on the displacement of the whole pattern, averaged over the spots
+there are. The third line is X-FOV with the plain mean of the spots in sight as the network's input,
+as the study has it, which jumps by half a pitch where a row of spots leaves. Field is the share of
+the test Suns that get an answer. Nobody's apertures are dark here, so MCAM need not allow for that
+(`faulty_lines`): else it takes the frames whose outer rows are out of sight for ambiguous ones.
+Poses stand every 10 degrees instead of 12, so that some are at the edge of either field.
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ from algorithms.models.neural_network.axis_networks import AxisNetworks
 from benchmark.claims.benches import Seen, ratio, rms
 from benchmark.claims.experiment import Trial
 from benchmark.claims.experiments.fits.poses import Poses, errors
+from benchmark.claims.truth import told_truly
 from benchmark.datasets.fields import AngleField
 from benchmark.datasets.standard import cmos_multi_aperture
 
@@ -45,7 +46,7 @@ class _Frames:
 def trial(number: int) -> Trial:
     """Measure one unit."""
     directions = AngleField(60.0, steps=13, test_samples=100)
-    seen = Seen(replace(cmos_multi_aperture.PRESET, directions=directions), unit=number)
+    seen = Seen(told_truly(replace(cmos_multi_aperture.PRESET, directions=directions)), unit=number)
     known, asked = (_read(seen, split) for split in ("calibration", "test"))
     narrow = np.full(len(asked.whole), math.nan)
     narrow[asked.whole] = errors(

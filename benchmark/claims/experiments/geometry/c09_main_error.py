@@ -1,70 +1,123 @@
 """C09: what errors of the standard projection model come from (deBoer2013).
 
-The tilts, the rotation and the offsets of each unit's assembly are scaled from none to twice what
-careful work leaves; its focal length keeps its error. What the mean squared error loses when they
-are set to zero is misalignment's share. The same unit at 80 deg C, with nothing compensated, says
-whether temperature needs to be. Of the two sensors' shares the mean is taken, of their ratios the
-geometric mean, as the rules average trials.
-
-The quadrant photodiode has no condition ``hot`` of its own: it gets that of its family, dark
-current that doubles every 7 K.
+Three digital sensors behind one opening, the kind that the sentence is about. Of every unit the
+squared error that its misalignment adds (tilts, rotation, offsets of the mask) is set beside what
+its focal length adds and beside all that is left without either. On the same unit without
+misalignment, which would hide it, a table fitted to the model's errors says whether one is needed,
+and 80 deg C whether temperature has to be compensated: dark current, and a spacer of aluminium that
+lengthens. The model is the drawing's and needs no calibration; the table is told true directions.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import astuple, dataclass, replace
 from functools import partial
-from typing import Any
 
-from algorithms.contract import Extractor
-from algorithms.extractors.currents.photodiode import VoltageBalance
+from algorithms.contract import FeatureKind
 from algorithms.extractors.frames.centroid import ThresholdedCentroid
 from algorithms.models.geometric.standard_projection import StandardProjection
-from benchmark.claims.benches import Seen, ratio, rms
+from algorithms.models.lut.lookup_table import ErrorTable
+from benchmark.claims.benches import Seen, ratio, rms, separation
 from benchmark.claims.experiment import Trial
-from benchmark.claims.experiments.geometry.alterations import altered, assembled, misaligned
-from benchmark.datasets.conditions.masked_photodiodes import at
+from benchmark.claims.experiments.geometry.alterations import assembled, misaligned
+from benchmark.claims.truth import told_truly
 from benchmark.datasets.preset import Preset
-from benchmark.datasets.standard import cmos_single_aperture, qpd_single_aperture
+from benchmark.datasets.standard import (
+    ccd_single_aperture,
+    cmos_single_aperture,
+    cmos_single_aperture_pinhole,
+)
+from benchmark.simulator.optics.assembly import Assembly
 
-TIMES = (0.0, 0.5, 1.0, 1.5, 2.0)
-_HOT_C = 80.0
+SENSORS = (cmos_single_aperture, cmos_single_aperture_pinhole, ccd_single_aperture)
+PARTS = ("misalignment", "focal length", "neither", "table", "80 deg C", "and aluminium")
+#: Of aluminium, over the 60 K from room temperature to the condition ``hot``.
+_LENGTHENS = 60.0 * 23.1e-6
+
+
+@dataclass(frozen=True)
+class Parts:
+    """RMS errors in degrees of one unit: with one error of assembly alone, and with none.
+
+    Of the unit without any: by the model, by a table on top of it, at 80 deg C, and there on a
+    spacer of aluminium.
+    """
+
+    misalignment: float
+    focal_length: float
+    neither: float
+    table: float
+    dark: float
+    expansion: float
 
 
 def trial(number: int) -> Trial:
-    """Measure one unit of both sensors."""
-    frames, quadrants = cmos_single_aperture.PRESET, qpd_single_aperture.PRESET
-    pixels = _by_times(frames, ThresholdedCentroid, number)
-    balance = _by_times(quadrants, VoltageBalance, number)
-    hot = _error(Seen(frames, "hot", number), ThresholdedCentroid)
-    warm = altered(quadrants, partial(_at, temperature_c=_HOT_C))
-    hotter = _error(Seen(warm, unit=number), VoltageBalance)
-    warming = (ratio(hot, pixels[1.0]), ratio(hotter, balance[1.0]))
-    values = {
-        "main": (_share(pixels) + _share(balance)) / 2.0,
-        "temperature": math.sqrt(math.prod(warming)),
+    """Measure one unit of each sensor."""
+    parts = {one.PRESET.name: _parts(told_truly(one.PRESET), number) for one in SENSORS}
+    return Trial(
+        values([statistics(one) for one in parts.values()]),
+        {name: (PARTS, list(astuple(one))) for name, one in parts.items()},
+    )
+
+
+def values(sensors: Sequence[Mapping[str, float]]) -> dict[str, float]:
+    """Take of each statistic the sensor that stands worst for the sentence."""
+    found = {name: max(one[name] for one in sensors) for name in ("table", "dark", "expansion")}
+    return {"main": min(one["main"] for one in sensors), **found}
+
+
+def statistics(parts: Parts) -> dict[str, float]:
+    """Give the rules' statistics on one sensor."""
+    rest = parts.neither**2
+    off, long = (max(one**2 - rest, 0.0) for one in (parts.misalignment, parts.focal_length))
+    return {
+        "main": math.sqrt(ratio(off, max(long, rest))),
+        "table": ratio(parts.neither, parts.table),
+        "dark": ratio(parts.dark, parts.neither),
+        "expansion": ratio(parts.expansion, parts.neither),
     }
-    lines = {
-        "cmos-single-aperture": (TIMES, list(pixels.values())),
-        "qpd-single-aperture": (TIMES, list(balance.values())),
-        "cmos-single-aperture at 80 deg C": ((1.0,), [hot]),
-        "qpd-single-aperture at 80 deg C": ((1.0,), [hotter]),
-    }
-    return Trial(values, lines)
 
 
-def _by_times(preset: Preset, extractor: type[Extractor], unit: int) -> dict[float, float]:
-    presets = {times: assembled(preset, partial(misaligned, times=times)) for times in TIMES}
-    return {t: _error(Seen(other, unit=unit), extractor) for t, other in presets.items()}
+def _parts(preset: Preset, unit: int) -> Parts:
+    seen = _seen(preset, unit, _aligned)
+    return Parts(
+        misalignment=_drawing(_seen(preset, unit, _as_long_as_drawn)),
+        focal_length=_drawing(_seen(preset, unit, partial(misaligned, times=0.0))),
+        neither=_drawing(seen),
+        table=rms(seen.errors(ThresholdedCentroid, ErrorTable)),
+        dark=_drawing(_seen(preset, unit, _aligned, "hot")),
+        expansion=_drawing(_seen(preset, unit, partial(_longer, preset), "hot")),
+    )
 
 
-def _share(errors: dict[float, float]) -> float:
-    return 1.0 - (errors[0.0] / errors[1.0]) ** 2
+def _seen(
+    preset: Preset,
+    unit: int,
+    change: Callable[[Assembly], Assembly],
+    condition: str = "nominal",
+) -> Seen:
+    """Return the unit with other errors of assembly than it was built with."""
+    return Seen(assembled(preset.as_unit(unit), change, condition), condition)
 
 
-def _error(seen: Seen, extractor: type[Extractor]) -> float:
-    return rms(seen.errors(extractor, StandardProjection))
+def _as_long_as_drawn(assembly: Assembly) -> Assembly:
+    return replace(assembly, focal_length_error_mm=0.0)
 
 
-def _at(sensor: Any, temperature_c: float) -> Any:
-    return at(sensor, temperature_c)
+def _aligned(assembly: Assembly) -> Assembly:
+    return _as_long_as_drawn(misaligned(assembly, times=0.0))
+
+
+def _longer(preset: Preset, assembly: Assembly) -> Assembly:
+    longer_mm = _LENGTHENS * (preset.geometry.focal_length_mm or math.nan)
+    return replace(_aligned(assembly), focal_length_error_mm=longer_mm)
+
+
+def _drawing(seen: Seen) -> float:
+    """RMS error of the model by the drawing, which learns nothing from what it is fitted to."""
+    tested, found = seen.samples("test"), seen.features(ThresholdedCentroid, "test")
+    geometry = seen.preset.geometry_for(seen.condition)
+    model = StandardProjection.for_sensor(geometry, FeatureKind.SPOT).fit(found, tested.sun)
+    return rms(separation(model.predict(found), tested.sun))
