@@ -95,22 +95,23 @@ _RINGS = (
     *("rms_50_60_deg", "rms_60_70_deg", "rms_70_90_deg", "rms_90_180_deg"),
 )
 RESULTS = (
-    *(*_PLACE, "status", "reason", "rms_deg", "bound_deg", "bound_unit_deg", "floor_deg"),
-    *("availability", "false_sun", *_WHAT, *_SPREAD, *_RINGS, "metric_version"),
+    *(*_PLACE, "status", "reason", "rms_deg", "charged_deg", "aligned_deg", "bound_deg"),
+    *("bound_unit_deg", "availability", "false_sun", *_WHAT, *_SPREAD, *_RINGS, "metric_version"),
 )
 LEADERBOARD = (
-    *("rank", "tied", *_PLACE, "rms_deg", "bound_deg", "bound_unit_deg", "floor_deg"),
-    *("low_deg", "high_deg", "availability", "false_sun", "best_of_extractor", "studies"),
+    *("rank", "group", "tied", *_PLACE, "own_deg", "own_se", "on_bench_deg", "on_bench_basis"),
+    *("rms_deg", "charged_deg", "aligned_deg", "bound_deg", "bound_unit_deg", "low_deg"),
+    *("high_deg", "twin_of", "folded", "availability", "false_sun", "best_of_extractor", "studies"),
     *(*_WHAT, "status", "reason", *_SPREAD, *_RINGS, "metric_version", "unit_rms_deg"),
     *("latency_us", "time_ratio", "field_deg", "field_rms_deg", "widest_field_deg"),
 )
 ARCHITECTURES = (
     *("detector", "mask", "datasets", "dataset", "half_fov_deg", "extractor", "model", "studies"),
-    *("rms_deg", "bound_deg", "over_bound", "over_bound_se", "bound_unit_deg"),
-    *("over_bound_unit", "floor_deg", "availability", "unit_rms_deg", "others_low_deg"),
-    *("others_high_deg", "runner_up_extractor", "runner_up_model", "runner_up_rms_deg"),
-    *("runner_up_over_bound", "runner_up_over_bound_se", "runner_up_unit_rms_deg", "tie"),
-    *("tie_by_samples", "tie_by_units", "units_ahead", "units_compared", "finer_dataset"),
+    *("own_deg", "own_se", "quoted_deg", "on_bench_deg", "on_bench_basis", "rms_deg", "bound_deg"),
+    *("over_bound", "over_bound_se", "bound_unit_deg", "over_bound_unit", "availability"),
+    *("unit_rms_deg", "others_low_deg", "others_high_deg", "runner_up_extractor"),
+    *("runner_up_model", "runner_up_own_deg", "runner_up_unit_rms_deg", "first_group", "tie"),
+    *("units_ahead", "units_compared", "finer_dataset"),
     *("finer_extractor", "finer_model", "finer_rms_deg", "finer_over_bound"),
     "finer_availability",
 )
@@ -139,7 +140,8 @@ CLAIM = (
 SEARCH = ("rank", "kind", "id", "title", "excerpt", "score", "address")
 COMPARISON = (
     *("detector", "mask", "dataset", "condition", "extractor", "model", "studies", "rms_deg"),
-    *("over_least", "bound_deg", "over_bound", "over_bound_se", "floor_deg", "low_deg", "high_deg"),
+    *("over_least", "bound_deg", "over_bound", "over_bound_se", "own_deg", "on_bench_deg"),
+    *("low_deg", "high_deg"),
     *("availability", "false_sun", "latency_us", "time_ratio", "needed_poses", "needed_low"),
     *("needed_high", "poses", "floor_error_deg", "half_fov_deg", "rank", "status", "reason"),
     *("finer_dataset", "finer_extractor", "finer_model", "finer_rms_deg", "finer_availability"),

@@ -19,7 +19,15 @@ SEPARATOR = ":"
 
 _SCORE = (
     *("dataset", "condition", "extractor", "model", "studies", "rms_deg", "bound_deg"),
-    *("over_bound", "over_bound_se", "floor_deg", "low_deg", "high_deg", "unit_rms_deg"),
+    *(
+        "over_bound",
+        "over_bound_se",
+        "own_deg",
+        "on_bench_deg",
+        "low_deg",
+        "high_deg",
+        "unit_rms_deg",
+    ),
     *("availability", "false_sun", "latency_us", "time_ratio", "half_fov_deg", "rank", "status"),
     "reason",
 )

@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import survey_data
-from benchmark.leaderboard.architectures import STANDARD_ERRORS
 from benchmark.leaderboard.scope import LEADING, UNITS
 from benchmark.metrics.rings import ANSWERED, FEWEST
 from benchmark.metrics.score import AVAILABLE, METRIC_VERSION
@@ -124,19 +123,17 @@ _SCORES: Sequence[tuple[str, str, str]] = (
         "rank",
         "order",
         (
-            "Pipelines rank by rms error within a data set and condition; those that answer "
-            "less than "
-            f"{100 * AVAILABLE:g} % come behind all others."
+            "Pipelines rank by own error within a data set and condition: calibrated with true "
+            "directions, over all answers, the geometric mean over sensor units. Those that answer "
+            f"less than {100 * AVAILABLE:g} % come behind all others."
         ),
     ),
     (
         "rank",
         "ties",
         (
-            "A rank is shared where errors on the units overlap. The best of an architecture "
-            "is tied "
-            "with its runner-up also where their ratios to the bound differ by no more than "
-            f"{STANDARD_ERRORS:g} standard errors."
+            "A rank is shared where a paired test of log error ratios over the units, with Holm's "
+            "correction and a practical equivalence of 3 %, does not tell pipelines apart."
         ),
     ),
     (

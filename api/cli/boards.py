@@ -1,4 +1,4 @@
-"""What the leaderboard comes to as text: architectures on a screen of 80 columns, and parts."""
+"""Leaderboard summary as text: architectures on a screen of 80 columns, and parts."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from api.cli.tables import prose, table
-from benchmark.leaderboard.architectures import STANDARD_ERRORS
 from benchmark.leaderboard.overview import ROLES, WITHIN, suffix
 from benchmark.leaderboard.summaries import digits, tally
 from benchmark.metrics.score import AVAILABLE
@@ -14,8 +13,8 @@ from benchmark.metrics.score import AVAILABLE
 Row = Mapping[str, Any]
 
 WIDTH = 80
-_HEADINGS = ("architecture", "best pipeline", "deg", "", "bounds", "±", "others, deg")
-_NUMBERS = frozenset({"deg", "bounds", "±", "others, deg", "median", *map("{:g}".format, WITHIN)})
+_HEADINGS = ("architecture", "best pipeline", "deg", "", "±", "bounds", "bench, deg")
+_NUMBERS = frozenset({"deg", "bounds", "±", "bench, deg", "median", *map("{:g}".format, WITHIN)})
 _MORE = (
     "More: --dataset NAME (all pipelines), --each (every data set), --overview (parts), --format "
     "json (all numbers)."
@@ -29,10 +28,10 @@ def architectures_text(rows: Sequence[Row], width: int = WIDTH) -> str:
     lines = [
         *prose(
             "The best pipeline of each architecture (detector, mask): nominal condition, of its "
-            "data sets the one with the least RMS error. bounds: that over the Cramer-Rao bound, "
-            "± its standard error. others: errors on other units of the sensor. =: a tie, the "
-            f"runner-up is within {STANDARD_ERRORS:g} standard errors or overlaps on the units. "
-            f"{tally(rows)}",
+            "data sets the one with the smallest own error (geometric mean over sensor units, true "
+            "directions in the calibration). ±: its standard error. bounds: RMS error over the "
+            "Cramer-Rao bound. bench: error expected on the standard calibration bench. =: a tie, "
+            f"a paired test over the units does not tell the runner-up apart. {tally(rows)}",
             room,
         ),
         "",
@@ -67,16 +66,14 @@ def _architecture(row: Row) -> tuple[str, ...]:
     if row["extractor"] is None:
         return (name, "none has an error", "-", "", "-", "", "-")
     pipeline = f"{row['extractor']}+{row['model'].replace(' + ', '+')}"
-    ratio, error = row["over_bound"], row["over_bound_se"]
-    low, high = row["others_low_deg"], row["others_high_deg"]
     return (
         name,
         pipeline,
-        digits(row["rms_deg"]),
+        digits(row["own_deg"]),
         "=" if row["tie"] else "",
-        _ratio(ratio),
-        _percent(error, ratio),
-        "-" if low is None or high is None else f"{_short(low)}-{_short(high)}",
+        _percent(row["own_se"]),
+        _ratio(row["over_bound"]),
+        digits(row["on_bench_deg"]),
     )
 
 
@@ -90,9 +87,9 @@ def _line_of(cells: Sequence[str]) -> Iterator[str]:
 
 
 def _line(*cells: str) -> str:
-    name, pipeline, error, tie, ratio, doubt, units = cells
+    name, pipeline, error, tie, doubt, ratio, bench = cells
     wide, wider = _ARCHITECTURE
-    numbers = f"{error:>7}{tie:1} {ratio:>6} {doubt:>4} {units:>12}"
+    numbers = f"{error:>8}{tie:1} {doubt:>4} {ratio:>6} {bench:>10}"
     return f"{name:<{wide}}{pipeline:<{wider}}{numbers}".rstrip()
 
 
@@ -102,19 +99,12 @@ def _ratio(value: float | None) -> str:
     return digits(value) if value < 1e5 else f"{value:.0e}".replace("+0", "")
 
 
-def _percent(error: float | None, of: float | None) -> str:
-    """Spell a standard error in parts of what it is of."""
-    if error is None or not of:
+def _percent(error: float | None) -> str:
+    """Spell a relative standard error."""
+    if error is None:
         return ""
-    share = round(100 * error / of)
+    share = round(100 * error)
     return f"{share or '<1'}%" if share < 100 else ">99%"
-
-
-def _short(value: float) -> str:
-    """Spell an error of a unit in at most six characters, thousandths where there are any."""
-    if value < 0.01:
-        return f"{value:.2g}"
-    return f"{value:.3f}" if value < 10 else f"{value:.1f}"
 
 
 def _several(rows: Sequence[Row]) -> str:

@@ -67,7 +67,17 @@ _FIELDS: dict[str, tuple[Type, str]] = {
         "integer",
         "Place in the data set's condition, best first; those that answer less than 95 % last.",
     ),
-    "tied": ("boolean", "Whether others share the rank: errors on units built alike overlap."),
+    "group": (
+        "integer",
+        "1 for what a paired test over units does not tell apart from the leader, 2 for the next.",
+    ),
+    "tied": ("boolean", "Whether others share the rank."),
+    "own_deg": ("number", "Own error: geometric mean over units of charged_deg, degrees."),
+    "own_se": ("number", "Relative standard error of own_deg over units."),
+    "on_bench_deg": ("number", "Error expected when calibrated on the standard bench, degrees."),
+    "on_bench_basis": ("string", "measured on drawn benches, or estimated."),
+    "twin_of": ("string", "A pipeline of the same extractor with the same numbers throughout."),
+    "folded": ("boolean", "Whether it is far behind the leader."),
     "unit": ("integer", "Unit of the sensor; 0 is the standard one."),
     "dataset": ("string", "Name of the standard data set."),
     "dataset_version": ("integer", "Version of the data set."),
@@ -96,6 +106,12 @@ _FIELDS: dict[str, tuple[Type, str]] = {
         "number",
         "Root mean square separation angle of observable samples with an answer, degrees.",
     ),
+    "charged_deg": (
+        "number",
+        "Root mean square separation angle of all answers, those to samples whose direction is not "
+        "observable among them, degrees.",
+    ),
+    "aligned_deg": ("number", "Root mean square angle left after the best rotation, degrees."),
     "median_deg": ("number", "Median separation angle, degrees."),
     "p95_deg": ("number", "95th percentile of the separation angle, degrees."),
     "p997_deg": ("number", "99.7th percentile of the separation angle, degrees."),
@@ -116,10 +132,6 @@ _FIELDS: dict[str, tuple[Type, str]] = {
         "Root mean square of the Cramer-Rao bound, unit unknown but for flats and darks, degrees.",
     ),
     "over_bound_unit": ("number", "Root mean square error divided by bound_unit_deg."),
-    "floor_deg": (
-        "number",
-        "Root of the squares of bound_unit_deg and of the calibration's own error, degrees.",
-    ),
     **{
         ring.column: (
             "number",
@@ -127,9 +139,9 @@ _FIELDS: dict[str, tuple[Type, str]] = {
         )
         for ring in RINGS
     },
-    "low_deg": ("number", "Smallest root mean square error of a unit, degrees."),
-    "high_deg": ("number", "Largest root mean square error of a unit, degrees."),
-    "unit_rms_deg": ("string", "Root mean square error of each unit, separated by semicolons."),
+    "low_deg": ("number", "Smallest error of a unit (charged_deg), degrees."),
+    "high_deg": ("number", "Largest error of a unit, degrees."),
+    "unit_rms_deg": ("string", "Error of each unit (charged_deg), separated by semicolons."),
     # sweeps
     "series": ("string", "Reference feature; none where no feature fits the extractor."),
     "sweep": ("string", "What is varied; none where the feature is not measured."),

@@ -24,7 +24,10 @@ from survey_data.csv_writing import csv_text
 _RENAMED = frozenset({"series", "sweep", "point", "unit"})
 _PLACE = ("detector", "mask")
 _PIPELINE = ("dataset", "condition", "extractor", "model")
-_RANKED = ("rank", "tied", *_PIPELINE, "rms_deg", "low_deg", "high_deg", "unit_rms_deg")
+_RANKED = (
+    *("rank", "group", "tied", *_PIPELINE, "own_deg", "own_se", "on_bench_deg", "on_bench_basis"),
+    *("twin_of", "folded", "rms_deg", "low_deg", "high_deg", "unit_rms_deg"),
+)
 
 
 class NothingPublishedError(FileNotFoundError):

@@ -6,13 +6,13 @@ import { address, getAll, getJson, saveCsv } from "./service.js";
 import { show, state } from "./state.js";
 import { degrees, number, percent, plural, studiesCount, times } from "./wording.js";
 
-const RANK = { field: "rank", name: "Rank", write: (rank, row) => (rank === null ? "–" : `${rank}${row.tied ? "=" : ""}`), title: "By error; pipelines that answer less than 95 % come behind all others. 2= shares its rank: units built alike disagree" };
+const RANK = { field: "rank", name: "Rank", write: (rank, row) => (rank === null ? "–" : `${rank}${row.tied ? "=" : ""}`), title: "By own error; pipelines that answer less than 95 % come behind all others. 2= shares its rank: a paired test over sensor units does not tell them apart" };
 const NAMES = [{ field: "extractor", name: "Extractor", text: true }, { field: "model", name: "Model", text: true, write: studies }];
-const ERROR = { field: "rms_deg", name: "RMS error", write: (value, row) => [degrees(value), units(row)] };
-const FLOOR = "Least accuracy: the bound with the unit unknown but for flat and dark readings, and the systematic error of the calibration’s reference. The Cramér–Rao bound limits precision: precision and accuracy are two numbers";
+const ERROR = { field: "own_deg", name: "Own error", write: (value, row) => [degrees(value), units(row)], title: "RMS error calibrated with true directions, geometric mean over sensor units" };
+const BENCH = { field: "on_bench_deg", name: "On a bench", write: degrees, title: "Error expected when calibrated on the standard bench" };
 const BOUND = {
-  field: "over_bound", name: "× bound", title: `RMS error over the Cramér–Rao bound of the same samples, the unit known; floor: ${FLOOR}`,
-  write: (ratio, row) => [times(ratio), row.floor_deg > 0 && h("div", { class: "below", title: FLOOR }, `floor ${degrees(row.floor_deg)}`)],
+  field: "over_bound", name: "× bound", title: "RMS error over the Cramér–Rao bound of the same samples, the unit known",
+  write: times,
 };
 const ANSWERED = {
   field: "availability", name: "Answered", title: "Share of the samples whose direction is observable; false Suns: answered share of the others, such as those in eclipse",
@@ -30,7 +30,7 @@ function studies(row) {
 /** The columns that say something of what is shown. */
 function columns() {
   const { rows, field } = shown;
-  const errors = field === WHOLE ? [ERROR, BOUND]
+  const errors = field === WHOLE ? [ERROR, ...(rows.some((r) => r.on_bench_deg > 0) ? [BENCH] : []), BOUND]
     : [{ field: "field_rms_deg", name: `RMS within ${field}°`, write: degrees, title: "Rings of the field count by their solid angle" }, ERROR];
   return [RANK, ...NAMES, ...errors, ANSWERED, ...(rows.some((r) => r.time_ratio > 0) ? [TIME] : [])];
 }
@@ -38,7 +38,7 @@ function columns() {
 /** Smallest and largest error of the units a pipeline was scored on. */
 const units = (row) => row.low_deg > 0 && h("div", { class: "below", title: `On ${row.unit_rms_deg.length} units built alike` },
   `${number(row.low_deg)}–${degrees(row.high_deg)}`);
-const errorOf = (row) => (row.field_deg ? row.field_rms_deg : row.rms_deg);
+const errorOf = (row) => (row.field_deg ? row.field_rms_deg : row.own_deg);
 
 const SCALE = "Error, log scale";
 const FIRST = 16;
@@ -68,8 +68,7 @@ function bar(row, scale) {
   const error = scale.at(value);
   const [limit = null, low = null, high = null] = limits(row).map((x) => (x > 0 ? scale.at(x) : null));
   const from = limit ?? error;
-  const floor = row.floor_deg > 0 ? ` and a floor of ${degrees(row.floor_deg)}` : "";
-  const told = row.field_deg ? "" : ` against a bound of ${degrees(row.bound_deg)}${floor}`;
+  const told = row.field_deg ? "" : ` against a bound of ${degrees(row.bound_deg)}`;
   return h("div", { class: "scale", role: "img", "aria-label": `${degrees(value)}${told}` },
     scale.ticks.map((t) => h("i", { class: "tick", css: { "--at": scale.at(t) } })),
     h("i", { class: "span", css: { "--from": Math.min(from, error), "--to": Math.max(from, error) } }),
@@ -190,14 +189,14 @@ function draw() {
   const ranged = rows.some((r) => r.low_deg > 0);
   const scale = scaleOf(rows);
   const bound = rows.find((r) => r.bound_deg > 0)?.bound_deg ?? card?.bounds?.[condition];
-  const floored = rows.find((r) => r.floor_deg > 0);
+  const unknown = rows.find((r) => r.bound_unit_deg > 0);
   const url = address(`/v1/leaderboard/${encodeURIComponent(dataset)}`, { condition, field_deg: field || null, limit: 500 });
   byId("board-card").replaceChildren(h("div", { class: "dataset-card" },
     card && h("p", {}, coded(card.description)),
     card?.stands_for?.idealisation && h("p", {}, h("strong", {}, "An idealisation"), `: ${card.stands_for.idealisation}`),
     card?.setups?.[condition]?.description && h("p", {}, h("strong", {}, condition), ": ", coded(card.setups[condition].description)),
     h("p", { class: "bound-line" }, "Cramér–Rao bound: ", h("strong", {}, degrees(bound)), " RMS",
-      floored && [" · with the unit unknown but for flat and dark readings ", h("strong", {}, degrees(floored.bound_unit_deg)), " · ", h("span", { title: FLOOR }, "accuracy floor "), h("strong", {}, degrees(floored.floor_deg))],
+      unknown && [" · with the unit known by its flat and dark readings ", h("strong", {}, degrees(unknown.bound_unit_deg))],
       card && [` · version ${card.version}`, card.follows?.length > 0 && [" · follows ", card.follows.map((k, i) => [i > 0 && ", ", h("a", { href: `/studies/${encodeURIComponent(k)}` }, k)])]]),
     h("div", { class: "links" }, h("a", { href: `/datasets/${encodeURIComponent(dataset)}?condition=${encodeURIComponent(condition)}` }, "All of this data set"), h("a", { href: url }, "JSON"),
       h("button", { type: "button", onclick: () => saveCsv(url, `${dataset}-${condition}.csv`) }, "CSV"),
@@ -215,7 +214,7 @@ function draw() {
     h("div", { class: "legend" },
       h("span", {}, h("i", { class: "key-dot" }), field === WHOLE ? "RMS error, on a logarithmic scale" : `RMS error within ${field}° of the boresight, on a logarithmic scale`),
       field === WHOLE && h("span", {}, h("i", { class: "key-limit" }), "Cramér–Rao bound"),
-      field === WHOLE && ranged && h("span", {}, h("i", { class: "key-units" }), "range over five units built alike; = marks a rank that the range does not tell apart"),
+      field === WHOLE && ranged && h("span", {}, h("i", { class: "key-units" }), "range over sensor units; = marks a rank that a paired test over them does not tell apart"),
       field !== WHOLE && rows[0].half_fov_deg !== null && rows[0].half_fov_deg < Number(field) && h("span", {}, `The sensor’s own field ends at ${degrees(rows[0].half_fov_deg)}`),
       field === WHOLE && !ranged && h("span", {}, "Ranks of this condition rest on one unit of the sensor"),
       asListed() && h("span", {}, "The best pipeline of each extractor first, the others behind"),

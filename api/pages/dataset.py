@@ -33,8 +33,19 @@ EVERY = 500
 FIRST = 25  # rows of a board that are shown at first
 WARM = 20  # pipelines of the heat map
 BOARD_COLUMNS = (
-    *("dataset", "condition", "rank", "tied", "extractor", "model", "status", "rms_deg"),
-    *("bound_deg", "over_bound", "availability", "false_sun", "repeatability_deg", "low_deg"),
+    *("dataset", "condition", "rank", "group", "tied", "extractor", "model", "status", "own_deg"),
+    *(
+        "on_bench_deg",
+        "twin_of",
+        "folded",
+        "rms_deg",
+        "bound_deg",
+        "over_bound",
+        "availability",
+        "false_sun",
+        "repeatability_deg",
+        "low_deg",
+    ),
     *("high_deg", "studies", "best_of_extractor"),
 )
 
@@ -82,7 +93,9 @@ async def dataset(
         raise Problem(422, "invalid-value", errors=[error])
     every = known.measurements.board_rows(name)
     board = [row for row in every if row["condition"] == condition]
-    shown = board if query.rows == "all" else board[:FIRST]
+    near = [row for row in board if not (row["folded"] or row["twin_of"])]
+    shown = board if query.rows == "all" else near[:FIRST]
+    every_board = known.measurements.leaderboard["datasets"]
     document = {**card, "condition": condition, "board": board}
     held = table.rows().get(name)
     realism = next((r for r in known.measurements.realism if r["dataset"] == name), None)
@@ -96,6 +109,7 @@ async def dataset(
         heat=heat_map(every, card["conditions"], condition, WARM),
         curve=_curve(known, name),
         held=sentences.verdict(held).sentence if held else None,
+        facts=next((one for one in every_board if one["name"] == name), None),
         realism=realism,
     )
 

@@ -15,7 +15,6 @@ from api.http.models.base import Question
 from api.http.models.parameters import GIVEN
 from api.pages.sensors import best_built
 from api.pages.serving import PageRouter, View
-from benchmark.leaderboard.architectures import STANDARD_ERRORS
 from benchmark.leaderboard.overview import ROLES, overview
 from benchmark.leaderboard.summaries import tally
 
@@ -24,7 +23,7 @@ router = PageRouter()
 Row = Mapping[str, Any]
 
 #: What rows are put in order by, and the column; names where there is none.
-ORDERS = {"error": "rms_deg", "bound": "over_bound", "name": None}
+ORDERS = {"error": "own_deg", "bound": "over_bound", "name": None}
 
 
 class LeaderboardQuery(Question):
@@ -50,7 +49,6 @@ async def leaderboard(known: Known, query: Annotated[LeaderboardQuery, Query()])
         order=order,
         tally=tally(rows),
         roles=ROLES,
-        standard_errors=STANDARD_ERRORS,
         record=known.measurements.record,
     )
 

@@ -26,7 +26,6 @@ COLUMNS = (
     *(
         "bound_unit_deg",
         "over_bound_unit",
-        "floor_deg",
         "availability",
         "false_sun",
         "latency_us",

@@ -33,8 +33,8 @@ from benchmark.running import times as running_times
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
 COLUMNS = (
-    *("rank", "tied", "dataset", "condition", "extractor", "model", "rms_deg", "low_deg"),
-    *("high_deg", "over_bound", "over_bound_unit", "floor_deg", "availability", "false_sun"),
+    *("rank", "group", "dataset", "condition", "extractor", "model", "own_deg", "low_deg"),
+    *("high_deg", "on_bench_deg", "over_bound", "over_bound_unit", "availability", "false_sun"),
     *("best_of_extractor", "studies"),
 )
 FIELD_COLUMNS = (

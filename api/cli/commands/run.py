@@ -37,7 +37,6 @@ COLUMNS = (
     *(
         "bound_unit_deg",
         "over_bound_unit",
-        "floor_deg",
         "availability",
         "false_sun",
         "status",

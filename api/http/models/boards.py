@@ -22,7 +22,6 @@ from api.http.models.parameters import (
     sorting,
 )
 from api.http.models.words import Detector, Mask
-from benchmark.leaderboard.architectures import STANDARD_ERRORS
 from benchmark.leaderboard.overview import ROLES
 from registry.measured import FINER
 
@@ -72,34 +71,38 @@ class BestOfArchitecture(Shape):
         description="Mapped studies that used this pipeline on the architecture."
     )
     rms_deg: float | None = Field(description="RMS error on the standard unit.")
+    own_deg: float | None = Field(description="Own error: geometric mean over sensor units.")
+    own_se: float | None = Field(description="Its relative standard error.")
+    quoted_deg: float | None = Field(
+        description="Error on the odd units of what errs least on the even ones."
+    )
+    on_bench_deg: float | None = Field(
+        description="Error expected when calibrated on the standard bench."
+    )
+    on_bench_basis: Literal["measured", "estimated"] | None
     bound_deg: float | None = Field(description="Cramer-Rao bound, rms, with the unit known.")
     over_bound: float | None = Field(description="RMS error over the bound.")
     over_bound_se: float | None = Field(description="Standard error of that ratio.")
     bound_unit_deg: float | None
     over_bound_unit: float | None
-    floor_deg: float | None
     availability: float | None = Field(description="Answered share of the observable samples.")
     unit_rms_deg: list[float | None] | None = Field(
-        description="RMS error on each unit of the sensor, the standard one first."
+        description="Error over all answers on each unit, the standard one first."
     )
     others_low_deg: float | None = Field(
-        description="Smallest RMS error on a unit other than the standard one."
+        description="Smallest of these on a unit other than the standard one."
     )
     others_high_deg: float | None = Field(description="Largest of these.")
     runner_up_extractor: str | None = Field(
         description="Of the pipeline that ranks next on the data set."
     )
     runner_up_model: str | None
-    runner_up_rms_deg: float | None
-    runner_up_over_bound: float | None
-    runner_up_over_bound_se: float | None
+    runner_up_own_deg: float | None
     runner_up_unit_rms_deg: list[float | None] | None
-    tie: bool = Field(description="Whether samples or units do not tell the runner-up apart.")
-    tie_by_samples: bool = Field(
-        description="Whether the ratios to the bound differ by no more than "
-        f"{STANDARD_ERRORS:g} standard errors."
+    first_group: int = Field(
+        description="How many pipelines of the data set a paired test does not tell apart."
     )
-    tie_by_units: bool = Field(description="Whether the errors on the units overlap.")
+    tie: bool = Field(description="Whether the runner-up is one of them.")
     units_ahead: int | None = Field(description="Units on which the best errs less.")
     units_compared: int = Field(description="Units on which both have an error.")
     finer_dataset: str | None = Field(

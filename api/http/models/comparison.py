@@ -108,9 +108,12 @@ class Compared(Shape):
     bound_deg: float | None = Field(description="Cramer-Rao bound, rms, with the unit known.")
     over_bound: float | None
     over_bound_se: float | None = Field(description="Standard error of that ratio.")
-    floor_deg: float | None = Field(description="Least accuracy.")
-    unit_rms_deg: list[float | None] | None = Field(description="RMS error on each unit.")
-    low_deg: float | None = Field(description="Smallest RMS error of a unit.")
+    own_deg: float | None = Field(description="Own error: geometric mean over sensor units.")
+    on_bench_deg: float | None = Field(
+        description="Error expected when calibrated on the standard bench."
+    )
+    unit_rms_deg: list[float | None] | None = Field(description="Error on each unit.")
+    low_deg: float | None = Field(description="Smallest error of a unit.")
     high_deg: float | None = Field(description="Largest.")
     availability: float | None
     false_sun: float | None

@@ -110,7 +110,17 @@ class Score(OpenShape):
     false_sun: float | None = Field(
         description="Answered share of the samples that are not observable; null without any."
     )
-    rms_deg: float | None
+    rms_deg: float | None = Field(
+        description="Root mean square error, calibrated with true directions; under `on-bench` "
+        "with those that drawn benches give."
+    )
+    charged_deg: float | None = Field(
+        description="The same over all answers, those to samples whose direction is not observable "
+        "among them. Ranks are by it."
+    )
+    aligned_deg: float | None = Field(
+        description="Root mean square error that is left after the best rotation of all answers."
+    )
     median_deg: float | None
     p95_deg: float | None
     p997_deg: float | None
@@ -130,11 +140,6 @@ class Score(OpenShape):
         "null where elements do not differ each by itself."
     )
     over_bound_unit: float | None = Field(description="RMS error over that bound.")
-    floor_deg: float | None = Field(
-        description="Least accuracy: root of the squares of `bound_unit_deg` and of the systematic "
-        "error of the calibration's reference. Precision, which `bound_deg` limits, is another "
-        "number."
-    )
 
 
 class Scores(Listing):
@@ -147,10 +152,34 @@ class LeaderboardRow(Score):
     """A score with its place. Members `rms_<inner>_<outer>_deg` are errors by off-axis angle."""
 
     rank: int | None = Field(
-        description="Place in the condition by RMS error, or by that over the field asked for. "
-        "Pipelines that answer less than 95 % come behind all others; null without an error."
+        description="Place in the condition by own error, or by the error over the field asked "
+        "for. Pipelines that answer less than 95 % come behind all others; null without an error."
     )
-    tied: bool = Field(description="Whether units built alike disagree, so that others share it.")
+    group: int | None = Field(
+        None,
+        description="1 for what a paired test over units does not tell apart from the leader, 2 "
+        "for what it does not tell apart from the best of the others, and so on; null where the "
+        "pipeline was scored on fewer than five units.",
+    )
+    tied: bool = Field(description="Whether others share the rank.")
+    own_deg: float | None = Field(
+        None, description="Own error: geometric mean over units of `charged_deg`."
+    )
+    own_se: float | None = Field(None, description="Its relative standard error over units.")
+    on_bench_deg: float | None = Field(
+        None, description="Error expected when calibrated on the standard bench."
+    )
+    on_bench_basis: Literal["measured", "estimated"] | None = Field(
+        None,
+        description="Measured on twenty drawn benches, or estimated: root of the squares of own "
+        "error and bench.",
+    )
+    twin_of: str | None = Field(
+        None, description="A pipeline of the same extractor with the same numbers throughout."
+    )
+    folded: bool = Field(
+        default=False, description="Whether it is so far behind that boards show it only if asked."
+    )
     best_of_extractor: bool = Field(
         description="Whether no other pipeline of its extractor ranks before it. These are listed "
         "first, the others behind."
@@ -160,11 +189,12 @@ class LeaderboardRow(Score):
         "stands in."
     )
     unit_rms_deg: list[float | None] | None = Field(
-        description="RMS error on each unit of the sensor, the standard one first; null where one "
-        "unit is scored."
+        description="Error over all answers on each unit of the sensor, the standard one first."
     )
-    low_deg: float | None = Field(description="Smallest RMS error of a unit.")
-    high_deg: float | None = Field(description="Largest RMS error of a unit.")
+    low_deg: float | None = Field(
+        description="Smallest error of a unit; null where one unit is scored."
+    )
+    high_deg: float | None = Field(description="Largest error of a unit.")
     latency_us: float | None = Field(
         description="Extraction and prediction of one sample on this machine, microseconds; null "
         "where it is not timed."
@@ -183,7 +213,32 @@ class LeaderboardDataset(OpenShape):
         None, description="Why it stands for no built sensor; null where it stands for one."
     )
     conditions: list[str]
+    smallest_ratio: float | None = Field(
+        None, description="Ratio to the leader that the board tells apart in nine of ten cases."
+    )
+    quoted_deg: float | None = Field(
+        None, description="Error on the odd units of the pipeline that leads on the even ones."
+    )
+    references: str | None = Field(None, description="References that readings are corrected by.")
+    bench_deg: float | None = Field(
+        None, description="Fixed error of the standard calibration bench, root mean square."
+    )
+    bench_aligned_deg: float | None = Field(
+        None, description="What the best rotation leaves of it."
+    )
+    bound_unit_deg: float | None = Field(
+        None, description="Bound with the unit known by its references, root mean square."
+    )
+    controls: list[Control] = Field(default_factory=list, description="Two answers to compare to.")
+    folded: int = Field(0, description="Pipelines that are far behind.")
     rows: list[LeaderboardRow]
+
+
+class Control(Shape):
+    """An answer that no method gives: `oracle` has the bound's noise, `boresight` never moves."""
+
+    name: Literal["oracle", "boresight"]
+    rms_deg: float | None
 
 
 class RecordNamed(Shape):
