@@ -71,7 +71,7 @@ class Searched:
 def search(
     cells: Iterable[Cell],
     parts: Parts,
-    told: Callable[[Sensitive], None] = lambda _: None,
+    told: Callable[[Sensitive], object] = lambda _: None,
     *,
     observations: bool = True,
     draw: int = 0,

@@ -15,7 +15,7 @@ from algorithms.row_arithmetic import normalised
 _RIDGE = 1e-10
 #: Errors, in radians, below which there is nothing to learn, and the share of the largest that
 #: need not be learnt.
-_NOTHING, _GOAL = 1e-8, 1e-5
+_NOTHING, _GOAL = 1e-6, 1e-5
 
 
 @dataclass(frozen=True)
