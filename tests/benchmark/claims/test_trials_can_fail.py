@@ -121,7 +121,6 @@ def test_an_assembly_that_is_better_left_alone_refutes():
     [
         ("C02", {"refines": 1.002}, {"refines": 1.05}),
         ("C15", {"corrects": 1.4}, {"corrects": 2.5}),
-        ("C33", {"arcseconds": 40.0, "field": math.nan}, {"arcseconds": 5.0, "field": 100.0}),
     ],
 )
 def test_an_effect_that_nobody_would_notice_does_not_count(claim, lost, kept):

@@ -1,11 +1,10 @@
 """C33: what coded masks reach over a wide field (Wang2015, Wei2014, Wei2017).
 
 Three sensors with the counts and fields of these studies (105 and 120 degrees square, a cone of 100
-degrees) are told the true directions in their calibration and tested over their whole field: what
-is left is the mask's and the model's own error, which a bench of 40 arcsec would hide. Of each the
-better one of `coded-correlation` and `coded-spacing` counts, of the three the geometric mean, and
-as field the narrowest of theirs, as long as no more than one Sun in twenty is left without an
-answer. Lines of the same sensors calibrated on the standard bench show what it adds.
+degrees) are calibrated as on a bench and tested over their whole field. Of each the better one of
+`coded-correlation` and `coded-spacing` counts, of the three the geometric mean, and as field the
+narrowest of theirs, as long as no more than one Sun in twenty is left without an answer. Lines of
+the same sensors calibrated without a bench's errors show what is the mask's part in it.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ from algorithms.models.multiplex.coded_spacing import CodedSpacing
 from benchmark.claims.benches import Seen, middles, rms, rms_within
 from benchmark.claims.experiment import Line, Trial
 from benchmark.claims.experiments.fits.means import geometric
-from benchmark.claims.truth import told_truly
+from benchmark.datasets.calibration import IDEAL
 from benchmark.datasets.preset import Preset
 from benchmark.datasets.standard import cmos_encoded, cmos_encoded_oblique, cmos_encoded_sizes
 
@@ -41,19 +40,24 @@ def trial(number: int) -> Trial:
 
 def _sensor(preset: Preset, number: int, lines: dict[str, Line]) -> tuple[float, float]:
     """Error in arcseconds and full field in degrees."""
-    own = _best(Seen(told_truly(preset), unit=number), preset.name, lines)
-    _best(Seen(preset, unit=number), f"{preset.name}, calibrated on a bench", lines)
-    return ARCSEC * rms(own), _field(preset, own)
-
-
-def _best(seen: Seen, name: str, lines: dict[str, Line]) -> Floats:
-    """Errors (N,) of the better model, drawn under this name."""
-    least = min(
-        (seen.errors(SpotList, model) for model in (CodedCorrelation, CodedSpacing)), key=rms
-    )
-    within = rms_within(least, seen.incidence_deg(), EDGES_DEG)
-    lines[name] = (middles(EDGES_DEG), [ARCSEC * error for error in within])
-    return least
+    bench, field = math.nan, math.nan
+    # one after the other, so that the second looks up the light of the first
+    for condition, name in (
+        ("nominal", preset.name),
+        (IDEAL, f"{preset.name}, calibrated ideally"),
+    ):
+        seen = Seen(preset.with_ideal_calibration(), condition, unit=number)
+        least = min(
+            (seen.errors(SpotList, model) for model in (CodedCorrelation, CodedSpacing)), key=rms
+        )
+        places = (
+            middles(EDGES_DEG),
+            [ARCSEC * error for error in rms_within(least, seen.incidence_deg(), EDGES_DEG)],
+        )
+        lines[name] = places
+        if condition == "nominal":
+            bench, field = ARCSEC * rms(least), _field(preset, least)
+    return bench, field
 
 
 def _field(preset: Preset, errors: Floats) -> float:
