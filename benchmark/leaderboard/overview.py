@@ -31,8 +31,8 @@ SAYS = (
     "all boards with a bound on which the part ran: every board counts once, whatever its sensor, "
     "and one without an answer counts as far. The median is over the boards where it has one. "
     "Parts run on different boards, some of which nothing comes near; the last column is on how "
-    "many of a part's boards any pipeline comes within 10. The bound takes one sample at a time, "
-    "so filters, which know those before, may fall below it."
+    "many of a part's boards any pipeline comes within 10. The bound takes one sample at a time; "
+    "filters, which know those before, are held to a posterior bound of their own."
 )
 
 

@@ -44,6 +44,10 @@ class Bound:
         (N,) as `angle_deg`, for who does not know the unit but what references tell of it; inf
         where the direction is not observable, or not then. None where it was not asked for, or
         the sensor's elements do not differ each by itself.
+    fisher
+        (N, 4, 4) Fisher matrices, the unit known, of two tangent axes (radians), irradiance and
+        stray light (in units of their spreads, whose prior of 1 is on the diagonal), of samples
+        that are not observable, too. None where they were not computed.
     """
 
     angle_deg: Floats
@@ -51,6 +55,7 @@ class Bound:
     beta_deg: Floats
     observable: NDArray[np.bool_]
     unit_angle_deg: Floats | None = None
+    fisher: Floats | None = None
 
     @property
     def rms_deg(self) -> float:
@@ -71,12 +76,14 @@ class Bound:
         """Put bounds of consecutive samples together."""
         units = [part.unit_angle_deg for part in parts]
         known = [unit for unit in units if unit is not None]
+        matrices = [part.fisher for part in parts if part.fisher is not None]
         return cls(
             angle_deg=np.concatenate([part.angle_deg for part in parts]),
             alpha_deg=np.concatenate([part.alpha_deg for part in parts]),
             beta_deg=np.concatenate([part.beta_deg for part in parts]),
             observable=np.concatenate([part.observable for part in parts]),
             unit_angle_deg=np.concatenate(known) if len(known) == len(units) else None,
+            fisher=np.concatenate(matrices) if len(matrices) == len(parts) else None,
         )
 
 
@@ -188,11 +195,13 @@ def _batch(  # noqa: PLR0917 - as `cramer_rao`
     for signal, one in zip(signals, seen, strict=True):
         signal[:] = sensor.expected(one, pattern).reshape(count, -1)
     products = noise_products(mean, signals, own, common)
-    information, nuisance = _marginal(products, step_rad)
+    fisher = _fisher(products, step_rad)
+    information, nuisance = _marginal(fisher)
     unit_information = None
     if unit is not None:
         wider = own + unit.reshape(count, -1)
-        unit_information, _ = _marginal(noise_products(mean, signals, wider, unit_common), step_rad)
+        unit_products = noise_products(mean, signals, wider, unit_common)
+        unit_information, _ = _marginal(_fisher(unit_products, step_rad))
     values, axes = _principal(information)
     regular = _regular(values)
     inverse = 1.0 / np.where(regular[:, None], values, 1.0)
@@ -230,6 +239,7 @@ def _batch(  # noqa: PLR0917 - as `cramer_rao`
         unit_angle_deg=(
             None if unit_information is None else _unit_angle_deg(unit_information, local)
         ),
+        fisher=fisher,
     )
 
 
@@ -240,8 +250,8 @@ def _unit_angle_deg(information: Floats, observable: NDArray[np.bool_]) -> Float
     return _angle_deg(1.0 / np.where(regular[:, None], values, 1.0), observable & regular)
 
 
-def _marginal(products: Floats, step_rad: float) -> tuple[Floats, Floats]:
-    """Information on the direction (N, 2, 2) without the nuisances' share, and that on those.
+def _fisher(products: Floats, step_rad: float) -> Floats:
+    """Fisher matrices (N, 4, 4) of both axes and both nuisances, the nuisances' priors included.
 
     Of products (N, 6, 6) of the changes by a step to either side along both axes, and by the
     nuisances.
@@ -252,6 +262,11 @@ def _marginal(products: Floats, step_rad: float) -> tuple[Floats, Floats]:
     fisher = slopes @ products @ slopes.T
     fisher[:, 2, 2] += 1.0
     fisher[:, 3, 3] += 1.0
+    return np.asarray(fisher)
+
+
+def _marginal(fisher: Floats) -> tuple[Floats, Floats]:
+    """Information on the direction (N, 2, 2) without the nuisances' share, and that on those."""
     direction, cross, nuisance = fisher[:, :2, :2], fisher[:, :2, 2:], fisher[:, 2:, 2:]
     gain = np.linalg.solve(nuisance, np.swapaxes(cross, 1, 2))
     return np.asarray(direction - cross @ gain), np.asarray(nuisance)

@@ -34,10 +34,11 @@ from benchmark.simulator.sensors.faces import Faces
 
 #: Said in every card: what the bound of a time series does not cover.
 BOUND_NOTE = (
-    "The bound is that of one sample by itself, unit and drift known. It is not defined for an "
-    "estimator that carries a state from sample to sample or reads other instruments (Kalman "
-    "filters, dead reckoning through eclipse, fusion with magnetometer or horizon sensor): such a "
-    "one may go below it. Samples in eclipse are not observable and do not enter; there a "
+    "The bound is that of one sample by itself, unit and drift known. Estimators that carry a "
+    "state from sample to sample or read other instruments (Kalman filters, fusion with a "
+    "magnetometer or horizon sensor) have another: the recursive posterior Cramer-Rao bound of all "
+    "readings up to the sample, the gyroscope's noise as simulated and strength of sunlight known, "
+    "and of the body's motion what the gyroscope tells. Samples in eclipse are not observable and do not enter; there a "
     "single-sample estimator should find nothing (NaN), and whatever it does find counts as error."
 )
 
