@@ -71,9 +71,10 @@ def attitude_information(sun: Floats, information: Floats) -> Floats:
 
 
 def vector_information(vectors: Floats, deviation: float) -> Floats:
-    """The same of vectors (N, 3) that are read in the body frame and known in the inertial one.
+    """Information (N, 3, 3) as `attitude_information`, of vectors (N, 3) known in another frame.
 
-    `deviation` is that of the white noise of each component, in the vectors' unit.
+    They are read in the body frame and known in the inertial one; `deviation` is that of the white
+    noise of each component, in the vectors' unit.
     """
     square = np.einsum("ni,ni->n", vectors, vectors)
     across = square[:, None, None] * np.eye(3) - vectors[:, :, None] * vectors[:, None, :]

@@ -38,7 +38,8 @@ BOUND_NOTE = (
     "state from sample to sample or read other instruments (Kalman filters, fusion with a "
     "magnetometer or horizon sensor) have another: the recursive posterior Cramer-Rao bound of all "
     "readings up to the sample, the gyroscope's noise as simulated and strength of sunlight known, "
-    "and of the body's motion what the gyroscope tells. Samples in eclipse are not observable and do not enter; there a "
+    "and of the body's motion what the gyroscope tells. "
+    "Samples in eclipse are not observable and do not enter; there a "
     "single-sample estimator should find nothing (NaN), and whatever it does find counts as error."
 )
 

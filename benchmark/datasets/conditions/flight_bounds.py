@@ -1,4 +1,4 @@
-"""Posterior bounds of flights: for filters, and for who reads other instruments of the satellite."""
+"""Posterior bounds of flights: for filters, and for who reads other instruments aboard."""
 
 from __future__ import annotations
 
