@@ -16,6 +16,7 @@ from benchmark.datasets.fields import Split
 from benchmark.datasets.preset import DRAWN, Preset, drawn_split
 from benchmark.datasets.repeats import REPEAT, Rows
 from benchmark.datasets.samples import Samples
+from benchmark.metrics.bounds import Bound
 from benchmark.seeds import generator
 from benchmark.simulator.flight.attitude import Attitude, rotated, turned
 from benchmark.simulator.flight.gyro import Gyro
@@ -34,10 +35,12 @@ from benchmark.simulator.sensors.faces import Faces
 
 #: Said in every card: what the bound of a time series does not cover.
 BOUND_NOTE = (
-    "The bound is that of one sample by itself, unit and drift known. It is not defined for an "
-    "estimator that carries a state from sample to sample or reads other instruments (Kalman "
-    "filters, dead reckoning through eclipse, fusion with magnetometer or horizon sensor): such a "
-    "one may go below it. Samples in eclipse are not observable and do not enter; there a "
+    "The bound is that of one sample by itself, unit and drift known. Estimators that carry a "
+    "state from sample to sample or read other instruments (Kalman filters, fusion with a "
+    "magnetometer or horizon sensor) have another: the recursive posterior Cramer-Rao bound of all "
+    "readings up to the sample, the gyroscope's noise as simulated and strength of sunlight known, "
+    "and of the body's motion what the gyroscope tells. "
+    "Samples in eclipse are not observable and do not enter; there a "
     "single-sample estimator should find nothing (NaN), and whatever it does find counts as error."
 )
 
@@ -303,6 +306,21 @@ class FlightPreset(Preset):
             "nadir_inertial": leg.nadir,
             "magnetic_field_inertial_nT": leg.field_nt,
         }
+
+    def posterior_bound_deg(
+        self, condition: str, context: frozenset[str], bound: Bound
+    ) -> Floats | None:
+        """Return the bound (N,) of a method that reads these columns of the context, degrees.
+
+        None where the bound of single samples holds. A method that reads time and rates carries a
+        state (`benchmark.datasets.conditions.flight_bounds.posterior_bound`).
+        """
+        from benchmark.datasets.conditions.flight_bounds import (  # noqa: PLC0415 - it needs this
+            posterior_bound,
+        )
+
+        sequential = {"time_s", "rate_deg_s"} <= context
+        return posterior_bound(self, condition, context, sequential=sequential, bound=bound)
 
     def generate(self, condition: str, split: str, n: int | None = None) -> Samples:
         """As `Preset.generate`, with the context's columns."""

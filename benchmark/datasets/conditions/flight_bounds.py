@@ -1,0 +1,95 @@
+"""Posterior bounds of flights: for filters, and for who reads other instruments aboard."""
+
+from __future__ import annotations
+
+import math
+from typing import cast
+
+from algorithms.contract import Floats
+from benchmark.contract import Preset
+from benchmark.datasets.conditions.flight import FlightPreset, Leg
+from benchmark.datasets.conditions.instruments import Instruments
+from benchmark.metrics.bounds import Bound
+from benchmark.metrics.posterior_bound import (
+    Motion,
+    attitude_information,
+    recursive_bound,
+    single_bound,
+    sun_information,
+    vector_information,
+)
+from benchmark.simulator.flight.attitude import rotated
+
+#: What who uses a magnetometer, or a horizon sensor, must know: what it reads, the same in the
+#: inertial frame, and the Sun there.
+MAGNETOMETER = frozenset({"magnetic_field_nT", "magnetic_field_inertial_nT", "sun_inertial"})
+HORIZON = frozenset({"nadir", "nadir_inertial", "sun_inertial"})
+
+
+def posterior_bound(
+    preset: Preset,
+    condition: str,
+    context_columns: frozenset[str],
+    *,
+    sequential: bool,
+    bound: Bound | None = None,
+) -> Floats | None:
+    """Bound (N,) of the test split, degrees, for pipelines that a sample's own bound is not for.
+
+    The unit, its drift and light from the Earth count as known, as in the bound of one sample. A
+    sequential pipeline knows all readings up to each sample, the gyroscope's among them, and the
+    strength of sunlight. A magnetometer's and a horizon sensor's readings count where the pipeline
+    reads their counterparts in the inertial frame and the almanac's Sun, too (nadir alone says
+    nothing of the Sun); of their errors only the white noise is unknown.
+
+    Parameters
+    ----------
+    preset, condition
+        A data set's.
+    context_columns
+        Columns of the context that the pipeline reads, of all its stages.
+    sequential
+        Whether it carries a state from sample to sample.
+    bound
+        That of one sample, of the test split, where it is known already; else it is computed.
+
+    Returns
+    -------
+    ndarray, shape (N,), or None
+        inf where nothing is known of the direction. None where the data set is no flight, or the
+        pipeline is bound by one sample's own bound.
+
+    Raises
+    ------
+    ValueError
+        On an unknown condition, or a bound without Fisher matrices.
+    """
+    magnetometer, horizon = context_columns >= MAGNETOMETER, context_columns >= HORIZON
+    if not isinstance(preset, FlightPreset) or not (sequential or magnetometer or horizon):
+        return None
+    single = preset.bound(condition, "test") if bound is None else bound
+    if single.fisher is None:
+        raise ValueError("a posterior bound needs a bound with Fisher matrices (cramer_rao)")
+    flight = preset.flight
+    leg = flight.leg("test")
+    read = sun_information(single.fisher, irradiance_known=sequential)
+    information = attitude_information(leg.sun_body, read)
+    if magnetometer:
+        field_nt = rotated(leg.turn, _true_field_nt(preset, condition, leg))
+        information = information + vector_information(field_nt, flight.magnetometer_nt)
+    if horizon:
+        deviation = math.tan(math.radians(flight.horizon_deg))
+        information = information + vector_information(leg.nadir_body, deviation)
+    if not sequential:
+        return single_bound(leg.sun_body, information)
+    return recursive_bound(leg.sun_body, information, Motion(leg.turn, leg.time_s, flight.gyro))
+
+
+def _true_field_nt(preset: FlightPreset, condition: str, leg: Leg) -> Floats:
+    """(N, 3) inertial frame: the model's, and what it leaves out."""
+    aboard = cast("Instruments | None", preset.condition(condition).bench)
+    if aboard is None:
+        return leg.field_nt
+    distance = leg.orbit.distance_km
+    missing = aboard.missing_field(distance, *preset.streams)
+    return leg.field_nt + missing.inertial(-leg.nadir, distance, leg.time_s)
