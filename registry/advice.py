@@ -13,8 +13,9 @@ INCLUDES: Mapping[tuple[str, str], tuple[str, ...]] = MappingProxyType(
 )
 """Values that the survey's advice means beside the one it names (notes of the table of advice)."""
 
-ADVISING = ("task", "accuracy")
-"""What is advised for. Rows of errors say where an error is met, which is no advice to build."""
+ADVISING = ("task", "accuracy", "error")
+"""What is advised for. Where no error is asked for, its rows say where it is met, which advises
+nothing."""
 
 
 @dataclass(frozen=True)

@@ -248,11 +248,14 @@ class DesignColumns(PipelineColumns):
     def best(self, limits: Limits) -> Best:
         """Return the best pipeline of each design that keeps limits; kept for the next question."""
         half = self.half_field(limits.half_field_deg)
-        key = (limits.hazards, half, limits.min_availability, limits.max_latency_us)
+        key = (
+            *(limits.hazards, half, limits.min_availability, limits.max_latency_us),
+            *(limits.draws, limits.exclude_needs),
+        )
         return self._best.get(key, lambda: self._least(limits))
 
     def _least(self, limits: Limits) -> Best:
-        judged = self.judgements(limits.hazards, limits.half_field_deg)
+        judged = self.judgements(limits.hazards, limits.half_field_deg, limits.draws)
         by_error = judged.by_error[judged.keeping(limits)[judged.by_error]]
         designs = self.design_of[by_error]
         first = by_error[begins(designs)]

@@ -95,6 +95,8 @@ class Limits:
     half_field_deg: float | None = None
     min_availability: float | None = None
     max_latency_us: float | None = None
+    draws: tuple[float | None, float] | None = None
+    exclude_needs: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,8 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from registry.designs import Limits
+from registry.draws import at_confidence
 from registry.kept_answers import KeptAnswers
-from registry.measured import LEAST_ANSWERED, Judged, Measured, Partly, Score
+from registry.measured import LEAST_ANSWERED, Draws, Judged, Measured, Partly, Score
 
 Flags = NDArray[np.bool_]
 Numbers = NDArray[np.float64]
@@ -90,10 +91,31 @@ class PipelineColumns:
             found.append((half, flags))
         return tuple(found)
 
-    def judgements(self, hazards: tuple[str, ...], half_field_deg: float | None) -> Judgements:
+    @cached_property
+    def unit_ratios(self) -> Numbers:
+        """Errors of ten units over their geometric mean, shape (pipelines, 10)."""
+        return np.array([row.unit_ratios for row in self.rows], float).reshape(len(self.rows), -1)
+
+    @cached_property
+    def bench_deg(self) -> Numbers:
+        """Fixed error of the standard bench of each pipeline's data set."""
+        return numbers(row.bench_deg for row in self.rows)
+
+    @cached_property
+    def needs(self) -> tuple[frozenset[str], ...]:
+        """What each pipeline reads beside the sensor."""
+        return tuple(frozenset(row.needs) for row in self.rows)
+
+    def judgements(
+        self,
+        hazards: tuple[str, ...],
+        half_field_deg: float | None,
+        draws: Draws | None = None,
+    ) -> Judgements:
         """Return what pipelines are judged by; kept for the next question."""
         half = self.half_field(half_field_deg)
-        return self._judgements.get((hazards, half), lambda: Judgements(self, hazards, half))
+        key = (hazards, half, draws)
+        return self._judgements.get(key, lambda: Judgements(self, hazards, half, draws))
 
     def over(self, hazard: str, half: float | None) -> Numbers:
         """Return the error of every score under a hazard ("" for nominal), by `Measured.over`."""
@@ -130,16 +152,27 @@ class Judgements:
     """
 
     def __init__(
-        self, columns: PipelineColumns, hazards: tuple[str, ...], half: float | None
+        self,
+        columns: PipelineColumns,
+        hazards: tuple[str, ...],
+        half: float | None,
+        draws: Draws | None,
     ) -> None:
         self.columns = columns
         self.hazards = hazards
         self.half = half
+        self.draws = draws
         self.nominal_deg = columns.over("", half)
         self.error_deg = self.nominal_deg.copy()
         for hazard in hazards:
             scores = columns.scores(hazard)
             np.maximum.at(self.error_deg, scores.rows, columns.over(hazard, half))
+        self.own_deg = self.error_deg
+        if draws is not None:
+            bench, share = draws
+            benches = columns.bench_deg
+            benches = benches if bench is None else np.full(len(benches), bench)
+            self.error_deg = at_confidence(self.own_deg, columns.unit_ratios, benches, share)
         self.by_error = np.lexsort((self.error_deg, columns.design_of))
         self._kept: dict[int, Judged] = {}
 
@@ -166,7 +199,8 @@ class Judgements:
         found = self._kept.get(row)
         if found is None:
             half = self.half
-            found = self._kept[row] = self.columns.rows[row].judged(self.hazards, half)
+            of_row = self.columns.rows[row]
+            found = self._kept[row] = of_row.judged(self.hazards, half, self.draws)
         return found
 
     @cached_property
@@ -228,6 +262,9 @@ class Judgements:
             found &= self.availability >= limits.min_availability
         if limits.max_latency_us is not None:
             found &= self.columns.latency_us <= limits.max_latency_us
+        if limits.exclude_needs:
+            avoided = frozenset(limits.exclude_needs)
+            found &= np.array([not (needs & avoided) for needs in self.columns.needs], bool)
         if max_error_deg is not None:
             found &= self.error_deg <= max_error_deg
         return found

@@ -23,7 +23,10 @@ OF_STUDIES = ("task", "error", "accuracy")
 _STATED = {"max_error_deg": "accuracy_deg", "min_fov_deg": "fov_deg"}
 """Limits that a study's own number is judged by, where nothing is measured."""
 
-_MEASURED = ("max_error_deg", "min_fov_deg", "survive", "min_availability", "max_latency_us")
+_MEASURED = (
+    *("max_error_deg", "min_fov_deg", "survive", "min_availability", "max_latency_us"),
+    "exclude_needs",
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,6 +102,8 @@ class Question:
             requirements.half_field_deg,
             requirements.min_availability,
             requirements.max_latency_us,
+            requirements.draws,
+            requirements.exclude_needs,
         )
 
     @cached_property
@@ -110,12 +115,12 @@ class Question:
     def judgements(self) -> Judgements:
         """What every pipeline is judged by."""
         asked = self.asked
-        return self.columns.judgements(asked.survive, asked.half_field_deg)
+        return self.columns.judgements(asked.survive, asked.half_field_deg, asked.draws)
 
     @cached_property
     def meeting(self) -> int:
         """The designs (bits) that meet the requirements."""
-        columns, largest = self.columns, self.asked.max_error_deg
+        columns, largest = self.columns, self.asked.largest_deg
         kept = self.best.keeping
         if largest is not None:
             kept &= columns.bits(self.best.error <= largest)
@@ -203,8 +208,8 @@ class Question:
         found = tuple(
             a
             for a in advice
-            if a.requirement in ADVISING
-            and (not asked or (a.requirement in asked and a.value in include[a.requirement]))
+            if (a.requirement in asked and a.value in include[a.requirement])
+            or (not asked and a.requirement != "error")
         )
         return found, frozenset(a.value for a in found if a.requirement == "task")
 

@@ -8,7 +8,13 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Generic, TypeVar
 
+import numpy as np
+
+from registry.draws import UNITS, at_confidence, units_meeting
 from registry.requirements import Requirements
+
+Draws = tuple[float | None, float]
+"""A bench's fixed error in degrees, None for a data set's own, and a share of units and benches."""
 
 _NUMBERS = (
     *("rms_deg", "bound_deg", "over_bound", "repeatability_deg"),
@@ -134,8 +140,14 @@ class Measured:
     hazards
         What a sensor may have to survive (`registry.requirements.HAZARDS`) -> the scores under
         the conditions of this data set that try it. One without a condition is absent.
-    unit_rms_deg
-        Errors of further units of the sensor, under the first condition.
+    unit_own_deg
+        Own errors of the units of the sensor, the standard one first, under the first condition.
+    unit_ratios
+        Of ten units, over their geometric mean (`registry.draws.unit_ratios`).
+    bench_deg
+        Fixed error of the data set's standard calibration bench, root mean square.
+    needs
+        What the calibration reads beside the sensor (`registry.requirements.NEEDS`).
     """
 
     dataset: str
@@ -149,12 +161,22 @@ class Measured:
     hazards: Mapping[str, tuple[Score, ...]] = field(default_factory=dict, hash=False)
     half_fov_deg: float | None = None
     latency_us: float | None = None
-    unit_rms_deg: tuple[float, ...] = ()
+    unit_own_deg: tuple[float, ...] = ()
+    unit_ratios: tuple[float, ...] = (1.0,) * UNITS
+    bench_deg: float = 0.0
+    needs: tuple[str, ...] = ()
 
-    def judged(self, hazards: Iterable[str] = (), half_field_deg: float | None = None) -> Judged:
+    def judged(
+        self,
+        hazards: Iterable[str] = (),
+        half_field_deg: float | None = None,
+        draws: Draws | None = None,
+    ) -> Judged:
         """Return the largest error, nominal and under every hazard, over a field.
 
-        A hazard that no condition tries has no error here: ask `tried` first.
+        With `draws`, a bench and a share, it is the error that this share of units and benches
+        keeps within; a bench of None is the data set's. A hazard that no condition tries has no
+        error here: ask `tried` first.
         """
         worst = self.over(self.nominal, half_field_deg)
         for name in hazards:
@@ -162,7 +184,16 @@ class Measured:
                 found = self.over(score, half_field_deg)
                 if found.error_deg > worst.error_deg:
                     worst = found
-        return worst
+        if draws is None or math.isinf(worst.error_deg):
+            return worst
+        bench, share = draws
+        error = at_confidence(
+            np.array([worst.error_deg]),
+            np.array([self.unit_ratios]),
+            np.array([self.bench_deg if bench is None else bench]),
+            share,
+        )
+        return Judged(float(error[0]), worst.condition, worst.field_deg)
 
     def over(self, score: Score, half_field_deg: float | None = None) -> Judged:
         """Return the error under one condition over a field; infinite where there is none.
@@ -232,8 +263,10 @@ class Measured:
         partly
             Pipelines on the same sensor that answer too seldom, of which one may be far finer.
         """
-        judged = self.judged(requirements.survive, requirements.half_field_deg)
-        units = [e for e in (self.nominal.rms_deg, *self.unit_rms_deg) if e is not None]
+        field = requirements.half_field_deg
+        judged = self.judged(requirements.survive, field, requirements.draws)
+        own = self.judged(requirements.survive, field)
+        units = self.unit_own_deg
         return {
             "dataset": self.dataset,
             "extractor": self.extractor,
@@ -251,11 +284,30 @@ class Measured:
             "fov_deg": None if self.half_fov_deg is None else 2 * self.half_fov_deg,
             "availability": self.availability(requirements.survive),
             "latency_us": self.latency_us,
-            "units": {"count": len(units), "least_deg": min(units), "largest_deg": max(units)}
+            "own_deg": _finite(own.error_deg),
+            "bench_deg": self.bench_deg
+            if requirements.bench_deg is None
+            else requirements.bench_deg,
+            "needs": list(self.needs),
+            "units": {
+                "count": len(units),
+                "least_deg": min(units),
+                "largest_deg": max(units),
+                "meeting": self._meeting(requirements, own.error_deg),
+                "of": UNITS,
+            }
             if units
             else None,
             "finer": _finer(finer_for(judged.error_deg, partly)),
         }
+
+    def _meeting(self, requirements: Requirements, own_deg: float) -> int | None:
+        """Return how many of ten units meet the error asked for; None where none is."""
+        limit, draws = requirements.largest_deg, requirements.draws
+        if limit is None or draws is None or math.isinf(own_deg):
+            return None
+        bench = self.bench_deg if draws[0] is None else draws[0]
+        return units_meeting(own_deg, self.unit_ratios, bench, limit, draws[1])
 
 
 def _finer(found: Partly[Measured] | None) -> dict[str, object] | None:

@@ -32,8 +32,9 @@ def support(kept: Kept, place: KeptPlace) -> float:
 def key_of(sort: Sort, advised: bool, backing: float, error: float) -> tuple[float, ...]:
     """Return what an architecture or a calibration is ranked by, the best first.
 
-    By advice: what the survey advises, then what most studies back, then what errs least. By
-    support, or by what is measured: that first. What is not measured errs without limit.
+    By advice: what the survey advises, then what most studies back, then what errs least; of the
+    calibrations of an architecture what errs least comes first. By support, or by what is
+    measured: that first. What is not measured errs without limit.
     """
     if sort == "measured":
         return (error, not advised, -backing)

@@ -5,11 +5,14 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from registry.designs import DesignTable
+from registry.draws import bench_for
 from registry.judging import OF_STUDIES, Question
 from registry.paths import positions
 from registry.requirements import EXCLUDE, LIMITS, LISTS, Requirements
@@ -129,6 +132,8 @@ def explain(table: DesignTable, requirements: Requirements) -> Blocked:
     if unknown:
         words = " or ".join(in_words(n, _asked(requirements, n)) for n in unknown)
         detail += f". Nothing measured or stated tells of {words}"
+    if bench := _bench_that_would_do(table, requirements):
+        detail += f". A calibration bench good to {bench:.2g} deg would do"
     return Blocked(first, detail, (*drops[:MOST_SETS], *changes))
 
 
@@ -146,6 +151,8 @@ def in_words(name: str, asked: tuple[str, ...] | float) -> str:
         return _WORDS[name].format(asked)
     if name == "survive":
         return f"surviving {' and '.join(asked)}"
+    if name == "exclude_needs":
+        return f"no need of {' or '.join(asked)}"
     if name == "properties":
         return f"an extractor with {' and '.join(asked)}"
     values = " or ".join(asked)
@@ -223,8 +230,8 @@ def _broken_by_rows(question: Question, bit: Mapping[str, int]) -> list[tuple[in
 def _keeping(columns: DesignColumns, asked: Requirements) -> Flags:
     """Say of each measured pipeline whether it keeps all limits asked for."""
     limits = Question.limits_of(asked)
-    judged = columns.judgements(limits.hazards, limits.half_field_deg)
-    return judged.keeping(limits, asked.max_error_deg)
+    judged = columns.judgements(limits.hazards, limits.half_field_deg, limits.draws)
+    return judged.keeping(limits, asked.largest_deg)
 
 
 def _broken_by_studies(
@@ -330,6 +337,24 @@ def _widest(table: DesignTable, requirements: Requirements) -> float | None:
             widest = 2.0 * half
             break
     return max(widest, *_stated(Question(table, requirements), "fov_deg"), 0.0) or None
+
+
+def _bench_that_would_do(table: DesignTable, requirements: Requirements) -> float | None:
+    """Return the fixed error of a bench with which something would meet all; None for nothing."""
+    limit, draws = requirements.largest_deg, requirements.draws
+    if limit is None or draws is None:
+        return None
+    question = Question(table, replace(requirements, bench_deg=0.0))
+    designs = question.meeting & ~question.columns.not_measured
+    rows = question.columns.rows_of(designs) & _keeping(question.columns, question.asked)
+    own = question.judgements.own_deg
+    return max(
+        (
+            bench_for(float(own[at]), question.columns.rows[at].unit_ratios, limit, draws[1])
+            for at in np.flatnonzero(rows).tolist()
+        ),
+        default=None,
+    )
 
 
 def _has_evidence(table: DesignTable, requirements: Requirements, name: str) -> bool:

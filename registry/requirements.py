@@ -22,6 +22,21 @@ LIMITS: Mapping[str, str] = MappingProxyType(
 )
 """Numeric requirements and what they take. ``min_fov_deg`` is the full field of view."""
 
+SETTINGS: Mapping[str, str] = MappingProxyType(
+    {
+        "bench_deg": "a number of degrees, 0 or more",
+        "confidence": "a share from 0.5 to 0.999",
+    }
+)
+"""What an error is judged by, and what it takes: the fixed error of the calibration bench, that of
+each data set's standard bench by default; and the share of units and benches that meet a limit."""
+
+CONFIDENCE = 0.9
+"""The share where none is asked for."""
+
+CLASSES_DEG: Mapping[str, float] = MappingProxyType({"FSS": 0.5, "VFSS": 1 / 60, "UFSS": 10 / 3600})
+"""Largest errors of the survey's classes of accuracy; the coarsest has none."""
+
 HAZARDS: Mapping[str, str] = MappingProxyType(
     {
         "albedo": "sunlight from the Earth, with clouds where they are drawn",
@@ -40,10 +55,27 @@ HAZARDS: Mapping[str, str] = MappingProxyType(
 LISTS = ("survive", "properties")
 """Requirements that all hold, several at once: hazards; properties of the survey's assessment."""
 
-PARAMETERS = (*ATTRIBUTES, *(EXCLUDE + attribute for attribute in ATTRIBUTES), *LIMITS, *LISTS)
+NEEDS: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {
+        "rates": ("rate_deg_s",),
+        "time": ("time_s",),
+        "temperature": ("temperature_K",),
+        "nadir": ("nadir", "nadir_inertial"),
+        "magnetic-field": ("magnetic_field_nT", "magnetic_field_inertial_nT"),
+        "almanac": ("sun_inertial",),
+        "eclipse": ("eclipse",),
+        "albedo-flag": ("albedo",),
+    }
+)
+"""What a calibration may read beside the sensor, and the columns of the context that it is."""
+
+PARAMETERS = (
+    *(*ATTRIBUTES, *(EXCLUDE + attribute for attribute in ATTRIBUTES), *LIMITS, *LISTS),
+    "exclude_needs",
+)
 """The names of all requirements, in the order in which they are reported."""
 
-_KNOWN = frozenset(PARAMETERS)
+_KNOWN = frozenset((*PARAMETERS, *SETTINGS))
 
 
 @dataclass(frozen=True)
@@ -69,6 +101,9 @@ class Requirements:
     max_latency_us: float | None = None
     survive: tuple[str, ...] = ()
     properties: tuple[str, ...] = ()
+    exclude_needs: tuple[str, ...] = ()
+    bench_deg: float | None = None
+    confidence: float | None = None
 
     @classmethod
     def parse(
@@ -99,11 +134,11 @@ class Requirements:
                 raise unknown_name("parameter", name, PARAMETERS)
             if value is None:
                 continue
-            if name in LIMITS:
+            if name in LIMITS or name in SETTINGS:
                 limits[name] = _number(name, value)
                 continue
             values = _texts(name, value)
-            if name in LISTS:
+            if name in LISTS or name == "exclude_needs":
                 lists[name] = values
             elif values and name.startswith(EXCLUDE):
                 exclude[name.removeprefix(EXCLUDE)] = values
@@ -115,6 +150,7 @@ class Requirements:
             **limits,
             survive=lists.get("survive", ()),
             properties=lists.get("properties", ()),
+            exclude_needs=lists.get("exclude_needs", ()),
         )
         requirements.check(taxonomy, properties)
         return requirements
@@ -127,14 +163,33 @@ class Requirements:
                     raise unknown_name("attribute", attribute, ATTRIBUTES)
                 for value in values:
                     taxonomy.require(attribute, value, parameter=prefix + attribute)
-        for name in LIMITS:
+        for name in (*LIMITS, *SETTINGS):
             bound = self.limit(name)
             if bound is not None:
                 _number(name, bound)
-        for name, known in (("survive", HAZARDS), ("properties", properties)):
+        lists = (("survive", HAZARDS), ("properties", properties), ("exclude_needs", NEEDS))
+        for name, known in lists:
             for value in getattr(self, name):
                 if value not in known:
                     raise unknown_name(name, value, known)
+
+    @property
+    def largest_deg(self) -> float | None:
+        """The largest error asked for: by number, or by the coarsest of the classes of accuracy."""
+        classes = [CLASSES_DEG.get(value) for value in self.include.get("accuracy", ())]
+        known = [limit for limit in classes if limit is not None]
+        by_class = max(known) if known and len(known) == len(classes) else None
+        return min((x for x in (self.max_error_deg, by_class) if x is not None), default=None)
+
+    @property
+    def draws(self) -> tuple[float | None, float] | None:
+        """Bench and share that errors are judged by; None where own errors are.
+
+        A bench of None is each data set's standard one.
+        """
+        if self.largest_deg is None and self.bench_deg is None:
+            return None
+        return self.bench_deg, self.confidence or CONFIDENCE
 
     @property
     def half_field_deg(self) -> float | None:
@@ -155,7 +210,7 @@ class Requirements:
         """Return what a parameter of `PARAMETERS` asks; None if nothing."""
         if name in LIMITS:
             return self.limit(name)
-        if name in LISTS:
+        if name in LISTS or name == "exclude_needs":
             several: tuple[str, ...] = getattr(self, name)
             return several or None
         if name.startswith(EXCLUDE):
@@ -173,7 +228,7 @@ class Requirements:
         """Return these requirements with one parameter replaced (dropped if None or empty)."""
         if name in LIMITS:
             return replace(self, **{name: value})  # type: ignore[arg-type]  # name is a limit's
-        if name in LISTS:
+        if name in LISTS or name == "exclude_needs":
             return replace(self, **{name: value or ()})  # type: ignore[arg-type]  # a list's
         side = "exclude" if name.startswith(EXCLUDE) else "include"
         values = dict(getattr(self, side))
@@ -188,10 +243,15 @@ class Requirements:
         asked: dict[str, tuple[str, ...] | float | None] = {
             **self.include,
             **{EXCLUDE + attribute: values for attribute, values in self.exclude.items()},
-            **{name: getattr(self, name) for name in (*LIMITS, *LISTS)},
+            **{name: getattr(self, name) for name in (*LIMITS, *LISTS, "exclude_needs")},
         }
-        told = ((name, asked.get(name)) for name in PARAMETERS)
-        return {n: list(v) if isinstance(v, tuple) else v for n, v in told if v}
+        told = [(name, asked.get(name)) for name in PARAMETERS]
+        told += [(name, getattr(self, name)) for name in SETTINGS]
+        return {
+            n: list(v) if isinstance(v, tuple) else v
+            for n, v in told
+            if v or (v == 0 and n in SETTINGS)
+        }
 
 
 def _texts(name: str, value: object) -> tuple[str, ...]:
@@ -203,11 +263,12 @@ def _texts(name: str, value: object) -> tuple[str, ...]:
 
 
 def _number(name: str, value: object) -> float:
-    expected = LIMITS[name]
+    expected = LIMITS.get(name) or SETTINGS[name]
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise InvalidValueError(name, value, expected)
     number = float(value)
-    most = {"min_fov_deg": 360.0, "min_availability": 1.0}.get(name, math.inf)
-    if not math.isfinite(number) or number <= 0 or number > most:
+    most = {"min_fov_deg": 360.0, "min_availability": 1.0, "confidence": 0.999}
+    least = {"bench_deg": -1e-300, "confidence": 0.4999}.get(name, 0.0)
+    if not math.isfinite(number) or number <= least or number > most.get(name, math.inf):
         raise InvalidValueError(name, value, expected)
     return number

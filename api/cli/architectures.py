@@ -119,6 +119,11 @@ def _measured(best: Mapping[str, Any]) -> str:
         parts.append(f"{times} times the bound {nominal['bound_deg']:.3g} deg")
     if measured["availability"] is not None:
         parts.append(f"answers {100 * measured['availability']:.4g} %")
+    if units is not None and units["meeting"] is not None:
+        parts.append(f"{units['meeting']} of {units['of']} units meet it")
+        parts.append(f"own error {measured['own_deg']:.3g} deg")
+    if measured["needs"]:
+        parts.append(f"also reads {', '.join(measured['needs'])}")
     if units is not None and units["count"] > 1:
         spread = f"{units['least_deg']:.3g} to {units['largest_deg']:.3g} deg"
         parts.append(f"{units['count']} units {spread}")

@@ -104,7 +104,7 @@ def _row(row: Mapping[str, Any]) -> Measured:
         **{
             **row,
             "stages": tuple(row["stages"]),
-            "unit_rms_deg": tuple(row["unit_rms_deg"]),
+            **{name: tuple(row[name]) for name in ("unit_own_deg", "unit_ratios", "needs")},
             "nominal": _score(row["nominal"]),
             "hazards": {name: tuple(map(_score, found)) for name, found in row["hazards"].items()},
         }

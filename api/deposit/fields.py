@@ -108,8 +108,7 @@ _FIELDS: dict[str, tuple[Type, str]] = {
     ),
     "charged_deg": (
         "number",
-        "Root mean square separation angle of all answers, those to samples whose direction is not "
-        "observable among them, degrees.",
+        "Root mean square separation angle of all answers, observable sample or not, degrees.",
     ),
     "aligned_deg": ("number", "Root mean square angle left after the best rotation, degrees."),
     "median_deg": ("number", "Median separation angle, degrees."),

@@ -92,7 +92,12 @@ class Measurements:
     def pipelines(self) -> list[Measured]:
         """What is measured of every pipeline on every data set, for recommendations."""
         latency = {place: time.latency_us for place, time in self.times.items()}
-        return pipelines(self._every_unit, latency)
+        bench = {
+            name: pin.bench_deg
+            for (name, condition, split), pin in self._store.pins().items()
+            if split == "test" and condition == self.presets[name].conditions[0]
+        }
+        return pipelines(self._every_unit, latency, bench)
 
     @cached_property
     def leaderboard(self) -> Mapping[str, Any]:
@@ -101,7 +106,8 @@ class Measurements:
             pipeline: {"latency_us": time.latency_us, "time_ratio": time.time_ratio}
             for pipeline, time in self.times.items()
         }
-        board = build(self._every_unit, times, self.sweeps, self._studied)
+        pins = self._store.pins()
+        board = build(self._every_unit, times, self.sweeps, self._studied, pins)
         return board if board["datasets"] else {"schema": None, "datasets": []}
 
     @property

@@ -80,5 +80,7 @@ export function measuredContent(m) {
     below(narrowed && (m.error_deg === null ? `nominal ${degrees(nominal.rms_deg)} where it answers, ` : `nominal ${degrees(nominal.rms_deg)}, `),
       h("span", { title: `Nominal error over the whole field, over the Cramér–Rao bound of ${degrees(nominal.bound_deg)}` }, `${times(nominal.over_bound)} the bound`)),
     below(`answers ${percent(m.availability)}`, units && units.count > 1 && `; ${units.count} units ${number(units.least_deg)}–${degrees(units.largest_deg)}`),
+    units && units.meeting !== null && below(`${units.meeting} of ${units.of} units meet it on a bench of ${degrees(m.bench_deg)}; own error ${degrees(m.own_deg)}`),
+    m.needs.length > 0 && below(`also reads ${m.needs.join(", ")}`),
   ];
 }

@@ -3,7 +3,7 @@
 
 import { byId, h } from "./dom.js";
 import { ATTRIBUTES, LIMITS, required, reset, set, setLimit, setListed, standing, state } from "./state.js";
-import { ATTRIBUTE_NAMES, HAZARDS, inUnit, LIMIT_NAMES, LIST_NAMES, ofUnit, PROPERTIES, worded } from "./wording.js";
+import { ATTRIBUTE_NAMES, HAZARDS, inUnit, LIMIT_NAMES, LIST_NAMES, ofUnit, PROPERTIES, worded, NEEDS } from "./wording.js";
 
 const OPEN_AT_FIRST = new Set(["task", "detector"]);
 const updates = []; // one function an element that shows the state
@@ -105,7 +105,8 @@ export function buildRequirements(vocabulary, counts) {
   const limits = h("details", { class: "group", open: true }, h("summary", {}, "Limits"),
     h("div", { class: "limits" }, LIMITS.map(limit)));
   form.replaceChildren(limits, listGroup("survive", Object.entries(HAZARDS)),
-    ...ATTRIBUTES.map((a) => group(a, vocabulary, counts)), listGroup("properties", PROPERTIES.map((p) => [p])));
+    ...ATTRIBUTES.map((a) => group(a, vocabulary, counts)), listGroup("properties", PROPERTIES.map((p) => [p])),
+    listGroup("exclude_needs", Object.entries(NEEDS)));
   form.removeAttribute("aria-busy");
   byId("reset").addEventListener("click", () => {
     reset();

@@ -1,9 +1,9 @@
 /* What is asked and what is shown, kept in the address so that an answer can be shared. */
 
 export const ATTRIBUTES = ["task", "accuracy", "error", "detector", "mask", "model", "extractor"];
-export const LIMITS = ["max_error_deg", "min_fov_deg", "min_availability", "max_latency_us"];
+export const LIMITS = ["max_error_deg", "min_fov_deg", "min_availability", "max_latency_us", "bench_deg", "confidence"];
 /** Of which all that is asked must hold: hazards, properties of the survey's assessment. */
-export const LISTS = ["survive", "properties"];
+export const LISTS = ["survive", "properties", "exclude_needs"];
 const VIEW = {
   sort: "advice", chart: "cross-analysis", counting: "studies", detail: "grouped", view: "diagram",
   dataset: "", board_condition: "", board_field: "", board_sort: "rank", board_order: "ascending",

@@ -13,11 +13,21 @@ export const LIMIT_NAMES = {
   min_fov_deg: { name: "Field of view at least", unit: "°", words: "field of view at least", subject: "field of view" },
   min_availability: { name: "Answered at least", unit: "%", words: "answered at least", subject: "answered share", smaller: 100 },
   max_latency_us: { name: "Latency at most", unit: "µs", words: "latency at most", subject: "latency" },
+  bench_deg: { name: "Calibration bench good to", unit: "°", words: "calibration bench good to", subject: "calibration bench" },
+  confidence: { name: "Share of units and benches", unit: "%", words: "share of units and benches", subject: "confidence", smaller: 100 },
 };
 
 export const LIST_NAMES = {
   survive: { name: "Shall survive", words: "shall survive", subject: "surviving" },
   properties: { name: "Extractor assessed", words: "extractor assessed as", subject: "properties of the extractor" },
+  exclude_needs: { name: "Without", words: "without", subject: "what a calibration reads beside the sensor" },
+};
+
+/** What a calibration may read beside the sensor. */
+export const NEEDS = {
+  rates: "body rates of a gyroscope", time: "time of each sample", temperature: "sensor temperature",
+  nadir: "direction to the Earth", "magnetic-field": "magnetometer", almanac: "the Sun's direction in inertial space",
+  eclipse: "whether it is in eclipse", "albedo-flag": "whether the Earth is lit",
 };
 
 /** What a sensor may have to survive, as the service names it, and in words. */

@@ -20,7 +20,7 @@ from api.pages.addresses import architecture_page
 from api.pages.charts.scatter import Point, Scatter
 from api.pages.serving import PageRouter, View
 from api.pages.study import NAMES
-from registry.requirements import HAZARDS, LIMITS
+from registry.requirements import HAZARDS, LIMITS, SETTINGS
 from registry.taxonomy import ATTRIBUTES
 
 router = PageRouter()
@@ -47,8 +47,14 @@ LIMIT_WORDS = {
     "min_fov_deg": ("field of view at least", "°"),
     "min_availability": ("answered share at least", ""),
     "max_latency_us": ("latency at most", " µs"),
+    "bench_deg": ("calibration bench good to", "°"),
+    "confidence": ("share of units and benches", ""),
 }
-LIST_WORDS = {"survive": "shall survive", "properties": "extractor assessed as"}
+LIST_WORDS = {
+    "survive": "shall survive",
+    "properties": "extractor assessed as",
+    "exclude_needs": "without",
+}
 
 
 @router.page("/", twin="/answer")
@@ -108,7 +114,7 @@ def _asked(fields: Sequence[tuple[str, str]]) -> RequirementsQuery:
             continue
         if name in PAGED:
             raise Problem(400, "unknown-parameter", f"{name} cannot be asked for here")
-        if name in LIMITS or name == "sort":
+        if name in LIMITS or name in SETTINGS or name == "sort":
             given[name] = value
         else:
             given.setdefault(name, []).append(value)

@@ -34,19 +34,8 @@ FIRST = 25  # rows of a board that are shown at first
 WARM = 20  # pipelines of the heat map
 BOARD_COLUMNS = (
     *("dataset", "condition", "rank", "group", "tied", "extractor", "model", "status", "own_deg"),
-    *(
-        "on_bench_deg",
-        "twin_of",
-        "folded",
-        "rms_deg",
-        "bound_deg",
-        "over_bound",
-        "availability",
-        "false_sun",
-        "repeatability_deg",
-        "low_deg",
-    ),
-    *("high_deg", "studies", "best_of_extractor"),
+    *("on_bench_deg", "twin_of", "folded", "rms_deg", "bound_deg", "over_bound", "availability"),
+    *("false_sun", "repeatability_deg", "low_deg", "high_deg", "studies", "best_of_extractor"),
 )
 
 
@@ -93,8 +82,8 @@ async def dataset(
         raise Problem(422, "invalid-value", errors=[error])
     every = known.measurements.board_rows(name)
     board = [row for row in every if row["condition"] == condition]
-    near = [row for row in board if not (row["folded"] or row["twin_of"])]
-    shown = board if query.rows == "all" else near[:FIRST]
+    unfolded = [row for row in board if not (row["folded"] or row["twin_of"])]
+    shown = board if query.rows == "all" else unfolded[:FIRST]
     every_board = known.measurements.leaderboard["datasets"]
     document = {**card, "condition": condition, "board": board}
     held = table.rows().get(name)

@@ -97,7 +97,7 @@ def single_bound(sun: Floats, information: Floats) -> Floats:
         Root of the summed variances along two tangent axes; inf where nothing is known.
     """
     covariance = np.linalg.inv(information + np.eye(3) / PRIOR_RAD**2)
-    return _angles_deg(_levers(sun), covariance)
+    return _angles_deg(_levers(sun), np.asarray(covariance, dtype=np.float64))
 
 
 def recursive_bound(sun: Floats, information: Floats, motion: Motion) -> Floats:

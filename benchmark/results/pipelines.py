@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable, Mapping
+import math
+import statistics
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from benchmark import datasets
@@ -11,19 +13,30 @@ from benchmark.datasets.hazards import hazards
 from benchmark.metrics.rings import EDGES_DEG, field_error
 from benchmark.metrics.score import is_available
 from registry.catalogue import catalogue
+from registry.draws import FEWEST_UNITS, unit_ratios
 from registry.fitting import stages
 from registry.measured import Measured, Score
+from registry.requirements import NEEDS
 
-_PLAIN = tuple(f.name for f in dataclasses.fields(Score) if f.name not in {"available", "cones"})
+_PLAIN = tuple(
+    f.name for f in dataclasses.fields(Score) if f.name not in {"rms_deg", "available", "cones"}
+)
+#: A ring that only sensors have which answer beyond their own horizon, or up to it.
+_BEHIND, _EDGE = "rms_90_180_deg", "rms_70_90_deg"
 
 Row = Mapping[str, Any]
 Place = tuple[str, str, str]
 
 
 def pipelines(
-    rows: Iterable[Row], latency_us: Mapping[Place, float | None] | None = None
+    rows: Iterable[Row],
+    latency_us: Mapping[Place, float | None] | None = None,
+    bench_deg: Mapping[str, float | None] | None = None,
 ) -> list[Measured]:
     """Return what is measured of every pipeline on every standard data set.
+
+    Errors are own errors over all answers, of the standard unit under each condition, times what
+    the geometric mean over units is of the standard unit's under the first.
 
     Parameters
     ----------
@@ -32,6 +45,8 @@ def pipelines(
         longer are passed over.
     latency_us
         Of a call with one sample on this machine, by data set, extractor and model.
+    bench_deg
+        Fixed error of the standard calibration bench by data set; 0 by default.
     """
     by: dict[Place, dict[tuple[str, int], Row]] = {}
     for row in rows:
@@ -39,6 +54,8 @@ def pipelines(
         by.setdefault(place, {})[row["condition"], row["unit"]] = row
     known = {name: stages(scored) for name, scored in catalogue().models.items()}
     conditions = {name: datasets.get(name).conditions for name in datasets.names()}
+    needs = {name: _needs(scored.about.context) for name, scored in catalogue().models.items()}
+    spread = _spreads(by)
     found = []
     for place, scores in by.items():
         dataset, extractor, model = place
@@ -47,6 +64,8 @@ def pipelines(
         first = scores.get((conditions[dataset][0], 0))
         if first is None:
             continue
+        units = _unit_errors(scores, first["condition"])
+        share = _middle(units) / first["charged_deg"] if units and first["charged_deg"] else 1.0
         found.append(
             Measured(
                 dataset=dataset,
@@ -56,33 +75,72 @@ def pipelines(
                 extractor_taxonomy=first["extractor_taxonomy"],
                 model=model,
                 stages=known[model],
-                nominal=_score(first),
+                nominal=_score(first, share),
                 hazards={
-                    hazard: tuple(_score(scores[name, 0]) for name in names)
+                    hazard: tuple(_score(scores[name, 0], share) for name in names)
                     for hazard, names in hazards(conditions[dataset]).items()
                     if all((name, 0) in scores for name in names)
                 },
-                half_fov_deg=first["half_fov_deg"],
+                half_fov_deg=_half_field(first),
                 latency_us=(latency_us or {}).get(place),
-                unit_rms_deg=tuple(
-                    row["rms_deg"]
-                    for (condition, unit), row in sorted(scores.items())
-                    if condition == first["condition"] and unit and row["rms_deg"] is not None
-                ),
+                unit_own_deg=units,
+                unit_ratios=unit_ratios(units, spread.get(dataset, 0.0)),
+                bench_deg=(bench_deg or {}).get(dataset) or 0.0,
+                needs=needs[model],
             )
         )
     return found
 
 
-def _score(row: Row) -> Score:
-    """Return a score; without an error where the run was refused."""
-    half = row["half_fov_deg"]
+def _unit_errors(scores: Mapping[tuple[str, int], Row], condition: str) -> tuple[float, ...]:
+    """Return the errors of all units under the first condition, the standard one first."""
+    return tuple(
+        row["charged_deg"]
+        for (name, _), row in sorted(scores.items())
+        if name == condition and row["charged_deg"]
+    )
+
+
+def _middle(errors: Sequence[float]) -> float:
+    return math.exp(math.fsum(map(math.log, errors)) / len(errors))
+
+
+def _spreads(by: Mapping[Place, Mapping[tuple[str, int], Row]]) -> dict[str, float]:
+    """Return by data set how far log errors of units scatter: the median over its pipelines."""
+    found: dict[str, list[float]] = {}
+    for (dataset, _, _), scores in by.items():
+        first = datasets.get(dataset).conditions[0] if dataset in datasets.names() else ""
+        units = _unit_errors(scores, first)
+        if len(units) >= FEWEST_UNITS:
+            found.setdefault(dataset, []).append(statistics.stdev(map(math.log, units)))
+    return {dataset: statistics.median(spreads) for dataset, spreads in found.items()}
+
+
+def _needs(context: Iterable[str]) -> tuple[str, ...]:
+    read = set(context)
+    return tuple(name for name, columns in NEEDS.items() if not read.isdisjoint(columns))
+
+
+def _half_field(row: Row) -> float | None:
+    """Return half the field of view: of sensors for all directions, as far as they are tested."""
+    half: float | None = row["half_fov_deg"]
+    if half is None:
+        half = 180.0 if row[_BEHIND] is not None else 90.0 if row[_EDGE] is not None else None
+    return half
+
+
+def _score(row: Row, share: float) -> Score:
+    """Return a score, errors times a share; without an error where the run was refused."""
+    half = _half_field(row)
     cones: list[tuple[float, float | None]] = []
     if half is not None:
         # The last ring may reach beyond the field; all its samples lie within.
         for edge in EDGES_DEG[1:]:
-            cones.append((min(float(edge), half), field_error(row, edge)))
+            error = field_error(row, edge)
+            cones.append((min(float(edge), half), None if error is None else share * error))
             if edge >= half:
                 break
     plain: dict[str, Any] = {name: row[name] for name in _PLAIN}
-    return Score(**plain, available=is_available(row), cones=tuple(cones))
+    error = row["charged_deg"]
+    own = None if error is None else share * error
+    return Score(**plain, rms_deg=own, available=is_available(row), cones=tuple(cones))

@@ -15,7 +15,7 @@ from api.cli.wrong_call import refused
 from api.columns import RECOMMENDATIONS
 from api.recommending import rows
 from registry.recommendation import recommend as ranked
-from registry.requirements import HAZARDS
+from registry.requirements import HAZARDS, NEEDS
 from registry.taxonomy import InvalidValueError
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
@@ -71,6 +71,28 @@ def recommend(
             "noise'; may be repeated.",
         ),
     ] = None,
+    exclude_needs: Annotated[
+        list[str] | None,
+        typer.Option(
+            autocompletion=completion.one_of(*NEEDS),
+            help=f"Calibration does not read this beside the sensor: {', '.join(NEEDS)}; may be "
+            "repeated.",
+        ),
+    ] = None,
+    bench_deg: Annotated[
+        float | None,
+        typer.Option(
+            help="Fixed error of the calibration bench, degrees; 0 for own errors.",
+            show_default="each data set's standard bench",
+        ),
+    ] = None,
+    confidence: Annotated[
+        float | None,
+        typer.Option(
+            help="Share of units and benches that must keep the largest error.",
+            show_default="0.9",
+        ),
+    ] = None,
     sort: Annotated[Sort, typer.Option(help="Which evidence comes first.")] = Sort.ADVICE,
     limit: Annotated[
         int, typer.Option(min=1, max=500, help="Architectures to print at most.")
@@ -111,6 +133,9 @@ def recommend(
             "max_latency_us": max_latency_us,
             "survive": survive,
             "properties": properties,
+            "exclude_needs": exclude_needs,
+            "bench_deg": bench_deg,
+            "confidence": confidence,
         },
         sort,
         limit,

@@ -76,10 +76,28 @@ class Requirements(Question):
     properties: Several[words.Property] = several(
         "Only extractors that have all of these in the survey's assessment, in part at least."
     )
+    exclude_needs: Several[words.Need] = several(
+        "No calibration that reads one of these beside the sensor."
+    )
+    bench_deg: Number = Field(
+        None,
+        ge=0,
+        le=180,
+        description="Fixed error of the calibration bench, in degrees: by default that of each "
+        "data set's standard bench; 0 for own errors.",
+    )
+    confidence: Number = Field(
+        None,
+        ge=0.5,
+        le=0.999,
+        description="Share of sensor units and benches on which the largest error has to be kept; "
+        "0.9 by default.",
+    )
     sort: Sort = Field(
         "advice",
-        description="What comes first: what the survey advises, then what most studies back, then "
-        "what errs least (advice); what most studies back (support); what errs least (measured).",
+        description="Order of the architectures: advised by the survey, then backed by most "
+        "studies, then smallest error (advice); backed by most studies (support); smallest error "
+        "(measured). Calibrations of an architecture come by error but for support.",
     )
     limit: Annotated[int, WHOLE] = Field(
         20,
@@ -143,11 +161,15 @@ class Nominal(Shape):
 
 
 class Units(Shape):
-    """Errors over units of the sensor that were measured, the first among them."""
+    """Own errors over units of the sensor that were measured, the standard one among them."""
 
     count: int
     least_deg: float
     largest_deg: float
+    meeting: int | None = Field(
+        description="How many of ten units meet the largest error asked for; null if none is."
+    )
+    of: int = Field(description="Ten; of what was measured on fewer than five, by their spread.")
 
 
 class Finer(Shape):
@@ -168,8 +190,14 @@ class Measured(Shape):
     model: str
     error_deg: float | None = Field(
         description="What it is judged by: its largest error, nominal and under all it shall "
-        "survive; null where it answers too seldom."
+        "survive; where a largest error or a bench is asked for, the error that the asked share of "
+        "units and benches keeps within; null where it answers too seldom."
     )
+    own_deg: float | None = Field(
+        description="The same calibrated with true directions, over sensor units."
+    )
+    bench_deg: float = Field(description="Fixed error of the bench that it is judged on.")
+    needs: list[str] = Field(description="What its calibration reads beside the sensor.")
     condition: str = Field(description="Where that was measured.")
     field_deg: float | None = Field(description="Full field that the error holds over.")
     nominal_deg: float | None = Field(description="The error of the first condition alone.")

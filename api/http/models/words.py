@@ -12,7 +12,7 @@ from benchmark.reference.series import SWEEPS
 from benchmark.sweeps.plan import SERIES
 from registry.catalogue import catalogue
 from registry.flows import CHARTS
-from registry.requirements import HAZARDS
+from registry.requirements import HAZARDS, NEEDS
 from registry.studies import facts
 
 
@@ -62,6 +62,7 @@ Model = Annotated[str, OneOf(_values_of("model"))]
 Extractor = Annotated[str, OneOf(_values_of("extractor"))]
 
 Hazard = Annotated[str, OneOf(lambda: tuple(HAZARDS))]
+Need = Annotated[str, OneOf(lambda: tuple(NEEDS))]
 Property = Annotated[str, OneOf(lambda: tuple(facts().properties))]
 
 StudyKey = Annotated[str, OneOf(lambda: facts().keys)]

@@ -21,7 +21,7 @@ from api.http.recommended import encoded_answer
 from api.http.recommended_table import table_text
 from api.recommending import rows
 from registry.recommendation import Answered, answered, recommendation
-from registry.requirements import PARAMETERS
+from registry.requirements import PARAMETERS, SETTINGS
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
@@ -100,6 +100,8 @@ class Recommended(Answer):
 
 def _answer(requirements: Requirements, known: Knowledge) -> Recommended:
     given = requirements.model_fields_set
-    asked = {name: getattr(requirements, name) for name in PARAMETERS if name in given}
+    asked = {
+        name: getattr(requirements, name) for name in (*PARAMETERS, *SETTINGS) if name in given
+    }
     found = answered(asked, known.measured, sort=requirements.sort, facts=known.facts)
     return Recommended(requirements, found)

@@ -1,0 +1,100 @@
+"""Errors at a confidence: over sensor units and calibration benches that are drawn alike.
+
+A requirement on the error is met by a pipeline where a share of its draws meets it. A draw is a
+unit with its own error and a bench with its own fixed error; their squares add. Units are those
+measured, or, of a pipeline that was measured on too few, spread as those of its data set are.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from statistics import NormalDist
+
+import numpy as np
+from numpy.typing import NDArray
+
+Numbers = NDArray[np.float64]
+
+#: Fixed error of the standard bench over its root mean square over benches: the middles of twenty
+#: equal shares of 3,000 drawn benches (a test draws them anew).
+BENCHES: tuple[float, ...] = (
+    *(0.347, 0.440, 0.519, 0.586, 0.631, 0.679, 0.722, 0.768, 0.816, 0.856),
+    *(0.903, 0.950, 1.003, 1.056, 1.117, 1.185, 1.258, 1.361, 1.489, 1.714),
+)
+#: Units that every pipeline is taken to have.
+UNITS = 10
+#: Measured units from which on their own spread counts.
+FEWEST_UNITS = 5
+
+_SHARES = [(at + 0.5) / UNITS for at in range(UNITS)]
+
+
+def unit_ratios(errors_deg: Sequence[float], spread: float) -> tuple[float, ...]:
+    """Return errors of ten units over their geometric mean, ascending.
+
+    Parameters
+    ----------
+    errors_deg
+        Of the units measured, the standard one first.
+    spread
+        Standard deviation of the log errors of units of the data set: of what was measured on
+        fewer than five units, the standard unit's error is taken as the middle of such a spread.
+    """
+    if len(errors_deg) < FEWEST_UNITS:
+        normal = NormalDist()
+        return tuple(math.exp(spread * normal.inv_cdf(share)) for share in _SHARES)
+    logs = sorted(math.log(max(error, 1e-12)) for error in errors_deg)
+    middle = math.fsum(logs) / len(logs)
+    return tuple(math.exp(logs[int(share * len(logs))] - middle) for share in _SHARES)
+
+
+def drawn_deg(own_deg: Numbers, ratios: Numbers, bench_deg: Numbers) -> Numbers:
+    """Return errors (R, units, benches) of R pipelines by draw.
+
+    Parameters
+    ----------
+    own_deg
+        Own errors (R,); infinite where there is none.
+    ratios
+        Of units (R, units) over these.
+    bench_deg
+        Root mean square (R,) of the fixed errors of the benches.
+    """
+    unit = own_deg[:, None] * ratios
+    bench = bench_deg[:, None] * np.array(BENCHES)
+    return np.asarray(np.sqrt(unit[:, :, None] ** 2 + bench[:, None, :] ** 2))
+
+
+def at_confidence(own_deg: Numbers, ratios: Numbers, bench_deg: Numbers, share: float) -> Numbers:
+    """Return the errors (R,) that a share of the draws keeps within; parameters as `drawn_deg`."""
+    found = np.array(own_deg, dtype=np.float64)
+    known = np.isfinite(found)
+    draws = drawn_deg(found[known], ratios[known], bench_deg[known]).reshape(int(known.sum()), -1)
+    place = min(math.ceil(share * draws.shape[1] - 1e-9), draws.shape[1]) - 1
+    found[known] = np.partition(draws, place, axis=1)[:, place] if len(draws) else []
+    return found
+
+
+def units_meeting(
+    own_deg: float, ratios: Sequence[float], bench_deg: float, limit_deg: float, share: float
+) -> int:
+    """Return how many of the units meet a limit on a share of the benches each."""
+    draws = drawn_deg(np.array([own_deg]), np.array([ratios]), np.array([bench_deg]))[0]
+    return int(((draws <= limit_deg).mean(axis=1) >= share - 1e-9).sum())
+
+
+def bench_for(own_deg: float, ratios: Sequence[float], limit_deg: float, share: float) -> float:
+    """Return the largest bench error with which a share of the draws meets a limit; 0 for none."""
+
+    def kept(bench_deg: float) -> bool:
+        error = at_confidence(np.array([own_deg]), np.array([ratios]), np.array([bench_deg]), share)
+        return bool(error[0] <= limit_deg)
+
+    low, high = 0.0, limit_deg
+    if not kept(low):
+        return 0.0
+    for _ in range(40):
+        middle = (low + high) / 2.0
+        low, high = (middle, high) if kept(middle) else (low, middle)
+    return low
