@@ -130,7 +130,8 @@ class Recommendation:
     ``count`` architectures meet them; ``architectures`` are the first of them, best first.
     ``contradictions`` say where measurement contradicts the survey's advice, ``regret`` by how
     much the first calibration named errs more than the best one measured. ``untried`` maps a
-    hazard asked for to the architectures that no data set tries it on. Paths, nodes and links
+    hazard asked for to the architectures that no data set tries it on; ``untimed`` counts the
+    pipelines that a limit on latency cannot judge, not being timed on this machine. Paths, nodes and links
     show the studies behind the answer; ``left_out`` lists the studies on no path for want of a
     value, whatever is required. ``blocked`` explains an empty answer.
     """
@@ -143,6 +144,7 @@ class Recommendation:
     contradictions: tuple[str, ...]
     regret: Mapping[str, object] | None
     untried: Mapping[str, tuple[tuple[str, str], ...]]
+    untimed: int
     paths: tuple[StudyPath, ...]
     nodes: tuple[Node, ...]
     links: tuple[Link, ...]
@@ -163,6 +165,7 @@ class Recommendation:
                 hazard: [{"detector": d, "mask": m} for d, m in pairs]
                 for hazard, pairs in self.untried.items()
             },
+            "untimed": self.untimed,
             "paths": [path.to_dict() for path in self.paths],
             "nodes": [node.to_dict() for node in self.nodes],
             "links": [link.to_dict() for link in self.links],
@@ -229,6 +232,7 @@ def recommendation(
         contradictions=found.contradictions,
         regret=None if lost is None else lost.to_dict(regret_words(lost)),
         untried=found.untried,
+        untimed=found.untimed,
         paths=paths.study_paths(unpacked(taken.paths)),
         nodes=tuple(paths.node(*of) for of in unpacked(taken.nodes)),
         links=tuple(paths.link(*of) for of in unpacked(taken.links)),
@@ -266,6 +270,13 @@ class Answered:
         """Architectures that no data set tries a hazard on, by the hazards asked for."""
         question = self.question
         return {hazard: question.columns.untried(hazard) for hazard in question.asked.survive}
+
+    @cached_property
+    def untimed(self) -> int:
+        """How many measured pipelines a limit on latency cannot judge; 0 where none is asked."""
+        if self.question.asked.max_latency_us is None:
+            return 0
+        return sum(row.latency_us is None for row in self.question.columns.rows)
 
     @cached_property
     def blocked(self) -> Blocked | None:

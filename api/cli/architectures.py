@@ -162,7 +162,7 @@ def _over(measured: Mapping[str, Any], unit: str) -> str:
     if measured["error_deg"] is None:
         return "answers too seldom"
     field = measured["field_deg"]
-    over = "all directions" if field is None else f"{field:g}{unit}"
+    over = "all directions" if field in (None, 360.0) else f"{field:g}{unit}"
     return f"{measured['error_deg']:.3g}{unit} over {over}"
 
 

@@ -164,7 +164,7 @@ class Pieces:
         return (
             *(b'],"contradictions":', encoded(found.contradictions)),
             *(b',"regret":', encoded(None if lost is None else lost.to_dict(regret_words(lost)))),
-            *(b',"untried":', encoded(untried)),
+            *(b',"untried":', encoded(untried), b',"untimed":%d' % found.untimed),
             *(b',"paths":[', self._sets("paths", taken.paths, self._path)),
             *(b'],"nodes":[', self._sets("nodes", taken.nodes, self._node)),
             *(b'],"links":[', self._sets("links", taken.links, self._link)),
@@ -201,6 +201,7 @@ class Pieces:
         # All that an architecture's piece depends on, beside the architecture as it is ranked.
         context = (
             *(calibrations, question.limits, bool(asked.properties)),
+            *(asked.draws, asked.largest_deg, asked.exclude_needs),
             *(asked.include.get(name) for name in OF_STUDIES),
         )
         get, keep = self._architectures.get, self._architectures.keep
@@ -287,7 +288,10 @@ class Pieces:
             return b'null,"other_datasets":[]'
         question = found.question
         asked, judged = question.asked, question.judgements
-        key = (judged.hazards, judged.half, kept.row_at, question.finest.get(place))
+        key = (
+            *(judged.hazards, judged.half, judged.draws, asked.largest_deg),
+            *(kept.row_at, question.finest.get(place)),
+        )
         piece = self._measured.get(key)
         if piece is None:
             partly = question.partly(place)

@@ -212,9 +212,9 @@ def _judged(rows: Sequence[Row], asked: Asked) -> float | None:
 
 def _over(row: Row, field: float | None) -> float:
     """Return the error over the narrowest cone that holds a field, else over the whole one."""
-    half = row["half_fov_deg"]
+    half = 180.0 if row["half_fov_deg"] is None else row["half_fov_deg"]
     if field is not None:
-        if half is None or 2.0 * half < field:
+        if 2.0 * half < field:
             return math.inf
         for edge in (int(e) for e in EDGES_DEG[1:]):
             if 2.0 * min(edge, half) >= field and (error := field_error(row, edge)) is not None:

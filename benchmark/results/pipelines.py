@@ -21,8 +21,8 @@ from registry.requirements import NEEDS
 _PLAIN = tuple(
     f.name for f in dataclasses.fields(Score) if f.name not in {"rms_deg", "available", "cones"}
 )
-#: A ring that only sensors have which answer beyond their own horizon, or up to it.
-_BEHIND, _EDGE = "rms_90_180_deg", "rms_70_90_deg"
+#: Half field of view of a sensor that is made for all directions.
+ALL_DIRECTIONS_DEG = 180.0
 
 Row = Mapping[str, Any]
 Place = tuple[str, str, str]
@@ -81,7 +81,7 @@ def pipelines(
                     for hazard, names in hazards(conditions[dataset]).items()
                     if all((name, 0) in scores for name in names)
                 },
-                half_fov_deg=_half_field(first),
+                half_fov_deg=half_field_deg(first),
                 latency_us=(latency_us or {}).get(place),
                 unit_own_deg=units,
                 unit_ratios=unit_ratios(units, spread.get(dataset, 0.0)),
@@ -121,25 +121,22 @@ def _needs(context: Iterable[str]) -> tuple[str, ...]:
     return tuple(name for name, columns in NEEDS.items() if not read.isdisjoint(columns))
 
 
-def _half_field(row: Row) -> float | None:
-    """Return half the field of view: of sensors for all directions, as far as they are tested."""
+def half_field_deg(row: Row) -> float:
+    """Return half the field of view of a row's sensor; of one without, that of all directions."""
     half: float | None = row["half_fov_deg"]
-    if half is None:
-        half = 180.0 if row[_BEHIND] is not None else 90.0 if row[_EDGE] is not None else None
-    return half
+    return ALL_DIRECTIONS_DEG if half is None else half
 
 
 def _score(row: Row, share: float) -> Score:
     """Return a score, errors times a share; without an error where the run was refused."""
-    half = _half_field(row)
+    half = half_field_deg(row)
     cones: list[tuple[float, float | None]] = []
-    if half is not None:
-        # The last ring may reach beyond the field; all its samples lie within.
-        for edge in EDGES_DEG[1:]:
-            error = field_error(row, edge)
-            cones.append((min(float(edge), half), None if error is None else share * error))
-            if edge >= half:
-                break
+    # The last ring may reach beyond the field; all its samples lie within.
+    for edge in EDGES_DEG[1:]:
+        error = field_error(row, edge)
+        cones.append((min(float(edge), half), None if error is None else share * error))
+        if edge >= half:
+            break
     plain: dict[str, Any] = {name: row[name] for name in _PLAIN}
     error = row["charged_deg"]
     own = None if error is None else share * error

@@ -80,8 +80,13 @@ def test_cones_reach_to_the_field_and_no_further():
     expected = math.sqrt((0.01 * near + 0.09 * (both - near)) / both)
     assert errors[1] == pytest.approx(expected)
     assert errors[2] is None
-    (point,) = pipelines([row(half_fov_deg=None)])
-    assert point.nominal.cones == ()
+
+
+def test_a_data_set_without_a_field_of_its_own_covers_the_sphere():
+    (found,) = pipelines([row(half_fov_deg=None)])
+    assert found.half_fov_deg == 180.0
+    assert found.nominal.cones[-1][0] == 180.0
+    assert recommend({"min_fov_deg": 360.0, "max_error_deg": 1.0}, Measurements([found])).count == 1
 
 
 def test_hazards_are_those_that_may_be_asked_for_and_their_conditions_exist():
