@@ -14,6 +14,8 @@ from statistics import NormalDist
 import numpy as np
 from numpy.typing import NDArray
 
+from registry.measured import UNITS
+
 Numbers = NDArray[np.float64]
 
 #: Fixed error of the standard bench over its root mean square over benches: the middles of twenty
@@ -22,8 +24,6 @@ BENCHES: tuple[float, ...] = (
     *(0.347, 0.440, 0.519, 0.586, 0.631, 0.679, 0.722, 0.768, 0.816, 0.856),
     *(0.903, 0.950, 1.003, 1.056, 1.117, 1.185, 1.258, 1.361, 1.489, 1.714),
 )
-#: Units that every pipeline is taken to have.
-UNITS = 10
 #: Measured units from which on their own spread counts.
 FEWEST_UNITS = 5
 
@@ -76,6 +76,14 @@ def at_confidence(own_deg: Numbers, ratios: Numbers, bench_deg: Numbers, share: 
     return found
 
 
+def one_at_confidence(
+    own_deg: float, ratios: Sequence[float], bench_deg: float, share: float
+) -> float:
+    """Return the error that a share of the draws of one pipeline keeps within."""
+    found = at_confidence(np.array([own_deg]), np.array([ratios]), np.array([bench_deg]), share)
+    return float(found[0])
+
+
 def units_meeting(
     own_deg: float, ratios: Sequence[float], bench_deg: float, limit_deg: float, share: float
 ) -> int:
@@ -88,8 +96,7 @@ def bench_for(own_deg: float, ratios: Sequence[float], limit_deg: float, share: 
     """Return the largest bench error with which a share of the draws meets a limit; 0 for none."""
 
     def kept(bench_deg: float) -> bool:
-        error = at_confidence(np.array([own_deg]), np.array([ratios]), np.array([bench_deg]), share)
-        return bool(error[0] <= limit_deg)
+        return one_at_confidence(own_deg, ratios, bench_deg, share) <= limit_deg
 
     low, high = 0.0, limit_deg
     if not kept(low):

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from registry.designs import Limits
 from registry.draws import at_confidence
 from registry.kept_answers import KeptAnswers
-from registry.measured import LEAST_ANSWERED, Draws, Judged, Measured, Partly, Score
+from registry.measured import LEAST_ANSWERED, UNITS, Draws, Judged, Measured, Partly, Score
 
 Flags = NDArray[np.bool_]
 Numbers = NDArray[np.float64]
@@ -94,7 +94,7 @@ class PipelineColumns:
     @cached_property
     def unit_ratios(self) -> Numbers:
         """Errors of ten units over their geometric mean, shape (pipelines, 10)."""
-        return np.array([row.unit_ratios for row in self.rows], float).reshape(len(self.rows), -1)
+        return np.array([row.unit_ratios for row in self.rows], float).reshape(-1, UNITS)
 
     @cached_property
     def bench_deg(self) -> Numbers:

@@ -8,10 +8,10 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Generic, TypeVar
 
-import numpy as np
-
-from registry.draws import UNITS, at_confidence, units_meeting
 from registry.requirements import Requirements
+
+UNITS = 10
+"""Units that every pipeline is taken to have (`registry.draws`)."""
 
 Draws = tuple[float | None, float]
 """A bench's fixed error in degrees, None for a data set's own, and a share of units and benches."""
@@ -186,14 +186,11 @@ class Measured:
                     worst = found
         if draws is None or math.isinf(worst.error_deg):
             return worst
-        bench, share = draws
-        error = at_confidence(
-            np.array([worst.error_deg]),
-            np.array([self.unit_ratios]),
-            np.array([self.bench_deg if bench is None else bench]),
-            share,
-        )
-        return Judged(float(error[0]), worst.condition, worst.field_deg)
+        from registry.draws import one_at_confidence  # noqa: PLC0415 - NumPy
+
+        bench = self.bench_deg if draws[0] is None else draws[0]
+        error = one_at_confidence(worst.error_deg, self.unit_ratios, bench, draws[1])
+        return Judged(error, worst.condition, worst.field_deg)
 
     def over(self, score: Score, half_field_deg: float | None = None) -> Judged:
         """Return the error under one condition over a field; infinite where there is none.
@@ -306,6 +303,8 @@ class Measured:
         limit, draws = requirements.largest_deg, requirements.draws
         if limit is None or draws is None or math.isinf(own_deg):
             return None
+        from registry.draws import units_meeting  # noqa: PLC0415 - NumPy
+
         bench = self.bench_deg if draws[0] is None else draws[0]
         return units_meeting(own_deg, self.unit_ratios, bench, limit, draws[1])
 

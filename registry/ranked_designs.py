@@ -166,7 +166,7 @@ class RankedDesigns:
         parts = {
             "measured": (error, advised, backing),
             "support": ((columns.not_stated[at], 1), backing, error, advised),
-            "advice": ((columns.not_stated[at], 1), error, advised, backing),
+            "advice": (error, advised, backing),
         }[self.sort]
         key = of.astype(np.int64)
         for values, bits in (*parts, (best.order[at], columns.design_bits)):

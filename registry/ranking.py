@@ -15,6 +15,12 @@ SORTS: tuple[Sort, ...] = ("advice", "support", "measured")
 """What an answer is ordered by first; the first of them is the usual one."""
 
 
+MOST_CREDIT = 2.0
+"""Times by which advice and studies together make up for a larger error, at most."""
+
+_HALF_STUDIES = 5.0
+
+
 def support(kept: Kept, place: KeptPlace) -> float:
     """Return how the literature backs a calibration on an architecture.
 
@@ -30,17 +36,22 @@ def support(kept: Kept, place: KeptPlace) -> float:
 
 
 def key_of(sort: Sort, advised: bool, backing: float, error: float) -> tuple[float, ...]:
-    """Return what an architecture or a calibration is ranked by, the best first.
+    """Return what an architecture is ranked by, the best first.
 
-    By advice: what the survey advises, then what most studies back, then what errs least; of the
-    calibrations of an architecture what errs least comes first. By support, or by what is
-    measured: that first. What is not measured errs without limit.
+    By advice: first what the survey advises or studies back and what is measured, then what has
+    that evidence alone, then the rest; in each by the error, which evidence divides by up to
+    `MOST_CREDIT`: half of that (as a power) for advice, half for n studies in parts of n / (n + 5).
+    So what stands first errs at most so many times as much as the best of those with evidence. By
+    support, or by what is measured: that first. What is not measured errs without limit.
     """
     if sort == "measured":
         return (error, not advised, -backing)
     if sort == "support":
         return (-backing, error, not advised)
-    return (not advised, -backing, error)
+    evident, measured = advised or backing > 0, math.isfinite(error)
+    tier = 0 if evident and measured else 1 if evident else 2
+    credit = 0.5 * advised + 0.5 * backing / (backing + _HALF_STUDIES)
+    return (tier, error / MOST_CREDIT**credit, not advised, -backing)
 
 
 def pareto(places: Sequence[KeptPlace]) -> frozenset[int]:

@@ -132,8 +132,8 @@ class Recommendation:
     much the first calibration named errs more than the best one measured. ``untried`` maps a
     hazard asked for to the architectures that no data set tries it on; ``untimed`` counts the
     pipelines that a limit on latency cannot judge, not being timed on this machine. Paths, nodes
-    and links show the studies behind the answer; ``left_out`` lists the studies on no path for want of a
-    value, whatever is required. ``blocked`` explains an empty answer.
+    and links show the studies behind the answer; ``left_out`` lists the studies on no path because
+    a value is unknown, whatever is required. ``blocked`` explains an empty answer.
     """
 
     requirements: Requirements

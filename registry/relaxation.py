@@ -9,10 +9,7 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from registry.designs import DesignTable
-from registry.draws import bench_for
 from registry.judging import OF_STUDIES, Question
 from registry.paths import positions
 from registry.requirements import EXCLUDE, LIMITS, LISTS, Requirements
@@ -344,6 +341,10 @@ def _bench_that_would_do(table: DesignTable, requirements: Requirements) -> floa
     limit, draws = requirements.largest_deg, requirements.draws
     if limit is None or draws is None:
         return None
+    import numpy as np  # noqa: PLC0415 - only who answers needs it
+
+    from registry.draws import bench_for  # noqa: PLC0415 - NumPy
+
     question = Question(table, replace(requirements, bench_deg=0.0))
     designs = question.meeting & ~question.columns.not_measured
     rows = question.columns.rows_of(designs) & _keeping(question.columns, question.asked)
