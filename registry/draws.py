@@ -70,7 +70,8 @@ def at_confidence(own_deg: Numbers, ratios: Numbers, bench_deg: Numbers, share: 
     """Return the errors (R,) that a share of the draws keeps within; parameters as `drawn_deg`."""
     found = np.array(own_deg, dtype=np.float64)
     known = np.isfinite(found)
-    draws = drawn_deg(found[known], ratios[known], bench_deg[known]).reshape(int(known.sum()), -1)
+    size = UNITS * len(BENCHES)
+    draws = drawn_deg(found[known], ratios[known], bench_deg[known]).reshape(-1, size)
     place = min(math.ceil(share * draws.shape[1] - 1e-9), draws.shape[1]) - 1
     found[known] = np.partition(draws, place, axis=1)[:, place] if len(draws) else []
     return found

@@ -172,7 +172,10 @@ def error_of(row: Measured, ask: Ask) -> float | None:
     latency = number(ask, "max_latency_us")
     if latency is not None and (row.latency_us is None or row.latency_us > latency):
         return None
-    largest = number(ask, "max_error_deg")
+    limits = [number(ask, "max_error_deg")]
+    if wanted(ask, "accuracy") == ["FSS"]:  # a class is a limit where every class asked for has one
+        limits.append(0.5)
+    largest = min((limit for limit in limits if limit is not None), default=None)
     return None if largest is not None and max(errors) > largest else max(errors)
 
 

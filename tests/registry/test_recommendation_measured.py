@@ -252,20 +252,20 @@ def test_the_best_calibration_is_shown_where_no_study_used_it(
     rows = [pipeline(), pipeline(model="lut", stages=("LUT",), rms_deg=0.02)]
     place = only(recommend({}, rows, facts=facts))
     assert [(c.model, c.studies) for c in place.calibrations] == [
-        ("SPM", ("S0", "S1")),
         ("LUT", ()),
+        ("SPM", ("S0", "S1")),
     ]
     assert place.best.model == "LUT"
     assert place.contradiction == (
         "2 studies stand for BCTM > SPM, measured 0.1 deg over 120 deg; BCTM > LUT, which no "
         "study stands for, reaches 0.02 deg over 120 deg, 5 times less"
     )
-    first = recommend({}, rows, facts=facts).regret
+    first = recommend({}, rows, sort="support", facts=facts).regret
     assert first is not None
     assert first["ratio"] == 5.0
     assert "5 times less" in str(first["sentence"])
-    turned = only(recommend({}, rows, sort="measured", facts=facts))
-    assert [c.model for c in turned.calibrations] == ["LUT", "SPM"]
+    turned = only(recommend({}, rows, sort="support", facts=facts))
+    assert [c.model for c in turned.calibrations] == ["SPM", "LUT"]
 
 
 def test_errors_that_hardly_differ_contradict_nothing(facts_of: Callable[[Rows], Facts]) -> None:
@@ -351,10 +351,12 @@ def test_a_measured_number_keeps_a_limit_that_it_equals(
 
 
 def test_a_score_says_its_bound_its_answers_and_its_spread_over_units() -> None:
-    row = pipeline(bound_deg=0.05, over_bound=2.0, latency_us=3.0, unit_rms_deg=(0.3, 0.05))
+    row = pipeline(bound_deg=0.05, over_bound=2.0, latency_us=3.0, unit_own_deg=(0.1, 0.3, 0.05))
     (place,) = recommend({}, [row], sort="measured", limit=1).architectures
     assert place.best.measured is not None
-    assert place.best.measured["units"] == {"count": 3, "least_deg": 0.05, "largest_deg": 0.3}
+    assert place.best.measured["units"] == {
+        "count": 3, "least_deg": 0.05, "largest_deg": 0.3, "meeting": None, "of": 10,
+    }  # fmt: skip
     assert place.best.measured["latency_us"] == 3.0
     nominal = place.best.measured["nominal"]
     assert isinstance(nominal, dict)
