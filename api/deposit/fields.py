@@ -165,6 +165,12 @@ _FIELDS: dict[str, tuple[Type, str]] = {
         "string",
         "fitted: where a law fitted to the curve ends; all: the error with all poses; none.",
     ),
+    "bench_aligned_deg": (
+        "number",
+        "What the best rotation leaves of bench_deg, root mean square over drawn benches, degrees.",
+    ),
+    "boresight_deg": ("number", "Control: error of always answering boresight, degrees."),
+    "oracle_deg": ("number", "Control: error of the truth with the bound's noise, degrees."),
     "bench_deg": (
         "number",
         "Fixed error of the standard bench's directions over the field, degrees.",
