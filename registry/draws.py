@@ -14,7 +14,7 @@ from statistics import NormalDist
 import numpy as np
 from numpy.typing import NDArray
 
-from registry.measured import UNITS
+from registry.requirements import UNITS
 
 Numbers = NDArray[np.float64]
 

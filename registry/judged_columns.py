@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from registry.designs import Limits
 from registry.draws import at_confidence
 from registry.kept_answers import KeptAnswers
-from registry.measured import LEAST_ANSWERED, UNITS, Draws, Judged, Measured, Partly, Score
+from registry.measured import LEAST_ANSWERED, Draws, Judged, Measured, Partly, Score
+from registry.requirements import UNITS
 
 Flags = NDArray[np.bool_]
 Numbers = NDArray[np.float64]

@@ -8,10 +8,7 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Generic, TypeVar
 
-from registry.requirements import Requirements
-
-UNITS = 10
-"""Units that every pipeline is taken to have (`registry.draws`)."""
+from registry.requirements import UNITS, Requirements
 
 Draws = tuple[float | None, float]
 """A bench's fixed error in degrees, None for a data set's own, and a share of units and benches."""

@@ -34,6 +34,9 @@ each data set's standard bench by default; and the share of units and benches th
 CONFIDENCE = 0.9
 """The share where none is asked for."""
 
+UNITS = 10
+"""Sensor units that a pipeline is judged on."""
+
 CLASSES_DEG: Mapping[str, float] = MappingProxyType({"FSS": 0.5, "VFSS": 1 / 60, "UFSS": 10 / 3600})
 """Largest errors of the survey's classes of accuracy; the coarsest has none."""
 

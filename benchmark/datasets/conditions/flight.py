@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from algorithms.context import CONTEXT
 from algorithms.contract import Floats
+from benchmark.datasets.conditions.flight_bounds import posterior_bound
 from benchmark.datasets.conditions.instruments import Instruments
 from benchmark.datasets.fields import Split
 from benchmark.datasets.preset import DRAWN, Preset, drawn_split
@@ -315,10 +316,6 @@ class FlightPreset(Preset):
         None where the bound of single samples holds. A method that reads time and rates carries a
         state (`benchmark.datasets.conditions.flight_bounds.posterior_bound`).
         """
-        from benchmark.datasets.conditions.flight_bounds import (  # noqa: PLC0415 - it needs this
-            posterior_bound,
-        )
-
         sequential = {"time_s", "rate_deg_s"} <= context
         return posterior_bound(self, condition, context, sequential=sequential, bound=bound)
 

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import cast
+from typing import Any, cast
 
 from algorithms.contract import Floats
-from benchmark.contract import Preset
-from benchmark.datasets.conditions.flight import FlightPreset, Leg
 from benchmark.datasets.conditions.instruments import Instruments
 from benchmark.metrics.bounds import Bound
 from benchmark.metrics.posterior_bound import (
@@ -27,7 +25,7 @@ HORIZON = frozenset({"nadir", "nadir_inertial", "sun_inertial"})
 
 
 def posterior_bound(
-    preset: Preset,
+    preset: Any,
     condition: str,
     context_columns: frozenset[str],
     *,
@@ -65,12 +63,12 @@ def posterior_bound(
         On an unknown condition, or a bound without Fisher matrices.
     """
     magnetometer, horizon = context_columns >= MAGNETOMETER, context_columns >= HORIZON
-    if not isinstance(preset, FlightPreset) or not (sequential or magnetometer or horizon):
+    flight = getattr(preset, "flight", None)
+    if flight is None or not (sequential or magnetometer or horizon):
         return None
-    single = preset.bound(condition, "test") if bound is None else bound
+    single: Bound = preset.bound(condition, "test") if bound is None else bound
     if single.fisher is None:
         raise ValueError("a posterior bound needs a bound with Fisher matrices (cramer_rao)")
-    flight = preset.flight
     leg = flight.leg("test")
     read = sun_information(single.fisher, irradiance_known=sequential)
     information = attitude_information(leg.sun_body, read)
@@ -85,11 +83,12 @@ def posterior_bound(
     return recursive_bound(leg.sun_body, information, Motion(leg.turn, leg.time_s, flight.gyro))
 
 
-def _true_field_nt(preset: FlightPreset, condition: str, leg: Leg) -> Floats:
+def _true_field_nt(preset: Any, condition: str, leg: Any) -> Floats:
     """(N, 3) inertial frame: the model's, and what it leaves out."""
     aboard = cast("Instruments | None", preset.condition(condition).bench)
+    known: Floats = leg.field_nt
     if aboard is None:
-        return leg.field_nt
+        return known
     distance = leg.orbit.distance_km
     missing = aboard.missing_field(distance, *preset.streams)
-    return leg.field_nt + missing.inertial(-leg.nadir, distance, leg.time_s)
+    return known + missing.inertial(-leg.nadir, distance, leg.time_s)

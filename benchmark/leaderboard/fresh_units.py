@@ -1,4 +1,4 @@
-"""`python -m benchmark.assessment.fresh_units`: leaders of boards on units nobody has seen.
+"""`python -m benchmark.leaderboard.fresh_units`: leaders of boards on units nobody has seen.
 
 The first group of every board, its leader and what is not told apart from it, is scored on five
 more units. Printed is for each board whether its leader is in the first group there, too, and how
