@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from registry.plan import Architecture
+from registry.taxonomy import Architecture
 
 INCLUDES: Mapping[tuple[str, str], tuple[str, ...]] = MappingProxyType(
     {("detector", "PD"): ("QPD",), ("mask", "Slit"): ("L-Slit",)}

@@ -19,9 +19,8 @@ from functools import cached_property
 from registry.advice import Advice
 from registry.kept_answers import KeptAnswers
 from registry.measured import Judged, Measured, Measurements
-from registry.plan import Architecture
 from registry.studies import Facts, Study
-from registry.taxonomy import NO_IMPLEMENTATION_STATED, Taxonomy
+from registry.taxonomy import NO_IMPLEMENTATION_STATED, Architecture, Taxonomy
 
 COMPENSATIONS = "Physics-Informed"
 """The category of models that compensate: beside them a study may state no other."""

@@ -13,9 +13,8 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from registry.catalogue import Catalogue
-from registry.plan import Architecture, Plan
 from registry.studies import Study
-from registry.taxonomy import NO_IMPLEMENTATION_STATED
+from registry.taxonomy import NO_IMPLEMENTATION_STATED, Architecture, Plan
 
 if TYPE_CHECKING:
     from algorithms.chain import Scored

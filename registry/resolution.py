@@ -1,6 +1,6 @@
 """From a study to what is scored of it: its pipelines, and a reason for everything that is not.
 
-What can be scored is the plan's to say (`registry.plan`): a pipeline is announced only where it
+What can be scored is the plan's to say (`registry.taxonomy`): a pipeline is announced only where it
 has a cell. What is decided here, because the mapping does not say it:
 
 - The mapping gives a study's values, not which belong together; every combination of them that
@@ -22,10 +22,9 @@ from registry import catalogue as implementations
 from registry import studies as registered
 from registry.catalogue import Catalogue
 from registry.fitting import Chosen, Fitted, Fitting, stages
-from registry.plan import Plan
 from registry.sensors import BASES, SENSOR, Basis, Part, Sensor, cell, sensors
 from registry.studies import METHODS, Facts, Study
-from registry.taxonomy import NO_IMPLEMENTATION_STATED
+from registry.taxonomy import NO_IMPLEMENTATION_STATED, Plan
 
 State = Literal["complete", "partial", "none"]
 

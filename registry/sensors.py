@@ -11,9 +11,8 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Literal
 
-from registry.plan import Architecture
 from registry.studies import METHODS, Default, Facts, Study
-from registry.taxonomy import NO_IMPLEMENTATION_STATED
+from registry.taxonomy import NO_IMPLEMENTATION_STATED, Architecture
 
 Basis = Literal["stated", "inferred", "recalled", "defaulted"]
 

@@ -12,6 +12,16 @@ from types import MappingProxyType
 
 from survey_data.nearest import nearest
 
+Architecture = tuple[str, str]
+"""Detector and mask, as values of the taxonomy."""
+
+Pair = tuple[str, str]
+"""Extractor and model, or chain, by their names."""
+
+Plan = Mapping[Architecture, Mapping[Pair, Sequence[str]]]
+"""Of each architecture that is simulated, its pipelines, and the data sets each is scored on. The
+caller hands it in: `benchmark.plan` knows it."""
+
 ATTRIBUTES = ("task", "error", "accuracy", "detector", "mask", "model", "extractor")
 """The categorical attributes of the survey's mapping."""
 

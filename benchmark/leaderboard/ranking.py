@@ -147,7 +147,7 @@ def judged(rows: Sequence[Row], spread: Sequence[Spread]) -> Judged:
     spread
         Errors of each row's pipeline.
     """
-    known = [at for at, row in enumerate(rows) if row["charged_deg"] is not None]
+    known = [at for at, row in enumerate(rows) if row["rms_deg"] is not None]
     ranked = [at for at in known if is_available(rows[at])] or known
     tested = [at for at in ranked if len(spread[at].known_deg) >= paired.FEWEST_UNITS]
     groups: dict[int, int] = {}
@@ -165,9 +165,9 @@ def judged(rows: Sequence[Row], spread: Sequence[Spread]) -> Judged:
 
     def key(at: int) -> tuple[Any, ...]:
         row, own = rows[at], spread[at].own_deg
+        nothing = own is None or row["rms_deg"] is None
         identity = row["extractor"], row["model"]
-        listed = at in ranked
-        return (own is None, not listed, groups.get(at, behind), own or 0.0, identity)
+        return (nothing, at not in ranked, groups.get(at, behind), own or 0.0, identity)
 
     ordered = sorted(range(len(rows)), key=key)
     places: dict[int, Place] = {}
@@ -175,7 +175,7 @@ def judged(rows: Sequence[Row], spread: Sequence[Spread]) -> Judged:
     for number, at in enumerate(ordered, start=1):
         group = groups.get(at)
         rank = number if group is None else first_of.setdefault(group, number)
-        places[at] = Place(None if rows[at]["charged_deg"] is None else rank, group, tied=False)
+        places[at] = Place(None if rows[at]["rms_deg"] is None else rank, group, tied=False)
     shared = {group for group in groups.values() if list(groups.values()).count(group) > 1}
     return Judged(
         tuple(ordered),

@@ -10,7 +10,7 @@ from algorithms.chain import Scored
 from algorithms.contract import Extractor, FeatureKind, UnsuitableDesignError
 from benchmark.contract import Cell, Preset, UnknownNameError
 from benchmark.plan.parts import Parts, installed
-from registry.plan import Plan
+from registry.taxonomy import Plan
 
 Names = str | Iterable[str] | None
 

@@ -72,6 +72,8 @@ GROUPS: Mapping[str, Group] = {
     "metrics": Group(
         50,
         {
+            "benchmark/metrics/paired.py": _in(_METRICS, "paired"),
+            "benchmark/metrics/posterior_bound.py": _in(_METRICS, "posterior_bound"),
             "benchmark/metrics/score.py": (
                 *_in(_METRICS, "score"),
                 *_in(_DATASETS, "repeatability"),
@@ -114,7 +116,6 @@ GROUPS: Mapping[str, Group] = {
             "registry/resolution.py": _in("registry", "resolution", "resolution_sensors"),
             "registry/fitting.py": _in("registry", "resolution"),
             "registry/sensors.py": _in("registry", "resolution_sensors"),
-            "registry/plan.py": _in("registry", "resolution_sensors"),
             "registry/catalogue.py": _in("registry", "catalogue", "resolution"),
             "registry/*": _in(
                 "registry",

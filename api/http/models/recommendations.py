@@ -332,6 +332,9 @@ class Recommendations(Shape):
         description="Where an architecture that the survey does not advise does better."
     )
     regret: Regret | None
+    untimed: int = Field(
+        description="Measured pipelines that a limit on latency cannot judge: not timed here."
+    )
     untried: dict[str, list[Pair]] = Field(
         description="Architectures that no data set tries under what they shall survive."
     )

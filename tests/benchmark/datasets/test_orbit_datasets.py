@@ -51,7 +51,7 @@ def test_context_has_the_columns_the_card_names(made, name: str) -> None:
             assert np.isfinite(values).all()
         for column in ("nadir", "sun_inertial", "nadir_inertial"):
             assert np.linalg.norm(samples.context[column], axis=1) == pytest.approx(1, abs=1e-14)
-    assert "may go below it" in card["bound"]["note"]
+    assert "posterior" in card["bound"]["note"]
 
 
 @pytest.mark.parametrize("name", NAMES)

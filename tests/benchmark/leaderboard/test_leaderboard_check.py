@@ -129,7 +129,12 @@ def test_a_number_of_another_unit_is_named_with_its_unit(published):
 def test_an_altered_number_of_the_page_is_found_without_measuring(published):
     store = Store(published)
     scores = store.scores()
-    scores[CELL] = {**scores[CELL], "rms_deg": 0.123, "over_bound": None, "over_bound_unit": None}
+    scores[CELL] = {
+        **scores[CELL],
+        "charged_deg": 0.123,
+        "over_bound": None,
+        "over_bound_unit": None,
+    }
     store.write(scores, store.pins().values(), store.swept(), store.components())
     [difference] = check(published, stored_only=True)
     assert difference.file == PAGE
@@ -152,11 +157,11 @@ def test_a_row_taken_out_is_named(published):
 
 def test_a_row_too_much_is_named(published):
     """Of a unit beyond those that are measured."""
-    extra = dataclasses.replace(CELL, condition="quiet", unit=9)
+    extra = dataclasses.replace(CELL, condition="quiet", unit=99)
     path = published / SCORES
     lines = path.read_text().splitlines(keepends=True)
     copy = next(line for line in lines if line.startswith("quiet,fake-currents,"))
-    path.write_text("".join([*lines, copy.replace(",0,ok", ",9,ok")]))
+    path.write_text("".join([*lines, copy.replace(",0,ok", ",99,ok")]))
     write_page(Store(published))
     [difference] = check(published, stored_only=True)
     assert difference == Difference("scores", f"{extra}/row", "present", "not planned")

@@ -19,6 +19,7 @@ CMOS = "cmos-single-aperture"
 
 def row(condition="nominal", unit=0, **changed):
     numbers = dict.fromkeys(METRICS, 0.25) | {"rms_deg": 0.5, "availability": 1.0}
+    numbers["charged_deg"] = changed.get("rms_deg", 0.5)
     return {
         "dataset": CMOS,
         "detector": "CMOS",
@@ -40,12 +41,15 @@ def test_rows_of_a_pipeline_become_one():
     rows += [row(name, rms_deg=2.0) for name in names[1:]]
     (found,) = pipelines(rows, {(CMOS, "bctm", "spm"): 7.0})
     assert found.nominal.condition == names[0]
-    assert found.unit_rms_deg == (0.4, 0.3)
+    assert found.unit_own_deg == (0.5, 0.4, 0.3)
+    middle = (0.5 * 0.4 * 0.3) ** (1 / 3)
+    assert found.nominal.rms_deg == pytest.approx(middle)
     assert found.latency_us == 7.0
     assert found.stages == ("SPM",)
     tried = hazards(names)
     assert {h: tuple(s.condition for s in scores) for h, scores in found.hazards.items()} == tried
-    assert {s.rms_deg for scores in found.hazards.values() for s in scores} == {2.0}
+    errors = [s.rms_deg for scores in found.hazards.values() for s in scores]
+    assert errors == pytest.approx([2.0 * middle / 0.5] * len(errors)), "scaled as the units are"
 
 
 def test_a_hazard_is_tried_by_all_of_its_conditions_or_not():
@@ -103,7 +107,9 @@ def published():
     return Measurements(pipelines(Store().rows(unit=None)))
 
 
-def test_all_that_the_survey_advises_for_a_task_is_among_the_first_ten_and_marked(published):
+def test_all_that_the_survey_advises_for_a_task_is_marked_and_nothing_far_better_stands_behind(
+    published,
+):
     known = facts()
     for task in known.taxonomy.values("task"):
         advice = [a for a in known.advice if (a.requirement, a.value) == ("task", task)]
@@ -112,8 +118,11 @@ def test_all_that_the_survey_advises_for_a_task_is_among_the_first_ten_and_marke
         advised = {p for p in pairs if any(a.means(p) for a in advice)}
         assert len(set(pairs)) == len(pairs)
         assert advised, task
-        first = recommend({"task": task}, published, limit=10).architectures
+        first = recommend({"task": task}, published).architectures
         assert {(a.detector, a.mask) for a in first if a.advice} == advised, task
+        evident = [a for a in first if (a.advice or a.studies) and a.best.measured]
+        errors = [a.best.measured["error_deg"] for a in evident]
+        assert errors[0] <= 2.0 * min(errors)
 
 
 def test_albedo_changes_the_order_of_coarse_sensors(published):

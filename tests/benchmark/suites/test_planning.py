@@ -144,5 +144,5 @@ def test_a_suite_follows_from_the_scores_that_any_store_holds(store: Store, tmp_
     assert {cell.condition for cell in alone} == {"quiet"}
     followed = cells_of(standard, [Store(tmp_path), store], parts=parts())
     assert set(alone) < set(followed)
-    assert {cell.condition for cell in followed} == {"quiet", "noisy"}
+    assert {cell.condition for cell in followed} == {"quiet", "noisy", "on-bench"}
     assert {cell.unit for cell in followed} == {0, 1, 2, 3, 4}

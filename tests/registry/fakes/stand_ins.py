@@ -13,8 +13,8 @@ from algorithms.contract import (
     Observation,
 )
 from registry.catalogue import Catalogue
-from registry.plan import Plan
 from registry.studies import Facts
+from registry.taxonomy import Plan
 
 
 def implementation(
