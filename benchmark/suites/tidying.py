@@ -98,6 +98,7 @@ def _files(store: Store) -> list[Path]:
     top = [store.pins_path, store.sweeps_path, store.components_path]
     top += [store.directory / times.TIMES, store.work_directory / durations.DURATIONS]
     found = [*top, store.work_directory / "journal.jsonl", *store.scores_directory.glob("*.csv")]
+    found += store.samples_directory.glob("*.parquet")
     return [path for path in found if path.is_file()]
 
 

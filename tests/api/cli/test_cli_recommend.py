@@ -179,7 +179,8 @@ def test_a_pipeline_that_answers_too_seldom_has_no_error_and_says_so():
     measured = {"error_deg": None, "field_deg": None, "condition": "hot", "dataset": "d",
                 "nominal": {"condition": "nominal", "rms_deg": 0.5, "bound_deg": 0.1,
                             "over_bound": 2345.6},
-                "availability": 0.25, "units": None}  # fmt: skip
+                "availability": 0.25, "units": None, "own_deg": None, "bench_deg": None,
+                "needs": []}  # fmt: skip
     calibration = {"rank": 1, "extractor": "A", "compensations": ["B"], "model": "C",
                    "advised": [], "studies": [], "measured": measured}  # fmt: skip
     architecture = {"rank": 1, "detector": "D", "mask": "M", "tasks": [], "advice": [],
