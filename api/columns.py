@@ -56,7 +56,9 @@ RECOMMENDATIONS = (
     *("measured_nominal_condition", "measured_nominal_rms_deg", "measured_nominal_bound_deg"),
     *("measured_nominal_over_bound", "measured_nominal_repeatability_deg"),
     *("measured_nominal_availability", "measured_nominal_false_sun"),
+    *("measured_own_deg", "measured_bench_deg", "measured_needs"),
     *("measured_units_count", "measured_units_least_deg", "measured_units_largest_deg"),
+    *("measured_units_meeting", "measured_units_of"),
     *("measured_finer_dataset", "measured_finer_extractor", "measured_finer_model"),
     *("measured_finer_error_deg", "measured_finer_availability"),
 )

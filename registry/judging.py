@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import bisect
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -218,6 +218,14 @@ class Question:
         return all(
             any(a.requirement == name and a.value in self.asked.include[name] for a in place.advice)
             for name in included
+        )
+
+    def told_by(self, kept: Kept, place: int) -> Hashable:
+        """Return all that the numbers told of a measured calibration depend on, as a key."""
+        asked, judged = self.asked, self.judgements
+        return (
+            *(judged.hazards, judged.half, judged.draws, asked.largest_deg),
+            *(kept.row_at, self.finest.get(place)),
         )
 
     def stated(self, limit: str) -> int:

@@ -90,7 +90,7 @@ def _said(fields: Fields) -> str:
     return " ".join(f"{field['name']}: {field['description']}" for field in fields)
 
 
-#: By kind of file: where it lies (DATASET stands for a name), its title, its schema.
+#: By kind of file: its path, with DATASET in place of a name, its title and its schema.
 KINDS: Mapping[str, tuple[str, str, Mapping[str, Any]]] = {
     "errors": (
         f"{FOLDER}/{path_of('DATASET')}",

@@ -14,7 +14,7 @@ from benchmark.datasets.pins import Pin
 from benchmark.leaderboard.board import build
 from benchmark.leaderboard.scope import Studied, studies_of_pipelines
 from benchmark.results import recorded, samples
-from benchmark.results.pipelines import pipelines
+from benchmark.results.pipelines import pipelines, standard_benches
 from benchmark.results.store import PUBLISHED, Store
 from registry.measured import Measured
 from survey_data import manifest
@@ -92,12 +92,7 @@ class Measurements:
     def pipelines(self) -> list[Measured]:
         """What is measured of every pipeline on every data set, for recommendations."""
         latency = {place: time.latency_us for place, time in self.times.items()}
-        bench = {
-            name: pin.bench_deg
-            for (name, condition, split), pin in self._store.pins().items()
-            if split == "test" and condition == self.presets[name].conditions[0]
-        }
-        return pipelines(self._every_unit, latency, bench)
+        return pipelines(self._every_unit, latency, standard_benches(self._store.pins()))
 
     @cached_property
     def leaderboard(self) -> Mapping[str, Any]:

@@ -286,12 +286,8 @@ class Pieces:
         """Return what is measured of a calibration, and its best on each other data set."""
         if kept.row is None:
             return b'null,"other_datasets":[]'
-        question = found.question
-        asked, judged = question.asked, question.judgements
-        key = (
-            *(judged.hazards, judged.half, judged.draws, asked.largest_deg),
-            *(kept.row_at, question.finest.get(place)),
-        )
+        question, asked = found.question, found.question.asked
+        key = question.told_by(kept, place)
         piece = self._measured.get(key)
         if piece is None:
             partly = question.partly(place)

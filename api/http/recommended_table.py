@@ -55,8 +55,7 @@ def _measured(kept: Kept, place: int, found: Answered) -> str:
         return _NOT_MEASURED
     question = found.question
     pieces = _PIECES.setdefault(question.table, KeptPieces())
-    judged = question.judgements
-    key = (judged.hazards, judged.half, kept.row_at, question.finest.get(place))
+    key = question.told_by(kept, place)
     piece = pieces.get(key)
     if piece is None:
         told: Mapping[str, Any] = kept.row.to_dict(question.asked, question.partly(place))

@@ -13,7 +13,7 @@ import math
 import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from statistics import median
+from statistics import geometric_mean, median
 from typing import Any
 
 import numpy as np
@@ -22,14 +22,15 @@ from benchmark import datasets
 from benchmark.datasets.hazards import hazards
 from benchmark.metrics.rings import EDGES_DEG, field_error
 from benchmark.metrics.score import AVAILABLE
-from benchmark.results.pipelines import pipelines
+from benchmark.results.pipelines import pipelines, standard_benches
 from benchmark.results.store import Store
 from registry.catalogue import catalogue
 from registry.fitting import stages
-from registry.measured import Measurements
+from registry.draws import BENCHES
+from registry.measured import Measured, Measurements
 from registry.ranking import Sort
 from registry.recommendation import Recommendation, recommend
-from registry.requirements import EXCLUDE, HAZARDS
+from registry.requirements import CLASSES_DEG, CONFIDENCE, EXCLUDE, HAZARDS, NEEDS
 from registry.studies import Facts, facts
 
 Row = Mapping[str, Any]
@@ -41,9 +42,11 @@ SEED = 20
 #: What may be asked: its share of the sets, and the most values of it.
 _DRAWN = (
     *(("task", 0.5, 2), ("error", 0.15, 2), ("model", 0.1, 3), ("exclude_task", 0.1, 2)),
-    *(("exclude_detector", 0.3, 3), ("exclude_mask", 0.3, 3)),
+    *(("accuracy", 0.15, 2), ("exclude_detector", 0.3, 3), ("exclude_mask", 0.3, 3)),
     *(("exclude_model", 0.3, 5), ("exclude_extractor", 0.3, 5)),
 )
+#: What is asked of studies.
+_OF_STUDIES = ("task", "error", "accuracy")
 #: Relative difference of two numbers that are the same one.
 _SAME = 1e-12
 
@@ -58,6 +61,9 @@ class Drawn:
         The requirements.
     best_deg
         Least error by brute force; infinite where no measured pipeline meets them.
+    best_there_deg, best_evident_deg
+        Least error likewise on the architecture that the usual answer names first, and on those of
+        its architectures that the survey advises or a study stands for.
     first_deg, told
         By order of the answer: what the first calibration named errs (infinite where it is not
         measured or answers too seldom), and the ratio of the two that the answer tells.
@@ -65,6 +71,8 @@ class Drawn:
 
     asked: Asked
     best_deg: float
+    best_there_deg: float
+    best_evident_deg: float
     first_deg: Mapping[Sort, float]
     told: Mapping[Sort, float | None]
 
@@ -105,6 +113,12 @@ def drawn_requirements(number: int, seed: int, known: Facts) -> Iterator[Asked]:
             asked["survive"] = _some(rng, HAZARDS, 2)
         if rng.random() < 0.2:
             asked["min_availability"] = float(rng.uniform(0.9, 1.0))
+        if rng.random() < 0.2:
+            asked["bench_deg"] = float(rng.choice([0.0, 0.003, 0.1]))
+        if rng.random() < 0.2:
+            asked["confidence"] = float(rng.uniform(0.5, 0.99))
+        if rng.random() < 0.2:
+            asked["exclude_needs"] = _some(rng, NEEDS, 2)
         yield asked
 
 
@@ -113,22 +127,29 @@ def _some(rng: np.random.Generator, values: Iterable[str], most: int) -> list[st
     return sorted(rng.choice(every, rng.integers(1, most + 1), replace=False).tolist())
 
 
-def pipelines_of(rows: Iterable[Row]) -> dict[Place, dict[str, Row]]:
-    """Return stored rows of one unit by condition, of every pipeline."""
-    table: dict[Place, dict[str, Row]] = {}
+def pipelines_of(rows: Iterable[Row]) -> dict[Place, dict[tuple[str, int], Row]]:
+    """Return stored rows by condition and unit, of every pipeline."""
+    table: dict[Place, dict[tuple[str, int], Row]] = {}
     for row in rows:
         place = (row["dataset"], row["extractor"], row["model"])
-        table.setdefault(place, {})[row["condition"]] = row
+        table.setdefault(place, {})[row["condition"], row["unit"]] = row
     return table
 
 
-def errors(table: Mapping[Place, Mapping[str, Row]], asked: Asked, known: Facts) -> Iterator[float]:
-    """Yield the error of every stored pipeline that meets requirements.
+def errors(
+    table: Mapping[Place, Mapping[tuple[str, int], Row]],
+    drawn: Mapping[Place, Measured],
+    asked: Asked,
+    known: Facts,
+) -> Iterator[tuple[tuple[str, str], float]]:
+    """Yield architecture and error of every stored pipeline that meets requirements.
 
     Parameters
     ----------
     table
-        Rows of the standard unit by condition, by pipeline.
+        Rows by condition and unit, by pipeline.
+    drawn
+        By pipeline, for how far units scatter and what the standard bench errs.
     asked
         Names and values of `registry.requirements.PARAMETERS`, without latency and properties.
     known
@@ -136,8 +157,10 @@ def errors(table: Mapping[Place, Mapping[str, Row]], asked: Asked, known: Facts)
     """
     models = {name: stages(model) for name, model in catalogue().models.items()}
     places: dict[tuple[str, str], bool] = {}
-    for (dataset, _, model), by_condition in table.items():
+    for place, by in table.items():
+        dataset, _, model = place
         conditions = datasets.get(dataset).conditions
+        by_condition = {condition: row for (condition, unit), row in by.items() if unit == 0}
         first = by_condition.get(conditions[0])
         if first is None or first["rms_deg"] is None:
             continue
@@ -158,23 +181,27 @@ def errors(table: Mapping[Place, Mapping[str, Row]], asked: Asked, known: Facts)
         names = [conditions[0], *(n for h in asked.get("survive", ()) for n in tried[h])]
         if any(name not in by_condition for name in names):
             continue
-        error = _judged([by_condition[name] for name in names], asked)
+        units = [row for (name, _), row in by.items() if name == conditions[0]]
+        about = drawn[place]
+        if not set(about.needs).isdisjoint(asked.get("exclude_needs", ())):
+            continue
+        error = _judged([by_condition[name] for name in names], units, about, asked)
         if error is not None:
-            yield error
+            yield pair, error
 
 
 def _has_what_is_asked(pair: tuple[str, str], asked: Asked, known: Facts) -> bool:
     """Say whether a study of an architecture, or advice, has the tasks and errors asked for."""
     there = [s for s in known.studies.values() if pair in s.architectures]
-    wanted = {name: set(asked[name]) for name in ("task", "error") if name in asked}
+    wanted = {name: set(asked[name]) for name in _OF_STUDIES if name in asked}
     out = set(asked.get(EXCLUDE + "task", ()))
     if not wanted and not (out and there):
         return True
     for study in there:
         tasks = set(study.of("task"))
         left = (tasks - out) & wanted.get("task", tasks)
-        if (left or (not tasks and "task" not in wanted)) and (
-            "error" not in wanted or wanted["error"] & set(study.of("error"))
+        if (left or (not tasks and "task" not in wanted)) and all(
+            values & set(study.of(name)) for name, values in wanted.items()
         ):
             return True
     return bool(wanted) and all(
@@ -193,10 +220,17 @@ def _refuses(asked: Asked, name: str, has: set[str], known: Facts) -> bool:
     )
 
 
-def _judged(rows: Sequence[Row], asked: Asked) -> float | None:
-    """Return the largest error over conditions, the first first; None if a limit is broken."""
+def _judged(
+    rows: Sequence[Row], units: Sequence[Row], about: Measured, asked: Asked
+) -> float | None:
+    """Return the largest error over conditions, the first first; None if a limit is broken.
+
+    Errors are those of the middle one of the units; a limit has to hold over units and benches.
+    """
     field = asked.get("min_fov_deg")
-    found = [_over(row, field) for row in rows]
+    known = [row["charged_deg"] for row in units if row["charged_deg"]]
+    share = geometric_mean(known) / rows[0]["charged_deg"] if known else 1.0
+    found = [share * _over(row, field) for row in rows]
     if (field is not None and math.isinf(found[0])) or (
         asked.get("survive") and math.isinf(max(found))
     ):
@@ -206,8 +240,19 @@ def _judged(rows: Sequence[Row], asked: Asked) -> float | None:
         (row["availability"] if row["rms_deg"] is not None else 0.0) < least for row in rows
     ):
         return None
-    largest = asked.get("max_error_deg")
-    return None if largest is not None and max(found) > largest else max(found)
+    largest = [asked["max_error_deg"]] if "max_error_deg" in asked else []
+    classes = [CLASSES_DEG.get(name, math.inf) for name in asked.get("accuracy", ())]
+    if classes and math.isfinite(max(classes)):
+        largest.append(max(classes))
+    error = max(found)
+    if (largest or "bench_deg" in asked) and math.isfinite(error):
+        bench = asked.get("bench_deg", about.bench_deg)
+        draws = sorted(
+            math.hypot(error * unit, bench * one) for unit in about.unit_ratios for one in BENCHES
+        )
+        kept = asked.get("confidence", CONFIDENCE) * len(draws)
+        error = draws[min(math.ceil(kept - 1e-9), len(draws)) - 1]
+    return None if largest and error > min(largest) else error
 
 
 def _over(row: Row, field: float | None) -> float:
@@ -218,13 +263,14 @@ def _over(row: Row, field: float | None) -> float:
             return math.inf
         for edge in (int(e) for e in EDGES_DEG[1:]):
             if 2.0 * min(edge, half) >= field and (error := field_error(row, edge)) is not None:
-                return error
+                outside = row["charged_deg"] ** 2 - row["rms_deg"] ** 2  # of false Suns
+                return math.sqrt(error**2 + max(outside, 0.0))
             if edge >= half:
                 break
     answered = row["availability"]
     if row["rms_deg"] is None or answered is None or answered < AVAILABLE:
         return math.inf
-    return float(row["rms_deg"])
+    return float(row["charged_deg"])
 
 
 def regrets(store: Store, number: int = NUMBER, seed: int = SEED) -> Iterator[Drawn]:
@@ -238,15 +284,24 @@ def regrets(store: Store, number: int = NUMBER, seed: int = SEED) -> Iterator[Dr
         Of requirement sets.
     """
     known = facts()
-    standard = pipelines_of(store.rows())
-    measured = Measurements(pipelines(store.rows(unit=None)))
+    table = pipelines_of(store.rows(unit=None))
+    benches = standard_benches(store.pins())
+    measured = Measurements(pipelines(store.rows(unit=None), bench_deg=benches))
+    drawn = {(row.dataset, row.extractor, row.model): row for row in measured.rows}
     for asked in drawn_requirements(number, seed, known):
-        best = min(errors(standard, asked, known), default=math.inf)
+        by: dict[tuple[str, str], float] = {}
+        for pair, error in errors(table, drawn, asked, known):
+            by[pair] = min(error, by.get(pair, math.inf))
         orders: tuple[Sort, ...] = ("measured", "advice")
         answers = {sort: recommend(asked, measured, sort=sort, facts=known) for sort in orders}
+        named = answers["advice"].architectures
+        first = (named[0].detector, named[0].mask) if named else None
+        evident = [(a.detector, a.mask) for a in named if a.advice or a.studies]
         yield Drawn(
             asked,
-            best,
+            min(by.values(), default=math.inf),
+            by.get(first, math.inf) if first else math.inf,
+            min((by.get(pair, math.inf) for pair in evident), default=math.inf),
             {sort: _first(answer) for sort, answer in answers.items()},
             {sort: answer.regret and answer.regret["ratio"] for sort, answer in answers.items()},  # type: ignore[misc]
         )
@@ -267,7 +322,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     number, seed = (*map(int, given), *(NUMBER, SEED)[len(given) :])
     found = list(regrets(Store(), number, seed))
     met = [one for one in found if math.isfinite(one.best_deg)]
-    first = sum(one.first_deg["measured"] == one.best_deg for one in met)
+    first = sum(math.isclose(one.first_deg["measured"], one.best_deg, rel_tol=_SAME) for one in met)
     known = [one.told["advice"] for one in met if one.told["advice"] is not None]
     broken = [one for one in found if not one.kept]
     told = _spread([ratio for ratio in known if ratio > 1.0])
@@ -279,6 +334,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         f"{number} requirement sets (seed {seed}): {len(met)} are met by a measured pipeline",
         f"sort=measured: the first calibration named is the best one in {first} of {len(met)}",
         usual,
+        f"sort=advice: it errs at most 1.2 times the best one of its architecture in "
+        f"{_within(met, 'best_there_deg', 1.2)} of {len(met)}, and at most twice the best one of "
+        f"an architecture with advice or studies in {_within(met, 'best_evident_deg', 2.0)}",
         f"the answer tells another regret than brute force finds in {len(broken)} of {number}",
         *(
             f"  {dict(one.asked)}: {one.first_deg}, best {one.best_deg}, told {one.told}"
@@ -287,6 +345,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     ]
     sys.stdout.write("\n".join(lines) + "\n")
     return 1 if broken else 0
+
+
+def _within(found: Sequence[Drawn], than: str, times: float) -> int:
+    """Return in how many answers the first calibration errs at most so many times as much."""
+    return sum(one.first_deg["advice"] <= times * getattr(one, than) for one in found)
 
 
 def _spread(ratios: Sequence[float]) -> str:

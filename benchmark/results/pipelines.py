@@ -10,6 +10,7 @@ from typing import Any
 
 from benchmark import datasets
 from benchmark.datasets.hazards import hazards
+from benchmark.datasets.pins import Pin
 from benchmark.metrics.rings import EDGES_DEG, field_error
 from benchmark.metrics.score import is_available
 from registry.catalogue import catalogue
@@ -65,7 +66,8 @@ def pipelines(
         if first is None:
             continue
         units = _unit_errors(scores, first["condition"])
-        share = _middle(units) / first["charged_deg"] if units and first["charged_deg"] else 1.0
+        standard = first["charged_deg"]
+        share = _middle(units) / standard if len(units) > 1 and standard else 1.0
         found.append(
             Measured(
                 dataset=dataset,
@@ -90,6 +92,16 @@ def pipelines(
             )
         )
     return found
+
+
+def standard_benches(pins: Mapping[tuple[str, str, str], Pin]) -> dict[str, float | None]:
+    """Return the fixed error of the standard calibration bench by data set, from pinned splits."""
+    first = {name: datasets.get(name).conditions[0] for name in datasets.names()}
+    return {
+        name: pin.bench_deg
+        for (name, condition, split), pin in pins.items()
+        if split == "test" and condition == first.get(name)
+    }
 
 
 def _unit_errors(scores: Mapping[tuple[str, int], Row], condition: str) -> tuple[float, ...]:
@@ -128,16 +140,22 @@ def half_field_deg(row: Row) -> float:
 
 
 def _score(row: Row, share: float) -> Score:
-    """Return a score, errors times a share; without an error where the run was refused."""
+    """Return a score, errors times a share; without an error where the run was refused.
+
+    What false Suns add to the mean square over the whole field, they add to that over any cone: the
+    sensor answers them whatever part of its field is used.
+    """
     half = half_field_deg(row)
+    error = row["charged_deg"]
+    false_suns = 0.0 if error is None else max(error**2 - row["rms_deg"] ** 2, 0.0)
     cones: list[tuple[float, float | None]] = []
     # The last ring may reach beyond the field; all its samples lie within.
     for edge in EDGES_DEG[1:]:
-        error = field_error(row, edge)
-        cones.append((min(float(edge), half), None if error is None else share * error))
+        inside = field_error(row, edge)
+        charged = None if inside is None else share * math.sqrt(inside**2 + false_suns)
+        cones.append((min(float(edge), half), charged))
         if edge >= half:
             break
     plain: dict[str, Any] = {name: row[name] for name in _PLAIN}
-    error = row["charged_deg"]
     own = None if error is None else share * error
     return Score(**plain, rms_deg=own, available=is_available(row), cones=tuple(cones))

@@ -15,6 +15,7 @@ import pandas as pd
 import pytest
 import yaml
 from frictionless import Package
+from pyarrow import parquet
 
 import survey_data
 from api.deposit import bundle as deposit
@@ -23,7 +24,7 @@ from api.deposit.verification import verify
 from benchmark.claims.rules import claims
 from benchmark.datasets.checksums import CHECKSUMS, write_checksums
 from benchmark.results.store import PUBLISHED, Store
-from survey_data import whole_files
+from survey_data import manifest, whole_files
 from tests.api.deposit.conftest import FRAMES
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -154,6 +155,10 @@ def test_every_column_is_described(built):
         assert resource["bytes"] == len(content)
         if resource["path"].endswith(".npz"):
             continue
+        if resource["path"].endswith(".parquet"):  # Table Schema readers here know CSV alone
+            for column in parquet.read_schema(built.directory / resource["path"]).names:
+                assert f" {column}: " in resource["description"]
+            continue
         fields = resource["schema"]["fields"]
         with (built.directory / resource["path"]).open(encoding="utf-8", newline="") as file:
             header = next(csv.reader(file))
@@ -169,6 +174,9 @@ def test_the_terms_go_with_the_files(built):
         yaml.safe_load((place / "CITATION.cff").read_text("utf-8"))
         for place in (built.directory, ROOT)
     )
+    (named,) = told.pop("identifiers")
+    content = (PUBLISHED / manifest.FILE).read_bytes()
+    assert named["value"] == f"sha256:{hashlib.sha256(content).hexdigest()}"
     assert told == {**ours, "type": "dataset"}
     assert "CC BY 4.0" in (built.directory / "survey" / "LICENSE").read_text("utf-8")
 

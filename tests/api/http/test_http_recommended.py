@@ -33,6 +33,13 @@ def asked(number: int, drawn: Mapping[str, Any], known: Knowledge) -> dict[str, 
         question["properties"] = [properties[number % len(properties)]]
     if number % 13 == 0:
         question["max_latency_us"] = float(number + 1)
+    if number % 5 == 0:
+        question["bench_deg"] = (0.0, 0.003, 0.2)[number % 3]
+    if number % 6 == 0:
+        question |= {
+            "confidence": (0.5, 0.95)[number % 4 // 2],
+            "exclude_needs": ["rates", "nadir"],
+        }
     if number % 17 == 0:
         question["max_error_deg"] = 1e-6
     return question

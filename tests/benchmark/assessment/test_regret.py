@@ -8,7 +8,7 @@ import pytest
 
 from benchmark.assessment import regret
 from benchmark.results.store import Store
-from registry.requirements import PARAMETERS, Requirements
+from registry.requirements import PARAMETERS, SETTINGS, Requirements
 from registry.studies import facts
 
 
@@ -18,8 +18,9 @@ def test_drawn_requirements_ask_for_everything_that_is_measured_or_of_studies():
     for asked in drawn:
         Requirements.parse(asked, known.taxonomy)
     names = {name for asked in drawn for name in asked}
-    assert names < set(PARAMETERS)
+    assert names < {*PARAMETERS, *SETTINGS}
     assert {"task", "exclude_detector", "max_error_deg", "min_fov_deg", "survive"} <= names
+    assert {"accuracy", "bench_deg", "confidence", "exclude_needs"} <= names
     assert list(regret.drawn_requirements(200, 1, known)) == drawn
     assert list(regret.drawn_requirements(200, 2, known)) != drawn
 
@@ -50,5 +51,5 @@ def test_the_best_is_named_first_and_regret_told_for_a_few_sets():
 )
 def test_an_answer_that_hides_its_regret_is_found(measured, advice, told, kept):
     first = {"measured": measured, "advice": advice}
-    one = regret.Drawn({}, 0.1, first, {"measured": 1.0, "advice": told})
+    one = regret.Drawn({}, 0.1, 0.1, 0.1, first, {"measured": 1.0, "advice": told})
     assert one.kept == kept

@@ -11,6 +11,7 @@ import fake_plan
 import pytest
 
 from benchmark.contract import Cell
+from benchmark.leaderboard.scope import UNITS
 from benchmark.plan.combinations import cells
 from benchmark.plan.parts import Parts
 from benchmark.progress import silent
@@ -145,4 +146,4 @@ def test_a_suite_follows_from_the_scores_that_any_store_holds(store: Store, tmp_
     followed = cells_of(standard, [Store(tmp_path), store], parts=parts())
     assert set(alone) < set(followed)
     assert {cell.condition for cell in followed} == {"quiet", "noisy", "on-bench"}
-    assert {cell.unit for cell in followed} == {0, 1, 2, 3, 4}
+    assert {cell.unit for cell in followed} == set(range(UNITS))
