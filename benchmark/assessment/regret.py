@@ -25,8 +25,8 @@ from benchmark.metrics.score import AVAILABLE
 from benchmark.results.pipelines import pipelines, standard_benches
 from benchmark.results.store import Store
 from registry.catalogue import catalogue
-from registry.fitting import stages
 from registry.draws import BENCHES
+from registry.fitting import stages
 from registry.measured import Measured, Measurements
 from registry.ranking import Sort
 from registry.recommendation import Recommendation, recommend
@@ -334,9 +334,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         f"{number} requirement sets (seed {seed}): {len(met)} are met by a measured pipeline",
         f"sort=measured: the first calibration named is the best one in {first} of {len(met)}",
         usual,
-        f"sort=advice: it errs at most 1.2 times the best one of its architecture in "
-        f"{_within(met, 'best_there_deg', 1.2)} of {len(met)}, and at most twice the best one of "
-        f"an architecture with advice or studies in {_within(met, 'best_evident_deg', 2.0)}",
+        (
+            f"sort=advice: it errs at most 1.2 times the best one of its architecture in "
+            f"{_within(met, 'best_there_deg', 1.2)} of {len(met)}, and at most twice the best one of "
+            f"an architecture with advice or studies in {_within(met, 'best_evident_deg', 2.0)}"
+        ),
         f"the answer tells another regret than brute force finds in {len(broken)} of {number}",
         *(
             f"  {dict(one.asked)}: {one.first_deg}, best {one.best_deg}, told {one.told}"
