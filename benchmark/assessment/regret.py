@@ -336,8 +336,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         usual,
         (
             f"sort=advice: it errs at most 1.2 times the best one of its architecture in "
-            f"{_within(met, 'best_there_deg', 1.2)} of {len(met)}, and at most twice the best one of "
-            f"an architecture with advice or studies in {_within(met, 'best_evident_deg', 2.0)}"
+            f"{_within(met, 'best_there_deg', 1.2)} of {len(met)}, and at most twice the best one "
+            f"of those with advice or studies in {_within(met, 'best_evident_deg', 2.0)}"
         ),
         f"the answer tells another regret than brute force finds in {len(broken)} of {number}",
         *(

@@ -63,9 +63,7 @@ def first_groups(scores: Mapping[Cell, Row], parts: Parts) -> dict[str, list[Cel
     for dataset, group in groupby(ranked, key=lambda cell: cell.dataset):
         board = list(group)
         logs = _logs(board, scores, range(scope.UNITS))
-        enough = np.isfinite(logs).sum(axis=1) == np.isfinite(logs).sum(axis=1).max()
-        means = np.where(enough, np.nanmean(logs, axis=1), np.inf)
-        leader = int(np.argmin(means))
+        leader = paired.best(logs)
         groups = paired.groups(logs, leader)
         first = [cell for cell, one in zip(board, groups, strict=True) if one == 1]
         found[dataset] = [board[leader], *(cell for cell in first if cell != board[leader])]
@@ -85,7 +83,7 @@ def held(store: Store, workers: int = 1, *, parts: Parts | None = None) -> list[
     found = []
     for dataset, cells in groups.items():
         logs = _logs(cells, measured, FRESH)
-        best = int(np.argmin(np.nanmean(logs, axis=1)))
+        best = paired.best(logs)
         holds = not paired.separated(logs, best)[0]
         over = float(paired.over(logs, best)[0])
         pipelines = sum(cell.dataset == dataset for cell in scope.first(known))

@@ -154,11 +154,11 @@ def judged(rows: Sequence[Row], spread: Sequence[Spread]) -> Judged:
     smallest = quoted = None
     if tested:
         logs = paired.logarithms([spread[at].errors_deg for at in tested])
-        leader = _leader(logs)
+        leader = paired.best(logs)
         found = paired.groups(logs, leader)
         groups = {at: group for at, group in zip(tested, found, strict=True) if group is not None}
         smallest = paired.smallest_ratio(logs, leader)
-        chosen = _leader(logs[:, ::2])
+        chosen = paired.best(logs[:, ::2])
         odd = logs[chosen, 1::2]
         quoted = math.exp(float(np.nanmean(odd))) if np.isfinite(odd).any() else None
     behind = 1 + max(groups.values(), default=0)
@@ -186,10 +186,3 @@ def judged(rows: Sequence[Row], spread: Sequence[Spread]) -> Judged:
         None if smallest is None else stored(smallest),
         None if quoted is None else stored(quoted),
     )
-
-
-def _leader(logs: np.ndarray) -> int:
-    """Position of the least mean of those with the most units; the first of equals."""
-    units = np.isfinite(logs).sum(axis=1)
-    full = np.flatnonzero(units == units.max())
-    return int(full[np.argmin(np.nanmean(logs[full], axis=1))])

@@ -62,6 +62,19 @@ def logarithms(errors_deg: Sequence[Sequence[float | None]]) -> Floats:
     return found
 
 
+def best(logs: Floats) -> int:
+    """Return the place of the method with the least mean log error, of those with the most units.
+
+    Parameters
+    ----------
+    logs
+        Log errors (M, U) of `logarithms`; the first of equals is taken.
+    """
+    known = np.isfinite(logs).sum(axis=1)
+    full = np.flatnonzero(known == known.max())
+    return int(full[np.argmin(np.nanmean(logs[full], axis=1))])
+
+
 def over(logs: Floats, leader: int) -> Floats:
     """Return the geometric mean (M,) of each method's errors over the leader's on common units.
 
@@ -92,8 +105,8 @@ def groups(logs: Floats, leader: int) -> list[int | None]:
     while len(left):
         group += 1
         some = logs[left]
-        best = int(np.flatnonzero(left == leader)[0]) if group == 1 else _best(some)
-        apart = separated(some, best)
+        first = int(np.flatnonzero(left == leader)[0]) if group == 1 else best(some)
+        apart = separated(some, first)
         for place in left[~apart]:
             found[place] = group
         left = left[apart]
@@ -161,13 +174,6 @@ def smallest_ratio(logs: Floats, leader: int) -> float | None:
 def _level(methods: int) -> float:
     """Level of one test while so many methods, the leader among them, are not separated."""
     return LEVEL / (methods * (methods - 1))
-
-
-def _best(logs: Floats) -> int:
-    """Place of the best of some methods, of those with the most units."""
-    known = np.isfinite(logs).sum(axis=1)
-    full = np.flatnonzero(known == known.max())
-    return int(full[np.argmin(np.nanmean(logs[full], axis=1))])
 
 
 def _compared(logs: Floats, leader: int) -> tuple[Floats, Floats, NDArray[np.int64]]:
