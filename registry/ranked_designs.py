@@ -138,7 +138,9 @@ class RankedDesigns:
         least = int(best.at_order[best.order[designs].min()])
         error = float(best.error[least])
         advice, tasks = question.advice[number]
-        key = key_of(self.sort, bool(advice), studies.bit_count(), error)
+        of_errors = "error" in question.asked.include
+        backing = studies.bit_count()
+        key = key_of(self.sort, bool(advice), backing, error, of_errors=of_errors)
         return RankedPlace(
             question.table.places[number],
             *(studies, stated, advice, tasks, best, least, error),

@@ -35,10 +35,13 @@ def support(kept: Kept, place: KeptPlace) -> float:
     return float(math.prod(bits.bit_count() for bits in counts) ** (1 / 3))
 
 
-def key_of(sort: Sort, advised: bool, backing: float, error: float) -> tuple[float, ...]:
+def key_of(
+    sort: Sort, advised: bool, backing: float, error: float, *, of_errors: bool = False
+) -> tuple[float, ...]:
     """Return what an architecture is ranked by, the best first.
 
-    By advice: first what the survey advises or studies back and what is measured, then what has
+    By advice: where kinds of errors are asked for (`of_errors`), what the survey advises for them;
+    then what the survey advises or studies back and what is measured, then what has
     that evidence alone, then the rest; in each by the error, which evidence divides by up to
     `MOST_CREDIT`: half of that (as a power) for advice, half for n studies in parts of n / (n + 5).
     So what stands first errs at most so many times as much as the best of those with evidence. By
@@ -51,7 +54,8 @@ def key_of(sort: Sort, advised: bool, backing: float, error: float) -> tuple[flo
     evident, measured = advised or backing > 0, math.isfinite(error)
     tier = 0 if evident and measured else 1 if evident else 2
     credit = 0.5 * advised + 0.5 * backing / (backing + _HALF_STUDIES)
-    return (tier, error / MOST_CREDIT**credit, not advised, -backing)
+    unadvised = of_errors and not advised
+    return (unadvised, tier, error / MOST_CREDIT**credit, not advised, -backing)
 
 
 def pareto(places: Sequence[KeptPlace]) -> frozenset[int]:

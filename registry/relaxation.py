@@ -203,7 +203,8 @@ def _broken_by_rows(question: Question, bit: Mapping[str, int]) -> list[tuple[in
     Of each pipeline the smallest sets. What is left is judged without what is given up.
     """
     asked, columns = question.asked, question.columns
-    alone = asked.without(*(n for n in asked.names if n not in _TOGETHER))
+    # A class of accuracy is a limit on what is measured, too.
+    alone = asked.without(*(n for n in asked.names if n not in (*_TOGETHER, "accuracy")))
     found: list[tuple[int, Flags]] = []
     for size in range(len(alone.names) + 1):
         for dropped in itertools.combinations(alone.names, size):

@@ -10,7 +10,7 @@ from api.cli.tables import prose, table
 from registry.contradiction import calibration_words
 
 ORDERS = {
-    "advice": "what the survey advises first",
+    "advice": "what the survey advises or studies used first, by error",
     "support": "what most studies proposed first",
     "measured": "what errs least first",
 }
@@ -46,6 +46,9 @@ def _head(document: Mapping[str, Any], width: int) -> Iterator[str]:
         yield from _paragraph("against", sentence, width)
     if document["regret"] is not None:
         yield from _paragraph("this order", document["regret"]["sentence"], width)
+    if document["untimed"]:
+        said = f"{_many(document['untimed'], 'pipeline')}, which a limit on latency leaves out"
+        yield from _paragraph("not timed", f"{said}: `sunatlas serve --times` times them", width)
     for hazard, pairs in document["untried"].items():
         if pairs:
             named = ", ".join(f"{pair['detector']} + {pair['mask']}" for pair in pairs)

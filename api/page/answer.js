@@ -79,7 +79,7 @@ export function commandLine(asked) {
 
 /** Where the kinds of evidence disagree, what the order costs, and what nobody has tried. */
 export function showFindings(answer) {
-  const { contradictions, regret, untried } = answer;
+  const { contradictions, regret, untimed, untried } = answer;
   const best = regret?.ratio === 1;
   byId("findings").replaceChildren(...[
     ...contradictions.map((text) => finding("Measurement against advice", sentence(text))),
@@ -88,6 +88,7 @@ export function showFindings(answer) {
         show({ sort: "measured" });
         byId("architectures").focus();
       } }, "Order by measurement")),
+    untimed > 0 && finding("Not timed", `${plural(untimed, "pipeline")} not timed on this machine; a limit on latency leaves them out.`),
     ...Object.entries(untried).filter(([, pairs]) => pairs.length).map(([hazard, pairs]) => notTried(hazard, pairs)),
   ].filter(Boolean));
 }

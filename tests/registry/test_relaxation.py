@@ -288,3 +288,15 @@ def test_what_nothing_tells_of_is_said_of_that_alone(
     assert hint not in blocked_of(recommend({"max_error_deg": 1.0}, rows, facts=plain)).detail
     assert hint in blocked_of(recommend({"max_error_deg": 1.0}, facts=plain)).detail
     assert hint not in blocked_of(recommend({"mask": "Lens"}, facts=plain)).detail
+
+
+def test_a_class_of_accuracy_is_named_where_what_is_measured_is_coarser(
+    facts_of: Callable[[Rows], Facts],
+) -> None:
+    """UFSS is 10 arcseconds, 0.0028 deg."""
+    facts = facts_of([{**STUDY, "accuracy": ["UFSS"]}])
+    blocked = blocked_of(recommend({"accuracy": "UFSS"}, [pipeline(rms_deg=0.01)], facts=facts))
+    assert blocked.constraint == "accuracy"
+    assert blocked.detail == "nothing meets accuracy UFSS; without it 1 architecture would"
+    finer = recommend({"accuracy": "UFSS"}, [pipeline(rms_deg=0.0027)], facts=facts)
+    assert finer.blocked is None

@@ -188,10 +188,12 @@ def test_a_pipeline_that_answers_too_seldom_has_no_error_and_says_so():
                     "count": 2, "calibrations": [calibration, {**calibration, "measured": None}],
                     }  # fmt: skip
     document = {"sort": "advice", "count": 1, "designs": 2, "architectures": [architecture],
-                "contradictions": [], "regret": None, "untried": {}}  # fmt: skip
+                "contradictions": [], "regret": None, "untimed": 3,
+                "untried": {}}  # fmt: skip
     shown = words(architectures.text(document, 80))
     assert "A > B > C: answers too seldom (d, hot); nominal 0.5 deg; 2346 times" in shown
     assert "answers 25 %" in shown
+    assert "not timed 3 pipelines, which a limit on latency leaves out" in shown
     assert "1 A > B > C no none answers too seldom, hot 1 A > B > C no none no" in shown
 
 

@@ -111,10 +111,14 @@ def test_what_disagrees_costs_or_is_not_tried_stands_above_the_table(wide: Visit
     page.locator(f'[aria-controls="architecture-{at}"]').click()
     sentence = found["architectures"][at - 1]["contradiction"]
     assert sentence[1:] in page.locator(f"#architecture-{at} .contradiction").inner_text()
+    page = wide.go("/?view=table&error=Manufacturing")  # what is advised for it errs more
+    costs = answer(wide, "error=Manufacturing")["regret"]
+    assert costs["ratio"] > 2
+    assert costs["sentence"][1:] in page.locator("#findings").inner_text()
     page.get_by_role("button", name="Order by measurement").click()
     wide.settle()
     assert wide.query()["sort"] == ["measured"]
-    best = answer(wide, "sort=measured&limit=1")
+    best = answer(wide, "error=Manufacturing&sort=measured&limit=1")
     assert best["regret"]["sentence"][1:] in page.locator("#findings").inner_text()
     first = best["architectures"][0]
     assert page.locator(".architecture strong").first.inner_text() == (
@@ -122,7 +126,7 @@ def test_what_disagrees_costs_or_is_not_tried_stands_above_the_table(wide: Visit
     )
     page.locator('[data-list="survive"][data-value="spin"]').evaluate("button => button.click()")
     wide.settle()
-    untried = answer(wide, "survive=spin")["untried"]["spin"]
+    untried = answer(wide, "error=Manufacturing&survive=spin")["untried"]["spin"]
     assert f"on {len(untried)} architectures" in page.locator("#findings").inner_text()
 
 

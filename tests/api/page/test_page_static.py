@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from registry.ranking import SORTS
-from registry.requirements import HAZARDS, LIMITS, LISTS
+from registry.requirements import HAZARDS, LIMITS, LISTS, NEEDS, SETTINGS
 from registry.studies import facts
 from tests.api.conftest import Client
 
@@ -104,10 +104,14 @@ def test_the_page_asks_for_all_that_the_service_takes_in_its_words() -> None:
         facts().properties
     )
     assert re.findall(r'\["(\w+)"', _constant("wording.js", "SORTS")) == list(SORTS)
-    assert set(re.findall(r'"(\w+)"', _constant("state.js", "LIMITS"))) == set(LIMITS)
-    assert re.findall(r'"(\w+)"', _constant("state.js", "LISTS")) == list(LISTS)
+    limits = {*LIMITS, *SETTINGS}
+    assert set(re.findall(r'"(\w+)"', _constant("state.js", "LIMITS"))) == limits
+    lists = [*LISTS, "exclude_needs"]
+    assert re.findall(r'"(\w+)"', _constant("state.js", "LISTS")) == lists
+    needs = re.findall(r'(?:^|\s)"?([\w-]+)"?: "', _constant("wording.js", "NEEDS"))
+    assert needs == list(NEEDS)
     named = re.findall(r"^  (\w+): \{", _constant("wording.js", "LIMIT_NAMES"), re.MULTILINE)
-    assert set(named) == set(LIMITS)
+    assert set(named) == limits
 
 
 def test_nothing_is_loaded_from_elsewhere() -> None:
