@@ -191,7 +191,8 @@ class SampleErrors:
         """Write what was collected over what the record has; return whether a file changed.
 
         Cells that were not measured now stay as they are on disk. Each file is written whole or
-        not at all, and only where its numbers change.
+        not at all, and only where its numbers change. Directions come with the standard unit: of a
+        data set of which other units alone were measured, they are not there yet.
 
         Parameters
         ----------
@@ -205,7 +206,7 @@ class SampleErrors:
         StoreError
             For a file that cannot be read; nothing has been written.
         ValueError
-            Where a data set's cells have other samples than its directions say, or it has none.
+            Where a data set's cells have other samples than its directions or each other.
         """
         contents: dict[str, str | bytes | None] = {}
         measured = {cell.dataset for cell in self.cells}
@@ -220,11 +221,11 @@ class SampleErrors:
             known = _directions_on_disk(directory, name)
             if name in self.directions:
                 known = _of_directions(self.directions[name])
-            if known is None:
-                raise ValueError(f"no directions of the samples of {name}")
-            _require_samples(wanted, len(known["sample"]))
+            first = next(iter(wanted.values()))
+            _require_samples(wanted, len(first.doubt) if known is None else len(known["sample"]))
             contents |= _changed(directory / errors, errors, _of_cells(wanted), COLUMNS)
-            contents |= _changed(directory / directions, directions, known, DIRECTION_COLUMNS)
+            if known is not None:
+                contents |= _changed(directory / directions, directions, known, DIRECTION_COLUMNS)
         return recorded.write(directory, contents) if contents else False
 
 
@@ -239,8 +240,8 @@ def datasets(directory: Path = PUBLISHED) -> tuple[str, ...]:
 
 
 def is_there(dataset: str, directory: Path = PUBLISHED) -> bool:
-    """Say whether a record has the errors of a data set."""
-    return (directory / path_of(dataset)).is_file()
+    """Say whether a record has the errors of a data set, and what they are errors of."""
+    return all((directory / path_of(dataset, directions=d)).is_file() for d in (False, True))
 
 
 def read(dataset: str, directory: Path = PUBLISHED) -> pd.DataFrame:

@@ -205,6 +205,18 @@ def test_cells_need_the_samples_that_directions_say(tmp_path: Path) -> None:
     wrong.add(Cell("lamp", "nominal", "c", "x"), [0.1], [True])
     with pytest.raises(ValueError, match="has 1 samples; expected 4"):
         wrong.write(tmp_path, everything)
-    wrong.directions.clear()
-    with pytest.raises(ValueError, match="no directions"):
+    wrong.directions.clear()  # nor may cells differ from each other
+    with pytest.raises(ValueError, match="has 1 samples; expected 4"):
         wrong.write(tmp_path, everything)
+
+
+def test_other_units_alone_are_kept_and_get_their_directions_later(tmp_path: Path) -> None:
+    recorded.write(tmp_path, {"pins.csv": "dataset\n"}, start=True)
+    other, standard = Cell("lamp", "nominal", "a", "x", 3), Cell("lamp", "nominal", "a", "x", 0)
+    first = collected(other)
+    first.directions.clear()
+    assert first.write(tmp_path, everything)
+    assert not samples.is_there("lamp", tmp_path)
+    assert collected(standard).write(tmp_path, everything)
+    assert samples.is_there("lamp", tmp_path)
+    assert set(samples.read("lamp", tmp_path)["unit"]) == {0, 3}
