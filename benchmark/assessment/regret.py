@@ -9,6 +9,7 @@ by how much its first calibration errs more. The exit status is 1 unless it alwa
 
 from __future__ import annotations
 
+import argparse
 import math
 import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -318,8 +319,11 @@ def _first(answer: Recommendation) -> float:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Print what was found, and return the exit status."""
-    given = sys.argv[1:] if arguments is None else list(arguments)
-    number, seed = (*map(int, given), *(NUMBER, SEED)[len(given) :])
+    parser = argparse.ArgumentParser(prog="python -m benchmark.assessment.regret")
+    parser.add_argument("number", nargs="?", type=int, default=NUMBER, help="of requirement sets")
+    parser.add_argument("seed", nargs="?", type=int, default=SEED, help="of the draw")
+    asked = parser.parse_args(arguments)
+    number, seed = asked.number, asked.seed
     found = list(regrets(Store(), number, seed))
     met = [one for one in found if math.isfinite(one.best_deg)]
     first = sum(math.isclose(one.first_deg["measured"], one.best_deg, rel_tol=_SAME) for one in met)

@@ -1,8 +1,8 @@
 """`python -m benchmark.leaderboard.fresh_units`: leaders of boards on units nobody has seen.
 
 The first group of every board, its leader and what is not told apart from it, is scored on five
-more units. Printed is for each board whether its leader is in the first group there, too, and how
-much more it errs than the first on these units.
+more units, and so are the next five pipelines behind it. Printed is for each board whether its
+leader is in the first group of these there, too, and how much more it errs than the first.
 """
 
 from __future__ import annotations
@@ -28,6 +28,8 @@ from survey_data.leftovers import temporary_directory
 
 #: Units that no board is made of.
 FRESH = range(scope.UNITS, scope.UNITS + 5)
+#: Pipelines behind the first group that are scored beside it: a leader alone would always lead.
+BEHIND = 5
 
 
 @dataclass(frozen=True)
@@ -56,38 +58,47 @@ class Held:
     over: float
 
 
-def first_groups(scores: Mapping[Cell, Row], parts: Parts) -> dict[str, list[Cell]]:
-    """Return the first group of each board, its leader first; cells of the standard unit."""
+def first_groups(
+    scores: Mapping[Cell, Row], parts: Parts
+) -> dict[str, tuple[list[Cell], list[Cell]]]:
+    """Return the first group of each board, its leader first, and the next pipelines behind it.
+
+    Cells are of the standard unit.
+    """
     found = {}
     ranked = (cell for cell in scope.first(parts) if _ranks(scores.get(cell)))
     for dataset, group in groupby(ranked, key=lambda cell: cell.dataset):
         board = list(group)
         logs = _logs(board, scores, range(scope.UNITS))
         leader = paired.best(logs)
-        groups = paired.groups(logs, leader)
-        first = [cell for cell, one in zip(board, groups, strict=True) if one == 1]
-        found[dataset] = [board[leader], *(cell for cell in first if cell != board[leader])]
+        groups, means = paired.groups(logs, leader), np.nanmean(logs, axis=1)
+        order = sorted(range(len(board)), key=lambda at: float(means[at]))
+        first = [board[at] for at in order if groups[at] == 1 and at != leader]
+        behind = [board[at] for at in order if groups[at] != 1]
+        found[dataset] = [board[leader], *first], behind[:BEHIND]
     return found
 
 
 def held(store: Store, workers: int = 1, *, parts: Parts | None = None) -> list[Held]:
-    """Score the first group of every board on the fresh units; nothing is written to the store."""
+    """Score the first of every board on the fresh units; nothing is written to the store."""
     known = parts or installed()
     scores = store.scores()
     groups = first_groups(scores, known)
-    wanted = [replace(c, unit=unit) for cells in groups.values() for c in cells for unit in FRESH]
+    boards = {dataset: [*first, *behind] for dataset, (first, behind) in groups.items()}
+    wanted = [replace(c, unit=unit) for cells in boards.values() for c in cells for unit in FRESH]
     with temporary_directory() as temporary:
         fresh = Store(temporary)
         run(wanted, fresh, workers, parts=known)
         measured = fresh.scores()
     found = []
-    for dataset, cells in groups.items():
+    for dataset, cells in boards.items():
         logs = _logs(cells, measured, FRESH)
         best = paired.best(logs)
         holds = not paired.separated(logs, best)[0]
         over = float(paired.over(logs, best)[0])
         pipelines = sum(cell.dataset == dataset for cell in scope.first(known))
-        found.append(Held(dataset, pipelines, len(cells), cells[0], holds, over))
+        first = len(groups[dataset][0])
+        found.append(Held(dataset, pipelines, first, cells[0], holds, over))
     return found
 
 
@@ -109,8 +120,11 @@ def _logs(cells: Sequence[Cell], scores: Mapping[Cell, Row], units: Iterable[int
 def main(arguments: Sequence[str] | None = None) -> int:
     """Print a line a board; exit code 1 where fewer than 38 of 40 leaders hold."""
     parser = argparse.ArgumentParser(description=main.__doc__)
-    parser.add_argument("--workers", type=int, default=1)
-    found = held(Store(PUBLISHED), parser.parse_args(arguments).workers)
+    parser.add_argument("--workers", type=int, default=1, help="processes that measure")
+    workers = parser.parse_args(arguments).workers
+    if workers < 1:
+        parser.error(f"--workers: expected a positive number, got {workers}")
+    found = held(Store(PUBLISHED), workers)
     for one in found:
         sys.stdout.write(
             f"{one.dataset}: {one.first} of {one.pipelines} in the first group; "

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from algorithms.contract import Extractor, Floats
-from benchmark.contract import Cell, Samples
+from benchmark.contract import Cell, Samples, UnknownNameError
 from benchmark.plan.combinations import cells as planned
 from benchmark.plan.parts import Parts, installed
 from benchmark.results.store import Store
@@ -219,9 +219,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     )
     asked = parser.parse_args(arguments)
     parts = installed()
-    wanted = planned(
-        asked.datasets or None, asked.condition, asked.extractor, asked.model, parts=parts
-    )
+    try:
+        wanted = planned(
+            asked.datasets or None, asked.condition, asked.extractor, asked.model, parts=parts
+        )
+    except UnknownNameError as error:
+        parser.error(str(error))
     if not asked.all:
         known = {replace(cell, unit=0) for cell in Store().scores()}
         wanted = [cell for cell in wanted if cell in known]
