@@ -1,0 +1,317 @@
+"""Fits of a slit's diffracted image to the pixels of a line, one spot at a time.
+
+Lengths are pixels of the line. An image is even about its middle: it is kept for places from 0 on,
+with its first and second integrals, `light` (3, n): what a pixel or a slanted slit averages is a
+difference of those.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.compiled import compiled
+from algorithms.contract import Floats
+
+Bools = NDArray[np.bool_]
+
+#: Samples of the Fresnel integrals a unit of their argument.
+FRESNEL_STEPS = 256
+#: Light's own noise at the brightest pixel over that of reading, as variances: sets the weights,
+#: on which the place depends little.
+_PHOTONS = 5.0
+#: How much of a pixel's width is expected to be deaf, or added by crosstalk, as a deviation: where
+#: noise tells less than that, the width stays near a pixel's.
+_WIDTH = 0.2
+_WIDTHS = (1.0, 0.5, 1.5)
+#: A width held at its value weighs by this; where it takes all but this of the light, it is.
+_HELD, _DIMMER = 1e9, 0.25
+_STEPS = 60
+#: Steps after which what the width is expected to be weighs the same in all that follow.
+_WEIGHED = 3
+_SETTLED_PX = 1e-9
+_SETTLED_WIDTH = 1e-6
+
+
+@compiled
+def _fresnel(u: float, table: Floats) -> tuple[float, float]:
+    """Fresnel integrals C and S of u >= 0: cubic between samples, asymptotic beyond them."""
+    place = u * FRESNEL_STEPS
+    i = int(place)
+    if i + 1 >= len(table):
+        f, g = 1.0 / (math.pi * u), 1.0 / (math.pi**2 * u**3)
+        cosine, sine = math.cos(0.5 * math.pi * u * u), math.sin(0.5 * math.pi * u * u)
+        return 0.5 + f * sine - g * cosine, 0.5 - f * cosine - g * sine
+    t, step = place - i, 1.0 / FRESNEL_STEPS
+    even, odd = t * t * (3.0 - 2.0 * t), t * (1.0 - t)
+    c = table[i, 0] + even * (table[i + 1, 0] - table[i, 0])
+    s = table[i, 1] + even * (table[i + 1, 1] - table[i, 1])
+    c += odd * step * ((1.0 - t) * table[i, 2] - t * table[i + 1, 2])
+    s += odd * step * ((1.0 - t) * table[i, 3] - t * table[i + 1, 3])
+    return c, s
+
+
+@compiled
+def _image(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    light: Floats,
+    step: float,
+    half: float,
+    spread: float,
+    blur: float,
+    waves: Floats,
+    chords: Floats,
+    table: Floats,
+) -> None:
+    """Write what a slit of half width `half` casts, and its integrals from the middle on.
+
+    Light of wavelength l spreads over ``sqrt(l spread)``; the Sun blurs by `blur` on each side.
+    """
+    n = light.shape[1]
+    sharp = np.zeros(n)
+    for w in range(len(waves)):
+        scale = math.sqrt(2.0 / (waves[w, 0] * spread))
+        for i in range(n):
+            c, s = _fresnel(scale * (half + i * step), table)
+            other = half - i * step
+            d, e = _fresnel(scale * abs(other), table)
+            if other < 0.0:
+                d, e = -d, -e
+            sharp[i] += waves[w, 1] * 0.5 * ((c + d) ** 2 + (s + e) ** 2)
+    for i in range(n):
+        total = 0.0
+        for q in range(len(chords)):
+            place = abs(i + chords[q, 0] * blur / step)
+            k = int(place)
+            if k + 1 < n:
+                total += chords[q, 1] * (sharp[k] + (place - k) * (sharp[k + 1] - sharp[k]))
+        light[0, i] = total
+    light[1, 0] = light[2, 0] = 0.0
+    for i in range(1, n):
+        before, here = light[0, i - 1], light[0, i]
+        light[1, i] = light[1, i - 1] + 0.5 * step * (before + here)
+        rise = light[1, i - 1] * step + step * step * (before / 3.0 + here / 6.0)
+        light[2, i] = light[2, i - 1] + rise
+
+
+@compiled
+def _at(light: Floats, step: float, place: float, order: int) -> float:
+    """Light (order 0) or its first or second integral at a place, linear between samples."""
+    far = abs(place) / step
+    i, n = int(far), light.shape[1]
+    sign = -1.0 if order == 1 and place < 0.0 else 1.0
+    if i + 1 >= n:
+        beyond = (far - (n - 1)) * step
+        last = (0.0, light[1, n - 1], light[2, n - 1] + beyond * light[1, n - 1])
+        return float(sign * last[order])
+    t = (far - i) * step
+    here, slope = light[0, i], (light[0, i + 1] - light[0, i]) / step
+    if order == 0:
+        return float(here + slope * t)
+    if order == 1:
+        return float(sign * (light[1, i] + here * t + 0.5 * slope * t * t))
+    return float(light[2, i] + light[1, i] * t + here * t * t / 2.0 + slope * t * t * t / 6.0)
+
+
+@compiled
+def _terms(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    light: Floats, step: float, place: float, width: float, slanted: bool, out: Floats
+) -> None:
+    """Write a pixel's light, and its derivatives by the spot's place and by `width`.
+
+    `width` is the part of a pixel that is sensitive or, behind a slanted slit, what the height of
+    the pixels spreads its image over.
+    """
+    if not slanted:
+        left, right = place - 0.5 * width, place + 0.5 * width
+        low, high = _at(light, step, left, 0), _at(light, step, right, 0)
+        out[0] = _at(light, step, right, 1) - _at(light, step, left, 1)
+        out[1], out[2] = low - high, 0.5 * (low + high)
+        return
+    left, right, box = place - 0.5, place + 0.5, width
+    a, b = right + 0.5 * box, right - 0.5 * box
+    c, d = left + 0.5 * box, left - 0.5 * box
+    pa, pb = _at(light, step, a, 1), _at(light, step, b, 1)
+    pc, pd = _at(light, step, c, 1), _at(light, step, d, 1)
+    total = _at(light, step, a, 2) - _at(light, step, b, 2)
+    total -= _at(light, step, c, 2) - _at(light, step, d, 2)
+    out[0] = total / box
+    out[1] = (pb - pa + pc - pd) / box
+    out[2] = (0.5 * (pa + pb - pc - pd) - out[0]) / box
+
+
+@compiled
+def _solved(matrix: Floats, vector: Floats) -> bool:
+    """Solve four symmetric equations in place; False where they do not settle all unknowns."""
+    n = len(vector)
+    for k in range(n):
+        scale = matrix[k, k]
+        for j in range(k):
+            scale -= matrix[k, j] ** 2
+        if not scale > 1e-12 * matrix[k, k]:
+            return False
+        matrix[k, k] = math.sqrt(scale)
+        for i in range(k + 1, n):
+            total = matrix[i, k]
+            for j in range(k):
+                total -= matrix[i, j] * matrix[k, j]
+            matrix[i, k] = total / matrix[k, k]
+    for k in range(n):
+        for j in range(k):
+            vector[k] -= matrix[k, j] * vector[j]
+        vector[k] /= matrix[k, k]
+    for k in range(n - 1, -1, -1):
+        for j in range(k + 1, n):
+            vector[k] -= matrix[j, k] * vector[j]
+        vector[k] /= matrix[k, k]
+    return True
+
+
+@compiled
+def _pattern(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    terms: Floats,
+    lit: Bools,
+    centres: Floats,
+    reach: int,
+    width: float,
+    slanted: bool,
+    light: Floats,
+    step: float,
+) -> None:
+    """Write what slits at `centres` cast on each pixel (L, 3), and by what it changes."""
+    terms[:] = 0.0
+    one = np.empty(3)
+    for k in range(len(centres)):
+        middle = math.floor(centres[k] + 0.5)
+        for x in range(max(middle - reach, 0), min(middle + reach, len(terms) - 1) + 1):
+            if lit[x]:
+                _terms(light, step, x - centres[k], width, slanted, one)
+                for i in range(3):
+                    terms[x, i] += one[i]
+
+
+@compiled
+def _equations(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    line: Floats, terms: Floats, lit: Bools, peak: float, matrix: Floats, vector: Floats
+) -> float:
+    """Write the normal equations of light, place, width and background; return the sum of squares.
+
+    Noise grows with the light that is expected, against that of `peak`.
+    """
+    matrix[:], vector[:], square = 0.0, 0.0, 0.0
+    row = np.ones(4)
+    for x in np.flatnonzero(lit):
+        row[:3] = terms[x]
+        weight = 1.0 / (1.0 + _PHOTONS * max(row[0], 0.0) / peak)
+        square += weight * line[x] ** 2
+        for i in range(4):
+            vector[i] += weight * row[i] * line[x]
+            for j in range(i + 1):
+                matrix[i, j] += weight * row[i] * row[j]
+    return float(square)
+
+
+@compiled
+def _shift(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    line: Floats,
+    starts: Floats,
+    reach: int,
+    widths: tuple[float, float, float],
+    slanted: bool,
+    light: Floats,
+    step: float,
+    terms: Floats,
+    lit: Bools,
+) -> float:
+    """How far spots lie from their `starts` by least squares; NaN where that does not settle.
+
+    `widths` are the first to be tried, the least and the largest.
+    """
+    lit[:] = False
+    for start in starts:
+        middle = math.floor(start + 0.5)
+        lit[max(middle - reach, 0) : middle + reach + 1] = True
+    width, least, most = widths
+    shift, last, bright, firm, held = 0.0, 0.0, 0.0, 0.0, not slanted
+    matrix, vector, row = np.empty((4, 4)), np.empty(4), np.empty(3)
+    _terms(light, step, 0.0, width, slanted, row)
+    for turn in range(_STEPS):
+        _pattern(terms, lit, starts + shift, reach + 1, width, slanted, light, step)
+        square = _equations(line, terms, lit, row[0], matrix, vector)
+        if not slanted:
+            matrix[2, 2] += _HELD * matrix[0, 0] if held else firm
+            vector[2] += firm * bright * (1.0 - width)
+        explained = vector.copy()
+        if not _solved(matrix, vector) or not abs(shift) < reach:
+            return math.nan
+        if turn == 0:
+            bright, held = vector[0], False
+        if not vector[0] > _DIMMER * bright:
+            if held or turn == 0:
+                return math.nan
+            held = True  # light and width cannot be told apart: a pixel is as wide as it is
+            continue
+        if turn < _WEIGHED:
+            noise = max(square - (explained * vector).sum(), 0.0) / max(lit.sum() - 4, 1)
+            firm = noise / (bright * _WIDTH) ** 2
+        move = max(-1.0, min(1.0, vector[1] / vector[0]))
+        wider = max(-0.3 * width, min(0.3 * width, vector[2] / vector[0]))
+        wider = max(least, min(most, width + wider)) - width
+        half = 0.5 if move * last < 0.0 else 1.0  # to and fro: half of both steps ends it
+        last = half * move
+        shift += last
+        width += half * wider
+        if turn > _WEIGHED and abs(last) < _SETTLED_PX and abs(wider) < _SETTLED_WIDTH:
+            return float(shift)
+    return math.nan
+
+
+@compiled
+def add_shifts(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    shifts: Floats,
+    lines: Floats,
+    slits: Floats,
+    shapes: Floats,
+    reach: int,
+    waves: Floats,
+    chords: Floats,
+    table: Floats,
+) -> None:
+    """Add to `shifts` (R, G) how far the spots on lines (R, L) lie from there.
+
+    Parameters
+    ----------
+    shifts
+        Of the spots of each slant; NaN where no light is, or where a fit does not settle.
+    slits
+        (S, 3): place at zero shift, slant's number in G, and 1 where the height of the pixels
+        widens the spot, else 0.
+    shapes
+        (R, G, 3): half width, spread (what a wavelength is multiplied by before the root), blur.
+    reach
+        Pixels on each side of a spot that are fitted.
+    waves, chords
+        (W, 2) wavelengths and (Q, 2) chords of the Sun in units of its radius, with weights.
+    table
+        (M, 4) Fresnel integrals and their derivatives, `FRESNEL_STEPS` a unit.
+    """
+    shortest = waves[:, 0].min()
+    terms, lit = np.empty((lines.shape[1], 3)), np.empty(lines.shape[1], dtype=np.bool_)
+    for r in range(len(lines)):
+        for g in range(shifts.shape[1]):
+            half, spread, blur = shapes[r, g]
+            if not (math.isfinite(shifts[r, g]) and half > 0.0 and spread > 0.0):
+                shifts[r, g] = math.nan
+                continue
+            mine = slits[slits[:, 1] == g]
+            slanted = mine[0, 2] > 0.0
+            step = min(0.25, math.sqrt(shortest * spread) / 24.0)
+            length = 2.0 * reach + 4.0 if slanted else reach + 3.0
+            light = np.empty((3, int(length / step) + 2))
+            _image(light, step, half, spread, blur, waves, chords, table)
+            widths = (0.5 * half, 0.05, 2.0 * reach) if slanted else _WIDTHS
+            starts = mine[:, 0] + shifts[r, g]
+            shifts[r, g] += _shift(
+                lines[r], starts, reach, widths, slanted, light, step, terms, lit
+            )
