@@ -89,9 +89,13 @@ def load(directory: str | Path | None = None) -> SurveyTables:
     return SurveyTables(**frames)
 
 
+#: Tables that an import may empty: what stands in them rests on values it may replace.
+MAY_BE_EMPTY = frozenset({"roles", "architectures"})
+
+
 def _without_use(table: str, records: Records) -> list[Problem]:
     """Name a table without rows, and rows whose key stands twice: nothing can be told of them."""
-    if not records.rows:
+    if not records.rows and table not in MAY_BE_EMPTY:
         return [Problem(file_name(table), 1, None, "the table has a header and no rows")]
     names = primary_key(table)
     at = [records.header.index(name) for name in names]

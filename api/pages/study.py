@@ -27,6 +27,7 @@ NAMES = {
 }
 BASES = {
     "survey-table": "a mapping table of the survey",
+    "authors-table": "the survey authors' own table",
     "survey-text": "the survey's text",
     "abstract": "the study's abstract or record",
     "title": "the study's title",

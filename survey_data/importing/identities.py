@@ -116,7 +116,7 @@ def import_bibliography(
         plan = plan_identities(load(folder), entries, Path(path).name)
         if not apply or not (plan.edits or plan.settled):
             return plan
-        write_valid(folder, _TABLE, _edited(folder, plan))
+        write_valid(folder, {_TABLE: _edited(folder, plan)})
         return replace(plan, written=len(plan.edits))
 
 

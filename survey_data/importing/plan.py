@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import Any, Literal
 
@@ -58,13 +58,23 @@ class UnmatchedRow:
 
 
 @dataclass(frozen=True)
+class Withdrawn:
+    """A row of ours that rests on a value which another table replaces, and so goes with it."""
+
+    table: str
+    study: str
+    value: str
+    note: str
+
+
+@dataclass(frozen=True)
 class ImportPlan:
     """What an import would do.
 
     `differences` holds new, changed and conflicting cells, `confirmed` the cells whose basis
     alone rises; `guesses` the values read by similarity (score below 1); `errors` the cells that
-    could not be read, which forbid applying; `written` the number of cells that have been
-    written.
+    could not be read, which forbid applying; `withdrawn` the rows of our other tables that rest on
+    a replaced value; `written` the number of cells that have been written.
     """
 
     source: str
@@ -75,6 +85,7 @@ class ImportPlan:
     confirmed: tuple[Difference, ...]
     guesses: tuple[ValueMatch, ...]
     errors: tuple[Problem, ...]
+    withdrawn: tuple[Withdrawn, ...] = ()
     written: int = 0
 
     @property
@@ -98,6 +109,7 @@ class ImportPlan:
             "confirmed": [entry.to_dict() for entry in self.confirmed],
             "guesses": [asdict(entry) for entry in self.guesses],
             "errors": [entry.to_dict() for entry in self.errors],
+            "withdrawn": [asdict(entry) for entry in self.withdrawn],
             "written": self.written,
         }
 
@@ -185,7 +197,29 @@ def plan_import(
         confirmed=tuple(entry for entry in found_cells if entry.kind == "confirmed"),
         guesses=tuple(guesses.values()),
         errors=tuple(errors),
+        withdrawn=_withdrawn(tables, found_cells),
     )
+
+
+def _withdrawn(tables: SurveyTables, cells: Iterable[Difference]) -> tuple[Withdrawn, ...]:
+    """Return what rests on values that cells replace: roles of studies, pairs of their parts."""
+    gone = {
+        (cell.study, cell.attribute, value)
+        for cell in cells
+        if cell.kind == "changed"
+        for value in set(cell.ours) - set(cell.theirs)
+    }
+    roles = (
+        Withdrawn("roles", row["study"], row["value"], f"{row['role']}: {row['note']}")
+        for row in tables.roles.fillna("").to_dict("records")
+        if (row["study"], row["attribute"], row["value"]) in gone
+    )
+    pairs = (
+        Withdrawn("architectures", row["study"], f"{row['detector']} + {row['mask']}", row["note"])
+        for row in tables.architectures.fillna("").to_dict("records")
+        if any((row["study"], part, row[part]) in gone for part in ("detector", "mask"))
+    )
+    return (*roles, *pairs)
 
 
 def differences(
@@ -250,11 +284,14 @@ def _compare(
 ) -> list[Difference]:
     rank = dict(zip(tables.bases["basis"], tables.bases["rank"].astype(int), strict=True))
     ours = current_cells(tables)
+    printed = _printed(tables)
     found = []
     for (study, attribute), values in stated.items():
         cell = ours.get((study, attribute), _Cell((), "unknown"))
         theirs = tuple(values)
-        outranked = rank[cell.basis] < rank[AUTHORS_BASIS]
+        # The survey may print a parent whose kind rests on less: theirs has to be one of its kinds.
+        against = any(not told & set(theirs) for told in printed.get((study, attribute), ()))
+        outranked = against or rank[cell.basis] < rank[AUTHORS_BASIS]
         if _same_values(cell.values, theirs):
             if rank[cell.basis] <= rank[AUTHORS_BASIS]:
                 continue
@@ -268,6 +305,21 @@ def _compare(
         found.append(
             Difference(study, attribute, cell.values, theirs, cell.basis, kind, row, column)
         )
+    return found
+
+
+def _printed(tables: SurveyTables) -> dict[tuple[str, str], list[set[str]]]:
+    """Return of each cell (study, attribute) what each of the survey's printed labels may mean."""
+    meant: dict[tuple[str, str], set[str]] = {}
+    for alias in tables.aliases.to_dict("records"):
+        if alias["origin"] == "survey":
+            at = (str(alias["attribute"]), str(alias["alias"]))
+            meant.setdefault(at, set()).add(str(alias["value"]))
+    found: dict[tuple[str, str], list[set[str]]] = {}
+    for cell in tables.study_tables.to_dict("records"):
+        study, attribute, label = str(cell["study"]), str(cell["attribute"]), str(cell["value"])
+        told = {label} | meant.get((attribute, label), set())
+        found.setdefault((study, attribute), []).append(told)
     return found
 
 

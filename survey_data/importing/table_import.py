@@ -20,7 +20,7 @@ from survey_data.importing.plan import (
 from survey_data.importing.reading import read_table
 from survey_data.importing.writing import held_tables, write_valid
 from survey_data.problems import SurveyImportError
-from survey_data.tables import SurveyTables, load
+from survey_data.tables import MAY_BE_EMPTY, SurveyTables, load
 
 _TABLE = "attributes"
 
@@ -80,7 +80,8 @@ def apply_import(directory: str | Path | None, plan: ImportPlan) -> ImportPlan:
     """Write a plan's edits into attributes.csv, all or nothing.
 
     A cell taken over gets the basis ``authors-table``; what it said before, and on what basis,
-    stays in its note. The result is validated before it replaces the file.
+    stays in its note. Rows of roles.csv and architectures.csv that rest on a replaced value go.
+    The result is validated before it replaces the file.
 
     Parameters
     ----------
@@ -113,8 +114,15 @@ def _applied(folder: Path, plan: ImportPlan) -> ImportPlan:
     _require_fresh(tables, plan)
     if not plan.edits:
         return plan
-    text = _edited(folder, plan, _authors_doi(tables))
-    write_valid(folder, _TABLE, text)
+    texts = {_TABLE: _edited(folder, plan, _authors_doi(tables))}
+    counts: dict[str, int] = {}
+    for table in sorted(MAY_BE_EMPTY):
+        gone = {(entry.study, entry.value) for entry in plan.withdrawn if entry.table == table}
+        if gone:
+            texts[table], counts[table] = _without(folder, table, gone)
+    if counts:
+        texts["counts"] = _counted(folder, counts)
+    write_valid(folder, texts)
     return plan.after_writing()
 
 
@@ -133,6 +141,27 @@ def _require_fresh(tables: SurveyTables, plan: ImportPlan) -> None:
 def _authors_doi(tables: SurveyTables) -> str:
     references = tables.references
     return str(references.loc[references["role"] == "dataset", "doi"].iloc[0])
+
+
+def _without(folder: Path, table: str, gone: set[tuple[str, str]]) -> tuple[str, int]:
+    """Return a table without rows, given by study and value or pair, and how many are left."""
+    header = list(column_types(table))
+    of = ("value",) if "value" in header else ("detector", "mask")
+    places = [header.index(name) for name in of]
+    rows = [cells for _, cells in read_records(folder / file_name(table), header).rows]
+    kept = [c for c in rows if (c[0], " + ".join(c[at] for at in places)) not in gone]
+    return csv_text(header, kept), len(kept)
+
+
+def _counted(folder: Path, counts: Mapping[str, int]) -> str:
+    """Return the text of counts.csv with the rows that tables have now."""
+    header = list(column_types("counts"))
+    named, column, held = map(header.index, ("table", "column", "held"))
+    rows = [cells for _, cells in read_records(folder / file_name("counts"), header).rows]
+    for cells in rows:
+        if not cells[column] and cells[named] in counts:
+            cells[held] = str(counts[cells[named]])
+    return csv_text(header, rows)
 
 
 def _edited(folder: Path, plan: ImportPlan, doi: str) -> str:

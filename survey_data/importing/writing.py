@@ -1,9 +1,9 @@
-"""Writing one table anew: only if all of them stay valid, and whole or not at all."""
+"""Writing tables anew: only if all of them stay valid, and whole or not at all."""
 
 from __future__ import annotations
 
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
@@ -34,8 +34,8 @@ def held_tables(folder: Path) -> Iterator[None]:
         yield
 
 
-def write_valid(folder: Path, table: str, text: str) -> None:
-    """Replace a table by a text.
+def write_valid(folder: Path, texts: Mapping[str, str]) -> None:
+    """Replace tables, by name, by texts.
 
     Raises
     ------
@@ -43,8 +43,8 @@ def write_valid(folder: Path, table: str, text: str) -> None:
         The tables would be invalid, or the file cannot be written; nothing has been written.
     """
     try:
-        _require_valid(folder, table, text)
-        write_recorded(folder, {file_name(table): text})
+        _require_valid(folder, texts)
+        write_recorded(folder, {file_name(table): text for table, text in texts.items()})
     except FileRefusedError as error:
         raise SurveyImportError(str(error)) from error
     except OSError as error:
@@ -55,11 +55,12 @@ def _unwritable(folder: Path, error: OSError) -> SurveyImportError:
     return SurveyImportError(f"cannot write in {folder}: {error.strerror or error}")
 
 
-def _require_valid(folder: Path, table: str, text: str) -> None:
+def _require_valid(folder: Path, texts: Mapping[str, str]) -> None:
     with temporary_directory() as scratch:
         for name in (DESCRIPTOR_FILE, *map(file_name, table_names())):
             shutil.copyfile(folder / name, scratch / name)
-        (scratch / file_name(table)).write_text(text, encoding="utf-8", newline="")
+        for table, text in texts.items():
+            (scratch / file_name(table)).write_text(text, encoding="utf-8", newline="")
         problems = validate(scratch)
     if problems:
         raise SurveyImportError(
