@@ -102,7 +102,8 @@ class Fitting:
         pairs = self.plan.get(architecture, {})
         extractors = {self.catalogue.extractors[e].about.taxonomy for e, _ in pairs}
         models = {value for _, m in pairs for value in self._stages[m]}
-        return sum(v in extractors for v in study.of("extractor")) + sum(
+        stated = (v for v in study.of("extractor") if v != NO_IMPLEMENTATION_STATED)
+        return sum(v in extractors for v in stated) + sum(
             not models.isdisjoint(self.kinds("model", v)) for v in study.of("model")
         )
 

@@ -21,6 +21,7 @@ from registry.designs import DesignTable, Kept
 from registry.judging import KeptPlace, Question
 from registry.kept_answers import KeptAnswers
 from registry.ranking import Sort, key_of
+from registry.task_measures import TaskMeasure, joint_cost, task_measures
 
 Numbers = NDArray[np.float64]
 Positions = NDArray[np.int64]
@@ -38,12 +39,14 @@ class RankedPlace(KeptPlace):
     number : its position in the table
     meeting : its designs (bits) that meet the requirements
     designs : their positions, best first
+    measures : the own measures of the tasks asked for
     key : what it is ranked by among others
     """
 
     number: int
     meeting: int
     designs: Positions
+    measures: tuple[TaskMeasure, ...]
     key: tuple[float, ...]
 
     @cached_property
@@ -140,11 +143,15 @@ class RankedDesigns:
         advice, tasks = question.advice[number]
         of_errors = "error" in question.asked.include
         backing = studies.bit_count()
-        key = key_of(self.sort, bool(advice), backing, error, of_errors=of_errors)
+        place = question.table.places[number]
+        asked_tasks = question.asked.include.get("task", ())
+        measures = task_measures(asked_tasks, place.architecture, best, least)
+        own = joint_cost(measures) if measures else None
+        key = key_of(self.sort, bool(advice), backing, error, own, of_errors=of_errors)
         return RankedPlace(
-            question.table.places[number],
+            place,
             *(studies, stated, advice, tasks, best, least, error),
-            *(number, meeting, designs, key),
+            *(number, meeting, designs, measures, key),
         )
 
     @cached_property

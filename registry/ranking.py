@@ -36,26 +36,34 @@ def support(kept: Kept, place: KeptPlace) -> float:
 
 
 def key_of(
-    sort: Sort, advised: bool, backing: float, error: float, *, of_errors: bool = False
+    sort: Sort,
+    advised: bool,
+    backing: float,
+    error: float,
+    own: float | None = None,
+    *,
+    of_errors: bool = False,
 ) -> tuple[float, ...]:
     """Return what an architecture is ranked by, the best first.
 
     By advice: where kinds of errors are asked for (`of_errors`), what the survey advises for them;
     then what the survey advises or studies back and what is measured, then what has
-    that evidence alone, then the rest; in each by the error, which evidence divides by up to
-    `MOST_CREDIT`: half of that (as a power) for advice, half for n studies in parts of n / (n + 5).
-    So what stands first errs at most so many times as much as the best of those with evidence. By
+    that evidence alone, then the rest; in each by the error or, where tasks are asked for, by
+    their `own` measures (`registry.task_measures.joint_cost`). Evidence divides that by up to
+    `MOST_CREDIT`: half of it (as a power) for advice, half for n studies in parts of n / (n + 5).
+    So what stands first is at most so many times worse than the best of those with evidence. By
     support, or by what is measured: that first. What is not measured errs without limit.
     """
     if sort == "measured":
         return (error, not advised, -backing)
     if sort == "support":
         return (-backing, error, not advised)
-    evident, measured = advised or backing > 0, math.isfinite(error)
+    cost = error if own is None else own
+    evident, measured = advised or backing > 0, math.isfinite(cost)
     tier = 0 if evident and measured else 1 if evident else 2
     credit = 0.5 * advised + 0.5 * backing / (backing + _HALF_STUDIES)
     unadvised = of_errors and not advised
-    return (unadvised, tier, error / MOST_CREDIT**credit, not advised, -backing)
+    return (unadvised, tier, cost / MOST_CREDIT**credit, not advised, -backing)
 
 
 def pareto(places: Sequence[KeptPlace]) -> frozenset[int]:

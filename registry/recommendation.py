@@ -87,6 +87,7 @@ class Architecture:
 
     ``tasks`` are those its studies had, or it is advised for: their number, and whether it is;
     ``advice`` is the survey's for what is asked. ``best`` errs least of all its calibrations.
+    ``measures`` are the tasks' own, what it is ranked by (`registry.task_measures`).
     ``count`` calibrations meet the requirements, ``calibrations`` are the first of them.
     """
 
@@ -99,6 +100,7 @@ class Architecture:
     best: Calibration
     pareto: bool
     contradiction: str | None
+    measures: tuple[Mapping[str, object], ...]
     count: int
     calibrations: tuple[Calibration, ...]
 
@@ -118,6 +120,7 @@ class Architecture:
             "best": self.best.to_dict(),
             "pareto": self.pareto,
             "contradiction": self.contradiction,
+            "measures": [dict(measure) for measure in self.measures],
             "count": self.count,
             "calibrations": [calibration.to_dict() for calibration in self.calibrations],
         }
@@ -350,6 +353,7 @@ def _architecture(
         best=_calibration(best, place.best, place, found, paths),
         pareto=at in found.pareto,
         contradiction=against_literature(place, place.usual),
+        measures=tuple(measure.to_dict() for measure in place.measures),
         count=len(place.designs),
         calibrations=tuple(
             _calibration(i, found.question.kept(design), place, found, paths)

@@ -29,6 +29,8 @@ class Hardware:
     accuracy_deg: float | None
     accuracy_kind: str
     precision_deg: float | None
+    power_mw: float | None
+    mass_g: float | None
     basis: str
     source: str
 
@@ -70,6 +72,8 @@ def hardware(directory: Path | None = None) -> Mapping[str, Hardware]:
             accuracy_deg=_number(row["accuracy_deg"]),
             accuracy_kind=row["accuracy_kind"],
             precision_deg=_number(row["precision_deg"]),
+            power_mw=_number(row["power_mw"]),
+            mass_g=_number(row["mass_g"]),
             basis=row["basis"],
             source=row["source"],
         )

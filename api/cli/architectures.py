@@ -10,7 +10,7 @@ from api.cli.tables import prose, table
 from registry.contradiction import calibration_words
 
 ORDERS = {
-    "advice": "what the survey advises or studies used first, by error",
+    "advice": "what the survey advises or studies used first, by the task's measure or by error",
     "support": "what most studies proposed first",
     "measured": "what errs least first",
 }
@@ -74,6 +74,9 @@ def _architecture(architecture: Mapping[str, Any], width: int) -> Iterator[str]:
     yield from _paragraph("advised", _advised(architecture["advice"]), width)
     yield from _paragraph("proposed", _proposed(architecture["studies"]), width)
     yield from _paragraph("measured", _measured(architecture["best"]), width)
+    for measure in architecture["measures"]:
+        if measure["task"] != "Accuracy":
+            yield from _paragraph("by task", measure["words"], width)
     finer = (architecture["best"]["measured"] or {}).get("finer")
     if finer is not None:
         yield from _paragraph("finer", _finer(finer), width)

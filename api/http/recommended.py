@@ -232,6 +232,7 @@ class Pieces:
         }
         after = {
             "contradiction": against_literature(place, place.usual),
+            "measures": [measure.to_dict() for measure in place.measures],
             "count": len(place.designs),
         }
         question = found.question

@@ -29,7 +29,7 @@ function tag({ task, studies, advised }) {
 const value = (attribute, name) => h("a", { class: `value${standing(attribute, name) === "include" ? " asked" : ""}`, href: `/${attribute}s/${encodeURIComponent(name)}` }, name);
 
 function row(architecture, known) {
-  const { rank, detector, mask, tasks, advice, studies, best } = architecture;
+  const { rank, detector, mask, tasks, advice, studies, best, measures } = architecture;
   const id = `architecture-${rank}`;
   const detail = h("tr", { class: "detail", id, role: "row", hidden: true });
   const expand = h("button", {
@@ -49,7 +49,8 @@ function row(architecture, known) {
         h("strong", {}, value("detector", detector), " + ", value("mask", mask))),
       h("ul", { class: "tags" }, tasks.map(tag)),
       h("div", { class: "marks" }, expand, page, " ", architecture.contradiction && h("span", { class: "against", title: architecture.contradiction }, "literature contradicted"),
-      architecture.pareto && h("span", { class: "pareto-mark", title: "None has more studies and a smaller error" }, "Pareto"))),
+      architecture.pareto && h("span", { class: "pareto-mark", title: "None has more studies and a smaller error" }, "Pareto")),
+      measures.filter(({ task }) => task !== "Accuracy").map(({ words }) => below(words))),
     evidenceCell("advised", advisedContent(advice)),
     evidenceCell("proposed", proposedContent(studies, NAMED)),
     evidenceCell("measured", measuredContent(best.measured), finerContent(best.measured),

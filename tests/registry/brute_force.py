@@ -300,3 +300,26 @@ def brute_force(facts: Facts, ask: Ask, table: list[Measured]) -> Expected:
 
 def key_of(one: Calibration) -> tuple[str, tuple[str, ...]]:
     return one.extractor, (*one.compensations, one.model)
+
+
+def measured_pipeline(
+    detector: str,
+    mask: str,
+    error_deg: float,
+    *,
+    repeatability_deg: float | None = None,
+    latency_us: float | None = None,
+) -> Measured:
+    """A pipeline that errs so much, of a detector and mask."""
+    return Measured(
+        dataset=f"{detector}-{mask}".lower(),
+        detector=detector,
+        mask=mask,
+        extractor="e",
+        extractor_taxonomy="BCTM",
+        model="m",
+        stages=("SPM",),
+        nominal=Score("nominal", error_deg, repeatability_deg=repeatability_deg, availability=1.0),
+        half_fov_deg=60.0,
+        latency_us=latency_us,
+    )

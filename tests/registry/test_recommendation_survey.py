@@ -55,7 +55,10 @@ def test_architectures_are_named_once_each_and_so_are_their_calibrations(survey:
         assert len(set(ways)) == len(ways)
 
 
-def test_advice_is_marked_for_what_is_asked_and_comes_first(survey: Facts) -> None:
+def test_advice_is_marked_for_what_is_asked_and_first_where_nothing_is_known(
+    survey: Facts,
+) -> None:
+    published = {"Power", "Volume", "Cost"}  # of some, which go by that
     for task in survey.taxonomy.values("task"):
         answer = recommend({"task": task}, facts=survey)
         expected = {
@@ -66,7 +69,7 @@ def test_advice_is_marked_for_what_is_asked_and_comes_first(survey: Facts) -> No
             and advice.means((a.detector, a.mask))
         }
         marked = [bool(a.advice) for a in answer.architectures]
-        assert marked == sorted(marked, reverse=True)
+        assert task in published or marked == sorted(marked, reverse=True)
         assert {(a.detector, a.mask) for a in answer.architectures if a.advice} == expected
         assert expected
         assert all(entry["value"] == task for a in answer.architectures for entry in a.advice)

@@ -95,9 +95,11 @@ class Requirements(Question):
     )
     sort: Sort = Field(
         "advice",
-        description="Order of the architectures: advised by the survey, then backed by most "
-        "studies, then smallest error (advice); backed by most studies (support); smallest error "
-        "(measured). Calibrations of an architecture come by error but for support.",
+        description="Order of the architectures: those that the survey advises or studies used "
+        "first, by the own measure of the tasks asked for or by error, where advice and studies "
+        "make up for a factor of two at most; for a kind of error asked for, what is advised for "
+        "it first (advice); backed by most studies (support); smallest error (measured). "
+        "Calibrations of an architecture come by error but for support.",
     )
     limit: Annotated[int, WHOLE] = Field(
         20,
@@ -258,6 +260,17 @@ class Advice(Shape):
     note: str
 
 
+class TaskMeasure(Shape):
+    """What an architecture is ranked by for a task that is asked for."""
+
+    task: str
+    value: float | None = Field(description="None where nothing is measured or published.")
+    unit: str
+    basis: Literal["measured", "published"]
+    built: int = Field(description="Built sensors that it is the median of; 0 where measured.")
+    words: str
+
+
 class Architecture(Shape):
     """A detector behind a mask, with its evidence, and its calibrations, best first."""
 
@@ -273,6 +286,7 @@ class Architecture(Shape):
     contradiction: str | None = Field(
         description="Where the best measured calibration is not what most studies stand for."
     )
+    measures: list[TaskMeasure] = Field(description="Own measures of the tasks asked for.")
     count: int = Field(description="Calibrations that meet the requirements.")
     calibrations: list[Calibration]
 

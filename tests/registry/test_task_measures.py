@@ -1,0 +1,60 @@
+"""Each task is ranked by its own measure, in an order that a person can check with a pencil."""
+
+import math
+from statistics import median
+
+import pytest
+
+from registry.recommendation import recommend
+from registry.studies import facts
+from registry.task_measures import TaskMeasure, joint_cost
+from survey_data.hardware import hardware
+from tests.registry.brute_force import measured_pipeline
+
+
+def ranked(task: str, rows: list[object]) -> list[tuple[str, str]]:
+    answer = recommend({"task": task}, rows, facts=facts())  # type: ignore[arg-type]
+    return [(a.detector, a.mask) for a in answer.architectures]
+
+
+def test_power_and_volume_go_by_what_makers_publish_whatever_errs_least() -> None:
+    for task, of in (("Power", "power_mw"), ("Volume", "mass_g")):
+        answer = recommend({"task": task}, facts=facts())
+        for a in answer.architectures:
+            numbers = [
+                getattr(one, of)
+                for one in hardware().values()
+                if (one.detector, one.mask) == (a.detector, a.mask) and getattr(one, of) is not None
+            ]
+            (measure,) = a.measures
+            assert measure["basis"] == "published"
+            assert measure["built"] == len(numbers)
+            assert measure["value"] == (median(numbers) if numbers else None)
+        known = [a.measures[0]["value"] is not None for a in answer.architectures if a.studies]
+        assert known == sorted(known, reverse=True)  # who publishes nothing comes after
+        silent = [
+            (a.detector, a.mask) for a in answer.architectures if a.measures[0]["value"] is None
+        ]
+        fine = measured_pipeline(*silent[-1], 1e-4)  # no error stands in for what is not published
+        assert ranked(task, [fine])[0] not in silent
+
+
+@pytest.mark.parametrize("task", ["Precision", "Latency"])
+def test_precision_goes_by_repeatability_and_latency_by_the_time(task: str) -> None:
+    one, other, *_ = ranked(task, [])
+    coarse = measured_pipeline(*one, 0.5, repeatability_deg=0.001, latency_us=2.0)
+    fine = measured_pipeline(*other, 0.1, repeatability_deg=0.05, latency_us=90.0)
+    assert ranked(task, [coarse, fine])[0] == one
+    swapped = measured_pipeline(*other, 0.5, repeatability_deg=0.001, latency_us=2.0)
+    assert ranked(task, [swapped, measured_pipeline(*one, 0.1, repeatability_deg=0.05)])[0] == other
+
+
+def test_several_tasks_go_by_the_geometric_mean_and_unknown_is_last() -> None:
+    one = TaskMeasure("Accuracy", "deg", 0.01)
+    wide, narrow = TaskMeasure("FOV", "deg", 120.0), TaskMeasure("FOV", "deg", 60.0)
+    assert joint_cost([one, wide]) == pytest.approx(math.sqrt(0.01 * 3.0))
+    assert joint_cost([one, narrow]) == pytest.approx(math.sqrt(2.0) * joint_cost([one, wide]))
+    assert joint_cost([one, TaskMeasure("Power", "mW", None)]) == math.inf
+    assert TaskMeasure("Power", "mW", 0.0, 5).cost == 1.0
+    assert "nothing published of built sensors" in TaskMeasure("Power", "mW", None).words
+    assert TaskMeasure("Volume", "g", 30.0, 2).words.endswith("of 2 built sensors")
