@@ -20,7 +20,11 @@ EQUAL = 1e-6
 
 #: Most blocks of neighbouring poses that are dealt out to the folds.
 _BLOCKS = 500
-#: Distances of unit vectors are told apart to this: equal ones must stay equal on every processor.
+#: Poses are told apart to this many digits, far fewer than those that rounding reaches: a digit
+#: that it turned would bring neighbours into another order.
+_POSE_DIGITS = 6
+#: Squared distances are equal that differ by less: those of a grid are, up to rounding.
+_ALIKE = 1e-9
 _DIGITS = 9
 #: Poses around one on a grid.
 _NEIGHBOURS = 8
@@ -49,7 +53,7 @@ def folds(sun: Floats, count: int = FOLDS) -> NDArray[np.int64]:
     >>> np.bincount(folds(np.repeat(arc, 2, axis=0)))  # each pose taken twice
     array([6, 6, 6, 6, 6])
     """
-    places, inverse = np.unique(np.round(sun, _DIGITS), axis=0, return_inverse=True)
+    places, inverse = np.unique(np.round(sun, _POSE_DIGITS), axis=0, return_inverse=True)
     rim = _rim(places)
     if (~rim).sum() < 2 * count:
         rim[:] = False
@@ -61,15 +65,15 @@ def folds(sun: Floats, count: int = FOLDS) -> NDArray[np.int64]:
 def _blocks(places: Floats) -> NDArray[np.int64]:
     """Block (n,) of each pose (n, 3), each around the pose farthest from those before it."""
     middle = places.mean(axis=0)
-    nearest = np.round(((places - middle) ** 2).sum(axis=1), _DIGITS)
-    chosen = int(np.argmin(nearest))
+    nearest = ((places - middle) ** 2).sum(axis=1)
+    chosen = int(np.argmax(nearest < nearest.min() + _ALIKE))
     distance = np.full(len(places), np.inf)
     block = np.zeros(len(places), dtype=np.int64)
     for number in range(min(_BLOCKS, len(places))):
-        away = np.round(((places - places[chosen]) ** 2).sum(axis=1), _DIGITS)
-        closer = away < distance
+        away = ((places - places[chosen]) ** 2).sum(axis=1)
+        closer = away < distance - _ALIKE
         block[closer], distance[closer] = number, away[closer]
-        chosen = int(np.argmax(distance))
+        chosen = int(np.argmax(distance > distance.max() - _ALIKE))
     return block
 
 
@@ -133,7 +137,7 @@ def between_poses(sun: Floats, features: Floats) -> Floats:
     """
     from scipy.spatial import cKDTree  # noqa: PLC0415 - SciPy, at the first fit only
 
-    places, pose = np.unique(np.round(sun, _DIGITS), axis=0, return_inverse=True)
+    places, pose = np.unique(np.round(sun, _POSE_DIGITS), axis=0, return_inverse=True)
     pose = pose.reshape(-1)
     times = np.bincount(pose)
     found = np.stack([np.bincount(pose, column) / times for column in features.T], axis=1)

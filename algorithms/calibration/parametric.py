@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from algorithms.calibration.calibrated import CalibratedModel, Columns
-from algorithms.calibration.conditioning import WORST_CONDITION
+from algorithms.calibration.conditioning import WORST_SOLUTION
 from algorithms.calibration.quality import Parameter
 from algorithms.calibration.residual_noise import parameter_covariance
 from algorithms.contract import Floats, UnusableDataError
@@ -128,7 +128,7 @@ class ParametricModel(CalibratedModel):
             if (lengths > 0).all()
             else np.zeros(1)
         )
-        if not values[-1] * WORST_CONDITION > values[0]:
+        if not values[-1] * WORST_SOLUTION > values[0]:
             raise UnusableDataError(
                 f"{by}: the calibration samples do not settle the {count} parameters "
                 f"({', '.join(name for name, _ in self.names())}); they must spread over the field "

@@ -28,11 +28,12 @@ _WIDTH = 0.2
 _WIDTHS = (1.0, 0.5, 1.5)
 #: A width held at its value weighs by this; where it takes all but this of the light, it is.
 _HELD, _DIMMER = 1e9, 0.25
-_STEPS = 60
+_STEPS = 150
+_LEAST_PART = 0.3
 #: Steps after which what the width is expected to be weighs the same in all that follow.
 _WEIGHED = 3
-_SETTLED_PX = 1e-9
-_SETTLED_WIDTH = 1e-6
+_SETTLED_PX = 1e-12
+_SETTLED_WIDTH = 1e-9
 
 
 @compiled
@@ -233,7 +234,7 @@ def _shift(  # noqa: PLR0917 - Numba takes no keyword-only ones
         middle = math.floor(start + 0.5)
         lit[max(middle - reach, 0) : middle + reach + 1] = True
     width, least, most = widths
-    shift, last, bright, firm, held = 0.0, 0.0, 0.0, 0.0, not slanted
+    shift, last, part, bright, firm, held = 0.0, 0.0, 1.0, 0.0, 0.0, not slanted
     matrix, vector, row = np.empty((4, 4)), np.empty(4), np.empty(3)
     _terms(light, step, 0.0, width, slanted, row)
     for turn in range(_STEPS):
@@ -258,10 +259,11 @@ def _shift(  # noqa: PLR0917 - Numba takes no keyword-only ones
         move = max(-1.0, min(1.0, vector[1] / vector[0]))
         wider = max(-0.3 * width, min(0.3 * width, vector[2] / vector[0]))
         wider = max(least, min(most, width + wider)) - width
-        half = 0.5 if move * last < 0.0 else 1.0  # to and fro: half of both steps ends it
-        last = half * move
+        if move * last < 0.0:  # to and fro: shorter steps end it
+            part = max(_LEAST_PART, 0.7 * part)
+        last = part * move
         shift += last
-        width += half * wider
+        width += part * wider
         if turn > _WEIGHED and abs(last) < _SETTLED_PX and abs(wider) < _SETTLED_WIDTH:
             return float(shift)
     return math.nan

@@ -75,11 +75,15 @@ class Score:
     def row(self) -> dict[str, float | None]:
         """Return the numbers as stored, a column each: rounded, None where undefined."""
         plain = {name: stored(getattr(self, name)) for name in _PLAIN}
+        for bias, rms in _BIASES.items():
+            plain[bias] = stored_beside(getattr(self, bias), getattr(self, rms))
         rings = zip(RINGS, self.rings_deg, strict=True)
         return plain | {ring.column: stored(value, RING_DIGITS) for ring, value in rings}
 
 
 _PLAIN = tuple(field.name for field in fields(Score) if field.name != "rings_deg")
+#: Means of errors about zero, and the root mean squares whose last digit is theirs, too.
+_BIASES = {"bias_alpha_deg": "rms_alpha_deg", "bias_beta_deg": "rms_beta_deg"}
 #: Columns of a stored score.
 METRICS = (*_PLAIN, *(ring.column for ring in RINGS))
 
@@ -87,6 +91,23 @@ METRICS = (*_PLAIN, *(ring.column for ring in RINGS))
 def stored(value: float, digits: int = SIGNIFICANT_DIGITS) -> float | None:
     """Round a number as results keep it, to significant digits; None where it is not finite."""
     return float(f"{value:.{digits}g}") if math.isfinite(value) else None
+
+
+def stored_beside(value: float, size: float) -> float | None:
+    """Round a number to the last digit that `size` is kept to; None where either is not finite.
+
+    A mean of errors that cancel is no better known than they are.
+
+    Examples
+    --------
+    >>> stored_beside(-9.34789e-05, 0.0029342)
+    -9.35e-05
+    """
+    if not (math.isfinite(value) and math.isfinite(size)):
+        return None
+    if size == 0.0:
+        return stored(value)
+    return round(value, SIGNIFICANT_DIGITS - 1 - math.floor(math.log10(size))) + 0.0
 
 
 def is_available(row: Mapping[str, object]) -> bool:

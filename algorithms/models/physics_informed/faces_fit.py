@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from algorithms.calibration.conditioning import WORST_CONDITION
+from algorithms.calibration.conditioning import WORST_SOLUTION
 from algorithms.calibration.quality import Parameter
 from algorithms.contract import Floats, UnusableDataError
 from algorithms.models.physics_informed.faces_weighing import Weighing
@@ -137,7 +137,7 @@ class FacesFit:
         derivatives = jacobian(solution.x)
         lengths = np.linalg.norm(derivatives, axis=0)
         values = np.linalg.svd(derivatives / np.where(lengths > 0, lengths, 1.0), compute_uv=False)
-        if not (np.isfinite(solution.x).all() and values[-1] * WORST_CONDITION > values[0]):
+        if not (np.isfinite(solution.x).all() and values[-1] * WORST_SOLUTION > values[0]):
             raise UnusableDataError(
                 f"{self.by}: the calibration samples do not settle gains, normals and response of "
                 f"{faces} faces; they must spread over the field of view"
