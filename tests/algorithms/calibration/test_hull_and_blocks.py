@@ -155,3 +155,15 @@ def test_orders_that_samples_leave_open_are_not_chosen():
     assert np.isfinite(found).tolist() == [True, True, False]
     with pytest.raises(UnusableDataError, match="test needs more samples"):
         chosen(np.array([np.inf, np.inf]), "test")
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_rounding_moves_no_pose_into_another_fold(seed: int) -> None:
+    generator = np.random.default_rng(seed)
+    steps = np.tan(np.radians(np.linspace(-60.0, 60.0, 21)))
+    grid = np.stack(np.meshgrid(steps, steps, [1.0]), axis=-1).reshape(-1, 3)
+    scattered = np.append(generator.uniform(-1.5, 1.5, (400, 2)), np.ones((400, 1)), axis=1)
+    for places in (grid, scattered):
+        sun = places / np.linalg.norm(places, axis=1, keepdims=True)
+        moved = sun * (1.0 + 1e-13 * generator.standard_normal(sun.shape))
+        assert (folds(moved) == folds(sun)).all()
