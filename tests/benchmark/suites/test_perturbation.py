@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
+from benchmark.contract import Cell
 from benchmark.plan.combinations import cells
 from benchmark.plan.parts import installed
-from benchmark.suites.perturbation import SIZE, perturbed, search
+from benchmark.suites.perturbation import SIZE, Sensitive, perturbed, search
 
 
 def test_counts_stay_and_other_numbers_move_by_a_rounding():
@@ -21,4 +23,21 @@ def test_counts_stay_and_other_numbers_move_by_a_rounding():
 def test_no_model_of_a_cube_hangs_on_rounding():
     found = search(cells("pd-maskless-cube", "nominal"), installed())
     assert found.cells > 5
-    assert [str(one) for one in found.sensitive] == []
+    assert [str(one) for one in found.moved] == []
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "moved"),
+    [
+        (0.0070338, 0.0070339, False),
+        (0.75, 0.75001, False),
+        (-9.3e-05, -9.4e-05, False),
+        (0.99999, 1.0, False),
+        (0.026765, 0.026767, True),
+        (1.0, None, True),
+    ],
+)
+def test_what_moves_is_told_from_a_last_digit_that_turns(before, after, moved):
+    assert (
+        Sensitive(Cell("d", "c", "e", "m"), "features", {"rms_deg": (before, after)}).moved is moved
+    )
