@@ -127,7 +127,8 @@ def search(
 def perturbed(values: ArrayLike, *names: str | int) -> Floats:
     """Return values with relative noise of `SIZE`; whole numbers, zeros and NaN stay as they are.
 
-    A whole number is a count or a sum of counts, exact in any order.
+    A whole number is a count or a sum of counts, exact in any order. Equal values move alike: the
+    same sums are rounded the same way.
 
     Parameters
     ----------
@@ -142,8 +143,10 @@ def perturbed(values: ArrayLike, *names: str | int) -> Floats:
     array([ True, False, False])
     """
     given = np.asarray(values, dtype=np.float64)
-    noise = generator("perturbation", *names).standard_normal(given.shape)
-    return np.where(given == np.round(given), given, given * (1.0 + SIZE * noise))
+    different, which = np.unique(given, return_inverse=True)
+    noise = generator("perturbation", *names).standard_normal(len(different))
+    moved = np.where(different == np.round(different), different, different * (1.0 + SIZE * noise))
+    return np.asarray(moved[which.reshape(given.shape)])
 
 
 class _Perturbing:
