@@ -16,6 +16,9 @@ Partners = NDArray[np.int32]
 
 #: Displacements tried, those that most pairs of a spot and an aperture vote for.
 _CANDIDATES = 64
+#: Qualities that differ by less are equal: of displacements by whole periods of a mask they are, up
+#: to rounding, which must not choose those that are compared. The one with more votes is first.
+_EQUAL = 1e-6
 #: Rounds of matching and averaging; the first reaches further, by _REACH tolerances.
 _ROUNDS = 4
 _REACH = 2.0
@@ -229,10 +232,10 @@ def _explanations(  # noqa: PLR0917 - Numba takes no keyword-only ones
         most = max(most, matched)
         if matched == 0 or not _distinct(places, kept, x, y, tolerance):
             continue
-        if kept == room and quality <= score[kept - 1]:
+        if kept == room and quality <= score[kept - 1] + _EQUAL:
             continue
         at = kept - 1 if kept == room else kept
-        while at > 0 and score[at - 1] < quality:
+        while at > 0 and score[at - 1] < quality - _EQUAL:
             score[at] = score[at - 1]
             places[at] = places[at - 1]
             partners[at] = partners[at - 1]

@@ -28,6 +28,8 @@ _LIGHT, _LIGHT_ONE, _DOUBLED = 2.0, (0.8, 0.8), 1.0
 _OUTSIDE = 1.0
 #: By how much more than the faults allowed a rival must cost: no more than a spot beside its place.
 _CLEAR = 0.04
+#: What of two displacements speaks for neither: rounding.
+_EVEN = 1e-9
 
 
 @compiled
@@ -274,7 +276,7 @@ def _choose(  # noqa: PLR0917 - Numba takes no keyword-only ones
     tolerance, allowed = limits
     best = 0
     for h in range(1, places.shape[0]):
-        if _ahead(best, h, spots, places, view, mask, tolerance, _LIGHT, work) < 0.0:
+        if _ahead(best, h, spots, places, view, mask, tolerance, _LIGHT, work) < -_EVEN:
             best = h
     doubtful = _is_thin(view[0][best], mask[1], allowed, work[1])
     near_last = 0
