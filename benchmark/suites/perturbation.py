@@ -221,7 +221,7 @@ def _moved_features(
     truth = perturbed(known.truth, *names, "directions")
     truth /= np.linalg.norm(truth, axis=1, keepdims=True)
     told = cast("Samples", _Told(known, truth))
-    moved = {split: perturbed(found, *names, split) for split, found in features.items()}
+    moved = {split: perturbed(found, *names) for split, found in features.items()}
     return replace(data, splits={**data.splits, "calibration": told}), moved
 
 

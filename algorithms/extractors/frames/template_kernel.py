@@ -11,6 +11,9 @@ from numpy.typing import NDArray
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
 
+#: Share of a level by which a pixel has to be above it: digital numbers are at times half of the
+#: brightest, and rounding must not light them.
+_LEVEL = 1e-9
 #: Pixels by which a good position may differ from the best, in half widths of the template.
 _SLACK = 1.0
 #: Sub-pixel searches in turn: steps a pixel, and how many are tried to each side.
@@ -175,7 +178,7 @@ def best_positions(  # noqa: PLR0917 - Numba takes no keyword-only ones
         out[k, 0] = np.nan
         out[k, 1] = np.nan
         frame = frames[k]
-        level = levels[k]
+        level = levels[k] + _LEVEL * abs(levels[k])
         lit = 0
         sum_x = 0.0
         sum_y = 0.0

@@ -22,7 +22,7 @@ _MAX_EVALUATIONS = 100
 #: Fits with the weights that the one before shows; the third changes nothing to speak of.
 _ROUNDS = 3
 #: Relative change at which the last of them stops, and those before it.
-_PRECISION, _ON_THE_WAY = 1e-15, 1e-6
+_PRECISION, _ON_THE_WAY = 1e-15, 1e-12
 _STEP = 1e-6
 #: Coefficients of a response: of 1, c, c^2 and c^3.
 _POWERS = 4
