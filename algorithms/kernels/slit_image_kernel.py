@@ -214,7 +214,7 @@ def _equations(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def _shift(  # noqa: PLR0917 - Numba takes no keyword-only ones
+def _shift(  # noqa: C901, PLR0917 - one fit; Numba takes no keyword-only ones
     line: Floats,
     starts: Floats,
     reach: int,
