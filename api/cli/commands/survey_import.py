@@ -132,9 +132,8 @@ def _print(plan: ImportPlan) -> None:
             title="Values read by similarity: check them",
         )
     if listed["withdrawn"]:
-        columns = ("table", "study", "value", "note")
         title = "Rows of ours that rest on a replaced value, and go with it"
-        emit(listed["withdrawn"], columns, Format.TABLE, title=title)
+        emit(listed["withdrawn"], ("table", "study", "value", "note"), Format.TABLE, title=title)
     if listed["unmatched"]:
         emit(listed["unmatched"], ("row", "reason"), Format.TABLE, title="Rows left aside")
     edits = len(plan.edits)
