@@ -20,8 +20,7 @@ from numpy.typing import NDArray
 from registry.designs import DesignTable, Kept
 from registry.judging import KeptPlace, Question
 from registry.kept_answers import KeptAnswers
-from registry.ranking import Sort, key_of
-from registry.task_measures import TaskMeasure, joint_cost, task_measures
+from registry.ranking import Sort, TaskMeasure, joint_cost, key_of, task_measures
 
 Numbers = NDArray[np.float64]
 Positions = NDArray[np.int64]

@@ -87,7 +87,7 @@ class Architecture:
 
     ``tasks`` are those its studies had, or it is advised for: their number, and whether it is;
     ``advice`` is the survey's for what is asked. ``best`` errs least of all its calibrations.
-    ``measures`` are the tasks' own, what it is ranked by (`registry.task_measures`).
+    ``measures`` are the tasks' own, what it is ranked by (`registry.ranking.task_measures`).
     ``count`` calibrations meet the requirements, ``calibrations`` are the first of them.
     """
 

@@ -357,8 +357,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="python -m benchmark.assessment.regret")
     parser.add_argument("number", nargs="?", type=int, default=NUMBER, help="of requirement sets")
     parser.add_argument("seed", nargs="?", type=int, default=SEED, help="of the draw")
-    asked = parser.parse_args(arguments)
-    number, seed = asked.number, asked.seed
+    number, seed = vars(parser.parse_args(arguments)).values()
     found = list(regrets(Store(), number, seed))
     met = [one for one in found if math.isfinite(one.best_deg)]
     first = sum(math.isclose(one.first_deg["measured"], one.best_deg, rel_tol=_SAME) for one in met)

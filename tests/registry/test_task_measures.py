@@ -5,9 +5,9 @@ from statistics import median
 
 import pytest
 
+from registry.ranking import TaskMeasure, joint_cost
 from registry.recommendation import recommend
 from registry.studies import facts
-from registry.task_measures import TaskMeasure, joint_cost
 from survey_data.hardware import hardware
 from tests.registry.brute_force import measured_pipeline
 

@@ -95,11 +95,9 @@ class Requirements(Question):
     )
     sort: Sort = Field(
         "advice",
-        description="Order of the architectures: those that the survey advises or studies used "
-        "first, by the own measure of the tasks asked for or by error, where advice and studies "
-        "make up for a factor of two at most; for a kind of error asked for, what is advised for "
-        "it first (advice); backed by most studies (support); smallest error (measured). "
-        "Calibrations of an architecture come by error but for support.",
+        description="Order of the architectures: advised or used ones first, by the measure of "
+        "the tasks asked for or by error (advice); backed by most studies (support); smallest "
+        "error (measured). Calibrations come by error but for support.",
     )
     limit: Annotated[int, WHOLE] = Field(
         20,
@@ -261,13 +259,13 @@ class Advice(Shape):
 
 
 class TaskMeasure(Shape):
-    """What an architecture is ranked by for a task that is asked for."""
+    """What an architecture is ranked by for a task."""
 
     task: str
-    value: float | None = Field(description="None where nothing is measured or published.")
+    value: float | None
     unit: str
     basis: Literal["measured", "published"]
-    built: int = Field(description="Built sensors that it is the median of; 0 where measured.")
+    built: int = Field(description="Built sensors that it is the median of.")
     words: str
 
 

@@ -185,7 +185,8 @@ def test_a_pipeline_that_answers_too_seldom_has_no_error_and_says_so():
                    "advised": [], "studies": [], "measured": measured}  # fmt: skip
     architecture = {"rank": 1, "detector": "D", "mask": "M", "tasks": [], "advice": [],
                     "studies": [], "best": calibration, "pareto": False, "contradiction": None,
-                    "count": 2, "calibrations": [calibration, {**calibration, "measured": None}],
+                    "measures": [], "count": 2,
+                    "calibrations": [calibration, {**calibration, "measured": None}],
                     }  # fmt: skip
     document = {"sort": "advice", "count": 1, "designs": 2, "architectures": [architecture],
                 "contradictions": [], "regret": None, "untimed": 3,

@@ -28,8 +28,7 @@ _LIGHT, _LIGHT_ONE, _DOUBLED = 2.0, (0.8, 0.8), 1.0
 _OUTSIDE = 1.0
 #: By how much more than the faults allowed a rival must cost: no more than a spot beside its place.
 _CLEAR = 0.04
-#: What of two displacements speaks for neither: rounding.
-_EVEN = 1e-9
+_EVEN = 1e-9  # rounding speaks for none of two displacements
 
 
 @compiled
