@@ -25,6 +25,7 @@ _BLOCKS = 500
 _POSE_DIGITS = 6
 #: Squared distances are equal that differ by less: those of a grid are, up to rounding.
 _ALIKE = 1e-9
+#: Places along an axis are told apart to this many digits of a slice.
 _DIGITS = 9
 #: Poses around one on a grid.
 _NEIGHBOURS = 8

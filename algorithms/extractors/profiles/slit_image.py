@@ -10,7 +10,14 @@ from typing import ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from algorithms.contract import AboutExtractor, FeatureKind, Floats, Observation, SensorGeometry
+from algorithms.contract import (
+    AboutExtractor,
+    FeatureKind,
+    Floats,
+    Observation,
+    SensorGeometry,
+    UnsuitableDesignError,
+)
 from algorithms.extractors.profiles.linear_phase import LinearPhase
 from algorithms.extractors.profiles.slit_lines import NEEDS, SlitLines
 from algorithms.inputs import require_positive
@@ -48,7 +55,8 @@ class SlitImage(SlitLines):
         Pixels of a line, at least 1.
     slits : tuple of (float, float, float)
         Offset from the line's middle, px, tangent of the slant and width along the line, px, of
-        each slit; all lines lie behind the same. At most two different slants.
+        each slit; all lines lie behind the same. At most two different slants, slits of one slant
+        equally wide.
     reach_px : float
         Largest displacement of the shadow on either axis, px, positive; used where slants differ.
     margin_px : float
@@ -126,6 +134,13 @@ class SlitImage(SlitLines):
         require_positive(self.about.name, height_px=self.height_px, pixel_mm=self.pixel_mm)
         if not self.mask_px >= 0.0:
             raise ValueError(f"{self.about.name}: mask_px must not be negative; got {self.mask_px}")
+        for slant in self.tangents:
+            widths = [slit[2] for slit in self.slits if slit[1] == slant]
+            if not np.allclose(widths, widths[0], rtol=1e-9, atol=0.0):
+                raise UnsuitableDesignError(
+                    f"{self.about.name} fits slits of one slant with one image: they must be "
+                    f"equally wide; got {widths!r} px"
+                )
         thick = sum(plate[0] for plate in self.glass)
         if any(not (t > 0 and n >= 1) for t, n in self.glass) or thick > self.height_px:
             raise ValueError(
@@ -156,7 +171,7 @@ class SlitImage(SlitLines):
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Positions (N, 2) in profiles (N, A L); ValueError on wrong input."""
-        from algorithms.kernels import slit_image_kernel  # noqa: PLC0415 - Numba, at first use
+        from algorithms.extractors.profiles import slit_image_kernel  # noqa: PLC0415 - Numba
 
         lines = self.lines(observations)
         lined = (self.line_axes, self.line_pixels, self.slits, self.reach_px, self.margin_px)

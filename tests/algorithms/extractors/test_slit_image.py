@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from algorithms.contract import SensorGeometry
+from algorithms.contract import SensorGeometry, UnsuitableDesignError
 from algorithms.extractors.profiles.eigen_analysis import EigenAnalysis
 from algorithms.extractors.profiles.linear_phase import LinearPhase
 from algorithms.extractors.profiles.slit_image import SlitImage
@@ -116,6 +116,12 @@ def test_the_height_of_pixels_behind_a_slanted_slit_need_not_be_known() -> None:
         light += np.clip(2.5 - np.abs(x - 18.0 - along), 0.0, 1.0)
         found = SlitImage.for_sensor(drawn).extract(light[None]) - middle
         assert np.abs(found - [[across, along]]).max() < 0.03
+
+
+def test_slits_of_one_slant_that_differ_in_width_are_refused() -> None:
+    slits = ((-0.5, 0.0, 0.2), (0.5, 0.0, 0.15))  # one image cannot stand for both
+    with pytest.raises(UnsuitableDesignError, match="equally wide"):
+        SlitImage.for_sensor(SensorGeometry(**{**vars(DRAWN), "slits": slits}))
 
 
 @pytest.mark.parametrize(
