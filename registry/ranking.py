@@ -151,9 +151,9 @@ _LEAST_POWER_MW = 1.0
 _FULL_CIRCLE_DEG = 360.0
 _WORDS = MappingProxyType(
     {
-        "Power": "the median power of",
-        "Volume": "the median mass, which stands for the volume, of",
-        "Cost": "the root of median power times median mass, as no prices are published, of",
+        "Power": "median power of",
+        "Volume": "median mass (no volumes are tabled) of",
+        "Cost": "root of median power times median mass (no prices are published) of",
     }
 )
 

@@ -18,9 +18,9 @@ from statistics import geometric_mean, median
 from typing import Any
 
 import numpy as np
-import pandas as pd
 
 from benchmark import datasets
+from benchmark.assessment.task_costs import joint_cost
 from benchmark.datasets.hazards import hazards
 from benchmark.metrics.rings import EDGES_DEG, field_error
 from benchmark.metrics.score import AVAILABLE
@@ -34,7 +34,6 @@ from registry.ranking import Sort
 from registry.recommendation import Recommendation, recommend
 from registry.requirements import CLASSES_DEG, CONFIDENCE, EXCLUDE, HAZARDS, NEEDS
 from registry.studies import Facts, facts
-from survey_data.descriptor import DATA_DIRECTORY
 
 Row = Mapping[str, Any]
 Asked = Mapping[str, Any]
@@ -48,7 +47,7 @@ _DRAWN = (
     *(("accuracy", 0.15, 2), ("exclude_detector", 0.3, 3), ("exclude_mask", 0.3, 3)),
     *(("exclude_model", 0.3, 5), ("exclude_extractor", 0.3, 5)),
 )
-#: What is asked of studies.
+#: Requirements that the studies of an architecture have to meet.
 _OF_STUDIES = ("task", "error", "accuracy")
 #: Relative difference of two numbers that are the same one.
 _SAME = 1e-12
@@ -67,9 +66,8 @@ class Drawn:
     best_there_deg
         Least error likewise on the architecture that the usual answer names first.
     own_ratio
-        How many times worse that architecture is by the own measure of the tasks asked for (the
-        error where none is) than the best one that the survey advises or a study stands for;
-        NaN where none of those has one.
+        Cost of that architecture by the tasks asked for (its error where none are), over the least
+        cost of those that the survey advises or studies used; NaN where all of those are unknown.
     first_deg, told
         By order of the answer: what the first calibration named errs (infinite where it is not
         measured or answers too seldom), and the ratio of the two that the answer tells.
@@ -299,7 +297,7 @@ def regrets(store: Store, number: int = NUMBER, seed: int = SEED) -> Iterator[Dr
         own: dict[tuple[str, str], float] = {}
         for pair, error, row in errors(table, drawn, asked, known):
             if error < by.get(pair, math.inf):
-                by[pair], own[pair] = error, _own(asked.get("task", ()), pair, error, row)
+                by[pair], own[pair] = error, joint_cost(asked.get("task", ()), pair, error, row)
         orders: tuple[Sort, ...] = ("measured", "advice")
         answers = {sort: recommend(asked, measured, sort=sort, facts=known) for sort in orders}
         named = answers["advice"].architectures
@@ -313,29 +311,6 @@ def regrets(store: Store, number: int = NUMBER, seed: int = SEED) -> Iterator[Dr
             {sort: _first(answer) for sort, answer in answers.items()},
             {sort: answer.regret and answer.regret["ratio"] for sort, answer in answers.items()},  # type: ignore[misc]
         )
-
-
-def _own(tasks: Iterable[str], pair: tuple[str, str], error: float, row: Row) -> float:
-    """Return the geometric mean of what tasks are measured by, the less the better."""
-    costs = [_cost(task, pair, error, row) for task in tasks] or [error]
-    return geometric_mean(costs) if all(map(math.isfinite, costs)) else math.inf
-
-
-def _cost(task: str, pair: tuple[str, str], error: float, row: Row) -> float:
-    if task == "Accuracy":
-        return error
-    if task == "Precision":
-        return row["repeatability_deg"] or math.inf
-    if task == "FOV":
-        return 180.0 / (row["half_fov_deg"] or 180.0)  # none stands for a whole sphere
-    if task == "Latency":
-        return math.inf  # stored pipelines are not timed
-    built = pd.read_csv(DATA_DIRECTORY / "hardware.csv")
-    built = built[(built["detector"] == pair[0]) & (built["mask"] == pair[1])]
-    power, mass = max(built["power_mw"].median(), 1.0), built["mass_g"].median()
-    cost = {"Power": power, "Volume": mass, "Cost": math.sqrt(power * mass)}[task]
-    known = {"Power": ["power_mw"], "Volume": ["mass_g"], "Cost": ["power_mw", "mass_g"]}[task]
-    return float(cost) if built[known].notna().any().all() else math.inf
 
 
 def _ratio(first: float, evident: Iterable[float | None]) -> float:
@@ -357,7 +332,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="python -m benchmark.assessment.regret")
     parser.add_argument("number", nargs="?", type=int, default=NUMBER, help="of requirement sets")
     parser.add_argument("seed", nargs="?", type=int, default=SEED, help="of the draw")
-    number, seed = vars(parser.parse_args(arguments)).values()
+    asked = parser.parse_args(arguments)
+    number, seed = asked.number, asked.seed
+    if number < 1:
+        parser.error(f"number: expected a positive number of requirement sets, got {number}")
     found = list(regrets(Store(), number, seed))
     met = [one for one in found if math.isfinite(one.best_deg)]
     first = sum(math.isclose(one.first_deg["measured"], one.best_deg, rel_tol=_SAME) for one in met)

@@ -41,6 +41,12 @@ def test_the_best_is_named_first_and_regret_told_for_a_few_sets():
             assert math.isnan(one.own_ratio) or one.own_ratio <= 2.0, one.asked
 
 
+def test_no_sets_at_all_are_refused(capsys):
+    with pytest.raises(SystemExit):
+        regret.main(["0"])
+    assert "expected a positive number" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("measured", "advice", "told", "kept"),
     [

@@ -19,16 +19,10 @@ CMOS = "cmos-single-aperture"
 
 def cost_of(measure):
     """The less the better; None where nothing is known."""
-    value = measure["value"]
+    value, task = measure["value"], measure["task"]
     if value is None:
         return None
-    return (
-        360.0 / value
-        if measure["task"] == "FOV"
-        else max(value, 1.0)
-        if (measure["task"] == "Power")
-        else value
-    )
+    return {"FOV": 360.0 / (value or 1.0), "Power": max(value, 1.0)}.get(task, value)
 
 
 def row(condition="nominal", unit=0, **changed):
@@ -135,9 +129,13 @@ def test_all_that_the_survey_advises_for_a_task_is_marked_and_nothing_far_better
         first = recommend({"task": task}, published).architectures
         assert {(a.detector, a.mask) for a in first if a.advice} == advised, task
         evident = [a for a in first if (a.advice or a.studies) and a.best.measured]
-        costs = [cost for a in evident if (cost := cost_of(a.measures[0])) is not None]
-        assert cost_of(evident[0].measures[0]) in costs or not costs
-        assert not costs or costs[0] <= 2.0 * min(costs)
+        costs = [cost_of(a.measures[0]) for a in evident]
+        priced = [cost for cost in costs if cost is not None]
+        if priced:  # nothing is timed in the record
+            assert costs[0] is not None
+            assert costs[0] <= 2.0 * min(priced)
+        else:
+            assert task == "Latency"
 
 
 def test_albedo_changes_the_order_of_coarse_sensors(published):
