@@ -52,9 +52,10 @@ def import_(
 
     Shows which column was taken for what, and every cell that differs: new (ours is unknown),
     changed, confirmed (the same on better evidence), or conflict (the survey prints ours, which
-    stays). Cells that cannot be read are named on stderr with row and column, and the exit code
-    is 1. With --bibliography: title, authors, venue and DOI of each key, which are taken where the
-    identity is not confirmed, and shown as a conflict where it is.
+    stays). Roles, and pairs of detector and mask, that rest on a replaced value are listed and
+    removed with it. Cells that cannot be read are named on stderr with row and column, and the exit
+    code is 1. With --bibliography: title, authors, venue and DOI of each key, which are taken where
+    the identity is not confirmed, and shown as a conflict where it is.
     """
     if (file is None) == (bibliography is None):
         raise WrongCallError("expected either a table or --bibliography FILE")
