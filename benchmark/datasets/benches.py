@@ -19,9 +19,6 @@ from benchmark.metrics.score import aligned_error_deg
 #: Benches that are drawn to say what alignment leaves of their errors, and directions looked at.
 _DRAWN, _DIRECTIONS = 40, 200
 
-#: What is left of a bench that errs by one rotation alone is the rounding of the fit.
-_ROTATION_ROUNDING_DEG = 1e-9
-
 
 def reported(preset: Preset, condition: str, sun: Floats, draw: int) -> Floats:
     """Return the directions (N, 3) that a drawn bench gives for true ones (N, 3).
@@ -47,8 +44,7 @@ def reported(preset: Preset, condition: str, sun: Floats, draw: int) -> Floats:
 def aligned_bench_deg(preset: Preset, condition: str, sun: Floats) -> float:
     """Return what the best rotation leaves of the fixed errors of a bench, root mean square.
 
-    Over benches that are drawn for it and at most 200 of the directions (N, 3); 0 without a bench,
-    and where a bench errs by one rotation alone, as a mounting in flight does.
+    Over benches that are drawn for it and at most 200 of the directions (N, 3); 0 without a bench.
     """
     bench = _bench(preset, condition)
     if bench is None:
@@ -57,8 +53,8 @@ def aligned_bench_deg(preset: Preset, condition: str, sun: Floats) -> float:
     fixed = dataclasses.replace(bench, **sizes)
     seen = sun[:: max(1, len(sun) // _DIRECTIONS)]
     told = (fixed.reported(seen, "bench", "aligned", draw) for draw in range(_DRAWN))
-    left = math.sqrt(float(np.mean([aligned_error_deg(one, seen) ** 2 for one in told])))
-    return left if left > _ROTATION_ROUNDING_DEG else 0.0
+    left = [aligned_error_deg(one, seen) for one in told]
+    return math.sqrt(float(np.mean(np.square(left))))
 
 
 def _bench(preset: Preset, condition: str) -> Any:

@@ -17,6 +17,9 @@ from benchmark.simulator.light.sun_disc import tangent_axes
 
 BORESIGHT = (0.0, 0.0, 1.0)
 
+#: What alignment leaves of a bench that errs by one rotation alone is the rounding of the fit.
+_ROTATION_ROUNDING_DEG = 1e-9
+
 
 def board_facts(
     preset: Preset, condition: str, sun: Floats, bound: Bound
@@ -45,10 +48,11 @@ def board_facts(
     """
     seen = np.asarray(bound.observable, dtype=np.bool_)
     unit = bound.unit_angle_deg
+    aligned = aligned_bench_deg(preset, condition, sun)
     return {
         "bound_unit_deg": None if unit is None else _rms(np.asarray(unit)[seen]),
         "bench_deg": stored(preset.reference_error_deg(condition)),
-        "bench_aligned_deg": stored(aligned_bench_deg(preset, condition, sun)),
+        "bench_aligned_deg": stored(aligned if aligned > _ROTATION_ROUNDING_DEG else 0.0),
         "boresight_deg": _rms(separation_deg(np.tile(BORESIGHT, (len(sun), 1)), sun)[seen]),
         "oracle_deg": _rms(_found(separation_deg(oracle(preset, condition, sun, bound), sun))),
     }

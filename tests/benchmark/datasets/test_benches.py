@@ -33,7 +33,13 @@ def test_alignment_leaves_what_is_no_rotation(slit):
     left = aligned_bench_deg(slit, "nominal", sun)
     assert 0.0 < left < 0.7 * slit.reference_error_deg("nominal")
     aboard = datasets.get("pd-orbit")
-    assert aligned_bench_deg(aboard, "nominal", sun) == 0.0  # not 1e-14: rounding is no number
+    assert aligned_bench_deg(aboard, "nominal", sun) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_board_states_no_rounding_as_what_alignment_leaves():
+    aboard = datasets.get("pd-orbit")
+    samples, bound = aboard.generate("nominal", "test", 60), aboard.bound("nominal", "test", 60)
+    assert board_facts(aboard, "nominal", samples.sun, bound)["bench_aligned_deg"] == 0.0
 
 
 def test_a_perfect_calibration_has_no_bench():
