@@ -15,12 +15,12 @@ import json
 from base64 import b64decode, b64encode
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
 from survey_data.file_bytes import FileRefusedError, is_there, read_bytes
 from survey_data.json_reading import members, read_json
 from survey_data.problems import Problem
-from survey_data.whole_files import replace_file
+from survey_data.whole_files import replace_file, replacing
 
 FILE = "manifest.json"
 #: What the files are about to be: written before them and renamed to `FILE` after the last, so
@@ -122,7 +122,11 @@ def differences(folder: Path, names: Collection[str], *, required: bool = False)
 
 
 def write_recorded(
-    folder: Path, contents: Mapping[str, str | bytes | None], *, start: bool = False
+    folder: Path,
+    contents: Mapping[str, str | bytes | None],
+    *,
+    start: bool = False,
+    together: str | None = None,
 ) -> bool:
     """Write files of a folder, each whole or not at all, and take them into its manifest.
 
@@ -135,6 +139,9 @@ def write_recorded(
     start
         Begin a manifest where there is none. Without it files beside which there is none are
         just written.
+    together
+        Sub-folder that all of them stand in: it changes places with a new one in one step
+        (`whole_files.replacing`), so that no kill leaves some of them new and others old.
 
     Returns
     -------
@@ -159,7 +166,11 @@ def write_recorded(
             entries[name] = Entry.of(name, data)
     if recorded and not _is(folder / FILE, spelt(entries)):
         replace_file(folder / NEXT, spelt(entries))
-    changed = False
+    if together is not None:
+        changed = _replace_folder(folder, together, encoded)
+        encoded = {}
+    else:
+        changed = False
     for name, data in encoded.items():
         if data is not None:
             changed |= replace_file(folder / name, data)
@@ -169,6 +180,23 @@ def write_recorded(
     if recorded:
         settle(folder)
     return changed
+
+
+def _replace_folder(folder: Path, name: str, contents: Mapping[str, bytes | None]) -> bool:
+    """Replace files of a sub-folder all at once; say whether one changed."""
+    old = folder / name
+    known = {path.name: path.read_bytes() for path in old.iterdir() if path.is_file()}
+    coming = {PurePosixPath(file).name: data for file, data in contents.items()}
+    wanted = {file: data for file, data in {**known, **coming}.items() if data is not None}
+    if wanted == known:
+        return False
+    with replacing(old) as (new,):
+        new.mkdir(mode=0o777 & old.stat().st_mode)
+        for file, data in wanted.items():
+            (new / file).write_bytes(data)
+            if file in known:
+                (new / file).chmod((old / file).stat().st_mode & 0o777)
+    return True
 
 
 def _as_left(folder: Path, entries: Mapping[str, Entry]) -> dict[str, Entry]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import pandas as pd
@@ -16,9 +16,10 @@ from survey_data.descriptor import (
     primary_key,
     table_names,
 )
+from survey_data.editions import BY_STUDY, EXTENSION, EXTENSION_TABLES, SURVEY, Choice
 from survey_data.numerals import decimal, integer
 from survey_data.problems import Problem, SurveyDataError
-from survey_data.whole_records import read_whole_records
+from survey_data.whole_records import read_table_records
 
 FIRST_ROW = 2  # the header is row 1, and the tables keep one record a line
 
@@ -29,6 +30,8 @@ class SurveyTables:
 
     Strings are str, whole numbers Int64, numbers float64, truth values bool; an empty cell is
     missing (NaN/NA). ``attributes.value`` is text for every attribute, numeric ones included.
+    ``studies`` and what belongs to them are the survey's alone, which its counts and findings are
+    of; later studies stand in the tables of the extension, and `edition` gives both.
     Columns and their meaning: ``datapackage.json``.
     """
 
@@ -53,6 +56,31 @@ class SurveyTables:
     protocol: pd.DataFrame
     model_families: pd.DataFrame
     venues: pd.DataFrame
+    extension_studies: pd.DataFrame
+    extension_attributes: pd.DataFrame
+    extension_roles: pd.DataFrame
+    extension_architectures: pd.DataFrame
+    extension_names: pd.DataFrame
+    verifications: pd.DataFrame
+
+    def edition(self, name: Choice) -> SurveyTables:
+        """Return the tables of an edition, with a column `edition` in the table of studies.
+
+        Parameters
+        ----------
+        name : {"survey", "all"}
+            ``all`` has the rows of later studies below the survey's, in `studies`, `attributes`,
+            `roles` and `architectures`.
+        """
+        frames = {"studies": self.studies.assign(edition=SURVEY)}
+        if name == "all":
+            for table in BY_STUDY:
+                later = getattr(self, f"extension_{table}")
+                if table == "studies":
+                    later = later.assign(edition=EXTENSION)
+                ours = frames.get(table, getattr(self, table))
+                frames[table] = pd.concat([ours, later], ignore_index=True)
+        return replace(self, **frames)
 
 
 def load(directory: str | Path | None = None) -> SurveyTables:
@@ -78,7 +106,7 @@ def load(directory: str | Path | None = None) -> SurveyTables:
     frames: dict[str, pd.DataFrame] = {}
     problems: list[Problem] = []
     for table in table_names():
-        records = read_whole_records(folder / file_name(table), list(column_types(table)))
+        records = read_table_records(folder, table)
         problems += records.problems
         if not records.problems:
             frame, flaws = typed_frame(table, records)
@@ -89,8 +117,9 @@ def load(directory: str | Path | None = None) -> SurveyTables:
     return SurveyTables(**frames)
 
 
-#: Tables that an import may empty: what stands in them rests on values it may replace.
-MAY_BE_EMPTY = frozenset({"roles", "architectures"})
+#: Tables that an import may empty, as what stands in them rests on values it may replace; and
+#: those of what came after the survey.
+MAY_BE_EMPTY = frozenset({"roles", "architectures", *EXTENSION_TABLES})
 
 
 def _without_use(table: str, records: Records) -> list[Problem]:

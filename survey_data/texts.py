@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import SimpleNamespace
 
-from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name
+from survey_data.descriptor import DATA_DIRECTORY, column_types
 from survey_data.problems import Problem, SurveyDataError
-from survey_data.whole_records import read_whole_records
+from survey_data.whole_records import read_table_records
 
 Rows = Sequence[Mapping[str, str]]
 
@@ -37,7 +37,7 @@ def load_texts(tables: Sequence[str], directory: Path = DATA_DIRECTORY) -> Simpl
     problems: list[Problem] = []
     for table in tables:
         columns = list(column_types(table))
-        records = read_whole_records(directory / file_name(table), columns)
+        records = read_table_records(directory, table)
         problems += records.problems
         found[table] = [dict(zip(columns, cells, strict=True)) for _, cells in records.rows]
     if problems:

@@ -13,7 +13,16 @@ from survey_data.problems import SurveyImportError
 
 #: Fields that name where a work is published, first of these that is there.
 _VENUES = ("journal", "journaltitle", "booktitle", "series", "school", "institution")
-_KINDS = {"article": "journal", "inproceedings": "conference", "conference": "conference"}
+_KINDS = {
+    "article": "journal",
+    "inproceedings": "conference",
+    "conference": "conference",
+    "phdthesis": "thesis",
+    "mastersthesis": "thesis",
+    "thesis": "thesis",
+    "techreport": "report",
+    "report": "report",
+}
 _ACCENTS = {
     "`": "\u0300", "'": "\u0301", "^": "\u0302", "~": "\u0303", '"': "\u0308", "c": "\u0327",
     "v": "\u030c", "u": "\u0306", "H": "\u030b", "=": "\u0304", ".": "\u0307", "k": "\u0328",
@@ -27,7 +36,7 @@ _MOST_BYTES = 20_000_000
 class Entry:
     """What a bibliography says of a key; a text is empty where it says nothing.
 
-    ``authors`` are separated by semicolons, ``kind`` is journal, conference or unknown; ``line``
+    ``authors`` are separated by semicolons, ``kind`` is a type of the table of studies; ``line``
     is where the entry starts.
     """
 
@@ -39,6 +48,7 @@ class Entry:
     kind: str
     doi: str
     line: int
+    url: str = ""
 
 
 def read_bibliography(path: str | Path) -> tuple[Entry, ...]:
@@ -159,6 +169,8 @@ def _closing_label(text: str, at: int) -> int:
 def _entry(key: str, kind: str, fields: Mapping[str, str], line: int) -> Entry:
     year = re.search(r"[0-9]{4}", fields.get("year", "") or fields.get("date", ""))
     doi = re.search(r"10\.[0-9]{4,9}/[^\s{}]+", _plain(fields.get("doi") or fields.get("url", "")))
+    is_arxiv = "arxiv" in (fields.get("archiveprefix") or fields.get("eprinttype", "")).casefold()
+    preprint = re.search(r"[0-9]{4}\.[0-9]{4,5}", fields.get("eprint", "")) if is_arxiv else None
     authors = [_natural(_plain(name)) for name in re.split(r"\s+and\s+", fields.get("author", ""))]
     return Entry(
         key=key,
@@ -166,9 +178,10 @@ def _entry(key: str, kind: str, fields: Mapping[str, str], line: int) -> Entry:
         authors="; ".join(name for name in authors if name),
         year=year[0] if year else "",
         venue=next((_plain(fields[name]) for name in _VENUES if fields.get(name)), ""),
-        kind=_KINDS.get(kind, "unknown"),
-        doi=doi[0].rstrip(".,;") if doi else "",
+        kind="preprint" if kind != "article" and preprint else _KINDS.get(kind, "unknown"),
+        doi=doi[0].rstrip(".,;") if doi else f"10.48550/arXiv.{preprint[0]}" if preprint else "",
         line=line,
+        url=_plain(fields.get("url", "")),
     )
 
 

@@ -20,9 +20,11 @@ from survey_data.importing.plan import (
 from survey_data.importing.reading import read_table
 from survey_data.importing.writing import held_tables, write_valid
 from survey_data.problems import SurveyImportError
-from survey_data.tables import MAY_BE_EMPTY, SurveyTables, load
+from survey_data.tables import SurveyTables, load
 
 _TABLE = "attributes"
+#: Tables whose rows rest on values that an import may replace.
+_RESTING = ("architectures", "roles")
 
 
 def import_table(
@@ -116,7 +118,7 @@ def _applied(folder: Path, plan: ImportPlan) -> ImportPlan:
         return plan
     texts = {_TABLE: _edited(folder, plan, _authors_doi(tables))}
     counts: dict[str, int] = {}
-    for table in sorted(MAY_BE_EMPTY):
+    for table in _RESTING:
         gone = {(entry.study, entry.value) for entry in plan.withdrawn if entry.table == table}
         if gone:
             texts[table], counts[table] = _without(folder, table, gone)

@@ -34,8 +34,17 @@ def held_tables(folder: Path) -> Iterator[None]:
         yield
 
 
-def write_valid(folder: Path, texts: Mapping[str, str]) -> None:
+def write_valid(folder: Path, texts: Mapping[str, str], *, together: str | None = None) -> None:
     """Replace tables, by name, by texts.
+
+    Parameters
+    ----------
+    folder
+        Of the tables.
+    texts
+        New text of each table.
+    together
+        Sub-folder that all of them stand in: they then change in one step.
 
     Raises
     ------
@@ -43,8 +52,9 @@ def write_valid(folder: Path, texts: Mapping[str, str]) -> None:
         The tables would be invalid, or the file cannot be written; nothing has been written.
     """
     try:
-        _require_valid(folder, texts)
-        write_recorded(folder, {file_name(table): text for table, text in texts.items()})
+        require_valid(folder, texts)
+        contents = {file_name(table): text for table, text in texts.items()}
+        write_recorded(folder, contents, together=together)
     except FileRefusedError as error:
         raise SurveyImportError(str(error)) from error
     except OSError as error:
@@ -55,9 +65,11 @@ def _unwritable(folder: Path, error: OSError) -> SurveyImportError:
     return SurveyImportError(f"cannot write in {folder}: {error.strerror or error}")
 
 
-def _require_valid(folder: Path, texts: Mapping[str, str]) -> None:
+def require_valid(folder: Path, texts: Mapping[str, str]) -> None:
+    """Raise SurveyImportError where the tables would not be valid with these texts."""
     with temporary_directory() as scratch:
         for name in (DESCRIPTOR_FILE, *map(file_name, table_names())):
+            (scratch / name).parent.mkdir(exist_ok=True)
             shutil.copyfile(folder / name, scratch / name)
         for table, text in texts.items():
             (scratch / file_name(table)).write_text(text, encoding="utf-8", newline="")

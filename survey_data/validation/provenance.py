@@ -9,9 +9,10 @@ from survey_data.problems import Problem
 from survey_data.validation.cells import Frames, Rule, problem, stated, texts
 
 #: By basis, the column that must say where a value comes from, or why it stands there.
-_TOLD = {
+TOLD = {
     "survey-table": "source",
     "survey-text": "source",
+    "full-text": "source",
     "abstract": "source",
     "inferred": "note",
     "recalled": "note",
@@ -24,7 +25,7 @@ def _evidence_is_told(frames: Frames) -> Iterator[Problem]:
         if table not in frames:
             continue
         for index, (basis, source, note) in texts(frames[table], "basis", "source", "note"):
-            column = _TOLD.get(basis, "")
+            column = TOLD.get(basis, "")
             if column and not (source if column == "source" else note):
                 yield problem(table, index, column, f"basis {basis} without a {column}")
 

@@ -18,16 +18,19 @@ from survey_data.problems import Problem
 from survey_data.tables import FIRST_ROW
 from survey_data.validation import provenance
 from survey_data.validation.cells import Frames, Rule, problem, texts
+from survey_data.validation.extension import check_extension
 
 
 def check_rules(frames: Frames) -> list[Problem]:
     """Return the problems every rule finds whose tables are all in `frames`."""
-    return [
+    rules = (*_RULES, *provenance.RULES)
+    ours = [
         found
-        for needed, rule in (*_RULES, *provenance.RULES)
+        for needed, rule in rules
         if all(table in frames for table in needed)
         for found in rule(frames)
     ]
+    return ours + check_extension(frames, rules)
 
 
 def _values_belong(frames: Frames) -> Iterator[Problem]:

@@ -17,7 +17,6 @@ from survey_data.csv_reading import Records
 from survey_data.descriptor import (
     DATA_DIRECTORY,
     DESCRIPTOR_FILE,
-    column_types,
     descriptor,
     file_name,
     primary_key,
@@ -28,7 +27,7 @@ from survey_data.json_reading import read_json
 from survey_data.problems import Problem
 from survey_data.tables import MAY_BE_EMPTY, typed_frame
 from survey_data.validation.rules import check_rules
-from survey_data.whole_records import read_whole_records
+from survey_data.whole_records import read_table_records
 
 
 def validate(directory: str | Path | None = None) -> list[Problem]:
@@ -56,7 +55,7 @@ def validate(directory: str | Path | None = None) -> list[Problem]:
     problems = _check_descriptor(folder)
     sound: dict[str, Records] = {}
     for table in table_names():
-        records = read_whole_records(folder / file_name(table), list(column_types(table)))
+        records = read_table_records(folder, table)
         problems += records.problems
         if not (records.problems or records.rows or table in MAY_BE_EMPTY):
             problems.append(

@@ -51,6 +51,7 @@ class Copy:
 
 def copy_data(directory: Path) -> Copy:
     for name in (DESCRIPTOR_FILE, *map(file_name, table_names())):
+        (directory / name).parent.mkdir(exist_ok=True)
         shutil.copyfile(DATA_DIRECTORY / name, directory / name)
     return Copy(directory)
 

@@ -1,0 +1,60 @@
+"""What is wrong with a file that offers a study: every fault, with its line."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from survey_data.nearest import nearest
+from survey_data.problems import SurveyImportError
+
+_MOST_LISTED = 12
+
+
+@dataclass(frozen=True)
+class Fault:
+    """One fault; ``line`` is None where no line is at fault."""
+
+    line: int | None
+    message: str
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the fault as plain JSON data."""
+        return asdict(self)
+
+
+class FaultsError(SurveyImportError):
+    """A file cannot be taken; nothing has been written.
+
+    Parameters
+    ----------
+    file : its name
+    faults : all of them; the message has a line for each
+    """
+
+    def __init__(self, file: str, faults: Sequence[Fault]) -> None:
+        self.file = file
+        self.faults = tuple(sorted(faults, key=lambda fault: fault.line or 0))
+        lines = [
+            f"{file}{'' if each.line is None else f', line {each.line}'}: {each.message}"
+            for each in self.faults
+        ]
+        super().__init__("\n".join(lines))
+
+
+def one_of(value: object, words: Iterable[str], near: Iterable[str] = ()) -> str:
+    """Say of which words a value should have been, and which of them is most like it.
+
+    Parameters
+    ----------
+    value : what was given
+    words : what is allowed
+    near : further spellings, written ``spelling=word``
+    """
+    allowed = list(words)
+    spelt = dict(each.rsplit("=", 1) for each in near)
+    meant = nearest(str(value), [*allowed, *spelt], cutoff=0.5)
+    hint = f", did you mean {spelt.get(meant, meant)}?" if meant else ""
+    listed = ", ".join(allowed[:_MOST_LISTED]) + (", ..." if len(allowed) > _MOST_LISTED else "")
+    return f"expected one of {listed}{hint}"

@@ -1,0 +1,198 @@
+"""Adding studies after the survey, confirming what is said of them, and taking them away again."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+
+from survey_data.additions.faults import Fault, FaultsError, one_of
+from survey_data.additions.publications import chosen, read_publications
+from survey_data.additions.reading import Addition, Row, read_addition
+from survey_data.additions.toml_lines import TomlDocument, read_toml
+from survey_data.additions.vocabulary import vocabulary
+from survey_data.csv_reading import read_records
+from survey_data.csv_writing import csv_text
+from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name
+from survey_data.editions import FOLDER
+from survey_data.importing.writing import held_tables, require_valid, write_valid
+from survey_data.problems import SurveyImportError
+from survey_data.texts import load_texts
+
+TABLES = ("studies", "attributes", "roles", "architectures", "names")
+"""Tables of the extension that a study has rows of, without their prefix."""
+
+_VERIFICATIONS = "verifications"
+
+
+class UnknownStudyError(SurveyImportError):
+    """No study has this key, or one that cannot be taken away."""
+
+
+def read_study(
+    path: Path,
+    directory: Path = DATA_DIRECTORY,
+    *,
+    attributes: Path | None = None,
+    key: str | None = None,
+) -> Addition:
+    """Read a study from a template, or from a bibliography with the template of its attributes.
+
+    Parameters
+    ----------
+    path : Path
+        A TOML template; or BibTeX, RIS or CSL JSON, by the end of its name.
+    directory : Path
+        Our tables, whose keys and DOIs are taken.
+    attributes : Path, optional
+        Template of the attributes beside a bibliography; by default the file of the same name that
+        ends in .toml, if there is one. What it says of the publication goes before.
+    key : str, optional
+        Which publication of a bibliography; the only one by default.
+
+    Raises
+    ------
+    FaultsError
+        Names every fault with file and line; SurveyImportError for what is no bibliography.
+    """
+    known = vocabulary(directory)
+    if path.suffix.casefold() == ".toml":
+        if attributes is not None:
+            message = "a template has attributes of its own; --attributes goes with a bibliography"
+            raise FaultsError(path.name, [Fault(None, message)])
+        return read_addition(read_toml(path), known)
+    beside = path.with_suffix(".toml") if attributes is None else attributes
+    document = TomlDocument(path.name, {}, {})
+    if attributes is not None or beside.is_file():
+        document = read_toml(beside)
+    told = document.values.get("key")
+    wanted = key or (told if isinstance(told, str) else None)
+    publication = chosen(read_publications(path), wanted, path.name)
+    stated = {"identity": "confirmed", "type": "unknown"}
+    publication = {**stated, **{name: value for name, value in publication.items() if value}}
+    return read_addition(document, known, publication)
+
+
+def add_study(
+    addition: Addition, directory: Path = DATA_DIRECTORY, *, apply: bool = False
+) -> dict[str, str]:
+    """Add a study to the extension, whole or not at all.
+
+    Parameters
+    ----------
+    addition : Addition
+        As `read_study` gives it.
+    directory : Path
+        Our tables.
+    apply : bool
+        Write. Without it nothing is written, and the tables are only checked.
+
+    Returns
+    -------
+    dict of str to str
+        The tables that change, by name, with their new text.
+
+    Raises
+    ------
+    SurveyImportError
+        The key is taken, the tables would not be valid, or they cannot be written.
+    """
+
+    def changed(rows: Mapping[str, list[list[str]]]) -> dict[str, list[list[str]]]:
+        if any(row[0] == addition.key for row in rows["studies"]):
+            raise SurveyImportError(f"a study with the key {addition.key} was added already")
+        found = {}
+        for name, own in addition.rows.items():
+            header = column_types(f"extension_{name}")
+            new = [[row[column] for column in header] for row in own]
+            if new:
+                found[name] = _sorted(rows[name] + new)
+        return found
+
+    return _change(directory, changed, apply=apply)
+
+
+def remove_study(
+    key: str, directory: Path = DATA_DIRECTORY, *, apply: bool = False
+) -> dict[str, str]:
+    """Take a study out of the extension, with its confirmations; the survey's own stay.
+
+    Returns and raises as `add_study`; UnknownStudyError where the extension has no such study.
+    """
+    _require_later(key, directory)
+
+    def changed(rows: Mapping[str, list[list[str]]]) -> dict[str, list[list[str]]]:
+        kept = {name: [row for row in found if row[0] != key] for name, found in rows.items()}
+        return {name: found for name, found in kept.items() if found != rows[name]}
+
+    return _change(directory, changed, apply=apply)
+
+
+def verify_study(
+    row: Row, directory: Path = DATA_DIRECTORY, *, apply: bool = False
+) -> dict[str, str]:
+    """Note that somebody confirmed what is said of a study, of either edition.
+
+    Parameters
+    ----------
+    row : mapping of str to str
+        Columns of the table of verifications.
+    directory, apply
+        As for `add_study`, whose result and errors it has.
+    """
+    tables = load_texts(("studies", "extension_studies"), directory)
+    keys = [found["key"] for found in (*tables.studies, *tables.extension_studies)]
+    if row["study"] not in keys:
+        raise UnknownStudyError(f"study {row['study']!r}: {one_of(row['study'], keys)}")
+    new = [row[column] for column in column_types(_VERIFICATIONS)]
+
+    def changed(rows: Mapping[str, list[list[str]]]) -> dict[str, list[list[str]]]:
+        if new in rows[_VERIFICATIONS]:
+            raise SurveyImportError(f"this confirmation of {row['study']} stands already")
+        return {_VERIFICATIONS: _sorted([*rows[_VERIFICATIONS], new])}
+
+    return _change(directory, changed, apply=apply)
+
+
+def _require_later(key: str, directory: Path) -> None:
+    tables = load_texts(("studies", "extension_studies"), directory)
+    later = [row["key"] for row in tables.extension_studies]
+    if key in later:
+        return
+    if any(row["key"] == key for row in tables.studies):
+        raise UnknownStudyError(f"{key} is a study of the survey, whose tables stay as they are")
+    raise UnknownStudyError(
+        f"study {key!r}: {one_of(key, later)}" if later else "there is no study after the survey"
+    )
+
+
+def _change(
+    folder: Path,
+    changed: Callable[[Mapping[str, list[list[str]]]], Mapping[str, list[list[str]]]],
+    *,
+    apply: bool,
+) -> dict[str, str]:
+    """Change tables of the extension that nobody else writes meanwhile."""
+    with held_tables(folder):
+        rows = {name: _rows(folder, _table(name)) for name in (*TABLES, _VERIFICATIONS)}
+        texts = {
+            _table(name): csv_text(list(column_types(_table(name))), found)
+            for name, found in changed(rows).items()
+        }
+        if apply:
+            write_valid(folder, texts, together=FOLDER)
+        else:
+            require_valid(folder, texts)
+    return texts
+
+
+def _table(name: str) -> str:
+    return name if name == _VERIFICATIONS else f"extension_{name}"
+
+
+def _rows(folder: Path, table: str) -> list[list[str]]:
+    return [c for _, c in read_records(folder / file_name(table), list(column_types(table))).rows]
+
+
+def _sorted(rows: Sequence[list[str]]) -> list[list[str]]:
+    """Order rows by study; those of a study stay as they came."""
+    return sorted(rows, key=lambda row: row[0])

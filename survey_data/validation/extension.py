@@ -1,0 +1,109 @@
+"""Rules of the studies after the survey: those of its own studies, and what keeps the two apart."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from datetime import date
+
+from survey_data.descriptor import file_name
+from survey_data.editions import BY_STUDY
+from survey_data.problems import Problem
+from survey_data.validation.cells import Frames, Rule, problem, stated, texts
+
+#: Tables that a rule of studies may look at beside those of the edition.
+_SHARED = frozenset({"taxonomy", "attribute_definitions", "bases"})
+#: Evidence that only the survey, or its authors' own table, gives.
+SURVEY_BASES = ("survey-table", "authors-table", "survey-text")
+
+
+def check_extension(
+    frames: Frames, rules: tuple[tuple[tuple[str, ...], Rule], ...]
+) -> list[Problem]:
+    """Return the problems of later studies.
+
+    Parameters
+    ----------
+    frames : every table that could be read
+    rules : those of the survey's studies; of them the ones that ask for nothing but studies and
+        vocabulary hold for later studies too
+    """
+    later = {name: frames[name] for name in _SHARED if name in frames}
+    for name in BY_STUDY:
+        if f"extension_{name}" in frames:
+            later[name] = frames[f"extension_{name}"]
+    own = {file_name(name): file_name(f"extension_{name}") for name in BY_STUDY}
+    found = [
+        replace(each, file=own.get(each.file, each.file))
+        for needed, rule in rules
+        if needed and {*needed} <= _SHARED | {*BY_STUDY} and {*needed} & {*BY_STUDY}
+        if all(name in later for name in needed)
+        for each in rule(later)
+    ]
+    return found + [
+        each
+        for needed, rule in _RULES
+        if all(name in frames for name in needed)
+        for each in rule(frames)
+    ]
+
+
+def _keys_are_new(frames: Frames) -> Iterator[Problem]:
+    """Check that a later study has neither the key nor the DOI of another."""
+    known: dict[str, str] = {}
+    for _, (key, doi) in texts(frames["studies"], "key", "doi"):
+        known |= {key.casefold(): "a study of the survey", doi.casefold(): f"{key} of the survey"}
+    for _, (key,) in texts(frames["references"], "key"):
+        known[key.casefold()] = "a key that the survey cites"
+    known.pop("", None)
+    columns = ("key", "doi")
+    for index, cells in texts(frames["extension_studies"], *columns):
+        for column, cell in zip(columns, cells, strict=True):
+            if cell.casefold() in known:
+                message = f"{cell} is {known[cell.casefold()]}"
+                yield problem("extension_studies", index, column, message)
+
+
+def _rests_on_its_own(frames: Frames) -> Iterator[Problem]:
+    """Check that nothing of a later study rests on the survey."""
+    for name in BY_STUDY[1:]:
+        table = f"extension_{name}"
+        if table not in frames:
+            continue
+        for index, (basis,) in texts(frames[table], "basis"):
+            if basis in SURVEY_BASES:
+                yield problem(table, index, "basis", f"{basis}, of a study after the survey")
+
+
+def _names_are_of_values(frames: Frames) -> Iterator[Problem]:
+    """Check that a name is of one of the study's values."""
+    known = stated({"attributes": frames["extension_attributes"]})
+    columns = ("study", "attribute", "value")
+    for index, (study, attribute, value) in texts(frames["extension_names"], *columns):
+        if value not in known.get((study, attribute), ()):
+            message = f"{study} has no {attribute} {value!r}"
+            yield problem("extension_names", index, "value", message)
+
+
+def _verified_studies_exist(frames: Frames) -> Iterator[Problem]:
+    """Check that a confirmation is of a study of either edition, on a day that there is."""
+    known = {
+        key
+        for table in ("studies", "extension_studies")
+        for _, (key,) in texts(frames[table], "key")
+    }
+    for index, (study, day) in texts(frames["verifications"], "study", "date"):
+        if study not in known:
+            yield problem("verifications", index, "study", f"no study {study!r}")
+        try:
+            date.fromisoformat(day)
+        except ValueError:
+            yield problem("verifications", index, "date", f"expected a day, got {day!r}")
+
+
+_RULES: tuple[tuple[tuple[str, ...], Rule], ...] = (
+    (("studies", "references", "extension_studies"), _keys_are_new),
+    (("extension_attributes",), _rests_on_its_own),
+    (("extension_attributes", "extension_names"), _names_are_of_values),
+    (("studies", "extension_studies", "verifications"), _verified_studies_exist),
+)
