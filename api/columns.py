@@ -19,9 +19,9 @@ TAXONOMY = ("attribute", "value", "name", "category", "section")
 STUDIES = (
     *("key", "title", "authors", "year", "venue", "doi", "url", "identity", "state"),
     *("task", "error", "accuracy", "detector", "mask", "model", "extractor"),
-    *("accuracy_deg", "fov_deg"),
+    *("accuracy_deg", "fov_deg", "edition", "verified"),
 )
-STUDY = ("attribute", "value", "basis", "source", "note", "role")
+STUDY = ("attribute", "value", "basis", "source", "note", "role", "name_in_study", "nearest")
 FLOWS = ("source", "target", "value", "studies")
 FIGURES = ("figure", "title", "caption", "levels")
 FIGURE_FLOWS = (

@@ -165,6 +165,7 @@ def _resolve(study: Study, fitting: Fitting, facts: Facts) -> Resolution:
         *_empty_cells(study, pipelines),
         *_architecture_gaps(study, fitting.plan, pipelines),
         *_method_gaps(study, ran, on, fitting),
+        *_nearest_gaps(study),
     )
     state: State = "none" if not pipelines else "partial" if gaps else "complete"
     return Resolution(study.key, state, pipelines, gaps)
@@ -265,6 +266,15 @@ def _method_gaps(
                 reason += f"; {_join(instead)} in its place"
             gaps.append(Gap(attribute, value, reason))
     return gaps
+
+
+def _nearest_gaps(study: Study) -> list[Gap]:
+    """Return a gap for every value that is only the nearest to what the study has."""
+    return [
+        Gap(attribute, value, f"the study has {name.name}, to which this is the nearest known here")
+        for (attribute, value), name in study.names.items()
+        if name.nearest
+    ]
 
 
 def _why_not(attribute: str, value: str, where: str, fitting: Fitting) -> str:

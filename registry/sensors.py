@@ -48,7 +48,13 @@ class Sensor:
 
 
 def cell(study: Study, attribute: str, value: str) -> Part:
-    """Return a stated value with its basis and, where that is weak, the reason in its note."""
+    """Return a stated value with its basis and, where that is weak, the reason in its note.
+
+    A value that is only the nearest to what the study has is not its own.
+    """
+    name = study.names.get((attribute, value))
+    if name is not None and name.nearest:
+        return Part(value, "defaulted", f"the nearest in the taxonomy to {name.name}")
     found = next(c for c in study.values[attribute] if c.value == value)
     if found.basis not in ("inferred", "recalled"):
         return Part(value, "stated")

@@ -7,8 +7,8 @@ that other tables can be handed in.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field
 from functools import cached_property, lru_cache
 from types import MappingProxyType
 
@@ -22,6 +22,14 @@ from registry.taxonomy import (
     unknown_name,
 )
 from survey_data import recorded_facts
+from survey_data.editions import (
+    BY_STUDY,
+    CHOICES,
+    EXTENSION,
+    EXTENSION_TABLES,
+    SURVEY,
+    Choice,
+)
 from survey_data.numerals import decimal
 from survey_data.texts import load_texts
 
@@ -39,7 +47,7 @@ class AttributeValue:
     """A value of one of a study's attributes, and where it comes from."""
 
     value: str
-    basis: str  # survey-table, survey-text, abstract, title, inferred, recalled
+    basis: str  # of survey_data/bases.csv, such as survey-table, abstract, inferred
     source: str
     note: str
 
@@ -52,6 +60,32 @@ class MethodRole:
     basis: str
     source: str
     note: str
+
+
+@dataclass(frozen=True)
+class NameInStudy:
+    """What a study itself calls one of its values.
+
+    ``nearest`` says that the taxonomy has no such value and that the one given is only the nearest
+    to it: what runs that value is not the study's own.
+    """
+
+    name: str
+    nearest: bool
+
+
+@dataclass(frozen=True)
+class Verification:
+    """Who confirmed what of a study, on which day, and where that can be seen."""
+
+    name: str
+    date: str
+    confirms: str
+    source: str
+
+    def to_dict(self) -> dict[str, str]:
+        """Return the confirmation as plain JSON data."""
+        return asdict(self)
 
 
 @dataclass(frozen=True)
@@ -71,12 +105,13 @@ class Default:
 
 @dataclass(frozen=True)
 class Study:
-    """One study of the survey's mapping.
+    """One study of the survey's mapping, or one after it (`edition`).
 
     ``values`` holds the stated values only; an attribute whose cell is empty is absent from it
     and stands in ``unknown`` with the note beside the empty cell. ``roles`` are those of
     (attribute, value), where one is known; ``combined`` says which detector goes with which mask
-    where not every one goes with every other.
+    where not every one goes with every other. ``names`` are what a study after the survey calls its
+    values of (attribute, value); ``verified`` who confirmed what is said here.
     """
 
     key: str
@@ -92,6 +127,9 @@ class Study:
     unknown: Mapping[str, str]
     roles: Mapping[tuple[str, str], MethodRole] = field(default_factory=dict, hash=False)
     combined: tuple[tuple[str, str], ...] = ()
+    edition: str = SURVEY
+    names: Mapping[tuple[str, str], NameInStudy] = field(default_factory=dict, hash=False)
+    verified: tuple[Verification, ...] = ()
 
     def role(self, attribute: str, value: str) -> str:
         """Return `proposed`, `compared` or `unknown`, of a model or an extractor of the study."""
@@ -141,6 +179,8 @@ class Study:
             "doi": self.doi,
             "url": self.url,
             "identity": self.identity,
+            "edition": self.edition,
+            "verified": [each.to_dict() for each in self.verified],
             "values": {attribute: list(self.of(attribute)) for attribute in self.values},
         }
 
@@ -154,6 +194,7 @@ class Study:
                 "source": cell.source,
                 "note": cell.note,
                 "role": self.role(attribute, cell.value) if attribute in METHODS else "",
+                **self._name(attribute, cell.value),
             }
             for attribute, cells in self.values.items()
             for cell in cells
@@ -166,10 +207,19 @@ class Study:
                 "source": "",
                 "note": note,
                 "role": "",
+                **self._name(a, ""),
             }
             for a, note in self.unknown.items()
         ]
         return {**self.summary(), "note": self.note, "attributes": cells}
+
+    def _name(self, attribute: str, value: str) -> dict[str, object]:
+        """Return what the study calls a value, and whether the taxonomy has only the nearest."""
+        found = self.names.get((attribute, value))
+        return {
+            "name_in_study": "" if found is None else found.name,
+            "nearest": found is not None and found.nearest,
+        }
 
 
 @dataclass(frozen=True, eq=False)
@@ -198,12 +248,17 @@ class Facts:
 _TABLES = (
     *("studies", "attributes", "taxonomy", "model_families", "roles", "architectures"),
     *("defaults", "advice", "feature_assessment", "aliases"),
+    *EXTENSION_TABLES,
 )
 
 
-@lru_cache(maxsize=1)
-def facts() -> Facts:
-    """Return the survey's studies and taxonomy, read once.
+def facts(edition: Choice = "survey") -> Facts:
+    """Return an edition's studies and the taxonomy, read once.
+
+    Parameters
+    ----------
+    edition : {"survey", "all"}
+        The survey's studies, or these and then those after it.
 
     Raises
     ------
@@ -212,12 +267,49 @@ def facts() -> Facts:
     FactsError
         They contradict each other.
     """
+    if edition not in CHOICES:
+        raise unknown_name("edition", edition, CHOICES)
+    return _facts(edition)
+
+
+@lru_cache(maxsize=len(CHOICES))
+def _facts(edition: Choice) -> Facts:
     recorded_facts.require_unchanged()
     tables = load_texts(_TABLES)
+    if edition == "all":
+        for table in BY_STUDY:
+            later = getattr(tables, f"extension_{table}")
+            if table == "studies":
+                later = [{**row, "edition": EXTENSION} for row in later]
+            setattr(tables, table, [*getattr(tables, table), *later])
     try:
         return facts_from(tables)
     except (LookupError, ValueError) as error:
         raise FactsError(f"the tables contradict each other: {error}") from error
+
+
+def study_from(rows: Mapping[str, Sequence[Mapping[str, str]]]) -> Study:
+    """Return a study after the survey that is in no table yet.
+
+    Parameters
+    ----------
+    rows : by table of the extension, without its prefix; one row of ``studies``
+
+    Raises
+    ------
+    FactsError, SurveyDataError
+        As `facts`.
+    """
+    tables = load_texts(_TABLES)
+    for table in BY_STUDY:
+        setattr(tables, table, list(rows.get(table, ())))
+    tables.studies = [{**row, "edition": EXTENSION} for row in tables.studies]
+    tables.extension_names, tables.verifications = list(rows.get("names", ())), []
+    try:
+        (found,) = facts_from(tables).studies.values()
+    except (LookupError, ValueError) as error:
+        raise FactsError(f"the tables contradict each other: {error}") from error
+    return found
 
 
 def studies() -> Mapping[str, Study]:
@@ -269,6 +361,7 @@ def facts_from(tables: Tables) -> Facts:
     for row in rows_of(tables.architectures):
         pair = (row["detector"], row["mask"])
         combined[row["study"]] = (*combined.get(row["study"], ()), pair)
+    names, verified = _names(tables), _verified(tables)
     found: dict[str, Study] = {}
     for row in rows_of(tables.studies):
         key = row["key"]
@@ -290,6 +383,9 @@ def facts_from(tables: Tables) -> Facts:
             unknown=MappingProxyType(unknown.pop(key, {})),
             roles=MappingProxyType(roles.get(key, {})),
             combined=combined.get(key, ()),
+            edition=row.get("edition", SURVEY),
+            names=MappingProxyType(names.get(key, {})),
+            verified=tuple(verified.get(key, ())),
         )
     strangers = sorted({*stated, *unknown})
     if strangers:
@@ -303,6 +399,24 @@ def facts_from(tables: Tables) -> Facts:
         tuple(map(_advice, rows_of(tables.advice))),
         _properties(tables, taxonomy),
     )
+
+
+def _names(tables: Tables) -> dict[str, dict[tuple[str, str], NameInStudy]]:
+    """Return what studies call their values, by study; nothing where the tables have no names."""
+    found: dict[str, dict[tuple[str, str], NameInStudy]] = {}
+    for row in rows_of(getattr(tables, "extension_names", ())):
+        name = NameInStudy(row["name"], row["nearest"].casefold() == "true")
+        found.setdefault(row["study"], {})[row["attribute"], row["value"]] = name
+    return found
+
+
+def _verified(tables: Tables) -> dict[str, list[Verification]]:
+    """Return the confirmations by study; nothing where the tables have none."""
+    found: dict[str, list[Verification]] = {}
+    for row in rows_of(getattr(tables, "verifications", ())):
+        one = Verification(row["name"], row["date"], row["confirms"], row["source"])
+        found.setdefault(row["study"], []).append(one)
+    return found
 
 
 def _require_number(key: str, attribute: str, value: str) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from enum import StrEnum
 from typing import Annotated
 
 import typer
@@ -24,6 +25,17 @@ def _excluded(attribute: str) -> typer.models.OptionInfo:
     )
     return found
 
+
+class Edition(StrEnum):
+    """Which studies: the survey's, or these and those added after it."""
+
+    SURVEY = "survey"
+    ALL = "all"
+
+
+EditionOption = Annotated[
+    Edition, typer.Option("--edition", help="Studies of the survey, or all: later ones, too.")
+]
 
 Task = Annotated[list[str] | None, _option("task")]
 Error = Annotated[list[str] | None, _option("error")]

@@ -9,6 +9,7 @@ from api.pages.addresses import study_page
 from registry.flows import Where
 from registry.studies import Facts
 from registry.taxonomy import attribute_of
+from survey_data.editions import SURVEY
 
 
 class Addresses:
@@ -45,6 +46,8 @@ class Addresses:
             asked = [(name, value) for name, values in wanted.items() for value in values]
             if years is not None:
                 asked += [("year_min", str(years[0])), ("year_max", str(years[1]))]
+            if any(study.edition != SURVEY for study in self.facts.studies.values()):
+                asked.append(("edition", "all"))
             return f"/studies?{urlencode(asked)}"
         return f"{self.page}#row-{row}"
 

@@ -16,10 +16,11 @@ from api.search.entries import entries
 from api.search.index import Index
 from registry.catalogue import Catalogue, catalogue
 from registry.measured import Measurements as Measured
-from registry.resolution import Resolution, resolve_all
+from registry.resolution import Resolution, resolve, resolve_all
 from registry.studies import Facts, facts
 from registry.taxonomy import Taxonomy
 from survey_data.descriptor import DATA_DIRECTORY
+from survey_data.editions import Choice, Edition, editions
 from survey_data.manifest import digest
 
 
@@ -31,13 +32,29 @@ class Knowledge:
     measurements : the published ones by default
     """
 
+    edition: Choice = "survey"
+
     def __init__(self, measurements: Measurements | None = None) -> None:
         self.measurements = Measurements() if measurements is None else measurements
 
+    def of(self, edition: Choice) -> Knowledge:
+        """Return the same with the studies of an edition; only these are not shared."""
+        return self if edition == self.edition else self._with_later
+
+    @cached_property
+    def _with_later(self) -> Knowledge:
+        return KnowledgeOfAll(self)
+
     @cached_property
     def facts(self) -> Facts:
-        """Studies and taxonomy."""
-        return facts()
+        """Studies and taxonomy, of the survey unless another edition is asked for (`of`)."""
+        return facts(self.edition)
+
+    @cached_property
+    def editions(self) -> tuple[Edition, Edition]:
+        """The survey's studies and those after it, each as it is cited."""
+        _ = self.facts
+        return editions()
 
     @cached_property
     def facts_digest(self) -> str | None:
@@ -97,3 +114,51 @@ class Knowledge:
         _ = self.measurements.sweeps, self.measurements.curves, self.measurements.assessment
         _ = self.measurements.claims, self.index.find("warm")
         _ = self.facts_digest, self.measurements.digest
+        _ = self.of("all").resolutions, self.editions
+
+
+class KnowledgeOfAll(Knowledge):
+    """The same knowledge, with the studies after the survey among the others.
+
+    What runs for a study of the survey is what it is without them: none of them is its relative.
+
+    Parameters
+    ----------
+    survey : the knowledge of the survey's studies
+    """
+
+    edition: Choice = "all"
+
+    def __init__(self, survey: Knowledge) -> None:
+        super().__init__(survey.measurements)
+        self._survey = survey
+
+    def of(self, edition: Choice) -> Knowledge:
+        """Return the same with the studies of an edition."""
+        return self if edition == self.edition else self._survey
+
+    @property
+    def catalogue(self) -> Catalogue:
+        """The implementations."""
+        return self._survey.catalogue
+
+    @cached_property
+    def resolutions(self) -> Mapping[str, Resolution]:
+        """What is scored of each study, by key."""
+        from benchmark.plan.combinations import scorable  # noqa: PLC0415 - loads the simulator
+
+        known, ours = self._survey.facts, self._survey.resolutions
+        later = [one for key, one in self.facts.studies.items() if key not in ours]
+        plan, catalogue = scorable(), self.catalogue
+        found = {one.key: resolve(one, plan, catalogue=catalogue, facts=known) for one in later}
+        return {**ours, **found}
+
+    @property
+    def measured(self) -> Measured:
+        """What is measured of every pipeline, as recommendations take it."""
+        return self._survey.measured
+
+    @property
+    def index(self) -> Index:
+        """What search finds."""
+        return self._survey.index

@@ -8,7 +8,7 @@ import { CROSS, showFlow, showFlowControls } from "./flow.js";
 import { followAnswer, resort, showLeaderboard } from "./leaderboard.js";
 import { buildRequirements, updateRequirements } from "./requirements.js";
 import { address, getAll, getJson } from "./service.js";
-import { ATTRIBUTES, onChange, question } from "./state.js";
+import { ATTRIBUTES, onChange, question, state } from "./state.js";
 import { explain, tips } from "./terms.js";
 import { Vocabulary } from "./wording.js";
 
@@ -139,7 +139,7 @@ async function start() {
   showSort();
   try {
     const [taxonomy, studies] = await Promise.all([
-      getJson("/v1/taxonomy"), getAll("/v1/studies", { limit: 500 }),
+      getJson("/v1/taxonomy"), getAll("/v1/studies", { limit: 500, ...(state.edition === "all" && { edition: "all" }) }),
     ]);
     known.vocabulary = new Vocabulary(taxonomy.attributes);
     known.studies = new Map(studies.map((s) => [s.key, s]));

@@ -22,6 +22,7 @@ function read(search) {
   }
   for (const limit of LIMITS) found.limits[limit] = parameters.get(limit) ?? "";
   for (const list of LISTS) found.lists[list] = [...new Set(parameters.getAll(list))];
+  found.edition = parameters.get("edition") === "all" ? "all" : "survey";
   for (const name of Object.keys(VIEW)) found[name] = parameters.get(name) || VIEW[name];
   return found;
 }
@@ -35,6 +36,7 @@ export function requirements(of = state) {
   }
   for (const limit of LIMITS) if (of.limits[limit] !== "") query[limit] = of.limits[limit];
   for (const list of LISTS) if (of.lists[list].length) query[list] = of.lists[list];
+  if (of.edition === "all") query.edition = "all";
   return query;
 }
 
@@ -108,7 +110,7 @@ export function reset() {
 }
 
 /** Whether anything is required. */
-export const required = () => Object.keys(requirements()).length > 0;
+export const required = () => Object.keys(requirements()).some((name) => name !== "edition");
 
 /** Requirements and order as the service's query parameters; the usual order is not named. */
 export function question() {

@@ -63,7 +63,9 @@ export const JUDGED_ON = {
 
 export const BASES = {
   "survey-table": "a mapping table of the survey",
+  "authors-table": "the survey authors' own table",
   "survey-text": "the survey's text",
+  "full-text": "the study's own text",
   abstract: "the study's abstract or record",
   title: "the study's title",
   inferred: "inferred from what else is known of the study",

@@ -18,6 +18,7 @@ from api.http.refusals import refusal
 from api.http.routers import recommendations as service
 from api.pages.addresses import architecture_page
 from api.pages.charts.scatter import Point, Scatter
+from api.pages.editions import edition_shown
 from api.pages.serving import PageRouter, View
 from api.pages.study import NAMES
 from registry.requirements import HAZARDS, LIMITS, SETTINGS
@@ -68,6 +69,7 @@ async def answer(known: Known, request: Request) -> View:
         view = View("answer.html", _nothing(), problem=problem.document("/"), **_parts(known))
         view.status_code = problem.status_code
         return view
+    parts = _parts(known.of(asked.edition))
     told = await service.recommendations(known, asked)
     document = told.document
     best = _best_measured(document)
@@ -76,6 +78,7 @@ async def answer(known: Known, request: Request) -> View:
         told,
         problem=None,
         asked=asked,
+        editions=edition_shown(known, asked.edition, request),
         clauses=_clauses(asked),
         first=MOST if shown.get("rows") == "all" else FIRST,
         scatter=_scatter(known, document, shown.get("across", "field")),
@@ -85,7 +88,7 @@ async def answer(known: Known, request: Request) -> View:
         best=best,
         board=_board(known, best),
         blocked_by=_in_words(document["blocked"]["constraint"]) if document["blocked"] else "",
-        **_parts(known),
+        **parts,
     )
 
 
@@ -114,7 +117,7 @@ def _asked(fields: Sequence[tuple[str, str]]) -> RequirementsQuery:
             continue
         if name in PAGED:
             raise Problem(400, "unknown-parameter", f"{name} cannot be asked for here")
-        if name in LIMITS or name in SETTINGS or name == "sort":
+        if name in LIMITS or name in SETTINGS or name in ("sort", "edition"):
             given[name] = value
         else:
             given.setdefault(name, []).append(value)

@@ -22,6 +22,7 @@ from api.http.models.studies import StudyFilters
 from api.http.negotiation import media_type
 from api.http.representations import Representation, RepresentationCache
 from api.http.routers import figures as told
+from api.pages.editions import edition_shown
 from api.pages.numbers import degrees, wide
 from api.pages.serving import PageRouter, View
 from registry.taxonomy import ATTRIBUTES, LEVELS
@@ -74,7 +75,13 @@ specifications = APIRouter(route_class=SpecificationRoute, include_in_schema=Fal
 async def figures(known: Known, _asked: Annotated[None, NO_PARAMETERS] = None) -> View:
     """List the figures."""
     answer = await told.figures(known)
-    return View("figures.html", answer, matrix=MATRIX, counted=number_of_studies())
+    return View(
+        "figures.html",
+        answer,
+        matrix=MATRIX,
+        counted=number_of_studies(),
+        later=known.editions[1].studies,
+    )
 
 
 @router.page(f"/figures/{MATRIX}")
@@ -87,7 +94,7 @@ async def matrix(known: Known, query: Annotated[MatrixQuery, Query()], request: 
             name = wording.shown(row["row_level"], row["row"])
             gaps.setdefault(name, []).append(wording.shown(row["column_level"], row["column"]))
     chosen = {"rows": query.rows, "columns": query.columns}
-    return _view(known, found, query, chosen=chosen, gaps=gaps)
+    return _view(known, found, query, request, chosen=chosen, gaps=gaps)
 
 
 @router.page("/figures/{figure}")
@@ -98,8 +105,8 @@ async def figure(
     request: Request,
 ) -> View:
     """One figure of the survey."""
-    found = drawn(figure, known.facts, query.wanted(), _page(request))
-    return _view(known, found, query, chosen={}, gaps={})
+    found = drawn(figure, known.of(query.edition).facts, query.wanted(), _page(request))
+    return _view(known, found, query, request, chosen={}, gaps={})
 
 
 @drawings.get(f"/figures/{MATRIX}.svg", response_class=Response)
@@ -118,7 +125,7 @@ async def figure_drawing(
     request: Request,
 ) -> Response:
     """Give a figure as a drawing."""
-    return _document(drawn(figure, known.facts, query.wanted(), _page(request)))
+    return _document(drawn(figure, known.of(query.edition).facts, query.wanted(), _page(request)))
 
 
 @specifications.get(f"/figures/{MATRIX}{PLOTLY}", response_class=Response)
@@ -134,11 +141,13 @@ async def figure_specification(
     known: Known, figure: Annotated[FigureName, Path()], query: Annotated[FigureQuery, Query()]
 ) -> Response:
     """Give a figure for Plotly."""
-    return Response(specification(drawn(figure, known.facts, query.wanted())))
+    studies = known.of(query.edition).facts
+    return Response(specification(drawn(figure, studies, query.wanted())))
 
 
 def _matrix(known: Knowledge, query: MatrixQuery, request: Request) -> Figure:
-    return evidence_map(known.facts, query.wanted(), query.rows, query.columns, _page(request))
+    studies = known.of(query.edition).facts
+    return evidence_map(studies, query.wanted(), query.rows, query.columns, _page(request))
 
 
 def _page(request: Request) -> str:
@@ -152,6 +161,7 @@ def _view(
     known: Knowledge,
     found: Figure,
     query: StudyFilters,
+    request: Request,
     *,
     chosen: Mapping[str, str],
     gaps: Mapping[str, list[str]],
@@ -162,6 +172,7 @@ def _view(
         for at, row in enumerate(found.rows)
         if row["studies"]
     ]
+    whole = not query.wanted() and query.edition == "survey"
     return View(
         "figure.html",
         told.answered(found),
@@ -174,9 +185,10 @@ def _view(
         filters={name: known.taxonomy.to_dict()[name] for name in ATTRIBUTES},
         names=wording.LEVELS,
         levels=LEVELS,
-        statements=statements(found.name) if not query.wanted() else (),
+        statements=statements(found.name) if whole else (),
         counted=number_of_studies(),
-        mapped=len(known.facts.studies),
+        mapped=len(known.of(query.edition).facts.studies),
+        editions=edition_shown(known, query.edition, request),
     )
 
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from fastapi import Path, Query
+from fastapi import Path, Query, Request
 
 from api.http.dependencies import Known
 from api.http.models.studies import StudiesQuery
 from api.http.models.words import StudyKey
 from api.http.routers import studies as told
+from api.pages.editions import edition_shown
 from api.pages.serving import PageRouter, View
 
 router = PageRouter()
@@ -29,6 +30,7 @@ BASES = {
     "survey-table": "a mapping table of the survey",
     "authors-table": "the survey authors' own table",
     "survey-text": "the survey's text",
+    "full-text": "the study's own text",
     "abstract": "the study's abstract or record",
     "title": "the study's title",
     "inferred": "inferred from what else is known of the study",
@@ -47,11 +49,11 @@ IDENTITIES = {
     "unknown": "no publication identified for the key",
 }
 FILTERS = ("detector", "mask", "model", "extractor", "task")
-EVERY = 500  # studies of one page; there are 129
+EVERY = 500  # studies of one page
 
 
 @router.page("/studies")
-async def studies(known: Known, query: Annotated[StudiesQuery, Query()]) -> View:
+async def studies(known: Known, query: Annotated[StudiesQuery, Query()], request: Request) -> View:
     """Every study that meets the filters, with what it maps to and how much of it runs."""
     every = query.model_copy(update={"limit": EVERY})
     answer = await told.studies(known, every)
@@ -62,7 +64,8 @@ async def studies(known: Known, query: Annotated[StudiesQuery, Query()]) -> View
         filters={name: known.taxonomy.to_dict()[name] for name in FILTERS},
         names=NAMES,
         states=STATES,
-        mapped=len(known.facts.studies),
+        mapped=len(known.of(query.edition).facts.studies),
+        editions=edition_shown(known, query.edition, request),
     )
 
 
@@ -79,6 +82,7 @@ async def study(known: Known, key: Annotated[StudyKey, Path()]) -> View:
         bases=BASES,
         states=STATES,
         identities=IDENTITIES,
+        edition=next(one for one in known.editions if one.name == found["edition"]),
         best=_best(found["pipelines"]),
         claims=claims,
         verdicts={e.claim.id: e.verdict for e in known.measurements.claims.values()},

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from registry.catalogue import Catalogue
     from registry.studies import Facts
     from registry.taxonomy import Taxonomy
+    from survey_data.editions import Choice
 
 KINDS = ("study", "algorithm", "dataset", "claim", "attribute", "word")
 """In the order that breaks ties."""
@@ -27,6 +28,9 @@ class Known(Protocol):
     @property
     def facts(self) -> Facts:
         """Studies and taxonomy."""
+
+    def of(self, edition: Choice) -> Known:
+        """Return the same with the studies of an edition."""
 
     @property
     def taxonomy(self) -> Taxonomy:
@@ -48,7 +52,7 @@ def entries(known: Known) -> tuple[Entry, ...]:
 
 
 def _studies(known: Known) -> Iterator[Entry]:
-    for study in known.facts.studies.values():
+    for study in known.of("all").facts.studies.values():
         values = [
             _named(value, known.taxonomy.name(attribute, value))
             for attribute in known.taxonomy.attributes

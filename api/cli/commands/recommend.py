@@ -16,6 +16,7 @@ from api.columns import RECOMMENDATIONS
 from api.recommending import rows
 from registry.recommendation import recommend as ranked
 from registry.requirements import HAZARDS, NEEDS
+from registry.studies import Facts, facts
 from registry.taxonomy import InvalidValueError
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
@@ -93,6 +94,7 @@ def recommend(
             show_default="0.9",
         ),
     ] = None,
+    edition: attributes.EditionOption = attributes.Edition.SURVEY,
     sort: Annotated[Sort, typer.Option(help="Which evidence comes first.")] = Sort.ADVICE,
     limit: Annotated[
         int, typer.Option(min=1, max=500, help="Architectures to print at most.")
@@ -140,6 +142,7 @@ def recommend(
         sort,
         limit,
         calibrations,
+        facts(edition.value),
     )
     if form is Format.JSON:
         emit_json(document)
@@ -153,7 +156,11 @@ def recommend(
 
 
 def _document(
-    asked: Mapping[str, list[str] | float | None], sort: Sort, limit: int, calibrations: int
+    asked: Mapping[str, list[str] | float | None],
+    sort: Sort,
+    limit: int,
+    calibrations: int,
+    studies: Facts,
 ) -> dict[str, Any]:
     """Answer as GET /v1/recommendations does, without the service: that takes a second to load."""
     given = {name: value for name, value in asked.items() if value not in (None, [])}
@@ -164,6 +171,7 @@ def _document(
             sort=sort.value,
             limit=limit,
             calibrations=calibrations,
+            facts=studies,
         ).to_dict()
     except InvalidValueError as error:
         raise refused(error.parameter, error.value, error.expected, error.nearest) from error

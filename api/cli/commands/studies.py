@@ -19,7 +19,7 @@ from api.http.routers import studies as answers
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
 COLUMNS = ("key", "year", "state", "detector", "mask", "extractor", "model", "title")
-DETAILS = ("attribute", "value", "role", "basis", "source", "note")
+DETAILS = ("attribute", "value", "name_in_study", "nearest", "role", "basis", "source", "note")
 
 
 class State(StrEnum):
@@ -50,6 +50,7 @@ def studies(
     state: Annotated[
         list[State] | None, typer.Option(help="How much can be run; may be repeated.")
     ] = None,
+    edition: attributes.EditionOption = attributes.Edition.SURVEY,
     year_min: Annotated[int | None, typer.Option(help="This year or later.")] = None,
     year_max: Annotated[int | None, typer.Option(help="This year or earlier.")] = None,
     q: Annotated[
@@ -61,7 +62,8 @@ def studies(
 
     A study is complete when every value of its mapping runs, partial when some do not, or a rule
     fills what the mapping leaves empty, none when nothing of it runs. `sunatlas studies KEY` says
-    why, and of every value of a pipeline what it rests on.
+    why, and of every value of a pipeline what it rests on; it finds studies after the survey, too,
+    which the list has with --edition all.
     """
     filters: dict[str, Any] = {
         "task": task,
@@ -72,6 +74,7 @@ def studies(
         "model": model,
         "extractor": extractor,
         "state": [str(s) for s in state or ()],
+        "edition": None if edition is attributes.Edition.SURVEY else edition.value,
         "year_min": year_min,
         "year_max": year_max,
         "q": q,
@@ -101,6 +104,10 @@ def _show(key: str, form: Format) -> None:
         year = study["year"] or "year unknown"
         say(f"{study['authors'] or 'authors unknown'}, {year}. {study['venue'] or ''}")
         say(f"{study['doi'] or study['url'] or 'no DOI known'}; runs: {study['state']}")
+        if study["edition"] != "survey":
+            say("Added after the survey, which does not map it.")
+        for one in study["verified"]:
+            say(f"Verified by {one['name']} on {one['date']}: {one['confirms']} ({one['source']})")
         typer.echo()
     emit(study["attributes"], STUDY if form is Format.CSV else DETAILS, form)
     if form is Format.TABLE:

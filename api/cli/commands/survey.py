@@ -9,17 +9,21 @@ from typing import Annotated
 import typer
 
 import survey_data
+from api.cli.commands import survey_add
 from api.cli.commands.survey_import import import_
 from api.cli.tables import Format, FormatOption, emit, emit_json, say
 from survey_data import FidelityReport, Problem, recorded_facts
 from survey_data.descriptor import DATA_DIRECTORY
 
 app = typer.Typer(
-    help="Check the survey's tables, or import the authors' own.",
+    help="Check the survey's tables, import the authors' own, or add later studies.",
     add_completion=False,
     rich_markup_mode=None,
 )
 app.command("import")(import_)
+app.command("add")(survey_add.add)
+app.command("remove")(survey_add.remove)
+app.command("verify")(survey_add.verify)
 
 FINDINGS = ("id", "verdict", "counted", "given", "expects", "most_frequent", "settled_by")
 FINDINGS_CSV = (

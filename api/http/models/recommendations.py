@@ -7,9 +7,10 @@ from typing import Annotated, Any, Literal
 from pydantic import ConfigDict, Field
 
 from api.http.models import words
-from api.http.models.base import OpenShape, Question, Shape, TableQuestion
+from api.http.models.base import OpenShape, Shape, TableQuestion
 from api.http.models.flows import LeftOut, Link, Node
 from api.http.models.parameters import LARGEST_PAGE, NUMBER, WHOLE, Several, several
+from api.http.models.studies import OfEdition
 from registry.measured import FINER, LEAST_ANSWERED
 from registry.ranking import Sort
 
@@ -25,7 +26,7 @@ def _unwanted(attribute: str) -> Any:
 Number = Annotated[float | None, NUMBER]
 
 
-class Requirements(Question):
+class Requirements(OfEdition):
     """What a sensor shall have."""
 
     task: Several[words.Task] = _wanted("task")

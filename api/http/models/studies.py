@@ -8,7 +8,7 @@ from pydantic import ConfigDict, Field
 
 from api import columns
 from api.http.models import words
-from api.http.models.base import Listing, Shape, TableQuestion
+from api.http.models.base import Listing, Question, Shape, TableQuestion
 from api.http.models.parameters import (
     DEFAULT_PAGE,
     FIELDS,
@@ -24,6 +24,7 @@ from api.http.models.parameters import (
 )
 from registry.sensors import Basis
 from registry.taxonomy import ATTRIBUTES
+from survey_data.editions import Choice
 
 State = Literal["complete", "partial", "none"]
 
@@ -33,8 +34,17 @@ def _filter(attribute: str, more: str = "") -> Any:
     return several(f"{text} Different attributes must all match.")
 
 
-class StudyFilters(TableQuestion):
-    """Filters by the attributes of studies."""
+class OfEdition(Question):
+    """Of which edition of the studies."""
+
+    edition: Choice = Field(
+        "survey",
+        description="The survey's studies, or all: these and the ones added after it.",
+    )
+
+
+class StudyFilters(OfEdition, TableQuestion):
+    """Filters by edition and by the attributes of studies."""
 
     task: Several[words.Task] = _filter("task")
     error: Several[words.Error] = _filter("error")
@@ -103,6 +113,15 @@ class Score(Shape):
     availability: float | None
 
 
+class Verification(Shape):
+    """A confirmation of what is said of a study, by one of its authors or of the survey's."""
+
+    name: str
+    date: str = Field(description="YYYY-MM-DD.")
+    confirms: str
+    source: str
+
+
 class Study(Shape):
     """A mapped study. A text is empty where nothing is known."""
 
@@ -114,6 +133,10 @@ class Study(Shape):
     doi: str
     url: str
     identity: str = Field(description="Whether a public page confirms author, year and topic.")
+    edition: Literal["survey", "extension"] = Field(
+        description="Whether it is among the survey's studies or was added after it."
+    )
+    verified: list[Verification]
     state: State = Field(
         description="How much of the study runs: every value of its mapping, or some of them, or "
         "none."
@@ -132,6 +155,12 @@ class AttributeValue(Shape):
     note: str
     role: Literal["proposed", "compared", "unknown", ""] = Field(
         description="Of a model or an extractor: whether the study proposed it or only compared it."
+    )
+    name_in_study: str = Field(
+        description="What the study calls it, where that is known and not the taxonomy's name."
+    )
+    nearest: bool = Field(
+        description="The taxonomy has no such value; this is the nearest that it has."
     )
 
 

@@ -65,7 +65,7 @@ Hazard = Annotated[str, OneOf(lambda: tuple(HAZARDS))]
 Need = Annotated[str, OneOf(lambda: tuple(NEEDS))]
 Property = Annotated[str, OneOf(lambda: tuple(facts().properties))]
 
-StudyKey = Annotated[str, OneOf(lambda: facts().keys)]
+StudyKey = Annotated[str, OneOf(lambda: facts("all").keys)]
 Chart = Annotated[str, OneOf(lambda: tuple(CHARTS))]
 DatasetName = Annotated[str, OneOf(datasets)]
 Condition = Annotated[str, OneOf(conditions)]

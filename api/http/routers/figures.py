@@ -38,7 +38,9 @@ async def matrix(known: Known, query: Annotated[MatrixQuery, Query()]) -> Answer
     The rows are the pairs, those without a study too; pairs that cannot be (a model and another
     category than its own) are left out.
     """
-    return answered(evidence_map(known.facts, query.wanted(), query.rows, query.columns))
+    return answered(
+        evidence_map(known.of(query.edition).facts, query.wanted(), query.rows, query.columns)
+    )
 
 
 @router.get("/figures/{figure}", summary="A figure of the survey", response_model=Figure)
@@ -52,7 +54,7 @@ async def figure(
     A flow has a row a value and a row a pair of neighbouring values; the sunburst a row an arc;
     publications a row a year or venue and part of its bar; parallel coordinates a row a sensor.
     """
-    return answered(drawn(figure, known.facts, query.wanted()))
+    return answered(drawn(figure, known.of(query.edition).facts, query.wanted()))
 
 
 def answered(found: Drawn) -> Answer:

@@ -27,7 +27,6 @@ async def flows(
     A filter keeps the studies that have one of the values, and of those studies only these
     values. As CSV: the links.
     """
-    found = flows_of(
-        chart, query.wanted(), query.counting, grouped=query.grouped, facts=known.facts
-    )
+    studies = known.of(query.edition).facts
+    found = flows_of(chart, query.wanted(), query.counting, grouped=query.grouped, facts=studies)
     return Answer(found.to_dict(), columns.FLOWS, lambda: [link.to_dict() for link in found.links])

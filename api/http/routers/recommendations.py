@@ -103,5 +103,6 @@ def _answer(requirements: Requirements, known: Knowledge) -> Recommended:
     asked = {
         name: getattr(requirements, name) for name in (*PARAMETERS, *SETTINGS) if name in given
     }
-    found = answered(asked, known.measured, sort=requirements.sort, facts=known.facts)
+    studies = known.of(requirements.edition).facts
+    found = answered(asked, known.measured, sort=requirements.sort, facts=studies)
     return Recommended(requirements, found)

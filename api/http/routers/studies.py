@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Path, Query
@@ -22,7 +23,11 @@ router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class
 
 @router.get("/studies", summary="The mapped studies", response_model=Studies | Selected)
 async def studies(known: Known, query: Annotated[StudiesQuery, Query()]) -> Answer:
-    """Studies of the survey's mapping: 129, where it states 128. Filters narrow the list."""
+    """Studies of the survey's mapping: 129, where it states 128. Filters narrow the list.
+
+    `edition=all` has the studies added after the survey, too.
+    """
+    known = known.of(query.edition)
     found = [study for study in known.facts.studies.values() if _is_wanted(study, query, known)]
     rows = ordered([_row(study, known) for study in found], query.sort)
     shown = page(rows, "/v1/studies", query)
@@ -30,7 +35,7 @@ async def studies(known: Known, query: Annotated[StudiesQuery, Query()]) -> Answ
         shown,
         shown.items,
         columns.STUDIES,
-        lambda: [{**item, **item["values"]} for item in shown.items],
+        lambda: [{**item, **item["values"], "verified": _said(item)} for item in shown.items],
         fields=query.fields,
     )
 
@@ -49,7 +54,9 @@ async def study(
 
     That is the pipelines that run what the study did, or what stands nearest to it, each with the
     data sets that it is scored on; and the values that do not run as they are. As CSV: the values.
+    A study of either edition is found; `edition` says of which it is.
     """
+    known = known.of("all")
     found = known.facts.study(key)
     resolution = known.resolutions[key]
     described = found.to_dict()
@@ -81,6 +88,11 @@ def _row(study: Study, known: Knowledge) -> dict[str, Any]:
         "assumed": {} if best is None else dict(best.assumed),
     }
     return {**summary, "state": resolution.state, "runs": runs, "values": values}
+
+
+def _said(item: Mapping[str, Any]) -> list[str]:
+    """Return the confirmations of a study in words, for a cell of a table."""
+    return [f"{one['name']}, {one['date']}: {one['confirms']}" for one in item["verified"]]
 
 
 def _scores(pipeline: RunnablePipeline, known: Knowledge) -> list[dict[str, Any]]:

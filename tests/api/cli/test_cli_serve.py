@@ -142,13 +142,14 @@ def test_workers_add_up_their_counts_and_leave_nothing_behind(tmp_path):
 
 def test_damaged_facts_are_refused_in_one_line_before_anything_is_served(monkeypatch, tmp_path):
     for name in (*recorded_facts.names(), manifest.FILE):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
         shutil.copyfile(DATA_DIRECTORY / name, tmp_path / name)
     path = tmp_path / "attributes.csv"
     path.write_text(path.read_text().replace("accuracy_deg,0", "accuracy_deg,0x1", 1))
     monkeypatch.setattr(recorded_facts.changes, "__defaults__", (tmp_path,))
     monkeypatch.setattr(recorded_facts.require_unchanged, "__defaults__", (tmp_path,))
     monkeypatch.setattr(uvicorn.Server, "run", lambda *_, **__: pytest.fail("it serves"))
-    studies.facts.cache_clear()
+    studies._facts.cache_clear()
     for command in (["serve", "--port", "0"], ["studies"], ["recommend"]):
         shown = CliRunner().invoke(app, command)
         assert shown.exit_code == 1

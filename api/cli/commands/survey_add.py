@@ -1,0 +1,204 @@
+"""`sunatlas survey add`, `remove` and `verify`: studies after the survey."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from api.cli.tables import Format, FormatOption, emit, emit_json, say
+from api.cli.wrong_call import WrongCallError
+from survey_data.additions.publications import SUFFIXES, chosen, read_publications
+from survey_data.additions.reading import Addition
+from survey_data.additions.template import empty_template
+from survey_data.additions.vocabulary import vocabulary
+from survey_data.additions.writing import add_study, read_study, remove_study, verify_study
+from survey_data.descriptor import DATA_DIRECTORY
+from survey_data.whole_files import replace_file
+
+_CELLS = ("attribute", "value", "name", "role", "basis", "source", "note")
+_PIPELINES = ("detector", "mask", "extractor", "model", "datasets", "assumed")
+
+DataOption = Annotated[
+    Path | None,
+    typer.Option(help="Directory of the tables; our own by default.", show_default=False),
+]
+ApplyOption = Annotated[bool, typer.Option("--apply", help="Write; without it nothing is written.")]
+
+
+def add(
+    file: Annotated[
+        Path | None,
+        typer.Argument(
+            help="TOML template, or BibTeX, RIS or CSL JSON (.bib, .ris, .json).",
+            show_default=False,
+        ),
+    ] = None,
+    *,
+    init: Annotated[
+        str | None,
+        typer.Option(
+            "--init",
+            metavar="KEY",
+            help="Write an empty template for this key into FILE, or print it.",
+            show_default=False,
+        ),
+    ] = None,
+    attributes: Annotated[
+        Path | None,
+        typer.Option(
+            help="Template with the attributes beside a bibliography; by default the file of the "
+            "same name that ends in .toml.",
+            show_default=False,
+        ),
+    ] = None,
+    key: Annotated[
+        str | None,
+        typer.Option(help="Which publication of a bibliography.", show_default=False),
+    ] = None,
+    apply: ApplyOption = False,
+    data: DataOption = None,
+    form: FormatOption = Format.TABLE,
+) -> None:
+    """Add a study that the survey does not have, with --apply.
+
+    Shows its row, its cells and what of it would run here. The survey's tables stay as they are:
+    later studies stand apart, and lists and figures have them with --edition all. Every fault of
+    the file is named on stderr with its line and the nearest valid value, and the exit code is 1.
+    `--init KEY FILE.toml` writes a template with every allowed value; `--init KEY FILE.bib` prints
+    one with the publication filled in.
+    """
+    folder = data or DATA_DIRECTORY
+    if init is not None:
+        if apply or attributes is not None:
+            raise WrongCallError("--init writes a template and takes no --apply or --attributes")
+        _write_template(init, file, key, folder)
+        return
+    if file is None:
+        raise WrongCallError("expected a file, or --init KEY for a template")
+    addition = read_study(file, folder, attributes=attributes, key=key)
+    changed = add_study(addition, folder, apply=apply)
+    document = _preview(addition)
+    document |= {"tables": sorted(changed), "written": apply}
+    if form is Format.JSON:
+        emit_json(document)
+        return
+    if form is Format.CSV:
+        emit(document["attributes"], _CELLS, form)
+        return
+    _print(document)
+    if apply:
+        typer.echo(f"{addition.key} added; `sunatlas studies {addition.key}` shows it.")
+    else:
+        typer.echo(f"Nothing written; --apply adds {addition.key}.")
+
+
+def remove(
+    key: Annotated[str, typer.Argument(help="Key of a study that was added.")],
+    *,
+    apply: ApplyOption = False,
+    data: DataOption = None,
+) -> None:
+    """Take a study after the survey out again, with all that is said of it.
+
+    The studies of the survey cannot be removed.
+    """
+    changed = remove_study(key, data or DATA_DIRECTORY, apply=apply)
+    what = f"{key}, from {len(changed)} tables"
+    typer.echo(f"Removed {what}." if apply else f"Nothing written; --apply removes {what}.")
+
+
+def verify(
+    key: Annotated[str, typer.Argument(help="Key of a study, of the survey or after it.")],
+    *,
+    name: Annotated[str, typer.Option(help="Who confirmed it: an author of the study.")],
+    confirms: Annotated[str, typer.Option(help="What was confirmed, in words.")],
+    source: Annotated[
+        str, typer.Option(help="Where that can be seen: an address, or a letter and who has it.")
+    ],
+    date: Annotated[str | None, typer.Option(help="Day, YYYY-MM-DD.", show_default="today")] = None,
+    apply: ApplyOption = False,
+    data: DataOption = None,
+) -> None:
+    """Note that an author confirmed what is said of a study.
+
+    Shown beside its facts, on its page and in every list.
+    """
+    day = date or datetime.now(UTC).date().isoformat()
+    row = {"study": key, "name": name, "date": day, "confirms": confirms, "source": source}
+    verify_study(row, data or DATA_DIRECTORY, apply=apply)
+    said = f"{key}: verified by {name} on {day}: {confirms} ({source})"
+    typer.echo(said)
+    typer.echo("Written." if apply else "Nothing written; --apply writes it.")
+
+
+def _write_template(key: str, file: Path | None, chosen_key: str | None, folder: Path) -> None:
+    """Print an empty template, or write it into a file that is not there yet."""
+    digits = "".join(letter for letter in key if letter.isdigit())
+    publication = {"key": key, "year": digits}
+    known = vocabulary(folder)
+    if file is not None and file.suffix.casefold() in SUFFIXES:
+        found = chosen(read_publications(file), chosen_key, file.name)
+        typer.echo(empty_template(known, {**found, "key": key}), nl=False)
+        return
+    text = empty_template(known, publication)
+    if file is None:
+        typer.echo(text, nl=False)
+        return
+    if file.suffix.casefold() != ".toml":
+        raise WrongCallError(f"--init: expected a file that ends in .toml; got {file.name!r}")
+    if file.exists():
+        raise WrongCallError(f"--init: {file} is there already")
+    replace_file(file, text)
+    typer.echo(f"{file} written: fill it in, then `sunatlas survey add {file}`.")
+
+
+def _preview(addition: Addition) -> dict[str, Any]:
+    """Return the study's row and cells, and what of it would run."""
+    from benchmark.plan.combinations import scorable  # noqa: PLC0415 - loads the simulator
+    from registry.resolution import resolve  # noqa: PLC0415 - as above
+    from registry.studies import study_from  # noqa: PLC0415 - as above
+
+    study = study_from(addition.rows)
+    resolution = resolve(study, scorable())
+    cells = [
+        {**cell, "name": _name(cell), "role": cell["role"] if cell["role"] != "unknown" else ""}
+        for cell in _cells(study.to_dict())
+    ]
+    return {
+        "study": dict(addition.study),
+        "attributes": cells,
+        "state": resolution.state,
+        "pipelines": [pipeline.to_dict() for pipeline in resolution.pipelines],
+        "gaps": [gap.to_dict() for gap in resolution.gaps],
+    }
+
+
+def _cells(study: Mapping[str, object]) -> Sequence[Mapping[str, Any]]:
+    cells = study["attributes"]
+    return cells if isinstance(cells, list) else []
+
+
+def _name(cell: Mapping[str, Any]) -> str:
+    return f"{cell['name_in_study']} (nearest)" if cell["nearest"] else str(cell["name_in_study"])
+
+
+def _print(document: Mapping[str, Any]) -> None:
+    study = document["study"]
+    row = [{"column": column, "value": value} for column, value in study.items() if value]
+    emit(row, ("column", "value"), Format.TABLE, title=f"Study {study['key']}")
+    typer.echo()
+    emit(document["attributes"], _CELLS, Format.TABLE, title="Its cells")
+    typer.echo()
+    lines = [
+        {**p, "assumed": [f"{part}: {rule}" for part, rule in p["assumed"].items()]}
+        for p in document["pipelines"]
+    ]
+    title = f"What of it would run here: {document['state']}, {len(lines)} pipelines"
+    emit(lines, _PIPELINES, Format.TABLE, title=title)
+    for gap in document["gaps"]:
+        say(f"gap: {gap['attribute']} {gap['value']}: {gap['reason']}".replace("  ", " "))
+    typer.echo()
