@@ -22,6 +22,7 @@ STUDIES = (
     *("accuracy_deg", "fov_deg", "edition", "verified"),
 )
 STUDY = ("attribute", "value", "basis", "source", "note", "role", "name_in_study", "nearest")
+EDITIONS = ("name", "title", "studies", "version")
 FLOWS = ("source", "target", "value", "studies")
 FIGURES = ("figure", "title", "caption", "levels")
 FIGURE_FLOWS = (

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import Any
@@ -21,7 +22,14 @@ NAME = "publications"
 TITLE = "Publications per year and venue"
 CAPTION = "When and where the mapped studies were published."
 
-KINDS = {"journal": "c1", "conference": "c2", "unknown": "c0"}
+KINDS = {
+    "journal": "c1",
+    "conference": "c2",
+    "preprint": "c3",
+    "thesis": "c4",
+    "report": "c5",
+    "unknown": "c0",
+}
 """Kind of publication -> colour."""
 _KIND_NAMES = {"unknown": "kind not known"}
 PERIOD = 5  # years
@@ -30,15 +38,23 @@ PERIOD = 5  # years
 @cache
 def _kinds() -> Mapping[str, str]:
     """Return the kind of publication of each study."""
-    studies = _tables().studies
+    studies = _tables().edition("all").studies
     return dict(zip(studies["key"], studies["type"], strict=True))
 
 
 @cache
 def _venues() -> Mapping[str, str]:
-    """Return the venue of each study whose venue is known."""
-    venues = _tables().venues
-    return dict(zip(venues["study"], venues["venue"], strict=True))
+    """Return the venue of each study whose venue is known.
+
+    Of a study after the survey, the venue is what stands before the first comma or colon of it, so
+    that volumes of a journal and numbers of a repository count together.
+    """
+    tables = _tables()
+    found = dict(zip(tables.venues["study"], tables.venues["venue"], strict=True))
+    later = tables.extension_studies.dropna(subset=["venue"])
+    for key, venue in zip(later["key"], later["venue"], strict=True):
+        found[key] = re.split(r"[,:]", venue)[0].strip()
+    return found
 
 
 @cache

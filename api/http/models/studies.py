@@ -208,6 +208,24 @@ class StudyDetail(Study):
     gaps: list[Gap]
 
 
+class Edition(Shape):
+    """An edition of the studies, as it is cited."""
+
+    name: Literal["survey", "extension"]
+    title: str
+    studies: int
+    version: str = Field(
+        description="Version of the data package, number of studies, first digits of the SHA-256 "
+        "of the edition's tables."
+    )
+
+
+class Editions(Shape):
+    """The survey's studies, and those after it."""
+
+    items: list[Edition]
+
+
 class Studies(Listing):
     """A page of studies."""
 

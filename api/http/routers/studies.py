@@ -12,7 +12,7 @@ from api.http.answers import Answer, AnswerRoute, listing
 from api.http.dependencies import AS_ACCEPTED, Known, TableOnly
 from api.http.knowledge import Knowledge
 from api.http.models.base import Selected
-from api.http.models.studies import Studies, StudiesQuery, StudyDetail
+from api.http.models.studies import Editions, Studies, StudiesQuery, StudyDetail
 from api.http.models.words import StudyKey
 from api.http.pagination import ordered, page
 from registry.resolution import RunnablePipeline
@@ -38,6 +38,19 @@ async def studies(known: Known, query: Annotated[StudiesQuery, Query()]) -> Answ
         lambda: [{**item, **item["values"], "verified": _said(item)} for item in shown.items],
         fields=query.fields,
     )
+
+
+@router.get("/editions", summary="Editions of the studies", response_model=Editions)
+async def editions(
+    known: Known,
+    query: TableOnly = AS_ACCEPTED,  # noqa: ARG001 - the route has read it
+) -> Answer:
+    """Give the survey's studies and those after it as they are cited: each with its version.
+
+    A version is that of the data package, the number of studies and a digest of their tables.
+    """
+    items = [one.to_dict() for one in known.editions]
+    return Answer({"items": items}, columns.EDITIONS, lambda: items)
 
 
 @router.get(
