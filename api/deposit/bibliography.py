@@ -20,8 +20,19 @@ _SPECIAL = {
     "~": r"\textasciitilde{}",
     "^": r"\textasciicircum{}",
 }
-_BIBTEX = {"journal": ("article", "journal"), "conference": ("inproceedings", "booktitle")}
-_RIS = {"journal": ("JOUR", "JO"), "conference": ("CPAPER", "T2")}
+_BIBTEX = {
+    "journal": ("article", "journal"),
+    "conference": ("inproceedings", "booktitle"),
+    "thesis": ("phdthesis", "school"),
+    "report": ("techreport", "institution"),
+}
+_RIS = {
+    "journal": ("JOUR", "JO"),
+    "conference": ("CPAPER", "T2"),
+    "thesis": ("THES", "PB"),
+    "report": ("RPRT", "PB"),
+    "preprint": ("UNPB", "T2"),
+}
 _SURE = {
     "confirmed": "",
     "recalled": "identified from memory, not confirmed by a public page",

@@ -40,6 +40,8 @@ from benchmark.datasets.checksums import (
 )
 from benchmark.progress import ProgressCallback, silent
 from benchmark.results.store import PUBLISHED, Store
+from survey_data.descriptor import file_name
+from survey_data.editions import editions
 from survey_data.manifest import digest
 from survey_data.whole_files import replacing
 
@@ -170,7 +172,8 @@ def fill(
     _write(bundle / "LICENSE", who.code_licence)
     for folder in ("survey", BIBLIOGRAPHY):
         _write(bundle / folder / "LICENSE", who.data_licence)
-    _write(bundle / "CITATION.cff", of_dataset(who.citation, digest(sources.published)))
+    record, facts = digest(sources.published), editions(sources.survey)
+    _write(bundle / "CITATION.cff", of_dataset(who.citation, record, facts))
     _write(bundle / "README.md", readme(who, descriptor))
     # The crate tells the checksum of every other file, so that a list of all comes after it, and
     # neither of the two stands in the other's way: the list has the crate, the crate not the list.
@@ -192,10 +195,12 @@ def fill(
 
 
 def _write_bibliography(bundle: Path) -> None:
-    with (bundle / "survey" / "studies.csv").open(encoding="utf-8", newline="") as file:
-        studies = list(csv.DictReader(file))
-    _write(bundle / BIBLIOGRAPHY / "studies.bib", bibtex(studies))
-    _write(bundle / BIBLIOGRAPHY / "studies.ris", ris(studies))
+    for table, name in (("studies", "studies"), ("extension_studies", "later-studies")):
+        path = bundle / "survey" / file_name(table)
+        with path.open(encoding="utf-8", newline="") as file:
+            studies = list(csv.DictReader(file))
+        _write(bundle / BIBLIOGRAPHY / f"{name}.bib", bibtex(studies))
+        _write(bundle / BIBLIOGRAPHY / f"{name}.ris", ris(studies))
 
 
 def _terms(name: str) -> str:

@@ -15,6 +15,8 @@ from typing import Any
 
 import yaml
 
+from survey_data.editions import Edition
+
 _ORCID = re.compile(r"(?:https?://orcid\.org/)?(\d{4}-\d{4}-\d{4}-\d{3}[\dX])")
 #: The 15 digits before the last, from and to: the blocks of ISNI's numbers that ORCID gives.
 _BLOCKS = ((15_000_000, 35_000_000), (900_000_000_000, 900_100_000_000))
@@ -85,18 +87,23 @@ def authors(text: str, where: str | Path) -> tuple[Author, ...]:
     return tuple(_author(entry, f"{where}, author {n}") for n, entry in enumerate(listed, start=1))
 
 
-def of_dataset(text: str, record: str | None = None) -> str:
+def of_dataset(text: str, record: str | None = None, editions: Sequence[Edition] = ()) -> str:
     """Return a CITATION.cff whose `type` says that it goes with a data set, not with code.
 
     Parameters
     ----------
     text : of the project's own
     record : SHA-256 of the published results' manifest, to be named as an identifier
+    editions : of the studies, each to be named by its version
     """
     document = {**yaml.safe_load(text), "type": "dataset"}
     if record is not None:
         said = "SHA-256 of the manifest of the published results, as the leaderboard shows it"
         named = {"type": "other", "value": f"sha256:{record}", "description": said}
+        document["identifiers"] = [*document.get("identifiers", ()), named]
+    for one in editions:
+        said = f"{one.title} ({one.studies}): version of the edition `{one.name}`"
+        named = {"type": "other", "value": f"{one.name}:{one.version}", "description": said}
         document["identifiers"] = [*document.get("identifiers", ()), named]
     return str(yaml.safe_dump(document, sort_keys=False, allow_unicode=True))
 

@@ -49,6 +49,8 @@ _KINDS = {
     "datapackage.json": "Types, units, keys and meaning of every column (Data Package v2).",
     "sun-sensor-atlas.sqlite": "Every table in one SQLite file, with keys.",
     "studies.bib": "The identified studies as BibTeX.",
+    "later-studies.bib": "The studies after the survey as BibTeX.",
+    "later-studies.ris": "The studies after the survey as RIS.",
     "studies.ris": "The identified studies as RIS.",
     "card.json": "Card",
     "checksums-sha256.txt": "Checksums",

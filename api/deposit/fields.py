@@ -17,6 +17,20 @@ TABLE_SCHEMA = "https://datapackage.org/profiles/2.0/tableschema.json"
 _FIELDS: dict[str, tuple[Type, str]] = {
     # what follows from the facts
     "study": ("string", "Key of the study."),
+    "edition": ("string", "survey: mapped by the survey; extension: added after it."),
+    "edition_title": ("string", "Name of the edition."),
+    "edition_studies": ("integer", "Number of its studies."),
+    "edition_version": (
+        "string",
+        "Version of the data package, number of studies, and the first digits of the SHA-256 of "
+        "the edition's tables.",
+    ),
+    "title": ("string", "Title; empty where the study is not identified."),
+    "authors": ("string", "Authors, separated by semicolons."),
+    "year": ("integer", "Year of publication."),
+    "venue": ("string", "Where it was published."),
+    "type": ("string", "Kind of publication."),
+    "doi": ("string", "Digital object identifier, without resolver."),
     "state": ("string", "How much of the study runs: complete, partial or none."),
     "detector_basis": (
         "string",

@@ -98,7 +98,9 @@ samples, as Parquet, two files a data set |
 `{COLUMNS}` say what each holds |
 | `{FRAMES}/<data set>/` | samples of the standard data sets: what a sensor reads, where the Sun \
 stood, the Cramer-Rao bound of each sample, flat and dark readings, a picture, a card |
-| `{BIBLIOGRAPHY}/` | the identified studies as BibTeX and RIS |
+| `survey/extension/` | studies after the survey, and confirmations by authors, apart from its own |
+| `{BIBLIOGRAPHY}/` | the identified studies as BibTeX and RIS; `later-studies` are those after the \
+survey |
 | `datapackage.json` | types, units, keys and meaning of every column \
 ([Data Package v2](https://datapackage.org)) |
 | `ro-crate-metadata.json` | every file in the words of schema.org \
@@ -114,6 +116,12 @@ In this directory, with Python and NumPy:
 {EXAMPLE}```
 
 In a browser: `datasette {DATABASE}`.
+
+## Editions
+
+The survey's studies are frozen in `survey/*.csv`; later ones stand in `survey/extension/` with the
+same columns. `benchmark/all_studies.csv` has both with their edition, `benchmark/editions.csv` and
+`CITATION.cff` the version of each: cite the one that was used.
 
 ## Samples
 

@@ -120,7 +120,22 @@ def _told(foreign: Mapping[str, tuple[str, str]]) -> list[MeasuredTable]:
             "by what rule it stands there where the study does not state it.",
             told.resolution(),
             primary=("study", *_PLACE, "dataset", "extractor", "model"),
-            foreign={**foreign, "study": ("studies", "key")},
+            foreign={**foreign, "study": ("all_studies", "study")},
+        ),
+        _table(
+            "all_studies",
+            "Studies of both editions",
+            "The survey's studies and those after it, told apart by their edition.",
+            told.all_studies(),
+            primary=("study",),
+            foreign={"edition": ("editions", "edition")},
+        ),
+        _table(
+            "editions",
+            "Editions of the studies",
+            "The survey's studies, and those after it: each with the version to cite.",
+            told.edition_rows(),
+            primary=("edition",),
         ),
         _table(
             "verdicts",

@@ -75,7 +75,9 @@ def publications_figure(facts: Facts, addresses: Addresses, where: Where) -> Fig
     venues, others = _venue_bars(dated, periods, addresses, rows)
     kinds = [kind for kind in KINDS if any(_kinds().get(s.key, "unknown") == kind for s in dated)]
     by_kind = [Entry(KINDS[kind], _KIND_NAMES.get(kind, kind)) for kind in kinds]
-    by_period = [Entry(colour, f"{a}–{b}") for (a, b), colour in periods.items()]
+    by_period = [
+        Entry(colour, f"{a}–{b}" if a < b else f"{a}") for (a, b), colour in periods.items()
+    ]
 
     def draw(width: float) -> Drawing:
         return _draw(years, by_kind, venues, by_period, others, width=width)

@@ -20,6 +20,8 @@ from tests.faults.kind import OFFERED, OTHERS, OWN, Kind, RefusedError
 
 def _facts(folder: Path) -> list[Path]:
     names = (*recorded_facts.names(), "manifest.json")
+    for name in names:
+        (folder / name).parent.mkdir(exist_ok=True)
     return [Path(shutil.copyfile(DATA_DIRECTORY / name, folder / name)) for name in names]
 
 

@@ -161,6 +161,7 @@ def test_our_own_facts_are_as_their_commands_wrote_them():
 @pytest.fixture
 def facts(tmp_path):
     for name in (*recorded_facts.names(), FILE):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
         shutil.copyfile(DATA_DIRECTORY / name, tmp_path / name)
     return tmp_path
 

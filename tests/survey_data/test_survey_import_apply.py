@@ -34,9 +34,9 @@ THEIRS = (
 
 
 def test_a_comparison_writes_nothing_and_shows_every_kind(copy: Any) -> None:
-    before = {path: path.read_bytes() for path in copy.directory.iterdir()}
+    before = {path: path.read_bytes() for path in copy.directory.rglob("*.csv")}
     plan = import_table(offer(copy, THEIRS), copy.directory)
-    after = {path: path.read_bytes() for path in copy.directory.iterdir() if path in before}
+    after = {path: path.read_bytes() for path in copy.directory.rglob("*.csv")}
     assert after == before
     assert plan.written == 0
     kinds = {(d.study, d.attribute): d.kind for d in (*plan.differences, *plan.confirmed)}
@@ -88,7 +88,7 @@ def test_only_the_cells_taken_over_change(copy: Any) -> None:
     touched = {(edit.study, edit.attribute) for edit in plan.edits}
     rest = [row for row in copy.rows("attributes") if (row[0], row[1]) not in touched]
     assert rest == [row for row in before if (row[0], row[1]) not in touched]
-    others = set(copy.directory.iterdir())
+    others = {path for path in copy.directory.iterdir() if path.is_file()}
     assert {path.name for path in others if path.suffix not in {".csv", ".json"}} == {"theirs.txt"}
 
 

@@ -30,7 +30,7 @@ def test_the_descriptor_is_version_2_and_every_file_is_described() -> None:
     assert package["$schema"] == "https://datapackage.org/profiles/2.0/datapackage.json"
     assert package["licenses"][0]["name"] == "CC-BY-4.0"
     assert {r["path"] for r in package["resources"]} == {
-        path.name for path in DATA_DIRECTORY.glob("*.csv")
+        path.relative_to(DATA_DIRECTORY).as_posix() for path in DATA_DIRECTORY.rglob("*.csv")
     }
     for resource in package["resources"]:
         assert resource["schema"].keys() & {"primaryKey", "uniqueKeys"}

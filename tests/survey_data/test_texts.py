@@ -5,6 +5,7 @@ import csv
 import pytest
 
 from survey_data.descriptor import DATA_DIRECTORY, file_name, table_names
+from survey_data.editions import EXTENSION_TABLES
 from survey_data.problems import SurveyDataError
 from survey_data.texts import load_texts
 
@@ -14,7 +15,7 @@ def test_rows_are_those_that_the_csv_module_reads(table):
     with (DATA_DIRECTORY / file_name(table)).open(encoding="utf-8", newline="") as lines:
         expected = list(csv.DictReader(lines))
     assert getattr(load_texts([table]), table) == expected
-    assert expected
+    assert expected or table in EXTENSION_TABLES
 
 
 def test_a_file_that_is_missing_or_broken_is_named_with_its_row(tmp_path):
