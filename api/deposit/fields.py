@@ -22,8 +22,7 @@ _FIELDS: dict[str, tuple[Type, str]] = {
     "edition_studies": ("integer", "Number of its studies."),
     "edition_version": (
         "string",
-        "Version of the data package, number of studies, and the first digits of the SHA-256 of "
-        "the edition's tables.",
+        "Version of the data package, number of studies, first digits of the tables' SHA-256.",
     ),
     "title": ("string", "Title; empty where the study is not identified."),
     "authors": ("string", "Authors, separated by semicolons."),

@@ -98,7 +98,7 @@ samples, as Parquet, two files a data set |
 `{COLUMNS}` say what each holds |
 | `{FRAMES}/<data set>/` | samples of the standard data sets: what a sensor reads, where the Sun \
 stood, the Cramer-Rao bound of each sample, flat and dark readings, a picture, a card |
-| `survey/extension/` | studies after the survey, and confirmations by authors, apart from its own |
+| `survey/extension/` | studies after the survey, and confirmations by authors |
 | `{BIBLIOGRAPHY}/` | the identified studies as BibTeX and RIS; `later-studies` are those after the \
 survey |
 | `datapackage.json` | types, units, keys and meaning of every column \

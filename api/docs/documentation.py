@@ -104,7 +104,8 @@ PAGES: Mapping[str, Mapping[str, Make]] = {
 }
 #: Pages whose blocks are run, and what they print renewed.
 RUN = tuple(
-    f"guide/{page}.md" for page in ("tutorial", "scores", "add-an-algorithm", "add-a-data-set")
+    f"guide/{page}.md"
+    for page in ("tutorial", "scores", "add-an-algorithm", "add-a-data-set", "add-a-study")
 )
 
 _PART = re.compile(

@@ -33,6 +33,7 @@ CHAPTERS: dict[str, tuple[str, ...]] = {
     "Adding to it": (
         "guide/add-an-algorithm",
         "guide/add-a-data-set",
+        "guide/add-a-study",
         "architecture",
         "faults",
         "faults-kills",

@@ -1,0 +1,195 @@
+"""Both editions of the studies, on every page, in every figure, endpoint, export and search."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner
+
+import survey_data
+from api.cli.command_line import app
+from api.figures.catalogue import MATRIX, TITLES
+from registry.flows import CHARTS
+from registry.studies import facts
+from tests.api.conftest import Client
+
+LATER = "Herman2025c"
+TABLES = ("/v1/studies", "/v1/recommendations", *(f"/v1/flows/{name}" for name in CHARTS))
+FIGURES = (*TITLES, MATRIX)
+PAGES = ("/", "/studies", "/scatter", *(f"/figures/{name}" for name in FIGURES))
+TWINS = ("/answer", "/studies", *(f"/figures/{name}" for name in FIGURES))
+
+
+def later() -> list[str]:
+    return [key for key, one in facts("all").studies.items() if one.edition == "extension"]
+
+
+def addresses() -> list[str]:
+    """Every address that takes an edition, in every form."""
+    found = [*PAGES, *TABLES, *(f"/v1/figures/{name}" for name in FIGURES)]
+    found += [f"{path}{suffix}" for path in TWINS for suffix in (".json", ".csv")]
+    found += [f"/figures/{n}{suffix}" for n in FIGURES for suffix in (".svg", ".plotly.json")]
+    return found
+
+
+@pytest.mark.parametrize("edition", ["survey", "all"])
+def test_everything_is_served_of_both_editions(client: Client, edition: str) -> None:
+    asked = [f"{address}?edition={edition}" for address in addresses()]
+    asked += [f"{path}?format=csv&edition={edition}" for path in TABLES]
+    asked += [f"/figures/{MATRIX}?rows={level}&edition={edition}" for level in ("task", "model")]
+    failed = {at: s for at in asked if (s := client.get(at).status_code) != 200}
+    assert failed == {}
+
+
+def test_every_later_study_has_its_page_and_its_endpoint_in_every_form(client: Client) -> None:
+    assert len(later()) >= 10
+    for key in later():
+        page = client.get(f"/studies/{key}")
+        assert page.status_code == 200
+        assert "Added after the survey" in page.text
+        for address in (f"/studies/{key}.json", f"/studies/{key}.csv", f"/v1/studies/{key}"):
+            assert client.get(address).status_code == 200
+        assert client.get(f"/v1/studies/{key}").json()["edition"] == "extension"
+    assert "of the survey" in client.get("/studies/Chang2008").text
+
+
+def test_the_survey_is_the_default_and_all_has_its_studies_first(client: Client) -> None:
+    alone = client.walk("/v1/studies?limit=500")
+    assert len(alone) == 129
+    assert {study["edition"] for study in alone} == {"survey"}
+    every = client.walk("/v1/studies?limit=500&edition=all")
+    assert every[:129] == alone  # what runs of a study of the survey is not moved by later ones
+    assert [study["key"] for study in every[129:]] == later()
+    assert len(client.table("/v1/studies?limit=500&edition=all")) == len(every)
+
+
+@pytest.mark.parametrize("chart", ["error", "performance", "cross-analysis"])
+def test_flows_and_the_evidence_map_count_later_studies_only_where_asked(
+    client: Client, chart: str
+) -> None:
+    for path in (f"/v1/flows/{chart}", f"/v1/figures/{MATRIX}"):
+        alone = client.get(path).json()["studies"]
+        every = client.get(f"{path}?edition=all").json()["studies"]
+        assert (alone, every) == (129, 129 + len(later()))
+    keys = {
+        key for row in client.get(f"/v1/flows/{chart}").json()["nodes"] for key in row["studies"]
+    }
+    assert not keys & set(later())
+
+
+def test_a_recommendation_names_later_studies_only_where_asked(client: Client) -> None:
+    def keys(edition: str) -> set[str]:
+        told = client.get(f"/v1/recommendations?limit=500&edition={edition}").json()
+        return {key for one in told["architectures"] for key in one["studies"]}
+
+    assert not keys("survey") & set(later())
+    assert keys("all") >= keys("survey")
+    assert keys("all") & set(later())
+
+
+def test_search_finds_a_later_study_by_what_it_calls_itself(client: Client) -> None:
+    found = client.get("/v1/search?q=sparse submanifold").json()["items"]
+    assert found[0]["id"] == LATER
+
+
+def test_what_is_only_the_nearest_is_neither_stated_nor_complete(client: Client) -> None:
+    told = client.get(f"/v1/studies/{LATER}").json()
+    cell = next(each for each in told["attributes"] if each["attribute"] == "model")
+    assert cell["nearest"]
+    assert "sparse" in cell["name_in_study"]
+    assert told["state"] != "complete"
+    assert "model" in {gap["attribute"] for gap in told["gaps"]}
+    assert {pipeline["basis"]["model"] for pipeline in told["pipelines"]} == {"defaulted"}
+
+
+def test_editions_are_cited_by_version(client: Client) -> None:
+    survey, extension = client.get("/v1/editions").json()["items"]
+    assert (survey["name"], survey["studies"]) == ("survey", 129)
+    assert extension["studies"] == len(later())
+    assert survey["version"] in client.get("/studies/Chang2008").text
+    assert extension["version"] in client.get(f"/studies/{LATER}").text
+    assert [row["version"] for row in client.table("/v1/editions")] == [
+        survey["version"],
+        extension["version"],
+    ]
+
+
+def test_an_unknown_edition_is_refused_with_the_nearest(client: Client) -> None:
+    refused = client.get("/v1/studies?edition=surve")
+    assert refused.status_code == 422
+    assert refused.json()["errors"][0]["nearest"] == "survey"
+
+
+def test_the_findings_and_counts_are_of_the_survey_alone() -> None:
+    report = survey_data.fidelity(survey_data.load())
+    assert report.studies == 129
+    assert {line.held for line in report.counts if line.id == "studies"} == {129}
+
+
+@pytest.mark.parametrize("command", [["studies"], ["recommend", "--limit", "500"]])
+def test_the_command_line_takes_an_edition(command: list[str]) -> None:
+    def keys(*more: str) -> str:
+        shown = CliRunner().invoke(app, [*command, *more, "--format", "json"])
+        assert shown.exit_code == 0, shown.stderr
+        return shown.stdout
+
+    assert LATER not in keys()
+    assert "Finance2021" in keys("--edition", "all")
+
+
+def test_one_command_adds_a_study_another_removes_it_and_git_sees_nothing(tmp_path: Path) -> None:
+    """The whole way of a reader of the guide, in a repository of the tables."""
+    ours = tmp_path / "tables"
+
+    def git(*words: str) -> str:
+        command = ["git", "-C", str(ours), "-c", "user.name=a", "-c", "user.email=a@b", *words]
+        return subprocess.run(command, check=True, capture_output=True, text=True).stdout
+
+    def said(*words: str, code: int = 0) -> Any:
+        shown = CliRunner().invoke(app, ["survey", *words, "--data", str(ours)])
+        assert shown.exit_code == code, shown.output
+        return shown
+
+    for name in (*survey_data.recorded_facts.names(), "manifest.json"):
+        target = ours / name
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_bytes((Path(survey_data.__file__).parent / name).read_bytes())
+    git("init", "-q")
+    git("add", ".")
+    git("commit", "-qm", "tables")
+    template = tmp_path / "doe.toml"
+    said("add", "--init", "Doe2026", str(template))
+    text = template.read_text("utf-8")
+    for column, value in (("title", "T"), ("type", "preprint"), ("url", "https://example.org")):
+        text = text.replace(f'{column} = ""', f'{column} = "{value}"')
+    template.write_text(text, "utf-8")
+    refused = said("add", str(template), "--apply", code=1)
+    line = text[: text.index("identity = ")].count("\n") + 1
+    assert (
+        refused.stderr == f"sunatlas: doe.toml, line {line}: identity: expected a value, got none\n"
+    )
+    template.write_text(text.replace('identity = ""', 'identity = "recalled"'), "utf-8")
+    preview = json.loads(said("add", str(template), "--format", "json").stdout)
+    assert preview["state"] == "none"  # every cell is unknown
+    assert git("status", "--porcelain") == ""
+    said("add", str(template), "--apply")
+    assert "extension/studies.csv" in git("status", "--porcelain")
+    facts = (
+        "--name",
+        "Jane Doe",
+        "--confirms",
+        "all",
+        "--source",
+        "letter",
+        "--date",
+        "2026-01-02",
+    )
+    said("verify", "Doe2026", *facts, "--apply")
+    said("check")
+    said("remove", "Doe2026", "--apply")
+    assert git("status", "--porcelain") == ""
+    said("remove", "Chang2008", "--apply", code=1)
