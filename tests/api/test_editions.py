@@ -37,53 +37,53 @@ def addresses() -> list[str]:
 
 
 @pytest.mark.parametrize("edition", ["survey", "all"])
-def test_everything_is_served_of_both_editions(client: Client, edition: str) -> None:
+def test_everything_is_served_of_both_editions(atlas: Client, edition: str) -> None:
     asked = [f"{address}?edition={edition}" for address in addresses()]
     asked += [f"{path}?format=csv&edition={edition}" for path in TABLES]
     asked += [f"/figures/{MATRIX}?rows={level}&edition={edition}" for level in ("task", "model")]
-    failed = {at: s for at in asked if (s := client.get(at).status_code) != 200}
+    failed = {at: s for at in asked if (s := atlas.get(at).status_code) != 200}
     assert failed == {}
 
 
-def test_every_later_study_has_its_page_and_its_endpoint_in_every_form(client: Client) -> None:
+def test_every_later_study_has_its_page_and_its_endpoint_in_every_form(atlas: Client) -> None:
     assert len(later()) >= 10
     for key in later():
-        page = client.get(f"/studies/{key}")
+        page = atlas.get(f"/studies/{key}")
         assert page.status_code == 200
         assert "Added after the survey" in page.text
         for address in (f"/studies/{key}.json", f"/studies/{key}.csv", f"/v1/studies/{key}"):
-            assert client.get(address).status_code == 200
-        assert client.get(f"/v1/studies/{key}").json()["edition"] == "extension"
-    assert "of the survey" in client.get("/studies/Chang2008").text
+            assert atlas.get(address).status_code == 200
+        assert atlas.get(f"/v1/studies/{key}").json()["edition"] == "extension"
+    assert "of the survey" in atlas.get("/studies/Chang2008").text
 
 
-def test_the_survey_is_the_default_and_all_has_its_studies_first(client: Client) -> None:
-    alone = client.walk("/v1/studies?limit=500")
+def test_the_survey_is_the_default_and_all_has_its_studies_first(atlas: Client) -> None:
+    alone = atlas.walk("/v1/studies?limit=500")
     assert len(alone) == 129
     assert {study["edition"] for study in alone} == {"survey"}
-    every = client.walk("/v1/studies?limit=500&edition=all")
+    every = atlas.walk("/v1/studies?limit=500&edition=all")
     assert every[:129] == alone  # what runs of a study of the survey is not moved by later ones
     assert [study["key"] for study in every[129:]] == later()
-    assert len(client.table("/v1/studies?limit=500&edition=all")) == len(every)
+    assert len(atlas.table("/v1/studies?limit=500&edition=all")) == len(every)
 
 
 @pytest.mark.parametrize("chart", ["error", "performance", "cross-analysis"])
 def test_flows_and_the_evidence_map_count_later_studies_only_where_asked(
-    client: Client, chart: str
+    atlas: Client, chart: str
 ) -> None:
     for path in (f"/v1/flows/{chart}", f"/v1/figures/{MATRIX}"):
-        alone = client.get(path).json()["studies"]
-        every = client.get(f"{path}?edition=all").json()["studies"]
+        alone = atlas.get(path).json()["studies"]
+        every = atlas.get(f"{path}?edition=all").json()["studies"]
         assert (alone, every) == (129, 129 + len(later()))
     keys = {
-        key for row in client.get(f"/v1/flows/{chart}").json()["nodes"] for key in row["studies"]
+        key for row in atlas.get(f"/v1/flows/{chart}").json()["nodes"] for key in row["studies"]
     }
     assert not keys & set(later())
 
 
-def test_a_recommendation_names_later_studies_only_where_asked(client: Client) -> None:
+def test_a_recommendation_names_later_studies_only_where_asked(atlas: Client) -> None:
     def keys(edition: str) -> set[str]:
-        told = client.get(f"/v1/recommendations?limit=500&edition={edition}").json()
+        told = atlas.get(f"/v1/recommendations?limit=500&edition={edition}").json()
         return {key for one in told["architectures"] for key in one["studies"]}
 
     assert not keys("survey") & set(later())
@@ -91,13 +91,13 @@ def test_a_recommendation_names_later_studies_only_where_asked(client: Client) -
     assert keys("all") & set(later())
 
 
-def test_search_finds_a_later_study_by_what_it_calls_itself(client: Client) -> None:
-    found = client.get("/v1/search?q=sparse submanifold").json()["items"]
+def test_search_finds_a_later_study_by_what_it_calls_itself(atlas: Client) -> None:
+    found = atlas.get("/v1/search?q=sparse submanifold").json()["items"]
     assert found[0]["id"] == LATER
 
 
-def test_what_is_only_the_nearest_is_neither_stated_nor_complete(client: Client) -> None:
-    told = client.get(f"/v1/studies/{LATER}").json()
+def test_what_is_only_the_nearest_is_neither_stated_nor_complete(atlas: Client) -> None:
+    told = atlas.get(f"/v1/studies/{LATER}").json()
     cell = next(each for each in told["attributes"] if each["attribute"] == "model")
     assert cell["nearest"]
     assert "sparse" in cell["name_in_study"]
@@ -106,20 +106,20 @@ def test_what_is_only_the_nearest_is_neither_stated_nor_complete(client: Client)
     assert {pipeline["basis"]["model"] for pipeline in told["pipelines"]} == {"defaulted"}
 
 
-def test_editions_are_cited_by_version(client: Client) -> None:
-    survey, extension = client.get("/v1/editions").json()["items"]
+def test_editions_are_cited_by_version(atlas: Client) -> None:
+    survey, extension = atlas.get("/v1/editions").json()["items"]
     assert (survey["name"], survey["studies"]) == ("survey", 129)
     assert extension["studies"] == len(later())
-    assert survey["version"] in client.get("/studies/Chang2008").text
-    assert extension["version"] in client.get(f"/studies/{LATER}").text
-    assert [row["version"] for row in client.table("/v1/editions")] == [
+    assert survey["version"] in atlas.get("/studies/Chang2008").text
+    assert extension["version"] in atlas.get(f"/studies/{LATER}").text
+    assert [row["version"] for row in atlas.table("/v1/editions")] == [
         survey["version"],
         extension["version"],
     ]
 
 
-def test_an_unknown_edition_is_refused_with_the_nearest(client: Client) -> None:
-    refused = client.get("/v1/studies?edition=surve")
+def test_an_unknown_edition_is_refused_with_the_nearest(atlas: Client) -> None:
+    refused = atlas.get("/v1/studies?edition=surve")
     assert refused.status_code == 422
     assert refused.json()["errors"][0]["nearest"] == "survey"
 
