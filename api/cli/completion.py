@@ -59,7 +59,13 @@ datasets = _completes(partial(_published, "datasets"))
 extractors = _completes(partial(_published, "extractors"))
 models = _completes(partial(_published, "models"))
 conditions = _completes(partial(_column, "benchmark/published/pins.csv", "condition"))
-studies = _completes(partial(_column, "survey_data/studies.csv", "key"))
+studies = _completes(
+    lambda: [
+        key
+        for table in ("studies.csv", "extension/studies.csv")
+        for key in _column(f"survey_data/{table}", "key")
+    ]
+)
 claims = _completes(partial(_column, "survey_data/claims.csv", "id"))
 methods = _completes(partial(_column, "survey_data/feature_assessment.csv", "extractor"))
 properties = _completes(partial(_column, "survey_data/feature_assessment.csv", "property"))

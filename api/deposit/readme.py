@@ -99,8 +99,7 @@ samples, as Parquet, two files a data set |
 | `{FRAMES}/<data set>/` | samples of the standard data sets: what a sensor reads, where the Sun \
 stood, the Cramer-Rao bound of each sample, flat and dark readings, a picture, a card |
 | `survey/extension/` | studies after the survey, and confirmations by authors |
-| `{BIBLIOGRAPHY}/` | the identified studies as BibTeX and RIS; `later-studies` are those after the \
-survey |
+| `{BIBLIOGRAPHY}/` | the identified studies as BibTeX and RIS, and those after the survey |
 | `datapackage.json` | types, units, keys and meaning of every column \
 ([Data Package v2](https://datapackage.org)) |
 | `ro-crate-metadata.json` | every file in the words of schema.org \

@@ -57,6 +57,6 @@ def _pages() -> tuple[dict[str, str], dict[str, str]]:
 
     everywhere = {name: dataset_page(name) for name in datasets.names()}
     everywhere |= {name: claim_page(name) for name in claims()}
-    everywhere |= {key: study_page(key) for key in facts().studies}
+    everywhere |= {key: study_page(key) for key in facts("all").studies}
     in_tables = {one.name: algorithm_page(one.name) for one in catalogue().listing(None)}
     return everywhere, in_tables

@@ -112,7 +112,7 @@ def _formula(text: str, stop: str) -> Markup:
 
 def _linked(text: str) -> Markup:
     """Return a text with links to the studies that it names, and of labels to what they are."""
-    studies, parts, at = facts().studies, [], 0
+    studies, parts, at = facts("all").studies, [], 0
     for found in _WORD.finditer(text):
         if found[0] in studies:
             link = Markup('<a href="{}">{}</a>').format(study_page(found[0]), found[0])

@@ -141,6 +141,16 @@ def test_the_command_line_takes_an_edition(command: list[str]) -> None:
     assert "Finance2021" in keys("--edition", "all")
 
 
+def test_a_later_study_is_run_from_what_is_published() -> None:
+    shown = CliRunner().invoke(
+        app, ["run", "Sharifi2026", "--condition", "nominal", "--format", "json"]
+    )
+    assert shown.exit_code == 0, shown.stderr
+    told = json.loads(shown.stdout)
+    assert told["scores"]
+    assert told["sources"]["measured"] == 0
+
+
 def test_one_command_adds_a_study_another_removes_it_and_git_sees_nothing(tmp_path: Path) -> None:
     """The whole way of a reader of the guide, in a repository of the tables."""
     ours = tmp_path / "tables"

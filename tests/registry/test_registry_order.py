@@ -161,5 +161,7 @@ def test_of_several_numbers_the_best_counts() -> None:
             "source": "",
             "note": "why",
             "role": "",
+            "name_in_study": "",
+            "nearest": False,
         }
     ]

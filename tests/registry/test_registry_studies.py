@@ -51,6 +51,8 @@ def test_the_detail_of_a_study_shows_empty_cells_and_numbers(survey: Facts) -> N
         "source": "",
         "note": "",
         "role": "",
+        "name_in_study": "",
+        "nearest": False,
     } in cells
     assert found.number("accuracy_deg") is None
     assert survey.study("Minor2010").number("accuracy_deg") == 0.1

@@ -94,7 +94,7 @@ def run(
         _run_suite(str(suite), workers, scheduler, store, form)
         return
     ask(studies.study, key=study)  # refuses an unknown key with the nearest one
-    resolution = knowledge().resolutions[study]
+    resolution = knowledge().of("all").resolutions[study]
     planned = _planned(resolution, condition)
     result = scored(planned, workers, store, scheduler)
     rows = [{"study": study, **row, "assumed": planned[_cell(row)]} for row in result.rows]

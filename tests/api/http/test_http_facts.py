@@ -113,6 +113,7 @@ def test_a_study_carries_every_cell_with_its_basis(atlas):
     expected = [
         {k: v for k, v in row.items() if k != "study"}
         | {"role": roles.get((row["attribute"], row["value"]), row_role(row))}
+        | {"name_in_study": "", "nearest": False}
         for row in read("attributes")
         if row["study"] == "Chang2008"
     ]

@@ -15,7 +15,7 @@ def test_every_thing_is_there_once(known: Knowledge):
     entries = known.index.entries
     assert len({(entry.kind, entry.id) for entry in entries}) == len(entries)
     counted = {kind: sum(entry.kind == kind for entry in entries) for kind in KINDS}
-    assert counted["study"] == len(known.facts.studies)
+    assert counted["study"] == len(known.of("all").facts.studies)
     assert counted["algorithm"] == len(known.catalogue.extractors) + len(known.catalogue.models)
     assert counted["dataset"] == len(known.measurements.presets)
     assert counted["claim"] == len(known.measurements.claims)
