@@ -76,7 +76,7 @@ def test_what_is_completed_is_what_there_is():
     assert sorted(completion.conditions("")) == sorted(
         {row["condition"] for row in rows} - {ON_BENCH}
     )
-    assert completion.studies("") == list(facts().studies)
+    assert completion.studies("") == list(facts("all").studies)
     assert completion.values("mask")("") == list(facts().taxonomy.values("mask"))
     assert completion.properties("") == list(facts().properties)
     assert completion.studies("Chang2008") == ["Chang2008"]

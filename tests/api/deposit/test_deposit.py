@@ -25,6 +25,7 @@ from benchmark.claims.rules import claims
 from benchmark.datasets.checksums import CHECKSUMS, write_checksums
 from benchmark.results.store import PUBLISHED, Store
 from survey_data import manifest, whole_files
+from survey_data.editions import editions
 from tests.api.deposit.conftest import FRAMES
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -174,7 +175,10 @@ def test_the_terms_go_with_the_files(built):
         yaml.safe_load((place / "CITATION.cff").read_text("utf-8"))
         for place in (built.directory, ROOT)
     )
-    (named,) = told.pop("identifiers")
+    named, *cited = told.pop("identifiers")
+    assert [one["value"] for one in cited] == [
+        f"{edition.name}:{edition.version}" for edition in editions()
+    ]
     content = (PUBLISHED / manifest.FILE).read_bytes()
     assert named["value"] == f"sha256:{hashlib.sha256(content).hexdigest()}"
     assert told == {**ours, "type": "dataset"}
