@@ -6,14 +6,21 @@ that other tables can be handed in.
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from types import MappingProxyType
+from typing import TYPE_CHECKING, Protocol
 
 from registry.advice import Advice
-from registry.survey_tables import Tables, rows_of
+from registry.study import (
+    METHODS,
+    AttributeValue,
+    MethodRole,
+    NameInStudy,
+    Study,
+    Verification,
+)
 from registry.taxonomy import (
     NUMERIC_ATTRIBUTES,
     InvalidValueError,
@@ -31,61 +38,85 @@ from survey_data.editions import (
     Choice,
 )
 from survey_data.numerals import decimal
-from survey_data.texts import load_texts
+from survey_data.texts import Rows, load_texts
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+__all__ = [
+    "METHODS",
+    "AttributeValue",
+    "Default",
+    "Facts",
+    "FactsError",
+    "MethodRole",
+    "NameInStudy",
+    "Study",
+    "Verification",
+    "facts",
+    "facts_from",
+    "studies",
+    "study",
+    "study_from",
+]
 
 
 class FactsError(ValueError):
     """The survey's tables can be read and do not fit each other; the message says where."""
 
 
-METHODS = ("model", "extractor")
-"""Attributes whose values a study proposes, or only compares against."""
+class Tables(Protocol):
+    """The tables read here, as `survey_data.load` gives them, or `load_texts`."""
 
+    @property
+    def studies(self) -> pd.DataFrame | Rows:
+        """One row a study."""
+        ...
 
-@dataclass(frozen=True)
-class AttributeValue:
-    """A value of one of a study's attributes, and where it comes from."""
+    @property
+    def attributes(self) -> pd.DataFrame | Rows:
+        """One row a value."""
+        ...
 
-    value: str
-    basis: str  # of survey_data/bases.csv, such as survey-table, abstract, inferred
-    source: str
-    note: str
+    @property
+    def taxonomy(self) -> pd.DataFrame | Rows:
+        """One row a value of the vocabulary."""
+        ...
 
+    @property
+    def model_families(self) -> pd.DataFrame | Rows:
+        """One row a model: whether it is calibrated on the ground or in operation."""
+        ...
 
-@dataclass(frozen=True)
-class MethodRole:
-    """Whether a study proposed a method or only compared another against it, and who says so."""
+    @property
+    def roles(self) -> pd.DataFrame | Rows:
+        """One row a method of a study that it proposed or only compared."""
+        ...
 
-    role: str  # proposed, compared
-    basis: str
-    source: str
-    note: str
+    @property
+    def architectures(self) -> pd.DataFrame | Rows:
+        """One row a sensor of a study whose detectors and masks do not all go together."""
+        ...
 
+    @property
+    def defaults(self) -> pd.DataFrame | Rows:
+        """One row a rule of what stands in an empty cell."""
+        ...
 
-@dataclass(frozen=True)
-class NameInStudy:
-    """What a study itself calls one of its values.
+    @property
+    def advice(self) -> pd.DataFrame | Rows:
+        """One row a sensor or calibration that the survey's text advises."""
+        ...
 
-    ``nearest`` says that the taxonomy has no such value and that the one given is only the nearest
-    to it: what runs that value is not the study's own.
-    """
+    @property
+    def feature_assessment(self) -> pd.DataFrame | Rows:
+        """One row a mark of an extractor for a property."""
+        ...
 
-    name: str
-    nearest: bool
-
-
-@dataclass(frozen=True)
-class Verification:
-    """Who confirmed what of a study, on which day, and where that can be seen."""
-
-    name: str
-    date: str
-    confirms: str
-    source: str
-
-    def to_dict(self) -> dict[str, str]:
-        """Return the confirmation as plain JSON data."""
-        return asdict(self)
+    @property
+    def aliases(self) -> pd.DataFrame | Rows:
+        """One row another name of a value."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -101,125 +132,6 @@ class Default:
     value: str
     section: str
     rule: str
-
-
-@dataclass(frozen=True)
-class Study:
-    """One study of the survey's mapping, or one after it (`edition`).
-
-    ``values`` holds the stated values only; an attribute whose cell is empty is absent from it
-    and stands in ``unknown`` with the note beside the empty cell. ``roles`` are those of
-    (attribute, value), where one is known; ``combined`` says which detector goes with which mask
-    where not every one goes with every other. ``names`` are what a study after the survey calls its
-    values of (attribute, value); ``verified`` who confirmed what is said here.
-    """
-
-    key: str
-    title: str
-    authors: str
-    year: int | None
-    venue: str
-    doi: str
-    url: str
-    identity: str  # confirmed, recalled, ambiguous, unknown
-    note: str
-    values: Mapping[str, tuple[AttributeValue, ...]]
-    unknown: Mapping[str, str]
-    roles: Mapping[tuple[str, str], MethodRole] = field(default_factory=dict, hash=False)
-    combined: tuple[tuple[str, str], ...] = ()
-    edition: str = SURVEY
-    names: Mapping[tuple[str, str], NameInStudy] = field(default_factory=dict, hash=False)
-    verified: tuple[Verification, ...] = ()
-
-    def role(self, attribute: str, value: str) -> str:
-        """Return `proposed`, `compared` or `unknown`, of a model or an extractor of the study."""
-        known = self.roles.get((attribute, value))
-        return "unknown" if known is None else known.role
-
-    def supported(self, attribute: str) -> tuple[str, ...]:
-        """Return the stated values that the study stands for: those it only compared are not."""
-        return tuple(v for v in self.of(attribute) if self.role(attribute, v) != "compared")
-
-    @cached_property
-    def architectures(self) -> tuple[tuple[str, str], ...]:
-        """Detector and mask of each sensor that the study can have had; empty if one is unknown."""
-        every = itertools.product(self.of("detector"), self.of("mask"))
-        return self.combined or tuple(every)
-
-    def has_sensor(self, values: Mapping[str, str | None]) -> bool:
-        """Say whether a sensor of the study can have these values of detector and mask."""
-        pair = (values.get("detector"), values.get("mask"))
-        return not self.combined or None in pair or pair in self.combined
-
-    def of(self, attribute: str) -> tuple[str, ...]:
-        """Return the stated values of an attribute, without repetition; empty if unknown."""
-        return self._stated.get(attribute, ())
-
-    @cached_property
-    def _stated(self) -> Mapping[str, tuple[str, ...]]:
-        return {a: tuple(dict.fromkeys(v.value for v in cells)) for a, cells in self.values.items()}
-
-    def number(self, attribute: str) -> float | None:
-        """Return the stated `accuracy_deg` or `fov_deg` (the best of several); None if none."""
-        if attribute not in NUMERIC_ATTRIBUTES:
-            raise unknown_name("attribute", attribute, NUMERIC_ATTRIBUTES)
-        numbers = [float(text) for text in self.of(attribute)]
-        if not numbers:
-            return None
-        return min(numbers) if attribute == "accuracy_deg" else max(numbers)
-
-    def summary(self) -> dict[str, object]:
-        """Identity and values, as in a list of studies."""
-        return {
-            "key": self.key,
-            "title": self.title,
-            "authors": self.authors,
-            "year": self.year,
-            "venue": self.venue,
-            "doi": self.doi,
-            "url": self.url,
-            "identity": self.identity,
-            "edition": self.edition,
-            "verified": [each.to_dict() for each in self.verified],
-            "values": {attribute: list(self.of(attribute)) for attribute in self.values},
-        }
-
-    def to_dict(self) -> dict[str, object]:
-        """Return the summary and every cell with its provenance, empty cells included."""
-        cells = [
-            {
-                "attribute": attribute,
-                "value": cell.value,
-                "basis": cell.basis,
-                "source": cell.source,
-                "note": cell.note,
-                "role": self.role(attribute, cell.value) if attribute in METHODS else "",
-                **self._name(attribute, cell.value),
-            }
-            for attribute, cells in self.values.items()
-            for cell in cells
-        ]
-        cells += [
-            {
-                "attribute": a,
-                "value": "",
-                "basis": "unknown",
-                "source": "",
-                "note": note,
-                "role": "",
-                **self._name(a, ""),
-            }
-            for a, note in self.unknown.items()
-        ]
-        return {**self.summary(), "note": self.note, "attributes": cells}
-
-    def _name(self, attribute: str, value: str) -> dict[str, object]:
-        """Return what the study calls a value, and whether the taxonomy has only the nearest."""
-        found = self.names.get((attribute, value))
-        return {
-            "name_in_study": "" if found is None else found.name,
-            "nearest": found is not None and found.nearest,
-        }
 
 
 @dataclass(frozen=True, eq=False)
@@ -451,3 +363,14 @@ def _default(row: Mapping[str, str]) -> Default:
     return Default(
         *(row["id"], row["attribute"], conditions, row["value"], row["survey_section"], row["rule"])
     )
+
+
+def rows_of(frame: pd.DataFrame | Rows) -> Iterable[Mapping[str, str]]:
+    """Rows as text; an empty cell is ""."""
+    if isinstance(frame, Sequence):
+        yield from frame
+        return
+    filled = frame.astype(object).where(frame.notna(), "")
+    columns = [str(column) for column in filled.columns]
+    for row in filled.itertuples(index=False, name=None):
+        yield {column: str(cell) for column, cell in zip(columns, row, strict=True)}

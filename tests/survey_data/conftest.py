@@ -12,7 +12,9 @@ from pathlib import Path
 import pytest
 
 import survey_data
+from survey_data.additions.vocabulary import Vocabulary, vocabulary
 from survey_data.descriptor import DATA_DIRECTORY, DESCRIPTOR_FILE, file_name, table_names
+from survey_data.manifest import FILE
 
 
 @dataclass(frozen=True)
@@ -64,3 +66,15 @@ def tables() -> survey_data.SurveyTables:
 @pytest.fixture
 def copy(tmp_path: Path) -> Copy:
     return copy_data(tmp_path)
+
+
+@pytest.fixture(scope="session")
+def known() -> Vocabulary:
+    return vocabulary()
+
+
+@pytest.fixture
+def recorded(copy: Copy) -> Path:
+    """A copy of the tables with their manifest."""
+    (copy.directory / FILE).write_bytes((DATA_DIRECTORY / FILE).read_bytes())
+    return copy.directory
