@@ -36,11 +36,15 @@ class FaultsError(SurveyImportError):
     def __init__(self, file: str, faults: Sequence[Fault]) -> None:
         self.file = file
         self.faults = tuple(sorted(faults, key=lambda fault: fault.line or 0))
-        lines = [
-            f"{file}{'' if each.line is None else f', line {each.line}'}: {each.message}"
+        super().__init__("\n".join(self.lines))
+
+    @property
+    def lines(self) -> list[str]:
+        """A line for each fault: file, line, what was expected."""
+        return [
+            f"{self.file}{'' if each.line is None else f', line {each.line}'}: {each.message}"
             for each in self.faults
         ]
-        super().__init__("\n".join(lines))
 
 
 def one_of(value: object, words: Iterable[str], near: Iterable[str] = ()) -> str:

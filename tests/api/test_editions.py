@@ -177,6 +177,10 @@ def test_one_command_adds_a_study_another_removes_it_and_git_sees_nothing(tmp_pa
     for column, value in (("title", "T"), ("type", "preprint"), ("url", "https://example.org")):
         text = text.replace(f'{column} = ""', f'{column} = "{value}"')
     template.write_text(text, "utf-8")
+    two = tmp_path / "two.toml"
+    two.write_text(text.replace('"preprint"', '"preprnt"'), "utf-8")
+    lines = said("add", str(two), code=1).stderr.splitlines()
+    assert [line.partition(":")[0] for line in lines] == ["sunatlas"] * 2  # a line a fault
     refused = said("add", str(template), "--apply", code=1)
     line = text[: text.index("identity = ")].count("\n") + 1
     assert (

@@ -11,6 +11,7 @@ import typer
 
 from api.cli.tables import Format, FormatOption, emit, emit_json, say
 from api.cli.wrong_call import WrongCallError
+from survey_data.additions.faults import FaultsError
 from survey_data.additions.publications import SUFFIXES, chosen, read_publications
 from survey_data.additions.reading import Addition
 from survey_data.additions.template import empty_template
@@ -79,7 +80,14 @@ def add(
         return
     if file is None:
         raise WrongCallError("expected a file, or --init KEY for a template")
-    addition = read_study(file, folder, attributes=attributes, key=key)
+    try:
+        addition = read_study(file, folder, attributes=attributes, key=key)
+    except FaultsError as error:
+        if form is Format.JSON:
+            emit_json({"file": error.file, "faults": [each.to_dict() for each in error.faults]})
+        for line in error.lines:
+            typer.echo(f"sunatlas: {line}", err=True)
+        raise typer.Exit(1) from error
     changed = add_study(addition, folder, apply=apply)
     document = _preview(addition)
     document |= {"tables": sorted(changed), "written": apply}
