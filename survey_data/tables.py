@@ -47,6 +47,9 @@ class SurveyTables:
     counts: pd.DataFrame
     hardware: pd.DataFrame
     defaults: pd.DataFrame
+    purposes: pd.DataFrame
+    compensated_models: pd.DataFrame
+    method_variants: pd.DataFrame
     architectures: pd.DataFrame
     roles: pd.DataFrame
     advice: pd.DataFrame
@@ -89,8 +92,15 @@ def load(directory: str | Path | None = None) -> SurveyTables:
     return SurveyTables(**frames)
 
 
-#: Tables that an import may empty: what stands in them rests on values it may replace.
-MAY_BE_EMPTY = frozenset({"roles", "architectures"})
+#: Tables that rest on values an import may replace, with the columns that name these values.
+RESTING = {
+    "roles": ("value",),
+    "architectures": ("detector", "mask"),
+    "compensated_models": ("compensation", "model"),
+    "method_variants": ("model",),
+}
+#: Tables that an import may so empty.
+MAY_BE_EMPTY = frozenset(RESTING)
 
 
 def _without_use(table: str, records: Records) -> list[Problem]:

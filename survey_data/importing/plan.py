@@ -18,7 +18,7 @@ from survey_data.importing.values import (
     column_unit,
 )
 from survey_data.problems import Problem, SurveyImportError
-from survey_data.tables import SurveyTables
+from survey_data.tables import RESTING, SurveyTables
 
 AUTHORS_BASIS = "authors-table"
 _SAME_NUMBER = 5e-3  # tables round their angles to two or three digits
@@ -202,7 +202,7 @@ def plan_import(
 
 
 def _withdrawn(tables: SurveyTables, cells: Iterable[Difference]) -> tuple[Withdrawn, ...]:
-    """Return what rests on values that cells replace: roles of studies, pairs of their parts."""
+    """Return the rows of our other tables that rest on values that cells replace."""
     gone = {
         (cell.study, cell.attribute, value)
         for cell in cells
@@ -219,7 +219,13 @@ def _withdrawn(tables: SurveyTables, cells: Iterable[Difference]) -> tuple[Withd
         for row in tables.architectures.fillna("").to_dict("records")
         if any((row["study"], part, row[part]) in gone for part in ("detector", "mask"))
     )
-    return (*roles, *pairs)
+    models = (
+        Withdrawn(table, row["study"], " + ".join(row[name] for name in RESTING[table]), row["note"])
+        for table in ("compensated_models", "method_variants")
+        for row in getattr(tables, table).fillna("").to_dict("records")
+        if any((row["study"], "model", row[name]) in gone for name in RESTING[table])
+    )
+    return (*roles, *pairs, *models)
 
 
 def differences(

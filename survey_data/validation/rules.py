@@ -290,6 +290,7 @@ def _identifiers_run_on(frames: Frames) -> Iterator[Problem]:
         ("claims", "id", "C{:02d}"),
         ("bases", "rank", "{:d}"),
         ("defaults", "id", "D{:02d}"),
+        ("purposes", "id", "U{:02d}"),
         ("advice", "id", "A{:02d}"),
     ):
         if table not in frames:
