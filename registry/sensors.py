@@ -14,10 +14,11 @@ from typing import Literal
 from registry.studies import METHODS, Default, Facts, Study
 from registry.taxonomy import NO_IMPLEMENTATION_STATED, Architecture
 
-Basis = Literal["stated", "inferred", "recalled", "defaulted"]
+Basis = Literal["stated", "inferred", "implied", "recalled", "defaulted"]
 
-BASES: tuple[Basis, ...] = ("stated", "inferred", "recalled", "defaulted")
-"""What a value of a pipeline rests on, strongest first."""
+BASES: tuple[Basis, ...] = ("stated", "inferred", "implied", "recalled", "defaulted")
+"""What a value of a pipeline rests on, strongest first: the study's own text, a conclusion from it,
+the survey's definition of a method that the study uses, memory, a choice of ours."""
 
 SENSOR = ("detector", "mask")
 
@@ -92,7 +93,8 @@ def _filled(study: Study, attribute: str, defaults: Iterable[Default]) -> dict[s
         return {value: cell(study, attribute, value) for value in study.of(attribute)}
     for rule in defaults:
         if rule.attribute == attribute and all(v in study.of(a) for a, v in rule.given):
-            return {rule.value: Part(rule.value, "defaulted", f"{rule.id}: {rule.rule}")}
+            basis: Basis = "implied" if rule.kind == "implied" else "defaulted"
+            return {rule.value: Part(rule.value, basis, f"{rule.id}: {rule.rule}")}
     return {}
 
 

@@ -13,6 +13,15 @@ from functools import cached_property, lru_cache
 from types import MappingProxyType
 
 from registry.advice import Advice
+from registry.particulars import (
+    CompensatedModel,
+    MethodVariant,
+    PurposeRule,
+    compensated_model,
+    conditions,
+    method_variant,
+    purpose_rule,
+)
 from registry.survey_tables import Tables, rows_of
 from registry.taxonomy import (
     NUMERIC_ATTRIBUTES,
@@ -58,7 +67,9 @@ class MethodRole:
 class Default:
     """What stands in an empty cell of a study that meets every condition, and why.
 
-    ``given`` are (attribute, value) that the study must have.
+    ``given`` are (attribute, value) that the study must have. ``kind`` is implied where the value
+    follows from the survey's definition of a method that the study uses, chosen where others would
+    fit as well.
     """
 
     id: str
@@ -67,6 +78,7 @@ class Default:
     value: str
     section: str
     rule: str
+    kind: str = "implied"
 
 
 @dataclass(frozen=True)
@@ -182,6 +194,26 @@ class Facts:
     advice: tuple[Advice, ...] = ()
     properties: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
     """Property of the survey's assessment -> value of an extractor -> its mark, 0 to 2."""
+    purposes: tuple[PurposeRule, ...] = ()
+    compensated: tuple[CompensatedModel, ...] = ()
+    variants: tuple[MethodVariant, ...] = ()
+
+    def variant(self, study: str, model: str) -> MethodVariant | None:
+        """Return what is said of how a study carries out one of its models."""
+        return next((v for v in self.variants if (v.study, v.model) == (study, model)), None)
+
+    def within(self, study: str, compensation: str) -> tuple[str, ...]:
+        """Return the models of a study that carry out one of its compensations themselves."""
+        return self._compensated(study, compensation, "within")
+
+    def behind(self, study: str, compensation: str) -> tuple[str, ...]:
+        """Return the models that one of a study's compensations corrects the features of."""
+        return self._compensated(study, compensation, "ahead")
+
+    def _compensated(self, study: str, compensation: str, relation: str) -> tuple[str, ...]:
+        at = (study, compensation, relation)
+        rows = (c for c in self.compensated if (c.study, c.compensation, c.relation) == at)
+        return tuple(c.model for c in rows)
 
     @cached_property
     def keys(self) -> tuple[str, ...]:
@@ -198,6 +230,7 @@ class Facts:
 _TABLES = (
     *("studies", "attributes", "taxonomy", "model_families", "roles", "architectures"),
     *("defaults", "advice", "feature_assessment", "aliases"),
+    *("purposes", "compensated_models", "method_variants"),
 )
 
 
@@ -302,6 +335,9 @@ def facts_from(tables: Tables) -> Facts:
         tuple(map(_default, rows_of(tables.defaults))),
         tuple(map(_advice, rows_of(tables.advice))),
         _properties(tables, taxonomy),
+        tuple(map(purpose_rule, rows_of(tables.purposes))),
+        tuple(map(compensated_model, rows_of(tables.compensated_models))),
+        tuple(map(method_variant, rows_of(tables.method_variants))),
     )
 
 
@@ -333,7 +369,7 @@ def _advice(row: Mapping[str, str]) -> Advice:
 
 
 def _default(row: Mapping[str, str]) -> Default:
-    conditions = tuple(condition.partition("=")[::2] for condition in row["given"].split("&"))
     return Default(
-        *(row["id"], row["attribute"], conditions, row["value"], row["survey_section"], row["rule"])
+        *(row["id"], row["attribute"], conditions(row["given"]), row["value"]),
+        *(row["survey_section"], row["rule"], row["kind"]),
     )

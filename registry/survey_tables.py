@@ -50,6 +50,21 @@ class Tables(Protocol):
         ...
 
     @property
+    def purposes(self) -> pd.DataFrame | Rows:
+        """One row a rule of what studies are run for."""
+        ...
+
+    @property
+    def compensated_models(self) -> pd.DataFrame | Rows:
+        """One row a model that a compensation of a study belongs to."""
+        ...
+
+    @property
+    def method_variants(self) -> pd.DataFrame | Rows:
+        """One row a model of a study whose way to carry it out is known."""
+        ...
+
+    @property
     def advice(self) -> pd.DataFrame | Rows:
         """One row a sensor or calibration that the survey's text advises."""
         ...

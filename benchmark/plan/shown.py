@@ -1,0 +1,18 @@
+"""What data sets show, as the registry is told it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from benchmark.plan.parts import Parts, installed
+from registry.purposes import DataSet
+
+
+def data_sets(*, parts: Parts | None = None) -> Mapping[str, DataSet]:
+    """Return conditions, columns and studies of every data set, by its name."""
+    return {
+        name: DataSet(
+            name, tuple(preset.conditions), frozenset(preset.context_columns), preset.follows
+        )
+        for name, preset in (parts or installed()).presets.items()
+    }

@@ -1,0 +1,285 @@
+"""How near what runs of a study is to the study: faithful, close or a stand-in, by stated rules.
+
+A study's run has five parts: its sensor, the condition it is shown under, its extractors, its
+models and its compensations. A part departs from the study where
+
+- the sensor is recalled, chosen by a rule or a relative's, or one of its stated sensors is missing;
+- none of its settings shows what the study is run for (`registry.purposes`);
+- an extractor, a model or a compensation that it states runs in none of its pipelines;
+- it states none, and what stands there was chosen here;
+- only another variant of a method runs than the study's (`method_variants.csv`);
+- the kind of a compensation is not stated (ECM), and one of its kinds was chosen here;
+- a compensation runs ahead of a model that neither the study nor the survey's equation names.
+
+What is inferred with a reason, or implied by the survey's definition of a method that the study
+uses, does not depart. No departure is *faithful*, one *close*, more a *stand-in*. Several values
+that are missing are several departures.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+from registry.fitting import COMPENSATIONS, Chosen, Fitted
+from registry.purposes import PURPOSES, Purpose
+from registry.runnable import RunnablePipeline, strongest
+from registry.sensors import BASES, SENSOR
+from registry.studies import METHODS, Facts, Study
+from registry.taxonomy import NO_IMPLEMENTATION_STATED
+
+Grade = Literal["faithful", "close", "stand-in", "none"]
+
+GRADES: Mapping[Grade, str] = {
+    "faithful": "every part of it is its own, stated or inferred with a reason",
+    "close": "one part departs from it",
+    "stand-in": "more than one part departs from it",
+    "none": "nothing of it runs",
+}
+"""How near a run is to its study, nearest first, in words."""
+
+TALLIED: Mapping[Grade, str] = {
+    "faithful": "faithful",
+    "close": "close",
+    "stand-in": "stand-in",
+    "none": "cannot run",
+}
+"""What a count of a grade is followed by."""
+
+Part = Literal["sensor", "condition", "extractor", "model", "compensation"]
+
+
+@dataclass(frozen=True)
+class Departure:
+    """A part of a study's run that is not the study's own.
+
+    ``text`` says what departs, as a clause; ``settled_by`` what would make the part the study's.
+    """
+
+    part: Part
+    value: str
+    text: str
+    settled_by: str
+
+    def to_dict(self) -> dict[str, str]:
+        """As in the HTTP answer."""
+        return {
+            "part": self.part,
+            "value": self.value,
+            "text": self.text,
+            "settled_by": self.settled_by,
+        }
+
+
+@dataclass(frozen=True)
+class Fidelity:
+    """The grade of a study's run, in one sentence and by its departures."""
+
+    grade: Grade
+    sentence: str
+    departures: tuple[Departure, ...] = ()
+    purposes: Mapping[Purpose, str] = field(default_factory=dict, hash=False)
+
+    def to_dict(self) -> dict[str, object]:
+        """As in the HTTP answer."""
+        return {
+            "grade": self.grade,
+            "sentence": self.sentence,
+            "departures": [departure.to_dict() for departure in self.departures],
+            "purposes": dict(self.purposes),
+        }
+
+
+def tally(grades: Iterable[Grade]) -> dict[Grade, int]:
+    """Count grades, the nearest first."""
+    found = list(grades)
+    return {grade: found.count(grade) for grade in GRADES}
+
+
+def tally_text(grades: Iterable[Grade]) -> str:
+    """Say how many there are of each grade: `90 faithful, 30 close, 8 stand-in, 1 cannot run`."""
+    return ", ".join(f"{n} {TALLIED[grade]}" for grade, n in tally(grades).items())
+
+
+def fidelity(
+    study: Study,
+    facts: Facts,
+    pipelines: Sequence[RunnablePipeline],
+    ran: Sequence[Fitted],
+    wanted: Mapping[Purpose, str],
+) -> Fidelity:
+    """Grade what runs of a study.
+
+    Parameters
+    ----------
+    study : Study
+    facts : Facts
+    pipelines : what runs of it, with the basis of each part and the settings
+    ran : the same as they were fitted, with the stated values that each method runs
+    wanted : what the study is run for, with the rule that says so
+    """
+    if not pipelines:
+        return Fidelity("none", _NOTHING, purposes=wanted)
+    departures = (
+        *_sensor(study, pipelines),
+        *_condition(pipelines, wanted),
+        *_methods(study, facts, ran),
+    )
+    grade: Grade = ("faithful", "close")[len(departures)] if len(departures) < 2 else "stand-in"
+    return Fidelity(grade, _sentence(study, facts, pipelines, departures), departures, wanted)
+
+
+_NOTHING = "Nothing of it runs: no data set simulates a sensor that its methods fit."
+
+
+def _sensor(study: Study, pipelines: Sequence[RunnablePipeline]) -> list[Departure]:
+    def weakest(pipeline: RunnablePipeline) -> int:
+        return max(BASES.index(pipeline.basis[attribute]) for attribute in SENSOR)
+
+    best = min(pipelines, key=weakest)
+    weak = [a for a in SENSOR if BASES.index(best.basis[a]) >= BASES.index("recalled")]
+    if weak:
+        basis = max((best.basis[a] for a in weak), key=BASES.index)
+        said = "recalled" if basis == "recalled" else "chosen"
+        what = " and ".join(f"{a} ({getattr(best, a)})" for a in weak)
+        reasons = "; ".join(dict.fromkeys(best.assumed[a] for a in weak))
+        return [
+            Departure(
+                "sensor",
+                f"{best.detector} + {best.mask}",
+                f"its {what} {'are' if len(weak) > 1 else 'is'} {said} ({reasons})",
+                f"what the study itself says of its {' and '.join(weak)}"
+                + (f", and a data set of {_sensor_of(study)}" if _moved(study, best) else ""),
+            )
+        ]
+    return [
+        Departure(
+            "sensor",
+            cell.value,
+            f"its sensor with {attribute} {cell.value} does not run",
+            f"a data set of that sensor that its methods fit, or its methods on {cell.value}",
+        )
+        for attribute in SENSOR
+        for cell in study.values.get(attribute, ())
+        if cell.basis not in ("inferred", "recalled")
+        and all(getattr(pipeline, attribute) != cell.value for pipeline in pipelines)
+    ]
+
+
+def _moved(study: Study, pipeline: RunnablePipeline) -> bool:
+    """Say whether a pipeline stands on another sensor than one that the study has."""
+    return bool(study.architectures) and (
+        (pipeline.detector, pipeline.mask) not in study.architectures
+    )
+
+
+def _sensor_of(study: Study) -> str:
+    return " or ".join(f"{detector} + {mask}" for detector, mask in study.architectures)
+
+
+def _condition(
+    pipelines: Sequence[RunnablePipeline], wanted: Mapping[Purpose, str]
+) -> list[Departure]:
+    shown = {p for one in pipelines for setting in one.settings for p in setting.purposes}
+    where = " or ".join(dict.fromkeys(f"{one.detector} + {one.mask}" for one in pipelines))
+    return [
+        Departure(
+            "condition",
+            purpose,
+            f"it is not shown {PURPOSES[purpose]}, for no data set of {where} has that",
+            f"a data set of {where} {PURPOSES[purpose]}",
+        )
+        for purpose in wanted
+        if purpose not in shown
+    ]
+
+
+def _methods(study: Study, facts: Facts, ran: Sequence[Fitted]) -> list[Departure]:
+    found: list[Departure] = []
+    for attribute in METHODS:
+        chosen = [getattr(one, attribute) for one in ran]
+        for value in study.of(attribute) or ("",):
+            found += _method(study, facts, attribute, value, chosen)
+    bare = [d for d in found if d.value == _BEHIND]
+    return [d for d in found if d.value != _BEHIND] + bare[:1]
+
+
+#: Value of the departure of a model behind compensations, of which a study has one.
+_BEHIND = "behind its compensation"
+
+
+def _method(
+    study: Study, facts: Facts, attribute: str, value: str, chosen: Sequence[Chosen]
+) -> list[Departure]:
+    """Return the departure of one value that a study states, or of none that it states."""
+    compensates = (
+        attribute == "model"
+        and value not in ("", NO_IMPLEMENTATION_STATED)
+        and facts.taxonomy.category("model", value) == COMPENSATIONS
+    )
+    part: Part = "compensation" if compensates else "extractor"
+    if attribute == "model" and not compensates:
+        part = "model"
+    if value in ("", NO_IMPLEMENTATION_STATED):
+        if all(one.runs and not one.stands_for for one in chosen):
+            return []
+        names = " or ".join(dict.fromkeys(one.name for one in chosen))
+        text = f"the survey states no {attribute}, so {names} is chosen"
+        return [Departure(part, "None", text, f"the study itself, if it has any {attribute}")]
+    name = facts.taxonomy.name(attribute, value)
+    running = [one for one in chosen if value in one.runs]
+    if not running:
+        instead = " or ".join(dict.fromkeys(o.name for o in chosen if o.stands_for == value))
+        text = f"its {_small(name)} is missing" + (f", {instead} in its place" if instead else "")
+        settled = f"an implementation of {value} for this sensor beside its other methods"
+        return [Departure(part, value, text, settled)]
+    variant = running[0].missed
+    if variant and variant.model == value and all(one.missed for one in running):
+        text = f"its {_small(name)} runs as another variant ({variant.note})"
+        return [Departure(part, value, text, f"an implementation of {value} as the study has it")]
+    if value in {one.unsaid for one in running} and all(one.unsaid == value for one in running):
+        names = " or ".join(dict.fromkeys(one.name for one in running))
+        text = f"the survey does not say which kind of {_small(name)} it is, so {names} is chosen"
+        return [Departure(part, value, text, f"what the study says of its {value}")]
+    if compensates and all(one.stands_for for one in running):
+        names = " or ".join(dict.fromkeys(one.name for one in running))
+        text = f"the survey names no model behind its {_small(name)}, so that of {names} is chosen"
+        return [Departure("model", _BEHIND, text, "the model that the study corrects so")]
+    return []
+
+
+def _sentence(
+    study: Study,
+    facts: Facts,
+    pipelines: Sequence[RunnablePipeline],
+    departures: Sequence[Departure],
+) -> str:
+    """Say in one sentence what runs where, and what is missing or chosen."""
+    best = strongest(pipelines)[0]
+    stated = [
+        _small(facts.taxonomy.name(attribute, value))
+        for attribute in METHODS
+        for value in study.of(attribute)
+        if value != NO_IMPLEMENTATION_STATED
+    ]
+    methods = f"Its {_listed(stated)} run{'s' * (len(stated) == 1)}" if stated else "It runs"
+    at = best.settings[0]
+    more = len(pipelines) - 1
+    lead = f"{methods} as {best.extractor} → {best.model} on {at.dataset} ({at.condition})"
+    if more:
+        lead += f" and in {more} more pipeline{'s' * (more > 1)}"
+    if departures:
+        return f"{lead}; {'; '.join(departure.text for departure in departures)}."
+    inferred = [a for a in SENSOR if best.basis[a] in ("inferred", "implied")]
+    return lead + (f"; its {_listed(inferred)} inferred." if inferred else ".")
+
+
+def _small(name: str) -> str:
+    """Return a name as it stands within a sentence: what is no abbreviation in small letters."""
+    first, _, rest = name.partition(" ")
+    return name if first.isupper() else f"{first.lower()} {rest}".strip()
+
+
+def _listed(words: Sequence[str]) -> str:
+    return " and ".join(filter(None, (", ".join(words[:-1]), words[-1])))
