@@ -17,7 +17,7 @@ Row = Mapping[str, Any]
 
 TAXONOMY = ("attribute", "value", "name", "category", "section")
 STUDIES = (
-    *("key", "title", "authors", "year", "venue", "doi", "url", "identity", "state"),
+    *("key", "title", "authors", "year", "venue", "doi", "url", "identity", "grade", "state"),
     *("task", "error", "accuracy", "detector", "mask", "model", "extractor"),
     *("accuracy_deg", "fov_deg"),
 )

@@ -18,12 +18,13 @@ that are missing are several departures.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
 from registry.fitting import COMPENSATIONS, Chosen, Fitted
-from registry.purposes import PURPOSES, Purpose
+from registry.particulars import Purpose
+from registry.purposes import PURPOSES
 from registry.runnable import RunnablePipeline, strongest
 from registry.sensors import BASES, SENSOR
 from registry.studies import METHODS, Facts, Study
@@ -127,7 +128,9 @@ def fidelity(
         *_methods(study, facts, ran),
     )
     grade: Grade = ("faithful", "close")[len(departures)] if len(departures) < 2 else "stand-in"
-    return Fidelity(grade, _sentence(study, facts, pipelines, departures), departures, wanted)
+    running = {v for one in ran for a in METHODS for v in getattr(one, a).runs}
+    said = _sentence(study, facts, pipelines, departures, running)
+    return Fidelity(grade, said, departures, wanted)
 
 
 _NOTHING = "Nothing of it runs: no data set simulates a sensor that its methods fit."
@@ -199,8 +202,11 @@ def _methods(study: Study, facts: Facts, ran: Sequence[Fitted]) -> list[Departur
     found: list[Departure] = []
     for attribute in METHODS:
         chosen = [getattr(one, attribute) for one in ran]
-        for value in study.of(attribute) or ("",):
-            found += _method(study, facts, attribute, value, chosen)
+        for value in study.of(attribute) or (NO_IMPLEMENTATION_STATED,):
+            if value == NO_IMPLEMENTATION_STATED:
+                found += _not_stated(attribute, chosen)
+            else:
+                found += _stated(facts, attribute, value, chosen)
     bare = [d for d in found if d.value == _BEHIND]
     return [d for d in found if d.value != _BEHIND] + bare[:1]
 
@@ -209,44 +215,43 @@ def _methods(study: Study, facts: Facts, ran: Sequence[Fitted]) -> list[Departur
 _BEHIND = "behind its compensation"
 
 
-def _method(
-    study: Study, facts: Facts, attribute: str, value: str, chosen: Sequence[Chosen]
-) -> list[Departure]:
-    """Return the departure of one value that a study states, or of none that it states."""
-    compensates = (
-        attribute == "model"
-        and value not in ("", NO_IMPLEMENTATION_STATED)
-        and facts.taxonomy.category("model", value) == COMPENSATIONS
-    )
-    part: Part = "compensation" if compensates else "extractor"
-    if attribute == "model" and not compensates:
-        part = "model"
-    if value in ("", NO_IMPLEMENTATION_STATED):
-        if all(one.runs and not one.stands_for for one in chosen):
-            return []
-        names = " or ".join(dict.fromkeys(one.name for one in chosen))
-        text = f"the survey states no {attribute}, so {names} is chosen"
-        return [Departure(part, "None", text, f"the study itself, if it has any {attribute}")]
-    name = facts.taxonomy.name(attribute, value)
+def _not_stated(attribute: str, chosen: Sequence[Chosen]) -> Iterable[Departure]:
+    """Give the departure of a method that the survey does not map for a study."""
+    if not all(one.runs and not one.stands_for for one in chosen):
+        text = f"the survey states no {attribute}, so {_names(chosen)} is chosen"
+        part: Part = "extractor" if attribute == "extractor" else "model"
+        yield Departure(part, "None", text, f"the study itself, if it has any {attribute}")
+
+
+def _stated(
+    facts: Facts, attribute: str, value: str, chosen: Sequence[Chosen]
+) -> Iterable[Departure]:
+    """Give the departure of a method that a study states."""
+    name = _small(facts.taxonomy.name(attribute, value))
+    compensates = facts.taxonomy.category(attribute, value) == COMPENSATIONS
+    part: Part = "compensation" if compensates else "model"
+    if attribute == "extractor":
+        part = "extractor"
     running = [one for one in chosen if value in one.runs]
+    missed = [one.missed for one in running if one.missed and one.missed.model == value]
     if not running:
-        instead = " or ".join(dict.fromkeys(o.name for o in chosen if o.stands_for == value))
-        text = f"its {_small(name)} is missing" + (f", {instead} in its place" if instead else "")
+        instead = _names([one for one in chosen if one.stands_for == value])
+        text = f"its {name} is missing" + (f", {instead} in its place" if instead else "")
         settled = f"an implementation of {value} for this sensor beside its other methods"
-        return [Departure(part, value, text, settled)]
-    variant = running[0].missed
-    if variant and variant.model == value and all(one.missed for one in running):
-        text = f"its {_small(name)} runs as another variant ({variant.note})"
-        return [Departure(part, value, text, f"an implementation of {value} as the study has it")]
-    if value in {one.unsaid for one in running} and all(one.unsaid == value for one in running):
-        names = " or ".join(dict.fromkeys(one.name for one in running))
-        text = f"the survey does not say which kind of {_small(name)} it is, so {names} is chosen"
-        return [Departure(part, value, text, f"what the study says of its {value}")]
-    if compensates and all(one.stands_for for one in running):
-        names = " or ".join(dict.fromkeys(one.name for one in running))
-        text = f"the survey names no model behind its {_small(name)}, so that of {names} is chosen"
-        return [Departure("model", _BEHIND, text, "the model that the study corrects so")]
-    return []
+        yield Departure(part, value, text, settled)
+    elif len(missed) == len(running):
+        text = f"its {name} runs as another variant ({missed[0].note})"
+        yield Departure(part, value, text, f"an implementation of {value} as the study has it")
+    elif all(one.unsaid == value for one in running):
+        text = f"the kind of its {name} is chosen, {_names(running)}"
+        yield Departure(part, value, text, f"what the study says of its {value}")
+    elif compensates and all(one.stands_for for one in running):
+        text = f"the model behind its {name} is chosen, that of {_names(running)}"
+        yield Departure("model", _BEHIND, text, "the model that the study corrects so")
+
+
+def _names(chosen: Sequence[Chosen]) -> str:
+    return " or ".join(dict.fromkeys(one.name for one in chosen))
 
 
 def _sentence(
@@ -254,6 +259,7 @@ def _sentence(
     facts: Facts,
     pipelines: Sequence[RunnablePipeline],
     departures: Sequence[Departure],
+    running: Collection[str],
 ) -> str:
     """Say in one sentence what runs where, and what is missing or chosen."""
     best = strongest(pipelines)[0]
@@ -261,7 +267,7 @@ def _sentence(
         _small(facts.taxonomy.name(attribute, value))
         for attribute in METHODS
         for value in study.of(attribute)
-        if value != NO_IMPLEMENTATION_STATED
+        if value in running
     ]
     methods = f"Its {_listed(stated)} run{'s' * (len(stated) == 1)}" if stated else "It runs"
     at = best.settings[0]

@@ -169,8 +169,16 @@ class Fitting:
 
     def _is_of(self, model: str, variant: MethodVariant) -> bool:
         """Say whether an implementation carries a model out as a study does."""
-        context = self.catalogue.models[model].about.context
-        return self._stages[model] == (variant.runs_as,) and variant.context in ("", *context)
+        about = self.catalogue.models[model].about
+        read = {
+            self.catalogue.extractors[one.name].about.kind
+            for one in self._extractors_of(variant.extractor)
+        }
+        return (
+            self._stages[model] == (variant.runs_as,)
+            and variant.context in ("", *about.context)
+            and not read.isdisjoint(about.accepts)
+        )
 
     def _carried_out(self, study: Study, model: str) -> tuple[str, ...]:
         """Return the compensations of a study that one of its models carries out itself."""
@@ -290,7 +298,9 @@ class Fitting:
         if missed and self._is_of(name, missed):
             missed = None
         carried = [v for value in run for v in self._carried_out(study, value)]
-        return Chosen(name, tuple(dict.fromkeys((*run, *carried))), stands_for, unsaid, None, missed)
+        return Chosen(
+            name, tuple(dict.fromkeys((*run, *carried))), stands_for, unsaid, None, missed
+        )
 
     def _repeats(self, study: Study, name: str) -> bool:
         """Say whether a model stands among the study's variants already."""

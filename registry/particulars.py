@@ -71,7 +71,7 @@ def purpose_rule(row: Mapping[str, str]) -> PurposeRule:
         row["id"],
         conditions(row["given"]),
         conditions(row["unless"]),
-        cast(Purpose, row["purpose"]),
+        cast("Purpose", row["purpose"]),
         row["survey_section"],
         row["rule"],
     )

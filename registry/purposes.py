@@ -86,8 +86,8 @@ def settings(
     """Return where a pipeline stands for a study: data sets under conditions, the first one first.
 
     Those that show most of its purposes; among these data sets made after the study, then flights
-    for a study with a purpose and benches for others, then by name. Where none shows any, the first
-    condition of each.
+    for a study with a purpose and benches for others, then what shows its first purpose, then by
+    name. Where none shows any, the first condition of each.
 
     Parameters
     ----------
@@ -98,13 +98,14 @@ def settings(
     """
     known = [data_sets.get(name, DataSet(name)) for name in names]
     shown: dict[tuple[str, str], list[Purpose]] = {}
-    for one in known:
-        for purpose in wanted:
+    for purpose in wanted:
+        for one in known:
             for condition in one.showing(purpose):
                 shown.setdefault((one.name, condition), []).append(purpose)
     if not shown:
         shown = {(one.name, one.conditions[0]): [] for one in known}
     by_name = {one.name: one for one in known}
+    order = tuple(wanted)
 
     def place(item: tuple[tuple[str, str], Sequence[Purpose]]) -> tuple[object, ...]:
         (name, condition), served = item
@@ -113,6 +114,7 @@ def settings(
             -len(served),
             study.key not in one.follows,
             one.flies != bool(wanted),
+            [order.index(purpose) for purpose in served],
             name,
             one.conditions.index(condition),
         )

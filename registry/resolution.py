@@ -9,8 +9,8 @@ has a cell. What is decided here, because the mapping does not say it:
 - Methods are the study's own with its compensations as stages, or the nearest (`registry.fitting`).
 - Every value of a pipeline has a basis. What is not stated is ``assumed``, with the rule that put
   it there: its score is not the study's own.
-- A study is shown under what it is run for (`registry.purposes`). Where its own sensor does not show
-  that, it stands on the nearest that does, if it is nearer to the study so.
+- A study is shown under what it is run for (`registry.purposes`). Where its own sensor does not
+  show that, it stands on the nearest that does, if it is nearer to the study so.
 - How near its run is to the study is graded (`registry.fidelity`).
 """
 
@@ -26,7 +26,8 @@ from registry import studies as registered
 from registry.catalogue import Catalogue
 from registry.fidelity import Fidelity, fidelity
 from registry.fitting import Chosen, Fitted, Fitting, stages
-from registry.purposes import PURPOSES, DataSet, Purpose, purposes, settings
+from registry.particulars import Purpose
+from registry.purposes import PURPOSES, DataSet, Setting, purposes, settings
 from registry.runnable import ESSENTIAL, Gap, RunnablePipeline, strongest
 from registry.sensors import BASES, SENSOR, Basis, Part, Sensor, cell, sensors
 from registry.studies import METHODS, Facts, Study
@@ -109,9 +110,7 @@ def resolve_all(
     """`resolve` of every study, by key."""
     known = facts or registered.facts()
     fitting = Fitting(plan, catalogue or implementations.catalogue(), known)
-    return {
-        key: _resolve(study, fitting, data_sets or {}) for key, study in known.studies.items()
-    }
+    return {key: _resolve(study, fitting, data_sets or {}) for key, study in known.studies.items()}
 
 
 def _resolve(study: Study, fitting: Fitting, data_sets: Mapping[str, DataSet]) -> Resolution:
@@ -168,7 +167,10 @@ def _resolved(
     """Resolve a study on given sensors."""
     fitted = fitting.fitted(study, (sensor.architecture for sensor in on))
     pipelines = tuple(
-        _pipeline(study, sensor, one, fitting.catalogue, data_sets, wanted)
+        _pipeline(
+            *(study, sensor, one, fitting.catalogue),
+            at=settings(study, wanted, one.datasets, data_sets),
+        )
         for sensor in on
         for one in fitted[sensor.architecture]
     )
@@ -188,8 +190,7 @@ def _pipeline(
     sensor: Sensor,
     one: Fitted,
     catalogue: Catalogue,
-    data_sets: Mapping[str, DataSet],
-    wanted: Mapping[Purpose, str],
+    at: tuple[Setting, ...],
 ) -> RunnablePipeline:
     extractor, model = catalogue.extractors[one.extractor.name], catalogue.models[one.model.name]
     parts = {
@@ -206,7 +207,7 @@ def _pipeline(
         model_taxonomy=model.about.taxonomy,
         stages=stages(model),
         datasets=one.datasets,
-        settings=settings(study, wanted, one.datasets, data_sets),
+        settings=at,
         basis=MappingProxyType({a: part.basis for a, part in parts.items()}),
         assumed=MappingProxyType({a: part.rule for a, part in parts.items() if part.rule}),
     )

@@ -17,10 +17,14 @@ TABLE_SCHEMA = "https://datapackage.org/profiles/2.0/tableschema.json"
 _FIELDS: dict[str, tuple[Type, str]] = {
     # what follows from the facts
     "study": ("string", "Key of the study."),
-    "state": ("string", "How much of the study runs: complete, partial or none."),
+    "grade": (
+        "string",
+        "How near what runs is to the study: faithful, close, stand-in, none.",
+    ),
+    "state": ("string", "Whether values of the study are left out: complete, partial or none."),
     "detector_basis": (
         "string",
-        "What the detector rests on: stated, inferred, recalled, defaulted.",
+        "What the detector rests on: stated, inferred, implied, recalled, defaulted.",
     ),
     "mask_basis": ("string", "What the mask rests on."),
     "extractor_basis": ("string", "What the extractor rests on."),

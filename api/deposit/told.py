@@ -7,24 +7,28 @@ from typing import Any
 
 import survey_data
 from benchmark.plan.combinations import scorable
-from registry.resolution import ESSENTIAL, resolve_all
+from benchmark.plan.shown import data_sets
+from registry.resolution import resolve_all
+from registry.runnable import ESSENTIAL
 from survey_data.findings.publications import publications
 
 
 def resolution() -> list[Mapping[str, Any]]:
-    """Return a row for each pipeline of each study on each data set that it is planned on."""
+    """Return a row for each pipeline of each study in each setting that stands for the study."""
     return [
         {
             "study": key,
+            "grade": found.fidelity.grade,
             "state": found.state,
             **{name: getattr(pipeline, name) for name in ESSENTIAL},
-            "dataset": dataset,
+            "dataset": setting.dataset,
+            "condition": setting.condition,
             **{f"{name}_basis": pipeline.basis[name] for name in ESSENTIAL},
             "assumed": [f"{name}: {rule}" for name, rule in pipeline.assumed.items()],
         }
-        for key, found in resolve_all(scorable()).items()
+        for key, found in resolve_all(scorable(), data_sets=data_sets()).items()
         for pipeline in found.pipelines
-        for dataset in pipeline.datasets
+        for setting in pipeline.settings
     ]
 
 

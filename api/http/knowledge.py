@@ -59,8 +59,11 @@ class Knowledge:
     def resolutions(self) -> Mapping[str, Resolution]:
         """What is scored of each study, by key."""
         from benchmark.plan.combinations import scorable  # noqa: PLC0415 - loads the simulator
+        from benchmark.plan.shown import data_sets  # noqa: PLC0415 - likewise
 
-        return resolve_all(scorable(), catalogue=self.catalogue, facts=self.facts)
+        return resolve_all(
+            scorable(), data_sets=data_sets(), catalogue=self.catalogue, facts=self.facts
+        )
 
     @cached_property
     def measured(self) -> Measured:

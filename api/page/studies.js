@@ -4,10 +4,6 @@ import { copyable, h, problemNotice } from "./dom.js";
 import { getOnce } from "./service.js";
 import { ATTRIBUTE_NAMES, BASES, IDENTITIES } from "./wording.js";
 
-const STATES = {
-  complete: "runs here completely", partial: "runs here in part", none: "nothing of it runs here yet",
-};
-
 const known = (text) => text !== null && text !== undefined && text !== "";
 
 function bibliography(study) {
@@ -23,7 +19,7 @@ function links(study) {
     !known(study.doi) && /^https?:/.test(study.url ?? "") && h("a", { href: study.url, rel: "noreferrer" }, "Record"),
     h("a", { href: record }, "All of it"),
     h("span", { class: "state", title: IDENTITIES[study.identity] }, `identity ${study.identity}`),
-    h("span", { class: "state" }, STATES[study.state] ?? study.state));
+    h("span", { class: "state", title: study.sentence }, study.grade === "none" ? "cannot run" : study.grade));
 }
 
 /** "source" as a link where it is an address. */
@@ -32,10 +28,11 @@ function source(text) {
   return /^https?:\/\//.test(text) ? h("a", { href: text, rel: "noreferrer" }, new URL(text).hostname) : text;
 }
 
-/** "data set error", or why there is none. */
+/** "data set (condition) error", or why there is none. */
 function measured(score) {
-  if (score.rms_deg !== null) return `${score.dataset} ${Number(score.rms_deg.toPrecision(3))} deg`;
-  return `${score.dataset} ${score.status === null ? "not measured yet" : "without an error"}`;
+  const at = `${score.dataset} (${score.condition})`;
+  if (score.rms_deg !== null) return `${at} ${Number(score.rms_deg.toPrecision(3))} deg`;
+  return `${at} ${score.status === null ? "not measured yet" : "without an error"}`;
 }
 
 function provenance(detail) {

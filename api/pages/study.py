@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import Path, Query
 
@@ -11,6 +11,9 @@ from api.http.models.studies import StudiesQuery
 from api.http.models.words import StudyKey
 from api.http.routers import studies as told
 from api.pages.serving import PageRouter, View
+from registry import fidelity
+from registry.fidelity import TALLIED, tally_text
+from registry.purposes import PURPOSES
 
 router = PageRouter()
 
@@ -35,11 +38,7 @@ BASES = {
     "recalled": "recalled, not seen on a page",
     "unknown": "not known",
 }
-STATES = {
-    "complete": "runs here completely",
-    "partial": "runs here in part",
-    "none": "nothing of it runs here yet",
-}
+GRADES = {grade: f"{TALLIED[grade]}: {words}" for grade, words in fidelity.GRADES.items()}
 IDENTITIES = {
     "confirmed": "author, year and topic confirmed on a public page",
     "recalled": "bibliographic data recalled, not seen on a page",
@@ -52,7 +51,7 @@ EVERY = 500  # studies of one page; there are 129
 
 @router.page("/studies")
 async def studies(known: Known, query: Annotated[StudiesQuery, Query()]) -> View:
-    """Every study that meets the filters, with what it maps to and how much of it runs."""
+    """Every study that meets the filters, with what it maps to and how near its run is to it."""
     every = query.model_copy(update={"limit": EVERY})
     answer = await told.studies(known, every)
     return View(
@@ -61,8 +60,9 @@ async def studies(known: Known, query: Annotated[StudiesQuery, Query()]) -> View
         asked=query,
         filters={name: known.taxonomy.to_dict()[name] for name in FILTERS},
         names=NAMES,
-        states=STATES,
+        grades=GRADES,
         mapped=len(known.facts.studies),
+        tallied=tally_text(study["grade"] for study in answer.document["items"]),
     )
 
 
@@ -70,29 +70,17 @@ async def studies(known: Known, query: Annotated[StudiesQuery, Query()]) -> View
 async def study(known: Known, key: Annotated[StudyKey, Path()]) -> View:
     """One study: attributes with their basis, what it runs, reported beside measured."""
     answer = await told.study(known, key)
-    found = answer.document
     claims = [e.claim for e in known.measurements.claims.values() if key in e.claim.study]
     return View(
         "study.html",
         answer,
         names=NAMES,
         bases=BASES,
-        states=STATES,
+        grades=GRADES,
+        purposes=PURPOSES,
         identities=IDENTITIES,
-        best=_best(found["pipelines"]),
         claims=claims,
         verdicts={e.claim.id: e.verdict for e in known.measurements.claims.values()},
         datasets=[c for c in known.measurements.cards if key in c["follows"]],
         algorithms=[i for i in known.catalogue.listing(None) if key in i.studies],
     )
-
-
-def _best(pipelines: list[dict[str, Any]]) -> dict[str, Any] | None:
-    """Return the score with the least error among all of a study's, with its pipeline."""
-    scored = [
-        {**pipeline, **score}
-        for pipeline in pipelines
-        for score in pipeline["scores"]
-        if score["rms_deg"] is not None
-    ]
-    return min(scored, key=lambda score: score["rms_deg"], default=None)

@@ -12,7 +12,10 @@ def data_sets(*, parts: Parts | None = None) -> Mapping[str, DataSet]:
     """Return conditions, columns and studies of every data set, by its name."""
     return {
         name: DataSet(
-            name, tuple(preset.conditions), frozenset(preset.context_columns), preset.follows
+            name,
+            tuple(preset.conditions),
+            frozenset(preset.context_columns),
+            tuple(getattr(preset, "follows", ())),  # a card's field, and no part of the protocol
         )
         for name, preset in (parts or installed()).presets.items()
     }

@@ -220,7 +220,9 @@ def _withdrawn(tables: SurveyTables, cells: Iterable[Difference]) -> tuple[Withd
         if any((row["study"], part, row[part]) in gone for part in ("detector", "mask"))
     )
     models = (
-        Withdrawn(table, row["study"], " + ".join(row[name] for name in RESTING[table]), row["note"])
+        Withdrawn(
+            table, row["study"], " + ".join(row[name] for name in RESTING[table]), row["note"]
+        )
         for table in ("compensated_models", "method_variants")
         for row in getattr(tables, table).fillna("").to_dict("records")
         if any((row["study"], "model", row[name]) in gone for name in RESTING[table])

@@ -22,10 +22,12 @@ from api.http.models.parameters import (
     several,
     sorting,
 )
+from registry.particulars import Purpose
 from registry.sensors import Basis
 from registry.taxonomy import ATTRIBUTES
 
 State = Literal["complete", "partial", "none"]
+Grade = Literal["faithful", "close", "stand-in", "none"]
 
 
 def _filter(attribute: str, more: str = "") -> Any:
@@ -63,6 +65,11 @@ class StudiesQuery(StudyFilters):
     year_max: Annotated[int | None, WHOLE] = Field(
         None, ge=0, le=9999, description="Only studies of this year or earlier."
     )
+    grade: Several[Grade] = several(
+        "Only studies whose run is so near to them: faithful (every part is its own, stated or "
+        "inferred with a reason), close (one part departs from it), stand-in (more do), none "
+        "(nothing of it runs)."
+    )
     state: Several[State] = several("Only studies of which this much can be run.")
     q: Annotated[str | None, GIVEN] = Field(
         None,
@@ -81,11 +88,14 @@ class Runs(Shape):
     """What is scored of a study; basis and assumed are of the pipeline that rests on most."""
 
     pipelines: int
-    cells: int = Field(description="Pairs of a pipeline and a data set that it is planned on.")
+    cells: int = Field(
+        description="Pairs of a pipeline and a data set under a condition that stand for the study."
+    )
     scored: int = Field(description="Those of them that have a published score.")
     basis: dict[str, Basis] = Field(
         description="What detector, mask, extractor and model rest on: stated by the study, "
-        "inferred, recalled, or filled in by a rule."
+        "inferred, implied by the survey's definition of its methods, recalled, or chosen by a "
+        "rule."
     )
     assumed: dict[str, str] = Field(
         description="Of what is not stated, the reason or the rule why it stands there."
@@ -93,14 +103,38 @@ class Runs(Shape):
 
 
 class Score(Shape):
-    """What is published of a pipeline under the first condition of a data set; null: nothing."""
+    """What is published of a pipeline on a data set under a condition; a null status: nothing."""
 
     dataset: str
-    condition: str | None
+    condition: str
+    purposes: list[Purpose] = Field(
+        description="What the study is run for that this shows: albedo, temperature, flight."
+    )
     status: str | None
     rms_deg: float | None
     bound_deg: float | None
     availability: float | None
+
+
+class Headline(Shape):
+    """The score that a study is shown by."""
+
+    extractor: str
+    model: str
+    dataset: str
+    condition: str
+    rms_deg: float
+    bound_deg: float | None
+    availability: float | None
+
+
+class Departure(Shape):
+    """A part of a study's run that is not the study's own."""
+
+    part: Literal["sensor", "condition", "extractor", "model", "compensation"]
+    value: str
+    text: str
+    settled_by: str = Field(description="What would make the part the study's own.")
 
 
 class Study(Shape):
@@ -114,11 +148,17 @@ class Study(Shape):
     doi: str
     url: str
     identity: str = Field(description="Whether a public page confirms author, year and topic.")
+    grade: Grade = Field(description="How near what runs is to the study.")
+    sentence: str = Field(description="What runs, and what of it is missing or chosen.")
     state: State = Field(
-        description="How much of the study runs: every value of its mapping, or some of them, or "
-        "none."
+        description="Whether gaps are left: every value of its mapping runs, or some of them, or "
+        "none. The grade says how near that is to the study."
     )
     runs: Runs
+    headline: Headline | None = Field(
+        description="Least error of the pipelines that rest on most, each where it tells most of "
+        "the study; null where that is not measured."
+    )
     values: dict[str, list[str]]
 
 
@@ -133,6 +173,14 @@ class AttributeValue(Shape):
     role: Literal["proposed", "compared", "unknown", ""] = Field(
         description="Of a model or an extractor: whether the study proposed it or only compared it."
     )
+
+
+class Setting(Shape):
+    """A data set under a condition that stands for a study."""
+
+    dataset: str
+    condition: str
+    purposes: list[Purpose] = Field(description="What the study is run for that it shows.")
 
 
 class StudyPipeline(Shape):
@@ -154,8 +202,11 @@ class StudyPipeline(Shape):
     assumed: dict[str, str] = Field(
         description="Of what is not stated, the reason or the rule why it stands there."
     )
-    datasets: list[str]
-    scores: list[Score]
+    datasets: list[str] = Field(description="All data sets that it can be scored on.")
+    settings: list[Setting] = Field(
+        description="Those of them that stand for the study, the one that tells most first."
+    )
+    scores: list[Score] = Field(description="What is published of each of the settings.")
 
 
 class Gap(Shape):
@@ -174,6 +225,10 @@ class StudyDetail(Study):
     reported_accuracy_deg: float | None = Field(
         description="What the study reports of its own sensor; `scores` are measured here, on "
         "simulated ones."
+    )
+    departures: list[Departure] = Field(description="What keeps the run from being faithful.")
+    purposes: dict[Purpose, str] = Field(
+        description="What the study is run for, with the rule that says so."
     )
     pipelines: list[StudyPipeline]
     gaps: list[Gap]
