@@ -118,7 +118,8 @@ def _resolve(study: Study, fitting: Fitting, data_sets: Mapping[str, DataSet]) -
     on = sensors(study, facts, fitting.plan, lambda pair: fitting.own(study, pair))
     wanted = purposes(study, facts)
     own = _resolved(study, on, fitting, data_sets, wanted)
-    if all(departure.part != "condition" for departure in own.fidelity.departures):
+    shown = all(departure.part != "condition" for departure in own.fidelity.departures)
+    if not wanted or (own.pipelines and shown):
         return own
     elsewhere = (
         _resolved(study, (sensor,), fitting, data_sets, wanted)
