@@ -278,13 +278,16 @@ def _sentence(
     if departures:
         return f"{lead}; {'; '.join(departure.text for departure in departures)}."
     inferred = [a for a in SENSOR if best.basis[a] in ("inferred", "implied")]
-    return lead + (f"; its {_listed(inferred)} inferred." if inferred else ".")
+    verb = "are" if len(inferred) > 1 else "is"
+    return lead + (f"; its {_listed(inferred)} {verb} inferred." if inferred else ".")
 
 
 def _small(name: str) -> str:
-    """Return a name as it stands within a sentence: what is no abbreviation in small letters."""
-    first, _, rest = name.partition(" ")
-    return name if first.isupper() else f"{first.lower()} {rest}".strip()
+    """Return a name as it stands within a sentence: its kind in brackets, small unless an abbreviation."""
+    what, _, kind = name.removesuffix(" (kind not stated)").partition(": ")
+    first, _, rest = what.partition(" ")
+    small = f"{first if first.isupper() else first.lower()} {rest}".strip()
+    return f"{small} ({kind})" if kind else small
 
 
 def _listed(words: Sequence[str]) -> str:

@@ -113,7 +113,7 @@ def test_what_is_recalled_departs_and_what_is_inferred_does_not(facts_of: Build)
         dataclasses.replace(facts, studies={"S0": dataclasses.replace(study, values=values)})
     )
     assert found.fidelity.grade == "faithful"
-    assert found.fidelity.sentence.endswith("; its mask inferred.")
+    assert found.fidelity.sentence.endswith("; its mask is inferred.")
 
 
 def test_an_implied_cell_is_the_studys_and_a_chosen_one_is_not(facts_of: Build) -> None:

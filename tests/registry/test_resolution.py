@@ -274,9 +274,9 @@ def test_an_answer_is_plain_data(facts_of: Build) -> None:
     assert answer == {
         "key": "S0",
         "grade": "stand-in",
-        "sentence": "Its basic centroid threshold method runs as bctm → spm on CMOS-Slit (nominal); "
-        "the survey states no model, so spm is chosen; its least-squares geometric model is "
-        "missing.",
+        "sentence": "Its basic centroid threshold method runs as bctm → spm on CMOS-Slit "
+        "(nominal); the survey states no model, so spm is chosen; its least-squares geometric "
+        "model is missing.",
         "departures": [
             {
                 "part": "model",
