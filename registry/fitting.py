@@ -15,7 +15,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from registry.catalogue import Catalogue
-from registry.particulars import MethodVariant
+from registry.fidelity.particulars import MethodVariant
 from registry.studies import Facts, Study
 from registry.taxonomy import NO_IMPLEMENTATION_STATED, Architecture, Pair, Plan
 
@@ -218,7 +218,7 @@ class Fitting:
             kind: value
             for value in study.of("model")
             if value != NO_IMPLEMENTATION_STATED and not self.facts.within(study.key, value)
-            for kind in self.kinds("model", value)
+            for kind in self._kinds_of(study, value)
         }
         usable = {
             name: self._stages[name]
@@ -302,11 +302,16 @@ class Fitting:
             name, tuple(dict.fromkeys((*run, *carried))), stands_for, unsaid, None, missed
         )
 
+    def _kinds_of(self, study: Study, value: str) -> tuple[str, ...]:
+        """Return the kinds that run for a model of a study: the one of its variant, if any."""
+        kinds = self.kinds("model", value)
+        variant = self.facts.variant(study.key, value)
+        return (variant.runs_as,) if variant and variant.runs_as in kinds else kinds
+
     def _repeats(self, study: Study, name: str) -> bool:
         """Say whether a model stands among the study's variants already."""
-        own = self._stages[name]
-        variant = self.facts.variant(study.key, own[-1])
-        return variant is not None and self._is_of(name, variant)
+        variants = (self.facts.variant(study.key, value) for value in study.of("model"))
+        return any(self._is_of(name, variant) for variant in variants if variant)
 
 
 def stages(scored: Scored) -> tuple[str, ...]:

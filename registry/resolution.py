@@ -9,9 +9,9 @@ has a cell. What is decided here, because the mapping does not say it:
 - Methods are the study's own with its compensations as stages, or the nearest (`registry.fitting`).
 - Every value of a pipeline has a basis. What is not stated is ``assumed``, with the rule that put
   it there: its score is not the study's own.
-- A study is shown under what it is run for (`registry.purposes`). Where its own sensor does not
-  show that, it stands on the nearest that does, if it is nearer to the study so.
-- How near its run is to the study is graded (`registry.fidelity`).
+- A study is shown under what it is run for (`registry.fidelity.purposes`). Where its own sensor
+  does not show that, it stands on the nearest that does, if it is nearer to the study so.
+- How near its run is to the study is graded (`registry.fidelity.grading`).
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ from typing import Literal
 from registry import catalogue as implementations
 from registry import studies as registered
 from registry.catalogue import Catalogue
-from registry.fidelity import Fidelity, fidelity
+from registry.fidelity.grading import Fidelity, fidelity
+from registry.fidelity.particulars import Purpose
+from registry.fidelity.purposes import PURPOSES, DataSet, Setting, purposes, settings
+from registry.fidelity.runnable import ESSENTIAL, Gap, RunnablePipeline, strongest
 from registry.fitting import Chosen, Fitted, Fitting, stages
-from registry.particulars import Purpose
-from registry.purposes import PURPOSES, DataSet, Setting, purposes, settings
-from registry.runnable import ESSENTIAL, Gap, RunnablePipeline, strongest
 from registry.sensors import BASES, SENSOR, Basis, Part, Sensor, cell, sensors
 from registry.studies import METHODS, Facts, Study
 from registry.taxonomy import NO_IMPLEMENTATION_STATED, Architecture, Plan

@@ -13,7 +13,7 @@ from functools import cached_property, lru_cache
 from types import MappingProxyType
 
 from registry.advice import Advice
-from registry.particulars import (
+from registry.fidelity.particulars import (
     CompensatedModel,
     MethodVariant,
     PurposeRule,

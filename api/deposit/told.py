@@ -8,8 +8,8 @@ from typing import Any
 import survey_data
 from benchmark.plan.combinations import scorable
 from benchmark.plan.shown import data_sets
+from registry.fidelity.runnable import ESSENTIAL
 from registry.resolution import resolve_all
-from registry.runnable import ESSENTIAL
 from survey_data.findings.publications import publications
 
 

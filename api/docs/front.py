@@ -17,7 +17,7 @@ from benchmark.leaderboard.architectures import architectures, first_boards
 from benchmark.leaderboard.holding import table as holding
 from benchmark.leaderboard.holding.sentences import NEAR, PARTS, verdict
 from benchmark.metrics.score import is_available
-from registry.fidelity import tally_text
+from registry.fidelity.grading import tally_text
 from registry.recommendation import recommend
 from registry.resolution import Resolution
 

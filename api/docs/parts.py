@@ -11,10 +11,10 @@ from api.docs.examples import command_line, http_examples
 from api.docs.knowledge import knowledge
 from api.docs.markdown import table as _table
 from benchmark.datasets import coverage as simulated
-from registry.fidelity import TALLIED, tally_text
-from registry.purposes import PURPOSES
+from registry.fidelity.grading import TALLIED, tally_text
+from registry.fidelity.purposes import PURPOSES
+from registry.fidelity.runnable import ESSENTIAL
 from registry.resolution import Resolution
-from registry.runnable import ESSENTIAL
 from registry.sensors import BASES
 
 #: Values of a finding whose counts are printed.

@@ -11,9 +11,9 @@ from api.http.models.studies import StudiesQuery
 from api.http.models.words import StudyKey
 from api.http.routers import studies as told
 from api.pages.serving import PageRouter, View
-from registry import fidelity
-from registry.fidelity import TALLIED, tally_text
-from registry.purposes import PURPOSES
+from registry.fidelity.grading import GRADES as IN_WORDS
+from registry.fidelity.grading import TALLIED, tally_text
+from registry.fidelity.purposes import PURPOSES
 
 router = PageRouter()
 
@@ -38,7 +38,7 @@ BASES = {
     "recalled": "recalled, not seen on a page",
     "unknown": "not known",
 }
-GRADES = {grade: f"{TALLIED[grade]}: {words}" for grade, words in fidelity.GRADES.items()}
+GRADES = {grade: f"{TALLIED[grade]}: {words}" for grade, words in IN_WORDS.items()}
 IDENTITIES = {
     "confirmed": "author, year and topic confirmed on a public page",
     "recalled": "bibliographic data recalled, not seen on a page",

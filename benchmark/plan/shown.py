@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from benchmark.plan.parts import Parts, installed
-from registry.purposes import DataSet
+from registry.fidelity.purposes import DataSet
 
 
 def data_sets(*, parts: Parts | None = None) -> Mapping[str, DataSet]:

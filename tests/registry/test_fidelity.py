@@ -24,9 +24,9 @@ from stand_ins import (
 from benchmark.plan.combinations import scorable
 from benchmark.plan.parts import installed
 from benchmark.plan.shown import data_sets
-from registry.fidelity import GRADES, Grade, tally, tally_text
-from registry.particulars import CompensatedModel, MethodVariant, PurposeRule
-from registry.purposes import DataSet, Setting
+from registry.fidelity.grading import GRADES, Grade, tally, tally_text
+from registry.fidelity.particulars import CompensatedModel, MethodVariant, PurposeRule
+from registry.fidelity.purposes import DataSet, Setting
 from registry.resolution import Resolution, resolve, resolve_all
 from registry.studies import AttributeValue, Default, Facts
 

@@ -11,8 +11,8 @@ from benchmark.plan.combinations import cells, scorable
 from benchmark.plan.parts import installed
 from benchmark.plan.shown import data_sets
 from registry.catalogue import catalogue
+from registry.fidelity.runnable import ESSENTIAL
 from registry.resolution import Resolution, resolve, resolve_all
-from registry.runnable import ESSENTIAL
 from registry.sensors import BASES
 from registry.studies import AttributeValue, Default, Facts
 

@@ -15,7 +15,7 @@ from api.cli.wrong_call import WrongCallError
 from api.columns import STUDIES, STUDY
 from api.http.models.parameters import LARGEST_PAGE
 from api.http.routers import studies as answers
-from registry.fidelity import tally_text
+from registry.fidelity.grading import tally_text
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 

@@ -22,7 +22,7 @@ from api.http.models.parameters import (
     several,
     sorting,
 )
-from registry.particulars import Purpose
+from registry.fidelity.particulars import Purpose
 from registry.sensors import Basis
 from registry.taxonomy import ATTRIBUTES
 

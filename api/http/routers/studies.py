@@ -14,8 +14,8 @@ from api.http.models.base import Selected
 from api.http.models.studies import Studies, StudiesQuery, StudyDetail
 from api.http.models.words import StudyKey
 from api.http.pagination import ordered, page
+from registry.fidelity.runnable import RunnablePipeline
 from registry.resolution import Resolution
-from registry.runnable import RunnablePipeline
 from registry.studies import Study
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)

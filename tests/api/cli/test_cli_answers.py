@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 import survey_data
 from api.cli.command_line import app
 from benchmark import datasets
-from registry.fidelity import GRADES, tally_text
+from registry.fidelity.grading import GRADES, tally_text
 
 OURS = Path(survey_data.__file__).parent
 

@@ -24,9 +24,9 @@ from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import times
 from benchmark.running.run import RunInterruptedError, stale
 from registry.catalogue import catalogue
-from registry.fidelity import Fidelity
+from registry.fidelity.grading import Fidelity
+from registry.fidelity.runnable import Gap
 from registry.resolution import Resolution, resolve
-from registry.runnable import Gap
 
 CHEAP = ("--dataset", "pd-maskless-cube", "--condition", "nominal", "--model", "basic")
 

@@ -4,7 +4,7 @@ A study's run has five parts: its sensor, the condition it is shown under, its e
 models and its compensations. A part departs from the study where
 
 - the sensor is recalled, chosen by a rule or a relative's, or one of its stated sensors is missing;
-- none of its settings shows what the study is run for (`registry.purposes`);
+- none of its settings shows what the study is run for (`registry.fidelity.purposes`);
 - an extractor, a model or a compensation that it states runs in none of its pipelines;
 - it states none, and what stands there was chosen here;
 - only another variant of a method runs than the study's (`method_variants.csv`);
@@ -22,10 +22,10 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
+from registry.fidelity.particulars import Purpose
+from registry.fidelity.purposes import PURPOSES
+from registry.fidelity.runnable import RunnablePipeline, strongest
 from registry.fitting import COMPENSATIONS, Chosen, Fitted
-from registry.particulars import Purpose
-from registry.purposes import PURPOSES
-from registry.runnable import RunnablePipeline, strongest
 from registry.sensors import BASES, SENSOR
 from registry.studies import METHODS, Facts, Study
 from registry.taxonomy import NO_IMPLEMENTATION_STATED
@@ -283,7 +283,7 @@ def _sentence(
 
 
 def _small(name: str) -> str:
-    """Return a name as it stands within a sentence: its kind in brackets, small unless an abbreviation."""
+    """Return a name as it stands within a sentence, its kind in brackets."""
     what, _, kind = name.removesuffix(" (kind not stated)").partition(": ")
     first, _, rest = what.partition(" ")
     small = f"{first if first.isupper() else first.lower()} {rest}".strip()

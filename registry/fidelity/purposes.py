@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from registry.particulars import Conditions, Purpose
+from registry.fidelity.particulars import Conditions, Purpose
 from registry.studies import Facts, Study
 
 PURPOSES: Mapping[Purpose, str] = {

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from registry.purposes import Setting
+from registry.fidelity.purposes import Setting
 from registry.sensors import BASES, SENSOR, Basis
 
 ESSENTIAL = (*SENSOR, "extractor", "model")
