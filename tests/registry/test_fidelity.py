@@ -249,8 +249,6 @@ def test_settings_of_the_survey_are_conditions_that_data_sets_have(
     [
         ("Soken2023", "pd-albedo-orbit", "nominal"),  # a network against albedo, trained in orbit
         ("Sozen2021", "pd-albedo-orbit", "nominal"),
-        ("Radan2019", "ccd-orbit", "nominal"),  # assembly, in orbit
-        ("Fan2017", "ccd-orbit", "nominal"),
         ("Frezza2022", "pd-orbit", "nominal"),
         ("Nurgizat2021", "pva-maskless-panels", "albedo"),
         ("Hermoso2022b", "pva-maskless-panels", "hot"),  # the temperature of its panels
@@ -263,6 +261,17 @@ def test_studies_stand_where_what_they_are_about_is_shown(
     best = everything[key].best
     assert best is not None
     assert (best.settings[0].dataset, best.settings[0].condition) == (dataset, condition)
+
+
+@pytest.mark.parametrize("key", ["Radan2019", "Fan2017"])
+def test_assembly_that_drifts_is_compensated_on_a_flight(
+    everything: dict[str, Resolution], key: str
+) -> None:
+    best = everything[key].best
+    assert best is not None
+    assert data_sets()[best.settings[0].dataset].flies
+    assert best.settings[0].purposes == ("flight",)
+    assert best.stages == ("ACM",)
 
 
 def test_a_network_against_albedo_reads_voltages_as_the_survey_describes_it(
