@@ -19,7 +19,7 @@ TAXONOMY = ("attribute", "value", "name", "category", "section")
 STUDIES = (
     *("key", "title", "authors", "year", "venue", "doi", "url", "identity", "state"),
     *("task", "error", "accuracy", "detector", "mask", "model", "extractor"),
-    *("accuracy_deg", "fov_deg"),
+    *("accuracy_deg", "accuracy_kind", "precision_deg", "precision_kind", "fov_deg"),
 )
 STUDY = ("attribute", "value", "basis", "source", "note", "role")
 FLOWS = ("source", "target", "value", "studies")
@@ -39,7 +39,11 @@ FIGURE_COORDINATES = (
     "detector",
     "mask",
     "fov_deg",
+    "accuracy_rms_deg",
     "accuracy_deg",
+    "accuracy_kind",
+    "precision_deg",
+    "precision_kind",
     "accuracy",
     "studies",
 )

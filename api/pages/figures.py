@@ -22,9 +22,10 @@ from api.http.models.studies import StudyFilters
 from api.http.negotiation import media_type
 from api.http.representations import Representation, RepresentationCache
 from api.http.routers import figures as told
-from api.pages.numbers import degrees, wide
+from api.pages.numbers import degrees, kind_said, wide
 from api.pages.serving import PageRouter, View
 from registry.taxonomy import ATTRIBUTES, LEVELS
+from survey_data.reported import QUANTITIES
 
 SVG = "image/svg+xml"
 PLOTLY = ".plotly.json"
@@ -250,8 +251,14 @@ def _sensor_cells(row: Row) -> list[Cell]:
         ("Year", str(row["year"] or NOT_KNOWN), ""),
         *named,
         ("Field of view", wide(row["fov_deg"]), ""),
-        ("Accuracy", degrees(row["accuracy_deg"]), ""),
+        *(_reported_cell(quantity, row) for quantity in QUANTITIES),
     ]
+
+
+def _reported_cell(quantity: str, row: Row) -> Cell:
+    number = row[f"{quantity}_deg"]
+    kind = "" if number is None else kind_said(row[f"{quantity}_kind"])
+    return (quantity.capitalize(), degrees(number), kind)
 
 
 def _matrix_cells(row: Row) -> list[Cell]:

@@ -16,6 +16,7 @@ from api.http.models.words import StudyKey
 from api.http.pagination import ordered, page
 from registry.resolution import RunnablePipeline
 from registry.studies import Study
+from survey_data.reported import Quantity
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
@@ -57,7 +58,8 @@ async def study(
         **_row(found, known),
         "note": described["note"],
         "attributes": described["attributes"],
-        "reported_accuracy_deg": found.number("accuracy_deg"),
+        "reported_accuracy": _reported(found, "accuracy"),
+        "reported_precision": _reported(found, "precision"),
         "pipelines": [
             {**pipeline.to_dict(), "scores": _scores(pipeline, known)}
             for pipeline in resolution.pipelines
@@ -65,6 +67,11 @@ async def study(
         "gaps": [gap.to_dict() for gap in resolution.gaps],
     }
     return Answer(document, columns.STUDY, lambda: document["attributes"])
+
+
+def _reported(study: Study, quantity: Quantity) -> dict[str, Any] | None:
+    found = study.reported(quantity)
+    return None if found is None else found.to_dict()
 
 
 def _row(study: Study, known: Knowledge) -> dict[str, Any]:
