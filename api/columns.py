@@ -49,7 +49,8 @@ FIGURE_COORDINATES = (
 )
 FIGURE_MATRIX = (
     *("row_level", "row", "row_name", "column_level", "column", "column_name"),
-    *("count", "studies"),
+    *("state", "count", "studies", "reason", "unknown", "pipelines", "best_own_deg"),
+    *("best_dataset", "best_extractor", "best_model", "command", "leads_to"),
 )
 RECOMMENDATIONS = (
     *("rank", "detector", "mask", "advised", "studies", "pareto", "calibration"),

@@ -55,7 +55,9 @@ def class_disagreements(
     reported = reported.assign(degrees=pd.to_numeric(reported["value"], errors="coerce"))
     angles = reported[reported["degrees"].between(0, 180, inclusive="right")]
     numbers = {row.study: row for row in angles.itertuples(index=False)}
-    for row in known[known["attribute"] == "accuracy"].itertuples():
+    at = known["attribute"] == "accuracy"
+    rows = known[at].itertuples(index=False)
+    for index, row in zip(known.index[at].tolist(), rows, strict=True):
         number = numbers.get(row.study)
         if number is None:
             continue
@@ -64,6 +66,6 @@ def class_disagreements(
         if by_limits != row.value:
             printed = not PRINTED.isdisjoint({row.basis, number.basis})
             yield (
-                int(row.Index),
+                index,
                 ClassDisagreement(str(row.study), degrees, str(row.value), by_limits, printed),
             )

@@ -19,7 +19,7 @@ NAME = "coordinates"
 TITLE = "Performance in parallel coordinates"
 CAPTION = (
     "Each line is a sensor of a study: when, of what, how far it sees and how accurate it is "
-    "said to be, as an RMS error. A dashed line's accuracy is of unspecified kind, drawn as printed."
+    "said to be, as an RMS error. Dashed: the accuracy is of unspecified kind, drawn as printed."
 )
 NUMBERS = ("fov_deg", "accuracy_rms_deg")
 _COLOURS = {None: "c0", "CSS": "c4", "FSS": "c2", "VFSS": "c3", "UFSS": "c1"}
@@ -133,7 +133,7 @@ def _axes(rows: Sequence[dict[str, Any]], facts: Facts) -> tuple[Axis, ...]:
         ),
         Axis(
             "accuracy_rms_deg",
-            "Accuracy, RMS",
+            "RMS error",
             ticks=tuple(Tick(10.0**n, f"{10.0**n:g}°") for n in range(worst, best - 1, -1)),
             logarithmic=True,
         ),
@@ -188,7 +188,7 @@ def _text(studies: Sequence[Study], rows: Sequence[dict[str, Any]]) -> tuple[str
         study, one = min(stated, key=lambda pair: pair[1].rms_deg)
         said.append(
             f"Finest accuracy whose kind is stated: {one.rms_deg:.3g}° RMS ({one.label} "
-            f"{one.value_deg:g}°), {study.key}; the kind is not stated of {len(told) - len(stated)}."
+            f"{one.value_deg:g}°), {study.key}; {len(told) - len(stated)} have none stated."
         )
     if known["fov_deg"]:
         widest = max(known["fov_deg"], key=lambda study: study.number("fov_deg") or 0.0)

@@ -9,7 +9,7 @@ counted as one: a study with either counts once. Verdicts of clauses are strict:
 ranked attribute. A named value that occurs in no study fails.
 
 A finding is ``reproduced`` where every clause is, ``partly`` where some are and others not, and
-else ``contradicted`` before ``tied`` before ``undecidable``, as the first of these that a clause is.
+else ``contradicted``, ``tied`` or ``undecidable``, the first of these that a clause is.
 
 - ``top``: the most frequent value is one of those named.
 - ``top-set``: the named values are the most frequent, every one above all others.

@@ -1,4 +1,4 @@
-"""What would settle a clause of a finding: the counts that decide it, and how far they are apart."""
+"""What would settle a clause of a finding: the counts that decide it, and how far apart."""
 
 from __future__ import annotations
 

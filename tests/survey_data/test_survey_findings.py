@@ -155,7 +155,7 @@ def test_a_sentence_of_two_halves_is_tested_in_both(finding: str, levels: set[st
 def test_a_method_or_a_sensor_part_that_a_finding_names_is_in_a_clause_of_it() -> None:
     """Words of the statements against what their clauses rank or filter by."""
     named = {
-        "centroiding": "Centroid detection", "voltage balance": "Voltage balance",
+        "with centroiding": "Centroid detection", "voltage balance": "Voltage balance",
         "geometric": "Geometric", "neural": "Neural network", "multiplexing": "Multiplex",
         "photodiode": "PD", "solar": "PVA", "CMOS": "CMOS", "event-based": "Event",
         "encoded": "Encoded", "maskless": "Maskless", "single": "Single-Ap.", "slit": "Slit",

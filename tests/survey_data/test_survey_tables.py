@@ -13,10 +13,10 @@ import pandas as pd
 import pytest
 
 import survey_data
+from survey_data.accuracy_classes import accuracy_class
 from survey_data.csv_reading import read_records
 from survey_data.csv_writing import csv_text
 from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name, table_names
-from survey_data.accuracy_classes import accuracy_class
 
 
 def test_the_package_passes_frictionless_from_its_files() -> None:

@@ -114,7 +114,7 @@ def _print(report: FidelityReport) -> None:
     )
     typer.echo()
     against = [
-        f"{one.study} ({one.accuracy_deg:g} deg, filed as {one.filed}, {one.by_limits} by the limits)"
+        f"{one.study} ({one.accuracy_deg:g} deg, filed as {one.filed}, by limits {one.by_limits})"
         for one in report.class_disagreements
     ]
     say(

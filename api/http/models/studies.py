@@ -175,8 +175,8 @@ class Reported(Shape):
     )
     label: str = Field(description="What the number is, in words.", examples=["1-sigma precision"])
     rms_deg: float = Field(
-        description="The number as the RMS that it is compared as: 3 sigma and a largest error over "
-        "3, 95 % over 1.96, a mean over 0.7979, unspecified as printed."
+        description="The number as the RMS that it is compared as: 3 sigma and a largest error "
+        "over 3, 95 % over 1.96, a mean over 0.7979, unspecified as printed."
     )
 
 
