@@ -29,7 +29,9 @@ class MatrixQuery(StudyFilters):
 
     model_config = ConfigDict(
         json_schema_extra={
-            "examples": [{"rows": "accuracy", "columns": "calibration", "detector": ["Event"]}]
+            "examples": [
+                {"rows": "detector", "columns": "mask", "detector": ["PSD"], "mask": ["Lens"]}
+            ]
         }
     )
 

@@ -48,9 +48,8 @@ class Requirements(Question):
         gt=0,
         le=180,
         description="RMS error at most this, in degrees, over the field asked for and all it shall "
-        "survive: measured; stated where nothing is measured. A stated accuracy is compared as "
-        "the RMS that its kind makes of it (3 sigma: a third); one of unspecified kind as printed. "
-        "A stated precision is no accuracy and is not compared.",
+        "survive: measured; where nothing is measured, a stated accuracy as the RMS of its kind "
+        "(unspecified: as printed), never a precision.",
     )
     min_fov_deg: Number = Field(
         None,
