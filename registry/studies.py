@@ -32,6 +32,7 @@ from registry.taxonomy import (
 )
 from survey_data import recorded_facts
 from survey_data.numerals import decimal
+from survey_data.reported import KIND_OF, Quantity, Reported, reported, statistics
 from survey_data.texts import load_texts
 
 
@@ -134,13 +135,21 @@ class Study:
         return {a: tuple(dict.fromkeys(v.value for v in cells)) for a, cells in self.values.items()}
 
     def number(self, attribute: str) -> float | None:
-        """Return the stated `accuracy_deg` or `fov_deg` (the best of several); None if none."""
+        """Return a stated number of `NUMERIC_ATTRIBUTES` (the best of several); None if none."""
         if attribute not in NUMERIC_ATTRIBUTES:
             raise unknown_name("attribute", attribute, NUMERIC_ATTRIBUTES)
         numbers = [float(text) for text in self.of(attribute)]
         if not numbers:
             return None
-        return min(numbers) if attribute == "accuracy_deg" else max(numbers)
+        return max(numbers) if attribute == "fov_deg" else min(numbers)
+
+    def reported(self, quantity: Quantity) -> Reported | None:
+        """Return the accuracy or precision that the study reports, with its kind; None if none."""
+        attribute = f"{quantity}_deg"
+        number = self.number(attribute)
+        if number is None:
+            return None
+        return reported(quantity, number, next(iter(self.of(KIND_OF[attribute])), None))
 
     def summary(self) -> dict[str, object]:
         """Identity and values, as in a list of studies."""
@@ -290,6 +299,8 @@ def facts_from(tables: Tables) -> Facts:
             continue
         if attribute in NUMERIC_ATTRIBUTES:
             _require_number(key, attribute, value)
+        elif attribute in KIND_OF.values():
+            _require_kind(key, attribute, value)
         else:
             taxonomy.require(attribute, value, parameter=f"{key} {attribute}")
         cell = AttributeValue(value, row["basis"], row["source"], row["note"])
@@ -347,6 +358,13 @@ def _require_number(key: str, attribute: str, value: str) -> None:
         decimal(value)
     except ValueError as error:
         raise InvalidValueError(f"{key} {attribute}", value, "a number in degrees") from error
+
+
+def _require_kind(key: str, attribute: str, value: str) -> None:
+    """Raise InvalidValueError for a kind of accuracy or precision that no rule is known for."""
+    if value not in statistics():
+        expected = f"one of {', '.join(statistics())}"
+        raise InvalidValueError(f"{key} {attribute}", value, expected)
 
 
 def _properties(tables: Tables, taxonomy: Taxonomy) -> Mapping[str, Mapping[str, int]]:

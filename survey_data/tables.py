@@ -42,6 +42,7 @@ class SurveyTables:
     feature_assessment: pd.DataFrame
     approaches: pd.DataFrame
     findings: pd.DataFrame
+    finding_clauses: pd.DataFrame
     claims: pd.DataFrame
     references: pd.DataFrame
     counts: pd.DataFrame
@@ -56,6 +57,7 @@ class SurveyTables:
     protocol: pd.DataFrame
     model_families: pd.DataFrame
     venues: pd.DataFrame
+    statistics: pd.DataFrame
 
 
 def load(directory: str | Path | None = None) -> SurveyTables:

@@ -126,10 +126,10 @@ def _told(foreign: Mapping[str, tuple[str, str]]) -> list[MeasuredTable]:
         _table(
             "verdicts",
             "Verdicts of the findings",
-            "Each checkable statement of the survey, judged strictly by the tables, with the "
-            "counts and the evidence that would turn it.",
+            "Each clause of the survey's checkable statements, judged strictly by the tables, with "
+            "the counts and the evidence that would turn it, and the verdict of the whole.",
             told.verdicts(),
-            primary=("finding",),
+            primary=("finding", "clause"),
             foreign={"finding": ("findings", "id")},
         ),
         _table(

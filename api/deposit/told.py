@@ -33,18 +33,21 @@ def resolution() -> list[Mapping[str, Any]]:
 
 
 def verdicts() -> list[Mapping[str, Any]]:
-    """Return a row for each finding of the survey, with its counts and what would settle it."""
+    """Return a row for each clause of the survey's findings, with its counts."""
     return [
         {
             "finding": found.id,
-            "verdict": found.verdict,
-            "matching": found.matching,
-            "counted": found.counted,
-            "named": [f"{value} {count}" for value, count in found.named],
-            "ranking": [f"{value} {count}" for value, count in found.ranking],
-            "settled_by": found.settled_by,
+            "clause": clause.clause,
+            "finding_verdict": found.verdict,
+            "verdict": clause.verdict,
+            "matching": clause.matching,
+            "counted": clause.counted,
+            "named": [f"{value} {count}" for value, count in clause.named],
+            "ranking": [f"{value} {count}" for value, count in clause.ranking],
+            "settled_by": clause.settled_by,
         }
         for found in survey_data.fidelity(survey_data.load()).findings
+        for clause in found.clauses
     ]
 
 

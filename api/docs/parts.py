@@ -107,19 +107,26 @@ def findings() -> str:
     counted = ", ".join(f"{count} {verdict}" for verdict, count in report.verdicts.items())
     rows = [
         (
-            finding.id,
-            finding.verdict,
-            finding.statement,
-            f"{finding.given or 'all studies'} → {finding.expects} ({finding.kind})",
-            _ranked(finding.ranking),
-            finding.settled_by,
+            finding.id if clause.clause == 1 else "",
+            finding.verdict if clause.clause == 1 else "",
+            finding.statement if clause.clause == 1 else "",
+            f"{clause.given or 'all studies'} → {clause.expects} ({clause.kind})",
+            clause.verdict,
+            _ranked(clause.ranking),
+            clause.settled_by,
         )
         for finding in report.findings
+        for clause in finding.clauses
     ]
+    untested = [f"{f.id}, {f.not_tested}" for f in report.findings if f.not_tested]
     return (
         f"{report.studies} studies; the survey states {report.stated}. {report.explanation}\n\n"
-        f"{len(report.findings)} findings: {counted}.\n\n"
-        + _table(("id", "verdict", "finding", "expects", "counts", "what settles it"), rows)
+        f"{len(report.findings)} findings: {counted}. A finding of several clauses has a row for "
+        "each.\n\n"
+        + _table(
+            ("id", "verdict", "finding", "expects", "clause", "counts", "what settles it"), rows
+        )
+        + f"\n\nNot tested: {'; '.join(untested)}."
     )
 
 

@@ -15,6 +15,7 @@ from api.pictures import Pictures
 from api.search.entries import entries
 from api.search.index import Index
 from registry.catalogue import Catalogue, catalogue
+from registry.evidence import Evidence
 from registry.measured import Measurements as Measured
 from registry.resolution import Resolution, resolve_all
 from registry.studies import Facts, facts
@@ -66,6 +67,13 @@ class Knowledge:
         )
 
     @cached_property
+    def evidence(self) -> Evidence:
+        """What is measured of pairs of values, what could be, and what cannot."""
+        from benchmark.plan.combinations import scorable  # noqa: PLC0415 - loads the simulator
+
+        return Evidence(self.catalogue, self.measurements.pipelines, scorable())
+
+    @cached_property
     def measured(self) -> Measured:
         """What is measured of every pipeline, as recommendations take it."""
         return Measured(self.measurements.pipelines)
@@ -96,7 +104,7 @@ class Knowledge:
             Where a file of facts or of published results cannot be read.
         """
         _ = self.resolutions, self.measurements.scores, self.measurements.times
-        _ = self.measured, self.measurements.leaderboard, self.measurements.cards
+        _ = self.evidence, self.measured, self.measurements.leaderboard, self.measurements.cards
         _ = self.measurements.sweeps, self.measurements.curves, self.measurements.assessment
         _ = self.measurements.claims, self.index.find("warm")
         _ = self.facts_digest, self.measurements.digest

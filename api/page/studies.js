@@ -37,6 +37,8 @@ function measured(score) {
 
 function provenance(detail) {
   const values = detail.attributes;
+  const reported = [detail.reported_accuracy, detail.reported_precision]
+    .filter(known).map((one) => `${one.label} ${one.value_deg} deg`);
   const cell = (label, ...content) => h("td", { role: "cell", "data-label": label }, h("span", {}, ...content));
   return h("div", { class: "provenance" },
     h("table", { class: "stacks", role: "table" },
@@ -48,9 +50,9 @@ function provenance(detail) {
         cell("Basis", h("span", { class: "basis", title: BASES[v.basis] }, v.basis)),
         cell("Source", source(v.source)),
         cell("Note", v.note ?? ""))))),
-    h("p", {}, known(detail.reported_accuracy_deg)
-      ? `Accuracy that the study reports of its own sensor: ${detail.reported_accuracy_deg} deg.`
-      : "No accuracy is known that the study reports of its own sensor."),
+    h("p", {}, reported.length
+      ? `Reported by the study of its own sensor: ${reported.join(", ")}.`
+      : "No accuracy or precision is known that the study reports of its own sensor."),
     detail.pipelines.length > 0 && h("div", {}, h("p", {}, "Runs here, with the error measured on each simulated sensor, as"),
       h("ul", {}, detail.pipelines.slice(0, 12).map((p) => h("li", {},
         `${p.detector} · ${p.mask} · ${p.extractor} → ${p.model}: ${p.scores.map(measured).join(", ")}`,

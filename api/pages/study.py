@@ -26,6 +26,9 @@ NAMES = {
     "model": "Calibration model",
     "extractor": "Feature extractor",
     "accuracy_deg": "Published accuracy",
+    "accuracy_kind": "Kind of that accuracy",
+    "precision_deg": "Published precision",
+    "precision_kind": "Kind of that precision",
     "fov_deg": "Field of view",
 }
 BASES = {

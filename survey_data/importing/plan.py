@@ -18,6 +18,7 @@ from survey_data.importing.values import (
     column_unit,
 )
 from survey_data.problems import Problem, SurveyImportError
+from survey_data.reported import KIND_OF, UNSPECIFIED
 from survey_data.tables import RESTING, SurveyTables
 
 AUTHORS_BASIS = "authors-table"
@@ -313,7 +314,22 @@ def _compare(
         found.append(
             Difference(study, attribute, cell.values, theirs, cell.basis, kind, row, column)
         )
+        if kind == "changed" and attribute in KIND_OF:
+            found += _kind_of_another(ours, stated, found[-1])
     return found
+
+
+def _kind_of_another(
+    ours: Mapping[tuple[str, str], _Cell],
+    stated: Mapping[tuple[str, str], Mapping[str, ValueMatch]],
+    number: Difference,
+) -> list[Difference]:
+    """Return the kind of a replaced accuracy or precision as unspecified, unless theirs says it."""
+    kind = KIND_OF[number.attribute]
+    cell = ours.get((number.study, kind))
+    if cell is None or cell.values == (UNSPECIFIED,) or (number.study, kind) in stated:
+        return []
+    return [replace(number, attribute=kind, ours=cell.values, theirs=(UNSPECIFIED,))]
 
 
 def _printed(tables: SurveyTables) -> dict[tuple[str, str], list[set[str]]]:

@@ -124,10 +124,10 @@ def _show(key: str, form: Format) -> None:
         typer.echo()
     emit(study["attributes"], STUDY if form is Format.CSV else DETAILS, form)
     if form is Format.TABLE:
-        reported = study["reported_accuracy_deg"]
-        said = "nothing is known" if reported is None else f"{reported:g} deg"
+        reported = [study[f"reported_{quantity}"] for quantity in ("accuracy", "precision")]
+        said = [f"{one['label']} {one['value_deg']:g} deg" for one in reported if one is not None]
         typer.echo()
-        say(f"Accuracy that the study reports of its own sensor: {said}")
+        say(f"Reported by the study of its own sensor: {', '.join(said) or 'no number is known'}")
         typer.echo()
         pipelines = (*("detector", "mask", "extractor", "model", "measured here"), "assumed")
         emit(

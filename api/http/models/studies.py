@@ -217,14 +217,31 @@ class Gap(Shape):
     reason: str
 
 
+class Reported(Shape):
+    """An accuracy or a precision as published, with the statistic that it is."""
+
+    value_deg: float = Field(description="The number as published, in degrees.")
+    kind: Literal["1sigma", "3sigma", "p95", "rms", "mean", "max", "unspecified"] = Field(
+        description="Which statistic of the error it is; unspecified where the source does not say."
+    )
+    label: str = Field(description="What the number is, in words.", examples=["1-sigma precision"])
+    rms_deg: float = Field(
+        description="The number as the RMS that it is compared as: 3 sigma and a largest error "
+        "over 3, 95 % over 1.96, a mean over 0.7979, unspecified as printed."
+    )
+
+
 class StudyDetail(Study):
     """A mapped study with the basis of every value and what of it can be run."""
 
     note: str
     attributes: list[AttributeValue]
-    reported_accuracy_deg: float | None = Field(
-        description="What the study reports of its own sensor; `scores` are measured here, on "
-        "simulated ones."
+    reported_accuracy: Reported | None = Field(
+        description="How far off the study reports its own sensor to be; `scores` are measured "
+        "here, on simulated ones."
+    )
+    reported_precision: Reported | None = Field(
+        description="How far repeated readings of its own sensor scatter, which is no accuracy."
     )
     departures: list[Departure] = Field(description="What keeps the run from being faithful.")
     purposes: dict[Purpose, str] = Field(

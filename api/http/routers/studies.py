@@ -17,6 +17,7 @@ from api.http.pagination import ordered, page
 from registry.fidelity.runnable import RunnablePipeline
 from registry.resolution import Resolution
 from registry.studies import Study
+from survey_data.reported import Quantity
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
@@ -58,9 +59,10 @@ async def study(
         **_row(found, known),
         "note": described["note"],
         "attributes": described["attributes"],
-        "reported_accuracy_deg": found.number("accuracy_deg"),
         "departures": [departure.to_dict() for departure in resolution.fidelity.departures],
         "purposes": dict(resolution.fidelity.purposes),
+        "reported_accuracy": _reported(found, "accuracy"),
+        "reported_precision": _reported(found, "precision"),
         "pipelines": [
             {**pipeline.to_dict(), "scores": _scores(pipeline, known)}
             for pipeline in resolution.pipelines
@@ -68,6 +70,11 @@ async def study(
         "gaps": [gap.to_dict() for gap in resolution.gaps],
     }
     return Answer(document, columns.STUDY, lambda: document["attributes"])
+
+
+def _reported(study: Study, quantity: Quantity) -> dict[str, Any] | None:
+    found = study.reported(quantity)
+    return None if found is None else found.to_dict()
 
 
 def _row(study: Study, known: Knowledge) -> dict[str, Any]:
