@@ -17,9 +17,10 @@ Row = Mapping[str, Any]
 
 TAXONOMY = ("attribute", "value", "name", "category", "section")
 STUDIES = (
-    *("key", "title", "authors", "year", "venue", "doi", "url", "identity", "state"),
+    *("key", "title", "authors", "year", "venue", "doi", "url", "identity", "grade", "state"),
     *("task", "error", "accuracy", "detector", "mask", "model", "extractor"),
-    *("accuracy_deg", "fov_deg", "edition", "verified"),
+    *("accuracy_deg", "accuracy_kind", "precision_deg", "precision_kind", "fov_deg"),
+    *("edition", "verified"),
 )
 STUDY = ("attribute", "value", "basis", "source", "note", "role", "name_in_study", "nearest")
 EDITIONS = ("name", "title", "studies", "version")
@@ -40,13 +41,18 @@ FIGURE_COORDINATES = (
     "detector",
     "mask",
     "fov_deg",
+    "accuracy_rms_deg",
     "accuracy_deg",
+    "accuracy_kind",
+    "precision_deg",
+    "precision_kind",
     "accuracy",
     "studies",
 )
 FIGURE_MATRIX = (
     *("row_level", "row", "row_name", "column_level", "column", "column_name"),
-    *("count", "studies"),
+    *("state", "count", "studies", "reason", "unknown", "pipelines", "best_own_deg"),
+    *("best_dataset", "best_extractor", "best_model", "command", "leads_to"),
 )
 RECOMMENDATIONS = (
     *("rank", "detector", "mask", "advised", "studies", "pareto", "calibration"),

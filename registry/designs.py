@@ -16,8 +16,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from registry.advice import Advice
 from registry.kept_answers import KeptAnswers
+from registry.mapping.advice import Advice
 from registry.measured import Judged, Measured, Measurements
 from registry.studies import Facts, Study
 from registry.taxonomy import NO_IMPLEMENTATION_STATED, Architecture, Taxonomy
@@ -125,7 +125,7 @@ class DesignTable:
             attribute: tuple(
                 (at, number)
                 for at, study in enumerate(facts.studies.values())
-                if (number := study.number(attribute)) is not None
+                if (number := _stated(study, attribute)) is not None
             )
             for attribute in ("accuracy_deg", "fov_deg")
         }
@@ -272,6 +272,14 @@ def _named(
         (extractor, taxonomy.category("extractor", extractor)),
         frozenset(taxonomy.category("model", stage) for stage in stages),
     )
+
+
+def _stated(study: Study, attribute: str) -> float | None:
+    """Return a number that a study states as a limit is judged by it: an accuracy as an RMS."""
+    if attribute != "accuracy_deg":
+        return study.number(attribute)
+    found = study.reported("accuracy")
+    return None if found is None else found.rms_deg
 
 
 def _having(facts: Facts) -> dict[tuple[str, str], int]:

@@ -2,19 +2,22 @@
 
 A compensation that the study states is a stage of its pipelines: where a chain holds more of them
 ahead of the same model, the model alone is left out. One that is stated beside no model that it is
-planned ahead of runs ahead of the simplest.
+planned ahead of runs ahead of the model of its equation, else ahead of the simplest. One that its
+model carries out itself runs with that (`compensated_models.csv`). A model that the study carries
+out in a way of its own runs so, where an implementation does (`method_variants.csv`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from registry.catalogue import Catalogue
-from registry.studies import Study
-from registry.taxonomy import NO_IMPLEMENTATION_STATED, Architecture, Plan
+from registry.fidelity.particulars import MethodVariant
+from registry.studies import Facts, Study
+from registry.taxonomy import NO_IMPLEMENTATION_STATED, Architecture, Pair, Plan
 
 if TYPE_CHECKING:
     from algorithms.chain import Scored
@@ -42,12 +45,17 @@ class Chosen:
     """A method by name, the stated values that it runs, and what it stands in for.
 
     ``stands_for`` is a stated value that nothing runs here, or "None" where the study states none;
-    empty where the method is the study's own.
+    empty where the method is the study's own. ``unsaid`` is a value whose kind the study does not
+    state, where one of its kinds is run; ``variant`` the study's way to carry the method out that
+    this is of, ``missed`` one that it is not of.
     """
 
     name: str
     runs: tuple[str, ...]
     stands_for: str = ""
+    unsaid: str = ""
+    variant: MethodVariant | None = None
+    missed: MethodVariant | None = None
 
 
 @dataclass(frozen=True)
@@ -67,10 +75,13 @@ class Fitting:
     plan : Plan
         Names that the catalogue does not have are passed over.
     catalogue : Catalogue
+    facts : Facts
+        What is said of studies beyond their values.
     """
 
-    def __init__(self, plan: Plan, catalogue: Catalogue) -> None:
+    def __init__(self, plan: Plan, catalogue: Catalogue, facts: Facts) -> None:
         self.catalogue = catalogue
+        self.facts = facts
         self.plan: Plan = {
             architecture: {
                 pair: datasets
@@ -114,6 +125,17 @@ class Fitting:
     def _on(self, study: Study, place: Architecture, near: Collection[str]) -> list[Fitted]:
         pairs = self.plan.get(place, {})
         models = self._nearest_models if "model" in near else self._own_models
+        found = [] if "model" in near else self._variants(study, pairs)
+        return found + self._usual(study, pairs, models, near)
+
+    def _usual(
+        self,
+        study: Study,
+        pairs: Mapping[Pair, Sequence[str]],
+        models: Callable[[Study, Sequence[str]], list[Chosen]],
+        near: Collection[str],
+    ) -> list[Fitted]:
+        """Return the pipelines of the first extractors that any model fits."""
         for group in self._extractors(study, near="extractor" in near):
             found = [
                 Fitted(extractor, model, tuple(pairs[extractor.name, model.name]))
@@ -123,6 +145,45 @@ class Fitting:
             if found:
                 return found
         return []
+
+    def _variants(self, study: Study, pairs: Mapping[Pair, Sequence[str]]) -> list[Fitted]:
+        """Return the pipelines that carry out models as the study does."""
+        found = []
+        for value in study.of("model"):
+            variant = self.facts.variant(study.key, value)
+            if variant is None:
+                continue
+            runs = (variant.extractor,) if variant.extractor in study.of("extractor") else ()
+            within = self._carried_out(study, value)
+            extractors = {one.name for one in self._extractors_of(variant.extractor)}
+            found += [
+                Fitted(
+                    Chosen(extractor, runs, variant=variant),
+                    Chosen(model, (value, *within), variant=variant),
+                    tuple(datasets),
+                )
+                for (extractor, model), datasets in pairs.items()
+                if extractor in extractors and self._is_of(model, variant)
+            ]
+        return found
+
+    def _is_of(self, model: str, variant: MethodVariant) -> bool:
+        """Say whether an implementation carries a model out as a study does."""
+        about = self.catalogue.models[model].about
+        read = {
+            self.catalogue.extractors[one.name].about.kind
+            for one in self._extractors_of(variant.extractor)
+        }
+        return (
+            self._stages[model] == (variant.runs_as,)
+            and variant.context in ("", *about.context)
+            and not read.isdisjoint(about.accepts)
+        )
+
+    def _carried_out(self, study: Study, model: str) -> tuple[str, ...]:
+        """Return the compensations of a study that one of its models carries out itself."""
+        within = self.facts.within
+        return tuple(v for v in study.of("model") if model in within(study.key, v))
 
     def _extractors(self, study: Study, *, near: bool) -> list[list[Chosen]]:
         """Return the extractors to try, group after group until one fits."""
@@ -156,22 +217,31 @@ class Fitting:
         of = {
             kind: value
             for value in study.of("model")
-            if value != NO_IMPLEMENTATION_STATED
-            for kind in self.kinds("model", value)
+            if value != NO_IMPLEMENTATION_STATED and not self.facts.within(study.key, value)
+            for kind in self._kinds_of(study, value)
         }
         usable = {
             name: self._stages[name]
             for name in planned
             if all(stage in of for stage in self._stages[name][:-1])
         }
-        whole = _with_most_stages({n: own for n, own in usable.items() if own[-1] in of})
-        found = [self._chosen(name, of) for name in whole]
+        behind_stated = {
+            model for value in set(of.values()) for model in self.facts.behind(study.key, value)
+        }
+        whole = _with_most_stages(
+            {
+                n: own
+                for n, own in usable.items()
+                if own[-1] in of or (len(own) > 1 and own[-1] in behind_stated)
+            }
+        )
+        found = [self._chosen(study, name, of) for name in whole if not self._repeats(study, name)]
         covered = {stage for own in whole.values() for stage in own}
         behind = {n: own for n, own in usable.items() if own[-1] not in of and len(own) > 1}
         for compensation in (kind for kind in of if kind not in covered):
             ahead = {n: own for n, own in behind.items() if compensation in own[:-1]}
             for name in _with_most_stages(_simplest(ahead)):
-                chosen = self._chosen(name, of, NO_IMPLEMENTATION_STATED)
+                chosen = self._chosen(study, name, of, NO_IMPLEMENTATION_STATED)
                 if chosen not in found:
                     found.append(chosen)
         if NO_IMPLEMENTATION_STATED in study.of("model") and not found:
@@ -219,9 +289,29 @@ class Fitting:
         )
         return tuple(v for v in dict.fromkeys(order) if v != value)
 
-    def _chosen(self, name: str, of: Mapping[str, str], stands_for: str = "") -> Chosen:
-        runs = (of[stage] for stage in self._stages[name] if stage in of)
-        return Chosen(name, tuple(dict.fromkeys(runs)), stands_for)
+    def _chosen(
+        self, study: Study, name: str, of: Mapping[str, str], stands_for: str = ""
+    ) -> Chosen:
+        run = [of[stage] for stage in self._stages[name] if stage in of]
+        unsaid = next((of[s] for s in self._stages[name] if of.get(s, s) != s), "")
+        missed = next(filter(None, (self.facts.variant(study.key, value) for value in run)), None)
+        if missed and self._is_of(name, missed):
+            missed = None
+        carried = [v for value in run for v in self._carried_out(study, value)]
+        return Chosen(
+            name, tuple(dict.fromkeys((*run, *carried))), stands_for, unsaid, None, missed
+        )
+
+    def _kinds_of(self, study: Study, value: str) -> tuple[str, ...]:
+        """Return the kinds that run for a model of a study: the one of its variant, if any."""
+        kinds = self.kinds("model", value)
+        variant = self.facts.variant(study.key, value)
+        return (variant.runs_as,) if variant and variant.runs_as in kinds else kinds
+
+    def _repeats(self, study: Study, name: str) -> bool:
+        """Say whether a model stands among the study's variants already."""
+        variants = (self.facts.variant(study.key, value) for value in study.of("model"))
+        return any(self._is_of(name, variant) for variant in variants if variant)
 
 
 def stages(scored: Scored) -> tuple[str, ...]:

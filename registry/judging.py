@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from registry.advice import ADVISING, Advice
 from registry.designs import AdviceFor, DesignTable, Kept, Limits, Place
+from registry.mapping.advice import ADVISING, Advice
 from registry.measured import Measured, Partly
 from registry.requirements import EXCLUDE, Requirements
 

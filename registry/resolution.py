@@ -9,90 +9,44 @@ has a cell. What is decided here, because the mapping does not say it:
 - Methods are the study's own with its compensations as stages, or the nearest (`registry.fitting`).
 - Every value of a pipeline has a basis. What is not stated is ``assumed``, with the rule that put
   it there: its score is not the study's own.
+- A study is shown under what it is run for (`registry.fidelity.purposes`). Where its own sensor
+  does not show that, it stands on the nearest that does, if it is nearer to the study so.
+- How near its run is to the study is graded (`registry.fidelity.grading`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Literal
 
 from registry import catalogue as implementations
 from registry import studies as registered
 from registry.catalogue import Catalogue
+from registry.fidelity.grading import Fidelity, fidelity
+from registry.fidelity.particulars import Purpose
+from registry.fidelity.purposes import PURPOSES, DataSet, Setting, purposes, settings
+from registry.fidelity.runnable import ESSENTIAL, Gap, RunnablePipeline, strongest
 from registry.fitting import Chosen, Fitted, Fitting, stages
 from registry.sensors import BASES, SENSOR, Basis, Part, Sensor, cell, sensors
 from registry.studies import METHODS, Facts, Study
-from registry.taxonomy import NO_IMPLEMENTATION_STATED, Plan
+from registry.taxonomy import NO_IMPLEMENTATION_STATED, Architecture, Plan
 
 State = Literal["complete", "partial", "none"]
-
-ESSENTIAL = (*SENSOR, "extractor", "model")
-
-
-@dataclass(frozen=True)
-class RunnablePipeline:
-    """An extractor and a model, by name, on a sensor of the study, with what each rests on.
-
-    ``stages`` are the model's by their taxonomy values: compensations, and the model itself last.
-    ``basis`` says of detector, mask, extractor and model what they rest on, ``assumed`` of those
-    that are not stated by what rule they stand there. ``datasets`` are where it is scored.
-    """
-
-    detector: str
-    mask: str
-    extractor: str
-    model: str
-    extractor_taxonomy: str
-    model_taxonomy: str
-    stages: tuple[str, ...]
-    datasets: tuple[str, ...]
-    basis: Mapping[str, Basis] = field(hash=False)
-    assumed: Mapping[str, str] = field(hash=False)
-
-    def to_dict(self) -> dict[str, object]:
-        """As in the HTTP answer."""
-        return {
-            "detector": self.detector,
-            "mask": self.mask,
-            "extractor": self.extractor,
-            "model": self.model,
-            "extractor_taxonomy": self.extractor_taxonomy,
-            "model_taxonomy": self.model_taxonomy,
-            "stages": list(self.stages),
-            "basis": dict(self.basis),
-            "assumed": dict(self.assumed),
-            "datasets": list(self.datasets),
-        }
-
-
-@dataclass(frozen=True)
-class Gap:
-    """Something of a study that does not run as it is, and why.
-
-    ``attribute`` is one of the study's (value "" if its cell is empty), or "architecture" with
-    the value "detector + mask".
-    """
-
-    attribute: str
-    value: str
-    reason: str
-
-    def to_dict(self) -> dict[str, str]:
-        """As in the HTTP answer."""
-        return {"attribute": self.attribute, "value": self.value, "reason": self.reason}
 
 
 @dataclass(frozen=True)
 class Resolution:
     """What is scored of a study.
 
-    ``state`` is complete (every value of its mapping runs), partial (something of it does, or
-    what stands nearest to it) or none.
+    ``fidelity`` grades how near its run is to the study. ``state`` says whether gaps are left:
+    complete (every value of its mapping runs), partial (something of it does, or what stands
+    nearest to it) or none.
     """
 
     study: str
+    fidelity: Fidelity
     state: State
     pipelines: tuple[RunnablePipeline, ...]
     gaps: tuple[Gap, ...]
@@ -100,17 +54,18 @@ class Resolution:
     @property
     def best(self) -> RunnablePipeline | None:
         """The pipeline that rests on most: the first of those whose weakest part is strongest."""
-        rank = {basis: at for at, basis in enumerate(BASES)}
-        return min(
-            self.pipelines,
-            key=lambda p: sorted((rank[basis] for basis in p.basis.values()), reverse=True),
-            default=None,
-        )
+        return next(iter(self.nearest), None)
+
+    @property
+    def nearest(self) -> Sequence[RunnablePipeline]:
+        """The pipelines that rest on most, whose first settings the study is judged by."""
+        return strongest(self.pipelines)
 
     def to_dict(self) -> dict[str, object]:
         """As in the HTTP answer."""
         return {
             "key": self.study,
+            **self.fidelity.to_dict(),
             "state": self.state,
             "pipelines": [pipeline.to_dict() for pipeline in self.pipelines],
             "gaps": [gap.to_dict() for gap in self.gaps],
@@ -121,6 +76,7 @@ def resolve(
     study: Study | str,
     plan: Plan,
     *,
+    data_sets: Mapping[str, DataSet] | None = None,
     catalogue: Catalogue | None = None,
     facts: Facts | None = None,
 ) -> Resolution:
@@ -132,31 +88,110 @@ def resolve(
         A study or its key; InvalidValueError for an unknown key.
     plan : Plan
         What can be scored, as `benchmark.plan.combinations.scorable` gives it.
+    data_sets : optional
+        What the plan's data sets show, as `benchmark.plan.shown.data_sets` gives it; one that is
+        missing shows its nominal condition alone.
     catalogue, facts : optional
         What is implemented and the studies; ours and the survey's by default.
     """
     known = facts or registered.facts()
     found = known.study(study) if isinstance(study, str) else study
-    return _resolve(found, Fitting(plan, catalogue or implementations.catalogue()), known)
+    fitting = Fitting(plan, catalogue or implementations.catalogue(), known)
+    return _resolve(found, fitting, data_sets or {})
 
 
 def resolve_all(
     plan: Plan,
     *,
+    data_sets: Mapping[str, DataSet] | None = None,
     catalogue: Catalogue | None = None,
     facts: Facts | None = None,
 ) -> dict[str, Resolution]:
     """`resolve` of every study, by key."""
     known = facts or registered.facts()
-    fitting = Fitting(plan, catalogue or implementations.catalogue())
-    return {key: _resolve(study, fitting, known) for key, study in known.studies.items()}
+    fitting = Fitting(plan, catalogue or implementations.catalogue(), known)
+    return {key: _resolve(study, fitting, data_sets or {}) for key, study in known.studies.items()}
 
 
-def _resolve(study: Study, fitting: Fitting, facts: Facts) -> Resolution:
+def resolve_later(
+    plan: Plan,
+    survey: Facts,
+    every: Facts,
+    *,
+    data_sets: Mapping[str, DataSet] | None = None,
+    catalogue: Catalogue | None = None,
+) -> dict[str, Resolution]:
+    """`resolve` of every study after the survey, by key, with relatives among the survey's alone.
+
+    Parameters
+    ----------
+    plan, data_sets, catalogue : as of `resolve`
+    survey, every : facts of the survey, and of both editions
+    """
+    later = (study for key, study in every.studies.items() if key not in survey.studies)
+    fitting = Fitting(plan, catalogue or implementations.catalogue(), survey)
+    return {study.key: _resolve(study, fitting, data_sets or {}) for study in later}
+
+
+def _resolve(study: Study, fitting: Fitting, data_sets: Mapping[str, DataSet]) -> Resolution:
+    facts = fitting.facts
     on = sensors(study, facts, fitting.plan, lambda pair: fitting.own(study, pair))
+    wanted = purposes(study, facts)
+    own = _resolved(study, on, fitting, data_sets, wanted)
+    shown = all(departure.part != "condition" for departure in own.fidelity.departures)
+    if not wanted or (own.pipelines and shown):
+        return own
+    elsewhere = (
+        _resolved(study, (sensor,), fitting, data_sets, wanted)
+        for sensor in _elsewhere(study, on, fitting.plan, wanted)
+    )
+    return min((own, *elsewhere), key=_remoteness)
+
+
+def _remoteness(found: Resolution) -> tuple[bool, int]:
+    return not found.pipelines, len(found.fidelity.departures)
+
+
+def _elsewhere(
+    study: Study, on: Sequence[Sensor], plan: Plan, wanted: Mapping[Purpose, str]
+) -> Iterable[Sensor]:
+    """Give the simulated sensors that share one part with the study's, or all where it has none.
+
+    Those with its detector come first, for the light falls onto it alike.
+    """
+    stated = {attribute: study.of(attribute) for attribute in SENSOR}
+    why = f"the nearest sensor of a data set {' and '.join(PURPOSES[p] for p in wanted)}"
+    places = [pair for pair in plan if pair not in {sensor.architecture for sensor in on}]
+
+    def shared(pair: Architecture) -> list[bool]:
+        return [value in stated[a] for a, value in zip(SENSOR, pair, strict=True)]
+
+    for pair in sorted(places, key=lambda pair: ([not s for s in shared(pair)], pair)):
+        if any(shared(pair)) or not any(stated.values()):
+            yield Sensor(
+                *(
+                    cell(study, attribute, value)
+                    if value in stated[attribute]
+                    else Part(value, "defaulted", why)
+                    for attribute, value in zip(SENSOR, pair, strict=True)
+                )
+            )
+
+
+def _resolved(
+    study: Study,
+    on: Sequence[Sensor],
+    fitting: Fitting,
+    data_sets: Mapping[str, DataSet],
+    wanted: Mapping[Purpose, str],
+) -> Resolution:
+    """Resolve a study on given sensors."""
     fitted = fitting.fitted(study, (sensor.architecture for sensor in on))
     pipelines = tuple(
-        _pipeline(study, sensor, one, fitting.catalogue)
+        _pipeline(
+            *(study, sensor, one, fitting.catalogue),
+            at=settings(study, wanted, one.datasets, data_sets),
+        )
         for sensor in on
         for one in fitted[sensor.architecture]
     )
@@ -168,10 +203,17 @@ def _resolve(study: Study, fitting: Fitting, facts: Facts) -> Resolution:
         *_nearest_gaps(study),
     )
     state: State = "none" if not pipelines else "partial" if gaps else "complete"
-    return Resolution(study.key, state, pipelines, gaps)
+    grade = fidelity(study, fitting.facts, pipelines, ran, wanted)
+    return Resolution(study.key, grade, state, pipelines, gaps)
 
 
-def _pipeline(study: Study, sensor: Sensor, one: Fitted, catalogue: Catalogue) -> RunnablePipeline:
+def _pipeline(
+    study: Study,
+    sensor: Sensor,
+    one: Fitted,
+    catalogue: Catalogue,
+    at: tuple[Setting, ...],
+) -> RunnablePipeline:
     extractor, model = catalogue.extractors[one.extractor.name], catalogue.models[one.model.name]
     parts = {
         "detector": sensor.detector,
@@ -187,6 +229,7 @@ def _pipeline(study: Study, sensor: Sensor, one: Fitted, catalogue: Catalogue) -
         model_taxonomy=model.about.taxonomy,
         stages=stages(model),
         datasets=one.datasets,
+        settings=at,
         basis=MappingProxyType({a: part.basis for a, part in parts.items()}),
         assumed=MappingProxyType({a: part.rule for a, part in parts.items() if part.rule}),
     )
@@ -196,6 +239,13 @@ def _method(study: Study, attribute: str, chosen: Chosen) -> Part:
     """Return what a method rests on: the weakest of its stated values, or a rule."""
     if chosen.stands_for:
         return Part(chosen.name, "defaulted", _stand_in(attribute, chosen))
+    if chosen.variant:
+        said: Basis = "inferred" if chosen.variant.basis == "inferred" else "stated"
+        return Part(chosen.name, said, chosen.variant.note if said == "inferred" else "")
+    if chosen.missed:
+        return Part(chosen.name, "defaulted", f"not as the study has it: {chosen.missed.note}")
+    if chosen.unsaid:
+        return Part(chosen.name, "defaulted", f"one kind of {chosen.unsaid}, which is not stated")
     parts = [cell(study, attribute, value) for value in chosen.runs]
     weakest = max(parts, key=lambda part: BASES.index(part.basis))
     return Part(chosen.name, weakest.basis, weakest.rule)

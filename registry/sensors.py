@@ -14,10 +14,11 @@ from typing import Literal
 from registry.studies import METHODS, Default, Facts, Study
 from registry.taxonomy import NO_IMPLEMENTATION_STATED, Architecture
 
-Basis = Literal["stated", "inferred", "recalled", "defaulted"]
+Basis = Literal["stated", "inferred", "implied", "recalled", "defaulted"]
 
-BASES: tuple[Basis, ...] = ("stated", "inferred", "recalled", "defaulted")
-"""What a value of a pipeline rests on, strongest first."""
+BASES: tuple[Basis, ...] = ("stated", "inferred", "implied", "recalled", "defaulted")
+"""What a value of a pipeline rests on, strongest first: the study's own text, a conclusion from it,
+the survey's definition of a method that the study uses, memory, a choice of ours."""
 
 SENSOR = ("detector", "mask")
 
@@ -52,9 +53,9 @@ def cell(study: Study, attribute: str, value: str) -> Part:
 
     A value that is only the nearest to what the study has is not its own.
     """
-    name = study.names.get((attribute, value))
-    if name is not None and name.nearest:
-        return Part(value, "defaulted", f"the nearest in the taxonomy to {name.name}")
+    if study.has_nearest(attribute, value):
+        name = study.names[attribute, value].name
+        return Part(value, "defaulted", f"the nearest in the taxonomy to {name}")
     found = next(c for c in study.values[attribute] if c.value == value)
     if found.basis not in ("inferred", "recalled"):
         return Part(value, "stated")
@@ -98,7 +99,8 @@ def _filled(study: Study, attribute: str, defaults: Iterable[Default]) -> dict[s
         return {value: cell(study, attribute, value) for value in study.of(attribute)}
     for rule in defaults:
         if rule.attribute == attribute and all(v in study.of(a) for a, v in rule.given):
-            return {rule.value: Part(rule.value, "defaulted", f"{rule.id}: {rule.rule}")}
+            basis: Basis = "implied" if rule.kind == "implied" else "defaulted"
+            return {rule.value: Part(rule.value, basis, f"{rule.id}: {rule.rule}")}
     return {}
 
 

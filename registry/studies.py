@@ -6,14 +6,22 @@ that other tables can be handed in.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Protocol
 
-from registry.advice import Advice
-from registry.study import (
+from registry.fidelity.particulars import (
+    CompensatedModel,
+    MethodVariant,
+    PurposeRule,
+    compensated_model,
+    conditions,
+    method_variant,
+    purpose_rule,
+)
+from registry.mapping.advice import Advice
+from registry.mapping.study import (
     METHODS,
     AttributeValue,
     MethodRole,
@@ -21,6 +29,7 @@ from registry.study import (
     Study,
     Verification,
 )
+from registry.mapping.tables import Tables, rows_of
 from registry.taxonomy import (
     NUMERIC_ATTRIBUTES,
     InvalidValueError,
@@ -38,10 +47,8 @@ from survey_data.editions import (
     Choice,
 )
 from survey_data.numerals import decimal
-from survey_data.texts import Rows, load_texts
-
-if TYPE_CHECKING:
-    import pandas as pd
+from survey_data.reported import KIND_OF, statistics
+from survey_data.texts import load_texts
 
 __all__ = [
     "METHODS",
@@ -65,65 +72,13 @@ class FactsError(ValueError):
     """The survey's tables can be read and do not fit each other; the message says where."""
 
 
-class Tables(Protocol):
-    """The tables read here, as `survey_data.load` gives them, or `load_texts`."""
-
-    @property
-    def studies(self) -> pd.DataFrame | Rows:
-        """One row a study."""
-        ...
-
-    @property
-    def attributes(self) -> pd.DataFrame | Rows:
-        """One row a value."""
-        ...
-
-    @property
-    def taxonomy(self) -> pd.DataFrame | Rows:
-        """One row a value of the vocabulary."""
-        ...
-
-    @property
-    def model_families(self) -> pd.DataFrame | Rows:
-        """One row a model: whether it is calibrated on the ground or in operation."""
-        ...
-
-    @property
-    def roles(self) -> pd.DataFrame | Rows:
-        """One row a method of a study that it proposed or only compared."""
-        ...
-
-    @property
-    def architectures(self) -> pd.DataFrame | Rows:
-        """One row a sensor of a study whose detectors and masks do not all go together."""
-        ...
-
-    @property
-    def defaults(self) -> pd.DataFrame | Rows:
-        """One row a rule of what stands in an empty cell."""
-        ...
-
-    @property
-    def advice(self) -> pd.DataFrame | Rows:
-        """One row a sensor or calibration that the survey's text advises."""
-        ...
-
-    @property
-    def feature_assessment(self) -> pd.DataFrame | Rows:
-        """One row a mark of an extractor for a property."""
-        ...
-
-    @property
-    def aliases(self) -> pd.DataFrame | Rows:
-        """One row another name of a value."""
-        ...
-
-
 @dataclass(frozen=True)
 class Default:
     """What stands in an empty cell of a study that meets every condition, and why.
 
-    ``given`` are (attribute, value) that the study must have.
+    ``given`` are (attribute, value) that the study must have. ``kind`` is implied where the value
+    follows from the survey's definition of a method that the study uses, chosen where others would
+    fit as well.
     """
 
     id: str
@@ -132,6 +87,7 @@ class Default:
     value: str
     section: str
     rule: str
+    kind: str = "implied"
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,6 +100,26 @@ class Facts:
     advice: tuple[Advice, ...] = ()
     properties: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
     """Property of the survey's assessment -> value of an extractor -> its mark, 0 to 2."""
+    purposes: tuple[PurposeRule, ...] = ()
+    compensated: tuple[CompensatedModel, ...] = ()
+    variants: tuple[MethodVariant, ...] = ()
+
+    def variant(self, study: str, model: str) -> MethodVariant | None:
+        """Return what is said of how a study carries out one of its models."""
+        return next((v for v in self.variants if (v.study, v.model) == (study, model)), None)
+
+    def within(self, study: str, compensation: str) -> tuple[str, ...]:
+        """Return the models of a study that carry out one of its compensations themselves."""
+        return self._compensated(study, compensation, "within")
+
+    def behind(self, study: str, compensation: str) -> tuple[str, ...]:
+        """Return the models that one of a study's compensations corrects the features of."""
+        return self._compensated(study, compensation, "ahead")
+
+    def _compensated(self, study: str, compensation: str, relation: str) -> tuple[str, ...]:
+        at = (study, compensation, relation)
+        rows = (c for c in self.compensated if (c.study, c.compensation, c.relation) == at)
+        return tuple(c.model for c in rows)
 
     @cached_property
     def keys(self) -> tuple[str, ...]:
@@ -160,6 +136,7 @@ class Facts:
 _TABLES = (
     *("studies", "attributes", "taxonomy", "model_families", "roles", "architectures"),
     *("defaults", "advice", "feature_assessment", "aliases"),
+    *("purposes", "compensated_models", "method_variants"),
     *EXTENSION_TABLES,
 )
 
@@ -261,6 +238,8 @@ def facts_from(tables: Tables) -> Facts:
             continue
         if attribute in NUMERIC_ATTRIBUTES:
             _require_number(key, attribute, value)
+        elif attribute in KIND_OF.values():
+            _require_kind(key, attribute, value)
         else:
             taxonomy.require(attribute, value, parameter=f"{key} {attribute}")
         cell = AttributeValue(value, row["basis"], row["source"], row["note"])
@@ -310,6 +289,9 @@ def facts_from(tables: Tables) -> Facts:
         tuple(map(_default, rows_of(tables.defaults))),
         tuple(map(_advice, rows_of(tables.advice))),
         _properties(tables, taxonomy),
+        tuple(map(purpose_rule, rows_of(tables.purposes))),
+        tuple(map(compensated_model, rows_of(tables.compensated_models))),
+        tuple(map(method_variant, rows_of(tables.method_variants))),
     )
 
 
@@ -339,6 +321,13 @@ def _require_number(key: str, attribute: str, value: str) -> None:
         raise InvalidValueError(f"{key} {attribute}", value, "a number in degrees") from error
 
 
+def _require_kind(key: str, attribute: str, value: str) -> None:
+    """Raise InvalidValueError for a kind of accuracy or precision that no rule is known for."""
+    if value not in statistics():
+        expected = f"one of {', '.join(statistics())}"
+        raise InvalidValueError(f"{key} {attribute}", value, expected)
+
+
 def _properties(tables: Tables, taxonomy: Taxonomy) -> Mapping[str, Mapping[str, int]]:
     """Return the marks by property; of several methods under one value the best counts."""
     values = {value: value for value in taxonomy.values("extractor")}
@@ -359,18 +348,7 @@ def _advice(row: Mapping[str, str]) -> Advice:
 
 
 def _default(row: Mapping[str, str]) -> Default:
-    conditions = tuple(condition.partition("=")[::2] for condition in row["given"].split("&"))
     return Default(
-        *(row["id"], row["attribute"], conditions, row["value"], row["survey_section"], row["rule"])
+        *(row["id"], row["attribute"], conditions(row["given"]), row["value"]),
+        *(row["survey_section"], row["rule"], row["kind"]),
     )
-
-
-def rows_of(frame: pd.DataFrame | Rows) -> Iterable[Mapping[str, str]]:
-    """Rows as text; an empty cell is ""."""
-    if isinstance(frame, Sequence):
-        yield from frame
-        return
-    filled = frame.astype(object).where(frame.notna(), "")
-    columns = [str(column) for column in filled.columns]
-    for row in filled.itertuples(index=False, name=None):
-        yield {column: str(cell) for column, cell in zip(columns, row, strict=True)}

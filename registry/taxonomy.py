@@ -25,8 +25,8 @@ caller hands it in: `benchmark.plan` knows it."""
 ATTRIBUTES = ("task", "error", "accuracy", "detector", "mask", "model", "extractor")
 """The categorical attributes of the survey's mapping."""
 
-NUMERIC_ATTRIBUTES = ("accuracy_deg", "fov_deg")
-"""Numbers that studies state: accuracy and full field of view, in degrees."""
+NUMERIC_ATTRIBUTES = ("accuracy_deg", "precision_deg", "fov_deg")
+"""Numbers that studies state: accuracy, precision and full field of view, in degrees."""
 
 DERIVED_LEVELS: Mapping[str, str] = MappingProxyType(
     {"model_category": "model", "calibration": "model", "extractor_family": "extractor"}

@@ -30,8 +30,6 @@ class SurveyTables:
 
     Strings are str, whole numbers Int64, numbers float64, truth values bool; an empty cell is
     missing (NaN/NA). ``attributes.value`` is text for every attribute, numeric ones included.
-    ``studies`` and what belongs to them are the survey's alone, which its counts and findings are
-    of; later studies stand in the tables of the extension, and `edition` gives both.
     Columns and their meaning: ``datapackage.json``.
     """
 
@@ -45,17 +43,22 @@ class SurveyTables:
     feature_assessment: pd.DataFrame
     approaches: pd.DataFrame
     findings: pd.DataFrame
+    finding_clauses: pd.DataFrame
     claims: pd.DataFrame
     references: pd.DataFrame
     counts: pd.DataFrame
     hardware: pd.DataFrame
     defaults: pd.DataFrame
+    purposes: pd.DataFrame
+    compensated_models: pd.DataFrame
+    method_variants: pd.DataFrame
     architectures: pd.DataFrame
     roles: pd.DataFrame
     advice: pd.DataFrame
     protocol: pd.DataFrame
     model_families: pd.DataFrame
     venues: pd.DataFrame
+    statistics: pd.DataFrame
     extension_studies: pd.DataFrame
     extension_attributes: pd.DataFrame
     extension_roles: pd.DataFrame
@@ -117,9 +120,15 @@ def load(directory: str | Path | None = None) -> SurveyTables:
     return SurveyTables(**frames)
 
 
-#: Tables that an import may empty, as what stands in them rests on values it may replace; and
-#: those of what came after the survey.
-MAY_BE_EMPTY = frozenset({"roles", "architectures", *EXTENSION_TABLES})
+#: Tables that rest on values an import may replace, with the columns that name these values.
+RESTING = {
+    "roles": ("value",),
+    "architectures": ("detector", "mask"),
+    "compensated_models": ("compensation", "model"),
+    "method_variants": ("model",),
+}
+#: Tables that an import may so empty, and those of what came after the survey.
+MAY_BE_EMPTY = frozenset({*RESTING, *EXTENSION_TABLES})
 
 
 def _without_use(table: str, records: Records) -> list[Problem]:

@@ -116,10 +116,11 @@ def _told(foreign: Mapping[str, tuple[str, str]]) -> list[MeasuredTable]:
         _table(
             "resolution",
             "Resolution of the studies",
-            "What runs for each study: a row a pipeline and data set, what each part rests on, and "
-            "by what rule it stands there where the study does not state it.",
+            "What runs for each study, with its grade: a row a pipeline and a data set under a "
+            "condition that stand for it, what each part rests on, and by what rule it stands "
+            "there where the study does not state it.",
             told.resolution(),
-            primary=("study", *_PLACE, "dataset", "extractor", "model"),
+            primary=("study", *_PLACE, "dataset", "condition", "extractor", "model"),
             foreign={**foreign, "study": ("all_studies", "study")},
         ),
         _table(
@@ -140,10 +141,10 @@ def _told(foreign: Mapping[str, tuple[str, str]]) -> list[MeasuredTable]:
         _table(
             "verdicts",
             "Verdicts of the findings",
-            "Each checkable statement of the survey, judged strictly by the tables, with the "
-            "counts and the evidence that would turn it.",
+            "Each clause of the survey's checkable statements, judged strictly by the tables, with "
+            "the counts and the evidence that would turn it, and the verdict of the whole.",
             told.verdicts(),
-            primary=("finding",),
+            primary=("finding", "clause"),
             foreign={"finding": ("findings", "id")},
         ),
         _table(

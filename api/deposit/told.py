@@ -7,35 +7,37 @@ from typing import Any
 
 import survey_data
 from benchmark.plan.combinations import scorable
-from registry.resolution import ESSENTIAL, resolve, resolve_all
+from benchmark.plan.shown import data_sets
+from registry.fidelity.runnable import ESSENTIAL
+from registry.resolution import resolve_all, resolve_later
 from registry.studies import facts
 from survey_data.editions import editions
 from survey_data.findings.publications import publications
 
 
 def resolution() -> list[Mapping[str, Any]]:
-    """Return a row for each pipeline of each study on each data set that it is planned on.
+    """Return a row for each pipeline of each study in each setting that stands for the study.
 
     Of both editions, each study's own beside it.
     """
-    plan, known = scorable(), facts()
-    every = facts("all").studies
-    resolved = resolve_all(plan, facts=known)
-    later = (study for key, study in every.items() if key not in resolved)
-    resolved |= {study.key: resolve(study, plan, facts=known) for study in later}
+    plan, shown, known, every = scorable(), data_sets(), facts(), facts("all")
+    resolved = resolve_all(plan, data_sets=shown, facts=known)
+    resolved |= resolve_later(plan, known, every, data_sets=shown)
     return [
         {
             "study": key,
-            "edition": every[key].edition,
+            "edition": every.studies[key].edition,
+            "grade": found.fidelity.grade,
             "state": found.state,
             **{name: getattr(pipeline, name) for name in ESSENTIAL},
-            "dataset": dataset,
+            "dataset": setting.dataset,
+            "condition": setting.condition,
             **{f"{name}_basis": pipeline.basis[name] for name in ESSENTIAL},
             "assumed": [f"{name}: {rule}" for name, rule in pipeline.assumed.items()],
         }
         for key, found in resolved.items()
         for pipeline in found.pipelines
-        for dataset in pipeline.datasets
+        for setting in pipeline.settings
     ]
 
 
@@ -61,18 +63,21 @@ def edition_rows() -> list[Mapping[str, Any]]:
 
 
 def verdicts() -> list[Mapping[str, Any]]:
-    """Return a row for each finding of the survey, with its counts and what would settle it."""
+    """Return a row for each clause of the survey's findings, with its counts."""
     return [
         {
             "finding": found.id,
-            "verdict": found.verdict,
-            "matching": found.matching,
-            "counted": found.counted,
-            "named": [f"{value} {count}" for value, count in found.named],
-            "ranking": [f"{value} {count}" for value, count in found.ranking],
-            "settled_by": found.settled_by,
+            "clause": clause.clause,
+            "finding_verdict": found.verdict,
+            "verdict": clause.verdict,
+            "matching": clause.matching,
+            "counted": clause.counted,
+            "named": [f"{value} {count}" for value, count in clause.named],
+            "ranking": [f"{value} {count}" for value, count in clause.ranking],
+            "settled_by": clause.settled_by,
         }
         for found in survey_data.fidelity(survey_data.load()).findings
+        for clause in found.clauses
     ]
 
 

@@ -17,7 +17,9 @@ from benchmark.leaderboard.architectures import architectures, first_boards
 from benchmark.leaderboard.holding import table as holding
 from benchmark.leaderboard.holding.sentences import NEAR, PARTS, verdict
 from benchmark.metrics.score import is_available
+from registry.fidelity.grading import tally_text
 from registry.recommendation import recommend
+from registry.resolution import Resolution
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -75,19 +77,31 @@ def findings() -> str:
 
 
 def tallies() -> str:
-    """Count the claims by verdict, and the studies by how far they run."""
+    """Count the claims by verdict, and the studies by how near to them what runs is."""
     entries = _ledger()
     counted = ", ".join(f"{number} {name}" for name, number in tally(entries).items() if number)
     resolved = knowledge().resolutions
-    states = Counter(resolution.state for resolution in resolved.values())
-    running = sum(any(score["status"] == "ok" for score in _study_scores(key)) for key in resolved)
+    grades = [resolution.fidelity.grade for resolution in resolved.values()]
+    measured = sum(_is_measured(resolution) for resolution in resolved.values())
     return (
         f"**Claims tried**: of the {len(entries)} statements that the survey's text makes about "
         f"algorithms, {counted} ([docs/claims.md](docs/claims.md)).\n\n"
-        f"**Studies that run**: {running} of {len(resolved)} have a scored pipeline on the data of "
-        f"their sensor, {states['complete']} of them with every value as the survey maps it; what "
-        "is assumed for the others stands beside every one "
-        "([docs/survey.md](docs/survey.md), `sunatlas run KEY`)."
+        f"**Studies run**: {tally_text(grades)}, of {len(resolved)}. A run is faithful where "
+        "its sensor, condition, methods and compensations are the study's own, stated or inferred "
+        "with a reason; close where one of these departs from the study, a stand-in where more do. "
+        f"{measured} are measured where they stand for the study. What departs, and what would "
+        "settle it: [docs/survey.md](docs/survey.md), `sunatlas studies KEY`."
+    )
+
+
+def _is_measured(resolution: Resolution) -> bool:
+    """Say whether one of the pipelines that rest on most has a score in its first setting."""
+    scored = knowledge().measurements.score_of
+    return any(
+        scored.get((at.dataset, at.condition, pipeline.extractor, pipeline.model), {}).get("status")
+        == "ok"
+        for pipeline in resolution.nearest
+        for at in pipeline.settings[:1]
     )
 
 
@@ -167,15 +181,6 @@ def _distance() -> str:
     )
 
 
-def _study_scores(key: str) -> list[dict[str, Any]]:
-    nominal = knowledge().measurements.nominal
-    return [
-        dict(nominal.get((dataset, pipeline.extractor, pipeline.model), {"status": None}))
-        for pipeline in knowledge().resolutions[key].pipelines
-        for dataset in pipeline.datasets
-    ]
-
-
 def _methods() -> str:
     """Compare each study's best pipeline with the best on the same data set, by own error."""
     nominal = {
@@ -189,7 +194,7 @@ def _methods() -> str:
         rows = (
             nominal.get((dataset, pipeline.extractor, pipeline.model))
             for pipeline in knowledge().resolutions[key].pipelines
-            for dataset in pipeline.datasets
+            for dataset in {setting.dataset for setting in pipeline.settings}
         )
         ratios = [row["own_deg"] / least[row["dataset"]] for row in rows if row is not None]
         if ratios:

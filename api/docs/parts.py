@@ -11,7 +11,10 @@ from api.docs.examples import command_line, http_examples
 from api.docs.knowledge import knowledge
 from api.docs.markdown import table as _table
 from benchmark.datasets import coverage as simulated
-from registry.resolution import ESSENTIAL, Resolution
+from registry.fidelity.grading import TALLIED, tally_text
+from registry.fidelity.purposes import PURPOSES
+from registry.fidelity.runnable import ESSENTIAL
+from registry.resolution import Resolution
 from registry.sensors import BASES
 
 #: Values of a finding whose counts are printed.
@@ -104,19 +107,26 @@ def findings() -> str:
     counted = ", ".join(f"{count} {verdict}" for verdict, count in report.verdicts.items())
     rows = [
         (
-            finding.id,
-            finding.verdict,
-            finding.statement,
-            f"{finding.given or 'all studies'} → {finding.expects} ({finding.kind})",
-            _ranked(finding.ranking),
-            finding.settled_by,
+            finding.id if clause.clause == 1 else "",
+            finding.verdict if clause.clause == 1 else "",
+            finding.statement if clause.clause == 1 else "",
+            f"{clause.given or 'all studies'} → {clause.expects} ({clause.kind})",
+            clause.verdict,
+            _ranked(clause.ranking),
+            clause.settled_by,
         )
         for finding in report.findings
+        for clause in finding.clauses
     ]
+    untested = [f"{f.id}, {f.not_tested}" for f in report.findings if f.not_tested]
     return (
         f"{report.studies} studies; the survey states {report.stated}. {report.explanation}\n\n"
-        f"{len(report.findings)} findings: {counted}.\n\n"
-        + _table(("id", "verdict", "finding", "expects", "counts", "what settles it"), rows)
+        f"{len(report.findings)} findings: {counted}. A finding of several clauses has a row for "
+        "each.\n\n"
+        + _table(
+            ("id", "verdict", "finding", "expects", "clause", "counts", "what settles it"), rows
+        )
+        + f"\n\nNot tested: {'; '.join(untested)}."
     )
 
 
@@ -124,15 +134,21 @@ def resolutions() -> str:
     """Say how the studies run: on what evidence, by what rules, and what does not run as it is."""
     known = knowledge()
     resolved = known.resolutions
-    states = Counter(resolution.state for resolution in resolved.values())
-    cells = sum(len(p.datasets) for found in resolved.values() for p in found.pipelines)
+    cells = sum(len(p.settings) for found in resolved.values() for p in found.pipelines)
     counted = (
-        f"Of {len(resolved)} studies {states['complete']} run with every value of their mapping, "
-        f"{states['partial']} in part, {states['none']} not at all. They have {cells} cells (a "
-        "pipeline on a data set)."
+        f"Runs of {len(resolved)} studies: "
+        f"{tally_text(found.fidelity.grade for found in resolved.values())}. They are shown on "
+        f"{cells} cells (a pipeline on a data set under a condition)."
     )
     lines = [
         counted,
+        RULES,
+        f"The {WEAKEST} weakest, by the number of their departures:",
+        _table(("study", "grade", "departures", "sentence"), _weakest(resolved)),
+        "What keeps studies from being faithful, and what would settle it:",
+        _table(("study", "part", "departure", "settled by"), _departures(resolved)),
+        "What studies are run for, by the rules of `survey_data/purposes.csv`:",
+        _table(("purpose", "rule", "studies"), _by_purpose(resolved)),
         "What the parts of a pipeline rest on, by studies (of several, that of most evidence):",
         _table(("part", *BASES), _by_basis(resolved)),
         "By what rules empty cells are filled, and methods stand in for others:",
@@ -155,6 +171,52 @@ def resolutions() -> str:
     return "\n\n".join(lines)
 
 
+#: Studies of the table of the weakest.
+WEAKEST = 10
+RULES = (
+    "A run has five parts: sensor, condition, extractor, model and compensations. A part departs "
+    "from the study where the sensor is recalled, chosen by a rule or a relative's, or a stated "
+    "sensor is missing; where no data set of the sensor shows what the study is run for; where a "
+    "stated extractor, model or compensation runs in none of its pipelines, or only as another "
+    "variant; where the study states none and what stands there was chosen here; where the survey "
+    "does not state the kind of a compensation (ECM) and one was chosen; and where a compensation "
+    "runs ahead of a model that neither the study nor the survey's equation names. What is "
+    "inferred with a reason, or implied by the survey's definition of a method, does not depart. "
+    "No departure is faithful, one close, more a stand-in."
+)
+
+
+def _ranked_departures(resolved: Mapping[str, Resolution]) -> list[tuple[str, Resolution]]:
+    """Return the studies that are not faithful, those with most departures first, then by key."""
+    weak = [(key, found) for key, found in resolved.items() if found.fidelity.grade != "faithful"]
+    return sorted(
+        weak, key=lambda item: (bool(item[1].pipelines), -len(item[1].fidelity.departures), item[0])
+    )
+
+
+def _weakest(resolved: Mapping[str, Resolution]) -> Iterable[Sequence[str]]:
+    for key, found in _ranked_departures(resolved)[:WEAKEST]:
+        graded = found.fidelity
+        yield key, TALLIED[graded.grade], str(len(graded.departures)), graded.sentence
+
+
+def _departures(resolved: Mapping[str, Resolution]) -> Iterable[Sequence[str]]:
+    """List every departure, those of the weakest first."""
+    for key, found in _ranked_departures(resolved):
+        for departure in found.fidelity.departures:
+            yield key, departure.part, departure.text, departure.settled_by
+
+
+def _by_purpose(resolved: Mapping[str, Resolution]) -> Iterable[Sequence[str]]:
+    """List the purposes with the rule and the studies of each."""
+    studies: dict[tuple[str, str], list[str]] = {}
+    for key, found in resolved.items():
+        for purpose, rule in found.fidelity.purposes.items():
+            studies.setdefault((PURPOSES[purpose], rule), []).append(key)
+    for (shown, rule), keys in sorted(studies.items(), key=lambda item: item[0][1]):
+        yield shown, rule, ", ".join(keys)
+
+
 def _by_basis(resolved: Mapping[str, Resolution]) -> Iterable[Sequence[str]]:
     """Count the studies by what each part of their best pipeline rests on."""
     best = [found.best for found in resolved.values() if found.best is not None]
@@ -171,7 +233,7 @@ def _by_rule(resolved: Mapping[str, Resolution]) -> Iterable[Sequence[str]]:
     for key, resolution in resolved.items():
         for pipeline in resolution.pipelines:
             for part in ESSENTIAL:
-                if pipeline.basis[part] == "defaulted":
+                if pipeline.basis[part] in ("implied", "defaulted"):
                     found.setdefault((part, pipeline.assumed[part]), {})[key] = None
     order = {part: at for at, part in enumerate(ESSENTIAL)}
     for (part, rule), keys in sorted(found.items(), key=lambda item: (order[item[0][0]], item[0])):

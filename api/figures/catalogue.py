@@ -13,6 +13,8 @@ from api.figures.flow_figures import CHAINS, flow_figure
 from api.figures.matrix import matrix_figure
 from api.figures.publications import publications_figure
 from api.figures.sunburst import sunburst_figure
+from registry.catalogue import catalogue
+from registry.evidence import Evidence
 from registry.flows import Where
 from registry.studies import Facts
 from registry.taxonomy import unknown_name
@@ -78,8 +80,14 @@ def evidence_map(
     rows: str = matrix.ROWS,
     columns: str = matrix.COLUMNS_OF,
     page: str | None = None,
+    *,
+    evidence: Evidence | None = None,
 ) -> Figure:
-    """Return the matrix of studies by two attributes or levels; raises as `matrix_figure`."""
+    """Return the matrix of studies by two attributes or levels; raises as `matrix_figure`.
+
+    Without `evidence` nothing counts as measured.
+    """
     wanted = where or {}
     addresses = Addresses(facts, page or f"/figures/{matrix.NAME}", wanted)
-    return matrix_figure(facts, addresses, wanted, rows, columns)
+    known = Evidence(catalogue(), (), {}) if evidence is None else evidence
+    return matrix_figure(facts, addresses, wanted, known, rows=rows, columns=columns)

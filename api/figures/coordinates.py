@@ -13,14 +13,15 @@ from api.figures.coordinates_drawing import Axis, Polyline, Tick, draw_coordinat
 from api.figures.figure import Entry, Figure
 from registry.flows import LeftOut, Where, allowed_values, flows
 from registry.studies import Facts, Study
+from survey_data.reported import QUANTITIES, UNSPECIFIED, reported
 
 NAME = "coordinates"
 TITLE = "Performance in parallel coordinates"
 CAPTION = (
     "Each line is a sensor of a study: when, of what, how far it sees and how accurate it is "
-    "said to be."
+    "said to be, as an RMS error. Dashed: the accuracy is of unspecified kind, drawn as printed."
 )
-NUMBERS = ("fov_deg", "accuracy_deg")
+NUMBERS = ("fov_deg", "accuracy_rms_deg")
 _COLOURS = {None: "c0", "CSS": "c4", "FSS": "c2", "VFSS": "c3", "UFSS": "c1"}
 """Accuracy class -> colour."""
 
@@ -37,6 +38,7 @@ def coordinates_figure(facts: Facts, addresses: Addresses, where: Where) -> Figu
             colour=_COLOURS[row["accuracy"]],
             title=_title(row, facts),
             href=addresses.of([row["study"]], {}, at),
+            dashed=row["accuracy_kind"] == UNSPECIFIED,
         )
         for at, row in enumerate(rows)
     ]
@@ -48,9 +50,9 @@ def coordinates_figure(facts: Facts, addresses: Addresses, where: Where) -> Figu
         for name in sorted(classes, key=lambda name: (name is None, list(_COLOURS).index(name)))
     ]
     left_out = tuple(
-        LeftOut(name, tuple(study.key for study in studies if study.number(name) is None))
+        LeftOut(name, tuple(study.key for study in studies if _number(study, name) is None))
         for name in NUMBERS
-        if any(study.number(name) is None for study in studies)
+        if any(_number(study, name) is None for study in studies)
     )
     return Figure(
         name=NAME,
@@ -63,6 +65,27 @@ def coordinates_figure(facts: Facts, addresses: Addresses, where: Where) -> Figu
         rows=tuple(rows),
         draw=lambda width: draw_coordinates(axes, lines, entries, width),
     )
+
+
+def _number(study: Study, name: str) -> float | None:
+    """Return what a study states as an axis shows it: an accuracy as the RMS of its kind."""
+    if name == "fov_deg":
+        return study.number(name)
+    accuracy = study.reported("accuracy")
+    return None if accuracy is None else accuracy.rms_deg
+
+
+def _reported(study: Study) -> dict[str, Any]:
+    """Return accuracy and precision as printed, each with its kind; None is unknown."""
+    found = {quantity: study.reported(quantity) for quantity in QUANTITIES}
+    return {
+        name: value
+        for quantity, one in found.items()
+        for name, value in (
+            (f"{quantity}_deg", None if one is None else one.value_deg),
+            (f"{quantity}_kind", None if one is None else one.statistic.kind),
+        )
+    }
 
 
 def _sensors(study: Study, facts: Facts, where: Where) -> list[dict[str, Any]]:
@@ -82,7 +105,8 @@ def _sensors(study: Study, facts: Facts, where: Where) -> list[dict[str, Any]]:
             "year": study.year,
             "detector": detector,
             "mask": mask,
-            **{name: study.number(name) for name in NUMBERS},
+            **{name: _number(study, name) for name in NUMBERS},
+            **_reported(study),
             "accuracy": next(iter(study.of("accuracy")), None),
             "studies": [study.key],
         }
@@ -96,7 +120,8 @@ def _axes(rows: Sequence[dict[str, Any]], facts: Facts) -> tuple[Axis, ...]:
     first, last = min(years, default=2000), max(years, default=2001)
     marked = sorted({first, last, *(y for y in range(first, last) if y % 5 == 0)})
     spaced = [y for y in marked if y in (first, last) or (y - first > 1 and last - y > 1)]
-    worst, best = _decades([row["accuracy_deg"] for row in rows if row["accuracy_deg"] is not None])
+    known = [row["accuracy_rms_deg"] for row in rows if row["accuracy_rms_deg"] is not None]
+    worst, best = _decades(known)
     return (
         Axis("year", "Year", ticks=tuple(Tick(year, str(year)) for year in spaced)),
         _named(rows, "detector", facts),
@@ -107,8 +132,8 @@ def _axes(rows: Sequence[dict[str, Any]], facts: Facts) -> tuple[Axis, ...]:
             ticks=tuple(Tick(n, f"{n}°") for n in (0, 90, 180, 270, 360)),
         ),
         Axis(
-            "accuracy_deg",
-            "Accuracy",
+            "accuracy_rms_deg",
+            "RMS error",
             ticks=tuple(Tick(10.0**n, f"{10.0**n:g}°") for n in range(worst, best - 1, -1)),
             logarithmic=True,
         ),
@@ -134,27 +159,39 @@ def _named(rows: Sequence[dict[str, Any]], level: str, facts: Facts) -> Axis:
 def _title(row: dict[str, Any], facts: Facts) -> str:
     parts = [str(row["year"])] if row["year"] else []
     parts += [wording.shown(level, row[level]) for level in ("detector", "mask") if row[level]]
-    for name, said in (("fov_deg", "field of view"), ("accuracy_deg", "accuracy")):
-        known = row[name] is not None
-        parts.append(f"{said} {row[name]:g}°" if known else f"{said} not known")
-    if row["accuracy"] and row["accuracy_deg"] is None:
-        parts[-1] = f"accuracy class {wording.spelt(facts.taxonomy, 'accuracy', row['accuracy'])}"
+    fov = row["fov_deg"]
+    parts.append("field of view not known" if fov is None else f"field of view {fov:g}°")
+    figures = [
+        reported(quantity, row[f"{quantity}_deg"], row[f"{quantity}_kind"])
+        for quantity in QUANTITIES
+        if row[f"{quantity}_deg"] is not None
+    ]
+    parts += [f"{figure.label} {figure.value_deg:g}°" for figure in figures]
+    if row["accuracy_deg"] is None and row["accuracy"]:
+        name = wording.spelt(facts.taxonomy, "accuracy", row["accuracy"])
+        parts.append(f"accuracy class {name}")
+    elif not figures:
+        parts.append("accuracy not known")
     return f"{row['study']}: {', '.join(parts)}"
 
 
 def _text(studies: Sequence[Study], rows: Sequence[dict[str, Any]]) -> tuple[str, ...]:
-    known = {name: [s for s in studies if s.number(name) is not None] for name in NUMBERS}
-    both = sum(study in known["fov_deg"] for study in known["accuracy_deg"])
+    known = {name: [s for s in studies if _number(s, name) is not None] for name in NUMBERS}
+    both = sum(study in known["fov_deg"] for study in known["accuracy_rms_deg"])
     sensors = f"{wording.plural(len(rows), 'sensor', 'sensors')} of {wording.studies(len(studies))}"
-    accuracies, fields = (len(known[name]) for name in ("accuracy_deg", "fov_deg"))
+    accuracies, fields = (len(known[name]) for name in reversed(NUMBERS))
     numbers = f"the accuracy of {accuracies}, the field of view of {fields}, both of {both}"
     said = [f"{sensors}; known as numbers are {numbers} studies."]
-    for name, words, best in (
-        ("accuracy_deg", "Finest accuracy", min),
-        ("fov_deg", "Widest field of view", max),
-    ):
-        if known[name]:
-            first = best(known[name], key=lambda study: study.number(name) or 0.0)
-            said.append(f"{words}: {first.number(name):g}°, {first.key}.")
+    told = [(study, one) for study in studies if (one := study.reported("accuracy")) is not None]
+    stated = [(s, one) for s, one in told if one.statistic.kind != UNSPECIFIED]
+    if stated:
+        study, one = min(stated, key=lambda pair: pair[1].rms_deg)
+        said.append(
+            f"Finest accuracy whose kind is stated: {one.rms_deg:.3g}° RMS ({one.label} "
+            f"{one.value_deg:g}°), {study.key}; {len(told) - len(stated)} have none stated."
+        )
+    if known["fov_deg"]:
+        widest = max(known["fov_deg"], key=lambda study: study.number("fov_deg") or 0.0)
+        said.append(f"Widest field of view: {widest.number('fov_deg'):g}°, {widest.key}.")
     said.append("What is not known stands at the foot of its axis.")
     return tuple(said)

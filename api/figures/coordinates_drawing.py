@@ -58,12 +58,13 @@ class Axis:
 
 @dataclass(frozen=True)
 class Polyline:
-    """A line: its value on each axis."""
+    """A line: its value on each axis; dashed where one of them is less certain."""
 
     values: tuple[Value, ...]
     colour: str
     title: str
     href: str
+    dashed: bool = False
 
 
 def draw_coordinates(
@@ -189,4 +190,9 @@ def _order(lines: Sequence[Polyline]) -> list[tuple[int, Polyline]]:
 
 def _line(line: Polyline, points: Sequence[tuple[float, float]]) -> str:
     d = "M" + "L".join(f"{number(x)} {number(y)}" for x, y in points)
-    return svg.mark(line.title, line.href, svg.path(d, f"line {line.colour}"), reached=False)
+    return svg.mark(
+        line.title,
+        line.href,
+        svg.path(d, f"line {line.colour}{' dashed' if line.dashed else ''}"),
+        reached=False,
+    )

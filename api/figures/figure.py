@@ -39,6 +39,7 @@ class Figure:
     rows : of the table; `studies` of a row are the keys behind its mark
     draw : width in px -> drawing
     options : what was asked besides filters
+    counts : of the matrix: state -> number of pairs
     """
 
     name: str
@@ -51,6 +52,7 @@ class Figure:
     rows: tuple[Row, ...]
     draw: Callable[[float], Drawing]
     options: Mapping[str, str] = field(default_factory=dict)
+    counts: Mapping[str, int] = field(default_factory=dict)
 
     @cached_property
     def drawings(self) -> Mapping[str, Drawing]:
@@ -71,6 +73,7 @@ class Figure:
             "text": list(self.text),
             "studies": self.studies,
             "options": dict(self.options),
+            "counts": dict(self.counts),
             "left_out": [left.to_dict() for left in self.left_out],
             "columns": list(self.columns),
             "rows": [dict(row) for row in self.rows],

@@ -111,14 +111,19 @@ def _categories(rows: tuple[Row, ...]) -> list[dict[str, Any]]:
 def _heatmap(rows: tuple[Row, ...]) -> list[dict[str, Any]]:
     across = list(dict.fromkeys(row["column"] for row in rows))
     down = list(dict.fromkeys(row["row"] for row in rows))
-    counts = {(row["row"], row["column"]): row["count"] for row in rows}
+    states = {(row["row"], row["column"]): row["state"] for row in rows}
+    counts = {
+        (row["row"], row["column"]): None if row["state"] == "impossible" else row["count"]
+        for row in rows
+    }
     return [
         {
             "type": "heatmap",
             "x": across,
             "y": down,
-            # a pair that cannot be has no cell, a pair that no study has a zero
-            "z": [[counts.get((row, column)) for column in across] for row in down],
+            # an impossible pair has no cell, another that no study has a zero
+            "z": [[counts[row, column] for column in across] for row in down],
+            "text": [[states[row, column] for column in across] for row in down],
             "hoverongaps": False,
         }
     ]

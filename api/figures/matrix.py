@@ -1,4 +1,8 @@
-"""The evidence map: studies by two attributes, what nobody studied as visible as what many did."""
+"""The evidence map: pairs of values of two attributes, as studied, measured, or why neither.
+
+Each pair is in one of the five states of `registry.evidence`; what is not measured leads to what
+could be.
+"""
 
 from __future__ import annotations
 
@@ -8,9 +12,12 @@ from typing import Any
 from api import columns as table_columns
 from api.figures import wording
 from api.figures.addresses import Addresses
-from api.figures.figure import Figure, in_words
+from api.figures.figure import Entry, Figure, in_words
 from api.figures.matrix_drawing import Cell, Line, draw_matrix
+from api.pages.addresses import architecture_page, dataset_page
+from registry.evidence import Evidence, PairEvidence, Run, counted
 from registry.flows import LeftOut, Node, Where, allowed_values, flows
+from registry.possibility import RULE, Value
 from registry.studies import Facts
 from registry.taxonomy import Taxonomy, attribute_of, unknown_name
 
@@ -24,8 +31,10 @@ def matrix_figure(
     facts: Facts,
     addresses: Addresses,
     where: Where,
-    rows: str = ROWS,
-    columns: str = COLUMNS_OF,
+    evidence: Evidence,
+    *,
+    rows: str,
+    columns: str,
 ) -> Figure:
     """Return the matrix of the studies that meet `where`, by two attributes or levels.
 
@@ -51,19 +60,28 @@ def matrix_figure(
             for b in alike
         }
     left_out = tuple(left for left in found.left_out if left.level in (rows, columns))
+    blank = {left.level: set(left.studies) for left in left_out}
+
+    def might(value: Value, level: str) -> list[str]:
+        """Return the studies with a value that say nothing at the other level."""
+        node = nodes.get(":".join(value))
+        return [] if node is None else [key for key in node.studies if key in blank.get(level, ())]
+
     values = {level: _values(taxonomy, level, where) for level in (rows, columns)}
     table: list[dict[str, Any]] = []
     cells: dict[tuple[str, str], Cell] = {}
     for row in values[rows]:
         for column in values[columns]:
-            if not possible(taxonomy, (rows, row), (columns, column)):
-                continue
             keys = behind.get((f"{rows}:{row}", f"{columns}:{column}"), ())
-            said = f"{wording.shown(rows, row)} × {wording.shown(columns, column)}"
+            pair = (rows, row), (columns, column)
+            unknown = sorted({*might(pair[0], columns), *might(pair[1], rows)})
+            known = evidence.of(*pair, keys, unknown)
+            told = _told(pair, known)
             given = {rows: row, columns: column}
-            href = addresses.of(keys, given, len(table)) if keys else None
-            title = f"{said}: {wording.studies(len(keys)) if keys else 'no study'}"
-            cells[row, column] = Cell(len(keys), title, href)
+            href = addresses.of(keys, given, len(table)) if keys else told["leads_to"] or None
+            cells[row, column] = Cell(
+                len(keys), _title(pair, len(keys), known), href, known.state, known.pipelines > 0
+            )
             table.append(
                 {
                     "row_level": rows,
@@ -72,8 +90,10 @@ def matrix_figure(
                     "column_level": columns,
                     "column": column,
                     "column_name": wording.named(taxonomy, columns, column),
+                    "state": known.state,
                     "count": len(keys),
                     "studies": list(keys),
+                    **told,
                 }
             )
     lines = {
@@ -84,26 +104,79 @@ def matrix_figure(
     return Figure(
         name=NAME,
         title=f"{TITLE}: {heads[0].lower()} by {heads[1].lower()}",
-        caption="How many studies have both values; a dashed cell is a pair that no study has.",
+        caption="How many studies have both values, and which pairs are measured here; of the "
+        "others, which are impossible, unknown or unstudied.",
         text=_text(table, lines[rows], lines[columns], heads, left_out),
         studies=len(found.studies),
         left_out=left_out,
         columns=table_columns.FIGURE_MATRIX,
         rows=tuple(table),
-        draw=lambda width: draw_matrix(lines[rows], lines[columns], cells, heads, width=width),
+        draw=lambda width: draw_matrix(
+            lines[rows], lines[columns], cells, heads, _legend(table), width=width
+        ),
         options={"rows": rows, "columns": columns},
+        counts=counted(row["state"] for row in table),
     )
 
 
-def possible(taxonomy: Taxonomy, row: tuple[str, str], column: tuple[str, str]) -> bool:
-    """Say whether two (level, value) can belong to one value: a model is of one category only."""
-    (rows, one), (columns, other) = row, column
-    base = attribute_of(rows)
-    if rows == columns or base != attribute_of(columns):
-        return True
-    return any(
-        taxonomy.derived(rows, value) == one and taxonomy.derived(columns, value) == other
-        for value in taxonomy.values(base)
+def _told(pair: tuple[Value, Value], known: PairEvidence) -> dict[str, Any]:
+    """Return what the table tells of a pair besides its studies."""
+    best = known.best
+    command = leads_to = ""
+    if best is not None:
+        command = Run(best.dataset, best.extractor, best.model).command
+        sensor = dict(pair)
+        leads_to = dataset_page(best.dataset)
+        if sensor.keys() == {"detector", "mask"}:
+            leads_to = architecture_page(sensor["detector"], sensor["mask"])
+    elif known.state == "impossible":
+        pass
+    elif known.planned is not None:
+        command, leads_to = known.planned.command, dataset_page(known.planned.dataset)
+    elif known.nearest:
+        command = f"sunatlas benchmark --dataset {known.nearest}"
+        leads_to = dataset_page(known.nearest)
+    return {
+        "reason": known.reason,
+        "unknown": list(known.unknown),
+        "pipelines": known.pipelines,
+        "best_own_deg": None if best is None else best.nominal.rms_deg,
+        "best_dataset": None if best is None else best.dataset,
+        "best_extractor": None if best is None else best.extractor,
+        "best_model": None if best is None else best.model,
+        "command": command,
+        "leads_to": leads_to,
+    }
+
+
+def _title(pair: tuple[Value, Value], count: int, known: PairEvidence) -> str:
+    """Return what is said of a pair's cell where it is pointed at."""
+    said = " × ".join(wording.shown(level, value) for level, value in pair)
+    parts = [wording.studies(count) if count else "no study"]
+    if known.pipelines:
+        parts.append(f"{wording.plural(known.pipelines, 'pipeline', 'pipelines')} measured here")
+    if known.best is not None:
+        parts.append(f"best own error {known.best.nominal.rms_deg:.3g}° on {known.best.dataset}")
+    if known.state == "impossible":
+        parts.append(f"impossible ({known.reason})")
+    if known.state == "unknown":
+        parts.append(f"the other value of {wording.studies(len(known.unknown))} is unknown")
+    return f"{said}: {', '.join(parts)}"
+
+
+def _legend(table: Sequence[Mapping[str, Any]]) -> tuple[Entry, ...]:
+    """Return the states, each with its sign in the drawing and the number of pairs."""
+    counts = counted(row["state"] for row in table)
+    without = sum(row["state"] == "measured" and not row["count"] for row in table)
+    words = {
+        "measured": f"• measured here ({without} of them without a study)",
+        "studied": "studied, not measured",
+        "impossible": "× impossible",
+        "unknown": "? unknown: perhaps in a study whose cell is empty",
+        "unstudied": "unstudied",
+    }
+    return tuple(
+        Entry(f"state {state}", f"{words[state]}: {count}") for state, count in counts.items()
     )
 
 
@@ -132,10 +205,16 @@ def _text(
     heads: tuple[str, str],
     left_out: Sequence[LeftOut],
 ) -> tuple[str, ...]:
-    empty = sum(row["count"] == 0 for row in table)
+    counts = counted(row["state"] for row in table)
+    without = sum(row["state"] == "measured" and not row["count"] for row in table)
     fullest = max(table, key=lambda row: row["count"], default=None)
     size = f"{heads[0]} ({len(rows)} values) by {heads[1].lower()} ({len(columns)} values)"
-    said = [f"{size}: {empty} of {len(table)} pairs have no study."]
+    states = (
+        f"{counts['measured']} measured here, {without} of them without a study; "
+        f"{counts['studied']} studied and not measured; {counts['impossible']} impossible; "
+        f"{counts['unknown']} unknown, as a cell of a study is; {counts['unstudied']} unstudied"
+    )
+    said = [f"{size}, {len(table)} pairs: {states}."]
     if fullest is not None and fullest["count"]:
         pair = " with ".join(
             wording.shown(fullest[f"{side}_level"], fullest[side]) for side in ("row", "column")
@@ -145,5 +224,7 @@ def _text(
         unused = [line.label for line in lines if not line.count]
         if unused:
             said.append(f"{head} without any study: {wording.listed(unused)}.")
+    if counts["impossible"]:
+        said.append(RULE)
     missing = in_words(left_out, wording.LEVELS)
     return (*said, missing) if missing else tuple(said)

@@ -7,6 +7,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from api.figures import svg
+from api.figures.figure import Entry
+from api.figures.legend import legend
 from api.figures.lettering import line_height, shortened, text_width
 from api.figures.svg import BODY, SMALL, Drawing
 
@@ -14,16 +16,21 @@ ROW = 26.0
 NARROWEST, WIDEST = 25.0, 84.0  # columns, px
 GAP = 2.0  # between cells
 SHADES = 5
+GAP_BELOW_LEGEND = 10.0
+DOT = 5.0
 _AIR = 6.0
+_SIGNS = {"impossible": "×", "unknown": "?"}
 
 
 @dataclass(frozen=True)
 class Cell:
-    """How many studies have both values."""
+    """How many studies have both values, the pair's state, and whether it is measured here."""
 
     count: int
     title: str
     href: str | None
+    state: str
+    measured: bool
 
 
 @dataclass(frozen=True)
@@ -41,6 +48,7 @@ def draw_matrix(
     columns: Sequence[Line],
     cells: Mapping[tuple[str, str], Cell],
     heads: tuple[str, str],
+    entries: Sequence[Entry],
     *,
     width: float,
 ) -> Drawing:
@@ -49,8 +57,9 @@ def draw_matrix(
     Parameters
     ----------
     rows, columns : in their order
-    cells : by values of row and column; a pair without one cannot be
+    cells : by values of row and column
     heads : headings of rows and of columns
+    entries : legend of the states
     """
     size = BODY if width > 900 else SMALL
     left = min(
@@ -67,8 +76,9 @@ def draw_matrix(
     step = min(room / each, WIDEST)
     highest = max((cell.count for cell in cells.values()), default=0)
     frame = _Frame(left, left + _AIR, step, size, highest, heads)
-    y = 0.0
-    body = []
+    first, y = legend(entries, 0.0, width)
+    y += GAP_BELOW_LEGEND
+    body = [first]
     for panel in range(panels):
         shown = columns[panel * each : (panel + 1) * each]
         drawn, y = _panel(rows, shown, cells, frame, y)
@@ -150,10 +160,22 @@ def _panel(
 
 def _cell(cell: Cell, x: float, y: float, frame: _Frame) -> str:
     place = (x + GAP / 2, y + GAP / 2, frame.step - GAP, ROW - GAP)
-    if not cell.count:
-        return svg.mark(cell.title, None, svg.rectangle(*place, "cell gap", rx=2))
-    share = (cell.count - 1) / max(frame.most - 1, 1)
-    shade = min(SHADES, 1 + int(SHADES * share**0.75))
     middle = (x + frame.step / 2, y + ROW / 2)
-    number = svg.text(*middle, str(cell.count), f"on{shade}", size=frame.size, anchor="middle")
-    return svg.mark(cell.title, cell.href, svg.rectangle(*place, f"cell h{shade}", rx=2), number)
+    shapes = []
+    if cell.count:
+        share = (cell.count - 1) / max(frame.most - 1, 1)
+        shade = min(SHADES, 1 + int(SHADES * share**0.75))
+        shapes.append(svg.rectangle(*place, f"cell h{shade}", rx=2))
+        number = str(cell.count)
+        shapes.append(svg.text(*middle, number, f"on{shade}", size=frame.size, anchor="middle"))
+    else:
+        shapes.append(svg.rectangle(*place, f"cell {cell.state}", rx=2))
+        if cell.state in _SIGNS:
+            sign = _SIGNS[cell.state]
+            shapes.append(svg.text(*middle, sign, "quiet", size=frame.size, anchor="middle"))
+    if cell.measured:
+        at = (x + frame.step - GAP - DOT, y + GAP + 1)
+        shapes.append(
+            svg.rectangle(*at, DOT, DOT, f"dot d{shade if cell.count else 0}", rx=DOT / 2)
+        )
+    return svg.mark(cell.title, cell.href, *shapes)

@@ -35,6 +35,8 @@ MODULES: dict[str, tuple[str, ...]] = {
         "registry.requirements",
         "registry.recommendation",
         "registry.resolution",
+        "registry.fidelity.grading",
+        "registry.fidelity.purposes",
         "registry.flows",
         "benchmark.claims.ledger",
         "survey_data",

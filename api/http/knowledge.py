@@ -15,8 +15,9 @@ from api.pictures import Pictures
 from api.search.entries import entries
 from api.search.index import Index
 from registry.catalogue import Catalogue, catalogue
+from registry.evidence import Evidence
 from registry.measured import Measurements as Measured
-from registry.resolution import Resolution, resolve, resolve_all
+from registry.resolution import Resolution, resolve_all, resolve_later
 from registry.studies import Facts, facts
 from registry.taxonomy import Taxonomy
 from survey_data.descriptor import DATA_DIRECTORY
@@ -76,8 +77,18 @@ class Knowledge:
     def resolutions(self) -> Mapping[str, Resolution]:
         """What is scored of each study, by key."""
         from benchmark.plan.combinations import scorable  # noqa: PLC0415 - loads the simulator
+        from benchmark.plan.shown import data_sets  # noqa: PLC0415 - likewise
 
-        return resolve_all(scorable(), catalogue=self.catalogue, facts=self.facts)
+        return resolve_all(
+            scorable(), data_sets=data_sets(), catalogue=self.catalogue, facts=self.facts
+        )
+
+    @cached_property
+    def evidence(self) -> Evidence:
+        """What is measured of pairs of values, what could be, and what cannot."""
+        from benchmark.plan.combinations import scorable  # noqa: PLC0415 - loads the simulator
+
+        return Evidence(self.catalogue, self.measurements.pipelines, scorable())
 
     @cached_property
     def measured(self) -> Measured:
@@ -110,7 +121,7 @@ class Knowledge:
             Where a file of facts or of published results cannot be read.
         """
         _ = self.resolutions, self.measurements.scores, self.measurements.times
-        _ = self.measured, self.measurements.leaderboard, self.measurements.cards
+        _ = self.evidence, self.measured, self.measurements.leaderboard, self.measurements.cards
         _ = self.measurements.sweeps, self.measurements.curves, self.measurements.assessment
         _ = self.measurements.claims, self.index.find("warm")
         _ = self.facts_digest, self.measurements.digest
@@ -146,12 +157,17 @@ class KnowledgeOfAll(Knowledge):
     def resolutions(self) -> Mapping[str, Resolution]:
         """What is scored of each study, by key."""
         from benchmark.plan.combinations import scorable  # noqa: PLC0415 - loads the simulator
+        from benchmark.plan.shown import data_sets  # noqa: PLC0415 - likewise
 
-        known, ours = self._survey.facts, self._survey.resolutions
-        later = [one for key, one in self.facts.studies.items() if key not in ours]
-        plan, catalogue = scorable(), self.catalogue
-        found = {one.key: resolve(one, plan, catalogue=catalogue, facts=known) for one in later}
-        return {**ours, **found}
+        ours, facts = self._survey.resolutions, (self._survey.facts, self.facts)
+        shown, catalogue = data_sets(), self.catalogue
+        later = resolve_later(scorable(), *facts, data_sets=shown, catalogue=catalogue)
+        return {**ours, **later}
+
+    @property
+    def evidence(self) -> Evidence:
+        """What is measured of pairs of values, what could be, and what cannot."""
+        return self._survey.evidence
 
     @property
     def measured(self) -> Measured:

@@ -70,6 +70,12 @@ class Measurements:
         return [row for row in self._every_unit if row["unit"] == 0]
 
     @cached_property
+    def score_of(self) -> Mapping[tuple[str, str, str, str], Row]:
+        """Score of the standard unit by data set, condition, extractor and model."""
+        names = ("dataset", "condition", "extractor", "model")
+        return {(*(str(row[name]) for name in names),): row for row in self.scores}  # type: ignore[misc]
+
+    @cached_property
     def nominal(self) -> Mapping[tuple[str, str, str], Row]:
         """Score under the first condition of each data set, by data set, extractor and model."""
         first = {name: preset.conditions[0] for name, preset in self.presets.items()}

@@ -112,7 +112,7 @@ function studyList(keys, studies) {
 }
 
 function measureAgain({ measured }, studies, keys) {
-  const key = keys.find((k) => studies.get(k)?.state !== "none");
+  const key = keys.find((k) => studies.get(k)?.grade !== "none");
   return h("div", { class: "note plain-list" },
     measured && h("p", {}, "Measure the best again: ",
       copyable(`sunatlas benchmark --dataset ${measured.dataset} --extractor ${measured.extractor} --model ${quoted(measured.model)}`, "the command that measures the best calibration"), " ",

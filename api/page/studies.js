@@ -4,10 +4,6 @@ import { copyable, h, problemNotice } from "./dom.js";
 import { getOnce } from "./service.js";
 import { ATTRIBUTE_NAMES, BASES, IDENTITIES } from "./wording.js";
 
-const STATES = {
-  complete: "runs here completely", partial: "runs here in part", none: "nothing of it runs here yet",
-};
-
 const known = (text) => text !== null && text !== undefined && text !== "";
 
 function bibliography(study) {
@@ -23,7 +19,7 @@ function links(study) {
     !known(study.doi) && /^https?:/.test(study.url ?? "") && h("a", { href: study.url, rel: "noreferrer" }, "Record"),
     h("a", { href: record }, "All of it"),
     h("span", { class: "state", title: IDENTITIES[study.identity] }, `identity ${study.identity}`),
-    h("span", { class: "state" }, STATES[study.state] ?? study.state));
+    h("span", { class: "state", title: study.sentence }, study.grade === "none" ? "cannot run" : study.grade));
 }
 
 /** "source" as a link where it is an address. */
@@ -32,14 +28,17 @@ function source(text) {
   return /^https?:\/\//.test(text) ? h("a", { href: text, rel: "noreferrer" }, new URL(text).hostname) : text;
 }
 
-/** "data set error", or why there is none. */
+/** "data set (condition) error", or why there is none. */
 function measured(score) {
-  if (score.rms_deg !== null) return `${score.dataset} ${Number(score.rms_deg.toPrecision(3))} deg`;
-  return `${score.dataset} ${score.status === null ? "not measured yet" : "without an error"}`;
+  const at = `${score.dataset} (${score.condition})`;
+  if (score.rms_deg !== null) return `${at} ${Number(score.rms_deg.toPrecision(3))} deg`;
+  return `${at} ${score.status === null ? "not measured yet" : "without an error"}`;
 }
 
 function provenance(detail) {
   const values = detail.attributes;
+  const reported = [detail.reported_accuracy, detail.reported_precision]
+    .filter(known).map((one) => `${one.label} ${one.value_deg} deg`);
   const cell = (label, ...content) => h("td", { role: "cell", "data-label": label }, h("span", {}, ...content));
   return h("div", { class: "provenance" },
     h("table", { class: "stacks", role: "table" },
@@ -51,9 +50,9 @@ function provenance(detail) {
         cell("Basis", h("span", { class: "basis", title: BASES[v.basis] }, v.basis)),
         cell("Source", source(v.source)),
         cell("Note", v.note ?? ""))))),
-    h("p", {}, known(detail.reported_accuracy_deg)
-      ? `Accuracy that the study reports of its own sensor: ${detail.reported_accuracy_deg} deg.`
-      : "No accuracy is known that the study reports of its own sensor."),
+    h("p", {}, reported.length
+      ? `Reported by the study of its own sensor: ${reported.join(", ")}.`
+      : "No accuracy or precision is known that the study reports of its own sensor."),
     detail.pipelines.length > 0 && h("div", {}, h("p", {}, "Runs here, with the error measured on each simulated sensor, as"),
       h("ul", {}, detail.pipelines.slice(0, 12).map((p) => h("li", {},
         `${p.detector} · ${p.mask} · ${p.extractor} → ${p.model}: ${p.scores.map(measured).join(", ")}`,

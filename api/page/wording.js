@@ -4,7 +4,8 @@ export const ATTRIBUTE_NAMES = {
   task: "Task", accuracy: "Accuracy class", error: "Error addressed", detector: "Detector",
   mask: "Mask", model: "Calibration model", extractor: "Feature extractor",
   model_category: "Model family", extractor_family: "Extractor family", "offline/online": "Calibration",
-  accuracy_deg: "Published accuracy", fov_deg: "Field of view",
+  accuracy_deg: "Published accuracy", accuracy_kind: "Kind of that accuracy",
+  precision_deg: "Published precision", precision_kind: "Kind of that precision", fov_deg: "Field of view",
 };
 
 /** A unit that is not the service's own is so many times smaller: a share of 0.95 is 95 %. */

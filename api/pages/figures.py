@@ -23,9 +23,10 @@ from api.http.negotiation import media_type
 from api.http.representations import Representation, RepresentationCache
 from api.http.routers import figures as told
 from api.pages.editions import edition_shown
-from api.pages.numbers import degrees, wide
+from api.pages.numbers import degrees, kind_said, wide
 from api.pages.serving import PageRouter, View
 from registry.taxonomy import ATTRIBUTES, LEVELS
+from survey_data.reported import QUANTITIES
 
 SVG = "image/svg+xml"
 PLOTLY = ".plotly.json"
@@ -88,11 +89,11 @@ async def figures(known: Known, _asked: Annotated[None, NO_PARAMETERS] = None) -
 async def matrix(known: Known, query: Annotated[MatrixQuery, Query()], request: Request) -> View:
     """Studies by two attributes, gaps as visible as what is there."""
     found = _matrix(known, query, request)
-    gaps: dict[str, list[str]] = {}
+    gaps: dict[str, list[dict[str, Any]]] = {}
     for row in found.rows:
-        if not row["count"]:
-            name = wording.shown(row["row_level"], row["row"])
-            gaps.setdefault(name, []).append(wording.shown(row["column_level"], row["column"]))
+        if row["state"] not in ("measured", "studied") or not row["count"]:
+            pair = " × ".join(wording.shown(row[f"{side}_level"], row[side]) for side in _SIDES)
+            gaps.setdefault(row["state"], []).append({**row, "pair": pair})
     chosen = {"rows": query.rows, "columns": query.columns}
     return _view(known, found, query, request, chosen=chosen, gaps=gaps)
 
@@ -146,8 +147,8 @@ async def figure_specification(
 
 
 def _matrix(known: Knowledge, query: MatrixQuery, request: Request) -> Figure:
-    studies = known.of(query.edition).facts
-    return evidence_map(studies, query.wanted(), query.rows, query.columns, _page(request))
+    asked = (query.wanted(), query.rows, query.columns, _page(request))
+    return evidence_map(known.of(query.edition).facts, *asked, evidence=known.evidence)
 
 
 def _page(request: Request) -> str:
@@ -164,7 +165,7 @@ def _view(
     request: Request,
     *,
     chosen: Mapping[str, str],
-    gaps: Mapping[str, list[str]],
+    gaps: Mapping[str, list[dict[str, Any]]],
 ) -> View:
     cells = _CELLS.get(found.name, _flow_cells)
     rows = [
@@ -181,7 +182,8 @@ def _view(
         rows=rows,
         asked=query,
         chosen=chosen,
-        gaps=gaps,
+        gaps={state: gaps[state] for state in _GAPS if state in gaps},
+        gap_words=_GAPS,
         filters={name: known.taxonomy.to_dict()[name] for name in ATTRIBUTES},
         names=wording.LEVELS,
         levels=LEVELS,
@@ -192,6 +194,14 @@ def _view(
     )
 
 
+_SIDES = ("row", "column")
+_GAPS = {
+    "measured": "Measured here, without a study",
+    "unknown": "Unknown: no study is known to have both",
+    "unstudied": "Unstudied",
+    "impossible": "Impossible",
+}
+"""State of a pair without a study -> heading of its list."""
 _NAMED = (
     *(("level", "value"), ("next_level", "next_value")),
     *(("row_level", "row"), ("column_level", "column")),
@@ -262,14 +272,26 @@ def _sensor_cells(row: Row) -> list[Cell]:
         ("Year", str(row["year"] or NOT_KNOWN), ""),
         *named,
         ("Field of view", wide(row["fov_deg"]), ""),
-        ("Accuracy", degrees(row["accuracy_deg"]), ""),
+        *(_reported_cell(quantity, row) for quantity in QUANTITIES),
     ]
 
 
+def _reported_cell(quantity: str, row: Row) -> Cell:
+    number = row[f"{quantity}_deg"]
+    kind = "" if number is None else kind_said(row[f"{quantity}_kind"])
+    return (quantity.capitalize(), degrees(number), kind)
+
+
 def _matrix_cells(row: Row) -> list[Cell]:
-    return [
+    pair = [
         (wording.LEVELS[row[f"{side}_level"]], wording.shown(row[f"{side}_level"], row[side]), "")
-        for side in ("row", "column")
+        for side in _SIDES
+    ]
+    measured = wording.plural(row["pipelines"], "pipeline", "pipelines")
+    return [
+        *pair,
+        ("Measured here", measured if row["pipelines"] else "–", row["best_dataset"] or ""),
+        ("Best own error", degrees(row["best_own_deg"]), ""),
     ]
 
 

@@ -4,15 +4,9 @@ from __future__ import annotations
 
 import math
 
+from survey_data.reported import UNSPECIFIED, statistics
+
 NOTHING = "–"
-_KINDS = {
-    "unspecified": "of which kind is not said",
-    "1sigma": "1σ",
-    "2sigma": "2σ",
-    "3sigma": "3σ",
-    "max": "the largest",
-    "rms": "RMS",
-}
 
 
 def number(value: float | None, digits: int = 3) -> str:
@@ -87,7 +81,7 @@ def unit_name(name: str) -> str:
 
 def kind_said(kind: str) -> str:
     """Return of which kind a published accuracy is said to be, in words."""
-    return _KINDS.get(kind, kind)
+    return "of which kind is not said" if kind == UNSPECIFIED else statistics()[kind].name
 
 
 GIVEN = (

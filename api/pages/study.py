@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import Path, Query, Request
 
@@ -12,6 +12,9 @@ from api.http.models.words import StudyKey
 from api.http.routers import studies as told
 from api.pages.editions import edition_shown
 from api.pages.serving import PageRouter, View
+from registry.fidelity.grading import GRADES as IN_WORDS
+from registry.fidelity.grading import TALLIED, tally_text
+from registry.fidelity.purposes import PURPOSES
 
 router = PageRouter()
 
@@ -24,6 +27,9 @@ NAMES = {
     "model": "Calibration model",
     "extractor": "Feature extractor",
     "accuracy_deg": "Published accuracy",
+    "accuracy_kind": "Kind of that accuracy",
+    "precision_deg": "Published precision",
+    "precision_kind": "Kind of that precision",
     "fov_deg": "Field of view",
 }
 BASES = {
@@ -37,11 +43,7 @@ BASES = {
     "recalled": "recalled, not seen on a page",
     "unknown": "not known",
 }
-STATES = {
-    "complete": "runs here completely",
-    "partial": "runs here in part",
-    "none": "nothing of it runs here yet",
-}
+GRADES = {grade: f"{TALLIED[grade]}: {words}" for grade, words in IN_WORDS.items()}
 IDENTITIES = {
     "confirmed": "author, year and topic confirmed on a public page",
     "recalled": "bibliographic data recalled, not seen on a page",
@@ -54,7 +56,7 @@ EVERY = 500  # studies of one page
 
 @router.page("/studies")
 async def studies(known: Known, query: Annotated[StudiesQuery, Query()], request: Request) -> View:
-    """Every study that meets the filters, with what it maps to and how much of it runs."""
+    """Every study that meets the filters, with what it maps to and how near its run is to it."""
     every = query.model_copy(update={"limit": EVERY})
     answer = await told.studies(known, every)
     return View(
@@ -63,9 +65,10 @@ async def studies(known: Known, query: Annotated[StudiesQuery, Query()], request
         asked=query,
         filters={name: known.taxonomy.to_dict()[name] for name in FILTERS},
         names=NAMES,
-        states=STATES,
+        grades=GRADES,
         mapped=len(known.of(query.edition).facts.studies),
         editions=edition_shown(known, query.edition, request),
+        tallied=tally_text(study["grade"] for study in answer.document["items"]),
     )
 
 
@@ -73,30 +76,18 @@ async def studies(known: Known, query: Annotated[StudiesQuery, Query()], request
 async def study(known: Known, key: Annotated[StudyKey, Path()]) -> View:
     """One study: attributes with their basis, what it runs, reported beside measured."""
     answer = await told.study(known, key)
-    found = answer.document
     claims = [e.claim for e in known.measurements.claims.values() if key in e.claim.study]
     return View(
         "study.html",
         answer,
         names=NAMES,
         bases=BASES,
-        states=STATES,
+        grades=GRADES,
+        purposes=PURPOSES,
         identities=IDENTITIES,
-        edition=next(one for one in known.editions if one.name == found["edition"]),
-        best=_best(found["pipelines"]),
+        edition=next(one for one in known.editions if one.name == answer.document["edition"]),
         claims=claims,
         verdicts={e.claim.id: e.verdict for e in known.measurements.claims.values()},
         datasets=[c for c in known.measurements.cards if key in c["follows"]],
         algorithms=[i for i in known.catalogue.listing(None) if key in i.studies],
     )
-
-
-def _best(pipelines: list[dict[str, Any]]) -> dict[str, Any] | None:
-    """Return the score with the least error among all of a study's, with its pipeline."""
-    scored = [
-        {**pipeline, **score}
-        for pipeline in pipelines
-        for score in pipeline["scores"]
-        if score["rms_deg"] is not None
-    ]
-    return min(scored, key=lambda score: score["rms_deg"], default=None)

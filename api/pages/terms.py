@@ -16,6 +16,7 @@ from api.glossary import words
 from api.pages.addresses import anchor, value_page
 from registry.studies import facts
 from registry.taxonomy import ATTRIBUTES
+from survey_data.reported import KIND_OF, statistics
 
 NONE = "None"
 LABEL = "survey label"
@@ -133,6 +134,8 @@ def named_here(value: str, attribute: str) -> str:
 
 def value(text: str, attribute: str) -> Markup:
     """Return a value of an attribute with its name as a tip, and a link to where it is told of."""
+    if attribute in KIND_OF.values():
+        return Markup.escape(statistics()[text].name)
     if attribute not in ATTRIBUTES:
         return Markup.escape(text)
     link = Markup('<a class="value" href="{at}" title="{name}">{text}</a>')

@@ -30,6 +30,7 @@ from benchmark.leaderboard.ranking import order
 from benchmark.metrics.score import is_available
 from benchmark.plan.combinations import cells, scorable
 from benchmark.plan.parts import Parts, installed
+from benchmark.plan.shown import data_sets
 from registry.resolution import resolve_all
 
 Row = Mapping[str, Any]
@@ -175,7 +176,8 @@ def studies_of_pipelines() -> Studied:
 
 def _studies_of(parts: Parts) -> dict[tuple[str, str, str, str], tuple[str, ...]]:
     found: dict[tuple[str, str, str, str], set[str]] = {}
-    for key, resolution in resolve_all(scorable(parts=parts)).items():
+    resolved = resolve_all(scorable(parts=parts), data_sets=data_sets(parts=parts))
+    for key, resolution in resolved.items():
         for pipeline in resolution.pipelines:
             used = (pipeline.detector, pipeline.mask, pipeline.extractor, pipeline.model)
             found.setdefault(used, set()).add(key)

@@ -247,7 +247,7 @@ def _named(
         reader.fault(message, attribute, at, _FLAG)
     if not name:
         return
-    if not row["value"] or not reader.vocabulary.definitions[attribute].words:
+    if not row["value"] or not reader.vocabulary.definitions[attribute].named:
         reader.fault("name: only of a value of the taxonomy", attribute, at, "name")
     of = {column: row[column] for column in ("study", "attribute", "value")}
     yield "names", {**of, "name": name, _FLAG: "true" if flag is True else "false"}

@@ -13,13 +13,16 @@ from survey_data.validation.extension import SURVEY_BASES
 
 _TABLES = (
     *("studies", "extension_studies", "references"),
-    *("taxonomy", "attribute_definitions", "bases", "aliases"),
+    *("taxonomy", "attribute_definitions", "bases", "aliases", "statistics"),
 )
 
 
 @dataclass(frozen=True)
 class Definition:
-    """An attribute: its words with their names, or the limits of its number."""
+    """An attribute: its words with their names, or the limits of its number.
+
+    ``named`` says whether a study may have a name of its own for a value: the taxonomy's values.
+    """
 
     attribute: str
     name: str
@@ -29,6 +32,7 @@ class Definition:
     complete: bool
     least: float
     most: float
+    named: bool
 
 
 @dataclass(frozen=True)
@@ -108,18 +112,23 @@ def _fields(table: str) -> list[dict[str, Any]]:
     return fields
 
 
+def _words(row: Mapping[str, str], tables: Any) -> dict[str, str]:
+    """Return the values of an attribute with their names; none of a number."""
+    if row["kind"] == "statistic":
+        return {each["kind"]: each["name"] for each in tables.statistics}
+    attribute = row["attribute"]
+    return {e["value"]: e["name"] for e in tables.taxonomy if e["attribute"] == attribute}
+
+
 def _definition(row: Mapping[str, str], tables: Any) -> Definition:
     return Definition(
         attribute=row["attribute"],
         name=row["name"],
         description=row["description"],
-        words={
-            each["value"]: each["name"]
-            for each in tables.taxonomy
-            if each["attribute"] == row["attribute"]
-        },
+        words=_words(row, tables),
         multiple=row["multiple"] != "false",
         complete=row["complete"] == "true",
         least=float(row["min"] or "-inf"),
         most=float(row["max"] or "inf"),
+        named=row["kind"] == "categorical",
     )

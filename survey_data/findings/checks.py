@@ -1,11 +1,15 @@
 """The findings' grammar, and how the tables answer them.
 
-A finding filters the studies (`given`: attribute=value joined by ``&``), ranks an attribute over
-them by the number of studies a value occurs in, and says how named values rank (`expects`,
-`kind`). Values joined by `` or `` are counted as one: a study with either counts once. Verdicts are
-strict: ``reproduced``, ``tied`` (it would hold if an equal count did not stand in its way),
-``contradicted``, or ``undecidable`` where fewer than three studies that pass the filter have a
-known value of the ranked attribute. A named value that occurs in no study fails.
+A finding has clauses, each of which is tested by itself. A clause filters the studies (`given`:
+attribute=value joined by ``&``), ranks an attribute over them by the number of studies a value
+occurs in, and says how named values rank (`expects`, `kind`). Values joined by `` or `` are
+counted as one: a study with either counts once. Verdicts of clauses are strict: ``reproduced``,
+``tied`` (it would hold if an equal count did not stand in its way), ``contradicted``, or
+``undecidable`` where fewer than three studies that pass the filter have a known value of the
+ranked attribute. A named value that occurs in no study fails.
+
+A finding is ``reproduced`` where every clause is, ``partly`` where some are and others not, and
+else ``contradicted``, ``tied`` or ``undecidable``, the first of these that a clause is.
 
 - ``top``: the most frequent value is one of those named.
 - ``top-set``: the named values are the most frequent, every one above all others.
@@ -13,6 +17,7 @@ known value of the ranked attribute. A named value that occurs in no study fails
 - ``bottom``, ``bottom-set``: every named value is below all others that occur.
 - ``among``, ``spread``: every named value occurs.
 - ``top-centroid``: as ``top``, within the category Centroid detection.
+- ``no-majority``: no named value occurs in more than half of the studies counted.
 
 ``PD`` in a filter includes ``QPD``. Ranked besides attributes: ``detector+mask`` (pairs of a sensor
 of the study), ``model_category`` and ``extractor_family`` (the taxonomy's categories), ``year``.
@@ -28,13 +33,16 @@ from typing import Any, Literal
 
 import pandas as pd
 
-from survey_data.findings.evidence import OCCURRING, Tally, settled_by
+from survey_data.findings.evidence import NO_MAJORITY, OCCURRING, Tally, settled_by
 
-Verdict = Literal["reproduced", "tied", "contradicted", "undecidable"]
-VERDICTS: tuple[Verdict, ...] = ("reproduced", "tied", "contradicted", "undecidable")
+Verdict = Literal["reproduced", "partly", "tied", "contradicted", "undecidable"]
+VERDICTS: tuple[Verdict, ...] = ("reproduced", "partly", "tied", "contradicted", "undecidable")
 Values = Mapping[str, Mapping[str, frozenset[str]]]  # study -> attribute -> values
 
-KINDS = ("top", "top-set", "order", "bottom", "bottom-set", "among", "spread", "top-centroid")
+KINDS = (
+    *("top", "top-set", "order", "bottom", "bottom-set", "among", "spread", "top-centroid"),
+    NO_MAJORITY,
+)
 _COUNTS = ("ranking", "named")
 _CENTROID_FAMILY = "Centroid detection"
 _INCLUDES = {("detector", "PD"): frozenset({"PD", "QPD"})}
@@ -44,7 +52,7 @@ _EITHER = " or "
 
 
 class FindingSyntaxError(ValueError):
-    """A finding does not keep the grammar; `column` names the cell."""
+    """A clause of a finding does not keep the grammar; `column` names the cell."""
 
     def __init__(self, column: str, message: str) -> None:
         self.column = column
@@ -52,35 +60,31 @@ class FindingSyntaxError(ValueError):
 
 
 @dataclass(frozen=True)
-class Finding:
-    """One finding, parsed: filter conditions, ranked attribute and expected values."""
+class Clause:
+    """One clause, parsed: filter conditions, ranked attribute and expected values."""
 
-    id: str
-    survey_section: str
-    statement: str
     kind: str
-    given: tuple[tuple[str, str], ...]
+    given: tuple[tuple[str, tuple[str, ...]], ...]
     ranked: str
     values: tuple[str, ...]
 
 
 @dataclass(frozen=True)
-class FindingVerdict:
-    """A finding's verdict and the counts behind it.
+class ClauseVerdict:
+    """A clause's verdict and the counts behind it.
 
     `matching` studies pass the filter, `counted` of them have a known value of the ranked
     attribute; `ranking` is (value, number of studies), most frequent first, ties by name; `named`
-    the same of the values that the finding names. `settled_by` says on which counts the verdict
+    the same of the values that the clause names. `settled_by` says on which counts the verdict
     rests, and which evidence would turn or decide it.
     """
 
-    id: str
+    clause: int
     verdict: Verdict
-    kind: str
-    survey_section: str
+    statement: str
     given: str
     expects: str
-    statement: str
+    kind: str
     matching: int
     counted: int
     ranking: tuple[tuple[str, int], ...]
@@ -91,6 +95,45 @@ class FindingVerdict:
         """Return the verdict as plain JSON data."""
         counts = {name: [list(pair) for pair in getattr(self, name)] for name in _COUNTS}
         return asdict(self) | counts
+
+
+@dataclass(frozen=True)
+class FindingVerdict:
+    """A finding's verdict, made of its clauses'; `not_tested` is what none of them tests."""
+
+    id: str
+    verdict: Verdict
+    survey_section: str
+    statement: str
+    not_tested: str
+    clauses: tuple[ClauseVerdict, ...]
+
+    @property
+    def tests(self) -> str:
+        """What is tested, clause by clause, and what is not, in a sentence."""
+        tested = f"tests: {'; '.join(clause.statement for clause in self.clauses)}"
+        return f"{tested}. Not tested: {self.not_tested}" if self.not_tested else tested
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the verdict as plain JSON data."""
+        return {
+            "id": self.id,
+            "verdict": self.verdict,
+            "survey_section": self.survey_section,
+            "statement": self.statement,
+            "not_tested": self.not_tested,
+            "clauses": [clause.to_dict() for clause in self.clauses],
+        }
+
+
+def whole(clauses: Iterable[Verdict]) -> Verdict:
+    """Return the verdict of a finding from those of its clauses."""
+    found = set(clauses)
+    if found == {"reproduced"}:
+        return "reproduced"
+    if "reproduced" in found:
+        return "partly"
+    return next(verdict for verdict in ("contradicted", "tied", "undecidable") if verdict in found)
 
 
 class Vocabulary:
@@ -127,8 +170,8 @@ class Vocabulary:
         return {*self.values, *_CATEGORY_OF, _PAIR, "year"}
 
 
-def parse_finding(row: Mapping[str, Any], vocabulary: Vocabulary) -> Finding:
-    """Parse a row of the findings table.
+def parse_clause(row: Mapping[str, Any], vocabulary: Vocabulary) -> Clause:
+    """Parse a row of the table of clauses.
 
     Raises
     ------
@@ -155,31 +198,25 @@ def parse_finding(row: Mapping[str, Any], vocabulary: Vocabulary) -> Finding:
         raise FindingSyntaxError("expects", f"kind {kind} cannot rank the values {values}")
     if kind == "top-centroid" and ranked != "extractor":
         raise FindingSyntaxError("expects", f"kind top-centroid ranks the extractor, not {ranked}")
-    return Finding(
-        id=str(row["id"]),
-        survey_section=str(row["survey_section"]),
-        statement=str(row["statement"]),
-        kind=kind,
-        given=given,
-        ranked=ranked,
-        values=values,
-    )
+    return Clause(kind=kind, given=given, ranked=ranked, values=values)
 
 
-def _parse_given(text: Any, vocabulary: Vocabulary) -> Iterable[tuple[str, str]]:
+def _parse_given(text: Any, vocabulary: Vocabulary) -> Iterable[tuple[str, tuple[str, ...]]]:
     if pd.isna(text):
         return
     for condition in str(text).split("&"):
-        attribute, equals, value = condition.partition("=")
+        attribute, equals, named = condition.partition("=")
         if not equals or attribute not in vocabulary.values:
             raise FindingSyntaxError(
                 "given",
                 f"expected attribute=value with one of {sorted(vocabulary.values)}, "
                 f"got {condition!r}",
             )
-        if value not in vocabulary.values[attribute]:
-            raise FindingSyntaxError("given", f"unknown value {value!r} of {attribute}")
-        yield attribute, value
+        values = tuple(named.split(_EITHER))
+        for value in values:
+            if value not in vocabulary.values[attribute]:
+                raise FindingSyntaxError("given", f"unknown value {value!r} of {attribute}")
+        yield attribute, values
 
 
 def study_values(
@@ -215,41 +252,42 @@ def study_values(
     }
 
 
-def evaluate(
-    finding: Finding, row: Mapping[str, Any], values: Values, vocabulary: Vocabulary
-) -> FindingVerdict:
-    """Judge a finding by the studies' values.
+def evaluate(row: Mapping[str, Any], values: Values, vocabulary: Vocabulary) -> ClauseVerdict:
+    """Judge a clause by the studies' values.
 
     Parameters
     ----------
-    finding : Finding
-        The parsed finding.
     row : mapping
-        The row it was parsed from, for the report.
+        A row of the table of clauses.
     values : mapping
         As `study_values` returns it.
     vocabulary : Vocabulary
-        For the family of ``top-centroid``.
+        What the row may name.
+
+    Raises
+    ------
+    FindingSyntaxError
+        As `parse_clause`.
     """
-    matching = [entry for entry in values.values() if _passes(entry, finding.given)]
-    counted = [entry[finding.ranked] for entry in matching if finding.ranked in entry]
-    counts = _counts(finding, counted, vocabulary)
+    clause = parse_clause(row, vocabulary)
+    matching = [entry for entry in values.values() if _passes(entry, clause.given)]
+    counted = [entry[clause.ranked] for entry in matching if clause.ranked in entry]
+    counts = _counts(clause, counted, vocabulary)
     tally = Tally(
-        kind=finding.kind,
-        ranked=finding.ranked,
-        named={value: counts[value] for value in finding.values},
-        others={value: n for value, n in counts.items() if value not in finding.values},
+        kind=clause.kind,
+        ranked=clause.ranked,
+        named={value: counts[value] for value in clause.values},
+        others={value: n for value, n in counts.items() if value not in clause.values},
         counted=len(counted),
         matching=len(matching),
     )
-    return FindingVerdict(
-        id=finding.id,
+    return ClauseVerdict(
+        clause=int(row["clause"]),
         verdict=_judged(tally),
-        kind=finding.kind,
-        survey_section=finding.survey_section,
+        statement=str(row["statement"]),
         given="" if pd.isna(row["given"]) else str(row["given"]),
         expects=str(row["expects"]),
-        statement=finding.statement,
+        kind=clause.kind,
         matching=len(matching),
         counted=len(counted),
         ranking=tuple(sorted(counts.items(), key=lambda item: (-item[1], item[0]))),
@@ -258,31 +296,38 @@ def evaluate(
     )
 
 
-def _passes(entry: Mapping[str, frozenset[str]], given: Iterable[tuple[str, str]]) -> bool:
+def _passes(
+    entry: Mapping[str, frozenset[str]], given: Iterable[tuple[str, tuple[str, ...]]]
+) -> bool:
     return all(
-        entry.get(attribute, frozenset()) & _INCLUDES.get((attribute, value), frozenset({value}))
-        for attribute, value in given
+        any(
+            entry.get(attribute, frozenset()) & _INCLUDES.get((attribute, one), frozenset({one}))
+            for one in values
+        )
+        for attribute, values in given
     )
 
 
 def _counts(
-    finding: Finding, counted: Iterable[frozenset[str]], vocabulary: Vocabulary
+    clause: Clause, counted: Iterable[frozenset[str]], vocabulary: Vocabulary
 ) -> Counter[str]:
-    """Count the studies of each value; those that a finding names as one, as one."""
+    """Count the studies of each value; those that a clause names as one, as one."""
     name = {
-        value: named for named in finding.values for value in named.split(_EITHER) if named != value
+        value: named for named in clause.values for value in named.split(_EITHER) if named != value
     }
     counts = Counter(named for entry in counted for named in {name.get(v, v) for v in entry})
-    if finding.kind == "top-centroid":
+    if clause.kind == "top-centroid":
         kept = [v for v in counts if vocabulary.category["extractor", v] == _CENTROID_FAMILY]
         return Counter({value: counts[value] for value in kept})
     return counts
 
 
 def _judged(tally: Tally) -> Verdict:
-    """Judge the two counts that the finding hangs on."""
+    """Judge the counts that the clause hangs on."""
     if not tally.decided:
         return "undecidable"
+    if tally.kind == NO_MAJORITY:
+        return "reproduced" if 2 * tally.most <= tally.counted else "contradicted"
     if tally.absent:
         return "contradicted"
     if tally.kind in OCCURRING or tally.closest is None:

@@ -1,4 +1,4 @@
-"""What would settle a finding: the counts that decide it, and how far they are apart."""
+"""What would settle a clause of a finding: the counts that decide it, and how far apart."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ LEAST_COUNTED = 3
 
 FIRST_OF_SEVERAL = ("top", "top-centroid")
 OCCURRING = ("among", "spread")
+NO_MAJORITY = "no-majority"
 
 
 @dataclass(frozen=True)
@@ -33,6 +34,11 @@ class Tally:
     def decided(self) -> bool:
         """Whether enough studies have a known value."""
         return self.counted >= LEAST_COUNTED
+
+    @property
+    def most(self) -> int:
+        """Studies of the most frequent value that is named."""
+        return max(self.named.values(), default=0)
 
     @property
     def absent(self) -> list[str]:
@@ -82,6 +88,9 @@ def _in_words(ranked: str) -> str:
 
 
 def _margin(tally: Tally) -> str:
+    if tally.kind == NO_MAJORITY:
+        value, count = min(tally.named.items(), key=_most)
+        return f"{value} {count} of {tally.counted}, the most of those named"
     if tally.absent:
         return f"no study with {' or '.join(tally.absent)}"
     if tally.kind in OCCURRING:

@@ -6,19 +6,21 @@ counts behind it.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
 import pandas as pd
 
+from survey_data.accuracy_classes import ClassDisagreement, class_disagreements
 from survey_data.findings.checks import (
     VERDICTS,
+    ClauseVerdict,
     FindingVerdict,
     Vocabulary,
     evaluate,
-    parse_finding,
     study_values,
+    whole,
 )
 from survey_data.problems import Problem
 from survey_data.tables import SurveyTables
@@ -46,16 +48,6 @@ class Completeness:
     known: int
     unknown: int
     by_basis: dict[str, int] = field(hash=False)
-
-
-@dataclass(frozen=True)
-class ClassDisagreement:
-    """A reported accuracy that lies outside the limits of the class its study is filed under."""
-
-    study: str
-    accuracy_deg: float
-    filed: str
-    by_limits: str
 
 
 @dataclass(frozen=True)
@@ -123,7 +115,7 @@ def fidelity(tables: SurveyTables, problems: Sequence[Problem] = ()) -> Fidelity
     Raises
     ------
     FindingSyntaxError
-        A finding does not keep the grammar.
+        A clause of a finding does not keep the grammar.
     KeyError, LookupError
         The tables are not valid: a key or value they refer to is not there.
     """
@@ -134,10 +126,10 @@ def fidelity(tables: SurveyTables, problems: Sequence[Problem] = ()) -> Fidelity
         raise LookupError("counts.csv states no number of studies")
     vocabulary = Vocabulary(tables.taxonomy)
     values = study_values(tables.studies, tables.attributes, tables.architectures, vocabulary)
-    findings = []
-    for record in tables.findings.to_dict("records"):
+    clauses: dict[str, list[ClauseVerdict]] = {}
+    for record in tables.finding_clauses.to_dict("records"):
         row = {str(name): cell for name, cell in record.items()}
-        findings.append(evaluate(parse_finding(row, vocabulary), row, values, vocabulary))
+        clauses.setdefault(str(row["finding"]), []).append(evaluate(row, values, vocabulary))
     early = tables.studies.loc[tables.studies["year"].isin(_excluded_years(tables)), "key"]
     references = tables.references
     case_studies = references.loc[references["role"] == "case study", "key"]
@@ -151,9 +143,28 @@ def fidelity(tables: SurveyTables, problems: Sequence[Problem] = ()) -> Fidelity
         early_keys=tuple(str(key) for key in early),
         case_references=tuple(str(key) for key in case_studies),
         completeness=_completeness(tables),
-        class_disagreements=_class_disagreements(tables),
-        findings=tuple(findings),
+        class_disagreements=tuple(
+            found for _, found in class_disagreements(tables.taxonomy, tables.attributes)
+        ),
+        findings=tuple(
+            _finding({str(name): cell for name, cell in record.items()}, clauses)
+            for record in tables.findings.to_dict("records")
+        ),
         problems=tuple(problems),
+    )
+
+
+def _finding(
+    row: Mapping[str, Any], clauses: Mapping[str, Sequence[ClauseVerdict]]
+) -> FindingVerdict:
+    tested = tuple(clauses[str(row["id"])])
+    return FindingVerdict(
+        id=str(row["id"]),
+        verdict=whole(clause.verdict for clause in tested),
+        survey_section=str(row["survey_section"]),
+        statement=str(row["statement"]),
+        not_tested="" if pd.isna(row["not_tested"]) else str(row["not_tested"]),
+        clauses=tested,
     )
 
 
@@ -197,38 +208,3 @@ def _completeness(tables: SurveyTables) -> tuple[Completeness, ...]:
             )
         )
     return tuple(entries)
-
-
-def accuracy_class(tables: SurveyTables, accuracy_deg: float) -> str:
-    """Return the taxonomy's accuracy class of an accuracy in degrees (min <= a < max).
-
-    Raises
-    ------
-    LookupError
-        No class holds it (negative or not a number).
-    """
-    classes = tables.taxonomy[tables.taxonomy["attribute"] == "accuracy"]
-    for row in classes.to_dict("records"):
-        upper = float("inf") if pd.isna(row["max_deg"]) else row["max_deg"]
-        if row["min_deg"] <= accuracy_deg < upper:
-            return str(row["value"])
-    raise LookupError(f"no accuracy class holds {accuracy_deg} deg")
-
-
-def _class_disagreements(tables: SurveyTables) -> tuple[ClassDisagreement, ...]:
-    known = tables.attributes[tables.attributes["value"].notna()]
-    filed = known[known["attribute"] == "accuracy"].set_index("study")["value"]
-    disagreements = []
-    for row in known[known["attribute"] == "accuracy_deg"].itertuples(index=False):
-        reported = float(str(row.value))
-        by_limits = accuracy_class(tables, reported)
-        if row.study in filed.index and filed[str(row.study)] != by_limits:
-            disagreements.append(
-                ClassDisagreement(
-                    study=str(row.study),
-                    accuracy_deg=reported,
-                    filed=str(filed[str(row.study)]),
-                    by_limits=by_limits,
-                )
-            )
-    return tuple(disagreements)

@@ -18,7 +18,8 @@ from survey_data.importing.values import (
     column_unit,
 )
 from survey_data.problems import Problem, SurveyImportError
-from survey_data.tables import SurveyTables
+from survey_data.reported import KIND_OF, UNSPECIFIED
+from survey_data.tables import RESTING, SurveyTables
 
 AUTHORS_BASIS = "authors-table"
 _SAME_NUMBER = 5e-3  # tables round their angles to two or three digits
@@ -202,7 +203,7 @@ def plan_import(
 
 
 def _withdrawn(tables: SurveyTables, cells: Iterable[Difference]) -> tuple[Withdrawn, ...]:
-    """Return what rests on values that cells replace: roles of studies, pairs of their parts."""
+    """Return the rows of our other tables that rest on values that cells replace."""
     gone = {
         (cell.study, cell.attribute, value)
         for cell in cells
@@ -219,7 +220,15 @@ def _withdrawn(tables: SurveyTables, cells: Iterable[Difference]) -> tuple[Withd
         for row in tables.architectures.fillna("").to_dict("records")
         if any((row["study"], part, row[part]) in gone for part in ("detector", "mask"))
     )
-    return (*roles, *pairs)
+    models = (
+        Withdrawn(
+            table, row["study"], " + ".join(row[name] for name in RESTING[table]), row["note"]
+        )
+        for table in ("compensated_models", "method_variants")
+        for row in getattr(tables, table).fillna("").to_dict("records")
+        if any((row["study"], "model", row[name]) in gone for name in RESTING[table])
+    )
+    return (*roles, *pairs, *models)
 
 
 def differences(
@@ -305,7 +314,22 @@ def _compare(
         found.append(
             Difference(study, attribute, cell.values, theirs, cell.basis, kind, row, column)
         )
+        if kind == "changed" and attribute in KIND_OF:
+            found += _kind_of_another(ours, stated, found[-1])
     return found
+
+
+def _kind_of_another(
+    ours: Mapping[tuple[str, str], _Cell],
+    stated: Mapping[tuple[str, str], Mapping[str, ValueMatch]],
+    number: Difference,
+) -> list[Difference]:
+    """Return the kind of a replaced accuracy or precision as unspecified, unless theirs says it."""
+    kind = KIND_OF[number.attribute]
+    cell = ours.get((number.study, kind))
+    if cell is None or cell.values == (UNSPECIFIED,) or (number.study, kind) in stated:
+        return []
+    return [replace(number, attribute=kind, ours=cell.values, theirs=(UNSPECIFIED,))]
 
 
 def _printed(tables: SurveyTables) -> dict[tuple[str, str], list[set[str]]]:

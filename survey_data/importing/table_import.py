@@ -20,11 +20,9 @@ from survey_data.importing.plan import (
 from survey_data.importing.reading import read_table
 from survey_data.importing.writing import held_tables, write_valid
 from survey_data.problems import SurveyImportError
-from survey_data.tables import SurveyTables, load
+from survey_data.tables import RESTING, SurveyTables, load
 
 _TABLE = "attributes"
-#: Tables whose rows rest on values that an import may replace.
-_RESTING = ("architectures", "roles")
 
 
 def import_table(
@@ -82,7 +80,7 @@ def apply_import(directory: str | Path | None, plan: ImportPlan) -> ImportPlan:
     """Write a plan's edits into attributes.csv, all or nothing.
 
     A cell taken over gets the basis ``authors-table``; what it said before, and on what basis,
-    stays in its note. Rows of roles.csv and architectures.csv that rest on a replaced value go.
+    stays in its note. Rows of other tables that rest on a replaced value go (`tables.RESTING`).
     The result is validated before it replaces the file.
 
     Parameters
@@ -118,7 +116,7 @@ def _applied(folder: Path, plan: ImportPlan) -> ImportPlan:
         return plan
     texts = {_TABLE: _edited(folder, plan, _authors_doi(tables))}
     counts: dict[str, int] = {}
-    for table in _RESTING:
+    for table in sorted(RESTING):
         gone = {(entry.study, entry.value) for entry in plan.withdrawn if entry.table == table}
         if gone:
             texts[table], counts[table] = _without(folder, table, gone)
@@ -148,8 +146,7 @@ def _authors_doi(tables: SurveyTables) -> str:
 def _without(folder: Path, table: str, gone: set[tuple[str, str]]) -> tuple[str, int]:
     """Return a table without rows, given by study and value or pair, and how many are left."""
     header = list(column_types(table))
-    of = ("value",) if "value" in header else ("detector", "mask")
-    places = [header.index(name) for name in of]
+    places = [header.index(name) for name in RESTING[table]]
     rows = [cells for _, cells in read_records(folder / file_name(table), header).rows]
     kept = [c for c in rows if (c[0], " + ".join(c[at] for at in places)) not in gone]
     return csv_text(header, kept), len(kept)

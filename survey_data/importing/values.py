@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import pandas as pd
 
-from survey_data.findings.report import accuracy_class
+from survey_data.accuracy_classes import accuracy_class
 from survey_data.importing.text_similarity import normalise, similarity
 from survey_data.tables import SurveyTables
 
@@ -56,6 +56,11 @@ class ValueReader:
         self._spellings: dict[str, dict[str, set[str]]] = {}
         spelt = [(row["attribute"], row["alias"], row["value"]) for row in _rows(tables.aliases)]
         spelt += [(row["attribute"], row["name"], row["value"]) for row in _rows(tables.taxonomy)]
+        statistics = _rows(tables.statistics)
+        for attribute, kind in self._definitions["kind"].items():
+            if kind == "statistic":
+                spelt += [(str(attribute), row["name"], row["kind"]) for row in statistics]
+                spelt += [(str(attribute), row["kind"], row["kind"]) for row in statistics]
         for attribute, spelling, value in spelt:
             of_attribute = self._spellings.setdefault(attribute, {})
             of_attribute.setdefault(normalise(spelling), set()).add(value)
@@ -114,7 +119,9 @@ class ValueReader:
     def _read_compound(self, attribute: str, piece: str, unit: str) -> list[ValueMatch]:
         if attribute == "accuracy" and (_ANGLE.fullmatch(piece) or _INEQUALITY.match(piece)):
             degrees = self._degrees(attribute, piece, unit)
-            return [ValueMatch(attribute, piece, accuracy_class(self._tables, degrees), 1.0)]
+            return [
+                ValueMatch(attribute, piece, accuracy_class(self._tables.taxonomy, degrees), 1.0)
+            ]
         parts = _split(piece, r"[/&+]|\band\b")
         if len(parts) > 1 and not self._lookup(attribute, piece):
             try:

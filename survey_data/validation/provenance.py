@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from survey_data.findings.checks import Vocabulary
 from survey_data.problems import Problem
+from survey_data.tables import RESTING
 from survey_data.validation.cells import Frames, Rule, problem, stated, texts
 
 #: By basis, the column that must say where a value comes from, or why it stands there.
@@ -21,7 +22,7 @@ TOLD = {
 
 def _evidence_is_told(frames: Frames) -> Iterator[Problem]:
     """Check that a value names the page or section it is from, or else its reason."""
-    for table in ("attributes", "roles", "architectures"):
+    for table in ("attributes", *RESTING):
         if table not in frames:
             continue
         for index, (basis, source, note) in texts(frames[table], "basis", "source", "note"):
@@ -63,15 +64,41 @@ def _sensors_use_every_value(frames: Frames) -> Iterator[Problem]:
             yield problem("architectures", last[study], attribute, message)
 
 
-def _rules_of_empty_cells_parse(frames: Frames) -> Iterator[Problem]:
+def _models_are_of_the_study(frames: Frames) -> Iterator[Problem]:
+    """Check that compensations and variants are of models that the study has."""
+    known = stated(frames)
+    models = Vocabulary(frames["taxonomy"]).values.get("model", set())
+    columns = {"compensated_models": ("compensation", "model"), "method_variants": ("model",)}
+    for table, names in columns.items():
+        for index, (study, *values) in texts(frames[table], "study", *names):
+            own = known.get((study, "model"), set())
+            for name, value in zip(names, values, strict=True):
+                ahead = table == "compensated_models" and name == "model"
+                if value not in (models if ahead else own):
+                    yield problem(table, index, name, f"{study} has no model {value!r}")
+    for index, (study, model, relation) in texts(
+        frames["compensated_models"], "study", "model", "relation"
+    ):
+        if relation == "within" and model not in known.get((study, "model"), set()):
+            yield problem("compensated_models", index, "model", f"{study} has no model {model!r}")
+    for index, (runs_as, extractor) in texts(frames["method_variants"], "runs_as", "extractor"):
+        if runs_as not in models:
+            yield problem("method_variants", index, "runs_as", f"unknown model {runs_as!r}")
+        if extractor not in Vocabulary(frames["taxonomy"]).values.get("extractor", set()):
+            message = f"unknown extractor {extractor!r}"
+            yield problem("method_variants", index, "extractor", message)
+
+
+def _conditions_parse(frames: Frames) -> Iterator[Problem]:
     """Check that each condition of a rule is a value of the vocabulary."""
     known = {cell for _, cell in texts(frames["taxonomy"], "attribute", "value")}
-    for index, (given,) in texts(frames["defaults"], "given"):
-        for condition in given.split("&"):
-            attribute, _, value = condition.partition("=")
-            if (attribute, value) not in known:
-                message = f"expected attribute=value of the taxonomy, got {condition!r}"
-                yield problem("defaults", index, "given", message)
+    for table, column in (("defaults", "given"), ("purposes", "given"), ("purposes", "unless")):
+        for index, (given,) in texts(frames[table], column):
+            for condition in given.split("&") if given else ():
+                attribute, _, value = condition.partition("=")
+                if (attribute, value) not in known:
+                    message = f"expected attribute=value of the taxonomy, got {condition!r}"
+                    yield problem(table, index, column, message)
 
 
 def _advice_speaks_the_vocabulary(frames: Frames) -> Iterator[Problem]:
@@ -115,7 +142,11 @@ RULES: tuple[tuple[tuple[str, ...], Rule], ...] = (
     (("attributes",), _evidence_is_told),
     (("attributes", "roles"), _roles_are_of_methods),
     (("attributes", "architectures"), _sensors_use_every_value),
-    (("taxonomy", "defaults"), _rules_of_empty_cells_parse),
+    (
+        ("taxonomy", "attributes", "compensated_models", "method_variants"),
+        _models_are_of_the_study,
+    ),
+    (("taxonomy", "defaults", "purposes"), _conditions_parse),
     (("taxonomy", "advice"), _advice_speaks_the_vocabulary),
     (("taxonomy", "model_families"), _families_cover_the_models),
     (("studies", "venues"), _venues_are_of_known_ones),

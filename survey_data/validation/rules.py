@@ -12,12 +12,14 @@ from collections.abc import Iterator
 
 import pandas as pd
 
+from survey_data.accuracy_classes import class_disagreements
 from survey_data.descriptor import primary_key
-from survey_data.findings.checks import FindingSyntaxError, Vocabulary, parse_finding
+from survey_data.findings.checks import FindingSyntaxError, Vocabulary, parse_clause
 from survey_data.problems import Problem
+from survey_data.reported import KIND_OF
 from survey_data.tables import FIRST_ROW
 from survey_data.validation import provenance
-from survey_data.validation.cells import Frames, Rule, problem, texts
+from survey_data.validation.cells import Frames, Rule, problem, stated, texts
 from survey_data.validation.extension import check_extension
 
 
@@ -36,15 +38,18 @@ def check_rules(frames: Frames) -> list[Problem]:
 def _values_belong(frames: Frames) -> Iterator[Problem]:
     """Check that a value is of its attribute's vocabulary, or a number in its range."""
     vocabulary = Vocabulary(frames["taxonomy"]).values
+    kinds = {kind for _, (kind,) in texts(frames["statistics"], "kind")}
     rows = frames["attribute_definitions"].to_dict("records")
     definitions = {str(row["attribute"]): row for row in rows}
     for index, (attribute, value) in texts(frames["attributes"], "attribute", "value"):
         if not value or attribute not in definitions:
             continue
         definition = definitions[attribute]
-        if definition["kind"] == "categorical":
-            if value not in vocabulary.get(attribute, ()):
-                message = f"unknown taxonomy value {value!r} of {attribute}"
+        if definition["kind"] != "numeric":
+            categorical = definition["kind"] == "categorical"
+            if value not in (vocabulary.get(attribute, ()) if categorical else kinds):
+                of = "taxonomy value" if categorical else "kind"
+                message = f"unknown {of} {value!r} of {attribute}"
                 yield problem("attributes", index, "value", message)
             continue
         fault = number_fault(value, definition["min"], definition["max"])
@@ -276,14 +281,48 @@ def _accuracy_classes_tile(frames: Frames) -> Iterator[Problem]:
         yield problem("taxonomy", classes[-1][2], "max_deg", message)
 
 
+def _classes_keep_their_limits(frames: Frames) -> Iterator[Problem]:
+    """Check a class against its study's number, where neither is printed by the survey."""
+    found = class_disagreements(frames["taxonomy"], frames["attributes"])
+    for index, one in found:
+        if not one.printed:
+            message = (
+                f"{one.study} is filed as {one.filed}, but by the limits of taxonomy.csv its "
+                f"{one.accuracy_deg:g} deg are {one.by_limits}"
+            )
+            yield problem("attributes", index, "value", message)
+
+
+def _kinds_have_a_number(frames: Frames) -> Iterator[Problem]:
+    """Check that a kind of accuracy or precision stands beside a number of the study."""
+    known = stated(frames)
+    number_of = {kind: number for number, kind in KIND_OF.items()}
+    for index, (study, attribute, value) in texts(
+        frames["attributes"], "study", "attribute", "value"
+    ):
+        number = number_of.get(attribute)
+        if value and number is not None and (study, number) not in known:
+            message = f"{study} has a kind and no {number}"
+            yield problem("attributes", index, "attribute", message)
+
+
 def _findings_parse(frames: Frames) -> Iterator[Problem]:
-    """Check that every finding keeps the grammar and names known values."""
+    """Check that a finding has clauses, which keep the grammar and name known values."""
     vocabulary = Vocabulary(frames["taxonomy"])
-    for index, row in enumerate(frames["findings"].to_dict("records")):
+    tested: dict[str, int] = {}
+    for index, row in enumerate(frames["finding_clauses"].to_dict("records")):
+        finding = str(row["finding"])
+        tested[finding] = tested.get(finding, 0) + 1
+        if row["clause"] != tested[finding]:
+            message = f"expected clause {tested[finding]} of {finding}, got {row['clause']}"
+            yield problem("finding_clauses", index, "clause", message)
         try:
-            parse_finding({str(name): cell for name, cell in row.items()}, vocabulary)
+            parse_clause({str(name): cell for name, cell in row.items()}, vocabulary)
         except FindingSyntaxError as error:
-            yield problem("findings", index, error.column, str(error))
+            yield problem("finding_clauses", index, error.column, str(error))
+    for index, (finding,) in texts(frames["findings"], "id"):
+        if finding not in tested:
+            yield problem("findings", index, "id", f"{finding} has no row in finding_clauses.csv")
 
 
 def _identifiers_run_on(frames: Frames) -> Iterator[Problem]:
@@ -293,6 +332,7 @@ def _identifiers_run_on(frames: Frames) -> Iterator[Problem]:
         ("claims", "id", "C{:02d}"),
         ("bases", "rank", "{:d}"),
         ("defaults", "id", "D{:02d}"),
+        ("purposes", "id", "U{:02d}"),
         ("advice", "id", "A{:02d}"),
     ):
         if table not in frames:
@@ -332,7 +372,7 @@ def _counts_hold(frames: Frames) -> Iterator[Problem]:
 
 
 _RULES: tuple[tuple[tuple[str, ...], Rule], ...] = (
-    (("attributes", "taxonomy", "attribute_definitions"), _values_belong),
+    (("attributes", "taxonomy", "attribute_definitions", "statistics"), _values_belong),
     (("attributes",), _one_basis_a_cell),
     (("attributes",), _unknown_is_empty),
     (("studies", "attributes", "attribute_definitions"), _studies_are_complete),
@@ -344,7 +384,9 @@ _RULES: tuple[tuple[tuple[str, ...], Rule], ...] = (
     (("taxonomy", "claims"), _claim_sections_exist),
     (("feature_assessment",), _assessment_is_full),
     (("taxonomy",), _accuracy_classes_tile),
-    (("findings", "taxonomy"), _findings_parse),
+    (("taxonomy", "attributes"), _classes_keep_their_limits),
+    (("attributes",), _kinds_have_a_number),
+    (("findings", "finding_clauses", "taxonomy"), _findings_parse),
     ((), _identifiers_run_on),
     (("counts",), _counts_hold),
 )

@@ -140,6 +140,9 @@ def states(study: Study, ask: Ask) -> bool:
         return False
     largest, field = number(ask, "max_error_deg"), number(ask, "min_fov_deg")
     error, fov = study.number("accuracy_deg"), study.number("fov_deg")
+    kinds = {"3sigma": 3.0, "max": 3.0, "1sigma": 1.0, "rms": 1.0, "p95": 1.96, "mean": 0.7979}
+    if error is not None:
+        error /= kinds.get(next(iter(study.of("accuracy_kind")), ""), 1.0)
     return (largest is None or (error is not None and error <= largest)) and (
         field is None or (fov is not None and fov >= field)
     )

@@ -97,5 +97,8 @@ def _tables(tables: survey_data.SurveyTables, **changed: pd.DataFrame) -> Simple
         "architectures",
         "defaults",
         "model_families",
+        "purposes",
+        "compensated_models",
+        "method_variants",
     )
     return SimpleNamespace(**{name: changed.get(name, getattr(tables, name)) for name in names})

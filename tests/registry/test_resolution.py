@@ -273,6 +273,25 @@ def test_an_answer_is_plain_data(facts_of: Build) -> None:
     answer = resolved(facts_of, study(model=["None", "LSQ"])).to_dict()
     assert answer == {
         "key": "S0",
+        "grade": "stand-in",
+        "sentence": "Its basic centroid threshold method runs as bctm → spm on CMOS-Slit "
+        "(nominal); the survey states no model, so spm is chosen; its least-squares geometric "
+        "model is missing.",
+        "departures": [
+            {
+                "part": "model",
+                "value": "None",
+                "text": "the survey states no model, so spm is chosen",
+                "settled_by": "the study itself, if it has any model",
+            },
+            {
+                "part": "model",
+                "value": "LSQ",
+                "text": "its least-squares geometric model is missing",
+                "settled_by": "an implementation of LSQ for this sensor beside its other methods",
+            },
+        ],
+        "purposes": {},
         "state": "partial",
         "pipelines": [
             {
@@ -291,6 +310,7 @@ def test_an_answer_is_plain_data(facts_of: Build) -> None:
                 },
                 "assumed": {"model": "the survey maps no model: the simplest that fits"},
                 "datasets": ["CMOS-Slit"],
+                "settings": [{"dataset": "CMOS-Slit", "condition": "nominal", "purposes": []}],
             }
         ],
         "gaps": [{"attribute": "model", "value": "LSQ", "reason": "no model implements LSQ"}],

@@ -16,8 +16,8 @@ from survey_data.findings.checks import (
     FindingSyntaxError,
     Vocabulary,
     evaluate,
-    parse_finding,
     study_values,
+    whole,
 )
 
 
@@ -54,11 +54,11 @@ def judge_by_brute_force(row: dict[str, str]) -> tuple[str, dict[str, int]]:
     having = studies_having()
     chosen = {r["key"] for r in rows_of("studies")}
     for condition in filter(None, row["given"].split("&")):
-        attribute, value = condition.split("=")
-        allowed = set(having[attribute, value])
-        if condition == "detector=PD":
-            allowed |= having["detector", "QPD"]
-        chosen &= allowed
+        attribute, listed = condition.split("=")
+        values = listed.split(" or ")
+        if attribute == "detector" and "PD" in values:
+            values.append("QPD")
+        chosen &= set().union(*(having[attribute, value] for value in values))
     ranked, listed = row["expects"].split(": ")
     named = listed.replace(">", "|").split("|")
     sets = {value: studies & chosen for (name, value), studies in having.items() if name == ranked}
@@ -87,6 +87,7 @@ def judge_by_brute_force(row: dict[str, str]) -> tuple[str, dict[str, int]]:
             "bottom-set": min(rest) - max(got) >= gap and min(got) > 0,
             "among": min(got) > 0,
             "spread": min(got) > 0,
+            "no-majority": all(2 * n <= counted for n in got),
         }[row["kind"]]
 
     return ("reproduced" if holds(1) else "tied" if holds(0) else "contradicted"), counts
@@ -96,34 +97,93 @@ def test_every_verdict_and_every_count_agrees_with_brute_force(
     tables: survey_data.SurveyTables,
 ) -> None:
     verdicts = survey_data.fidelity(tables).findings
-    rows = rows_of("findings")
+    rows = rows_of("finding_clauses")
     assert [verdict.id for verdict in verdicts] == [f"F{n:02d}" for n in range(1, 52)]
-    for row, verdict in zip(rows, verdicts, strict=True):
+    clauses = [(found.id, clause) for found in verdicts for clause in found.clauses]
+    for row, (finding, verdict) in zip(rows, clauses, strict=True):
         expected, counts = judge_by_brute_force(row)
-        assert (verdict.id, verdict.verdict) == (row["id"], expected)
-        assert dict(verdict.ranking) == counts, row["id"]
+        assert (finding, str(verdict.clause)) == (row["finding"], row["clause"])
+        assert verdict.verdict == expected, row
+        assert dict(verdict.ranking) == counts, row
         assert all(count == counts.get(value, 0) for value, count in verdict.named)
         assert verdict.settled_by
         falling = [count for _, count in verdict.ranking]
         assert falling == sorted(falling, reverse=True)
 
 
-def test_29_findings_are_reproduced_2_tied_17_contradicted_and_3_undecidable(
+def test_26_findings_are_reproduced_4_partly_1_tied_17_contradicted_and_3_undecidable(
     tables: survey_data.SurveyTables,
 ) -> None:
     report = survey_data.fidelity(tables)
     assert report.verdicts == {
-        "reproduced": 29, "tied": 2, "contradicted": 17, "undecidable": 3,
+        "reproduced": 26, "partly": 4, "tied": 1, "contradicted": 17, "undecidable": 3,
     }  # fmt: skip
     by_verdict = defaultdict(set)
     for finding in report.findings:
         by_verdict[finding.verdict].add(finding.id)
     assert by_verdict["undecidable"] == {"F18", "F31", "F32"}
-    assert by_verdict["tied"] == {"F11", "F39"}
+    assert by_verdict["partly"] == {"F34", "F43", "F45", "F50"}
+    assert by_verdict["tied"] == {"F39"}
     assert by_verdict["contradicted"] == {
-        "F01", "F04", "F05", "F12", "F13", "F14", "F16", "F19", "F22", "F24", "F27", "F28", "F30",
-        "F37", "F40", "F43", "F44",
+        "F01", "F04", "F05", "F10", "F12", "F13", "F14", "F16", "F19", "F22", "F24", "F27", "F28",
+        "F30", "F37", "F40", "F44",
     }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("finding", "levels"),
+    [
+        ("F26", {"model_category", "extractor_family"}),
+        ("F34", {"model_category", "extractor"}),
+        ("F35", {"model_category", "extractor_family"}),
+        ("F38", {"model_category", "extractor_family"}),
+        ("F41", {"model_category", "extractor_family"}),
+        ("F43", {"model_category", "extractor_family"}),
+        ("F45", {"model_category", "extractor"}),
+        ("F50", {"detector", "mask"}),
+    ],
+)
+def test_a_sentence_of_two_halves_is_tested_in_both(finding: str, levels: set[str]) -> None:
+    ranked = {
+        row["expects"].partition(":")[0]
+        for row in rows_of("finding_clauses")
+        if row["finding"] == finding
+    }
+    assert ranked == levels
+
+
+def test_a_method_or_a_sensor_part_that_a_finding_names_is_in_a_clause_of_it() -> None:
+    """Words of the statements against what their clauses rank or filter by."""
+    named = {
+        "with centroiding": "Centroid detection", "voltage balance": "Voltage balance",
+        "geometric": "Geometric", "neural": "Neural network", "multiplexing": "Multiplex",
+        "photodiode": "PD", "solar": "PVA", "CMOS": "CMOS", "event-based": "Event",
+        "encoded": "Encoded", "maskless": "Maskless", "single": "Single-Ap.", "slit": "Slit",
+        "multi-aperture": "Multi-Ap.",
+    }  # fmt: skip
+    clauses = defaultdict(str)
+    for row in rows_of("finding_clauses"):
+        clauses[row["finding"]] += f" {row['given']} {row['expects']}"
+    for row in rows_of("findings"):
+        for word, value in named.items():
+            said = row["statement"].casefold().replace("photodiode processing", "")
+            if word.casefold() in said:
+                assert value in clauses[row["id"]], (row["id"], word)
+
+
+@pytest.mark.parametrize(
+    ("clauses", "verdict"),
+    [
+        (["reproduced", "reproduced"], "reproduced"),
+        (["reproduced", "contradicted"], "partly"),
+        (["undecidable", "reproduced"], "partly"),
+        (["tied", "contradicted"], "contradicted"),
+        (["tied", "undecidable"], "tied"),
+        (["undecidable"], "undecidable"),
+    ],
+)
+def test_a_finding_is_reproduced_only_where_all_of_it_is(clauses: Any, verdict: str) -> None:
+    assert whole(clauses) == verdict
 
 
 # Made-up studies: errors A > B > C = D, four masks, two extractors.
@@ -154,11 +214,8 @@ def made_up(given: str | None, expects: str, kind: str) -> Any:
     attributes = pd.DataFrame(cells, columns=["study", "attribute", "value"])
     sensors = pd.DataFrame([("s4", "CMOS", "n"), ("s4", "PD", "m")], columns=SENSORS)
     values = study_values(studies, attributes, sensors, vocabulary)
-    row = {
-        "id": "F01", "survey_section": "sec:x", "statement": "made up",
-        "given": given, "expects": expects, "kind": kind,
-    }  # fmt: skip
-    return evaluate(parse_finding(row, vocabulary), row, values, vocabulary)
+    row = {"clause": 1, "statement": "made up", "given": given, "expects": expects, "kind": kind}
+    return evaluate(row, values, vocabulary)
 
 
 @pytest.mark.parametrize(
@@ -186,6 +243,8 @@ def made_up(given: str | None, expects: str, kind: str) -> Any:
         ("among", "error: A|E", "contradicted"),
         ("spread", "error: A|B|E", "contradicted"),
         ("spread", "error: A|B|C", "reproduced"),
+        ("no-majority", "error: B|C|D", "reproduced"),  # B in 2 of 4
+        ("no-majority", "error: A|E", "contradicted"),
         ("top", "extractor: X", "contradicted"),  # Z is in every study
         ("top-centroid", "extractor: X", "reproduced"),
         ("top-centroid", "extractor: Y", "contradicted"),
@@ -210,6 +269,7 @@ def test_each_kind_means_what_it_says(kind: str, expects: str, verdict: str) -> 
         ("among", "error: A|E", "no study with E"),
         ("spread", "error: A|B|C", "each occurs, C in 1 study"),
         ("top-set", "error: A|B|C|D", "nothing else occurs"),
+        ("no-majority", "error: A|B", "A 4 of 4, the most of those named"),
         ("top", "model: p", "1 study of the 2 that match, with a known model"),
     ],
 )
@@ -232,6 +292,11 @@ def test_a_photodiode_filter_includes_quadrant_photodiodes() -> None:
     verdict = made_up("detector=PD", "error: A", "top")
     assert (verdict.matching, verdict.counted) == (3, 3)
     assert made_up("detector=QPD", "error: A", "top").matching == 1
+
+
+def test_values_of_a_condition_are_alternatives() -> None:
+    assert made_up("error=B or C", "error: A", "top").matching == 3
+    assert made_up("error=B or C&mask=n", "error: A", "top").matching == 1
 
 
 def test_conditions_are_joined_by_and() -> None:

@@ -76,6 +76,31 @@ def test_applying_raises_the_basis_and_keeps_what_was_said_before(copy: Any) -> 
     assert {row[2] for row in cell(copy, "Chang2008", "task")} == {"Cost", "Accuracy"}
 
 
+@pytest.mark.parametrize(
+    ("column", "said", "kind"),
+    [
+        ("", "", "unspecified"),  # 3 sigma was said of the number that is gone
+        (";Accuracy kind", ";RMS", "rms"),
+        (";Accuracy kind", ";3-sigma", "3sigma"),
+    ],
+)
+def test_a_replaced_accuracy_does_not_keep_the_kind_of_the_old_one(
+    copy: Any, column: str, said: str, kind: str
+) -> None:
+    text = f"Key;Accuracy (deg){column}\nWei2011;0.05{said}\n"
+    import_table(offer(copy, text), copy.directory, apply=True)
+    assert cell(copy, "Wei2011", "accuracy_deg")[0][2] == "0.05"
+    (found,) = cell(copy, "Wei2011", "accuracy_kind")
+    assert found[2:4] == [kind, "authors-table"]
+    assert validate(copy.directory) == []
+
+
+def test_a_class_that_an_imported_number_contradicts_stands_and_is_counted(copy: Any) -> None:
+    import_table(offer(copy, "Key;Accuracy (deg)\nWei2011;0.7\n"), copy.directory, apply=True)
+    (found,) = survey_data.fidelity(load(copy.directory)).class_disagreements
+    assert (found.study, found.filed, found.by_limits) == ("Wei2011", "FSS", "CSS")
+
+
 def test_the_survey_s_printed_cells_are_never_overwritten(copy: Any) -> None:
     before = [row for row in copy.rows("attributes") if row[3] == "survey-table"]
     import_table(offer(copy, THEIRS), copy.directory, apply=True)

@@ -13,10 +13,10 @@ import pandas as pd
 import pytest
 
 import survey_data
+from survey_data.accuracy_classes import accuracy_class
 from survey_data.csv_reading import read_records
 from survey_data.csv_writing import csv_text
 from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name, table_names
-from survey_data.findings.report import accuracy_class
 
 
 def test_the_package_passes_frictionless_from_its_files() -> None:
@@ -128,7 +128,7 @@ def test_a_study_s_cells_are_as_compiled(tables: survey_data.SurveyTables) -> No
 def test_accuracy_classes_split_at_half_a_degree_an_arcminute_and_ten_arcseconds(
     accuracy_deg: float, expected: str, tables: survey_data.SurveyTables
 ) -> None:
-    assert accuracy_class(tables, accuracy_deg) == expected
+    assert accuracy_class(tables.taxonomy, accuracy_deg) == expected
 
 
 @pytest.mark.parametrize("accuracy_deg", [-1.0, float("nan")])
@@ -136,7 +136,7 @@ def test_what_is_no_accuracy_has_no_class(
     accuracy_deg: float, tables: survey_data.SurveyTables
 ) -> None:
     with pytest.raises(LookupError, match="no accuracy class"):
-        accuracy_class(tables, accuracy_deg)
+        accuracy_class(tables.taxonomy, accuracy_deg)
 
 
 def test_importing_the_package_loads_nothing_heavy() -> None:

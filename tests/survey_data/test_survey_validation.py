@@ -160,18 +160,26 @@ UNKNOWN = {
     "study_tables": [("value", "Sundial"), ("source", "tab:none"), ("attribute", "task")],
     "feature_assessment": [("extractor", "Sundial"), ("score", "3"), ("property", "Beauty")],
     "approaches": [("general", "Astrology")],
-    "findings": [("expects", "error: Sundial"), ("kind", "best"), ("given", "error=Sundial")],
+    "findings": [("id", "finding"), ("survey_section", "page 3")],
+    "finding_clauses": [
+        ("expects", "error: Sundial"), ("kind", "best"), ("given", "error=Sundial"),
+        ("finding", "F99"),
+    ],
     "claims": [("section", "model:sundial"), ("study", "Nobody1999"), ("id", "claim")],
     "references": [("role", "friend"), ("mapped_key", "Nobody1999"), ("doi", "doi:10.1/x")],
     "counts": [("table", "sundials"), ("held", "many")],
     "hardware": [("detector", "Sundial"), ("study", "Nobody1999"), ("accuracy_kind", "best")],
     "defaults": [("value", "Sundial"), ("attribute", "task"), ("given", "extractor=Sundial")],
+    "purposes": [("given", "model=Sundial"), ("unless", "mask"), ("purpose", "fun")],
+    "compensated_models": [("model", "Sundial"), ("relation", "behind"), ("study", "Nobody1999")],
+    "method_variants": [("model", "Sundial"), ("extractor", "Squint"), ("runs_as", "Sundial")],
     "architectures": [("mask", "Sundial")],
     "roles": [("value", "Sundial"), ("role", "admired"), ("study", "Nobody1999")],
     "advice": [("detector", "Sundial"), ("extractor", "Squint"), ("value", "Beauty")],
     "protocol": [("kind", "rumour")],
     "model_families": [("model", "Sundial"), ("calibration", "never")],
     "venues": [("study", "Nobody1999")],
+    "statistics": [("kind", "median"), ("rms_divisor", "three"), ("rms_divisor", "0")],
 }  # fmt: skip
 
 
@@ -320,16 +328,58 @@ GRAMMAR = [
 
 
 def test_the_findings_grammar_is_checked(copy: Any) -> None:
-    sound = copy.rows("findings")[1]  # a top-set over errors
-    rows = copy.rows("findings")
+    rows = copy.rows("finding_clauses")
+    sound = rows[1]  # a top-set over errors
     for row, (column, text) in enumerate(GRAMMAR, 2):
-        cells = [rows[row - 1][0], *sound[1:]]
+        cells = [*rows[row - 1][:2], *sound[2:]]
         cells[rows[0].index(column)] = text
         rows[row - 1] = cells
-    copy.write("findings", rows)
-    found = [(p.row, p.column) for p in copy.found("findings.csv")]
+    copy.write("finding_clauses", rows)
+    found = [(p.row, p.column) for p in copy.found("finding_clauses.csv")]
     blamed = [("expects" if column == "kind" else column) for column, _ in GRAMMAR]
     assert found == list(enumerate(blamed, 2))
+
+
+def test_a_finding_is_tested_by_clauses_that_run_on(copy: Any) -> None:
+    rows = copy.rows("finding_clauses")
+    at = next(i for i, cells in enumerate(rows, 1) if cells[:2] == ["F50", "2"])
+    copy.set("finding_clauses", at, "clause", "3")
+    assert located(copy.found("finding_clauses.csv"), at, "clause")
+    copy.write("finding_clauses", [cells for cells in rows if cells[0] != "F50"])
+    assert located(copy.found("findings.csv"), 51, "id")
+
+
+def place(copy: Any, study: str, attribute: str) -> int:
+    rows = copy.rows("attributes")
+    return next(i for i, cells in enumerate(rows, 1) if cells[:2] == [study, attribute])
+
+
+@pytest.mark.parametrize(("filed", "number"), [("FSS", "0.01"), ("VFSS", "0.0167"), ("CSS", "0.3")])
+def test_a_class_that_its_number_contradicts_is_refused(filed: str, number: str, copy: Any) -> None:
+    copy.set("attributes", place(copy, "Xie2012", "accuracy_deg"), "value", number)
+    row = place(copy, "Xie2012", "accuracy")
+    copy.set("attributes", row, "value", filed)
+    assert located(copy.found("attributes.csv"), row, "value")
+
+
+@pytest.mark.parametrize("basis", ["survey-text", "authors-table"])
+@pytest.mark.parametrize("attribute", ["accuracy", "accuracy_deg"])
+def test_a_printed_class_or_number_may_contradict_the_other(
+    basis: str, attribute: str, copy: Any
+) -> None:
+    copy.set("attributes", place(copy, "Xie2012", "accuracy"), "value", "CSS")
+    copy.set("attributes", place(copy, "Xie2012", attribute), "basis", basis)
+    assert survey_data.validate(copy.directory) == []
+
+
+def test_a_kind_needs_a_number_and_is_one_of_those_there_are(copy: Any) -> None:
+    row = place(copy, "Sun2023", "accuracy_kind")
+    copy.set("attributes", row, "value", "2sigma")
+    assert located(copy.found("attributes.csv"), row, "value")
+    copy.set("attributes", row, "value", "1sigma")
+    rows = [c for c in copy.rows("attributes") if c[:2] != ["Sun2023", "accuracy_deg"]]
+    copy.write("attributes", rows)
+    assert located(copy.found("attributes.csv"), row - 1, "attribute")
 
 
 @pytest.mark.parametrize("value", ["CSS", "FSS", "VFSS", "UFSS"])

@@ -163,14 +163,18 @@ def _print(
     gaps = [gap.to_dict() for gap in resolution.gaps]
     document = {
         "study": study,
+        "grade": resolution.fidelity.grade,
+        "sentence": resolution.fidelity.sentence,
         "state": resolution.state,
         "scores": rows,
         "gaps": gaps,
         "sources": result.sources(),
     }
-    title = f"{study} ({resolution.state}): {len(rows)} scores"
+    title = f"{study} ({resolution.fidelity.grade}): {len(rows)} scores"
     columns = CSV_COLUMNS if form is Format.CSV else COLUMNS
     emit(rows, columns, form, document=document, title=title)
+    if form is not Format.JSON:
+        typer.echo(f"{resolution.fidelity.grade}: {resolution.fidelity.sentence}", err=True)
     for warning in result.warnings:
         typer.echo(f"warning: {warning}", err=True)
     if form is not Format.JSON:

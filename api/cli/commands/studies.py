@@ -15,11 +15,21 @@ from api.cli.wrong_call import WrongCallError
 from api.columns import STUDIES, STUDY
 from api.http.models.parameters import LARGEST_PAGE
 from api.http.routers import studies as answers
+from registry.fidelity.grading import tally_text
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
-COLUMNS = ("key", "year", "state", "detector", "mask", "extractor", "model", "title")
+COLUMNS = ("key", "year", "grade", "detector", "mask", "extractor", "model", "title")
 DETAILS = ("attribute", "value", "name_in_study", "nearest", "role", "basis", "source", "note")
+
+
+class Grade(StrEnum):
+    """How near what runs is to a study."""
+
+    FAITHFUL = "faithful"
+    CLOSE = "close"
+    STAND_IN = "stand-in"
+    NONE = "none"
 
 
 class State(StrEnum):
@@ -47,8 +57,12 @@ def studies(
     mask: attributes.Mask = None,
     model: attributes.Model = None,
     extractor: attributes.Extractor = None,
+    grade: Annotated[
+        list[Grade] | None,
+        typer.Option(help="How near what runs is to the study; may be repeated."),
+    ] = None,
     state: Annotated[
-        list[State] | None, typer.Option(help="How much can be run; may be repeated.")
+        list[State] | None, typer.Option(help="Whether gaps are left; may be repeated.")
     ] = None,
     edition: attributes.EditionOption = attributes.Edition.SURVEY,
     year_min: Annotated[int | None, typer.Option(help="This year or later.")] = None,
@@ -58,12 +72,13 @@ def studies(
     ] = None,
     form: FormatOption = Format.TABLE,
 ) -> None:
-    """List the studies and how far each one runs, or show one.
+    """List the studies and how near to each what runs of it is, or show one.
 
-    A study is complete when every value of its mapping runs, partial when some do not, or a rule
-    fills what the mapping leaves empty, none when nothing of it runs. `sunatlas studies KEY` says
-    why, and of every value of a pipeline what it rests on; it finds studies after the survey, too,
-    which the list has with --edition all.
+    A run is faithful where its sensor, condition, methods and compensations are the study's own,
+    stated or inferred with a reason; close where one part departs from the study, a stand-in where
+    more do, none where nothing runs. `sunatlas studies KEY` says which, what would settle it, and
+    of every value of a pipeline what it rests on; it finds studies after the survey, too, which the
+    list has with --edition all. The state is complete when no gap is left.
     """
     filters: dict[str, Any] = {
         "task": task,
@@ -73,6 +88,7 @@ def studies(
         "mask": mask,
         "model": model,
         "extractor": extractor,
+        "grade": [str(g) for g in grade or ()],
         "state": [str(s) for s in state or ()],
         "edition": None if edition is attributes.Edition.SURVEY else edition.value,
         "year_min": year_min,
@@ -91,7 +107,8 @@ def _list(filters: Mapping[str, Any], form: Format) -> None:
     found = ask(answers.studies, {**filters, "limit": LARGEST_PAGE}).document["items"]
     flat = [{**study, **study["values"]} for study in found]
     columns = STUDIES if form is Format.CSV else COLUMNS
-    emit(flat, columns, form, document=found, title=f"{len(found)} studies")
+    counted = tally_text(study["grade"] for study in found)
+    emit(flat, columns, form, document=found, title=f"{len(found)} studies: {counted}")
 
 
 def _show(key: str, form: Format) -> None:
@@ -103,18 +120,21 @@ def _show(key: str, form: Format) -> None:
         say(f"{study['key']}: {study['title'] or 'title unknown'}")
         year = study["year"] or "year unknown"
         say(f"{study['authors'] or 'authors unknown'}, {year}. {study['venue'] or ''}")
-        say(f"{study['doi'] or study['url'] or 'no DOI known'}; runs: {study['state']}")
+        say(study["doi"] or study["url"] or "no DOI known")
         if study["edition"] != "survey":
             say("Added after the survey, which does not map it.")
         for one in study["verified"]:
             say(f"Verified by {one['name']} on {one['date']}: {one['confirms']} ({one['source']})")
+        say(f"{study['grade']}: {study['sentence']}")
+        for departure in study["departures"]:
+            say(f"  {departure['part']} settled by: {departure['settled_by']}")
         typer.echo()
     emit(study["attributes"], STUDY if form is Format.CSV else DETAILS, form)
     if form is Format.TABLE:
-        reported = study["reported_accuracy_deg"]
-        said = "nothing is known" if reported is None else f"{reported:g} deg"
+        reported = [study[f"reported_{quantity}"] for quantity in ("accuracy", "precision")]
+        said = [f"{one['label']} {one['value_deg']:g} deg" for one in reported if one is not None]
         typer.echo()
-        say(f"Accuracy that the study reports of its own sensor: {said}")
+        say(f"Reported by the study of its own sensor: {', '.join(said) or 'no number is known'}")
         typer.echo()
         pipelines = (*("detector", "mask", "extractor", "model", "measured here"), "assumed")
         emit(
@@ -139,8 +159,10 @@ def _assumed(pipeline: Mapping[str, Any]) -> list[str]:
 
 
 def _measured(pipeline: Mapping[str, Any]) -> list[str]:
-    """Return each data set of a pipeline with its published error there."""
-    return [f"{score['dataset']} {_error(score)}" for score in pipeline["scores"]]
+    """Return each setting of a pipeline with its published error there."""
+    return [
+        f"{score['dataset']}, {score['condition']}: {_error(score)}" for score in pipeline["scores"]
+    ]
 
 
 def _error(score: Mapping[str, Any]) -> str:

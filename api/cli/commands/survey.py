@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -25,10 +25,14 @@ app.command("add")(survey_add.add)
 app.command("remove")(survey_add.remove)
 app.command("verify")(survey_add.verify)
 
-FINDINGS = ("id", "verdict", "counted", "given", "expects", "most_frequent", "settled_by")
+FINDINGS = (
+    *("id", "verdict", "clause_verdict", "counted", "given", "expects", "most_frequent"),
+    "settled_by",
+)
 FINDINGS_CSV = (
-    *("id", "verdict", "kind", "survey_section", "given", "expects", "matching", "counted"),
-    *("named", "ranking", "settled_by", "statement"),
+    *("id", "verdict", "clause", "clause_verdict", "kind", "survey_section", "given", "expects"),
+    *("matching", "counted", "named", "ranking", "settled_by", "clause_statement", "statement"),
+    *("not_tested",),
 )
 
 
@@ -44,9 +48,9 @@ def check(
     """Validate the tables and report how faithful they are to the survey.
 
     Counts against the survey's own, completeness of every attribute by the basis of its values,
-    and each of the survey's findings with a verdict and the counts behind it. CSV holds the
-    findings. Where a table has problems, each is named on stderr with file, row and column, and
-    the exit code is 1.
+    the classes that a study's number contradicts, and each of the survey's findings with a verdict,
+    its clauses and the counts behind them. CSV holds the clauses of the findings. Where a table has
+    problems, each is named on stderr with file, row and column, and the exit code is 1.
     """
     problems = [*survey_data.validate(data), *recorded_facts.changes(data or DATA_DIRECTORY)]
     if problems:
@@ -55,9 +59,24 @@ def check(
     if form is Format.JSON:
         emit_json(report.to_dict())
     elif form is Format.CSV:
-        emit([finding.to_dict() for finding in report.findings], FINDINGS_CSV, form)
+        emit(_clauses(report), FINDINGS_CSV, form)
     else:
         _print(report)
+
+
+def _clauses(report: FidelityReport) -> list[dict[str, Any]]:
+    """Return a row for each clause, with what is said of its finding as a whole."""
+    return [
+        {
+            **clause.to_dict(),
+            "clause_verdict": clause.verdict,
+            "clause_statement": clause.statement,
+            **{name: getattr(found, name) for name in ("id", "verdict", "statement")},
+            **{name: getattr(found, name) for name in ("survey_section", "not_tested")},
+        }
+        for found in report.findings
+        for clause in found.clauses
+    ]
 
 
 def _refuse(problems: Sequence[Problem], form: Format) -> None:
@@ -98,14 +117,20 @@ def _print(report: FidelityReport) -> None:
         title="Studies with a known value, by its strongest basis",
     )
     typer.echo()
+    against = [
+        f"{one.study} ({one.accuracy_deg:g} deg, filed as {one.filed}, by limits {one.by_limits})"
+        for one in report.class_disagreements
+    ]
+    say(
+        f"Printed classes or numbers that the limits of the classes contradict: {len(against)}"
+        f"{': ' if against else ''}{', '.join(against)}."
+    )
+    typer.echo()
     verdicts = ", ".join(f"{count} {verdict}" for verdict, count in report.verdicts.items())
     emit(
         [
-            {
-                **finding.to_dict(),
-                "most_frequent": [f"{value} {count}" for value, count in finding.ranking[:3]],
-            }
-            for finding in report.findings
+            {**row, "most_frequent": [f"{value} {count}" for value, count in row["ranking"][:3]]}
+            for row in _clauses(report)
         ],
         FINDINGS,
         Format.TABLE,

@@ -167,11 +167,12 @@ def _write_template(key: str, file: Path | None, chosen_key: str | None, folder:
 def _preview(addition: Addition) -> dict[str, Any]:
     """Return the study's row and cells, and what of it would run."""
     from benchmark.plan.combinations import scorable  # noqa: PLC0415 - loads the simulator
+    from benchmark.plan.shown import data_sets  # noqa: PLC0415 - as above
     from registry.resolution import resolve  # noqa: PLC0415 - as above
     from registry.studies import study_from  # noqa: PLC0415 - as above
 
     study = study_from(addition.rows)
-    resolution = resolve(study, scorable())
+    resolution = resolve(study, scorable(), data_sets=data_sets())
     cells = [
         {**cell, "name": _name(cell), "role": cell["role"] if cell["role"] != "unknown" else ""}
         for cell in _cells(study.to_dict())
@@ -179,6 +180,8 @@ def _preview(addition: Addition) -> dict[str, Any]:
     return {
         "study": dict(addition.study),
         "attributes": cells,
+        "grade": resolution.fidelity.grade,
+        "sentence": resolution.fidelity.sentence,
         "state": resolution.state,
         "pipelines": [pipeline.to_dict() for pipeline in resolution.pipelines],
         "gaps": [gap.to_dict() for gap in resolution.gaps],
@@ -205,8 +208,9 @@ def _print(document: Mapping[str, Any]) -> None:
         {**p, "assumed": [f"{part}: {rule}" for part, rule in p["assumed"].items()]}
         for p in document["pipelines"]
     ]
-    title = f"What of it would run here: {document['state']}, {len(lines)} pipelines"
+    title = f"What of it would run here: {document['grade']}, {len(lines)} pipelines"
     emit(lines, _PIPELINES, Format.TABLE, title=title)
+    say(document["sentence"])
     for gap in document["gaps"]:
         say(f"gap: {gap['attribute']} {gap['value']}: {gap['reason']}".replace("  ", " "))
     typer.echo()

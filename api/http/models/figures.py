@@ -29,7 +29,9 @@ class MatrixQuery(StudyFilters):
 
     model_config = ConfigDict(
         json_schema_extra={
-            "examples": [{"rows": "accuracy", "columns": "calibration", "detector": ["Event"]}]
+            "examples": [
+                {"rows": "detector", "columns": "mask", "detector": ["PSD"], "mask": ["Lens"]}
+            ]
         }
     )
 
@@ -64,6 +66,7 @@ class Figure(Shape):
     text: list[str]
     studies: int = Field(description="Studies that met the filters.")
     options: dict[str, str]
+    counts: dict[str, int] = Field(description="Of the matrix: how many pairs are in each state.")
     left_out: list[LeftOut]
     columns: list[str] = Field(description="Columns of the table and of the CSV, always these.")
     rows: list[dict[str, str | int | float | list[str] | None]]

@@ -49,7 +49,8 @@ class Requirements(OfEdition):
         gt=0,
         le=180,
         description="RMS error at most this, in degrees, over the field asked for and all it shall "
-        "survive: measured; stated where nothing is measured.",
+        "survive: measured; where nothing is measured, a stated accuracy as the RMS of its kind "
+        "(unspecified: as printed), never a precision.",
     )
     min_fov_deg: Number = Field(
         None,

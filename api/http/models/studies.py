@@ -22,11 +22,13 @@ from api.http.models.parameters import (
     several,
     sorting,
 )
+from registry.fidelity.particulars import Purpose
 from registry.sensors import Basis
 from registry.taxonomy import ATTRIBUTES
 from survey_data.editions import Choice
 
 State = Literal["complete", "partial", "none"]
+Grade = Literal["faithful", "close", "stand-in", "none"]
 
 
 def _filter(attribute: str, more: str = "") -> Any:
@@ -73,6 +75,11 @@ class StudiesQuery(StudyFilters):
     year_max: Annotated[int | None, WHOLE] = Field(
         None, ge=0, le=9999, description="Only studies of this year or earlier."
     )
+    grade: Several[Grade] = several(
+        "Only studies whose run is so near to them: faithful (every part is its own, stated or "
+        "inferred with a reason), close (one part departs from it), stand-in (more do), none "
+        "(nothing of it runs)."
+    )
     state: Several[State] = several("Only studies of which this much can be run.")
     q: Annotated[str | None, GIVEN] = Field(
         None,
@@ -91,11 +98,14 @@ class Runs(Shape):
     """What is scored of a study; basis and assumed are of the pipeline that rests on most."""
 
     pipelines: int
-    cells: int = Field(description="Pairs of a pipeline and a data set that it is planned on.")
+    cells: int = Field(
+        description="Pairs of a pipeline and a data set under a condition that stand for the study."
+    )
     scored: int = Field(description="Those of them that have a published score.")
     basis: dict[str, Basis] = Field(
         description="What detector, mask, extractor and model rest on: stated by the study, "
-        "inferred, recalled, or filled in by a rule."
+        "inferred, implied by the survey's definition of its methods, recalled, or chosen by a "
+        "rule."
     )
     assumed: dict[str, str] = Field(
         description="Of what is not stated, the reason or the rule why it stands there."
@@ -103,10 +113,13 @@ class Runs(Shape):
 
 
 class Score(Shape):
-    """What is published of a pipeline under the first condition of a data set; null: nothing."""
+    """What is published of a pipeline on a data set under a condition; a null status: nothing."""
 
     dataset: str
-    condition: str | None
+    condition: str
+    purposes: list[Purpose] = Field(
+        description="What the study is run for that this shows: albedo, temperature, flight."
+    )
     status: str | None
     rms_deg: float | None
     bound_deg: float | None
@@ -120,6 +133,27 @@ class Verification(Shape):
     date: str = Field(description="YYYY-MM-DD.")
     confirms: str
     source: str
+
+
+class Headline(Shape):
+    """The score that a study is shown by."""
+
+    extractor: str
+    model: str
+    dataset: str
+    condition: str
+    rms_deg: float
+    bound_deg: float | None
+    availability: float | None
+
+
+class Departure(Shape):
+    """A part of a study's run that is not the study's own."""
+
+    part: Literal["sensor", "condition", "extractor", "model", "compensation"]
+    value: str
+    text: str
+    settled_by: str = Field(description="What would make the part the study's own.")
 
 
 class Study(Shape):
@@ -137,11 +171,17 @@ class Study(Shape):
         description="Whether it is among the survey's studies or was added after it."
     )
     verified: list[Verification]
+    grade: Grade = Field(description="How near what runs is to the study.")
+    sentence: str = Field(description="What runs, and what of it is missing or chosen.")
     state: State = Field(
-        description="How much of the study runs: every value of its mapping, or some of them, or "
-        "none."
+        description="Whether gaps are left: every value of its mapping runs, or some of them, or "
+        "none. The grade says how near that is to the study."
     )
     runs: Runs
+    headline: Headline | None = Field(
+        description="Least error of the pipelines that rest on most, each where it tells most of "
+        "the study; null where that is not measured."
+    )
     values: dict[str, list[str]]
 
 
@@ -164,6 +204,14 @@ class AttributeValue(Shape):
     )
 
 
+class Setting(Shape):
+    """A data set under a condition that stands for a study."""
+
+    dataset: str
+    condition: str
+    purposes: list[Purpose] = Field(description="What the study is run for that it shows.")
+
+
 class StudyPipeline(Shape):
     """A pipeline that runs what the study did, and the data sets that it is scored on."""
 
@@ -183,8 +231,11 @@ class StudyPipeline(Shape):
     assumed: dict[str, str] = Field(
         description="Of what is not stated, the reason or the rule why it stands there."
     )
-    datasets: list[str]
-    scores: list[Score]
+    datasets: list[str] = Field(description="All data sets that it can be scored on.")
+    settings: list[Setting] = Field(
+        description="Those of them that stand for the study, the one that tells most first."
+    )
+    scores: list[Score] = Field(description="What is published of each of the settings.")
 
 
 class Gap(Shape):
@@ -195,14 +246,35 @@ class Gap(Shape):
     reason: str
 
 
+class Reported(Shape):
+    """An accuracy or a precision as published, with the statistic that it is."""
+
+    value_deg: float = Field(description="The number as published, in degrees.")
+    kind: Literal["1sigma", "3sigma", "p95", "rms", "mean", "max", "unspecified"] = Field(
+        description="Which statistic of the error it is; unspecified where the source does not say."
+    )
+    label: str = Field(description="What the number is, in words.", examples=["1-sigma precision"])
+    rms_deg: float = Field(
+        description="The number as the RMS that it is compared as: 3 sigma and a largest error "
+        "over 3, 95 % over 1.96, a mean over 0.7979, unspecified as printed."
+    )
+
+
 class StudyDetail(Study):
     """A mapped study with the basis of every value and what of it can be run."""
 
     note: str
     attributes: list[AttributeValue]
-    reported_accuracy_deg: float | None = Field(
-        description="What the study reports of its own sensor; `scores` are measured here, on "
-        "simulated ones."
+    reported_accuracy: Reported | None = Field(
+        description="How far off the study reports its own sensor to be; `scores` are measured "
+        "here, on simulated ones."
+    )
+    reported_precision: Reported | None = Field(
+        description="How far repeated readings of its own sensor scatter, which is no accuracy."
+    )
+    departures: list[Departure] = Field(description="What keeps the run from being faithful.")
+    purposes: dict[Purpose, str] = Field(
+        description="What the study is run for, with the rule that says so."
     )
     pipelines: list[StudyPipeline]
     gaps: list[Gap]

@@ -33,14 +33,15 @@ async def figures(
 
 @router.get("/figures/matrix", summary="Studies by two attributes", response_model=Figure)
 async def matrix(known: Known, query: Annotated[MatrixQuery, Query()]) -> Answer:
-    """Count the studies that have both values, and those pairs that no study has: an evidence map.
+    """Tell of every pair of values what is known of it: an evidence map.
 
-    The rows are the pairs, those without a study too; pairs that cannot be (a model and another
-    category than its own) are left out.
+    The rows are the pairs. `state` is `measured` (scored here, with the best own error), `studied`,
+    `impossible` (with the `reason`), `unknown` (no study has both, but of some that have one the
+    other is unknown) or `unstudied`; `command` and `leads_to` say what could be measured.
     """
-    return answered(
-        evidence_map(known.of(query.edition).facts, query.wanted(), query.rows, query.columns)
-    )
+    studies = known.of(query.edition).facts
+    asked = (query.wanted(), query.rows, query.columns)
+    return answered(evidence_map(studies, *asked, evidence=known.evidence))
 
 
 @router.get("/figures/{figure}", summary="A figure of the survey", response_model=Figure)

@@ -15,8 +15,10 @@ from api.http.models.base import Selected
 from api.http.models.studies import Editions, Studies, StudiesQuery, StudyDetail
 from api.http.models.words import StudyKey
 from api.http.pagination import ordered, page
-from registry.resolution import RunnablePipeline
+from registry.fidelity.runnable import RunnablePipeline
+from registry.resolution import Resolution
 from registry.studies import Study
+from survey_data.reported import Quantity
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
@@ -77,7 +79,10 @@ async def study(
         **_row(found, known),
         "note": described["note"],
         "attributes": described["attributes"],
-        "reported_accuracy_deg": found.number("accuracy_deg"),
+        "departures": [departure.to_dict() for departure in resolution.fidelity.departures],
+        "purposes": dict(resolution.fidelity.purposes),
+        "reported_accuracy": _reported(found, "accuracy"),
+        "reported_precision": _reported(found, "precision"),
         "pipelines": [
             {**pipeline.to_dict(), "scores": _scores(pipeline, known)}
             for pipeline in resolution.pipelines
@@ -87,20 +92,37 @@ async def study(
     return Answer(document, columns.STUDY, lambda: document["attributes"])
 
 
+def _reported(study: Study, quantity: Quantity) -> dict[str, Any] | None:
+    found = study.reported(quantity)
+    return None if found is None else found.to_dict()
+
+
 def _row(study: Study, known: Knowledge) -> dict[str, Any]:
     summary = study.summary()
     values = summary.pop("values")
     resolution = known.resolutions[study.key]
     best = resolution.best
+    graded = resolution.fidelity
     scored = [_scores(pipeline, known) for pipeline in resolution.pipelines]
     runs = {
         "pipelines": len(resolution.pipelines),
-        "cells": sum(len(pipeline.datasets) for pipeline in resolution.pipelines),
+        "cells": sum(map(len, scored)),
         "scored": sum(score["status"] is not None for scores in scored for score in scores),
         "basis": {} if best is None else dict(best.basis),
         "assumed": {} if best is None else dict(best.assumed),
     }
-    return {**summary, "state": resolution.state, "runs": runs, "values": values}
+    return {
+        **summary,
+        "grade": graded.grade,
+        "sentence": graded.sentence,
+        "state": resolution.state,
+        "runs": runs,
+        "headline": headline(resolution, known),
+        "values": values,
+    }
+
+
+_NUMBERS = ("status", "rms_deg", "bound_deg", "availability")
 
 
 def _said(item: Mapping[str, Any]) -> list[str]:
@@ -109,13 +131,28 @@ def _said(item: Mapping[str, Any]) -> list[str]:
 
 
 def _scores(pipeline: RunnablePipeline, known: Knowledge) -> list[dict[str, Any]]:
-    """Return what is published of a pipeline, under the first condition of each data set."""
+    """Return what is published of a pipeline in each setting that stands for the study."""
     found = []
-    for dataset in pipeline.datasets:
-        row = known.measurements.nominal.get((dataset, pipeline.extractor, pipeline.model), {})
-        names = ("condition", "status", "rms_deg", "bound_deg", "availability")
-        found.append({"dataset": dataset, **{name: row.get(name) for name in names}})
+    for one in pipeline.settings:
+        at = one.dataset, one.condition, pipeline.extractor, pipeline.model
+        row = known.measurements.score_of.get(at, {})
+        found.append({**one.to_dict(), **{name: row.get(name) for name in _NUMBERS}})
     return found
+
+
+def headline(resolution: Resolution, known: Knowledge) -> dict[str, Any] | None:
+    """Return the score that a study is shown by, or None where it is not measured.
+
+    Of the pipelines that rest on most, each in the setting that tells most of the study, the one of
+    the least error.
+    """
+    found = []
+    for pipeline in resolution.nearest:
+        score = _scores(pipeline, known)[0]
+        if score["rms_deg"] is not None:
+            told = {name: score[name] for name in ("dataset", "condition", *_NUMBERS[1:])}
+            found.append({"extractor": pipeline.extractor, "model": pipeline.model, **told})
+    return min(found, key=lambda score: score["rms_deg"], default=None)
 
 
 def _is_wanted(study: Study, query: StudiesQuery, known: Knowledge) -> bool:
@@ -123,6 +160,7 @@ def _is_wanted(study: Study, query: StudiesQuery, known: Knowledge) -> bool:
     return (
         _in_years(study, query.year_min, query.year_max)
         and _has_words(study, query.q)
+        and (not query.grade or known.resolutions[study.key].fidelity.grade in query.grade)
         and (not query.state or known.resolutions[study.key].state in query.state)
         and _has_values(study, query.wanted(), known)
     )

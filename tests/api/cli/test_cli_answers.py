@@ -11,6 +11,7 @@ from typer.testing import CliRunner
 import survey_data
 from api.cli.command_line import app
 from benchmark import datasets
+from registry.fidelity.grading import GRADES, tally_text
 
 OURS = Path(survey_data.__file__).parent
 
@@ -40,13 +41,26 @@ def studies_with(attribute, value):
         }
 
 
-def test_studies_lists_129_with_how_far_each_one_runs():
+def test_studies_lists_129_with_the_grade_of_each():
     listed = answer("studies")
     assert len({study["key"] for study in listed}) == len(listed) == 129
     assert {study["state"] for study in listed} <= {"complete", "partial", "none"}
     assert [row["key"] for row in table("studies")] == [study["key"] for study in listed]
     assert [row["state"] for row in table("studies")] == [study["state"] for study in listed]
-    assert sunatlas("studies").stdout.startswith("129 studies")
+    assert {study["grade"] for study in listed} <= set(GRADES)
+    assert [row["grade"] for row in table("studies")] == [study["grade"] for study in listed]
+    counted = tally_text(study["grade"] for study in listed)
+    assert sunatlas("studies").stdout.startswith(f"129 studies: {counted}")
+
+
+def test_filters_by_grade_divide_the_studies():
+    by_grade = {grade: answer("studies", "--grade", grade) for grade in GRADES}
+    assert sum(map(len, by_grade.values())) == 129
+    for grade, found in by_grade.items():
+        assert {study["grade"] for study in found} <= {grade}
+    shown = sunatlas("studies", "Soken2023").stdout
+    assert "close: Its " in " ".join(shown.split())
+    assert "settled by:" in shown
 
 
 def test_filters_keep_what_has_one_of_the_values_of_every_attribute():

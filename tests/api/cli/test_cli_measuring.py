@@ -24,7 +24,9 @@ from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import times
 from benchmark.running.run import RunInterruptedError, stale
 from registry.catalogue import catalogue
-from registry.resolution import Gap, Resolution, resolve
+from registry.fidelity.grading import Fidelity
+from registry.fidelity.runnable import Gap
+from registry.resolution import Resolution, resolve
 
 CHEAP = ("--dataset", "pd-maskless-cube", "--condition", "nominal", "--model", "basic")
 
@@ -115,7 +117,9 @@ def test_the_formats_say_the_same(unpublished):
 @pytest.mark.slow
 def test_a_study_of_which_nothing_runs_says_why_and_fails(unpublished, monkeypatch):
     """None of today's: the resolution is a stand-in."""
-    nothing = Resolution("Allgeier2009", "none", (), (Gap("model", "Basic", "not there"),))
+    none = Fidelity("none", "Nothing of it runs.")
+    gaps = (Gap("model", "Basic", "not there"),)
+    nothing = Resolution("Allgeier2009", none, "none", (), gaps)
     known = SimpleNamespace(resolutions={"Allgeier2009": nothing})
     module = importlib.import_module("api.cli.commands.run")
     monkeypatch.setattr(module, "knowledge", lambda: known)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 from collections import Counter
 
@@ -10,11 +11,20 @@ import pytest
 
 from api.figures.catalogue import MATRIX, TITLES, evidence_map, figure
 from api.figures.interactive import specification
+from api.http.measurements import Measurements
+from benchmark.plan.combinations import scorable
+from registry.catalogue import catalogue
+from registry.evidence import Evidence
 from registry.studies import facts
 
 
+@functools.cache
+def evidence():
+    return Evidence(catalogue(), Measurements().pipelines, scorable())
+
+
 def drawn(name):
-    return evidence_map(facts()) if name == MATRIX else figure(name, facts())
+    return evidence_map(facts(), evidence=evidence()) if name == MATRIX else figure(name, facts())
 
 
 @pytest.mark.parametrize("name", [*TITLES, MATRIX])

@@ -136,10 +136,44 @@ def test_no_study_is_silent_about_what_cannot_be_run(atlas):
         else:
             assert study["gaps"]
         for pipeline in study["pipelines"]:
-            assert pipeline["datasets"]
-            assert [score["dataset"] for score in pipeline["scores"]] == pipeline["datasets"]
+            assert pipeline["settings"]
+            for at, score in zip(pipeline["settings"], pipeline["scores"], strict=True):
+                assert at["dataset"] in pipeline["datasets"]
+                assert {name: score[name] for name in at} == at
         assert item["runs"]["pipelines"] == len(study["pipelines"])
-        assert item["runs"]["cells"] == sum(len(p["datasets"]) for p in study["pipelines"])
+        assert item["runs"]["cells"] == sum(len(p["settings"]) for p in study["pipelines"])
+
+
+def test_grades_partition_the_studies_and_count_their_departures(atlas):
+    grades = ("faithful", "close", "stand-in", "none")
+    parts = {grade: atlas.walk(f"/v1/studies?grade={grade}") for grade in grades}
+    assert sum(map(len, parts.values())) == 129
+    for grade, items in parts.items():
+        for item in items[:4]:
+            study = atlas.get(f"/v1/studies/{item['key']}").json()
+            assert study["grade"] == item["grade"] == grade
+            assert len(study["departures"]) == {"faithful": 0, "close": 1}.get(
+                grade, len(study["departures"])
+            )
+            for departure in study["departures"]:
+                assert departure["text"] in study["sentence"]
+    assert atlas.get("/v1/studies?grade=perfect").status_code == 422
+
+
+def test_a_study_is_shown_by_its_score_where_it_stands_for_it(atlas):
+    study = atlas.get("/v1/studies/Nurgizat2021").json()
+    assert study["purposes"].keys() == {"albedo"}
+    head = study["headline"]
+    assert (head["dataset"], head["condition"]) == ("pva-maskless-panels", "albedo")
+    query = "dataset=pva-maskless-panels&condition=albedo&extractor=direct&model=solar-panel"
+    (row,) = atlas.walk(f"/v1/results?{query}")
+    assert head["rms_deg"] == row["rms_deg"]
+    # what is not measured where it stands for the study has no score of another place
+    for item in atlas.walk("/v1/studies"):
+        study = atlas.get(f"/v1/studies/{item['key']}").json()
+        at = [p["scores"][0] for p in study["pipelines"]]
+        if all(score["rms_deg"] is None for score in at):
+            assert study["headline"] is None
 
 
 def test_csv_and_json_say_the_same_of_studies(atlas):

@@ -55,7 +55,7 @@ TABLES = {
 }
 LISTS = {
     # nested, and so columns of their own or left to JSON
-    "/v1/studies": {"values", "runs"},
+    "/v1/studies": {"values", "runs", "headline", "sentence"},
     "/v1/datasets": {"splits", "stands_for", "setups"},
     "/v1/curves": None,  # points and draws are JSON's
     "/v1/claims": None,  # rules too

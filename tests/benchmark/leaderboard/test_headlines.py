@@ -75,14 +75,17 @@ def test_every_headline_names_a_mapped_study_and_a_score_that_is_published() -> 
 
 
 def test_published_figures_are_those_of_the_facts_where_they_have_one() -> None:
-    """Independent of the table: what the mapping keeps as the study's accuracy, degrees."""
-    facts = load().attributes
-    facts = facts[facts["attribute"] == "accuracy_deg"].set_index("study")["value"].astype(float)
-    for one in table():
-        if one.published_deg is None or one.study not in facts.index:
-            continue
-        same = [h.published_deg for h in table() if h.study == one.study]
-        assert any(h == pytest.approx(facts[one.study], rel=0.01) for h in same), one
+    """Independent of the table: what the mapping keeps of the study, accuracies as accuracies."""
+    attributes = load().attributes
+    for quantity in ("accuracy", "precision"):
+        named = attributes[attributes["attribute"] == f"{quantity}_deg"]
+        facts = named.set_index("study")["value"].astype(float)
+        for one in table():
+            if one.published_deg is None or one.study not in facts.index:
+                continue
+            same = [h.published_deg for h in table() if (h.study, h.kind) == (one.study, quantity)]
+            if same:
+                assert any(h == pytest.approx(facts[one.study], rel=0.02) for h in same), one
 
 
 @pytest.mark.parametrize(

@@ -19,7 +19,7 @@ from survey_data.additions.reading import read_addition
 from survey_data.additions.toml_lines import parse_toml
 from survey_data.additions.vocabulary import Vocabulary, vocabulary
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 FILE = ROOT / ".github" / "ISSUE_TEMPLATE" / "study.yml"
 WORKFLOW = ROOT / ".github" / "workflows" / "study.yml"
 

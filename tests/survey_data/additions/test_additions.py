@@ -22,7 +22,14 @@ from survey_data.additions.writing import (
     remove_study,
     verify_study,
 )
-from tests.survey_data.offered_study import CONFIRMED, STUDY, content, line_of, offered, refused
+from tests.survey_data.additions.offered_study import (
+    CONFIRMED,
+    STUDY,
+    content,
+    line_of,
+    offered,
+    refused,
+)
 
 
 def test_a_study_is_added_whole_and_the_survey_stays_as_it_is(recorded: Path) -> None:

@@ -9,6 +9,7 @@ from functools import cached_property
 
 from registry.taxonomy import NUMERIC_ATTRIBUTES, unknown_name
 from survey_data.editions import SURVEY
+from survey_data.reported import KIND_OF, Quantity, Reported, reported
 
 METHODS = ("model", "extractor")
 """Attributes whose values a study proposes, or only compares against."""
@@ -97,6 +98,11 @@ class Study:
         """Return the stated values that the study stands for: those it only compared are not."""
         return tuple(v for v in self.of(attribute) if self.role(attribute, v) != "compared")
 
+    def has_nearest(self, attribute: str, value: str) -> bool:
+        """Say whether a value is only the nearest in the taxonomy to what the study has."""
+        name = self.names.get((attribute, value))
+        return name is not None and name.nearest
+
     @cached_property
     def architectures(self) -> tuple[tuple[str, str], ...]:
         """Detector and mask of each sensor that the study can have had; empty if one is unknown."""
@@ -117,13 +123,21 @@ class Study:
         return {a: tuple(dict.fromkeys(v.value for v in cells)) for a, cells in self.values.items()}
 
     def number(self, attribute: str) -> float | None:
-        """Return the stated `accuracy_deg` or `fov_deg` (the best of several); None if none."""
+        """Return a stated number of `NUMERIC_ATTRIBUTES` (the best of several); None if none."""
         if attribute not in NUMERIC_ATTRIBUTES:
             raise unknown_name("attribute", attribute, NUMERIC_ATTRIBUTES)
         numbers = [float(text) for text in self.of(attribute)]
         if not numbers:
             return None
-        return min(numbers) if attribute == "accuracy_deg" else max(numbers)
+        return max(numbers) if attribute == "fov_deg" else min(numbers)
+
+    def reported(self, quantity: Quantity) -> Reported | None:
+        """Return the accuracy or precision that the study reports, with its kind; None if none."""
+        attribute = f"{quantity}_deg"
+        number = self.number(attribute)
+        if number is None:
+            return None
+        return reported(quantity, number, next(iter(self.of(KIND_OF[attribute])), None))
 
     def summary(self) -> dict[str, object]:
         """Identity and values, as in a list of studies."""

@@ -21,7 +21,7 @@ from survey_data.additions.writing import (
 )
 from survey_data.editions import EXTENSION_TABLES, editions
 from survey_data.problems import SurveyImportError
-from tests.survey_data.offered_study import CONFIRMED, content, offered
+from tests.survey_data.additions.offered_study import CONFIRMED, content, offered
 
 
 def test_a_confirmation_stands_once_and_on_a_real_day(recorded: Path) -> None:
@@ -61,7 +61,7 @@ def test_a_kill_between_any_two_steps_leaves_the_study_whole_or_away(recorded: P
     begun = content(recorded)
     seen = set()
     for step in range(1, 60):
-        root = str(Path(__file__).parents[2])
+        root = str(Path(__file__).parents[3])
         ran = subprocess.run(
             [sys.executable, "-c", KILLED, str(step), str(recorded), str(path)],
             env={**os.environ, "PYTHONPATH": root},

@@ -18,7 +18,7 @@ from survey_data.additions.writing import (
     read_study,
 )
 from survey_data.problems import SurveyImportError
-from tests.survey_data.offered_study import content, offered
+from tests.survey_data.additions.offered_study import content, offered
 
 WORDS = st.text(st.characters(exclude_categories=("C", "Z")), min_size=1, max_size=8)
 TEXT = st.lists(WORDS, min_size=1, max_size=5).map(" ".join)
@@ -60,7 +60,7 @@ def additions(draw: st.DrawFn) -> Addition:
             basis = draw(st.sampled_from([b for b in known.bases if b != "unknown"]))
             cells = {"basis": basis, "source": draw(TEXT), "note": draw(TEXT)}
             rows["attributes"].append({**dict.fromkeys(own, ""), **at, **cells})
-            if definition.words and draw(st.booleans()):
+            if definition.named and draw(st.booleans()):
                 nearest = draw(st.sampled_from(["true", "false"]))
                 rows["names"].append({**at, "name": draw(TEXT), "nearest": nearest})
             if attribute in ("model", "extractor") and draw(st.booleans()):

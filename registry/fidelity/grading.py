@@ -1,0 +1,308 @@
+"""How near what runs of a study is to the study: faithful, close or a stand-in, by stated rules.
+
+A study's run has five parts: its sensor, the condition it is shown under, its extractors, its
+models and its compensations. A part departs from the study where
+
+- the sensor is recalled, chosen by a rule or a relative's, or one of its stated sensors is missing;
+- none of its settings shows what the study is run for (`registry.fidelity.purposes`);
+- an extractor, a model or a compensation that it states runs in none of its pipelines;
+- it states none, and what stands there was chosen here;
+- the taxonomy has only the nearest value to its method (`Study.names`);
+- only another variant of a method runs than the study's (`method_variants.csv`);
+- the kind of a compensation is not stated (ECM), and one of its kinds was chosen here;
+- a compensation runs ahead of a model that neither the study nor the survey's equation names.
+
+What is inferred with a reason, or implied by the survey's definition of a method that the study
+uses, does not depart. No departure is *faithful*, one *close*, more a *stand-in*. Several values
+that are missing are several departures.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+from registry.fidelity.particulars import Purpose
+from registry.fidelity.purposes import PURPOSES
+from registry.fidelity.runnable import RunnablePipeline, strongest
+from registry.fitting import COMPENSATIONS, Chosen, Fitted
+from registry.sensors import BASES, SENSOR
+from registry.studies import METHODS, Facts, Study
+from registry.taxonomy import NO_IMPLEMENTATION_STATED
+from survey_data.editions import SURVEY
+
+Grade = Literal["faithful", "close", "stand-in", "none"]
+
+GRADES: Mapping[Grade, str] = {
+    "faithful": "every part of it is its own, stated or inferred with a reason",
+    "close": "one part departs from it",
+    "stand-in": "more than one part departs from it",
+    "none": "nothing of it runs",
+}
+"""How near a run is to its study, nearest first, in words."""
+
+TALLIED: Mapping[Grade, str] = {
+    "faithful": "faithful",
+    "close": "close",
+    "stand-in": "stand-in",
+    "none": "cannot run",
+}
+"""What a count of a grade is followed by."""
+
+Part = Literal["sensor", "condition", "extractor", "model", "compensation"]
+
+
+@dataclass(frozen=True)
+class Departure:
+    """A part of a study's run that is not the study's own.
+
+    ``text`` says what departs, as a clause; ``settled_by`` what would make the part the study's.
+    """
+
+    part: Part
+    value: str
+    text: str
+    settled_by: str
+
+    def to_dict(self) -> dict[str, str]:
+        """As in the HTTP answer."""
+        return {
+            "part": self.part,
+            "value": self.value,
+            "text": self.text,
+            "settled_by": self.settled_by,
+        }
+
+
+@dataclass(frozen=True)
+class Fidelity:
+    """The grade of a study's run, in one sentence and by its departures."""
+
+    grade: Grade
+    sentence: str
+    departures: tuple[Departure, ...] = ()
+    purposes: Mapping[Purpose, str] = field(default_factory=dict, hash=False)
+
+    def to_dict(self) -> dict[str, object]:
+        """As in the HTTP answer."""
+        return {
+            "grade": self.grade,
+            "sentence": self.sentence,
+            "departures": [departure.to_dict() for departure in self.departures],
+            "purposes": dict(self.purposes),
+        }
+
+
+def tally(grades: Iterable[Grade]) -> dict[Grade, int]:
+    """Count grades, the nearest first."""
+    found = list(grades)
+    return {grade: found.count(grade) for grade in GRADES}
+
+
+def tally_text(grades: Iterable[Grade]) -> str:
+    """Say how many there are of each grade: `90 faithful, 30 close, 8 stand-in, 1 cannot run`."""
+    return ", ".join(f"{n} {TALLIED[grade]}" for grade, n in tally(grades).items())
+
+
+def fidelity(
+    study: Study,
+    facts: Facts,
+    pipelines: Sequence[RunnablePipeline],
+    ran: Sequence[Fitted],
+    wanted: Mapping[Purpose, str],
+) -> Fidelity:
+    """Grade what runs of a study.
+
+    Parameters
+    ----------
+    study : Study
+    facts : Facts
+    pipelines : what runs of it, with the basis of each part and the settings
+    ran : the same as they were fitted, with the stated values that each method runs
+    wanted : what the study is run for, with the rule that says so
+    """
+    if not pipelines:
+        return Fidelity("none", _NOTHING, purposes=wanted)
+    departures = (
+        *_sensor(study, pipelines),
+        *_condition(pipelines, wanted),
+        *_methods(study, facts, ran),
+    )
+    grade: Grade = ("faithful", "close")[len(departures)] if len(departures) < 2 else "stand-in"
+    running = {v for one in ran for a in METHODS for v in getattr(one, a).runs}
+    said = _sentence(study, facts, pipelines, departures, running)
+    return Fidelity(grade, said, departures, wanted)
+
+
+_NOTHING = "Nothing of it runs: no data set simulates a sensor that its methods fit."
+
+
+def _sensor(study: Study, pipelines: Sequence[RunnablePipeline]) -> list[Departure]:
+    def weakest(pipeline: RunnablePipeline) -> int:
+        return max(BASES.index(pipeline.basis[attribute]) for attribute in SENSOR)
+
+    best = min(pipelines, key=weakest)
+    weak = [a for a in SENSOR if BASES.index(best.basis[a]) >= BASES.index("recalled")]
+    if weak:
+        basis = max((best.basis[a] for a in weak), key=BASES.index)
+        said = "recalled" if basis == "recalled" else "chosen"
+        what = " and ".join(f"{a} ({getattr(best, a)})" for a in weak)
+        reasons = "; ".join(dict.fromkeys(best.assumed[a] for a in weak))
+        return [
+            Departure(
+                "sensor",
+                f"{best.detector} + {best.mask}",
+                f"its {what} {'are' if len(weak) > 1 else 'is'} {said} ({reasons})",
+                f"what the study itself says of its {' and '.join(weak)}"
+                + (f", and a data set of {_sensor_of(study)}" if _moved(study, best) else ""),
+            )
+        ]
+    return [
+        Departure(
+            "sensor",
+            cell.value,
+            f"its sensor with {attribute} {cell.value} does not run",
+            f"a data set of that sensor that its methods fit, or its methods on {cell.value}",
+        )
+        for attribute in SENSOR
+        for cell in study.values.get(attribute, ())
+        if cell.basis not in ("inferred", "recalled")
+        and all(getattr(pipeline, attribute) != cell.value for pipeline in pipelines)
+    ]
+
+
+def _moved(study: Study, pipeline: RunnablePipeline) -> bool:
+    """Say whether a pipeline stands on another sensor than one that the study has."""
+    return bool(study.architectures) and (
+        (pipeline.detector, pipeline.mask) not in study.architectures
+    )
+
+
+def _sensor_of(study: Study) -> str:
+    return " or ".join(f"{detector} + {mask}" for detector, mask in study.architectures)
+
+
+def _condition(
+    pipelines: Sequence[RunnablePipeline], wanted: Mapping[Purpose, str]
+) -> list[Departure]:
+    shown = {p for one in pipelines for setting in one.settings for p in setting.purposes}
+    where = " or ".join(dict.fromkeys(f"{one.detector} + {one.mask}" for one in pipelines))
+    return [
+        Departure(
+            "condition",
+            purpose,
+            f"it is not shown {PURPOSES[purpose]}, for no data set of {where} has that",
+            f"a data set of {where} {PURPOSES[purpose]}",
+        )
+        for purpose in wanted
+        if purpose not in shown
+    ]
+
+
+def _methods(study: Study, facts: Facts, ran: Sequence[Fitted]) -> list[Departure]:
+    found: list[Departure] = []
+    for attribute in METHODS:
+        chosen = [getattr(one, attribute) for one in ran]
+        for value in study.of(attribute) or (NO_IMPLEMENTATION_STATED,):
+            if value == NO_IMPLEMENTATION_STATED:
+                found += _not_stated(study, attribute, chosen)
+            elif study.has_nearest(attribute, value):
+                name = study.names[attribute, value].name
+                found.append(_nearest(attribute, value, name, chosen))
+            else:
+                found += _stated(facts, attribute, value, chosen)
+    bare = [d for d in found if d.value == _BEHIND]
+    return [d for d in found if d.value != _BEHIND] + bare[:1]
+
+
+#: Value of the departure of a model behind compensations, of which a study has one.
+_BEHIND = "behind its compensation"
+
+
+def _not_stated(study: Study, attribute: str, chosen: Sequence[Chosen]) -> Iterable[Departure]:
+    """Give the departure of a method that is not mapped for a study."""
+    if not all(one.runs and not one.stands_for for one in chosen):
+        who = "the survey" if study.edition == SURVEY else "its row"
+        text = f"{who} states no {attribute}, so {_names(chosen)} is chosen"
+        part: Part = "extractor" if attribute == "extractor" else "model"
+        yield Departure(part, "None", text, f"the study itself, if it has any {attribute}")
+
+
+def _nearest(attribute: str, value: str, name: str, chosen: Sequence[Chosen]) -> Departure:
+    """Return the departure of a method that the taxonomy has only the nearest value for."""
+    running = _names([one for one in chosen if value in one.runs])
+    text = f"{name} is not built here" + (f", {running} in its place" if running else "")
+    part: Part = "extractor" if attribute == "extractor" else "model"
+    return Departure(part, value, text, f"an implementation of {name}")
+
+
+def _stated(
+    facts: Facts, attribute: str, value: str, chosen: Sequence[Chosen]
+) -> Iterable[Departure]:
+    """Give the departure of a method that a study states."""
+    name = _small(facts.taxonomy.name(attribute, value))
+    compensates = facts.taxonomy.category(attribute, value) == COMPENSATIONS
+    part: Part = "compensation" if compensates else "model"
+    if attribute == "extractor":
+        part = "extractor"
+    running = [one for one in chosen if value in one.runs]
+    missed = [one.missed for one in running if one.missed and one.missed.model == value]
+    if not running:
+        instead = _names([one for one in chosen if one.stands_for == value])
+        text = f"its {name} is missing" + (f", {instead} in its place" if instead else "")
+        settled = f"an implementation of {value} for this sensor beside its other methods"
+        yield Departure(part, value, text, settled)
+    elif len(missed) == len(running):
+        text = f"its {name} runs as another variant ({missed[0].note})"
+        yield Departure(part, value, text, f"an implementation of {value} as the study has it")
+    elif all(one.unsaid == value for one in running):
+        text = f"the kind of its {name} is chosen, {_names(running)}"
+        yield Departure(part, value, text, f"what the study says of its {value}")
+    elif compensates and all(one.stands_for for one in running):
+        text = f"the model behind its {name} is chosen, that of {_names(running)}"
+        yield Departure("model", _BEHIND, text, "the model that the study corrects so")
+
+
+def _names(chosen: Sequence[Chosen]) -> str:
+    return " or ".join(dict.fromkeys(one.name for one in chosen))
+
+
+def _sentence(
+    study: Study,
+    facts: Facts,
+    pipelines: Sequence[RunnablePipeline],
+    departures: Sequence[Departure],
+    running: Collection[str],
+) -> str:
+    """Say in one sentence what runs where, and what is missing or chosen."""
+    best = strongest(pipelines)[0]
+    stated = [
+        _small(facts.taxonomy.name(attribute, value))
+        for attribute in METHODS
+        for value in study.of(attribute)
+        if value in running and not study.has_nearest(attribute, value)
+    ]
+    methods = f"Its {_listed(stated)} run{'s' * (len(stated) == 1)}" if stated else "It runs"
+    at = best.settings[0]
+    more = len(pipelines) - 1
+    lead = f"{methods} as {best.extractor} → {best.model} on {at.dataset} ({at.condition})"
+    if more:
+        lead += f" and in {more} more pipeline{'s' * (more > 1)}"
+    if departures:
+        return f"{lead}; {'; '.join(departure.text for departure in departures)}."
+    inferred = [a for a in SENSOR if best.basis[a] in ("inferred", "implied")]
+    verb = "are" if len(inferred) > 1 else "is"
+    return lead + (f"; its {_listed(inferred)} {verb} inferred." if inferred else ".")
+
+
+def _small(name: str) -> str:
+    """Return a name as it stands within a sentence, its kind in brackets."""
+    what, _, kind = name.removesuffix(" (kind not stated)").partition(": ")
+    first, _, rest = what.partition(" ")
+    small = f"{first if first.isupper() else first.lower()} {rest}".strip()
+    return f"{small} ({kind})" if kind else small
+
+
+def _listed(words: Sequence[str]) -> str:
+    return " and ".join(filter(None, (", ".join(words[:-1]), words[-1])))

@@ -1,0 +1,87 @@
+"""What the survey's tables say of studies beyond the mapping: purposes, variants, compensations."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal, cast
+
+Purpose = Literal["albedo", "temperature", "flight"]
+
+Conditions = tuple[tuple[str, str], ...]
+"""Attributes with the values that a study must have, all of them."""
+
+
+@dataclass(frozen=True)
+class PurposeRule:
+    """What a study is run for that meets every condition of `given` and not all of `unless`."""
+
+    id: str
+    given: Conditions
+    unless: Conditions
+    purpose: Purpose
+    section: str
+    rule: str
+
+
+@dataclass(frozen=True)
+class CompensatedModel:
+    """The model that a compensation of a study belongs to.
+
+    ``relation`` is ahead where it corrects what the model reads, within where the model carries it
+    out itself.
+    """
+
+    study: str
+    compensation: str
+    model: str
+    relation: str
+    basis: str
+    source: str
+    note: str
+
+
+@dataclass(frozen=True)
+class MethodVariant:
+    """How a study carries out one of its models.
+
+    Implementations of the value ``runs_as`` do, where they read the extractor's features and, if
+    ``context`` names one, that column beside them.
+    """
+
+    study: str
+    model: str
+    runs_as: str
+    extractor: str
+    context: str
+    basis: str
+    source: str
+    note: str
+
+
+def conditions(text: str) -> Conditions:
+    """Read `attribute=value` joined by `&`."""
+    parts = (part.partition("=") for part in text.split("&") if part)
+    return tuple((attribute, value) for attribute, _, value in parts)
+
+
+def purpose_rule(row: Mapping[str, str]) -> PurposeRule:
+    """Return a row of `purposes.csv`."""
+    return PurposeRule(
+        row["id"],
+        conditions(row["given"]),
+        conditions(row["unless"]),
+        cast("Purpose", row["purpose"]),
+        row["survey_section"],
+        row["rule"],
+    )
+
+
+def compensated_model(row: Mapping[str, str]) -> CompensatedModel:
+    """Return a row of `compensated_models.csv`."""
+    return CompensatedModel(**{name: row[name] for name in CompensatedModel.__match_args__})
+
+
+def method_variant(row: Mapping[str, str]) -> MethodVariant:
+    """Return a row of `method_variants.csv`."""
+    return MethodVariant(**{name: row[name] for name in MethodVariant.__match_args__})

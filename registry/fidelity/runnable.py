@@ -1,0 +1,80 @@
+"""A pipeline that stands for a study, and what of the study does not run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from registry.fidelity.purposes import Setting
+from registry.sensors import BASES, SENSOR, Basis
+
+ESSENTIAL = (*SENSOR, "extractor", "model")
+"""Parts of a pipeline, each of which rests on something."""
+
+
+@dataclass(frozen=True)
+class RunnablePipeline:
+    """An extractor and a model, by name, on a sensor of the study, with what each rests on.
+
+    ``stages`` are the model's by their taxonomy values: compensations, and the model itself last.
+    ``basis`` says of detector, mask, extractor and model what they rest on, ``assumed`` of those
+    that are not stated by what rule they stand there. ``datasets`` are all that it can be scored
+    on; ``settings`` those of them that stand for the study, each under a condition, the one that
+    tells most first.
+    """
+
+    detector: str
+    mask: str
+    extractor: str
+    model: str
+    extractor_taxonomy: str
+    model_taxonomy: str
+    stages: tuple[str, ...]
+    datasets: tuple[str, ...]
+    settings: tuple[Setting, ...]
+    basis: Mapping[str, Basis] = field(hash=False)
+    assumed: Mapping[str, str] = field(hash=False)
+
+    @property
+    def strength(self) -> list[int]:
+        """What its parts rest on as ranks, the weakest first: smaller is better."""
+        return sorted((BASES.index(basis) for basis in self.basis.values()), reverse=True)
+
+    def to_dict(self) -> dict[str, object]:
+        """As in the HTTP answer."""
+        return {
+            "detector": self.detector,
+            "mask": self.mask,
+            "extractor": self.extractor,
+            "model": self.model,
+            "extractor_taxonomy": self.extractor_taxonomy,
+            "model_taxonomy": self.model_taxonomy,
+            "stages": list(self.stages),
+            "basis": dict(self.basis),
+            "assumed": dict(self.assumed),
+            "datasets": list(self.datasets),
+            "settings": [setting.to_dict() for setting in self.settings],
+        }
+
+
+@dataclass(frozen=True)
+class Gap:
+    """Something of a study that does not run as it is, and why.
+
+    ``attribute`` is one of the study's (value "" if its cell is empty), or "architecture" with
+    the value "detector + mask".
+    """
+
+    attribute: str
+    value: str
+    reason: str
+
+    def to_dict(self) -> dict[str, str]:
+        """As in the HTTP answer."""
+        return {"attribute": self.attribute, "value": self.value, "reason": self.reason}
+
+
+def strongest(pipelines: Sequence[RunnablePipeline]) -> list[RunnablePipeline]:
+    """Return the pipelines that rest on most: those whose weakest part is strongest, and so on."""
+    best = min((pipeline.strength for pipeline in pipelines), default=[])
+    return [pipeline for pipeline in pipelines if pipeline.strength == best]

@@ -1,0 +1,107 @@
+"""Accuracy and precision as studies report them: a number, and which statistic of the error it is.
+
+Without pandas. A figure is compared with another only as the root mean square that the rule of its
+kind (``statistics.csv``) makes of it; a precision is never compared with an accuracy.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from types import MappingProxyType
+from typing import Literal
+
+from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name
+from survey_data.numerals import decimal
+from survey_data.problems import SurveyDataError
+from survey_data.whole_records import read_whole_records
+
+_TABLE = "statistics"
+UNSPECIFIED = "unspecified"
+"""The kind of a figure whose source does not say which statistic it is."""
+
+Quantity = Literal["accuracy", "precision"]
+QUANTITIES: tuple[Quantity, ...] = ("accuracy", "precision")
+KIND_OF: Mapping[str, str] = MappingProxyType(
+    {"accuracy_deg": "accuracy_kind", "precision_deg": "precision_kind"}
+)
+"""Attribute of a figure -> attribute that says which statistic it is."""
+
+
+@dataclass(frozen=True)
+class Statistic:
+    """Which statistic of the error a figure is; an RMS is the figure over ``rms_divisor``."""
+
+    kind: str
+    name: str
+    rms_divisor: float
+    description: str
+
+
+@dataclass(frozen=True)
+class Reported:
+    """An accuracy or a precision as published, in degrees."""
+
+    quantity: Quantity
+    value_deg: float
+    statistic: Statistic
+
+    @property
+    def rms_deg(self) -> float:
+        """The figure as a root mean square, degrees, by the rule of its kind."""
+        return self.value_deg / self.statistic.rms_divisor
+
+    @property
+    def label(self) -> str:
+        """What the number is: ``1-sigma precision``, or ``accuracy of unspecified kind``."""
+        if self.statistic.kind == UNSPECIFIED:
+            return f"{self.quantity} of unspecified kind"
+        return f"{self.statistic.name} {self.quantity}"
+
+    def to_dict(self) -> dict[str, object]:
+        """Return number, kind and what the number is, as JSON data."""
+        return {
+            "value_deg": self.value_deg,
+            "kind": self.statistic.kind,
+            "label": self.label,
+            "rms_deg": self.rms_deg,
+        }
+
+
+@cache
+def statistics(directory: Path | None = None) -> Mapping[str, Statistic]:
+    """Return the kinds of figures by name.
+
+    Parameters
+    ----------
+    directory : Path, optional
+        Where the tables are; by default the package's own data.
+
+    Raises
+    ------
+    SurveyDataError
+        The table is missing or broken.
+    """
+    columns = list(column_types(_TABLE))
+    records = read_whole_records((directory or DATA_DIRECTORY) / file_name(_TABLE), columns)
+    if records.problems:
+        raise SurveyDataError(tuple(records.problems))
+    return MappingProxyType(
+        {
+            kind: Statistic(kind, name, decimal(divisor), description)
+            for _, (kind, name, divisor, description) in records.rows
+        }
+    )
+
+
+def reported(quantity: Quantity, value_deg: float, kind: str | None = None) -> Reported:
+    """Return a figure with its kind; without one it is unspecified.
+
+    Raises
+    ------
+    KeyError
+        For a kind that is not in the table.
+    """
+    return Reported(quantity, value_deg, statistics()[kind or UNSPECIFIED])

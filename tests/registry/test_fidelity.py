@@ -1,0 +1,285 @@
+"""A run is graded by what departs from its study, and stands where the study's purpose is shown."""
+
+import dataclasses
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+from typing import Any
+
+import pytest
+from stand_ins import (
+    BALANCE,
+    DIRECT,
+    EXTRACTORS,
+    GLASS,
+    LUT,
+    MODELS,
+    SIGNALS,
+    SPM,
+    chain,
+    implementation,
+    planned,
+    stand_ins,
+)
+
+from benchmark.plan.combinations import scorable
+from benchmark.plan.parts import installed
+from benchmark.plan.shown import data_sets
+from registry.fidelity.grading import GRADES, Grade, tally, tally_text
+from registry.fidelity.particulars import CompensatedModel, MethodVariant, PurposeRule
+from registry.fidelity.purposes import DataSet, Setting
+from registry.resolution import Resolution, resolve, resolve_all
+from registry.studies import AttributeValue, Default, Facts
+
+Build = Callable[[list[Mapping[str, list[str]]]], Facts]
+OPENED = ("", "survey-text", "model:x", "so it says")
+ALBEDO = PurposeRule("U01", (("error", "Interference"),), (("task", "Cost"),), "albedo", "s", "r")
+FLIGHT = PurposeRule("U02", (("model", "ACM"),), (), "flight", "s", "in operation")
+
+
+def row(**values: list[str]) -> dict[str, list[str]]:
+    return {
+        "detector": ["CMOS"],
+        "mask": ["Slit"],
+        "extractor": ["BCTM"],
+        "model": ["SPM"],
+    } | values
+
+
+def resolved(
+    facts: Facts,
+    *sets: DataSet,
+    on: tuple[tuple[str, str], ...] = (("CMOS", "Slit"),),
+    models: list[Any] = MODELS,
+) -> Resolution:
+    plan = planned(on, EXTRACTORS, models)
+    known = stand_ins(facts, EXTRACTORS, models)
+    shown = {one.name: one for one in sets}
+    return resolve("S0", plan, data_sets=shown, catalogue=known, facts=facts)
+
+
+def parts(found: Resolution) -> list[str]:
+    return [departure.part for departure in found.fidelity.departures]
+
+
+def recalled(facts: Facts, attribute: str) -> Facts:
+    study = facts.studies["S0"]
+    (cell,) = study.values[attribute]
+    weak = AttributeValue(cell.value, "recalled", "", "from memory")
+    values = MappingProxyType({**study.values, attribute: (weak,)})
+    return dataclasses.replace(facts, studies={"S0": dataclasses.replace(study, values=values)})
+
+
+def test_a_study_that_runs_as_it_states_is_faithful(facts_of: Build) -> None:
+    found = resolved(facts_of([row(model=["SPM", "LUT"])]))
+    assert (found.fidelity.grade, parts(found)) == ("faithful", [])
+    assert found.fidelity.sentence == (
+        "Its standard projection model, look-up table and basic centroid threshold method run as "
+        "bctm → spm on CMOS-Slit (nominal) and in 1 more pipeline."
+    )
+
+
+@pytest.mark.parametrize(
+    ("values", "departs"),
+    [
+        ({"model": ["LSQ"]}, ["model"]),
+        ({"model": ["SPM", "LSQ", "DNN"]}, ["model", "model"]),
+        ({"model": ["None"]}, ["model"]),
+        ({"extractor": ["None"]}, ["extractor"]),
+        ({"extractor": ["HT"], "model": ["None"]}, ["extractor", "model"]),
+        ({"model": ["SPM", "OCM"]}, ["compensation"]),
+        ({"detector": ["CMOS", "QPD"]}, ["sensor"]),
+    ],
+)
+def test_each_value_that_does_not_run_or_was_chosen_departs(
+    facts_of: Build, values: dict[str, list[str]], departs: list[str]
+) -> None:
+    found = resolved(facts_of([row(**values)]))
+    assert sorted(parts(found)) == departs
+    assert found.fidelity.grade == ("close" if len(departs) == 1 else "stand-in")
+    for departure in found.fidelity.departures:
+        assert departure.text in found.fidelity.sentence
+        assert departure.settled_by
+
+
+def test_what_is_recalled_departs_and_what_is_inferred_does_not(facts_of: Build) -> None:
+    facts = facts_of([row()])
+    assert parts(resolved(recalled(facts, "detector"))) == ["sensor"]
+    both = recalled(recalled(facts, "detector"), "mask")
+    assert parts(resolved(both)) == ["sensor"]  # one sensor, one part
+    study = facts.studies["S0"]
+    cell = (AttributeValue("Slit", "inferred", "", "a slit by its model"),)
+    values = MappingProxyType({**study.values, "mask": cell})
+    found = resolved(
+        dataclasses.replace(facts, studies={"S0": dataclasses.replace(study, values=values)})
+    )
+    assert found.fidelity.grade == "faithful"
+    assert found.fidelity.sentence.endswith("; its mask is inferred.")
+
+
+def test_an_implied_cell_is_the_studys_and_a_chosen_one_is_not(facts_of: Build) -> None:
+    facts = facts_of([row(mask=[])])
+    rule = Default("D01", "mask", (("extractor", "BCTM"),), "Slit", "fe:bctm", "one line, one slit")
+    implied = dataclasses.replace(facts, defaults=(rule,))
+    assert resolved(implied).fidelity.grade == "faithful"
+    chosen = dataclasses.replace(facts, defaults=(dataclasses.replace(rule, kind="chosen"),))
+    assert parts(resolved(chosen)) == ["sensor"]
+
+
+def test_a_kind_that_is_not_stated_is_chosen_unless_a_model_is_known_to_do_it(
+    facts_of: Build,
+) -> None:
+    facts = facts_of([row(detector=["PD"], extractor=["Direct"], model=["Basic", "ECM"])])
+    on = (("PD", "Slit"),)
+    assert parts(resolved(facts, on=on)) == ["compensation"]
+    known = CompensatedModel("S0", "ECM", "Basic", "within", *OPENED[1:])
+    found = resolved(dataclasses.replace(facts, compensated=(known,)), on=on)
+    assert (found.fidelity.grade, [p.model for p in found.pipelines]) == ("faithful", ["basic"])
+
+
+def test_a_compensation_runs_ahead_of_the_model_of_its_equation(facts_of: Build) -> None:
+    models = [*MODELS, chain(GLASS, SPM), chain(GLASS, LUT)]
+    facts = facts_of([row(model=["OCM"])])
+    bare = resolved(facts, models=models)
+    assert ([p.model for p in bare.pipelines], parts(bare)) == (["glass + spm"], ["model"])
+    known = CompensatedModel("S0", "OCM", "LUT", "ahead", *OPENED[1:])
+    found = resolved(dataclasses.replace(facts, compensated=(known,)), models=models)
+    assert [p.model for p in found.pipelines] == ["glass + lut"]
+    assert found.fidelity.grade == "faithful"
+
+
+def test_another_variant_than_the_studys_departs(facts_of: Build) -> None:
+    balanced = implementation("balanced", "DNN", None, frozenset({BALANCE}))
+    raw = implementation("raw", "DNN", None, frozenset({SIGNALS}))
+    facts = facts_of([row(detector=["PD"], extractor=["Voltage balance"], model=["DNN"])])
+    variant = MethodVariant("S0", "DNN", "DNN", "Direct", *OPENED)
+    facts = dataclasses.replace(facts, variants=(variant,))
+    on = (("PD", "Slit"),)
+    without = resolved(facts, on=on, models=[balanced])
+    assert (without.fidelity.grade, parts(without)) == ("close", ["model"])
+    assert "so it says" in without.fidelity.sentence
+    found = resolved(facts, on=on, models=[balanced, raw])
+    assert found.fidelity.grade == "faithful"
+    assert found.best is not None
+    assert (found.best.extractor, found.best.model) == (DIRECT.about.name, "raw")
+
+
+def test_a_study_stands_where_its_purpose_is_shown(facts_of: Build) -> None:
+    facts = dataclasses.replace(facts_of([row(error=["Interference"])]), purposes=(ALBEDO,))
+    lit = DataSet("CMOS-Slit", ("nominal", "albedo"))
+    found = resolved(facts, lit)
+    assert found.fidelity.grade == "faithful"
+    assert found.pipelines[0].settings == (Setting("CMOS-Slit", "albedo", ("albedo",)),)
+    dark = resolved(facts, DataSet("CMOS-Slit"))
+    assert parts(dark) == ["condition"]
+    assert dark.pipelines[0].settings == (Setting("CMOS-Slit", "nominal"),)
+    # a study that the rule leaves out is shown as any other
+    facts = facts_of([row(error=["Interference"], task=["Cost"])])
+    facts = dataclasses.replace(facts, purposes=(ALBEDO,))
+    assert resolved(facts, lit).pipelines[0].settings == (Setting("CMOS-Slit", "nominal"),)
+
+
+def test_where_its_own_sensor_does_not_fly_the_nearest_that_does_stands_in(facts_of: Build) -> None:
+    drift = implementation("drift", "ACM", None, frozenset({SIGNALS}))
+    values = row(detector=["PD"], mask=["Slit"], extractor=["Direct"], model=["ACM"])
+    facts = dataclasses.replace(facts_of([values]), purposes=(FLIGHT,))
+    aloft = DataSet("PD-Lens", ("nominal", "hot"), frozenset({"time_s"}))
+    on = (("PD", "Slit"), ("PD", "Lens"), ("CMOS", "Slit"))
+    found = resolved(facts, aloft, on=on, models=[drift])
+    # a condition for a sensor is no gain: as many parts depart, and the sensor is its own
+    assert parts(found) == ["condition"]
+    assert found.pipelines[0].settings == (Setting("PD-Slit", "nominal"),)
+    # where the sensor is not known at all it is
+    facts = facts_of([row(detector=[], mask=[], extractor=["Direct"], model=["ACM"])])
+    facts = dataclasses.replace(facts, purposes=(FLIGHT,))
+    found = resolved(facts, aloft, on=on, models=[drift])
+    assert parts(found) == ["sensor"]
+    assert found.pipelines[0].settings == (Setting("PD-Lens", "nominal", ("flight",)),)
+
+
+def test_nothing_runs_of_a_study_without_a_simulated_sensor(facts_of: Build) -> None:
+    found = resolved(facts_of([row()]), on=())
+    assert (found.fidelity.grade, found.state, found.best) == ("none", "none", None)
+
+
+def test_grades_are_counted_nearest_first() -> None:
+    grades: list[Grade] = ["close", "faithful", "close"]
+    assert tally(grades) == {"faithful": 1, "close": 2, "stand-in": 0, "none": 0}
+    assert tally_text(grades) == "1 faithful, 2 close, 0 stand-in, 0 cannot run"
+
+
+@pytest.fixture(scope="module")
+def everything() -> dict[str, Resolution]:
+    return resolve_all(scorable(), data_sets=data_sets())
+
+
+def test_grades_of_the_survey_follow_from_their_departures(
+    survey: Facts, everything: dict[str, Resolution]
+) -> None:
+    for key, found in everything.items():
+        number = len(found.fidelity.departures)
+        assert found.fidelity.grade in GRADES
+        if found.pipelines:
+            assert found.fidelity.grade == ("faithful", "close", "stand-in")[min(number, 2)], key
+        study = survey.studies[key]
+        if found.fidelity.grade == "faithful":
+            assert found.best is not None
+            assert "None" not in (*study.of("model"), *study.of("extractor"))
+            assert not {"recalled", "defaulted"} & set(found.best.basis.values()), key
+            assert set(study.of("extractor")) <= {p.extractor_taxonomy for p in found.pipelines}
+            ran = {stage for p in found.pipelines for stage in p.stages}
+            for value in study.of("model"):
+                carried = survey.within(key, value) or survey.variant(key, value)
+                assert carried or value in ran, (key, value)
+
+
+def test_settings_of_the_survey_are_conditions_that_data_sets_have(
+    everything: dict[str, Resolution],
+) -> None:
+    presets = installed().presets
+    for found in everything.values():
+        for pipeline in found.pipelines:
+            assert pipeline.settings
+            for at in pipeline.settings:
+                assert at.dataset in pipeline.datasets
+                assert at.condition in presets[at.dataset].conditions
+
+
+@pytest.mark.parametrize(
+    ("key", "dataset", "condition"),
+    [
+        ("Soken2023", "pd-albedo-orbit", "nominal"),  # a network against albedo, trained in orbit
+        ("Sozen2021", "pd-albedo-orbit", "nominal"),
+        ("Frezza2022", "pd-orbit", "nominal"),
+        ("Nurgizat2021", "pva-maskless-panels", "albedo"),
+        ("Hermoso2022b", "pva-maskless-panels", "hot"),  # the temperature of its panels
+        ("Chang2008", "cmos-single-aperture", "nominal"),  # a bench, the data set made after it
+    ],
+)
+def test_studies_stand_where_what_they_are_about_is_shown(
+    everything: dict[str, Resolution], key: str, dataset: str, condition: str
+) -> None:
+    best = everything[key].best
+    assert best is not None
+    assert (best.settings[0].dataset, best.settings[0].condition) == (dataset, condition)
+
+
+@pytest.mark.parametrize("key", ["Radan2019", "Fan2017"])
+def test_assembly_that_drifts_is_compensated_on_a_flight(
+    everything: dict[str, Resolution], key: str
+) -> None:
+    best = everything[key].best
+    assert best is not None
+    assert data_sets()[best.settings[0].dataset].flies
+    assert best.settings[0].purposes == ("flight",)
+    assert best.stages == ("ACM",)
+
+
+def test_a_network_against_albedo_reads_voltages_as_the_survey_describes_it(
+    everything: dict[str, Resolution],
+) -> None:
+    for key in ("Soken2023", "Sozen2021"):
+        best = everything[key].best
+        assert best is not None
+        assert (best.extractor, best.model) == ("direct", "dnn")
+        assert everything[key].fidelity.grade == "close"  # its mask is not known
+        assert parts(everything[key]) == ["sensor"]

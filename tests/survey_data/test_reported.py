@@ -1,0 +1,84 @@
+"""Accuracy and precision as studies report them, each with the statistic that it is."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+import survey_data
+from registry.requirements import CLASSES_DEG
+from registry.studies import facts
+from survey_data.hardware import Hardware
+from survey_data.reported import KIND_OF, UNSPECIFIED, reported, statistics
+
+
+@pytest.mark.parametrize(
+    ("kind", "value", "rms"),
+    [
+        ("1sigma", 0.1, 0.1),
+        ("3sigma", 0.03, 0.01),
+        ("p95", 0.196, 0.1),
+        ("mean", math.sqrt(2 / math.pi), 1.0),  # mean of |error| of a normal error of RMS 1
+        ("max", 3.0, 1.0),
+        ("unspecified", 0.5, 0.5),
+    ],
+)
+def test_a_figure_is_compared_as_the_rms_of_its_kind(kind: str, value: float, rms: float) -> None:
+    assert reported("accuracy", value, kind).rms_deg == pytest.approx(rms, rel=1e-3)
+
+
+@pytest.mark.parametrize("kind", ["1sigma", "3sigma", "rms", "max", UNSPECIFIED])
+def test_studies_are_compared_by_the_rule_that_built_sensors_are(kind: str) -> None:
+    sensor = Hardware("", "", "", "", None, 0.3, kind, None, None, None, "", "")
+    assert reported("accuracy", 0.3, kind).rms_deg == sensor.rms_deg
+
+
+def test_a_figure_says_what_it_is() -> None:
+    assert reported("precision", 0.002, "1sigma").label == "1-sigma precision"
+    assert reported("accuracy", 0.002).label == "accuracy of unspecified kind"
+    with pytest.raises(KeyError):
+        reported("accuracy", 0.002, "best")
+
+
+def test_a_one_sigma_precision_is_no_accuracy() -> None:
+    """Wei2013 prints 1.1 arcsec, Wang2015 1.32 arcsec, both as precision and 1 sigma."""
+    for key, arcsec in (("Wei2013", 1.1), ("Wang2015", 1.32)):
+        study = facts().studies[key]
+        assert study.reported("accuracy") is None
+        found = study.reported("precision")
+        assert found is not None
+        assert found.label == "1-sigma precision"
+        assert found.value_deg == pytest.approx(arcsec / 3600, rel=1e-3)
+
+
+def test_every_number_of_the_mapping_has_a_kind() -> None:
+    attributes = survey_data.load().attributes
+    for number, kind in KIND_OF.items():
+        having = {a: set(attributes.loc[attributes["attribute"] == a, "study"]) for a in KIND_OF}
+        kinds = attributes.loc[attributes["attribute"] == kind]
+        assert set(kinds["study"]) == having[number]
+        assert set(kinds["value"]) <= set(statistics())
+
+
+def test_a_heading_of_a_rover_is_no_accuracy_of_a_sun_sensor() -> None:
+    study = facts().studies["TrebiOllennu2001"]
+    assert study.reported("accuracy") is None
+    assert "accuracy" in study.unknown
+
+
+def test_cells_that_the_survey_tells_of_rest_on_its_text() -> None:
+    studies = facts().studies
+    cells = (
+        studies["Pentke2022"].values["error"][0],
+        studies["Bardallo2017a"].values["detector"][0],
+    )
+    assert [(c.value, c.basis) for c in cells] == [
+        ("Electrical", "survey-text"), ("Event", "survey-text"),
+    ]  # fmt: skip
+
+
+def test_requirements_ask_by_the_limits_of_the_taxonomy() -> None:
+    taxonomy = survey_data.load().taxonomy
+    limits = taxonomy[taxonomy["attribute"] == "accuracy"].set_index("value")["max_deg"].dropna()
+    assert dict(CLASSES_DEG) == pytest.approx(limits.to_dict())
