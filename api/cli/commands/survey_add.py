@@ -208,7 +208,7 @@ def _print(document: Mapping[str, Any]) -> None:
         {**p, "assumed": [f"{part}: {rule}" for part, rule in p["assumed"].items()]}
         for p in document["pipelines"]
     ]
-    title = f"What of it would run here: {document['grade']}, {len(lines)} pipelines"
+    title = f"What of it would run here: {document['grade']}; pipelines: {len(lines)}"
     emit(lines, _PIPELINES, Format.TABLE, title=title)
     say(document["sentence"])
     for gap in document["gaps"]:
