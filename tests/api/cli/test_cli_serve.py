@@ -17,6 +17,7 @@ import pytest
 import uvicorn
 from typer.testing import CliRunner
 
+from api.cli import asking
 from api.cli.command_line import app
 from api.cli.commands.serve import address, listen
 from registry import studies
@@ -150,6 +151,7 @@ def test_damaged_facts_are_refused_in_one_line_before_anything_is_served(monkeyp
     monkeypatch.setattr(recorded_facts.require_unchanged, "__defaults__", (tmp_path,))
     monkeypatch.setattr(uvicorn.Server, "run", lambda *_, **__: pytest.fail("it serves"))
     studies._facts.cache_clear()
+    asking.knowledge.cache_clear()
     for command in (["serve", "--port", "0"], ["studies"], ["recommend"]):
         shown = CliRunner().invoke(app, command)
         assert shown.exit_code == 1
