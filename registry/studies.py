@@ -33,6 +33,7 @@ from registry.taxonomy import (
 from survey_data import recorded_facts
 from survey_data.numerals import decimal
 from survey_data.reported import KIND_OF, Quantity, Reported, reported, statistics
+from survey_data.sources import source_named
 from survey_data.texts import load_texts
 
 
@@ -173,6 +174,7 @@ class Study:
                 "value": cell.value,
                 "basis": cell.basis,
                 "source": cell.source,
+                "source_name": source_named(cell.source).name,
                 "note": cell.note,
                 "role": self.role(attribute, cell.value) if attribute in METHODS else "",
             }
@@ -185,6 +187,7 @@ class Study:
                 "value": "",
                 "basis": "unknown",
                 "source": "",
+                "source_name": "",
                 "note": note,
                 "role": "",
             }

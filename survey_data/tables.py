@@ -58,6 +58,8 @@ class SurveyTables:
     model_families: pd.DataFrame
     venues: pd.DataFrame
     statistics: pd.DataFrame
+    sources: pd.DataFrame
+    labels: pd.DataFrame
 
 
 def load(directory: str | Path | None = None) -> SurveyTables:

@@ -33,6 +33,7 @@ from typing import Any, Literal
 
 import pandas as pd
 
+from survey_data import labels
 from survey_data.findings.evidence import NO_MAJORITY, OCCURRING, Tally, settled_by
 
 Verdict = Literal["reproduced", "partly", "tied", "contradicted", "undecidable"]
@@ -94,7 +95,7 @@ class ClauseVerdict:
     def to_dict(self) -> dict[str, Any]:
         """Return the verdict as plain JSON data."""
         counts = {name: [list(pair) for pair in getattr(self, name)] for name in _COUNTS}
-        return asdict(self) | counts
+        return asdict(self) | counts | {"section_name": labels.name(self.survey_section)}
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from survey_data.findings.checks import FindingSyntaxError, Vocabulary, parse_cl
 from survey_data.problems import Problem
 from survey_data.reported import KIND_OF
 from survey_data.tables import FIRST_ROW
-from survey_data.validation import provenance
+from survey_data.validation import citations, provenance
 from survey_data.validation.cells import Frames, Rule, problem, stated, texts
 
 
@@ -26,7 +26,7 @@ def check_rules(frames: Frames) -> list[Problem]:
     """Return the problems every rule finds whose tables are all in `frames`."""
     return [
         found
-        for needed, rule in (*_RULES, *provenance.RULES)
+        for needed, rule in (*_RULES, *provenance.RULES, *citations.RULES)
         if all(table in frames for table in needed)
         for found in rule(frames)
     ]

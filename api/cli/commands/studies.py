@@ -20,7 +20,7 @@ from registry.fidelity.grading import tally_text
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
 COLUMNS = ("key", "year", "grade", "detector", "mask", "extractor", "model", "title")
-DETAILS = ("attribute", "value", "role", "basis", "source", "note")
+DETAILS = ("attribute", "value", "role", "basis", "source_name", "note")
 
 
 class Grade(StrEnum):

@@ -26,7 +26,8 @@ FINDINGS = (
     "settled_by",
 )
 FINDINGS_CSV = (
-    *("id", "verdict", "clause", "clause_verdict", "kind", "survey_section", "given", "expects"),
+    *("id", "verdict", "clause", "clause_verdict", "kind", "survey_section"),
+    *("section_name", "given", "expects"),
     *("matching", "counted", "named", "ranking", "settled_by", "clause_statement", "statement"),
     *("not_tested",),
 )

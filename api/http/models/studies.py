@@ -168,7 +168,8 @@ class AttributeValue(Shape):
     attribute: str
     value: str
     basis: str
-    source: str
+    source: str = Field(description="Address, document, study or label of the survey's source.")
+    source_name: str = Field(description="Publisher, document or part of the survey.")
     note: str
     role: Literal["proposed", "compared", "unknown", ""] = Field(
         description="Of a model or an extractor: whether the study proposed it or only compared it."
