@@ -16,7 +16,6 @@ from typing import Any
 
 from survey_data.csv_reading import read_records
 from survey_data.hardware import Hardware, hardware
-from survey_data.sources import source_named
 
 FILE = Path(__file__).parent / "realism.csv"
 COLUMNS = ("dataset", "hardware", "idealisation", "sentence")
@@ -69,7 +68,6 @@ def figures(sensor: Hardware) -> dict[str, Any]:
         "precision_deg": sensor.precision_deg,
         "basis": sensor.basis,
         "source": sensor.source,
-        "source_name": source_named(sensor.source).name,
     }
 
 
