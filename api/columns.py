@@ -17,7 +17,8 @@ Row = Mapping[str, Any]
 
 TAXONOMY = ("attribute", "value", "name", "category", "section", "section_name")
 STUDIES = (
-    *("key", "title", "authors", "year", "venue", "doi", "url", "identity", "grade", "state"),
+    *("key", "title", "authors", "year", "venue", "type", "doi", "url", "identity", "grade"),
+    "state",
     *("task", "error", "accuracy", "detector", "mask", "model", "extractor"),
     *("accuracy_deg", "accuracy_kind", "precision_deg", "precision_kind", "fov_deg"),
 )

@@ -106,6 +106,7 @@ class Study:
     unknown: Mapping[str, str]
     roles: Mapping[tuple[str, str], MethodRole] = field(default_factory=dict, hash=False)
     combined: tuple[tuple[str, str], ...] = ()
+    type: str = "unknown"  # journal, conference, preprint, thesis, ...
 
     def role(self, attribute: str, value: str) -> str:
         """Return `proposed`, `compared` or `unknown`, of a model or an extractor of the study."""
@@ -160,6 +161,7 @@ class Study:
             "authors": self.authors,
             "year": self.year,
             "venue": self.venue,
+            "type": self.type,
             "doi": self.doi,
             "url": self.url,
             "identity": self.identity,
@@ -337,6 +339,7 @@ def facts_from(tables: Tables) -> Facts:
             unknown=MappingProxyType(unknown.pop(key, {})),
             roles=MappingProxyType(roles.get(key, {})),
             combined=combined.get(key, ()),
+            type=row.get("type", "unknown"),
         )
     strangers = sorted({*stated, *unknown})
     if strangers:

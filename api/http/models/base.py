@@ -48,6 +48,17 @@ class TableQuestion(Question):
     )
 
 
+class CitedQuestion(TableQuestion):
+    """The query of studies: a table, or references."""
+
+    format: Annotated[Literal["json", "csv", "bibtex", "ris", "csl"] | None, GIVEN] = Field(
+        None,
+        description="What to answer in, as a link can say it: JSON, CSV, or references as BibTeX, "
+        "RIS or CSL JSON, of the studies whose title is known. It has to be among what the Accept "
+        "header takes, if there is one. Left out, that header decides.",
+    )
+
+
 class OnlyFormat(TableQuestion):
     """The query of a table that takes no other parameters."""
 

@@ -8,7 +8,7 @@ from pydantic import ConfigDict, Field
 
 from api import columns
 from api.http.models import words
-from api.http.models.base import Listing, Shape, TableQuestion
+from api.http.models.base import CitedQuestion, Listing, Shape, TableQuestion
 from api.http.models.parameters import (
     DEFAULT_PAGE,
     FIELDS,
@@ -52,13 +52,14 @@ class StudyFilters(TableQuestion):
         return {attribute: values for attribute, values in asked.items() if values}
 
 
-class StudiesQuery(StudyFilters):
+class StudiesQuery(CitedQuestion, StudyFilters):
     """Which studies."""
 
     model_config = ConfigDict(
         json_schema_extra={"examples": [{"detector": ["CMOS"], "mask": ["Multi-Ap."], "limit": 1}]}
     )
 
+    key: Several[words.StudyKey] = several("Only studies with one of these keys.")
     year_min: Annotated[int | None, WHOLE] = Field(
         None, ge=0, le=9999, description="Only studies of this year or later."
     )
@@ -82,6 +83,12 @@ class StudiesQuery(StudyFilters):
     fields: Several[Annotated[str, columns_of(columns.STUDIES)]] = FIELDS
     limit: Limit = DEFAULT_PAGE
     cursor: Cursor = None
+
+
+class StudyQuery(CitedQuestion):
+    """The query of one study."""
+
+    model_config = ConfigDict(json_schema_extra={"examples": [{}]})
 
 
 class Runs(Shape):
@@ -145,6 +152,9 @@ class Study(Shape):
     authors: str
     year: int | None
     venue: str
+    type: str = Field(
+        description="Kind of publication: journal, conference, preprint, thesis, ... or unknown."
+    )
     doi: str
     url: str
     identity: str = Field(description="Whether a public page confirms author, year and topic.")
