@@ -38,7 +38,6 @@ _KINDS = MappingProxyType(
         "preprint": _Kind("misc", "howpublished", "UNPB", "T2", "article", "publisher"),
         "thesis": _Kind("phdthesis", "school", "THES", "PB", "thesis", "publisher"),
         "report": _Kind("techreport", "institution", "RPRT", "PB", "report", "publisher"),
-        "patent": _Kind("misc", "howpublished", "PAT", "PB", "patent", "publisher"),
     }
 )
 _OTHER = _Kind("misc", "howpublished", "GEN", "T2", "document", "container-title")

@@ -33,7 +33,6 @@ KINDS = {
     "preprint": (("misc", "howpublished"), "UNPB", ("article", "publisher")),
     "thesis": (("phdthesis", "school"), "THES", ("thesis", "publisher")),
     "report": (("techreport", "institution"), "RPRT", ("report", "publisher")),
-    "patent": (("misc", "howpublished"), "PAT", ("patent", "publisher")),
     "unknown": (("misc", "howpublished"), "GEN", ("document", "container-title")),
 }
 
