@@ -87,6 +87,36 @@ SUFFIXES: Mapping[str, str] = MappingProxyType({"bibtex": "bib", "ris": "ris", "
 """Suffix of a file of each form."""
 
 
+def blank_bibtex(studies: Sequence[Study]) -> str:
+    """Write studies as BibTeX to be filled in: what is confirmed stands there, the rest is blank.
+
+    A title that nobody has confirmed stands above its entry as a comment: who sends the file back
+    unchanged confirms nothing.
+    """
+    head = (
+        "% Fill in the blanks and send this file, or the survey's own .bib or .bbl.\n"
+        "% An entry without a title says nothing, and may stay as it is.\n"
+        "% Of @misc make @article, @inproceedings, @phdthesis or @techreport where it is one.\n"
+    )
+    return "\n".join([head, *map(_blank, studies)])
+
+
+def _blank(study: Study) -> str:
+    kind = _KINDS.get(study["type"], _OTHER)
+    sure = study["identity"] == "confirmed"
+    fields = {
+        "title": "{" + _escaped(study["title"]) + "}" if sure and study["title"] else "",
+        "author": " and ".join(map(_person, names(study["authors"]))) if sure else "",
+        "year": str(study["year"] or ""),
+        kind.bibtex_venue: _escaped(study["venue"]) if sure else "",
+        "doi": _bare(study["doi"]) if sure else "",
+    }
+    perhaps = " ".join(study["title"].replace("@", "").split()) if not sure else ""
+    said = f"% {study['key']} is perhaps: {perhaps}\n" if perhaps else ""
+    lines = "".join(f"  {name} = {{{text}}},\n" for name, text in fields.items())
+    return f"{said}@{kind.bibtex}{{{study['key']},\n{lines}}}\n"
+
+
 def names(authors: str) -> list[tuple[str, str]]:
     """Split authors into (family, given), by BibTeX's own rule; ("", "") stands for others.
 

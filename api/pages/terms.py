@@ -156,8 +156,13 @@ def labelled(text: str) -> Markup:
     return Markup("").join([*parts, Markup.escape(text[at:])])
 
 
-def cited(source: str) -> Markup:
-    """Return a source by its name: linked where it has an address, or is a study of ours."""
+def cited(source: str, key: str = "") -> Markup:
+    """Return a source by its name: linked where it has an address, or is a study of ours.
+
+    `key` is of the study whose page it stands on, which is not linked to itself.
+    """
+    if key and source == key:
+        return Markup("the publication itself")
     found = source_named(source)
     if found.link:
         link = Markup('<a href="{}" rel="noreferrer">{}</a>')
