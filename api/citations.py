@@ -149,7 +149,8 @@ def _link(study: Study) -> str:
 
 
 def _sureness(study: Study) -> str:
-    return _SURE.get(study["identity"], study["identity"])
+    identity = str(study["identity"])
+    return _SURE.get(identity, identity)
 
 
 def _bibtex(study: Study) -> str:

@@ -42,7 +42,7 @@ class Answer(JSONResponse):
     status_code : which FastAPI documents by its default
     """
 
-    offered: ClassVar = (JSON, CSV)
+    offered: ClassVar[tuple[str, ...]] = (JSON, CSV)
     digest: str | None = None
     """Of the JSON, where making it has told."""
 
@@ -116,7 +116,7 @@ class CitedAnswer(Answer):
     narrowed : whether the answer was narrowed to columns, which references cannot be
     """
 
-    offered: ClassVar = (JSON, CSV, *CITATIONS.values())
+    offered: ClassVar[tuple[str, ...]] = (JSON, CSV, *CITATIONS.values())
 
     def __init__(
         self,

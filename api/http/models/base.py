@@ -48,10 +48,13 @@ class TableQuestion(Question):
     )
 
 
+_CitedFormat = Literal["json", "csv", "bibtex", "ris", "csl"] | None
+
+
 class CitedQuestion(TableQuestion):
     """The query of studies: a table, or references."""
 
-    format: Annotated[Literal["json", "csv", "bibtex", "ris", "csl"] | None, GIVEN] = Field(
+    format: Annotated[_CitedFormat, GIVEN] = Field(  # type: ignore[assignment]  # more than a table
         None,
         description="What to answer in, as a link can say it: JSON, CSV, or references as BibTeX, "
         "RIS or CSL JSON, of the studies whose title is known. It has to be among what the Accept "
