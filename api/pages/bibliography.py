@@ -56,7 +56,7 @@ async def bibliography(known: Known, _asked: Annotated[None, NO_PARAMETERS] = No
     complete = sum(not row["missing"] for row in rows)
     document = {"items": rows, "total": len(rows), "complete": complete, "missing": counts}
     return View(
-        "bibliography.html",
+        "studies/missing.html",
         Missing(document, COLUMNS, lambda: rows),
         identities=IDENTITIES,
         form=_form(),

@@ -115,7 +115,8 @@ def _bibliography(
         say(f"left aside: {key}: {reason}")
     if plan.missing:
         say(f"{len(plan.missing)} studies are not in it: {', '.join(plan.missing)}")
-    what = f"{len(plan.edits)} cells and {len(plan.settled)} identities"
+    many = "identity" if len(plan.settled) == 1 else "identities"
+    what = f"{len(plan.edits)} cells and {len(plan.settled)} {many}"
     if apply and (plan.edits or plan.settled):
         typer.echo(f"{what} written.")
     elif plan.edits or plan.settled:
