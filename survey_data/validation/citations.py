@@ -50,6 +50,6 @@ def _labels_are_of_the_survey(frames: Frames) -> Iterator[Problem]:
 
 
 RULES: tuple[tuple[tuple[str, ...], Rule], ...] = (
-    (("sources",), _sources_can_be_cited),
-    (("labels",), _labels_are_of_the_survey),
+    (("studies", "sources"), _sources_can_be_cited),
+    (("studies", "labels"), _labels_are_of_the_survey),
 )
