@@ -17,6 +17,7 @@ from api.columns import STUDIES, STUDY
 from api.http.models.parameters import LARGEST_PAGE
 from api.http.routers import studies as answers
 from registry.fidelity.grading import tally_text
+from survey_data import labels
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
@@ -153,7 +154,7 @@ def _show(key: str, asked: StudyFormat) -> None:
         year = study["year"] or "year unknown"
         say(f"{study['authors'] or 'authors unknown'}, {year}. {study['venue'] or ''}")
         say(study["doi"] or study["url"] or "no DOI known")
-        say(f"{study['grade']}: {study['sentence']}")
+        say(f"{study['grade']}: {labels.named(study['sentence'])}")
         for departure in study["departures"]:
             say(f"  {departure['part']} settled by: {departure['settled_by']}")
         typer.echo()
@@ -181,7 +182,7 @@ def _show(key: str, asked: StudyFormat) -> None:
 def _assumed(pipeline: Mapping[str, Any]) -> list[str]:
     """Return a line for each part of a pipeline that the study does not state."""
     return [
-        f"{attribute} ({pipeline['basis'][attribute]}): {rule}"
+        f"{attribute} ({pipeline['basis'][attribute]}): {labels.named(rule)}"
         for attribute, rule in pipeline["assumed"].items()
     ]
 
