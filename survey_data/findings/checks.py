@@ -95,7 +95,7 @@ class ClauseVerdict:
     def to_dict(self) -> dict[str, Any]:
         """Return the verdict as plain JSON data."""
         counts = {name: [list(pair) for pair in getattr(self, name)] for name in _COUNTS}
-        return asdict(self) | counts | {"section_name": labels.name(self.survey_section)}
+        return asdict(self) | counts
 
 
 @dataclass(frozen=True)
@@ -121,6 +121,7 @@ class FindingVerdict:
             "id": self.id,
             "verdict": self.verdict,
             "survey_section": self.survey_section,
+            "section_name": labels.name(self.survey_section),
             "statement": self.statement,
             "not_tested": self.not_tested,
             "clauses": [clause.to_dict() for clause in self.clauses],
