@@ -12,13 +12,23 @@ from survey_data.validation.cells import Frames, Rule, problem, texts
 #: Columns of sources, by table.
 _SOURCES = {
     **dict.fromkeys(("attributes", "roles", "architectures", "hardware"), "source"),
+    **dict.fromkeys(("compensated_models", "method_variants"), "source"),
     "studies": "url",
 }
 #: Columns that hold one label of the survey, by table.
 _LABELS = {
     "claims": "section",
     **dict.fromkeys(
-        ("taxonomy", "findings", "advice", "protocol", "counts", "defaults", "model_families"),
+        (
+            "taxonomy",
+            "findings",
+            "advice",
+            "protocol",
+            "counts",
+            "defaults",
+            "model_families",
+            "purposes",
+        ),
         "survey_section",
     ),
     "study_tables": "source",
