@@ -69,6 +69,7 @@ class Setup:
 
 SETUPS = {
     "qpd-single-aperture": (0.004, 2.6),
+    "qpd-single-aperture-glass": (0.004, 2.6),
     "pd-single-aperture": (0.004, 1.2),
     "psd-single-aperture": (0.003, 2.7),
 }
