@@ -19,6 +19,7 @@ import algorithms.compensations
 import algorithms.extractors
 import algorithms.models
 from algorithms.chain import Chain, chains
+from algorithms.compensations.combinations import combinations
 from algorithms.contract import About, Compensation, Extractor, Model
 
 
@@ -68,17 +69,22 @@ def discover_models() -> dict[str, type[Model]]:
 
 
 def discover_chains() -> dict[str, type[Model] | Chain]:
-    """Models alone and behind the compensations that say they go ahead of them, by name.
+    """Models alone, behind compensations that say they go ahead of them, and as studies combined.
 
     Raises
     ------
     TypeError
         As `discover_models` and `discover_compensations`.
     ValueError
-        As these, and where a compensation goes ahead of a model that there is not.
+        As these, where a compensation goes ahead of a model that there is not, and where a
+        combination has no such parts or is planned already.
     """
-    models = discover_models()
-    return {**models, **chains(discover_compensations(), models)}
+    models, compensations = discover_models(), discover_compensations()
+    named = chains(compensations, models)
+    used = combinations(compensations, models)
+    if twice := sorted(named.keys() & used.keys()):
+        raise ValueError(f"planned already by a compensation's ahead_of: {', '.join(twice)}")
+    return {**models, **named, **used}
 
 
 def implementations(package: ModuleType, contract: type, method: str) -> dict[str, type]:

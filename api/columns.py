@@ -15,14 +15,18 @@ from survey_data.csv_writing import csv_text
 
 Row = Mapping[str, Any]
 
-TAXONOMY = ("attribute", "value", "name", "category", "section")
+TAXONOMY = ("attribute", "value", "name", "category", "section", "section_name")
 STUDIES = (
-    *("key", "title", "authors", "year", "venue", "doi", "url", "identity", "grade", "state"),
+    *("key", "title", "authors", "year", "venue", "type", "doi", "url", "identity", "grade"),
+    "state",
     *("task", "error", "accuracy", "detector", "mask", "model", "extractor"),
     *("accuracy_deg", "accuracy_kind", "precision_deg", "precision_kind", "fov_deg"),
     *("edition", "verified"),
 )
-STUDY = ("attribute", "value", "basis", "source", "note", "role", "name_in_study", "nearest")
+STUDY = (
+    *("attribute", "value", "basis", "source", "source_name", "note", "role"),
+    *("name_in_study", "nearest"),
+)
 EDITIONS = ("name", "title", "studies", "version")
 FLOWS = ("source", "target", "value", "studies")
 FIGURES = ("figure", "title", "caption", "levels")
@@ -71,7 +75,7 @@ RECOMMENDATIONS = (
 )
 ALGORITHMS = (
     *("name", "role", "taxonomy", "category", "observation", "kind", "accepts", "labels"),
-    *("studies", "origin", "version", "summary"),
+    *("label_names", "studies", "origin", "version", "summary"),
 )
 DATASETS = (
     *("name", "version", "detector", "mask", "observation", "conditions", "units", "bounds"),
@@ -88,6 +92,7 @@ REALISM = (
     *("repeatability_deg", "id", "name", "fov_full_deg", "accuracy_deg", "accuracy_kind"),
     *("accuracy_rms_deg", "precision_deg", "basis", "our_rms_deg", "accuracy_ratio"),
     *("precision_ratio", "explanation", "unexplained", "source"),
+    "source_name",
 )
 _PLACE = ("dataset", "condition", "extractor", "model")
 _WHAT = (
@@ -141,7 +146,9 @@ ASSESSMENT = (
     *("method", "property", "survey", "measured", "agreement", "value", "reason", "taxonomy"),
     *("case_study", "unit", "extractor", "measured_on"),
 )
-CLAIMS = ("id", "section", "study", "statement", "verdict", "trials", "explanation")
+CLAIMS = (
+    *("id", "section", "section_name", "study", "statement", "verdict", "trials", "explanation"),
+)
 CLAIM = (
     *("rule", "statistic", "decides", "standing", "estimate", "low", "high", "trials", "timed"),
     "second_standing",
@@ -157,15 +164,16 @@ COMPARISON = (
 )
 ADVICE = (
     *("id", "requirement", "value", "detector", "mask", "model_category", "extractor"),
-    *("section", "note"),
+    *("section", "section_name", "note"),
 )
-PROTOCOL = ("about", "kind", "id", "text", "section")
+PROTOCOL = ("about", "kind", "id", "text", "section", "section_name")
 
 
 _LISTS = frozenset(
     (
         *("studies", "compensations", "calibration_studies", "measured_conditions", "accepts"),
-        *("labels", "conditions", "bounds", "follows", "stands_for_sensors", "unit_rms_deg"),
+        *("labels", "label_names", "conditions", "bounds", "follows", "stands_for_sensors"),
+        "unit_rms_deg",
         *("datasets", "runner_up_unit_rms_deg"),
     )
 )

@@ -9,6 +9,7 @@ import survey_data
 from benchmark.leaderboard.scope import LEADING, UNITS
 from benchmark.metrics.rings import ANSWERED, FEWEST
 from benchmark.metrics.score import AVAILABLE, METRIC_VERSION
+from survey_data import labels
 
 Statement = Mapping[str, Any]
 
@@ -155,7 +156,7 @@ def protocol() -> dict[str, list[Statement]]:
     -------
     dict
         ``survey`` and ``scores``: statements with ``about`` (the same words), ``kind``, ``id``,
-        ``text`` and ``section`` of the survey (empty for scores).
+        ``text``, ``section`` of the survey and ``section_name`` (empty for scores).
     """
     table = survey_data.load().protocol
     columns = (table[name] for name in ("kind", "id", "text", "survey_section"))
@@ -166,4 +167,11 @@ def protocol() -> dict[str, list[Statement]]:
 
 
 def _statement(about: str, kind: str, identifier: str, text: str, section: str) -> Statement:
-    return {"about": about, "kind": kind, "id": identifier, "text": text, "section": section}
+    return {
+        "about": about,
+        "kind": kind,
+        "id": identifier,
+        "text": text,
+        "section": section,
+        "section_name": labels.name(section),
+    }

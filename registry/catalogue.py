@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Literal
 
 from registry import studies as registered
 from registry.taxonomy import NO_IMPLEMENTATION_STATED, Taxonomy, unknown_name
+from survey_data import labels
 
 if TYPE_CHECKING:
     from algorithms.chain import Chain, Scored
@@ -52,6 +53,7 @@ class Implementation:
             "kind": self.kind,
             "accepts": None if self.accepts is None else list(self.accepts),
             "labels": list(self.labels),
+            "label_names": [labels.name(label) for label in self.labels],
             "studies": list(self.studies),
             "origin": self.origin,
             "version": self.version,

@@ -277,6 +277,7 @@ def facts_from(tables: Tables) -> Facts:
             edition=row.get("edition", SURVEY),
             names=MappingProxyType(names.get(key, {})),
             verified=tuple(verified.get(key, ())),
+            type=row.get("type", "unknown"),
         )
     strangers = sorted({*stated, *unknown})
     if strangers:

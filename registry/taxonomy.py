@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
+from survey_data import labels
 from survey_data.nearest import nearest
 
 Architecture = tuple[str, str]
@@ -89,12 +90,13 @@ class TaxonomyEntry:
     calibration: str = ""  # of a model: offline, online (the middle ring of the sunburst)
 
     def to_dict(self) -> dict[str, str]:
-        """`value`, `name`, `category`, `section`."""
+        """`value`, `name`, `category`, `section` and what that names."""
         return {
             "value": self.value,
             "name": self.name,
             "category": self.category,
             "section": self.section,
+            "section_name": labels.name(self.section),
         }
 
 

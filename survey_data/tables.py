@@ -59,6 +59,8 @@ class SurveyTables:
     model_families: pd.DataFrame
     venues: pd.DataFrame
     statistics: pd.DataFrame
+    sources: pd.DataFrame
+    labels: pd.DataFrame
     extension_studies: pd.DataFrame
     extension_attributes: pd.DataFrame
     extension_roles: pd.DataFrame

@@ -26,7 +26,7 @@ from benchmark.running import generated
 from benchmark.running.task import Task, measure
 
 ROOT = Path(__file__).parents[1]
-MOST = 9
+MOST = 11
 OWN_MATTER = ("benchmark/simulator/", "algorithms/extractors/", "algorithms/models/")
 
 

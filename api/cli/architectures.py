@@ -101,7 +101,7 @@ def _advised(advice: Sequence[Mapping[str, Any]]) -> str:
         found.setdefault(f"{kind}{one['value']}", []).append(how)
     ways = {what: " or ".join(filter(None, how)) for what, how in found.items()}
     said = "; ".join(f"{what}: {how}" if how else what for what, how in ways.items())
-    return f"{said} (in {', '.join(dict.fromkeys(one['section'] for one in advice))})"
+    return f"{said} (in {', '.join(dict.fromkeys(one['section_name'] for one in advice))})"
 
 
 def _proposed(studies: Sequence[str]) -> str:

@@ -59,7 +59,7 @@ def emit(
     if form is Format.JSON:
         emit_json(list(rows) if document is None else document)
     elif form is Format.CSV:
-        _write(csv_of(columns, rows))
+        write(csv_of(columns, rows))
     else:
         if title is not None:
             say(title)
@@ -95,7 +95,7 @@ def table(
 
 def emit_json(document: Any) -> None:
     """Print a document as JSON; NaN and infinities, which JSON lacks, as null."""
-    _write(json.dumps(plain(document), indent=2, ensure_ascii=False) + "\n")
+    write(json.dumps(plain(document), indent=2, ensure_ascii=False) + "\n")
 
 
 def say(words: str, then: str = "") -> None:
@@ -135,7 +135,7 @@ def line_width() -> int:
     return COLUMNS
 
 
-def _write(text: str) -> None:
+def write(text: str) -> None:
     """Print what programs read: UTF-8 with line feeds, whatever the terminal's encoding is."""
     sys.stdout.flush()
     sys.stdout.buffer.write(text.encode())

@@ -16,8 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import survey_data
-from api.deposit.bibliography import FOLDER as BIBLIOGRAPHY
-from api.deposit.bibliography import bibtex, ris
+from api.citations import bibtex, ris
 from api.deposit.citation import of_dataset
 from api.deposit.crate import CRATE, crate
 from api.deposit.database import DATABASE, write_database
@@ -26,7 +25,7 @@ from api.deposit.frames import write_frames
 from api.deposit.identity import Identity, identity
 from api.deposit.package import DESCRIPTOR, NAME, package
 from api.deposit.parquet import write_parquet
-from api.deposit.readme import readme
+from api.deposit.readme import BIBLIOGRAPHY, readme
 from api.deposit.tables import MeasuredTable, frames_table, measured_tables, read_descriptor
 from api.deposit.typed import typed_tables
 from benchmark import datasets

@@ -237,6 +237,7 @@ _FIELDS: dict[str, tuple[Type, str]] = {
     "kind": ("string", "What an extractor's features mean."),
     "accepts": ("string", "Kinds of features a model reads, separated by semicolons."),
     "labels": ("string", "The survey's labels of what is implemented, separated by semicolons."),
+    "label_names": ("string", "What these labels name, in the same order."),
     "studies": ("string", "Studies that are followed, separated by semicolons."),
     "origin": ("string", "survey: described there; ours: not."),
     "version": ("integer", "Raised when the numbers change on purpose."),

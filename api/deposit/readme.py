@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from api.deposit.bibliography import FOLDER as BIBLIOGRAPHY
 from api.deposit.database import COLUMNS, DATABASE, TABLES
 from api.deposit.frames import FOLDER as FRAMES
 from api.deposit.frames import LEAST, ROOM, WHOLE
 from api.deposit.identity import Identity
 from benchmark.datasets.checksums import CHECKSUMS
+
+BIBLIOGRAPHY = "bibliography"
+"""Folder of the references."""
 
 #: Runs in the bundle's directory with NumPy alone; a test runs it.
 EXAMPLE = """\

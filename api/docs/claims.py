@@ -11,6 +11,7 @@ from benchmark.claims.experiment import found
 from benchmark.claims.judgement import Judged
 from benchmark.claims.ledger import Entry, ledger, tally
 from benchmark.claims.pictures import picture
+from survey_data import labels
 
 
 def counts() -> str:
@@ -58,10 +59,11 @@ def _entries() -> tuple[Entry, ...]:
 def _section(entry: Entry) -> str:
     said = entry.claim
     study = f", {said.study}" if said.study else ""
+    verdict = (entry.verdict or "not measured").capitalize()
     lines = [
         f"### {said.id}",
-        f"“{said.statement}” ({said.section}{study})",
-        f"**{(entry.verdict or 'not measured').capitalize()}.** {entry.explanation}".strip(),
+        f"“{said.statement}” ({labels.name(said.section)}{study})",
+        f"**{verdict}.** {labels.named(entry.explanation)}".strip(),
         f"Measured on: {said.measured_on}. Trials: {said.trials} {said.replicate}s.",
     ]
     if entry.rules:

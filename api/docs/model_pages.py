@@ -23,6 +23,7 @@ from api.docs.markdown import table
 from benchmark.leaderboard.board import board_of
 from benchmark.metrics.score import AVAILABLE
 from benchmark.results.store import Store
+from survey_data import labels
 
 DIRECTORY = Path(__file__).resolve().parents[2] / "docs"
 _STARTS = Path(__file__).with_name("starts")
@@ -118,7 +119,7 @@ def models(category: str) -> str:
             i.summary,
             ", ".join(i.accepts or ()),
             ", ".join(i.studies),
-            ", ".join(f"`{label}`" for label in i.labels),
+            ", ".join(map(labels.mention, i.labels)),
         )
         for i in _of(category)
     ]

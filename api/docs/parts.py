@@ -16,6 +16,7 @@ from registry.fidelity.purposes import PURPOSES
 from registry.fidelity.runnable import ESSENTIAL
 from registry.resolution import Resolution
 from registry.sensors import BASES
+from survey_data import labels
 
 #: Values of a finding whose counts are printed.
 _COUNTS_SHOWN = 8
@@ -42,7 +43,7 @@ def extractors() -> str:
             i.summary,
             f"{i.observation} → {i.kind}",
             ", ".join(i.studies),
-            _labels(i.labels),
+            ", ".join(map(labels.mention, i.labels)),
         )
         for i in knowledge().catalogue.listing("extractor")
     ]
@@ -58,7 +59,7 @@ def models() -> str:
             i.summary,
             ", ".join(i.accepts or ()),
             ", ".join(i.studies),
-            _labels(i.labels),
+            ", ".join(map(labels.mention, i.labels)),
         )
         for i in knowledge().catalogue.listing("model")
     ]
@@ -249,21 +250,17 @@ def _ranked(ranking: Sequence[tuple[str, int]]) -> str:
 
 def _card(card: Any) -> str:
     rows = [
-        (condition, _number(card["bounds"].get(condition)), setup["description"])
+        (condition, _number(card["bounds"].get(condition)), labels.named(setup["description"]))
         for condition, setup in card["setups"].items()
     ]
     follows = ", ".join(card["follows"]) or "no study"
     return (
         f"### {card['name']}\n\n"
-        f"{card['description']}\n\n"
+        f"{labels.named(card['description'])}\n\n"
         f"Version {card['version']}; {card['detector']}, {card['mask']}; gives "
         f"{card['observation']}; follows {follows}.\n\n"
         + _table(("condition", "bound (rms, deg)", "what differs"), rows)
     )
-
-
-def _labels(labels: Iterable[str]) -> str:
-    return ", ".join(f"`{label}`" for label in labels)
 
 
 def _number(value: float | None) -> str:

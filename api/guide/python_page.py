@@ -10,6 +10,7 @@ from types import ModuleType
 from typing import Any
 
 from api.docs.markdown import table
+from survey_data import labels
 
 #: By what one wants; each module's public names are listed, in their order in the file.
 MODULES: dict[str, tuple[str, ...]] = {
@@ -174,5 +175,6 @@ def _plain(text: str) -> str:
     joined = "\n".join(lines).strip().replace("``", "`")
     parts = re.split(r"(`[^`]*`)", joined)
     return "".join(
-        part if part.startswith("`") else re.sub(r"<(?=[a-zA-Z/])", r"\\<", part) for part in parts
+        part if part.startswith("`") else re.sub(r"<(?=[a-zA-Z/])", r"\\<", labels.named(part))
+        for part in parts
     )

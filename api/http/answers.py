@@ -10,10 +10,20 @@ from fastapi.responses import JSONResponse
 from fastapi.routing import APIRoute
 from pydantic_core import to_json
 
+from api import citations
 from api.columns import csv_of, flat
 from api.http.direct import direct
-from api.http.negotiation import CONTENT_TYPES, CSV, JSON, PARQUET, PNG, wanted_type
+from api.http.negotiation import (
+    CITATIONS,
+    CONTENT_TYPES,
+    CSV,
+    JSON,
+    PARQUET,
+    PNG,
+    wanted_type,
+)
 from api.http.pagination import Page
+from api.http.problems import Problem, Violation
 from api.http.representations import Representation, RepresentationCache
 from api.http.requests import StrictRequest
 
@@ -32,7 +42,7 @@ class Answer(JSONResponse):
     status_code : which FastAPI documents by its default
     """
 
-    offered: ClassVar = (JSON, CSV)
+    offered: ClassVar[tuple[str, ...]] = (JSON, CSV)
     digest: str | None = None
     """Of the JSON, where making it has told."""
 
@@ -92,6 +102,49 @@ def listing(
         table = lambda: items  # noqa: E731
     document = {"items": items, "total": shown.total, "next": shown.next, **more}
     return Answer(document, columns, table, shown.link)
+
+
+class CitedAnswer(Answer):
+    """An answer whose studies can be had as references, too.
+
+    Parameters
+    ----------
+    answer : the document and the table
+    studies : that are cited
+    name : file name without suffix that a client is told to save references under
+    status_code : which FastAPI documents by its default
+    narrowed : whether the answer was narrowed to columns, which references cannot be
+    """
+
+    offered: ClassVar[tuple[str, ...]] = (JSON, CSV, *CITATIONS.values())
+
+    def __init__(
+        self,
+        answer: Answer,
+        studies: Sequence[Row],
+        name: str = "studies",
+        status_code: int = 200,
+        *,
+        narrowed: bool = False,
+    ) -> None:
+        link = answer.links.get("Link")
+        super().__init__(answer.document, answer.columns, answer.rows, link, status_code)
+        self.studies = studies
+        self.name = name
+        self.narrowed = narrowed
+
+    def representation(self, wanted: str) -> Representation:
+        """Return the answer in a media type."""
+        form = next((name for name, kind in CITATIONS.items() if kind == wanted), None)
+        if form is None:
+            return super().representation(wanted)
+        if self.narrowed:
+            error = Violation("fields", form, "no columns beside references; leave out fields")
+            raise Problem(422, "invalid-value", errors=[error])
+        saved = f'attachment; filename="{self.name}.{citations.SUFFIXES[form]}"'
+        headers = {"Content-Disposition": saved, **self.links}
+        body = citations.FORMS[form](self.studies).encode()
+        return Representation(body, CONTENT_TYPES[wanted], headers)
 
 
 class Picture(Response):

@@ -20,6 +20,7 @@ from registry.measured import Measurements as Measured
 from registry.resolution import Resolution, resolve_all, resolve_later
 from registry.studies import Facts, facts
 from registry.taxonomy import Taxonomy
+from survey_data import labels
 from survey_data.descriptor import DATA_DIRECTORY
 from survey_data.editions import Choice, Edition, editions
 from survey_data.manifest import digest
@@ -99,6 +100,7 @@ class Knowledge:
     def advice(self) -> Sequence[Mapping[str, str]]:
         """What the survey advises, and where it says errors are met; empty where it leaves open."""
         table = survey_data.load().advice.rename(columns={"survey_section": "section"}).fillna("")
+        table["section_name"] = table["section"].map(labels.name)
         rows = table[list(ADVICE)].itertuples(index=False)
         return [dict(zip(ADVICE, map(str, row), strict=True)) for row in rows]
 

@@ -13,9 +13,19 @@ JSON = "application/json"
 CSV = "text/csv"
 PNG = "image/png"
 PARQUET = "application/vnd.apache.parquet"
-FORMATS = {"json": JSON, "csv": CSV}
+BIBTEX = "application/x-bibtex"
+RIS = "application/x-research-info-systems"
+CSL = "application/vnd.citationstyles.csl+json"
+CITATIONS = {"bibtex": BIBTEX, "ris": RIS, "csl": CSL}
+FORMATS = {"json": JSON, "csv": CSV, **CITATIONS}
 """What `format` in a query calls them."""
-CONTENT_TYPES = {JSON: "application/json", CSV: "text/csv; charset=utf-8; header=present"}
+CONTENT_TYPES = {
+    JSON: "application/json",
+    CSV: "text/csv; charset=utf-8; header=present",
+    BIBTEX: f"{BIBTEX}; charset=utf-8",
+    RIS: f"{RIS}; charset=utf-8",
+    CSL: CSL,
+}
 
 _QUALITY = re.compile(r"(?:0(?:\.\d{0,3})?|1(?:\.0{0,3})?)\Z")
 

@@ -12,11 +12,11 @@ from fastapi import FastAPI
 from fastapi.openapi.utils import get_openapi
 from fastapi.routing import APIRoute
 
-from api.http.answers import Answer, AnswerRoute
+from api.http.answers import Answer, AnswerRoute, CitedAnswer
 from api.http.asking import ask
 from api.http.knowledge import Knowledge
 from api.http.models.problems import ProblemDocument
-from api.http.negotiation import CSV, JSON
+from api.http.negotiation import CITATIONS, CSV, JSON
 from api.http.problems import MEDIA_TYPE, Problem
 from api.http.refusals import refusal, schemas
 from survey_data.csv_writing import csv_text
@@ -75,7 +75,7 @@ def _complete(operation: dict[str, Any], route: APIRoute, known: Knowledge) -> N
         statuses |= {413, 415, 422}
     elif declared["query"]:
         statuses |= {422}
-    if route.response_class is Answer:
+    if route.response_class in (Answer, CitedAnswer):
         success["headers"]["Link"] = LINK
         answer = _answered(route, known, example)
         if answer is None:  # what it compares has not been measured
@@ -104,6 +104,10 @@ def _give_example(content: dict[str, Any], answer: Answer) -> None:
     columns = ", ".join(table.partition("\n")[0].split(","))
     described = {"type": "string", "description": f"Columns: {columns}."}
     content[CSV] = {"schema": described, "example": table}
+    if isinstance(answer, CitedAnswer):
+        for kind in CITATIONS.values():
+            text = answer.representation(kind).body.decode()
+            content[kind] = {"schema": {"type": "string"}, "example": text}
 
 
 def shortened(value: Any) -> Any:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from urllib.parse import quote, urlencode
 
 KINDS = {"detector": "/detectors", "mask": "/masks"}
@@ -11,6 +12,17 @@ KINDS = {"detector": "/detectors", "mask": "/masks"}
 def study_page(key: str) -> str:
     """Return the address of a study."""
     return f"/studies/{quote(key, safe='')}"
+
+
+def cited_study(key: str, form: str) -> str:
+    """Return the address of the reference to a study; `form` is bibtex, ris or csl."""
+    return f"/v1/studies/{quote(key, safe='')}?format={form}"
+
+
+def cited_studies(asked: Mapping[str, object], form: str) -> str:
+    """Return the address of the references to the studies that filters select."""
+    chosen = {name: value for name, value in asked.items() if value not in (None, [], "")}
+    return "/v1/studies?" + urlencode({**chosen, "limit": 500, "format": form}, doseq=True)
 
 
 def algorithm_page(name: str) -> str:
@@ -58,7 +70,8 @@ def _asked(path: str, asked: dict[str, str]) -> str:
 
 
 GIVEN = (
-    *(study_page, algorithm_page, dataset_page, claim_page, architecture_page, value_page),
+    *(study_page, cited_study, cited_studies),
+    *(algorithm_page, dataset_page, claim_page, architecture_page, value_page),
     *(anchor, twin),
 )
 """What templates are given."""

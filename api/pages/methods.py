@@ -15,6 +15,7 @@ from api.pages.addresses import study_page
 from api.pages.formulas import tex
 from api.pages.terms import labelled
 from registry.studies import facts
+from survey_data import labels
 
 _HEADING = re.compile(r"^(\w[\w ]+)\n-{3,}\n", re.MULTILINE)
 #: Characters of a formula that stands within a line; a longer one may have to be scrolled.
@@ -90,9 +91,12 @@ def marked(text: str) -> Markup:
     for found in _LITERAL.finditer(text):
         parts.append(_linked(text[at : found.start()]))
         literal = found.group(1)
-        parts.append(
-            _formula(literal, found[2]) if literal else Markup("<code>{}</code>").format(found[3])
-        )
+        if literal:
+            parts.append(_formula(literal, found[2]))
+        elif found[3] in labels.labels():
+            parts.append(labelled(found[3]))
+        else:
+            parts.append(Markup("<code>{}</code>").format(found[3]))
         at = found.end()
     return Markup("").join([*parts, _linked(text[at:])])
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from api.pages import (
     algorithm,
     answer,
+    bibliography,
     claim,
     compare,
     dataset,
@@ -21,7 +22,7 @@ ROUTERS = (
         kind.router
         for kind in (
             *(answer, study, algorithm, dataset, sensors, claim, compare, search),
-            *(glossary_page, leaderboard),
+            *(glossary_page, leaderboard, bibliography),
         )
     ),
     *figures.ROUTERS,

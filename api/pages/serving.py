@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from http import HTTPStatus
 from typing import Any, ClassVar
 
@@ -10,7 +10,7 @@ from fastapi import APIRouter, Request, Response
 from fastapi.exceptions import RequestValidationError
 
 from api.http.answers import Answer, Handler, StrictRoute
-from api.http.negotiation import CSV, JSON, media_type
+from api.http.negotiation import BIBTEX, CSV, JSON, media_type
 from api.http.problems import Problem
 from api.http.refusals import refusal
 from api.http.representations import Representation, RepresentationCache
@@ -19,6 +19,8 @@ from api.pages.rendering import render
 HTML = "text/html"
 OFFERED = (HTML, JSON, CSV)
 TWINS: Mapping[str, str] = {".json": JSON, ".csv": CSV}
+FILES: Mapping[str, str] = {".bib": BIBTEX}
+"""Twins that only some pages have."""
 
 Endpoint = Callable[..., Any]
 
@@ -72,7 +74,10 @@ class PageRoute(StrictRoute):
     def get_route_handler(self) -> Handler:
         """Return what handles a request."""
         compute = super().get_route_handler()
-        twin = next((kind for suffix, kind in TWINS.items() if self.path.endswith(suffix)), None)
+        twin = next(
+            (kind for suffix, kind in {**TWINS, **FILES}.items() if self.path.endswith(suffix)),
+            None,
+        )
 
         async def answer(request: Request) -> Response:
             kept: RepresentationCache = request.app.state.kept
@@ -116,18 +121,21 @@ class PageRouter(APIRouter):
     def __init__(self) -> None:
         super().__init__(route_class=PageRoute, include_in_schema=False)
 
-    def page(self, path: str, twin: str | None = None) -> Callable[[Endpoint], Endpoint]:
+    def page(
+        self, path: str, twin: str | None = None, files: Sequence[str] = ()
+    ) -> Callable[[Endpoint], Endpoint]:
         """Offer a page at `path`, its twins at the same path with `.json` and `.csv`.
 
         Parameters
         ----------
         path : as FastAPI takes it, such as "/studies/{key}"
         twin : the twins' path without suffix, where `path` ("/") can take none
+        files : suffixes of further twins, of `FILES`
         """
 
         def register(endpoint: Endpoint) -> Endpoint:
             # The twins first: a part of a path would take their suffix for its own.
-            for suffix in TWINS:
+            for suffix in (*TWINS, *files):
                 self.add_api_route((twin or path) + suffix, endpoint, response_class=View)
             self.add_api_route(path, endpoint, response_class=View)
             return endpoint

@@ -63,6 +63,10 @@ async def studies(known: Known, query: Annotated[StudiesQuery, Query()], request
         "studies.html",
         answer,
         asked=query,
+        selection=query.model_dump(
+            exclude_defaults=True, exclude={"format", "fields", "limit", "cursor", "sort"}
+        ),
+        untitled=sum(not item["title"] for item in answer.document["items"]),
         filters={name: known.taxonomy.to_dict()[name] for name in FILTERS},
         names=NAMES,
         grades=GRADES,

@@ -13,17 +13,15 @@ from functools import cache
 from markupsafe import Markup
 
 from api.glossary import words
-from api.pages.addresses import anchor, value_page
+from api.pages.addresses import anchor, study_page, value_page
 from registry.studies import facts
 from registry.taxonomy import ATTRIBUTES
+from survey_data import labels
 from survey_data.reported import KIND_OF, statistics
+from survey_data.sources import source_named
 
 NONE = "None"
-LABEL = "survey label"
-"""The term that says what a label of the survey's source is."""
-
 _LITERAL = re.compile(r"(?P<quotes>``?)(?P<code>[^`]+)(?P=quotes)")
-_LABEL = re.compile(r"\b(?:sec|tab|eq|fe|model|alg):[\w-]+")
 WITHOUT = {
     "mask": "no mask",
     "extractor": "no feature extraction",
@@ -101,6 +99,7 @@ def explained(text: str) -> Markup:
 
 def _explained(text: str, met: set[str]) -> Markup:
     """Return a text with the meanings of abbreviations not `met` before, which it adds there."""
+    text = labels.named(text)
     parts: list[Markup] = []
     at = 0
     for found in _abbreviations().finditer(text):
@@ -144,14 +143,34 @@ def value(text: str, attribute: str) -> Markup:
 
 
 def labelled(text: str) -> Markup:
-    """Return a text, each label of the survey's source in it with what such labels are."""
+    """Return a text, what each label of the survey's source in it names in the label's place."""
+    alone = text in labels.labels()
     parts: list[Markup] = []
     at = 0
-    for found in _LABEL.finditer(text):
-        parts += [Markup.escape(text[at : found.start()]), term(LABEL, found.group())]
+    for found in labels.LABEL.finditer(text):
+        label = found.group()
+        name = labels.name(label) if alone else labels.mention(label)
+        shown = Markup('<span title="{}">{}</span>').format(label, name)
+        parts += [Markup.escape(text[at : found.start()]), shown]
         at = found.end()
     return Markup("").join([*parts, Markup.escape(text[at:])])
 
 
-GIVEN = (term, coded, explained, shown, named, named_here, value, labelled)
+def cited(source: str, key: str = "") -> Markup:
+    """Return a source by its name: linked where it has an address, or is a study of ours.
+
+    `key` is of the study whose page it stands on, which is not linked to itself.
+    """
+    if key and source == key:
+        return Markup("the publication itself")
+    found = source_named(source)
+    if found.link:
+        link = Markup('<a href="{}" rel="noreferrer">{}</a>')
+        return link.format(found.link, found.name)
+    if source in facts().studies:
+        return Markup('<a href="{}">{}</a>').format(study_page(source), source)
+    return labelled(source or "–")
+
+
+GIVEN = (term, coded, explained, shown, named, named_here, value, labelled, cited)
 """What templates are given as filters."""

@@ -10,6 +10,7 @@ import survey_data
 from api.glossary import glossary
 from api.search.index import Entry
 from registry.taxonomy import NO_IMPLEMENTATION_STATED
+from survey_data import labels
 
 if TYPE_CHECKING:
     from api.http.measurements import Measurements
@@ -77,7 +78,7 @@ def _algorithms(known: Known) -> Iterator[Entry]:
             id=one.name,
             title=f"{one.name} ({one.role})",
             words=f"{one.taxonomy} {values.get(one.taxonomy, '')} {one.category or ''} "
-            f"{' '.join(one.labels)}",
+            f"{' '.join(one.labels)} {' '.join(map(labels.name, one.labels))}",
             text=f"{one.summary} {'; '.join(one.studies)}".strip(),
         )
 

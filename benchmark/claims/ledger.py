@@ -13,6 +13,7 @@ from benchmark.claims.judgement import Judged, judged, verdict
 from benchmark.claims.outcomes import PUBLISHED, Outcome, read
 from benchmark.claims.rules import DIRECTORY, VERDICTS, Claim, Verdict, claims, rows_of
 from benchmark.claims.verification import contradictions
+from survey_data import labels
 
 EXPLANATIONS = DIRECTORY / "explanations.csv"
 
@@ -60,6 +61,7 @@ class Entry:
         return {
             "id": said.id,
             "section": said.section,
+            "section_name": labels.name(said.section),
             "study": said.study,
             "statement": said.statement,
             "verdict": self.verdict,

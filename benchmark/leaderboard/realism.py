@@ -17,6 +17,7 @@ from benchmark.datasets.realism import Standing, figures, standings
 from benchmark.leaderboard.ranking import order
 from benchmark.metrics.rings import EDGES_DEG, field_error
 from survey_data.hardware import Hardware
+from survey_data.sources import source_named
 
 Row = Mapping[str, Any]
 
@@ -108,6 +109,7 @@ def _compared(sensor: Hardware, row: Row | None) -> dict[str, Any]:
     repeated = None if row is None else row["repeatability_deg"]
     return {
         **figures(sensor),
+        "source_name": source_named(sensor.source).name,
         "accuracy_rms_deg": sensor.rms_deg,
         "our_rms_deg": ours,
         "accuracy_ratio": _over(ours, sensor.rms_deg),

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from registry.taxonomy import Architecture
+from survey_data import labels
 
 INCLUDES: Mapping[tuple[str, str], tuple[str, ...]] = MappingProxyType(
     {("detector", "PD"): ("QPD",), ("mask", "Slit"): ("L-Slit",)}
@@ -64,5 +65,6 @@ class Advice:
             "model_category": self.model_category,
             "extractor": self.extractor,
             "section": self.section,
+            "section_name": labels.name(self.section),
             "note": self.note,
         }

@@ -10,6 +10,7 @@ from functools import cached_property
 from registry.taxonomy import NUMERIC_ATTRIBUTES, unknown_name
 from survey_data.editions import SURVEY
 from survey_data.reported import KIND_OF, Quantity, Reported, reported
+from survey_data.sources import source_named
 
 METHODS = ("model", "extractor")
 """Attributes whose values a study proposes, or only compares against."""
@@ -88,6 +89,7 @@ class Study:
     edition: str = SURVEY
     names: Mapping[tuple[str, str], NameInStudy] = field(default_factory=dict, hash=False)
     verified: tuple[Verification, ...] = ()
+    type: str = "unknown"  # journal, conference, preprint, thesis, ...
 
     def role(self, attribute: str, value: str) -> str:
         """Return `proposed`, `compared` or `unknown`, of a model or an extractor of the study."""
@@ -147,6 +149,7 @@ class Study:
             "authors": self.authors,
             "year": self.year,
             "venue": self.venue,
+            "type": self.type,
             "doi": self.doi,
             "url": self.url,
             "identity": self.identity,
@@ -163,6 +166,7 @@ class Study:
                 "value": cell.value,
                 "basis": cell.basis,
                 "source": cell.source,
+                "source_name": source_named(cell.source).name,
                 "note": cell.note,
                 "role": self.role(attribute, cell.value) if attribute in METHODS else "",
                 **self._name(attribute, cell.value),
@@ -176,6 +180,7 @@ class Study:
                 "value": "",
                 "basis": "unknown",
                 "source": "",
+                "source_name": "",
                 "note": note,
                 "role": "",
                 **self._name(a, ""),

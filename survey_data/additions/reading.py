@@ -11,6 +11,7 @@ from survey_data.additions.faults import Fault, FaultsError, one_of
 from survey_data.additions.toml_lines import TomlDocument
 from survey_data.additions.vocabulary import Definition, Vocabulary
 from survey_data.descriptor import column_types
+from survey_data.sources import fault as source_fault
 from survey_data.validation.provenance import TOLD
 from survey_data.validation.rules import number_fault
 
@@ -161,6 +162,8 @@ def _check_study(reader: _Reader, found: Mapping[str, str]) -> None:
         if found.get(column) and not re.search(pattern, found[column]):
             form = known.forms.get(column, pattern)
             reader.fault(f"{column}: expected {form}, got {found[column]!r}", column)
+    if wrong := source_fault(found["url"], known.hosts):
+        reader.fault(f"url: {wrong}", "url")
     for column in ("key", "doi"):
         if taken := known.taken.get(found[column].casefold()):
             reader.fault(f"{column} {found[column]}: {taken}", column)
@@ -231,6 +234,8 @@ def _check_evidence(reader: _Reader, name: str, cells: Row, at: int) -> None:
     told = TOLD.get(basis, "")
     if told and not cells[told]:
         reader.fault(f"{name}: the basis {basis} needs a {told}", name, at, "basis")
+    if wrong := source_fault(cells["source"], reader.vocabulary.hosts):
+        reader.fault(f"source: {wrong}", name, at, "source")
 
 
 def _named(

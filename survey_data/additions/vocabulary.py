@@ -8,12 +8,13 @@ from pathlib import Path
 from typing import Any
 
 from survey_data.descriptor import DATA_DIRECTORY, descriptor
+from survey_data.sources import Host
 from survey_data.texts import load_texts
 from survey_data.validation.extension import SURVEY_BASES
 
 _TABLES = (
     *("studies", "extension_studies", "references"),
-    *("taxonomy", "attribute_definitions", "bases", "aliases", "statistics"),
+    *("taxonomy", "attribute_definitions", "bases", "aliases", "statistics", "sources"),
 )
 
 
@@ -41,7 +42,8 @@ class Vocabulary:
 
     ``bases`` and ``words`` (by column of the study) are closed lists, ``patterns`` what a text has
     to match, ``forms`` the same for people, ``taken`` keys and DOIs in lower case with whose they
-    are, ``spellings`` other names of an attribute's values, written ``spelling=value``.
+    are, ``hosts`` who publishes where (`survey_data.sources`), ``spellings`` other names of an
+    attribute's values, written ``spelling=value``.
     """
 
     definitions: Mapping[str, Definition]
@@ -51,6 +53,7 @@ class Vocabulary:
     years: tuple[int, int]
     roles: Sequence[str]
     taken: Mapping[str, str]
+    hosts: Mapping[str, Host]
     spellings: Mapping[str, Sequence[str]]
     forms: Mapping[str, str] = field(
         default_factory=lambda: {
@@ -102,6 +105,7 @@ def vocabulary(directory: Path = DATA_DIRECTORY) -> Vocabulary:
         years=(int(studies["year"]["minimum"]), int(studies["year"]["maximum"])),
         roles=constraints["extension_roles"]["role"]["enum"],
         taken=taken,
+        hosts={row["host"]: Host(**row) for row in tables.sources},
         spellings=spellings,
     )
 

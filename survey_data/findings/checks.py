@@ -33,6 +33,7 @@ from typing import Any, Literal
 
 import pandas as pd
 
+from survey_data import labels
 from survey_data.findings.evidence import NO_MAJORITY, OCCURRING, Tally, settled_by
 
 Verdict = Literal["reproduced", "partly", "tied", "contradicted", "undecidable"]
@@ -120,6 +121,7 @@ class FindingVerdict:
             "id": self.id,
             "verdict": self.verdict,
             "survey_section": self.survey_section,
+            "section_name": labels.name(self.survey_section),
             "statement": self.statement,
             "not_tested": self.not_tested,
             "clauses": [clause.to_dict() for clause in self.clauses],

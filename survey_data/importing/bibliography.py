@@ -12,11 +12,15 @@ from survey_data.file_bytes import FileRefusedError, read_bytes
 from survey_data.problems import SurveyImportError
 
 #: Fields that name where a work is published, first of these that is there.
-_VENUES = ("journal", "journaltitle", "booktitle", "series", "school", "institution")
+_VENUES = (
+    *("journal", "journaltitle", "booktitle", "series", "school", "institution"),
+    *("howpublished", "publisher"),
+)
 _KINDS = {
     "article": "journal",
     "inproceedings": "conference",
     "conference": "conference",
+    "incollection": "conference",
     "phdthesis": "thesis",
     "mastersthesis": "thesis",
     "thesis": "thesis",
@@ -26,9 +30,13 @@ _KINDS = {
 _ACCENTS = {
     "`": "\u0300", "'": "\u0301", "^": "\u0302", "~": "\u0303", '"': "\u0308", "c": "\u0327",
     "v": "\u030c", "u": "\u0306", "H": "\u030b", "=": "\u0304", ".": "\u0307", "k": "\u0328",
-    "r": "\u030a",
+    "r": "\u030a", "d": "\u0323", "b": "\u0331",
 }  # fmt: skip
-_LETTERS = {"ss": "ß", "o": "ø", "O": "Ø", "l": "ł", "L": "Ł", "ae": "æ", "AE": "Æ", "i": "i"}
+_LETTERS = {
+    "ss": "ß", "o": "ø", "O": "Ø", "l": "ł", "L": "Ł", "ae": "æ", "AE": "Æ", "oe": "œ", "OE": "Œ",
+    "aa": "å", "AA": "Å", "dh": "ð", "DH": "Ð", "dj": "đ", "DJ": "Đ", "th": "þ", "TH": "Þ",
+    "i": "ı", "j": "ȷ",
+}  # fmt: skip
 _MOST_BYTES = 20_000_000
 
 
@@ -77,33 +85,78 @@ def read_bibliography(path: str | Path) -> tuple[Entry, ...]:
     return entries
 
 
+@dataclass(frozen=True)
+class _Record:
+    """An entry of BibTeX as it stands: its type, key, fields and line."""
+
+    kind: str
+    key: str
+    fields: dict[str, str]
+    line: int
+
+
 def _records(text: str) -> Iterator[Entry]:
-    """Give the entries of BibTeX."""
-    for start in re.finditer(r"@(\w+)\s*\{\s*([^\s,{}]+)\s*,", text):
+    """Give the entries of BibTeX, abbreviations and cross-references resolved."""
+    strings: dict[str, str] = {}
+    records: list[_Record] = []
+    for start in re.finditer(r"@(\w+)\s*[{(]\s*", text):
         kind = start[1].casefold()
-        if kind in {"comment", "string", "preamble"}:
-            continue
-        fields = _fields(text, start.end())
-        yield _entry(start[2], kind, fields, text.count("\n", 0, start.start()) + 1)
+        if kind == "string":
+            strings |= _fields(text, start.end(), strings)
+        key = re.compile(r"([^\s,{}()=]+)\s*,").match(text, start.end())
+        if kind not in {"comment", "string", "preamble"} and key is not None:
+            line = text.count("\n", 0, start.start()) + 1
+            records.append(_Record(kind, key[1], _fields(text, key.end(), strings), line))
+    parents = {record.key.casefold(): record for record in reversed(records)}
+    for record in records:
+        fields = _inherited(record, parents)
+        yield _entry(record.key, record.kind, fields, record.line)
 
 
-def _fields(text: str, at: int) -> dict[str, str]:
+def _inherited(record: _Record, parents: Mapping[str, _Record]) -> dict[str, str]:
+    """Return an entry's fields with those that it takes from the one that it refers to."""
+    parent = parents.get(record.fields.get("crossref", "").strip().casefold())
+    if parent is None or parent is record:
+        return record.fields
+    taken = {name: value for name, value in parent.fields.items() if name != "title"}
+    if parent.fields.get("title"):
+        taken.setdefault("booktitle", parent.fields["title"])
+    return taken | record.fields
+
+
+def _fields(text: str, at: int, strings: Mapping[str, str]) -> dict[str, str]:
     """Return the fields of an entry, the first of each name, up to the brace that closes it."""
     fields: dict[str, str] = {}
-    name = re.compile(r"\s*,?\s*([A-Za-z][\w-]*)\s*=\s*")
+    name = re.compile(r"\s*,?\s*([A-Za-z][\w:-]*)\s*=")
     while match := name.match(text, at):
-        at = match.end()
-        if text[at : at + 1] == "{":
-            end = _closing(text, at)
-            value, at = text[at + 1 : end], end + 1
-        elif text[at : at + 1] == '"':
-            end = _closing_quote(text, at)
-            value, at = text[at + 1 : end], end + 1
-        else:
-            bare = re.compile(r"[^,}\s]*").match(text, at)
-            value, at = (bare[0], bare.end()) if bare else ("", at + 1)
+        value, at = _value(text, match.end(), strings)
         fields.setdefault(match[1].casefold(), value)
     return fields
+
+
+def _value(text: str, at: int, strings: Mapping[str, str]) -> tuple[str, int]:
+    """Return a field's value, parts joined by # put together, and where it ends."""
+    parts = []
+    join = re.compile(r"\s*#")
+    while True:
+        while text[at : at + 1].isspace():
+            at += 1
+        if text[at : at + 1] == "{":
+            end = _closing(text, at)
+            part, at = text[at + 1 : end], end + 1
+        elif text[at : at + 1] == '"':
+            end = _closing_quote(text, at)
+            part, at = text[at + 1 : end], end + 1
+        else:
+            word = re.compile(r"[^,})#\s]*").match(text, at)
+            part = word[0] if word else ""
+            at += len(part)
+            part = strings.get(part.casefold(), part)
+        parts.append(part)
+        joined = join.match(text, at)
+        if joined is None:
+            return "".join(parts), at
+        at = joined.end()
 
 
 def _closing(text: str, at: int) -> int:
@@ -186,7 +239,9 @@ def _entry(key: str, kind: str, fields: Mapping[str, str], line: int) -> Entry:
 
 
 def _natural(name: str) -> str:
-    """Return "Last, First" as "First Last"."""
+    """Return "Last, First" as "First Last", and BibTeX's word for more authors as "et al."."""
+    if name.strip() == "others":
+        return "et al."
     last, comma, first = name.partition(",")
     return f"{first.strip()} {last.strip()}".strip() if comma else name.strip(" ,")
 
@@ -195,12 +250,14 @@ def _plain(text: str) -> str:
     """Return TeX as text: accents composed, commands and braces left out."""
     text = re.sub(r"(?<!\\)~", " ", text)
     text = re.sub(
-        r"\\([`'^~\"=.]|[cvuHkr](?![A-Za-z]))\s*\{?\s*\\?([A-Za-z])\s*\}?",
+        r"\\([`'^~\"=.]|[cvuHkrdb](?![A-Za-z]))\s*\{?\s*\\?([A-Za-z])\s*\}?",
         lambda m: unicodedata.normalize("NFC", m[2] + _ACCENTS[m[1]]),
         text,
     )
-    text = re.sub(r"\\(ss|ae|AE|[oOlLi])(?![A-Za-z])\s*", lambda m: _LETTERS[m[1]], text)
-    text = re.sub(r"\\([&%$#_{}])", r"\1", text)
+    letters = "|".join(sorted(_LETTERS, key=len, reverse=True))
+    text = re.sub(rf"\\({letters})(?![A-Za-z])\s*", lambda m: _LETTERS[m[1]], text)
+    text = re.sub(r"\\([&%$#_{}])", r"\1", re.sub(r"\\[,;: ]", " ", text))
+    text = re.sub(r"\\[-/!]", "", text)
     text = re.sub(r"\\[A-Za-z]+\s*", "", text)
     text = re.sub(r"-{2,}", "-", text.replace("{", "").replace("}", ""))
     return " ".join(text.split())

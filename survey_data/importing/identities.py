@@ -17,10 +17,12 @@ from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name
 from survey_data.importing.bibliography import Entry, read_bibliography
 from survey_data.importing.text_similarity import normalise, similarity
 from survey_data.importing.writing import held_tables, write_valid
+from survey_data.problems import SurveyImportError
+from survey_data.sources import fault
 from survey_data.tables import SurveyTables, load
 
 _TABLE = "studies"
-_COLUMNS = ("title", "authors", "venue", "type", "doi")
+_COLUMNS = ("title", "authors", "venue", "type", "doi", "url")
 _ALIKE = 0.9
 #: Identities that a bibliography settles; what a page has confirmed is a person's to change.
 _OPEN = ("unknown", "ambiguous", "recalled")
@@ -32,8 +34,9 @@ Kind = Literal["new", "changed", "conflict"]
 class IdentityDifference:
     """A cell of a study that the bibliography says otherwise.
 
-    ``new``: ours is empty. ``changed``: the identity was not confirmed, so that theirs is taken.
-    ``conflict``: it was, and ours stays. ``line`` is where their entry starts.
+    ``new``: ours is empty. ``changed``: the identity was not confirmed, or the study was named to
+    be replaced, so that theirs is taken. ``conflict``: it was confirmed, and ours stays. ``line``
+    is where their entry starts.
     """
 
     study: str
@@ -70,6 +73,11 @@ class BibliographyPlan:
         """The cells to be written."""
         return tuple(d for d in self.differences if d.kind != "conflict")
 
+    @property
+    def conflicts(self) -> tuple[str, ...]:
+        """The studies of which ours stays, though the bibliography says otherwise."""
+        return tuple(dict.fromkeys(d.study for d in self.differences if d.kind == "conflict"))
+
     def to_dict(self) -> dict[str, Any]:
         """Return the plan as plain JSON data."""
         return {
@@ -84,7 +92,11 @@ class BibliographyPlan:
 
 
 def import_bibliography(
-    path: str | Path, directory: str | Path | None = None, *, apply: bool = False
+    path: str | Path,
+    directory: str | Path | None = None,
+    *,
+    replace_studies: Iterable[str] = (),
+    apply: bool = False,
 ) -> BibliographyPlan:
     """Compare the survey's bibliography with our table of studies, and take it over when asked.
 
@@ -94,6 +106,8 @@ def import_bibliography(
         BibTeX or .bbl, UTF-8, with the survey's keys.
     directory : str or Path, optional
         Our tables; by default the package's own data.
+    replace_studies : iterable of str
+        Keys of studies whose confirmed identity is replaced where the bibliography contradicts it.
     apply : bool
         Write. Applying the same file twice changes nothing the second time.
 
@@ -105,15 +119,15 @@ def import_bibliography(
     Raises
     ------
     SurveyImportError
-        The file is no bibliography, or (with `apply`) the tables would be invalid or cannot be
-        written; nothing has been written.
+        The file is no bibliography, it says nothing of a study named to be replaced, or (with
+        `apply`) the tables would be invalid or cannot be written; nothing has been written.
     SurveyDataError
         Our own tables cannot be read.
     """
     folder = DATA_DIRECTORY if directory is None else Path(directory)
     entries = read_bibliography(path)
     with held_tables(folder) if apply else nullcontext():
-        plan = plan_identities(load(folder), entries, Path(path).name)
+        plan = plan_identities(load(folder), entries, Path(path).name, frozenset(replace_studies))
         if not apply or not (plan.edits or plan.settled):
             return plan
         write_valid(folder, {_TABLE: _edited(folder, plan)})
@@ -121,9 +135,18 @@ def import_bibliography(
 
 
 def plan_identities(
-    tables: SurveyTables, entries: Iterable[Entry], source: str
+    tables: SurveyTables,
+    entries: Iterable[Entry],
+    source: str,
+    replaced: frozenset[str] = frozenset(),
 ) -> BibliographyPlan:
-    """Compare entries with the table of studies."""
+    """Compare entries with the table of studies; `replaced` are studies that they may contradict.
+
+    Raises
+    ------
+    SurveyImportError
+        The entries say nothing of one of `replaced`.
+    """
     rows = {str(row["key"]): row for row in tables.studies.to_dict("records")}
     meant = tables.references.dropna(subset=["mapped_key"])
     also = dict(zip(meant["key"], meant["mapped_key"], strict=True))
@@ -136,21 +159,26 @@ def plan_identities(
     for entry in entries:
         count += 1
         key = str(also.get(entry.key, entry.key))
-        reason = _refusal(entry, key, rows, seen)
+        reason = _refusal(entry, key, rows, seen, by_hand=key in replaced)
         if reason:
             if entry.key not in other:
                 left.append((entry.key, reason))
             continue
         seen.add(key)
         row = {name: _text(rows[key][name]) for name in (*_COLUMNS, "identity")}
-        differences += _differences(key, row, entry)
-        if row["identity"] in _OPEN:
+        found = _differences(key, row, entry, by_hand=key in replaced)
+        differences += found
+        if row["identity"] in _OPEN or (key in replaced and found):
             settled.append(key)
+    if unsaid := sorted(replaced - seen):
+        raise SurveyImportError(f"{source} says nothing of {', '.join(unsaid)}, to be replaced")
     missing = tuple(key for key in rows if key not in seen)
     return BibliographyPlan(source, count, tuple(differences), tuple(settled), tuple(left), missing)
 
 
-def _refusal(entry: Entry, key: str, rows: Mapping[str, object], seen: set[str]) -> str:
+def _refusal(
+    entry: Entry, key: str, rows: Mapping[str, object], seen: set[str], *, by_hand: bool
+) -> str:
     """Say why an entry tells nothing of a study; empty where it does."""
     if key not in rows:
         return "no study has this key"
@@ -159,18 +187,21 @@ def _refusal(entry: Entry, key: str, rows: Mapping[str, object], seen: set[str])
     if not entry.title:
         return "no title can be read"
     digits = re.search(r"[0-9]{4}", key)
-    if entry.year and digits and entry.year != digits[0]:
+    if entry.year and digits and entry.year != digits[0] and not by_hand:
         return f"published in {entry.year}, which the key contradicts"
     return ""
 
 
-def _differences(key: str, row: Mapping[str, str], entry: Entry) -> list[IdentityDifference]:
+def _differences(
+    key: str, row: Mapping[str, str], entry: Entry, *, by_hand: bool
+) -> list[IdentityDifference]:
     theirs = {
         "title": entry.title,
         "authors": entry.authors,
         "venue": entry.venue,
         "type": "" if entry.kind == "unknown" else entry.kind,
         "doi": entry.doi,
+        "url": _address(entry, row),
     }
     found = []
     for column, said in theirs.items():
@@ -178,9 +209,16 @@ def _differences(key: str, row: Mapping[str, str], entry: Entry) -> list[Identit
         if not said or _same(column, ours, said):
             continue
         empty = not ours or (column == "type" and ours == "unknown")
-        kind: Kind = "new" if empty else "changed" if row["identity"] in _OPEN else "conflict"
+        open_to_change = by_hand or row["identity"] in _OPEN
+        kind: Kind = "new" if empty else "changed" if open_to_change else "conflict"
         found.append(IdentityDifference(key, column, kind, ours, said, row["identity"], entry.line))
     return found
+
+
+def _address(entry: Entry, row: Mapping[str, str]) -> str:
+    """Return an entry's address where ours has none and it can be linked to; empty elsewhere."""
+    repeats = bool(entry.doi) and entry.url.endswith(entry.doi)
+    return "" if row["url"] or repeats or fault(entry.url) else entry.url
 
 
 def _same(column: str, ours: str, theirs: str) -> bool:

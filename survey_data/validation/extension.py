@@ -12,7 +12,9 @@ from survey_data.problems import Problem
 from survey_data.validation.cells import Frames, Rule, problem, stated, texts
 
 #: Tables that a rule of studies may look at beside those of the edition.
-_SHARED = frozenset({"taxonomy", "attribute_definitions", "bases", "statistics"})
+_SHARED = frozenset(
+    {"taxonomy", "attribute_definitions", "bases", "statistics", "sources", "labels"}
+)
 #: Evidence that only the survey, or its authors' own table, gives.
 SURVEY_BASES = ("survey-table", "authors-table", "survey-text")
 

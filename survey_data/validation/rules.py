@@ -18,14 +18,14 @@ from survey_data.findings.checks import FindingSyntaxError, Vocabulary, parse_cl
 from survey_data.problems import Problem
 from survey_data.reported import KIND_OF
 from survey_data.tables import FIRST_ROW
-from survey_data.validation import provenance
+from survey_data.validation import citations, provenance
 from survey_data.validation.cells import Frames, Rule, problem, stated, texts
 from survey_data.validation.extension import check_extension
 
 
 def check_rules(frames: Frames) -> list[Problem]:
     """Return the problems every rule finds whose tables are all in `frames`."""
-    rules = (*_RULES, *provenance.RULES)
+    rules = (*_RULES, *provenance.RULES, *citations.RULES)
     ours = [
         found
         for needed, rule in rules

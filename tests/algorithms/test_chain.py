@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from algorithms.chain import Chain, chains
+from algorithms.compensations.combinations import combinations
 from algorithms.compensations.electronics.angular_loss import AngularLoss
 from algorithms.compensations.interference.shadow import MaskShadow
 from algorithms.compensations.optics.refraction import Refraction
@@ -65,3 +66,25 @@ def test_a_compensation_ahead_of_what_cannot_be_is_named(behind, said):
 
     with pytest.raises(ValueError, match=f"optical goes ahead of .*{said}"):
         chains({"optical": Lost}, discover_models())
+
+
+def test_a_combination_says_who_used_it_and_what_it_needs():
+    lut = discover_chains()["optical + lut"]
+    assert {"Delgado2013", "Ortega2009", "Wei2011"} <= set(lut.about.studies)
+    assert lut.about.needs == ("focal_length_mm", "cover_glass", "aperture_shape")
+    assert lut.about.version == 1
+    assert lut.modules == Chain(lut.compensations, lut.model).modules  # its numbers are the parts'
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("nobody + spm", "nobody is none"),
+        ("optical + nobody", "nobody is none"),
+        ("spm", "no part is a compensation"),
+        ("optical + basic", "different features"),
+    ],
+)
+def test_a_combination_that_cannot_be_made_is_named(name, said):
+    with pytest.raises(ValueError, match=said):
+        combinations(discover_compensations(), discover_models(), {name: ("Wei2011",)})

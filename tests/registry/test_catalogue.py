@@ -22,6 +22,7 @@ def test_the_catalogue_lists_what_is_declared_and_what_lacks(survey: Facts) -> N
         "kind": "spot",
         "accepts": None,
         "labels": ["eq:x"],
+        "label_names": ["eq:x"],  # the survey has no such label
         "studies": [],
         "origin": "survey",
         "version": 1,

@@ -49,6 +49,7 @@ def test_the_detail_of_a_study_shows_empty_cells_and_numbers(survey: Facts) -> N
         "value": "",
         "basis": "unknown",
         "source": "",
+        "source_name": "",
         "note": "",
         "role": "",
         "name_in_study": "",

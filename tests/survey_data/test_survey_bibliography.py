@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from pylatexenc.latex2text import LatexNodes2Text
 
 from survey_data import SurveyImportError, import_bibliography, load, validate
 from survey_data.importing.bibliography import Entry, read_bibliography
@@ -157,3 +158,136 @@ def test_a_doi_that_is_another_study_s_is_refused_whole(copy: Any) -> None:
     with pytest.raises(SurveyImportError, match="would not be valid"):
         import_bibliography(offer(copy, text), copy.directory, apply=True)
     assert copy.path("studies").read_bytes() == before
+
+
+# A bibliography of every key, made up here with the oddities that real ones have: the known text
+# of each field stands beside the LaTeX that is written for it.
+
+ACCENTED = [
+    ("José Núñez", r"Jos\'{e} N{\'u}{\~n}ez"),
+    ("Zbyněk Čapek", r"Zbyn{\v{e}}k \v{C}apek"),
+    ("Łukasz Żak", r"{\L}ukasz {\.Z}ak"),
+    ("Åsa Sørensen", r"{\AA}sa S{\o}rensen"),
+    ("Gökçe Şahin", r"Gőkçe \c{S}ahin".replace("ő", r"{\"o}")),
+]
+
+
+def made_up(keys: list[str]) -> tuple[str, dict[str, dict[str, str]]]:
+    """A .bib of all keys, and what it says of each, in our words."""
+    said: dict[str, dict[str, str]] = {}
+    parts = [
+        "% made up\n",
+        '@string{js = "Journal of Suns"}\n@STRING(conf = {Conference on Suns})\n',
+        "@comment{@article{Nobody1900, title={No entry}}}\n",
+    ]
+    for n, key in enumerate(keys):
+        year = "".join(c for c in key if c.isdigit())
+        name, written = ACCENTED[n % len(ACCENTED)]
+        title = f"Sun sensor number {n} \\& its {{CCD}} at 50\\,\\%"
+        fields = {"title": f"{{{title}}}", "author": f"{{{written} and Doe, Jane and others}}"}
+        want = {
+            "title": f"Sun sensor number {n} & its CCD at 50 %",
+            "authors": f"{name}; Jane Doe; et al.",
+            "year": year,
+            "doi": "",
+            "url": "",
+        }
+        form = n % 6
+        if form == 0:
+            kind, want["type"], want["venue"] = "article", "journal", "Journal of Suns, Part B"
+            fields |= {"journal": 'js # ", Part B"', "year": year, "doi": f"{{10.1234/sun.{n}}}"}
+            want["doi"] = f"10.1234/sun.{n}"
+        elif form == 1:
+            kind, want["type"] = "inproceedings", "conference"
+            want["venue"] = f"Proceedings of Suns {year}"
+            fields |= {"crossref": f"{{proc{n}}}"}
+        elif form == 2:
+            kind, want["type"], want["venue"] = "misc", "preprint", ""
+            fields |= {"eprint": f"{{2001.{n:05d}}}", "archivePrefix": "{arXiv}", "year": year}
+            want["doi"] = f"10.48550/arXiv.2001.{n:05d}"
+        elif form == 3:
+            kind, want["type"], want["venue"] = "phdthesis", "thesis", "University of Suns"
+            fields |= {"school": '"University of {S}uns"', "year": f'"{year}"'}
+        elif form == 4:
+            kind, want["type"], want["venue"] = "InProceedings", "conference", "Conference on Suns"
+            fields |= {"booktitle": "conf", "date": f"{{{year}-05-01}}"}
+            fields |= {"url": f"{{https://www.mdpi.com/{n}}}"}
+            want["url"] = f"https://www.mdpi.com/{n}"
+        else:
+            kind, want["type"], want["venue"] = "misc", "unknown", ""
+            fields = {"title": fields["title"]}  # nothing but a title
+            want |= {"authors": ""}
+        said[key] = want
+        parts.append(f"@{kind}{{{key},\n")
+        parts += [f"  {field} = {value},\n" for field, value in fields.items()]
+        parts.append("}\n")
+        if form == 1:
+            parts.append(
+                f"@proceedings{{proc{n}, title = {{Proceedings of Suns {year}}}, year = {year}}}\n"
+            )
+    parts.append(f"@article{{{keys[0]}, title = {{The second of two}}, year = {keys[0][-4:]}}}\n")
+    parts.append("@book{Knuth1984, title = {No study}, year = 1984}\n")
+    return "".join(parts), said
+
+
+def test_a_bibliography_of_every_key_completes_every_identity_by_one_call(copy: Any) -> None:
+    keys = [row[0] for row in copy.rows("studies")[1:]]
+    assert len(keys) == 129
+    text, said = made_up(keys)
+    before = {key: cells(copy, key) for key in keys}
+    path = offer(copy, text)
+
+    shown = import_bibliography(path, copy.directory)
+    assert {key: cells(copy, key) for key in keys} == before  # nothing is written yet
+    assert shown.missing == ()
+    assert shown.conflicts
+    assert (keys[0], "stands twice in the bibliography; the first is taken") in shown.left_aside
+    assert ("Knuth1984", "no study has this key") in shown.left_aside
+
+    import_bibliography(path, copy.directory, apply=True)
+    assert validate(copy.directory) == []
+    for key in keys:
+        after = cells(copy, key)
+        assert after["identity"] == "confirmed"
+        assert after["title"]
+        if before[key]["identity"] == "confirmed":  # ours stays where it says something
+            kept = {name: text for name, text in before[key].items() if text and name != "type"}
+            assert {name: after[name] for name in kept} == kept
+            continue
+        for column in ("title", "authors", "venue", "doi"):
+            expected = said[key][column] or before[key][column]
+            assert after[column] == expected, (key, column)
+        if said[key]["type"] != "unknown":
+            assert after["type"] == said[key]["type"]
+        if said[key]["url"] and not before[key]["url"]:
+            assert after["url"] == said[key]["url"]
+
+
+def test_a_confirmed_identity_is_replaced_only_by_name(copy: Any) -> None:
+    text = "@article{Chang2008, title = {Another title altogether}, year = {2007}}\n"
+    path = offer(copy, text)
+    plan = import_bibliography(path, copy.directory, apply=True)
+    assert plan.left_aside == (("Chang2008", "published in 2007, which the key contradicts"),)
+    plan = import_bibliography(path, copy.directory, replace_studies=["Chang2008"], apply=True)
+    assert [(d.column, d.kind) for d in plan.differences] == [("title", "changed")]
+    after = cells(copy, "Chang2008")
+    assert (after["title"], after["year"]) == ("Another title altogether", "2008")
+    assert validate(copy.directory) == []
+    with pytest.raises(SurveyImportError, match="says nothing of Liebe2002"):
+        import_bibliography(path, copy.directory, replace_studies=["Liebe2002"])
+
+
+def test_an_address_of_a_mirror_is_not_taken(copy: Any) -> None:
+    text = "@misc{Fan2017, title={One}, url={https://www.researchgate.net/p/1}}"
+    plan = import_bibliography(offer(copy, text), copy.directory)
+    assert "url" not in {d.column for d in plan.differences}
+
+
+@pytest.mark.parametrize("letter", "aeiouncszAEO")
+@pytest.mark.parametrize("accent", list("`'^~\"=.cvuHkrdb"))
+def test_accents_are_decoded_as_another_decoder_does(copy: Any, accent: str, letter: str) -> None:
+    decoder = LatexNodes2Text()
+    spelt = [rf"\{accent}{{{letter}}}x", rf"{{\{accent}{{{letter}}}}}x"]
+    for title in spelt:
+        (entry,) = read_bibliography(offer(copy, f"@misc{{A2000, title = {{{title}}}}}"))
+        assert entry.title == decoder.latex_to_text(title)

@@ -180,6 +180,8 @@ UNKNOWN = {
     "model_families": [("model", "Sundial"), ("calibration", "never")],
     "venues": [("study", "Nobody1999")],
     "statistics": [("kind", "median"), ("rms_divisor", "three"), ("rms_divisor", "0")],
+    "sources": [("kind", "rumour"), ("host", "No Host")],
+    "labels": [("kind", "chorus"), ("label", "sundial")],
 }  # fmt: skip
 
 

@@ -81,7 +81,7 @@ def _one(answer: Answer, form: Format) -> None:
         return
     say(f"{document['id']} {document['statement']}", "    ")
     by = f", {document['study']}" if document["study"] else ""
-    say(f"The survey, {document['section']}{by}.")
+    say(f"The survey, {document['section_name']}{by}.")
     say(f"Tried on {document['measured_on']}; {document['trials']} {document['replicate']}s")
     emit(document["rules"], RULES, form, title=f"Verdict: {document['verdict'] or 'not measured'}")
     if document["second_method"]:

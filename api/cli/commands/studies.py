@@ -2,25 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from enum import StrEnum
 from typing import Annotated, Any
 
 import typer
 
+from api.citations import FORMS
 from api.cli import attributes, completion
 from api.cli.asking import ask
-from api.cli.tables import Format, FormatOption, emit, emit_json, say
+from api.cli.tables import Format, emit, emit_json, say, write
 from api.cli.wrong_call import WrongCallError
 from api.columns import STUDIES, STUDY
 from api.http.models.parameters import LARGEST_PAGE
 from api.http.routers import studies as answers
 from registry.fidelity.grading import tally_text
+from survey_data import labels
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
 COLUMNS = ("key", "year", "grade", "detector", "mask", "extractor", "model", "title")
-DETAILS = ("attribute", "value", "name_in_study", "nearest", "role", "basis", "source", "note")
+DETAILS = (
+    *("attribute", "value", "name_in_study", "nearest", "role", "basis", "source_name", "note"),
+)
 
 
 class Grade(StrEnum):
@@ -30,6 +34,17 @@ class Grade(StrEnum):
     CLOSE = "close"
     STAND_IN = "stand-in"
     NONE = "none"
+
+
+class StudyFormat(StrEnum):
+    """How studies are printed."""
+
+    TABLE = "table"
+    JSON = "json"
+    CSV = "csv"
+    BIBTEX = "bibtex"
+    RIS = "ris"
+    CSL = "csl"
 
 
 class State(StrEnum):
@@ -70,7 +85,14 @@ def studies(
     q: Annotated[
         str | None, typer.Option("--q", help="Words in key, title, authors or venue.")
     ] = None,
-    form: FormatOption = Format.TABLE,
+    form: Annotated[
+        StudyFormat,
+        typer.Option(
+            "--format",
+            help="How to print; bibtex, ris and csl (JSON) are references to the studies whose "
+            "title is known.",
+        ),
+    ] = StudyFormat.TABLE,
 ) -> None:
     """List the studies and how near to each what runs of it is, or show one.
 
@@ -103,16 +125,32 @@ def studies(
         _show(key, form)
 
 
-def _list(filters: Mapping[str, Any], form: Format) -> None:
+def _list(filters: Mapping[str, Any], asked: StudyFormat) -> None:
     found = ask(answers.studies, {**filters, "limit": LARGEST_PAGE}).document["items"]
+    if asked in FORMS:
+        _cite(found, asked)
+        return
+    form = Format(asked)
     flat = [{**study, **study["values"]} for study in found]
     columns = STUDIES if form is Format.CSV else COLUMNS
     counted = tally_text(study["grade"] for study in found)
     emit(flat, columns, form, document=found, title=f"{len(found)} studies: {counted}")
 
 
-def _show(key: str, form: Format) -> None:
+def _cite(found: Sequence[Mapping[str, Any]], asked: StudyFormat) -> None:
+    """Print references, and on stderr which studies have none because nobody identified them."""
+    write(FORMS[asked](found))
+    without = [study["key"] for study in found if not study["title"]]
+    if without:
+        typer.echo(f"sunatlas: no title is known of {', '.join(without)}: left out", err=True)
+
+
+def _show(key: str, asked: StudyFormat) -> None:
     study = ask(answers.study, key=key).document
+    if asked in FORMS:
+        _cite([study], asked)
+        return
+    form = Format(asked)
     if form is Format.JSON:
         emit_json(study)
         return
@@ -125,7 +163,7 @@ def _show(key: str, form: Format) -> None:
             say("Added after the survey, which does not map it.")
         for one in study["verified"]:
             say(f"Verified by {one['name']} on {one['date']}: {one['confirms']} ({one['source']})")
-        say(f"{study['grade']}: {study['sentence']}")
+        say(f"{study['grade']}: {labels.named(study['sentence'])}")
         for departure in study["departures"]:
             say(f"  {departure['part']} settled by: {departure['settled_by']}")
         typer.echo()
@@ -153,7 +191,7 @@ def _show(key: str, form: Format) -> None:
 def _assumed(pipeline: Mapping[str, Any]) -> list[str]:
     """Return a line for each part of a pipeline that the study does not state."""
     return [
-        f"{attribute} ({pipeline['basis'][attribute]}): {rule}"
+        f"{attribute} ({pipeline['basis'][attribute]}): {labels.named(rule)}"
         for attribute, rule in pipeline["assumed"].items()
     ]
 

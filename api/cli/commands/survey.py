@@ -12,7 +12,7 @@ import survey_data
 from api.cli.commands import survey_add
 from api.cli.commands.survey_import import import_
 from api.cli.tables import Format, FormatOption, emit, emit_json, say
-from survey_data import FidelityReport, Problem, recorded_facts
+from survey_data import FidelityReport, Problem, labels, recorded_facts
 from survey_data.descriptor import DATA_DIRECTORY
 
 app = typer.Typer(
@@ -30,7 +30,8 @@ FINDINGS = (
     "settled_by",
 )
 FINDINGS_CSV = (
-    *("id", "verdict", "clause", "clause_verdict", "kind", "survey_section", "given", "expects"),
+    *("id", "verdict", "clause", "clause_verdict", "kind", "survey_section"),
+    *("section_name", "given", "expects"),
     *("matching", "counted", "named", "ranking", "settled_by", "clause_statement", "statement"),
     *("not_tested",),
 )
@@ -73,6 +74,7 @@ def _clauses(report: FidelityReport) -> list[dict[str, Any]]:
             "clause_statement": clause.statement,
             **{name: getattr(found, name) for name in ("id", "verdict", "statement")},
             **{name: getattr(found, name) for name in ("survey_section", "not_tested")},
+            "section_name": labels.name(found.survey_section),
         }
         for found in report.findings
         for clause in found.clauses

@@ -19,14 +19,26 @@ CELLS = ("study", "attribute", "kind", "ours", "theirs", "basis", "row", "column
 
 def import_(
     file: Annotated[
-        Path | None, typer.Argument(help="CSV or XLSX table of studies.", show_default=False)
+        Path | None,
+        typer.Argument(
+            help="CSV or XLSX table of studies, or the survey's bibliography (.bib, .bbl).",
+            show_default=False,
+        ),
     ] = None,
     *,
     bibliography: Annotated[
         Path | None,
         typer.Option(
-            help="The survey's bibliography, BibTeX or .bbl: completes what its keys are.",
+            help="The survey's bibliography, BibTeX or .bbl, whatever its file is called: "
+            "completes what its keys are.",
             show_default=False,
+        ),
+    ] = None,
+    replace: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="KEY",
+            help="A study whose confirmed identity the bibliography may replace; may be repeated.",
         ),
     ] = None,
     mapped: Annotated[
@@ -54,16 +66,21 @@ def import_(
     changed, confirmed (the same on better evidence), or conflict (the survey prints ours, which
     stays). Roles, and pairs of detector and mask, that rest on a replaced value are listed and
     removed with it. Cells that cannot be read are named on stderr with row and column, and the exit
-    code is 1. With --bibliography: title, authors, venue and DOI of each key, which are taken where
-    the identity is not confirmed, and shown as a conflict where it is.
+    code is 1. Of a bibliography: title, authors, venue, type, DOI and address of each key, which
+    are taken where the identity is not confirmed, and shown as a conflict where it is, unless
+    --replace names the study.
     """
     if (file is None) == (bibliography is None):
         raise WrongCallError("expected either a table or --bibliography FILE")
+    if file is not None and file.suffix.casefold() in (".bib", ".bbl"):
+        file, bibliography = None, file
     if file is None:
         if mapped or sheet:
             raise WrongCallError("--map and --sheet are of a table, not of a bibliography")
-        _bibliography(bibliography, data, form, apply=apply)
+        _bibliography(bibliography, replace or (), data, form, apply=apply)
         return
+    if replace:
+        raise WrongCallError("--replace is of a bibliography, not of a table")
     plan = survey_data.import_table(
         file, data, overrides=_overrides(mapped or ()), sheet=sheet, apply=apply
     )
@@ -79,21 +96,27 @@ def import_(
         raise typer.Exit(1)
 
 
-def _bibliography(file: Path | None, data: Path | None, form: Format, *, apply: bool) -> None:
+def _bibliography(
+    file: Path | None, replaced: Sequence[str], data: Path | None, form: Format, *, apply: bool
+) -> None:
     """Compare a bibliography with the table of studies."""
     if file is None:
         return
-    plan = survey_data.import_bibliography(file, data, apply=apply)
+    plan = survey_data.import_bibliography(file, data, replace_studies=replaced, apply=apply)
     rows = [difference.to_dict() for difference in plan.differences]
     title = f"{len(rows)} cells of studies that {plan.source} says otherwise"
     emit(rows, IDENTITIES, form, document=plan.to_dict(), title=title)
     if form is not Format.TABLE:
         return
+    if plan.conflicts:
+        keys = ", ".join(plan.conflicts)
+        say(f"confirmed and said otherwise: {keys}; --replace KEY takes what the file says")
     for key, reason in plan.left_aside:
         say(f"left aside: {key}: {reason}")
     if plan.missing:
         say(f"{len(plan.missing)} studies are not in it: {', '.join(plan.missing)}")
-    what = f"{len(plan.edits)} cells and {len(plan.settled)} identities"
+    many = "identity" if len(plan.settled) == 1 else "identities"
+    what = f"{len(plan.edits)} cells and {len(plan.settled)} {many}"
     if apply and (plan.edits or plan.settled):
         typer.echo(f"{what} written.")
     elif plan.edits or plan.settled:

@@ -53,7 +53,8 @@ class Advice(Shape):
     mask: str
     model_category: str
     extractor: str = Field(description="An extractor or a family of them.")
-    section: str = Field(description="Of the survey.")
+    section: str = Field(description="Label in the survey's source.")
+    section_name: str = Field(description="What the label names, with its number in print.")
     note: str
 
 
@@ -70,7 +71,10 @@ class Statement(Shape):
     kind: str
     id: str
     text: str
-    section: str = Field(description="Of the survey; empty for what is measured here.")
+    section: str = Field(
+        description="Label in the survey's source; empty for what is measured here."
+    )
+    section_name: str = Field(description="What the label names, with its number in print.")
 
 
 class Protocol(Shape):

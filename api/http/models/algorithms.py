@@ -47,7 +47,8 @@ class Algorithm(Shape):
     observation: str | None = Field(description="What an extractor reads.")
     kind: str | None = Field(description="What an extractor's features mean.")
     accepts: list[str] | None = Field(description="Kinds of features a model reads.")
-    labels: list[str]
+    labels: list[str] = Field(description="Labels of the survey's source.")
+    label_names: list[str] = Field(description="What the labels name, with numbers in print.")
     studies: list[str]
     origin: str
     version: int

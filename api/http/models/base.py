@@ -48,6 +48,20 @@ class TableQuestion(Question):
     )
 
 
+_CitedFormat = Literal["json", "csv", "bibtex", "ris", "csl"] | None
+
+
+class CitedQuestion(TableQuestion):
+    """The query of studies: a table, or references."""
+
+    format: Annotated[_CitedFormat, GIVEN] = Field(  # type: ignore[assignment]  # more than a table
+        None,
+        description="What to answer in, as a link can say it: JSON, CSV, or references as BibTeX, "
+        "RIS or CSL JSON, of the studies whose title is known. It has to be among what the Accept "
+        "header takes, if there is one. Left out, that header decides.",
+    )
+
+
 class OnlyFormat(TableQuestion):
     """The query of a table that takes no other parameters."""
 

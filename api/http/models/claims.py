@@ -66,7 +66,8 @@ class Claim(Shape):
     """One statement of the survey, and what came out."""
 
     id: str
-    section: str = Field(description="Of the survey.")
+    section: str = Field(description="Label in the survey's source.")
+    section_name: str = Field(description="What the label names, with its number in print.")
     study: str = Field(description="Key of the study that the survey cites; empty for none.")
     statement: str
     verdict: str | None = Field(

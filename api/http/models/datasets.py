@@ -76,7 +76,8 @@ class BuiltSensor(Shape):
     accuracy_kind: str | None
     precision_deg: float | None
     basis: str = Field(description="page: seen on a public page; recalled: not checked.")
-    source: str
+    source: str = Field(description="Address, document, study or label of the survey's source.")
+    source_name: str = Field(description="Publisher, document or part of the survey.")
     accuracy_rms_deg: float | None = Field(
         description="Accuracy as a root mean square: three sigma and largest errors over three."
     )

@@ -257,6 +257,7 @@ class Advice(Shape):
     model_category: str
     extractor: str
     section: str
+    section_name: str = Field(description="What the label names, with its number in print.")
     note: str
 
 

@@ -8,7 +8,7 @@ from pydantic import ConfigDict, Field
 
 from api import columns
 from api.http.models import words
-from api.http.models.base import Listing, Question, Shape, TableQuestion
+from api.http.models.base import CitedQuestion, Listing, Question, Shape, TableQuestion
 from api.http.models.parameters import (
     DEFAULT_PAGE,
     FIELDS,
@@ -62,13 +62,14 @@ class StudyFilters(OfEdition, TableQuestion):
         return {attribute: values for attribute, values in asked.items() if values}
 
 
-class StudiesQuery(StudyFilters):
+class StudiesQuery(CitedQuestion, StudyFilters):
     """Which studies."""
 
     model_config = ConfigDict(
         json_schema_extra={"examples": [{"detector": ["CMOS"], "mask": ["Multi-Ap."], "limit": 1}]}
     )
 
+    key: Several[words.StudyKey] = several("Only studies with one of these keys.")
     year_min: Annotated[int | None, WHOLE] = Field(
         None, ge=0, le=9999, description="Only studies of this year or later."
     )
@@ -92,6 +93,12 @@ class StudiesQuery(StudyFilters):
     fields: Several[Annotated[str, columns_of(columns.STUDIES)]] = FIELDS
     limit: Limit = DEFAULT_PAGE
     cursor: Cursor = None
+
+
+class StudyQuery(CitedQuestion):
+    """The query of one study."""
+
+    model_config = ConfigDict(json_schema_extra={"examples": [{}]})
 
 
 class Runs(Shape):
@@ -164,6 +171,9 @@ class Study(Shape):
     authors: str
     year: int | None
     venue: str
+    type: str = Field(
+        description="Kind of publication: journal, conference, preprint, thesis, ... or unknown."
+    )
     doi: str
     url: str
     identity: str = Field(description="Whether a public page confirms author, year and topic.")
@@ -191,7 +201,8 @@ class AttributeValue(Shape):
     attribute: str
     value: str
     basis: str
-    source: str
+    source: str = Field(description="Address, document, study or label of the survey's source.")
+    source_name: str = Field(description="Publisher, document or part of the survey.")
     note: str
     role: Literal["proposed", "compared", "unknown", ""] = Field(
         description="Of a model or an extractor: whether the study proposed it or only compared it."

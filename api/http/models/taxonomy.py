@@ -14,6 +14,7 @@ class TaxonomyValue(Shape):
     name: str
     category: str
     section: str = Field(description="Label in the survey; empty where it has none.")
+    section_name: str = Field(description="What the label names, with its number in print.")
 
 
 class Taxonomy(Shape):

@@ -8,11 +8,12 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Path, Query
 
 from api import columns
-from api.http.answers import Answer, AnswerRoute, listing
-from api.http.dependencies import AS_ACCEPTED, Known, TableOnly
+from api.http.answers import Answer, AnswerRoute, CitedAnswer, listing
+from api.http.dependencies import AS_ACCEPTED as TABLE_AS_ACCEPTED
+from api.http.dependencies import Known, TableOnly
 from api.http.knowledge import Knowledge
 from api.http.models.base import Selected
-from api.http.models.studies import Editions, Studies, StudiesQuery, StudyDetail
+from api.http.models.studies import Editions, Studies, StudiesQuery, StudyDetail, StudyQuery
 from api.http.models.words import StudyKey
 from api.http.pagination import ordered, page
 from registry.fidelity.runnable import RunnablePipeline
@@ -23,29 +24,40 @@ from survey_data.reported import Quantity
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
 
-@router.get("/studies", summary="The mapped studies", response_model=Studies | Selected)
+AS_ACCEPTED = StudyQuery.model_construct()
+"""The query where none is given, as when another path function calls."""
+
+
+@router.get(
+    "/studies",
+    summary="The mapped studies",
+    response_model=Studies | Selected,
+    response_class=CitedAnswer,
+)
 async def studies(known: Known, query: Annotated[StudiesQuery, Query()]) -> Answer:
     """Studies of the survey's mapping: 129, where it states 128. Filters narrow the list.
 
-    `edition=all` has the studies added after the survey, too.
+    `edition=all` has the studies added after the survey, too. As BibTeX, RIS or CSL JSON:
+    references to those of them whose title is known.
     """
     known = known.of(query.edition)
     found = [study for study in known.facts.studies.values() if _is_wanted(study, query, known)]
     rows = ordered([_row(study, known) for study in found], query.sort)
     shown = page(rows, "/v1/studies", query)
-    return listing(
+    answer = listing(
         shown,
         shown.items,
         columns.STUDIES,
         lambda: [{**item, **item["values"], "verified": _said(item)} for item in shown.items],
         fields=query.fields,
     )
+    return CitedAnswer(answer, shown.items, narrowed=bool(query.fields))
 
 
 @router.get("/editions", summary="Editions of the studies", response_model=Editions)
 async def editions(
     known: Known,
-    query: TableOnly = AS_ACCEPTED,  # noqa: ARG001 - the route has read it
+    query: TableOnly = TABLE_AS_ACCEPTED,  # noqa: ARG001 - the route has read it
 ) -> Answer:
     """Give the survey's studies and those after it as they are cited: each with its version.
 
@@ -59,17 +71,19 @@ async def editions(
     "/studies/{key}",
     summary="One study",
     response_model=StudyDetail,
+    response_class=CitedAnswer,
 )
 async def study(
     known: Known,
     key: Annotated[StudyKey, Path(description="Key of the study.", examples=["Chang2008"])],
-    query: TableOnly = AS_ACCEPTED,  # noqa: ARG001 - the route has read it
+    query: Annotated[StudyQuery, Query()] = AS_ACCEPTED,  # noqa: ARG001 - the route has read it
 ) -> Answer:
     """Every value of the mapping with its basis, and what of the study is scored.
 
     That is the pipelines that run what the study did, or what stands nearest to it, each with the
-    data sets that it is scored on; and the values that do not run as they are. As CSV: the values.
-    A study of either edition is found; `edition` says of which it is.
+    data sets that it is scored on; and the values that do not run as they are. As CSV: the
+    values; as BibTeX, RIS or CSL JSON: the reference to it. A study of either edition is found;
+    `edition` says of which it is.
     """
     known = known.of("all")
     found = known.facts.study(key)
@@ -89,7 +103,8 @@ async def study(
         ],
         "gaps": [gap.to_dict() for gap in resolution.gaps],
     }
-    return Answer(document, columns.STUDY, lambda: document["attributes"])
+    answer = Answer(document, columns.STUDY, lambda: document["attributes"])
+    return CitedAnswer(answer, [document], key)
 
 
 def _reported(study: Study, quantity: Quantity) -> dict[str, Any] | None:
@@ -158,7 +173,8 @@ def headline(resolution: Resolution, known: Knowledge) -> dict[str, Any] | None:
 def _is_wanted(study: Study, query: StudiesQuery, known: Knowledge) -> bool:
     """Say whether a study is among those asked for."""
     return (
-        _in_years(study, query.year_min, query.year_max)
+        (not query.key or study.key in query.key)
+        and _in_years(study, query.year_min, query.year_max)
         and _has_words(study, query.q)
         and (not query.grade or known.resolutions[study.key].fidelity.grade in query.grade)
         and (not query.state or known.resolutions[study.key].state in query.state)

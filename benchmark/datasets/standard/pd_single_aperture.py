@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from benchmark.datasets.conditions import masked_photodiodes as diodes
 from benchmark.datasets.conditions import other_light
 from benchmark.datasets.conditions.alignment import careful, misaligned
@@ -21,7 +23,7 @@ PRESET = diodes.masked_photodiodes(
     detector="PD",
     mask="Single-Ap.",
     readings=f"photodiodes {diodes.QUADRANTS}",
-    geometry=diodes.design(_SENSOR, 60.0, width_mm=0.8),
+    geometry=replace(diodes.design(_SENSOR, 60.0, width_mm=0.8), cover_glass=((0.5, 1.52),)),
     setups={
         **diodes.usual(_SENSOR, _NOMINAL, _OFF, misaligned(0.012, 0.02, -0.015)),
         **diodes.temperatures(_SENSOR),
@@ -31,9 +33,8 @@ PRESET = diodes.masked_photodiodes(
     description=(
         "Four silicon photodiodes on one die, a metallised cover glass with one window glued on "
         "top, a field of +-60 deg: Ortega2010. Sizes are not in what was mapped; round numbers: "
-        "0.5 mm of glass (index 1.52) is also the distance from window to die, and a window of 0.8 "
-        "mm keeps light on all four photodiodes to 60 deg inside it. The geometry's focal length "
-        "is the drawing's; refraction makes it appear shorter by the index near the axis."
+        "0.5 mm of glass (index 1.52) is also the distance from window to die, both as drawn, and "
+        "a window of 0.8 mm keeps light on all four photodiodes to 60 deg inside it."
     ),
     regime=measured_geometric(0.01, (1.0, 1.0, 1.01)),
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import math
+from dataclasses import replace
 
 from benchmark.datasets.conditions import masked_photodiodes as diodes
 from benchmark.datasets.conditions.alignment import careful, misaligned
@@ -13,6 +13,9 @@ from benchmark.simulator.sensors.slit_pairs import DiodePair, SlitPairSensor
 _CAMERA = diodes.through(diodes.opening(2.8, 5.0, thickness_mm=0.02), 0.5, careful(0.001))
 _PAIR = DiodePair(reach_mm=2.9, breadth_mm=2.0, gap_mm=0.05)
 _SENSOR = SlitPairSensor(_CAMERA, _PAIR, diodes.amplifiers(250.0, 0.02, 120.0))
+_DRAWN = diodes.design(_SENSOR, 60.0, width_mm=2.0**0.5 * 2.8)
+_SLITS = replace(_DRAWN, mask_thickness_mm=0.02, slits=((0.0, 45.0, 2.8), (0.0, -45.0, 2.8)))
+_THICK = replace(diodes.thick_slit(_SENSOR), geometry=replace(_SLITS, mask_thickness_mm=0.1))
 _NOMINAL = "Slits 20 um thick, 50 um gaps, 1 % gain mismatch, noise of 2e-4 of full sunlight."
 _OFF = "focal length 2.5 % long, slits 50 and -40 um off centre"
 
@@ -22,23 +25,21 @@ PRESET = diodes.masked_photodiodes(
     detector="PD",
     mask="Slit",
     readings=f"photodiodes {diodes.QUADRANTS}; Q2 and Q4 share a slit, Q1 and Q3 the other",
-    geometry=diodes.design(_SENSOR, 60.0, width_mm=math.sqrt(2.0) * 2.8),
+    geometry=_SLITS,
     setups={
         **diodes.usual(_SENSOR, _NOMINAL, _OFF, misaligned(0.0125)),
-        "thick-slit": diodes.thick_slit(_SENSOR),
-        **diodes.temperatures(_SENSOR),
-        **seen_with(_SENSOR, "ghosts", "albedo"),
+        "thick-slit": _THICK,
+        **(diodes.temperatures(_SENSOR) | seen_with(_SENSOR, "ghosts", "albedo")),
     },
     follows=("Chang2006", "Abhilash2014", "Hales2002"),
     description=(
         "Photodiodes under slits, balanced in pairs: the field of +-60 deg and the shade of the "
-        "slit's thickness are Chang2006's, two axes on one die Abhilash2014's and Hales2002's. The "
-        "lengths and the layout are not in what was mapped. Slits at 45 deg to the axes put each "
-        "photodiode into a quadrant, so that the voltage balance gives both axes; the slit's width "
-        "times sqrt(2) stands in the geometry as the aperture's width d. Round numbers: slits 0.5 "
-        "mm up and 2.8 mm wide keep light on all four photodiodes to 60 deg on both axes; 5 mm of "
-        "length keep the slit's ends off them. Of the 250 uA that all light through the slits "
-        "would make, the photodiodes catch 100 uA at normal incidence."
+        "slit's thickness are Chang2006's, two axes on one die Abhilash2014's and Hales2002's. "
+        "Lengths and layout are not in what was mapped. Slits at 45 deg to the axes put each "
+        "photodiode into a quadrant, so that the voltage balance gives both axes; the aperture's "
+        "width d of the drawing is the slit's times sqrt(2). Round numbers: slits 0.5 mm up and "
+        "2.8 mm wide keep light on all photodiodes to 60 deg on both axes; 5 mm of length keep "
+        "their ends off them. The photodiodes catch 100 of 250 uA at normal incidence."
     ),
     regime=measured_geometric(0.02, (1.0, 1.0, 1.0)),
 )

@@ -50,6 +50,11 @@ OWN_DESIGN = {
     "hough-circle": {"aperture_shape": "round"},
     "optical": {"cover_glass": ((0.3, 1.5), (0.2, 1.8))},
     "shadow": {"mask_thickness_mm": 0.1},
+    "slit-shadow": {
+        "mask_thickness_mm": 0.1,
+        "slits": ((0.0, 45.0, 0.1), (0.0, -45.0, 0.1)),
+    },
+    "pinhole-shadow": {"mask_thickness_mm": 0.1, "aperture_shape": "round"},
     "escm": {"aperture_width_mm": 0.04},
     "escm-wta": {"aperture_width_mm": 0.04},
     "slit": {"line_axes": ("x", "y"), "slits": ((0.0, 0.0, 0.1),)},

@@ -58,7 +58,7 @@ def test_verdicts_and_words_narrow(atlas):
 def test_as_csv_a_row_a_claim(atlas):
     lines = told("--format", "csv").splitlines()
     assert len(lines) == 56
-    assert lines[0].startswith("id,section,study,statement,verdict")
+    assert lines[0].startswith("id,section,section_name,study,statement,verdict")
 
 
 @pytest.mark.parametrize(

@@ -99,7 +99,7 @@ def test_each_architecture_shows_the_three_kinds_of_evidence_in_lines_of_their_o
         for one in architecture["advice"]:
             assert f"{one['value']}: " in said["advised"]
             assert f"{one['model_category']}, {one['extractor']}" in said["advised"]
-            assert f"(in {one['section']})" in said["advised"]
+            assert f"(in {one['section_name']})" in said["advised"]
         assert said["advised"].split()[0] == ("Accuracy:" if architecture["advised"] else "no,")
         proposed = re.findall(r"[A-Za-z]+\d{4}[a-z]?", said["proposed"])
         assert proposed == architecture["studies"]

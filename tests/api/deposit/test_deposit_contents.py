@@ -14,7 +14,6 @@ import pyarrow.parquet
 import pytest
 import rispy
 
-from api.deposit.bibliography import bibtex, names, ris
 from api.deposit.database import NameNotPlainError, plain, write_database
 from api.deposit.frames import LEAST, ROOM, sample_size
 from api.deposit.typed import CellError, typed_tables
@@ -145,32 +144,6 @@ def test_ris_is_read_back_with_every_identified_study(built):
         assert entry["title"] == " ".join(study["title"].split())
         assert (entry["year"], entry.get("doi", "")) == (study["year"], study["doi"])
         assert not entry.get("unknown_tag")
-
-
-STUDY = {
-    "key": "A2020",
-    "title": "Cost & 50% of_it {x}",
-    "authors": "N. van der Heiden; He Liang (as printed); et al.",
-    "year": "2020",
-    "venue": "J. Sun",
-    "type": "journal",
-    "doi": "",
-    "url": "",
-    "identity": "recalled",
-}
-
-
-def test_names_are_split_as_bibtex_does():
-    assert names(STUDY["authors"]) == [("van der Heiden", "N."), ("Liang", "He"), ("", "")]
-    assert names("") == []
-    assert "author = {van der Heiden, N. and Liang, He and others}" in bibtex([STUDY])
-    assert "AU  - van der Heiden, N.\nAU  - Liang, He\nAU  - et al.\n" in ris([STUDY])
-
-
-def test_signs_of_latex_are_escaped_and_the_unidentified_left_out():
-    assert r"title = {{Cost \& 50\% of\_it \{x\}}}" in bibtex([STUDY])
-    assert "identified from memory" in bibtex([STUDY])
-    assert bibtex([{**STUDY, "title": ""}]) == ris([{**STUDY, "title": ""}]) == ""
 
 
 def test_the_crate_names_every_file_with_its_checksum(built):

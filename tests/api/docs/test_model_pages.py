@@ -30,7 +30,7 @@ def test_every_category_with_a_model_has_a_page_and_every_model_a_line_on_one():
 
 def test_a_category_without_a_page_starts_from_prose_or_a_bare_frame(tmp_path):
     page = model_pages.text_of("models/neural-network.md", tmp_path)
-    assert "model:ann" in page
+    assert "Section 5.6 “Artificial neural network”" in page
     frame = model_pages.text_of("models/other-things.md", tmp_path)
     assert frame.startswith("# Other things models\n")
     parts = {name: lambda: "(made)" for name in ("models", "measured", "picture")}

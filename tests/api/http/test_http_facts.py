@@ -110,14 +110,20 @@ def test_a_study_carries_every_cell_with_its_basis(atlas):
         if row["study"] == "Chang2008"
     }
     assert set(roles.values()) == {"proposed", "compared"}
+    said = {
+        "tab:mrlit": "Table 2 “Overview of model representation literature”",
+        "tab:felit": "Table 3 “Overview of feature extraction literature”",
+    }
     expected = [
         {k: v for k, v in row.items() if k != "study"}
         | {"role": roles.get((row["attribute"], row["value"]), row_role(row))}
         | {"name_in_study": "", "nearest": False}
+        | {"source_name": said.get(row["source"], row["source"])}
         for row in read("attributes")
         if row["study"] == "Chang2008"
     ]
     study = atlas.get("/v1/studies/Chang2008").json()
+    assert {cell["source"] for cell in study["attributes"]} >= set(said)
 
     def sort_key(cell):
         return (cell["attribute"], cell["value"])
@@ -203,8 +209,11 @@ def test_the_taxonomy_is_the_table(atlas):
          "section": row["survey_section"]}
         for row in read("taxonomy")
     ]  # fmt: skip
-    assert flat == expected
-    assert atlas.table("/v1/taxonomy") == expected
+    title = {row["label"]: row["title"] for row in read("labels")}
+    for row in flat:
+        assert title.get(row["section"], "") in row["section_name"]
+    assert [{k: v for k, v in row.items() if k != "section_name"} for row in flat] == expected
+    assert atlas.table("/v1/taxonomy") == flat
 
 
 def by_link(answer):

@@ -33,6 +33,7 @@ KINDS = {
     "search": "/search",
     "found": "/search?q=centroid",
     "glossary": "/glossary",
+    "bibliography": "/bibliography",
     "figures": "/figures",
     **{f"figure {name}": f"/figures/{name}" for name in TITLES},
     "figure narrowed": f"/figures/{next(iter(TITLES))}?detector=CMOS",

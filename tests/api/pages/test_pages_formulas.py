@@ -144,6 +144,6 @@ def test_a_text_links_the_studies_that_it_names_and_keeps_its_code() -> None:
     assert '(<a href="/studies/Chang2008">Chang2008</a>)' in said
     assert "<mfrac>" in said
     assert marked("``a = b``, then").endswith("</math>,</span> then")
-    assert 'href="/glossary#term-survey-label"' in said
+    assert '<span title="alg:BCM">Algorithm 5</span>' in said
     assert 'alttext="x = a / b"' in said
     assert "<code>Some2099</code>, &lt;not&gt; <code>track</code>" in said

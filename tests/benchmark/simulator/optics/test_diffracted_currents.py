@@ -69,6 +69,7 @@ class Setup:
 
 SETUPS = {
     "qpd-single-aperture": (0.004, 2.6),
+    "qpd-single-aperture-glass": (0.004, 2.6),
     "pd-single-aperture": (0.004, 1.2),
     "psd-single-aperture": (0.003, 2.7),
 }
@@ -85,7 +86,7 @@ def test_currents_behind_openings_are_geometric_by_measurement_or_diffracted() -
         for preset in [datasets.get(name)]
         if preset.observation is Observation.CURRENTS and preset.mask != "Maskless"
     }
-    assert set(regimes) == {*SETUPS, "pd-slit", "pd-code-dial"}
+    assert set(regimes) == {*SETUPS, "pd-slit", "pd-slit-glass", "pd-code-dial"}
     for name, regime in regimes.items():
         assert "fresnel_number" not in regime
         if name == "pd-code-dial":
@@ -132,14 +133,17 @@ def _ratio(setup: Setup, beta: float) -> float:
 
 
 @pytest.mark.slow
-def test_slit_pairs_are_geometric_as_far_as_the_card_says() -> None:
+@pytest.mark.parametrize("name", ["pd-slit", "pd-slit-glass"])
+def test_slit_pairs_are_geometric_as_far_as_the_card_says(name: str) -> None:
     """Long slits: one dimension, across each of them, suffices."""
-    preset = datasets.get("pd-slit")
+    preset = datasets.get(name)
     sensor = preset.setups["nominal"].sensor
     said = preset.card()["regime"]["largest_difference_percent"]
     step, worst = 0.002, 0.0
     (slit,) = sensor.camera.mask.apertures
-    layers = [(sensor.camera.focal_length_mm, 1.0)]
+    camera = sensor.camera
+    gap = camera.focal_length_mm - camera.glass.thickness_mm
+    layers = [(gap, 1.0), *((plate.thickness_mm, plate.index) for plate in camera.glass.plates)]
     row, place = sampled_slit(slit.width_mm / 2.0, 6.0, step)
     for alpha, beta in [(0, 0), (0, 30), (0, 60), (30, 60), (60, 60), (-60, 60)]:
         sun = toward(alpha, beta)[0]

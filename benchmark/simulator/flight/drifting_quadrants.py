@@ -1,0 +1,111 @@
+"""A quadrant photodiode behind an opening that moves against it, along an orbit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from algorithms.contract import Floats
+from benchmark.seeds import generator
+from benchmark.simulator.flight.drift import (
+    REFERENCE_K,
+    AssemblyDrift,
+    PhotodiodeDrift,
+    ThermalCycle,
+    dark_levels,
+)
+from benchmark.simulator.flight.moved_heads import moved_heads
+from benchmark.simulator.flight.time_series import timed
+from benchmark.simulator.light.environment import Earth
+from benchmark.simulator.optics.projection import ProjectedLight
+from benchmark.simulator.readout import currents as readout
+from benchmark.simulator.readout.references import References
+from benchmark.simulator.scene import Scene
+from benchmark.simulator.sensor import FixedPattern
+from benchmark.simulator.sensors.quadrants import QuadrantSensor
+
+
+@dataclass(frozen=True)
+class DriftingQuadrantSensor(QuadrantSensor):
+    """Quadrants whose head, gains and dark currents follow temperature and age.
+
+    The Earth's light, a small part of the currents, is that of a head that stands still; drift
+    changes a thousandth of it. The readout's own dark-current temperature is not used.
+
+    Attributes
+    ----------
+    assembly, photodiodes
+        How the head moves, and how responsivities change.
+    thermal
+        The temperatures it goes through.
+
+    Raises
+    ------
+    ValueError
+        Where there is a ghost, which is not moved with the head.
+    """
+
+    assembly: AssemblyDrift = field(default_factory=AssemblyDrift, kw_only=True)
+    photodiodes: PhotodiodeDrift = field(default_factory=PhotodiodeDrift, kw_only=True)
+    thermal: ThermalCycle = field(default_factory=ThermalCycle, kw_only=True)
+
+    def __post_init__(self) -> None:
+        if self.ghost is not None:
+            raise ValueError(f"a head that drifts is simulated without a ghost; got {self.ghost!r}")
+
+    def fixed_pattern(self, *names: str | int) -> FixedPattern:
+        """As `QuadrantSensor`; with ``gain_per_k`` and ``loss_per_year`` (4,), each one's own."""
+        spread = generator(*names, "drift").standard_normal((2, 4))
+        drift = self.photodiodes
+        return {
+            **super().fixed_pattern(*names),
+            "gain_per_k": drift.gain_per_k + drift.gain_per_k_spread * spread[0],
+            "loss_per_year": drift.loss_per_year + drift.loss_per_year_spread * spread[1],
+        }
+
+    def projected(self, scene: Scene) -> ProjectedLight:
+        """As `Camera.project`, every sample with its own assembly.
+
+        TypeError for a scene that is not a `TimedScene`.
+        """
+        heads = moved_heads(self.camera, self.assembly, timed(scene, self))
+        parts = [head.project(sun[None, :]) for head, sun in zip(heads, scene.sun, strict=True)]
+        return ProjectedLight(
+            np.concatenate([part.rims_mm for part in parts], axis=1),
+            np.concatenate([part.light for part in parts]),
+        )
+
+    def lit(self, scene: Scene) -> Floats:
+        """(N, 4) light on the quadrants, as `QuadrantSensor` has it."""
+        area = self._areas(self.projected(scene), scene)
+        return np.asarray(area / sum(a.area_mm2 for a in self.camera.mask.apertures))
+
+    def earth_through(
+        self, earth: Earth, nadir: Floats, scene: Scene, pattern: FixedPattern
+    ) -> Floats:
+        """(N, 4) light of the Earth, of a head that stands still."""
+        still = QuadrantSensor(self.camera, self.detector, self.readout)
+        return still.earth_through(earth, nadir, scene, pattern)
+
+    def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
+        """(N, 4) mean microamperes; TypeError for a scene that is not a `TimedScene`."""
+        at = timed(scene, self)
+        factor = self.photodiodes.factors(
+            at.temperature_k, at.age_years, pattern["gain_per_k"], pattern["loss_per_year"]
+        )
+        light = self.received(scene) * pattern["gain"] * factor
+        dark = dark_levels(self.readout.dark, at.temperature_k)
+        return np.asarray(self.readout.sunlit_ua * light + dark[:, None])
+
+    def unit_variance(self, expected: Floats, scene: Scene, references: References) -> Floats:
+        """Squared microamperes that unknown gains and the spread of their drifts add.
+
+        References are taken at 25 deg C before the flight: they tell nothing of the drifts.
+        """
+        at = timed(scene, self)
+        light = expected - dark_levels(self.readout.dark, at.temperature_k)[:, None]
+        still = readout.spread(self.readout, self.readout.gain_mismatch, references)
+        warmed = self.photodiodes.gain_per_k_spread * (at.temperature_k - REFERENCE_K)
+        aged = self.photodiodes.loss_per_year_spread * at.age_years
+        return still.variance(light) + light**2 * (warmed**2 + aged**2)[:, None]

@@ -1,0 +1,78 @@
+"""The names of the survey's labels: its own headings, captions and numbers, counted again."""
+
+from __future__ import annotations
+
+import csv
+import os
+from pathlib import Path
+
+import pytest
+
+from survey_data import labels
+from survey_data.descriptor import DATA_DIRECTORY
+from tests.survey_data.survey_labels import labels_of, skeleton
+
+_SKELETON = Path(__file__).with_name("survey_skeleton.tex")
+#: Names a file with the survey's whole LaTeX source, which is not ours to publish.
+_WHOLE = "SUNATLAS_SURVEY_TEXT"
+
+
+def _held() -> dict[str, tuple[str, str, str]]:
+    with (DATA_DIRECTORY / "labels.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    return {row["label"]: (row["kind"], row["number"], row["title"]) for row in rows}
+
+
+def test_labels_have_the_numbers_and_titles_that_latex_gives_them() -> None:
+    counted = labels_of(_SKELETON.read_text("utf-8"))
+    assert len(counted) == 138
+    assert list(_held().items()) == list(counted.items())
+
+
+@pytest.mark.skipif(_WHOLE not in os.environ, reason=f"{_WHOLE} names no survey text")
+def test_the_skeleton_is_of_the_survey() -> None:
+    whole = Path(os.environ[_WHOLE]).read_text("utf-8").partition("\\begin{document}")
+    assert skeleton(whole[1] + whole[2]) == _SKELETON.read_text("utf-8")
+
+
+def test_numbers_counted_by_hand_in_the_print() -> None:
+    # Sections: introduction 1, measurement model 2, methodology 3, attributes 4, models 5, ...
+    # Tables: mapping 1, models 2, extractors 3, assessment 4, approaches 5.
+    held = _held()
+    assert held["sec:attribanalysis"] == ("section", "4", "Sensor attribute analysis")
+    assert held["tab:mrlit"][:2] == ("table", "2")
+    assert held["tab:fesummary"][:2] == ("table", "4")
+    assert held["model:lut"] == ("subsection", "5.1", "Lookup table model")
+    assert held["eq:lsq"][1] == "3"  # after the Fourier series and the standard projection
+    assert held["sec:appendixa"][1] == "A"
+
+
+@pytest.mark.parametrize(
+    ("source", "kind", "number"),
+    [
+        (r"\begin{align}\label{eq:a} x \\ y \end{align}", "equation", "1"),
+        (r"\begin{flalign}\label{eq:a} x \nonumber \\ y \end{flalign}", "equation", "1"),
+        (
+            r"\begin{align} x \\ y \end{align} \begin{equation}\label{eq:a} z \end{equation}",
+            "equation",
+            "3",
+        ),
+        (r"\section{One} \subsection*{Two} \label{eq:a}", "subsection", "1"),
+    ],
+)
+def test_rows_of_equations_are_counted_as_latex_does(source: str, kind: str, number: str) -> None:
+    assert labels_of(source)["eq:a"][:2] == (kind, number)
+
+
+def test_a_label_alone_is_named_in_full_and_within_a_sentence_by_its_number() -> None:
+    assert labels.named("sec:attribanalysis") == "Section 4 “Sensor attribute analysis”"
+    assert labels.named("absent from tab:mrlit") == "absent from Table 2"
+    assert labels.named("eq:lsq of model:lsq") == (
+        "Equation 3 of Section 5.3 “Least Squares (LSQ) geometric model”"
+    )
+    assert labels.named("sec:appendixa") == "Appendix A “Data availability”"
+
+
+def test_what_only_looks_like_a_label_stays_as_it_is() -> None:
+    for text in ("without a model: a foil", "model:unheardof", "tab:", ""):
+        assert labels.named(text) == text
