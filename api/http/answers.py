@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Coroutine, Mapping, Sequence
 from typing import Any, ClassVar, Protocol, cast
+from urllib.parse import quote
 
 from fastapi import Request, Response
 from fastapi.responses import JSONResponse
@@ -20,6 +21,7 @@ from api.http.negotiation import (
     JSON,
     PARQUET,
     PNG,
+    for_spreadsheets,
     wanted_type,
 )
 from api.http.pagination import Page
@@ -191,6 +193,32 @@ class Kept(Protocol):
         ...
 
 
+def as_asked(made: Representation, wanted: str, request: Request) -> Representation:
+    """Return what was made as it is sent: of CSV, for a spreadsheet or with a link to that.
+
+    Parameters
+    ----------
+    made : in the media type `wanted`
+    request : whose query says which
+    """
+    query: bytes = request.scope["query_string"]
+    if wanted != CSV:
+        return made
+    if for_spreadsheets(query):
+        return made.for_spreadsheets()
+    if request.method != "GET":
+        return made
+    asked = query.decode("latin-1").split("&") if query else []
+    path = quote(request.scope["path"])
+    if not path.endswith(".csv") and not any(one.startswith("format=") for one in asked):
+        asked.append("format=csv")
+    asked = [one for one in asked if not one.startswith("safe=")]
+    return made.linked(
+        f'<{path}?{"&".join([*asked, "safe=true"])}>; rel="alternate"; type="text/csv"; '
+        'title="CSV for spreadsheets"'
+    )
+
+
 Handler = Callable[[Request], Coroutine[Any, Any, Response]]
 
 
@@ -226,13 +254,14 @@ class AnswerRoute(StrictRoute):
             wanted = wanted_type(query, request.headers.get("accept"), offered)
             if request.method != "GET":
                 posted = cast("Kept", await compute(request))
-                return posted.representation(wanted).respond(request, conditional=False)
+                told = as_asked(posted.representation(wanted), wanted, request)
+                return told.respond(request, conditional=False)
             asked = (request.scope["path"], query, wanted)
             found = kept.get(asked)
             if found is None:
                 made = await straight(request) if straight else None
                 made = cast("Kept", made or await compute(request))
-                found = made.representation(wanted)
+                found = as_asked(made.representation(wanted), wanted, request)
                 kept.put(asked, found)
             return found.respond(request)
 

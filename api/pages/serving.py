@@ -9,8 +9,8 @@ from typing import Any, ClassVar
 from fastapi import APIRouter, Request, Response
 from fastapi.exceptions import RequestValidationError
 
-from api.http.answers import Answer, Handler, StrictRoute
-from api.http.negotiation import BIBTEX, CSV, JSON, media_type
+from api.http.answers import Answer, Handler, StrictRoute, as_asked
+from api.http.negotiation import BIBTEX, CSV, JSON, for_spreadsheets, media_type
 from api.http.problems import Problem
 from api.http.refusals import refusal
 from api.http.representations import Representation, RepresentationCache
@@ -82,14 +82,17 @@ class PageRoute(StrictRoute):
         async def answer(request: Request) -> Response:
             kept: RepresentationCache = request.app.state.kept
             path, query = request.scope["path"], _filled(request.scope["query_string"])
-            request.scope["query_string"] = query
             wanted = twin or media_type(request.headers.get("accept"), OFFERED)
             asked = (path, query, wanted)
+            # How a table is written, which is settled here, is no question to a page.
+            request.scope["query_string"] = _without_safe(query) if wanted == CSV else query
             found = kept.get(asked)
             if found is None:
                 try:
                     made: View = await compute(request)  # type: ignore[assignment]
                     found = made.representation(wanted, path, query.decode("latin-1"))
+                    request.scope["query_string"] = query
+                    found = as_asked(found, wanted, request)
                 except (Problem, RequestValidationError) as error:
                     if wanted != HTML:
                         raise
@@ -107,6 +110,12 @@ class PageRoute(StrictRoute):
 def _filled(query: bytes) -> bytes:
     """Return a query without its empty fields: a form sends those that nobody filled in."""
     return b"&".join(field for field in query.split(b"&") if field.partition(b"=")[2])
+
+
+def _without_safe(query: bytes) -> bytes:
+    """Return a query without `safe`, which has to be yes or no."""
+    for_spreadsheets(query)
+    return b"&".join(field for field in query.split(b"&") if field.partition(b"=")[0] != b"safe")
 
 
 def _problem(error: Problem | RequestValidationError, request: Request) -> Problem:

@@ -234,7 +234,7 @@ def test_documented_words_are_the_vocabulary(atlas, document):
     described = document["components"]["schemas"][reference.rpartition("/")[2]]
     properties = described["properties"]
     assert described["additionalProperties"] is False
-    assert {*properties, "format"} == set(parameters)
+    assert {*properties, "format", "safe"} == set(parameters)
     for attribute, entries in taxonomy.items():
         words = [entry["value"] for entry in entries]
         for name in (attribute, f"exclude_{attribute}"):
