@@ -82,9 +82,13 @@ class Representation:
 
     def linked(self, *links: str) -> Representation:
         """Return the same bytes with further values of the Link header."""
+        if not links:
+            return self
         before = [self._common["Link"]] if "Link" in self._common else []
-        headers = {**self._common, "Link": ", ".join((*before, *links))} if links else self._common
-        return self._of(self.body, headers)
+        made = self._of(self.body, {**self._common, "Link": ", ".join((*before, *links))})
+        if "digest" in vars(self):
+            made.digest = self.digest
+        return made
 
     def for_spreadsheets(self) -> Representation:
         """Return a CSV of which a spreadsheet runs no cell (`survey_data.csv_writing.escaped`)."""

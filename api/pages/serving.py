@@ -14,6 +14,7 @@ from api.http.negotiation import BIBTEX, CSV, JSON, for_spreadsheets, media_type
 from api.http.problems import Problem
 from api.http.refusals import refusal
 from api.http.representations import Representation, RepresentationCache
+from api.metadata.signposting import Landing, headers
 from api.pages.rendering import render
 
 HTML = "text/html"
@@ -32,24 +33,38 @@ class View(Response):
     ----------
     template : file name in `templates/`
     told : the document, of which the twins are made; `told` in the template
+    landing : where the page leads machines; None where it describes nothing of its own
+    entity : what the page is about, in the words of schema.org; goes with `landing`
     context : what the template is given besides
     """
 
     media_type = HTML
     offered: ClassVar = OFFERED
 
-    def __init__(self, template: str, told: Answer, /, **context: Any) -> None:
+    def __init__(
+        self,
+        template: str,
+        told: Answer,
+        /,
+        *,
+        landing: Landing | None = None,
+        entity: Mapping[str, Any] | None = None,
+        **context: Any,
+    ) -> None:
         super().__init__()
         self.template = template
         self.told = told
-        self.context = context
+        self.landing = landing
+        self.context = {"entity": entity, **context}
 
     def representation(self, wanted: str, path: str = "/", query: str = "") -> Representation:
         """Return the page in a media type; `path` and `query` are what was asked for."""
         if wanted != HTML:
-            return self.told.representation(wanted)
+            links = self.landing.links_of_metadata() if self.landing else ()
+            return self.told.representation(wanted).linked(*headers(links))
         context = {"told": self.told.document, "path": path, "query": query, **self.context}
-        return page_bytes(render(self.template, context))
+        links = self.landing.links() if self.landing else ()
+        return page_bytes(render(self.template, context)).linked(*headers(links))
 
 
 def page_bytes(text: str) -> Representation:
