@@ -92,7 +92,7 @@ def test_the_survey_s_none_is_told_apart_from_what_is_unknown(atlas: Client) -> 
 
 
 def test_a_method_without_a_name_in_the_survey_has_an_empty_cell(atlas: Client) -> None:
-    ours = [i for i in atlas.get("/v1/algorithms?limit=500").json()["items"]]
+    ours = atlas.get("/v1/algorithms?limit=500").json()["items"]
     ours = [item["name"] for item in ours if item["taxonomy"] == "None"]
     rows = {row["name"]: row for row in atlas.table("/v1/algorithms?limit=500")}
     assert ours
