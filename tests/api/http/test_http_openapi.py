@@ -68,6 +68,10 @@ def test_every_endpoint_of_the_contract_is_documented(document):
         ("/v1/protocol", "get"),
         ("/v1/results", "get"),
         ("/healthz", "get"),
+        ("/v1/datasets/{name}/croissant.json", "get"),
+        ("/v1/datasets/{name}/linkset.json", "get"),
+        ("/v1/leaderboard/croissant.json", "get"),
+        ("/v1/leaderboard/linkset.json", "get"),
     }
 
 
@@ -101,6 +105,7 @@ def test_every_example_validates_against_its_schema(document):
             checked += 1
         answers = operation["responses"]["200"].get("content", {})
         files = {"image/png", "application/vnd.apache.parquet"}
+        files |= {"application/ld+json", "application/linkset+json"}
         assert (
             path == "/healthz" or files & set(answers) or "example" in answers["application/json"]
         )
@@ -159,7 +164,7 @@ def test_examples_of_refusals_are_what_is_refused(atlas, document):
                 wrong = example["errors"][0]["parameter"]
                 live = atlas.get(f"{example['instance']}?{wrong}=1").json()
                 assert live == example, path
-    assert checked == 69
+    assert checked == 75
 
 
 @pytest.mark.slow
