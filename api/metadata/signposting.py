@@ -7,7 +7,7 @@ these lead back (`collection`, `describes`). All links of a landing page togethe
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 from urllib.parse import quote, urljoin
@@ -18,6 +18,12 @@ from api.metadata.croissant import CONFORMS_TO
 from api.metadata.terms import LD_JSON, LICENCES, LINKSET, SCHEMA
 
 HTML = "text/html"
+#: References to a study, as the service gives them.
+FORMS: Mapping[str, str] = {
+    "bibtex": "application/x-bibtex",
+    "ris": "application/x-research-info-systems",
+    "csl": "application/vnd.citationstyles.csl+json",
+}
 
 
 @dataclass(frozen=True)
@@ -184,7 +190,13 @@ def landing_of_study(key: str, doi: str | None) -> Landing:
         "ScholarlyArticle",
         "CC-BY-4.0",
         f"https://doi.org/{quote(doi)}" if doi else None,
-        metadata=(Link("describedby", f"/studies/{part}.json", "application/json"),),
+        metadata=(
+            Link("describedby", f"/studies/{part}.json", "application/json"),
+            *(
+                Link("describedby", f"/v1/studies/{part}?format={form}", media_type)
+                for form, media_type in FORMS.items()
+            ),
+        ),
     )
 
 

@@ -64,7 +64,7 @@ async def studies(known: Known, query: Annotated[StudiesQuery, Query()]) -> View
         answer,
         asked=query,
         selection=query.model_dump(
-            exclude_defaults=True, exclude={"format", "fields", "limit", "cursor", "sort"}
+            exclude_defaults=True, exclude={"format", "fields", "limit", "cursor", "sort", "safe"}
         ),
         untitled=sum(not item["title"] for item in answer.document["items"]),
         filters={name: known.taxonomy.to_dict()[name] for name in FILTERS},
@@ -80,12 +80,12 @@ async def study(known: Known, key: Annotated[StudyKey, Path()]) -> View:
     """One study: attributes with their basis, what it runs, reported beside measured."""
     answer = await told.study(known, key)
     claims = [e.claim for e in known.measurements.claims.values() if key in e.claim.study]
-    landing = landing_of_study(key, found["doi"])
+    landing = landing_of_study(key, answer.document["doi"])
     return View(
         "study.html",
         answer,
         landing=landing,
-        entity=schema_org.study(found, landing),
+        entity=schema_org.study(answer.document, landing),
         names=NAMES,
         bases=BASES,
         grades=GRADES,
