@@ -26,9 +26,11 @@ from api.deposit.errors import write_errors
 from api.deposit.frames import write_frames
 from api.deposit.identity import Identity, identity
 from api.deposit.package import DESCRIPTOR, NAME, package
+from api.deposit.packing import pack
 from api.deposit.parquet import write_parquet
 from api.deposit.readme import BIBLIOGRAPHY, readme
 from api.deposit.tables import MeasuredTable, frames_table, measured_tables, read_descriptor
+from api.deposit.terms import FACTS, terms
 from api.deposit.typed import typed_tables
 from api.metadata.bundled import documents
 from benchmark import datasets
@@ -128,7 +130,7 @@ def build(
         names = datasets.names() if frames is None else frames
         exported = write_frames(bundle, names, pins, progress)
         fill(bundle, who, sources, exported)
-        _pack(bundle, zipped, who)
+        pack(bundle, zipped, f"{NAME}-{who.version}", who.released)
     return Bundle(out, archive, tuple(contents(out)))
 
 
@@ -174,7 +176,7 @@ def fill(
         _write_json(bundle / name, document)
     _write_bibliography(bundle)
     _write(bundle / "LICENSE", who.code_licence)
-    for folder in ("survey", BIBLIOGRAPHY):
+    for folder in FACTS:
         _write(bundle / folder / "LICENSE", who.data_licence)
     record, facts = digest(sources.published), editions(sources.survey)
     _write(bundle / "CITATION.cff", of_dataset(who.citation, record, facts))
@@ -192,7 +194,7 @@ def fill(
             who,
             files,
             {r["path"]: (r["title"], r["description"]) for r in resources},
-            {name: _terms(name) for name in files},
+            {name: terms(name) for name in files},
             descriptor["keywords"],
         ),
     )
@@ -208,10 +210,6 @@ def _write_bibliography(bundle: Path) -> None:
         _write(bundle / BIBLIOGRAPHY / f"{name}.ris", ris(studies))
 
 
-def _terms(name: str) -> str:
-    return "CC-BY-4.0" if name.startswith(("survey/", f"{BIBLIOGRAPHY}/")) else "MIT"
-
-
 def _write(path: Path, text: str) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(text, "utf-8", newline="\n")
@@ -219,17 +217,6 @@ def _write(path: Path, text: str) -> None:
 
 def _write_json(path: Path, document: Mapping[str, Any]) -> None:
     _write(path, json.dumps(document, indent=2, ensure_ascii=False) + "\n")
-
-
-def _pack(bundle: Path, target: Path, who: Identity) -> None:
-    moment = (who.released.year, who.released.month, who.released.day, 0, 0, 0)
-    with zipfile.ZipFile(target, "w") as archive:
-        for name in contents(bundle):
-            entry = zipfile.ZipInfo(f"{NAME}-{who.version}/{name}", moment)
-            entry.create_system = 3  # Unix, on every machine, for the permissions below
-            entry.external_attr = 0o100644 << 16
-            entry.compress_type = zipfile.ZIP_DEFLATED
-            archive.writestr(entry, (bundle / name).read_bytes(), compresslevel=9)
 
 
 def _require_ours(out: Path) -> None:

@@ -253,7 +253,7 @@ def test_a_build_that_fails_midway_leaves_the_earlier_bundle(built, tmp_path, mo
     def full(*_arguments):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(deposit, "_pack", full)
+    monkeypatch.setattr(deposit, "pack", full)
     with pytest.raises(OSError, match="No space"):
         build(out)
     assert files(out) == files(built.directory)
