@@ -11,6 +11,7 @@ import json
 import os
 import zipfile
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -47,7 +48,7 @@ from benchmark.results.store import PUBLISHED, Store
 from survey_data.descriptor import file_name
 from survey_data.editions import editions
 from survey_data.manifest import digest
-from survey_data.whole_files import replacing
+from survey_data.whole_files import replacing, require_within_files
 
 SURVEY = Path(survey_data.__file__).parent
 
@@ -100,7 +101,7 @@ def build(
     survey : directory of the survey's tables and their datapackage.json
     published : directory of the published results
     frames : data sets of which samples go along; all by default
-    progress : called as ``progress(done, total, what)`` while samples are made
+    progress : called as ``progress(done, total, what)`` in data sets, then tables and zip
 
     Raises
     ------
@@ -112,6 +113,7 @@ def build(
         Where a table cannot be read or has a column nothing is known of.
     """
     out = Path(os.path.abspath(out))  # noqa: PTH100 - resolve() would follow a symbolic link
+    require_within_files(out)
     archive = out.with_name(f"{out.name}.zip")
     _require_ours(out)
     _require_our_archive(archive)
@@ -124,13 +126,18 @@ def build(
     who = identity()
     sources = Sources(survey, published, measured_tables(published))
     pins = Store(published).pins()
-    out.parent.mkdir(parents=True, exist_ok=True)
+    names = datasets.names() if frames is None else frames
+    total = len(names) + 2
     with replacing(out, archive) as (bundle, zipped):
         bundle.mkdir()
-        names = datasets.names() if frames is None else frames
-        exported = write_frames(bundle, names, pins, progress)
+        exported = write_frames(
+            bundle, names, pins, lambda done, _total, what: progress(done, total, what)
+        )
+        progress(len(names), total, "tables")
         fill(bundle, who, sources, exported)
+        progress(len(names) + 1, total, "zip")
         pack(bundle, zipped, f"{NAME}-{who.version}", who.released)
+    progress(total, total, "")
     return Bundle(out, archive, tuple(contents(out)))
 
 
@@ -241,9 +248,8 @@ def _require_ours(out: Path) -> None:
 def _require_our_archive(archive: Path) -> None:
     if not archive.exists() and not archive.is_symlink():
         return
-    if zipfile.is_zipfile(archive):
-        with zipfile.ZipFile(archive) as packed:
-            names = packed.namelist()
+    with suppress(zipfile.BadZipFile, OSError), zipfile.ZipFile(archive) as packed:
+        names = packed.namelist()
         if names and all(name.startswith(f"{NAME}-") for name in names):
             return
     raise DepositError(f"{archive}: not the zip of an earlier bundle; nothing was written")

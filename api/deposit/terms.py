@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from api.deposit.bibliography import FOLDER as BIBLIOGRAPHY
+from api.deposit.readme import BIBLIOGRAPHY
 
 #: Folders of facts.
 FACTS = ("survey", BIBLIOGRAPHY)
