@@ -9,7 +9,7 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 
 from rich.console import Console
 from rich.progress import (
@@ -20,6 +20,8 @@ from rich.progress import (
     TimeElapsedColumn,
     TimeRemainingColumn,
 )
+
+from benchmark.processes import end_if_told
 
 ProgressCallback = Callable[[int, int, str], None]
 """Called with cells done, cells in all, and what was just finished."""
@@ -60,14 +62,23 @@ PAUSE_S = 15.0
 
 @contextmanager
 def told_progress(doing: str, *, quiet: bool = False) -> Iterator[ProgressCallback]:
-    """Show a bar on a terminal, a line now and then elsewhere; nothing where `quiet`."""
+    """Show a bar on a terminal, a line now and then elsewhere; nothing where `quiet`.
+
+    What it yields also ends what a signal should have ended (`processes.end_if_told`).
+    """
     if quiet:
-        yield silent
+        shown: AbstractContextManager[ProgressCallback] = nullcontext(silent)
     elif sys.stderr.isatty():
-        with terminal_progress(doing) as report:
-            yield report
+        shown = terminal_progress(doing)
     else:
-        yield lines(doing, lambda line: print(line, file=sys.stderr, flush=True))  # noqa: T201
+        shown = nullcontext(lines(doing, lambda line: print(line, file=sys.stderr, flush=True)))  # noqa: T201
+    with shown as show:
+
+        def report(done: int, total: int, what: str) -> None:
+            end_if_told()
+            show(done, total, what)
+
+        yield report
 
 
 def lines(

@@ -20,14 +20,15 @@ ROOT = Path(__file__).resolve().parents[3]
 LIMITED = """
 import resource, sys
 from functools import partial
-from api.cli.command_line import app
+from api.cli.command_line import main
 from api.deposit import bundle
 
 bundle.build = partial(bundle.build, frames=("pd-slit",))
 size = int(sys.argv[1])
 if size:
     resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
-app(sys.argv[2:])
+sys.argv[1:2] = []
+main()
 """
 COMMANDS = {
     "deposit": ["deposit", "build"],
