@@ -42,7 +42,8 @@ def built(
 @pytest.mark.slow
 def test_the_site_is_built_without_a_warning(built: Built) -> None:
     out, done = built
-    assert (done.stderr, done.returncode) == ("", 0)
+    said = [line for line in done.stderr.splitlines() if not line.startswith("building the guide:")]
+    assert (said, done.returncode) == ([], 0)
     assert done.stdout.endswith("0 warnings\n")
     pages = {path.relative_to(out).with_suffix("").as_posix() for path in out.rglob("*.html")}
     assert pages == {page for pages in CHAPTERS.values() for page in pages} | {ROOT, "search"}
