@@ -98,7 +98,7 @@ def replacing(*targets: Path) -> Iterator[tuple[Path, ...]]:
         Where a target is the root of a file system.
     OSError
         Where it cannot be written; one that names no file, as of a full disk, names the first
-        target.
+        target, and one of a file being made its place.
     """
     for target in targets:
         require_within_files(target)
@@ -114,7 +114,12 @@ def replacing(*targets: Path) -> Iterator[tuple[Path, ...]]:
         made.mkdir()
         before.mkdir()
         new = tuple(made / target.name for target in targets)
-        yield new
+        try:
+            yield new
+        except OSError as error:
+            if isinstance(error.filename, str) and Path(error.filename).is_relative_to(made):
+                error.filename = str(first.parent / Path(error.filename).relative_to(made))
+            raise
         with ExitStack() as undo:
             for path, target in zip(new, targets, strict=True):
                 _put(path, target, before / target.name, undo)

@@ -83,7 +83,7 @@ def _of_measurements(bundle: Path, package: Mapping[str, Any]) -> Iterator[Probl
     from pyarrow import ArrowException, parquet  # noqa: PLC0415
 
     for resource in package["resources"]:
-        if resource.get("format") != "parquet":
+        if not resource["path"].endswith(".parquet"):
             continue
         try:
             with parquet.ParquetFile(bundle / resource["path"]) as file:

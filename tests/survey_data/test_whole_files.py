@@ -324,3 +324,14 @@ def test_the_root_of_a_file_system_is_not_replaced(path: Path) -> None:
         pytest.skip(f"{path} is no mount here")
     with pytest.raises(RootOfFilesError, match="cannot be replaced"), replacing(path):
         pytest.fail("it would be replaced")
+
+
+def test_an_error_of_a_file_being_made_names_its_place(tmp_path: Path) -> None:
+    def write() -> None:
+        with replacing(tmp_path / "out") as (made,):
+            made.mkdir()
+            (made / "sub" / "file").write_text("")
+
+    with pytest.raises(FileNotFoundError) as told:
+        write()
+    assert told.value.filename == str(tmp_path / "out" / "sub" / "file")

@@ -151,6 +151,49 @@ def test_a_parquet_of_other_columns_is_seen(small, table):
     assert "other columns" in found(small)[PARQUET]
 
 
+ERRORS = "benchmark/samples/x.parquet"
+
+
+@pytest.fixture
+def with_errors(small):
+    """A bundle with a Parquet file that no CSV has."""
+    (small / ERRORS).parent.mkdir()
+    table = pa.table({"sample": range(5000), "error_deg": [0.1] * 5000})
+    parquet.write_table(table, small / ERRORS, row_group_size=500)
+    package = json.loads((small / DESCRIPTOR).read_text("utf-8"))
+    package["resources"].append(
+        {
+            "name": "errors-x",
+            "title": "x: errors",
+            "description": "Errors. sample: its number. error_deg: its error.",
+            "path": ERRORS,
+            "licenses": package["resources"][0]["licenses"],
+        }
+    )
+    (small / DESCRIPTOR).write_text(json.dumps(package))
+    crate = json.loads((small / CRATE).read_text("utf-8"))
+    one = next(entity for entity in crate["@graph"] if entity["@id"] == TABLE)
+    crate["@graph"].append({**one, "@id": ERRORS})
+    (small / CRATE).write_text(json.dumps(crate))
+    return small
+
+
+def test_errors_that_no_csv_has_are_read_to_their_end(with_errors):
+    assert found(with_errors) == {}
+    data = (with_errors / ERRORS).read_bytes()
+    for at in (0, len(data) // 2, len(data) - 1):
+        (with_errors / ERRORS).write_bytes(data[:at])
+        assert found(with_errors).keys() == {ERRORS}
+    middle = len(data) // 3
+    (with_errors / ERRORS).write_bytes(data[:middle] + bytes(400) + data[middle + 400 :])
+    assert found(with_errors).keys() == {ERRORS}
+
+
+def test_errors_with_a_column_that_is_not_described_are_seen(with_errors):
+    parquet.write_table(pa.table({"sample": [1], "more": [2]}), with_errors / ERRORS)
+    assert found(with_errors) == {ERRORS: "column more is not described"}
+
+
 @pytest.mark.parametrize("name", ["LICENSE", "survey/LICENSE", "bibliography/LICENSE"])
 def test_another_licence_is_seen(small, name):
     (small / name).write_text("All rights reserved.\n")
