@@ -49,6 +49,15 @@ def was_told() -> bool:
     return bool(_told)
 
 
+def end_if_told() -> None:
+    """Raise KeyboardInterrupt once more where a signal told this process to end.
+
+    The first one is lost where it meets a callback of a library, as of the compiler.
+    """
+    if was_told():
+        raise KeyboardInterrupt
+
+
 def exit_code() -> int:
     """Return the exit code of a process that was broken off: 143 after SIGTERM, else 130."""
     return 128 + _told[0] if _told else INTERRUPTED

@@ -1,13 +1,27 @@
-"""Progress of a run: any callable, by default a bar on a terminal and nothing elsewhere."""
+"""Progress of a run: any callable, by default a bar on a terminal and nothing elsewhere.
+
+What takes minutes and is made in one go says a line now and then where there is no terminal
+(`told_progress`).
+"""
 
 from __future__ import annotations
 
 import sys
+import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
+
+from benchmark.processes import end_if_told
 
 ProgressCallback = Callable[[int, int, str], None]
 """Called with cells done, cells in all, and what was just finished."""
@@ -29,6 +43,8 @@ def terminal_progress(doing: str = "measuring") -> Iterator[ProgressCallback]:
         BarColumn(),
         MofNCompleteColumn(),
         TimeElapsedColumn(),
+        TextColumn("left"),
+        TimeRemainingColumn(),
         TextColumn("{task.description}"),
     )
     with Progress(*columns, console=Console(stderr=True)) as bar:
@@ -38,3 +54,63 @@ def terminal_progress(doing: str = "measuring") -> Iterator[ProgressCallback]:
             bar.update(task, completed=done, total=total, description=what)
 
         yield report
+
+
+#: Seconds between two lines where there is no terminal.
+PAUSE_S = 15.0
+
+
+@contextmanager
+def told_progress(doing: str, *, quiet: bool = False) -> Iterator[ProgressCallback]:
+    """Show a bar on a terminal, a line now and then elsewhere; nothing where `quiet`.
+
+    What it yields also ends what a signal should have ended (`processes.end_if_told`).
+    """
+    if quiet:
+        shown: AbstractContextManager[ProgressCallback] = nullcontext(silent)
+    elif sys.stderr.isatty():
+        shown = terminal_progress(doing)
+    else:
+        shown = nullcontext(lines(doing, lambda line: print(line, file=sys.stderr, flush=True)))  # noqa: T201
+    with shown as show:
+
+        def report(done: int, total: int, what: str) -> None:
+            end_if_told()
+            show(done, total, what)
+
+        yield report
+
+
+def lines(
+    doing: str,
+    say: Callable[[str], object],
+    *,
+    clock: Callable[[], float] = time.monotonic,
+    pause_s: float = PAUSE_S,
+) -> ProgressCallback:
+    """Return a callback that says how far something is and what time is left, seldom.
+
+    Parameters
+    ----------
+    doing
+        What is done, as each line begins.
+    say
+        Is given each line.
+    clock
+        Seconds.
+    pause_s
+        Between two lines, and before the first.
+    """
+    start = last = clock()
+
+    def report(done: int, total: int, what: str) -> None:
+        nonlocal last
+        now = clock()
+        if now - last < pause_s or not 0 < done < total:
+            return
+        last = now
+        left = (now - start) / done * (total - done)
+        time_left = f"{left / 60:.0f} min" if left >= 90.0 else f"{left:.0f} s"
+        say(f"{doing}: {done} of {total}, about {time_left} left{f' ({what})' if what else ''}")
+
+    return report

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 from survey_data.exchange import exchange
@@ -84,7 +84,8 @@ def replacing(*targets: Path) -> Iterator[tuple[Path, ...]]:
     Parameters
     ----------
     targets
-        Paths in one directory, which exists; what each holds is replaced.
+        Paths in one directory, which is made where it is not there, and goes again after an
+        error; what each holds is replaced.
 
     Yields
     ------
@@ -93,22 +94,69 @@ def replacing(*targets: Path) -> Iterator[tuple[Path, ...]]:
 
     Raises
     ------
+    RootOfFilesError
+        Where a target is the root of a file system.
     OSError
         Where it cannot be written; one that names no file, as of a full disk, names the first
-        target.
+        target, and one of a file being made its place.
     """
+    for target in targets:
+        require_within_files(target)
     # Beside the targets: a rename is only atomic within a file system.
     first = targets[0]
-    with naming(first), held_in_turn(first), scratch_directory(first) as scratch:
+    with (
+        naming(first),
+        _made_parents(first),
+        held_in_turn(first),
+        scratch_directory(first) as scratch,
+    ):
         made, before = scratch / "made", scratch / "before"
         made.mkdir()
         before.mkdir()
         new = tuple(made / target.name for target in targets)
-        yield new
+        try:
+            yield new
+        except OSError as error:
+            if isinstance(error.filename, str) and Path(error.filename).is_relative_to(made):
+                error.filename = str(first.parent / Path(error.filename).relative_to(made))
+            raise
         with ExitStack() as undo:
             for path, target in zip(new, targets, strict=True):
                 _put(path, target, before / target.name, undo)
             undo.pop_all()
+
+
+class RootOfFilesError(ValueError):
+    """A path is the root of a file system, which cannot be replaced."""
+
+
+def require_within_files(path: Path) -> None:
+    """Refuse a path that cannot be replaced, before anything is made for it.
+
+    Raises
+    ------
+    RootOfFilesError
+        Where it is the root of a file system: `/`, a drive, or where one is mounted.
+    """
+    if not path.name or path.is_mount():
+        raise RootOfFilesError(
+            f"{path}: the root of a file system cannot be replaced; expected a directory in it; "
+            "nothing was written"
+        )
+
+
+@contextmanager
+def _made_parents(path: Path) -> Iterator[None]:
+    """Make the directories above a path; after an error those that were made go again."""
+    missing = [parent for parent in path.parents if not parent.exists()]
+    path.parent.mkdir(parents=True, exist_ok=True)
+    try:
+        yield
+    except BaseException:
+        with suppress(OSError):  # somebody else has put something there
+            for parent in missing:
+                parent.rmdir()
+        raise
 
 
 def _put(path: Path, target: Path, before: Path, undo: ExitStack) -> None:

@@ -11,6 +11,7 @@ import json
 import os
 import zipfile
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -26,9 +27,11 @@ from api.deposit.errors import write_errors
 from api.deposit.frames import write_frames
 from api.deposit.identity import Identity, identity
 from api.deposit.package import DESCRIPTOR, NAME, package
+from api.deposit.packing import pack
 from api.deposit.parquet import write_parquet
 from api.deposit.readme import BIBLIOGRAPHY, readme
 from api.deposit.tables import MeasuredTable, frames_table, measured_tables, read_descriptor
+from api.deposit.terms import FACTS, terms
 from api.deposit.typed import typed_tables
 from api.metadata.bundled import documents
 from benchmark import datasets
@@ -45,7 +48,7 @@ from benchmark.results.store import PUBLISHED, Store
 from survey_data.descriptor import file_name
 from survey_data.editions import editions
 from survey_data.manifest import digest
-from survey_data.whole_files import replacing
+from survey_data.whole_files import replacing, require_within_files
 
 SURVEY = Path(survey_data.__file__).parent
 
@@ -98,7 +101,7 @@ def build(
     survey : directory of the survey's tables and their datapackage.json
     published : directory of the published results
     frames : data sets of which samples go along; all by default
-    progress : called as ``progress(done, total, what)`` while samples are made
+    progress : called as ``progress(done, total, what)`` in data sets, then tables and zip
 
     Raises
     ------
@@ -110,6 +113,7 @@ def build(
         Where a table cannot be read or has a column nothing is known of.
     """
     out = Path(os.path.abspath(out))  # noqa: PTH100 - resolve() would follow a symbolic link
+    require_within_files(out)
     archive = out.with_name(f"{out.name}.zip")
     _require_ours(out)
     _require_our_archive(archive)
@@ -122,13 +126,18 @@ def build(
     who = identity()
     sources = Sources(survey, published, measured_tables(published))
     pins = Store(published).pins()
-    out.parent.mkdir(parents=True, exist_ok=True)
+    names = datasets.names() if frames is None else frames
+    total = len(names) + 2
     with replacing(out, archive) as (bundle, zipped):
         bundle.mkdir()
-        names = datasets.names() if frames is None else frames
-        exported = write_frames(bundle, names, pins, progress)
+        exported = write_frames(
+            bundle, names, pins, lambda done, _total, what: progress(done, total, what)
+        )
+        progress(len(names), total, "tables")
         fill(bundle, who, sources, exported)
-        _pack(bundle, zipped, who)
+        progress(len(names) + 1, total, "zip")
+        pack(bundle, zipped, f"{NAME}-{who.version}", who.released)
+    progress(total, total, "")
     return Bundle(out, archive, tuple(contents(out)))
 
 
@@ -174,7 +183,7 @@ def fill(
         _write_json(bundle / name, document)
     _write_bibliography(bundle)
     _write(bundle / "LICENSE", who.code_licence)
-    for folder in ("survey", BIBLIOGRAPHY):
+    for folder in FACTS:
         _write(bundle / folder / "LICENSE", who.data_licence)
     record, facts = digest(sources.published), editions(sources.survey)
     _write(bundle / "CITATION.cff", of_dataset(who.citation, record, facts))
@@ -192,7 +201,7 @@ def fill(
             who,
             files,
             {r["path"]: (r["title"], r["description"]) for r in resources},
-            {name: _terms(name) for name in files},
+            {name: terms(name) for name in files},
             descriptor["keywords"],
         ),
     )
@@ -208,10 +217,6 @@ def _write_bibliography(bundle: Path) -> None:
         _write(bundle / BIBLIOGRAPHY / f"{name}.ris", ris(studies))
 
 
-def _terms(name: str) -> str:
-    return "CC-BY-4.0" if name.startswith(("survey/", f"{BIBLIOGRAPHY}/")) else "MIT"
-
-
 def _write(path: Path, text: str) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(text, "utf-8", newline="\n")
@@ -219,17 +224,6 @@ def _write(path: Path, text: str) -> None:
 
 def _write_json(path: Path, document: Mapping[str, Any]) -> None:
     _write(path, json.dumps(document, indent=2, ensure_ascii=False) + "\n")
-
-
-def _pack(bundle: Path, target: Path, who: Identity) -> None:
-    moment = (who.released.year, who.released.month, who.released.day, 0, 0, 0)
-    with zipfile.ZipFile(target, "w") as archive:
-        for name in contents(bundle):
-            entry = zipfile.ZipInfo(f"{NAME}-{who.version}/{name}", moment)
-            entry.create_system = 3  # Unix, on every machine, for the permissions below
-            entry.external_attr = 0o100644 << 16
-            entry.compress_type = zipfile.ZIP_DEFLATED
-            archive.writestr(entry, (bundle / name).read_bytes(), compresslevel=9)
 
 
 def _require_ours(out: Path) -> None:
@@ -254,9 +248,8 @@ def _require_ours(out: Path) -> None:
 def _require_our_archive(archive: Path) -> None:
     if not archive.exists() and not archive.is_symlink():
         return
-    if zipfile.is_zipfile(archive):
-        with zipfile.ZipFile(archive) as packed:
-            names = packed.namelist()
+    with suppress(zipfile.BadZipFile, OSError), zipfile.ZipFile(archive) as packed:
+        names = packed.namelist()
         if names and all(name.startswith(f"{NAME}-") for name in names):
             return
     raise DepositError(f"{archive}: not the zip of an earlier bundle; nothing was written")

@@ -62,6 +62,11 @@ _KINDS = {
 }
 
 
+def licence_address(licence: str) -> str:
+    """Return the identifier of a licence in a crate, by its SPDX identifier."""
+    return _LICENCES[licence][0]
+
+
 def crate(
     identity: Identity,
     files: Mapping[str, tuple[int, str]],

@@ -6,6 +6,8 @@ each table and column holds.
 
 from __future__ import annotations
 
+import errno
+import os
 import re
 import sqlite3
 from collections.abc import Iterable, Mapping, Sequence
@@ -26,6 +28,8 @@ _TYPES = {
 }
 #: Words of SQL itself, and what stands for them.
 _RENAMED = {"references": "survey_references", "table": "table_name", "group": "group_name"}
+#: What SQLite says of a disk that is full or fails, and what the system calls it.
+_CANNOT_WRITE = {sqlite3.SQLITE_FULL: errno.ENOSPC, sqlite3.SQLITE_IOERR: errno.EIO}
 _NAME = re.compile(r"[a-z][a-z0-9_]*")
 
 
@@ -42,7 +46,20 @@ def write_database(tables: Sequence[TypedTable], path: Path) -> None:
         For a name that would need quotes.
     sqlite3.IntegrityError
         Where a key is not unique, or refers to nothing.
+    OSError
+        Where the disk is full.
     """
+    try:
+        _write(tables, path)
+    except sqlite3.OperationalError as error:
+        if error.sqlite_errorcode & 0xFF not in _CANNOT_WRITE:
+            raise
+        number = _CANNOT_WRITE[error.sqlite_errorcode & 0xFF]
+        raise OSError(number, os.strerror(number), str(path)) from error
+    _without_version(path)
+
+
+def _write(tables: Sequence[TypedTable], path: Path) -> None:
     with closing(sqlite3.connect(path)) as base:
         base.execute("PRAGMA journal_mode = OFF")
         base.execute("PRAGMA foreign_keys = OFF")  # tables come before those that they refer to
@@ -58,7 +75,6 @@ def write_database(tables: Sequence[TypedTable], path: Path) -> None:
             raise sqlite3.IntegrityError(f"{broken[0][0]}, row {broken[0][1]}: refers to nothing")
         base.commit()
         base.execute("VACUUM")
-    _without_version(path)
 
 
 def plain(name: str) -> str:

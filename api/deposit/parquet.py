@@ -3,14 +3,22 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 from api.deposit.typed import TypedTable
 
 
 def write_parquet(table: TypedTable, path: Path) -> None:
     """Write a table; the same bytes each time, by one version of pyarrow."""
-    import pyarrow as pa  # noqa: PLC0415 - half a second that only building takes
-    from pyarrow import parquet  # noqa: PLC0415 - as above
+    from pyarrow import parquet  # noqa: PLC0415 - half a second that only building takes
+
+    path.parent.mkdir(parents=True, exist_ok=True)
+    parquet.write_table(arrow_table(table), path, compression="zstd")
+
+
+def arrow_table(table: TypedTable) -> Any:
+    """Return a table as pyarrow has it, with what its columns mean (pyarrow.Table)."""
+    import pyarrow as pa  # noqa: PLC0415 - as above
 
     types = {
         "string": pa.string(),
@@ -32,6 +40,4 @@ def write_parquet(table: TypedTable, path: Path) -> None:
         for column, field in zip(table.columns.values(), fields, strict=True)
     ]
     described = {"title": table.resource["title"], "description": table.resource["description"]}
-    path.parent.mkdir(parents=True, exist_ok=True)
-    made = pa.Table.from_arrays(arrays, schema=pa.schema(fields, metadata=described))
-    parquet.write_table(made, path, compression="zstd")
+    return pa.Table.from_arrays(arrays, schema=pa.schema(fields, metadata=described))

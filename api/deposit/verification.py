@@ -8,14 +8,17 @@ it is ever asked.
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 from api.deposit.crate import CRATE, SPECIFICATION
 from api.deposit.fields import TABLE_SCHEMA
+from api.deposit.forms import of_forms, of_terms
+from api.deposit.limits import oversized, unfit_names
 from api.deposit.package import DESCRIPTOR, NAME, PROFILE
-from benchmark.datasets.checksums import CHECKSUMS, differences, read_checksums
+from benchmark.datasets.checksums import CHECKSUMS, contents, differences, read_checksums
 
 Problem = tuple[str, str]
 
@@ -58,7 +61,15 @@ _SCHEMA = {
 }
 _FIELD = {"name": str, "type": str, "description": str, "constraints": dict}
 _CONSTRAINTS = {"enum", "minimum", "maximum", "pattern", "required", "unique"}
-_MAXIMUM = 50_000_000  # bytes of a descriptor
+_VERSION = re.compile(r"[0-9][0-9A-Za-z.+-]{0,40}")
+_CREATED = re.compile(r"[0-9]{4}-[0-9]{2}-[0-9]{2}T00:00:00Z")
+
+#: What cannot be seen in a bundle alone.
+UNSEEN = (
+    "Not seen so: a number that was changed in every form of its table before the checksums were "
+    "made anew, and samples that no data set made. `sunatlas deposit verify` without --alone, by "
+    "the version that made the bundle, holds each against the record and the data sets."
+)
 
 
 class NoBundleError(ValueError):
@@ -68,8 +79,9 @@ class NoBundleError(ValueError):
 def verify(directory: Path) -> list[Problem]:
     """Check a bundle: (file, what is wrong with it); empty where all holds.
 
-    Checksums first; where they hold, descriptor and crate against them; where these hold, every
-    table against its description.
+    Sizes and names first, then checksums; where they hold, descriptor and crate against them; where
+    these hold, every table against its description; at last its other forms and its licences.
+    Whoever makes the bundle anew can change a number in all of them: `UNSEEN`.
 
     Raises
     ------
@@ -80,8 +92,10 @@ def verify(directory: Path) -> list[Problem]:
     """
     if not (directory / CHECKSUMS).is_file():
         raise NoBundleError(f"{directory}: not a bundle, it has no {CHECKSUMS}")
-    wrong = differences(directory)
-    if wrong:
+    names = contents(directory)
+    if (large := oversized(directory, names)) is not None:
+        return [large]
+    if wrong := [*unfit_names(names), *differences(directory)]:
         return wrong
     listed = read_checksums(directory)
     if DESCRIPTOR not in listed:
@@ -89,15 +103,20 @@ def verify(directory: Path) -> list[Problem]:
     package = _document(directory / DESCRIPTOR)
     if isinstance(package, str):
         return [(DESCRIPTOR, package)]
+    crate = _document(directory / CRATE) if CRATE in listed else "missing"
     wrong = [(DESCRIPTOR, text) for text in _of_package(package, directory, listed)]
-    wrong += [(CRATE, text) for text in _of_crate(directory, listed)]
-    return wrong or _of_tables(directory, package)
+    if isinstance(crate, str):
+        return [*wrong, (CRATE, crate)]
+    wrong += [(CRATE, text) for text in _of_crate(crate, directory, listed)]
+    return (
+        wrong
+        or _of_tables(directory, package)
+        or [*of_terms(directory, package, crate, listed), *of_forms(directory, package, listed)]
+    )
 
 
 def _document(path: Path) -> dict[str, Any] | str:
     """Return the object that a JSON file holds, or what is wrong with it."""
-    if path.stat().st_size > _MAXIMUM:
-        return f"expected at most {_MAXIMUM} bytes"
     try:
         found = json.loads(path.read_text("utf-8"))
     except (ValueError, RecursionError) as error:
@@ -112,6 +131,9 @@ def _of_package(
     for name, expected in (("$schema", PROFILE), ("name", NAME)):
         if package.get(name) != expected:
             yield f"{name} is {_short(package.get(name))}, expected {expected}"
+    for name, pattern in (("version", _VERSION), ("created", _CREATED)):
+        if not pattern.fullmatch(str(package.get(name))):
+            yield f"{name} is {_short(package.get(name))}, expected as {pattern.pattern}"
     resources = package.get("resources")
     if not isinstance(resources, list) or not resources:
         yield "no resources"
@@ -175,14 +197,9 @@ def _members(what: str, found: Mapping[str, Any], known: Mapping[str, type]) -> 
             yield f"{what}: {name} is {_short(value)}, expected {known[name].__name__}"
 
 
-def _of_crate(directory: Path, listed: Mapping[str, str]) -> Iterator[str]:
-    if CRATE not in listed:
-        yield "missing"
-        return
-    crate = _document(directory / CRATE)
-    if isinstance(crate, str):
-        yield crate
-        return
+def _of_crate(
+    crate: Mapping[str, Any], directory: Path, listed: Mapping[str, str]
+) -> Iterator[str]:
     graph = crate.get("@graph")
     entities = {e.get("@id"): e for e in graph or () if isinstance(e, dict)} if graph else {}
     about = entities.get(CRATE, {})

@@ -20,8 +20,9 @@ from typing import Any
 from api.cli.working import working_directory
 from api.guide.atlas import atlas_links
 from api.guide.chapters import ROOT
+from benchmark.progress import ProgressCallback, silent
 from survey_data.leftovers import temporary_directory
-from survey_data.whole_files import replacing
+from survey_data.whole_files import replacing, require_within_files
 
 BUILDERS = ("sphinx", "myst-parser", "furo")
 INSTALL = "pip install 'sun-sensor-atlas[guide]'"
@@ -29,6 +30,8 @@ INSTALL = "pip install 'sun-sensor-atlas[guide]'"
 #: Sites of so many states of the pages are kept.
 KEPT = 4
 
+_PROJECT = "Sun Sensor Atlas"
+_UNWRITTEN = re.compile(r"error writing file|cannot copy |Failed to copy ")
 _COLOUR = re.compile(r"\x1b\[[0-9;]*m")
 _HERE = Path(__file__).resolve().parent
 _CHECKOUT = _HERE.parents[1] / "docs"
@@ -85,12 +88,13 @@ def kept() -> Path | None:
     return None if missing_builders() else working_directory() / "guide" / digest()
 
 
-def build(out: Path) -> list[str]:
+def build(out: Path, progress: ProgressCallback = silent) -> list[str]:
     """Build the site into a directory, which is replaced whole or not at all.
 
     Parameters
     ----------
-    out : of the site
+    out : of the site; an earlier one there is replaced
+    progress : called as ``progress(done, total, what)`` in pages, each read and written
 
     Returns
     -------
@@ -100,7 +104,8 @@ def build(out: Path) -> list[str]:
     Raises
     ------
     GuideError
-        Where what builds it is not installed, or it fails.
+        Where what builds it is not installed, it fails, or `out` holds anything but an earlier
+        site.
     """
     missing = missing_builders()
     if missing:
@@ -109,11 +114,12 @@ def build(out: Path) -> list[str]:
     from sphinx.errors import SphinxError  # noqa: PLC0415
 
     out = out.resolve()
-    out.parent.mkdir(parents=True, exist_ok=True)
+    require_within_files(out)
+    _require_ours(out)
     told = io.StringIO()
     with temporary_directory() as scratch, replacing(out) as (made,):
         try:
-            Sphinx(
+            sphinx = Sphinx(
                 srcdir=source(),
                 confdir=None,
                 outdir=made,
@@ -123,21 +129,60 @@ def build(out: Path) -> list[str]:
                 status=None,
                 warning=told,
                 freshenv=True,
-            ).build(force_all=True)
+            )
+            _count(sphinx, progress)
+            sphinx.build(force_all=True)
         except SphinxError as error:
             raise GuideError(f"the guide cannot be built: {error}") from error
         (made / ".buildinfo").unlink(missing_ok=True)
-    return [line for line in _COLOUR.sub("", told.getvalue()).splitlines() if line.strip()]
+        warnings = [w for w in _COLOUR.sub("", told.getvalue()).splitlines() if w.strip()]
+        # Sphinx warns of a file that it cannot write, and goes on.
+        unwritten = [line for line in warnings if _UNWRITTEN.search(line)]
+        if unwritten:
+            said = unwritten[0].replace(str(made), str(out))
+            raise GuideError(f"the guide cannot be written whole: {said}; nothing was changed")
+    return warnings
 
 
-def keep() -> list[str]:
-    """Build the site where `kept` says, drop the oldest ones; return the warnings."""
+def _count(sphinx: Any, progress: ProgressCallback) -> None:
+    """Let Sphinx tell of each page that it reads and writes."""
+    done, total = 0, 0
+
+    def begin(_app: Any, _env: Any, docnames: list[str]) -> None:
+        nonlocal total
+        total = 2 * len(docnames)
+
+    def step(_app: Any, docname: str, *_: Any) -> None:
+        nonlocal done
+        done = min(done + 1, total)
+        progress(done, total, docname)
+
+    sphinx.connect("env-before-read-docs", begin)
+    sphinx.connect("source-read", step)
+    sphinx.connect("html-page-context", step)
+
+
+def _require_ours(out: Path) -> None:
+    """Refuse to replace anything but an earlier site."""
+    if not out.exists() or (out.is_dir() and not any(out.iterdir())):
+        return
+    inventory = out / "objects.inv"
+    head = inventory.read_bytes()[:200] if inventory.is_file() else b""
+    if f"# Project: {_PROJECT}\n".encode() not in head:
+        raise GuideError(
+            f"{out}: holds something else than an earlier guide; choose an empty directory with "
+            "--out; nothing was written"
+        )
+
+
+def keep(progress: ProgressCallback = silent) -> list[str]:
+    """Build the site where `kept` says, drop the oldest ones; return the warnings as `build`."""
     place = kept()
     if place is None:
         raise GuideError(f"building the guide needs {', '.join(missing_builders())}: {INSTALL}")
     if place.is_dir():
         return []
-    warnings = build(place)
+    warnings = build(place, progress)
     _drop_oldest(place)
     return warnings
 
@@ -152,8 +197,8 @@ def _drop_oldest(place: Path) -> None:
 def _settings() -> dict[str, Any]:
     """Return what Sphinx reads from a conf.py elsewhere."""
     return {
-        "project": "Sun Sensor Atlas",
-        "html_title": "Sun Sensor Atlas",
+        "project": _PROJECT,
+        "html_title": _PROJECT,
         "extensions": ["myst_parser", "api.guide.extension"],
         "root_doc": ROOT,
         "source_suffix": {".md": "markdown"},

@@ -41,7 +41,7 @@ from benchmark.metrics.score import stored
 from benchmark.progress import ProgressCallback, silent
 from survey_data.file_bytes import FileRefusedError
 from survey_data.json_reading import read_json
-from survey_data.whole_files import replacing
+from survey_data.whole_files import replacing, require_within_files
 
 CARD = "card.json"
 #: Layout of an export; raised when a file or a field changes its meaning.
@@ -133,8 +133,8 @@ def export(
     if n is not None and n < 1:
         raise ValueError(f"n must be at least 1; got {n}")
     out = Path(os.path.abspath(out))  # noqa: PTH100 - resolve() would follow a symbolic link
+    require_within_files(out)
     _require_free(out, force=force)
-    out.parent.mkdir(parents=True, exist_ok=True)
     with replacing(out) as (made,):
         _require_free(out, force=force)  # again: this process may have waited for another
         made.mkdir()

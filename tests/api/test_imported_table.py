@@ -10,6 +10,7 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 from typer.testing import CliRunner
@@ -67,31 +68,80 @@ def made_up_table(path: Path) -> None:
             write.writerow([key, *values, *(next(numbers[c]) for c in NUMBERS)])
 
 
-@pytest.mark.slow
-def test_a_table_with_every_column_is_applied_and_everything_is_served(tmp_path: Path) -> None:
-    ours = tmp_path / "survey_data"
+#: Builds, over the tables beside it, what goes outward; of the bundle's samples one data set's.
+BUILD = """
+import json, sys
+from pathlib import Path
+import survey_data
+from api.deposit import against_record, bundle
+from api.deposit.verification import verify
+from api.guide import site
+from benchmark.plan.combinations import scorable
+from registry.resolution import resolve_all
+from registry.studies import facts
+
+out = Path(sys.argv[1])
+made = bundle.build(out / "deposit", frames=("pd-slit",))
+wrong = verify(made.directory)
+wrong += against_record.differences(made.directory, frames=("pd-slit",), anew=False)
+warnings = site.build(out / "guide") if not site.missing_builders() else []
+json.dump({"survey": survey_data.__file__, "files": made.files, "wrong": wrong,
+           "warnings": warnings, "pages": len(list((out / "guide").rglob("*.html"))),
+           "resolved": len(resolve_all(scorable())), "studies": len(facts().studies)}, sys.stdout)
+"""
+
+
+@pytest.fixture(scope="module")
+def imported(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A directory with tables of facts into which the whole made-up table was imported."""
+    directory = tmp_path_factory.mktemp("imported")
+    ours = directory / "survey_data"
     shutil.copytree(DATA_DIRECTORY, ours, ignore=shutil.ignore_patterns("__pycache__"))
-    made_up_table(tmp_path / "theirs.csv")
-    command = ["survey", "import", str(tmp_path / "theirs.csv"), "--data", str(ours)]
+    made_up_table(directory / "theirs.csv")
+    command = ["survey", "import", str(directory / "theirs.csv"), "--data", str(ours)]
     shown = CliRunner().invoke(app, [*command, "--format", "json"], catch_exceptions=False)
     assert json.loads(shown.stdout)["differences"]
     done = CliRunner().invoke(app, [*command, "--apply"], catch_exceptions=False)
     assert done.exit_code == 0, done.stderr
+    return directory
+
+
+def run(code: str, directory: Path, *arguments: str) -> Any:
+    """Run code over the tables in a directory; return what it prints as JSON."""
     environment = {
         **os.environ,
-        "PYTHONPATH": os.pathsep.join([str(tmp_path), str(ROOT)]),
-        "SUNATLAS_STORE": str(tmp_path / "working"),
+        "PYTHONPATH": os.pathsep.join([str(directory), str(ROOT)]),
+        "SUNATLAS_STORE": str(directory / "working"),
     }
     ran = subprocess.run(
-        [sys.executable, "-c", ASK],
+        [sys.executable, "-c", code, *arguments],
         env=environment,
-        cwd=tmp_path,
+        cwd=directory,
         capture_output=True,
         text=True,
         check=False,
     )
     assert ran.returncode == 0, ran.stderr
-    told = json.loads(ran.stdout)
+    return json.loads(ran.stdout)
+
+
+@pytest.mark.slow
+def test_after_an_import_of_every_column_everything_is_served(imported: Path) -> None:
+    told = run(ASK, imported)
     assert told["from_table"] > 128
     assert told["asked"] > 400
     assert told["failed"] == {}
+
+
+@pytest.mark.slow
+def test_after_an_import_of_every_column_deposit_and_guide_are_built(
+    imported: Path, tmp_path: Path
+) -> None:
+    told = run(BUILD, imported, str(tmp_path))
+    assert told["survey"] == str(imported / "survey_data" / "__init__.py")
+    assert (told["wrong"], told["warnings"]) == ([], [])
+    assert told["pages"] > 20
+    assert told["resolved"] == told["studies"]
+    attributes = (tmp_path / "deposit" / "survey" / "attributes.csv").read_bytes()
+    assert attributes == (imported / "survey_data" / "attributes.csv").read_bytes()
+    assert attributes.count(b",authors-table,") > 128

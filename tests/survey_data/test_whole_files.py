@@ -14,7 +14,7 @@ import pytest
 
 import survey_data
 from survey_data import whole_files
-from survey_data.whole_files import replace_file, replacing
+from survey_data.whole_files import RootOfFilesError, replace_file, replacing
 
 ROOT = Path(survey_data.__file__).parent.parent
 
@@ -106,7 +106,7 @@ def test_a_place_that_cannot_be_written_is_named(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("no directory")
     with pytest.raises(FileExistsError, match="file"):
         replace_file(tmp_path / "file" / "inside", "new")
-    with pytest.raises(FileNotFoundError, match="missing"), replacing(tmp_path / "missing" / "out"):
+    with pytest.raises(FileExistsError, match="file"), replacing(tmp_path / "file" / "out"):
         pytest.fail("nothing can be made there")
 
 
@@ -117,7 +117,7 @@ def test_a_directory_without_permission_to_write_is_refused(writing: str, tmp_pa
     held.chmod(0o500)
     code = (
         "import os, sys; from pathlib import Path\n"
-        "from survey_data.whole_files import replace_file, replacing\n"
+        "from survey_data.whole_files import RootOfFilesError, replace_file, replacing\n"
         "path = Path(sys.argv[1]) / 'out'\n"
         "if os.geteuid() == 0: os.setuid(65534)  # root writes everywhere\n"
         f"try: {writing}\n"
@@ -266,7 +266,7 @@ def test_a_kill_at_any_step_leaves_an_out_and_the_next_run_nothing_else(
 def test_a_new_file_has_the_permissions_that_the_umask_leaves(tmp_path: Path) -> None:
     code = (
         "import os, sys; from pathlib import Path\n"
-        "from survey_data.whole_files import replace_file, replacing\n"
+        "from survey_data.whole_files import RootOfFilesError, replace_file, replacing\n"
         "os.umask(0o077)\n"
         "here = Path(sys.argv[1])\n"
         "replace_file(here / 'deep' / 'file', 'mine')\n"
@@ -292,3 +292,46 @@ def test_a_full_disk_is_told_with_the_name_of_the_file(
         full()
     assert caught.value.filename == str(tmp_path / "out")
     assert names(tmp_path) == []
+
+
+def interrupted(out: Path, beside: Path | None = None) -> None:
+    with replacing(out) as (made,):
+        made.mkdir()
+        if beside is not None:
+            beside.write_text("theirs")
+        raise KeyboardInterrupt
+
+
+def test_directories_above_are_made_and_go_again_after_an_error(tmp_path: Path) -> None:
+    out = tmp_path / "a" / "b" / "out"
+    with pytest.raises(KeyboardInterrupt):
+        interrupted(out)
+    assert list(tmp_path.iterdir()) == []
+    with replacing(out) as (made,):
+        made.write_text("whole")
+    assert out.read_text() == "whole"
+
+
+def test_a_directory_above_that_somebody_uses_stays_after_an_error(tmp_path: Path) -> None:
+    with pytest.raises(KeyboardInterrupt):
+        interrupted(tmp_path / "a" / "b" / "out", beside=tmp_path / "a" / "theirs")
+    assert [path.name for path in (tmp_path / "a").iterdir()] == ["theirs"]
+
+
+@pytest.mark.parametrize("path", [Path("/"), Path("/proc")])
+def test_the_root_of_a_file_system_is_not_replaced(path: Path) -> None:
+    if not path.is_mount():
+        pytest.skip(f"{path} is no mount here")
+    with pytest.raises(RootOfFilesError, match="cannot be replaced"), replacing(path):
+        pytest.fail("it would be replaced")
+
+
+def test_an_error_of_a_file_being_made_names_its_place(tmp_path: Path) -> None:
+    def write() -> None:
+        with replacing(tmp_path / "out") as (made,):
+            made.mkdir()
+            (made / "sub" / "file").write_text("")
+
+    with pytest.raises(FileNotFoundError) as told:
+        write()
+    assert told.value.filename == str(tmp_path / "out" / "sub" / "file")

@@ -23,7 +23,7 @@ from benchmark.datasets import coverage as covered
 from benchmark.datasets import export as dataset_export
 from benchmark.datasets import export_verification
 from benchmark.plan.parts import installed
-from benchmark.progress import terminal_progress
+from benchmark.progress import terminal_progress, told_progress
 from benchmark.results import samples
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import pinning
@@ -113,7 +113,7 @@ def export(
     reads; where samples are a few numbers each also a .csv. card.json says what every array holds,
     which study is followed, the bound and the hashes. Exporting twice gives the same bytes.
     """
-    with terminal_progress() as progress:
+    with told_progress("writing the data set") as progress:
         made = dataset_export.export(
             name,
             out,

@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from benchmark.progress import told_progress
+
 app = typer.Typer(no_args_is_help=True, add_completion=False, rich_markup_mode=None)
 
 
@@ -19,7 +21,7 @@ def guide() -> None:
 def build(
     out: Annotated[
         Path | None,
-        typer.Option(help="Directory to build into, which is replaced; else where it is served."),
+        typer.Option(help="Directory to build into; an earlier guide there is replaced."),
     ] = None,
     *,
     strict: Annotated[bool, typer.Option("--strict", help="Exit code 1 on a warning.")] = False,
@@ -33,7 +35,8 @@ def build(
     """
     from api.guide import site  # noqa: PLC0415 - reads all pages
 
-    warnings = site.keep() if out is None else site.build(out)
+    with told_progress("building the guide", quiet=quiet) as progress:
+        warnings = site.keep(progress) if out is None else site.build(out, progress)
     for warning in warnings:
         typer.echo(warning, err=True)
     if not quiet:

@@ -8,11 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from api.deposit.archives.metadata import Description
 from api.deposit.citation import Author
+
+if TYPE_CHECKING:
+    from api.deposit.archives.sealed import SealedFile
 
 
 class ArchiveError(ValueError):
@@ -115,7 +117,7 @@ class Archive(Protocol):
         """List the files of a draft by name, halves among them."""
         ...
 
-    def send(self, draft: Draft, name: str, path: Path) -> StoredFile:
+    def send(self, draft: Draft, name: str, file: SealedFile) -> StoredFile:
         """Send a file, in place of one of this name."""
         ...
 

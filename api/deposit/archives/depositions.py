@@ -8,8 +8,6 @@ with files here at times.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
-from typing import Any
 
 from api.deposit.archives.contract import (
     ArchiveError,
@@ -19,16 +17,19 @@ from api.deposit.archives.contract import (
     RefusedError,
     StoredFile,
 )
-from api.deposit.archives.metadata import Description, creators_of_legacy, legacy
+from api.deposit.archives.metadata import Description, legacy
 from api.deposit.archives.replies import (
-    content,
-    entries,
+    BucketFile,
+    Deposition,
+    DepositionFiles,
+    about,
+    by_name,
     identifier,
     md5,
-    member,
     segment,
     unless_missing,
 )
+from api.deposit.archives.sealed import SealedFile
 from api.deposit.archives.transport import Transport
 
 _ALL = "/api/deposit/depositions"
@@ -41,17 +42,19 @@ class DepositionsArchive:
 
     def __init__(self, transport: Transport) -> None:
         self._ask = transport.ask
+        self._tell = transport.tell
         self._address = transport.server.address
 
     def create(self, description: Description) -> Draft:
         """Open a deposition; where the answer is lost, an empty one may be left over."""
-        return self._draft(self._ask("POST", _ALL, json={"metadata": legacy(description)}))
+        body = {"metadata": legacy(description)}
+        return self._draft(self._ask("POST", _ALL, Deposition, json=body))
 
     def new_version(self, record: str) -> Draft:
         """Open a draft of the next version, found where the answer's `latest_draft` points."""
         where = f"{_ALL}/{identifier(record)}/actions/newversion"
         try:
-            reply = self._ask("POST", where)
+            reply = self._ask("POST", where, Deposition)
         except RefusedError as error:
             if "remove all files" in str(error):
                 raise ArchiveError(
@@ -59,68 +62,61 @@ class DepositionsArchive:
                     "the draft that is left over"
                 ) from error
             raise
-        return self._draft(self._ask("GET", member(reply, "links", "latest_draft")))
+        return self._draft(self._ask("GET", reply.link("latest_draft"), Deposition))
 
     def draft(self, identifier_: str) -> Draft:
         """Look at a draft; NoDraftError where there is none."""
         reply = self._deposition(identifier_)
-        if reply is None or reply.get("submitted"):
+        if reply is None or reply.submitted:
             raise NoDraftError(f"{self._address} has no unpublished draft {identifier_}")
         return self._draft(reply)
 
     def published(self, identifier_: str) -> Published | None:
         """Look at a published record; None where there is none."""
-        reply = self._deposition(identifier_)
-        return self._published(reply) if reply and reply.get("submitted") else None
+        reply = self._public(identifier_)
+        return None if reply is None else self._published(reply)
 
     def describe(self, draft: Draft, description: Description) -> None:
         """Give the draft this description instead of the one it has."""
-        self._ask("PUT", f"{_ALL}/{draft.id}", json={"metadata": legacy(description)})
+        self._tell("PUT", f"{_ALL}/{draft.id}", json={"metadata": legacy(description)})
 
     def files(self, draft: Draft) -> Mapping[str, StoredFile]:
         """List the files of a draft by name; a bucket has none but whole ones."""
-        listed = entries(self._ask("GET", f"{_ALL}/{draft.id}/files"), "files")
-        return {
-            member(entry, "filename"): StoredFile(
-                identifier(member(entry, "id")), md5(entry.get("checksum"))
-            )
-            for entry in listed
-        }
+        listed = self._ask("GET", f"{_ALL}/{draft.id}/files", DepositionFiles).root
+        return by_name(
+            [(file.filename, StoredFile(file.id, md5(file.checksum))) for file in listed]
+        )
 
-    def send(self, draft: Draft, name: str, path: Path) -> StoredFile:
+    def send(self, draft: Draft, name: str, file: SealedFile) -> StoredFile:
         """Put a file into the bucket, over one of this name."""
-        reply = self._ask("PUT", f"{draft.files_at}/{segment(name)}", content=content(path))
+        where = f"{draft.files_at}/{segment(name)}"
+        reply = self._ask("PUT", where, BucketFile, content=file.content)
         # A bucket's answer names no file of the deposition: who deletes it asks for the list.
-        return StoredFile("", md5(reply.get("checksum")))
+        return StoredFile("", md5(reply.checksum))
 
     def delete(self, draft: Draft, file: StoredFile) -> None:
         """Take a file out of a draft; that it is gone already is as well."""
         where = f"{_ALL}/{draft.id}/files/{segment(file.id)}"
-        unless_missing(lambda: self._ask("DELETE", where))
+        unless_missing(lambda: self._tell("DELETE", where))
 
     def publish(self, draft: Draft) -> Published:
         """Make the draft public, for good."""
+        where = f"{_ALL}/{draft.id}/actions/publish"
+        reply = self._ask("POST", where, Deposition, happened=lambda: self._public(draft.id))
+        return self._published(about(draft.id, reply, reply.id))
 
-        def happened() -> Any:
-            reply = self._deposition(draft.id)
-            return reply if reply and reply.get("submitted") else None
+    def _public(self, identifier_: str) -> Deposition | None:
+        reply = self._deposition(identifier_)
+        return reply if reply is not None and reply.submitted else None
 
-        reply = self._ask("POST", f"{_ALL}/{draft.id}/actions/publish", happened=happened)
-        return self._published(reply)
-
-    def _deposition(self, identifier_: str) -> Any:
+    def _deposition(self, identifier_: str) -> Deposition | None:
         where = f"{_ALL}/{identifier(identifier_)}"
-        return unless_missing(lambda: self._ask("GET", where))
+        reply = unless_missing(lambda: self._ask("GET", where, Deposition))
+        return None if reply is None else about(identifier_, reply, reply.id)
 
-    def _draft(self, reply: Any) -> Draft:
-        found = identifier(member(reply, "id"))
-        return Draft(
-            found,
-            f"{self._address}/deposit/{found}",
-            creators_of_legacy(reply.get("metadata")),
-            str(member(reply, "links", "bucket")),
-        )
+    def _draft(self, reply: Deposition) -> Draft:
+        page = f"{self._address}/deposit/{reply.id}"
+        return Draft(reply.id, page, reply.authors, reply.link("bucket"))
 
-    def _published(self, reply: Any) -> Published:
-        found = identifier(member(reply, "id"))
-        return Published(found, f"{self._address}/records/{found}", reply.get("doi"))
+    def _published(self, reply: Deposition) -> Published:
+        return Published(reply.id, f"{self._address}/records/{reply.id}", reply.doi)

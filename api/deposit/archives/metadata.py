@@ -180,38 +180,3 @@ def _creator(author: Author) -> dict[str, Any]:
         who["identifiers"] = [{"scheme": "orcid", "identifier": author.orcid}]
     affiliations = [{"name": author.affiliation}] if author.affiliation else []
     return {"person_or_org": who, **({"affiliations": affiliations} if affiliations else {})}
-
-
-def creators_of_invenio(metadata: Any) -> tuple[Author, ...]:
-    """Read the authors back from the metadata of a record."""
-    found = []
-    for creator in _listed(metadata, "creators"):
-        who = creator.get("person_or_org") or {}
-        orcids = [i for i in who.get("identifiers") or [] if i.get("scheme") == "orcid"]
-        personal = who.get("type") == "personal"
-        found.append(
-            Author(
-                family=who.get("family_name") or "" if personal else "",
-                given=who.get("given_name") or "" if personal else "",
-                name="" if personal else who.get("name") or "",
-                orcid=orcids[0].get("identifier") if orcids else None,
-            )
-        )
-    return tuple(found)
-
-
-def creators_of_legacy(metadata: Any) -> tuple[Author, ...]:
-    """Read the authors back from the metadata of a deposition."""
-    found = []
-    for creator in _listed(metadata, "creators"):
-        family, comma, given = str(creator.get("name") or "").partition(", ")
-        orcid = creator.get("orcid")
-        found.append(
-            Author(family, given, "", orcid) if comma else Author(name=family, orcid=orcid)
-        )
-    return tuple(found)
-
-
-def _listed(metadata: Any, name: str) -> list[dict[str, Any]]:
-    found = metadata.get(name) if isinstance(metadata, dict) else None
-    return [entry for entry in found or [] if isinstance(entry, dict)]

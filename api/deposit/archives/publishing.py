@@ -11,10 +11,8 @@ from api.deposit.archives.contract import (
     Published,
     wanting,
 )
-from api.deposit.archives.metadata import description
-from api.deposit.archives.uploading import md5_of, parts
+from api.deposit.archives.sealed import SealedBundle, sealed
 from api.deposit.citation import unpublishable
-from api.deposit.verification import verify
 
 
 class NotReadyError(ArchiveError):
@@ -36,12 +34,19 @@ def publish(archive: Archive, identifier: str, directory: Path) -> Published:
     ------
     NotReadyError
         Where authors are missing or placeholders, or files are missing, foreign or other bytes.
+    BundleError
+        Where the bundle does not hold.
     ArchiveError
         Where the archive does not do as asked.
     """
-    if wrong := verify(directory):
-        raise NotReadyError(f"{directory}: {wrong[0][0]}: {wrong[0][1]}; nothing was published")
-    found = unpublishable(description(directory).authors)
+    with sealed(directory) as bundle:
+        return _published(archive, identifier, directory, bundle)
+
+
+def _published(
+    archive: Archive, identifier: str, directory: Path, bundle: SealedBundle
+) -> Published:
+    found = unpublishable(bundle.description.authors)
     if found:
         raise NotReadyError(
             f"the bundle's authors cannot be published: {'; '.join(found)}. Fill in CITATION.cff, "
@@ -59,7 +64,7 @@ def publish(archive: Archive, identifier: str, directory: Path) -> Published:
             f"the authors of draft {identifier} cannot be published: {'; '.join(found)}. Upload "
             "again; nothing was published"
         )
-    sent = {name: md5_of(path) for name, path in parts(directory).items()}
+    sent = {name: file.md5 for name, file in bundle.files.items()}
     differing = wanting(archive.files(draft), sent)
     if differing:
         raise NotReadyError(

@@ -8,8 +8,6 @@ the one before.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
-from typing import Any
 
 from api.deposit.archives.contract import (
     Draft,
@@ -17,16 +15,18 @@ from api.deposit.archives.contract import (
     Published,
     StoredFile,
 )
-from api.deposit.archives.metadata import Description, creators_of_invenio, invenio
+from api.deposit.archives.metadata import Description, invenio
 from api.deposit.archives.replies import (
-    content,
-    entries,
+    Entries,
+    Entry,
+    Record,
+    about,
+    by_name,
     identifier,
-    md5,
-    member,
     segment,
     unless_missing,
 )
+from api.deposit.archives.sealed import SealedFile
 from api.deposit.archives.transport import Transport
 
 
@@ -37,95 +37,96 @@ class RecordsArchive:
 
     def __init__(self, transport: Transport) -> None:
         self._ask = transport.ask
+        self._tell = transport.tell
         self._address = transport.server.address
 
     def create(self, description: Description) -> Draft:
         """Open a draft of a new record; where the answer is lost, an empty one may be left over."""
-        return self._draft(self._ask("POST", "/api/records", json=invenio(description)))
+        return self._draft(self._ask("POST", "/api/records", Record, json=invenio(description)))
 
     def new_version(self, record: str) -> Draft:
         """Open a draft of the next version; the server gives the one there is, where there is."""
-        reply = self._ask("POST", f"/api/records/{identifier(record)}/versions")
-        draft = self._draft(reply)
+        draft = self._draft(self._ask("POST", f"{_record(record)}/versions", Record))
         if not self.files(draft):
             self._ask(
                 "POST",
-                f"{self._at(draft)}/actions/files-import",
-                happened=lambda: self.files(draft) or None,
+                f"{_at(draft)}/actions/files-import",
+                Entries,
+                happened=lambda: self._entries(draft) if self.files(draft) else None,
             )
         return draft
 
     def draft(self, identifier_: str) -> Draft:
         """Look at a draft; NoDraftError where there is none."""
-        where = f"/api/records/{identifier(identifier_)}/draft"
-        reply = unless_missing(lambda: self._ask("GET", where))
+        where = f"{_record(identifier_)}/draft"
+        reply = unless_missing(lambda: self._ask("GET", where, Record))
         # A published record that is being edited has a draft as well: not one for new files.
-        if reply is None or reply.get("is_published"):
+        if reply is None or reply.is_published:
             raise NoDraftError(f"{self._address} has no unpublished draft {identifier_}")
-        return self._draft(reply)
+        return self._draft(about(identifier_, reply, reply.id))
 
     def published(self, identifier_: str) -> Published | None:
         """Look at a published record; None where there is none."""
-        where = f"/api/records/{identifier(identifier_)}"
-        reply = unless_missing(lambda: self._ask("GET", where))
-        return None if reply is None else self._published(reply)
+        reply = self._public(identifier_)
+        return None if reply is None else reply.published(self._address)
 
     def describe(self, draft: Draft, description: Description) -> None:
         """Give the draft this description; identifiers reserved for it are kept."""
-        kept = self._ask("GET", self._at(draft)).get("pids") or {}
-        self._ask("PUT", self._at(draft), json={**invenio(description), "pids": kept})
+        pids = self._ask("GET", _at(draft), Record).pids or {}
+        kept = {name: pid.model_dump(exclude_none=True) for name, pid in pids.items()}
+        self._tell("PUT", _at(draft), json={**invenio(description), "pids": kept})
 
     def files(self, draft: Draft) -> Mapping[str, StoredFile]:
         """List the files of a draft by name; those not committed have no checksum."""
-        listed = entries(member(self._ask("GET", f"{self._at(draft)}/files"), "entries"), "files")
-        return {member(entry, "key"): _stored(entry) for entry in listed}
+        return by_name([(entry.key, entry.stored) for entry in self._entries(draft).entries])
 
-    def send(self, draft: Draft, name: str, path: Path) -> StoredFile:
+    def send(self, draft: Draft, name: str, file: SealedFile) -> StoredFile:
         """Declare, send and commit a file; one of this name, or half of one, makes way."""
-        where = f"{self._at(draft)}/files"
+        where = f"{_at(draft)}/files"
         if (there := self.files(draft).get(name)) is not None:
             self.delete(draft, there)
 
-        def declared() -> Mapping[str, StoredFile] | None:
-            return self.files(draft) if name in self.files(draft) else None
+        def declared() -> Entries | None:
+            return self._entries(draft) if name in self.files(draft) else None
 
-        def committed() -> Any:
-            entry = self._ask("GET", f"{where}/{segment(name)}")
-            return entry if entry.get("status") == "completed" else None
+        def committed() -> Entry | None:
+            entry = self._ask("GET", f"{where}/{segment(name)}", Entry)
+            return entry if entry.whole else None
 
-        self._ask("POST", where, json=[{"key": name}], happened=declared)
-        self._ask("PUT", f"{where}/{segment(name)}/content", content=content(path))
-        return _stored(self._ask("POST", f"{where}/{segment(name)}/commit", happened=committed))
+        self._ask("POST", where, Entries, json=[{"key": name}], happened=declared)
+        self._tell("PUT", f"{where}/{segment(name)}/content", content=file.content)
+        commit = f"{where}/{segment(name)}/commit"
+        return self._ask("POST", commit, Entry, happened=committed).stored
 
     def delete(self, draft: Draft, file: StoredFile) -> None:
         """Take a file out of a draft; that it is gone already is as well."""
-        where = f"{self._at(draft)}/files/{segment(file.id)}"
-        unless_missing(lambda: self._ask("DELETE", where))
+        where = f"{_at(draft)}/files/{segment(file.id)}"
+        unless_missing(lambda: self._tell("DELETE", where))
 
     def publish(self, draft: Draft) -> Published:
         """Make the draft public, for good."""
         reply = self._ask(
             "POST",
-            f"{self._at(draft)}/actions/publish",
-            happened=lambda: unless_missing(lambda: self._ask("GET", f"/api/records/{draft.id}")),
+            f"{_at(draft)}/actions/publish",
+            Record,
+            happened=lambda: self._public(draft.id),
         )
-        return self._published(reply)
+        return about(draft.id, reply, reply.id).published(self._address)
 
-    @staticmethod
-    def _at(draft: Draft) -> str:
-        return f"/api/records/{draft.id}/draft"
+    def _public(self, identifier_: str) -> Record | None:
+        found = unless_missing(lambda: self._ask("GET", _record(identifier_), Record))
+        return None if found is None else about(identifier_, found, found.id)
 
-    def _draft(self, reply: Any) -> Draft:
-        found = identifier(member(reply, "id"))
-        authors = creators_of_invenio(reply.get("metadata"))
-        return Draft(found, f"{self._address}/uploads/{found}", authors)
+    def _entries(self, draft: Draft) -> Entries:
+        return self._ask("GET", f"{_at(draft)}/files", Entries)
 
-    def _published(self, reply: Any) -> Published:
-        found = identifier(member(reply, "id"))
-        doi = ((reply.get("pids") or {}).get("doi") or {}).get("identifier")
-        return Published(found, f"{self._address}/records/{found}", doi)
+    def _draft(self, reply: Record) -> Draft:
+        return Draft(reply.id, f"{self._address}/uploads/{reply.id}", reply.authors)
 
 
-def _stored(entry: Any) -> StoredFile:
-    whole = entry.get("status") == "completed"
-    return StoredFile(member(entry, "key"), md5(entry.get("checksum")) if whole else None)
+def _record(identifier_: str) -> str:
+    return f"/api/records/{identifier(identifier_)}"
+
+
+def _at(draft: Draft) -> str:
+    return f"/api/records/{draft.id}/draft"

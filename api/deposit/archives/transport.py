@@ -1,24 +1,29 @@
 """Requests to one server: with the token to it and to nobody else, patient, and never in doubt.
 
-A redirect is not followed and an address elsewhere is not asked. What fails for the moment (429,
-5xx, a connection that drops) is tried again; before a request that must not happen twice is
-repeated, `happened` looks whether it had arrived.
+An address elsewhere is not asked, and a redirect is followed to the same server alone, where
+something is only looked at. What fails for the moment (429, 5xx, a connection that drops) is tried
+again; before a request that must not happen twice is repeated, `happened` looks whether it had
+arrived. An answer has a limit in bytes (`reading`) and in time.
 """
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from email.utils import parsedate_to_datetime
 from types import TracebackType
-from typing import Any, Self
-from urllib.parse import urlsplit
+from typing import Any, Self, TypeVar
+from urllib.parse import urljoin, urlsplit
 
 import httpx
 
 from api.deposit.archives.contract import ArchiveError, RefusedError, UnreachableError
+from api.deposit.archives.deadline import Deadline
+from api.deposit.archives.reading import R, ReplyError, holds_json, received, understood
+from api.deposit.archives.refusals import reasons
 from api.deposit.archives.server import Server, Token
 from api.deposit.identity import version
 
@@ -26,15 +31,22 @@ from api.deposit.identity import version
 PAUSES = (1.0, 2.0, 4.0, 8.0, 16.0)
 #: The longest that a server may have us wait, in seconds; it limits by the hour too.
 PATIENCE = 900.0
+#: Redirects that are followed one after another.
+HOPS = 3
 _FOR_THE_MOMENT = frozenset({429, 500, 502, 503, 504})
 _ADVICE = {
     401: "the token is not valid here; {variable} has to hold one made at {address}",
     403: "the token lacks a scope (deposit:write, deposit:actions), or the record is not yours",
     409: "the record is being changed elsewhere, or is locked; wait, then run the command again",
     413: "the file is larger than the archive takes",
+    429: "the archive limits how often it is asked; wait some minutes, then run the command again",
+    503: "the archive is out of service for the moment; run the command again later",
 }
 
 Body = Callable[[], Iterable[bytes]]
+#: The head of an answer and its body.
+Answer = tuple[httpx.Response, bytes]
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -45,6 +57,18 @@ class Content:
     size: int
 
 
+@dataclass(frozen=True)
+class _Request:
+    method: str
+    url: str
+    json: Any = None
+    content: Content | None = None
+
+    @property
+    def what(self) -> str:
+        return f"{self.method} {urlsplit(self.url).path}"
+
+
 class Transport:
     """A conversation with one server.
 
@@ -53,7 +77,7 @@ class Transport:
     server : whom to ask
     token : sent to it and to nobody else
     sleep : waits so many seconds
-    timeout : seconds that an answer may take
+    timeout : seconds that an answer may take, from the last byte sent to the last received
     """
 
     def __init__(
@@ -67,8 +91,14 @@ class Transport:
         self.server = server
         self._token = token
         self._sleep = sleep
+        self._deadline = Deadline(timeout)
         self._client = httpx.Client(
-            headers={"User-Agent": f"sun-sensor-atlas/{version()} (sunatlas deposit)"},
+            headers={
+                "User-Agent": f"sun-sensor-atlas/{version()} (sunatlas deposit)",
+                "Accept": "application/json",
+                "Accept-Encoding": "gzip",
+            },
+            limits=httpx.Limits(max_connections=1),  # the one that the deadline ends
             timeout=httpx.Timeout(timeout, connect=30.0),
             follow_redirects=False,
             # A proxy of the environment would see what goes to this machine in the clear.
@@ -90,17 +120,19 @@ class Transport:
         self,
         method: str,
         where: str,
+        expected: type[R],
         *,
         json: Any = None,
         content: Content | None = None,
-        happened: Callable[[], Any] | None = None,
-    ) -> Any:
-        """Ask for one thing; return what the answer's JSON holds, None where it has no content.
+        happened: Callable[[], R | None] | None = None,
+    ) -> R:
+        """Ask for one thing; return what the answer holds.
 
         Parameters
         ----------
         method : of HTTP
         where : path on the server, or an address it gave
+        expected : model of the answer
         json, content : body
         happened : asked after a failure that leaves open whether the request arrived; anything but
             None is taken for its answer
@@ -112,44 +144,105 @@ class Transport:
         UnreachableError
             Where no try had an answer.
         ArchiveError
-            On a redirect, an address elsewhere, an answer that is no JSON.
+            On a redirect elsewhere, an address elsewhere, an answer that is not `expected`, too
+            large or too slow.
         """
-        url = self._address(where)
-        what = f"{method} {urlsplit(url).path}"
+        request = _Request(method, self._address(where), json, content)
+        return self._tried(request, happened, lambda got: understood(*got, expected))
+
+    def tell(
+        self, method: str, where: str, *, json: Any = None, content: Content | None = None
+    ) -> None:
+        """Have something done of which only matters that it is; raises as `ask`."""
+        self._tried(_Request(method, self._address(where), json, content), None, lambda _got: None)
+
+    def _tried(
+        self,
+        request: _Request,
+        happened: Callable[[], T | None] | None,
+        read: Callable[[Answer], T],
+    ) -> T:
+        what = request.what
         for pause in (*PAUSES, None):
             failure: ArchiveError
             asked: float | None = None
+            limited = False
             try:
-                answer = self._client.request(
-                    method, url, json=json, **self._body(content), auth=self._signed
-                )
-            except httpx.HTTPError as error:
-                failure = UnreachableError(self._said(f"{what}: {error or type(error).__name__}"))
-            else:
-                if answer.status_code not in _FOR_THE_MOMENT:
-                    return self._understood(what, answer)
+                answer = self._followed(request)
+                if answer[0].status_code not in _FOR_THE_MOMENT:
+                    if not answer[0].is_success:
+                        raise self._refusal(what, answer)
+                    return read(answer)
                 failure = self._refusal(what, answer)
-                asked = _asked_pause(answer.headers)
-            # 429 says that nothing was done; after any other failure it may have been.
-            limited = isinstance(failure, RefusedError) and failure.status == 429
+                asked = _asked_pause(answer[0].headers)
+                # 429 says that nothing was done; after any other failure it may have been.
+                limited = failure.status == 429
+            except (httpx.HTTPError, httpx.InvalidURL) as error:
+                said = f"({error or type(error).__name__})"
+                if self._deadline.passed:
+                    said = f"within {self._deadline.seconds:g} s"
+                failure = UnreachableError(self._said(f"{what}: no whole answer {said}"))
+            except ReplyError as error:
+                raise ReplyError(
+                    self._said(f"{what}: the answer cannot be read: {error}")
+                ) from error
             if happened is not None and not limited and (found := happened()) is not None:
                 return found
-            if pause is None or (asked or 0.0) > PATIENCE:
+            if pause is None or self._deadline.passed or (asked or 0.0) > PATIENCE:
                 raise failure
             self._sleep(pause if asked is None else asked)
         raise AssertionError("the last pause is None")
 
+    def _followed(self, request: _Request) -> Answer:
+        """Return an answer that is no redirect: what is only looked at may be elsewhere here."""
+        url = request.url
+        for _ in range(HOPS):
+            answer = self._once(request, url)
+            if not answer[0].has_redirect_location:
+                return answer
+            url = urljoin(url, answer[0].headers["Location"])
+            if request.method != "GET" or not self._is_here(url):
+                break
+        raise ArchiveError(
+            self._said(
+                f"{request.what}: redirected to {_host(url)}; redirects are not followed but to "
+                "the same server and where nothing is changed, so that nobody else is sent the "
+                "token"
+            )
+        )
+
+    def _once(self, request: _Request, url: str) -> Answer:
+        with (
+            self._deadline,
+            self._client.stream(
+                request.method,
+                url,
+                json=request.json,
+                **self._body(request.content),
+                auth=self._signed,
+                extensions={"trace": self._deadline.watch},
+            ) as answer,
+        ):
+            return answer, received(answer)
+
     def _address(self, where: str) -> str:
         url = where if "://" in where else f"{self.server.address}{where}"
-        parts, ours = urlsplit(url), urlsplit(self.server.address)
-        if (parts.scheme, parts.netloc) != (ours.scheme, ours.netloc):
+        if not self._is_here(url):
             raise ArchiveError(
                 self._said(
-                    f"{self.server.address} sends us to {parts.scheme}://{parts.netloc}; the token "
-                    "is for no other host, nothing was sent there"
+                    f"{self.server.address} sends us to {_host(url)}; the token is for no other "
+                    "host, nothing was sent there"
                 )
             )
         return url
+
+    def _is_here(self, url: str) -> bool:
+        ours = urlsplit(self.server.address)
+        try:
+            parts = urlsplit(url)
+        except ValueError:
+            return False
+        return (parts.scheme, parts.netloc) == (ours.scheme, ours.netloc)
 
     def _signed(self, request: httpx.Request) -> httpx.Request:
         request.headers["Authorization"] = self._token.header
@@ -165,63 +258,36 @@ class Transport:
         }
         return {"content": content.chunks(), "headers": headers}
 
-    def _understood(self, what: str, answer: httpx.Response) -> Any:
-        if answer.is_redirect:
-            elsewhere = urlsplit(answer.headers.get("Location", "")).netloc or "another address"
-            raise ArchiveError(
-                self._said(
-                    f"{what}: redirected to {elsewhere}; redirects are not followed, so that "
-                    "nobody else is sent the token"
-                )
-            )
-        if not answer.is_success:
-            raise self._refusal(what, answer)
-        if not answer.content:
-            return None
-        try:
-            return answer.json()
-        except ValueError as error:
-            kind = answer.headers.get("Content-Type", "no content type")
-            raise ArchiveError(
-                self._said(f"{what}: {answer.status_code} with {kind} instead of JSON")
-            ) from error
-
-    def _refusal(self, what: str, answer: httpx.Response) -> RefusedError:
-        status = answer.status_code
+    def _refusal(self, what: str, answer: Answer) -> RefusedError:
+        status = answer[0].status_code
         advice = _ADVICE.get(status, "").format(
             variable=self.server.variable, address=self.server.address
         )
-        parts = (f"{what}: {status} {answer.reason_phrase}", _reasons(answer), advice)
+        told = reasons(*answer) if holds_json(answer[0]) else ""
+        parts = (f"{what}: {status} {answer[0].reason_phrase}", told, advice)
         return RefusedError(self._said("; ".join(part for part in parts if part)), status)
 
     def _said(self, text: str) -> str:
-        return self._token.hidden(" ".join(text.split()))[:600]
+        shown = "".join(letter if letter.isprintable() else " " for letter in text)
+        return self._token.hidden(" ".join(shown.split()))[:600]
 
 
-def _reasons(answer: httpx.Response) -> str:
-    """Return what the server says of the refusal: its message and the fields it names."""
+def _host(url: str) -> str:
+    """Return scheme and host of an address, to be shown."""
     try:
-        told = answer.json()
+        parts = urlsplit(url)
     except ValueError:
-        return ""
-    if not isinstance(told, Mapping):
-        return ""
-    parts = [str(told["message"])] if told.get("message") else []
-    for error in told.get("errors") or ():
-        if isinstance(error, Mapping):
-            said = error.get("messages") or [error.get("message", "")]
-            text = " ".join(map(str, said)) if isinstance(said, list) else str(said)
-            parts.append(f"{error.get('field', 'a field')}: {text}")
-    return "; ".join(parts)
+        return f"{url[:80]!r}, which is no address"
+    return f"{parts.scheme}://{parts.netloc}"
 
 
 def _asked_pause(headers: Mapping[str, str]) -> float | None:
     """Return the seconds that a server asks to wait, None where it asks nothing."""
     after, reset = headers.get("Retry-After", ""), headers.get("X-RateLimit-Reset", "")
-    if after.isdigit():
-        return float(after)
     try:
+        if after.isascii() and after.isdigit():
+            return float(after)
         until = parsedate_to_datetime(after).timestamp() if after else float(reset)
-    except ValueError:
+    except (ValueError, OverflowError):
         return None
-    return max(0.0, until - datetime.now(UTC).timestamp())
+    return None if math.isnan(until) else max(0.0, until - datetime.now(UTC).timestamp())

@@ -6,32 +6,28 @@ no token) as soon as there is one, so that an upload that was broken off goes on
 
 from __future__ import annotations
 
-import hashlib
 import json
-import zipfile
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-from api.deposit.archives.contract import Archive, ArchiveError, Draft, NoDraftError
-from api.deposit.archives.metadata import description
-from api.deposit.package import DESCRIPTOR
-from api.deposit.verification import verify
-from benchmark.datasets.checksums import contents, sha256
+from api.deposit.archives.contract import (
+    Archive,
+    ArchiveError,
+    Draft,
+    NoDraftError,
+    StoredFile,
+)
+from api.deposit.archives.metadata import Description
+from api.deposit.archives.sealed import BundleError, SealedBundle, SealedFile, sealed
 from survey_data.whole_files import replace_file
 
-#: Files that are also sent by themselves, to be read or searched without the zip.
-APART = ("README.md", "sun-sensor-atlas.sqlite", "studies.bib", "studies.ris")
 #: How often a file whose checksum came back wrong is sent.
 _TRIES = 3
 
 State = Literal["sent", "there already", "removed"]
 Tell = Callable[[str, State], None]
-
-
-class BundleError(ArchiveError):
-    """What is to be uploaded is no whole bundle."""
 
 
 class ChecksumError(ArchiveError):
@@ -54,46 +50,20 @@ class Uploaded:
     left: tuple[str, ...]
 
 
-def parts(directory: Path) -> dict[str, Path]:
-    """Return the files that an archive is sent of a bundle, by name.
+@dataclass(frozen=True)
+class Opened:
+    """A draft to send to.
 
-    Raises
-    ------
-    BundleError
-        Where the zip is missing, or is not that of the directory.
+    Attributes
+    ----------
+    draft : where files go
+    version_of : record that it is the next version of, or None
+    described : whether it has the bundle's description already
     """
-    packed = directory.with_name(f"{directory.name}.zip")
-    if not packed.is_file():
-        raise BundleError(
-            f"{packed}: missing; build the bundle again with `sunatlas deposit build`"
-        )
-    try:
-        with zipfile.ZipFile(packed) as archive:
-            inside = {name.partition("/")[2]: _digest(archive, name) for name in archive.namelist()}
-    except (zipfile.BadZipFile, OSError, EOFError) as error:
-        raise BundleError(f"{packed}: no whole zip ({error})") from error
-    if inside != {name: sha256(directory / name) for name in contents(directory)}:
-        raise BundleError(f"{packed}: not the zip of {directory}; build the bundle again")
-    package = json.loads((directory / DESCRIPTOR).read_text("utf-8"))
-    apart = {Path(name).name: directory / name for name in contents(directory)}
-    return {
-        f"{package['name']}-{package['version']}.zip": packed,
-        **{name: apart[name] for name in APART},
-    }
 
-
-def _digest(archive: zipfile.ZipFile, name: str) -> str:
-    with archive.open(name) as file:
-        digest = hashlib.sha256()
-        while chunk := file.read(1 << 20):
-            digest.update(chunk)
-    return digest.hexdigest()
-
-
-def md5_of(path: Path) -> str:
-    """Return the MD5 of a file in hexadecimal: the checksum that both interfaces tell."""
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, lambda: hashlib.md5(usedforsecurity=False)).hexdigest()
+    draft: Draft
+    version_of: str | None
+    described: bool
 
 
 def upload(
@@ -121,50 +91,52 @@ def upload(
     ArchiveError
         Where anything does not go as it should; what has been sent stays in the draft.
     """
-    if wrong := verify(directory):
-        raise BundleError(f"{directory}: {wrong[0][0]}: {wrong[0][1]}; nothing was sent")
-    sending = parts(directory)
     memory = Memory(directory, f"{server} {archive.name}")
-    told = description(directory)
-    opened, of, fresh = _open(archive, memory, version_of, draft, told)
-    if not fresh:
-        archive.describe(opened, told)
-    there = archive.files(opened)
+    with sealed(directory) as bundle:
+        opened = _open(archive, memory, version_of, draft, bundle.description)
+        return _sent(archive, bundle, opened, tell)
+
+
+def _sent(archive: Archive, bundle: SealedBundle, opened: Opened, tell: Tell) -> Uploaded:
+    """Send what the draft lacks."""
+    draft = opened.draft
+    if not opened.described:
+        archive.describe(draft, bundle.description)
+    there = archive.files(draft)
     done: dict[str, State] = {}
-    for name, path in sending.items():
-        done[name] = _settle(archive, opened, name, path, there)
+    for name, file in bundle.files.items():
+        done[name] = _settle(archive, draft, name, file, there)
         tell(name, done[name])
-    foreign = sorted(there.keys() - sending.keys())
-    if of is not None:
+    foreign = sorted(there.keys() - bundle.files.keys())
+    if opened.version_of is not None:
         # Of the version before, under names that this one does not have.
         for name in foreign:
-            archive.delete(opened, there[name])
+            archive.delete(draft, there[name])
             done[name] = "removed"
             tell(name, "removed")
-    return Uploaded(opened, done, () if of is not None else tuple(foreign))
+    return Uploaded(draft, done, () if opened.version_of is not None else tuple(foreign))
 
 
 def _settle(
-    archive: Archive, draft: Draft, name: str, path: Path, there: Mapping[str, Any]
+    archive: Archive, draft: Draft, name: str, file: SealedFile, there: Mapping[str, StoredFile]
 ) -> State:
-    wanted = md5_of(path)
-    if name in there and there[name].md5 == wanted:
+    if name in there and there[name].md5 == file.md5:
         return "there already"
     found = None
     for _ in range(_TRIES):
-        found = archive.send(draft, name, path).md5
-        if found == wanted:
+        found = archive.send(draft, name, file).md5
+        if found == file.md5:
             return "sent"
     raise ChecksumError(
-        f"{name}: sent {_TRIES} times, the archive has MD5 {found or 'none'}, here it is {wanted}; "
-        "run the command again later, and do not publish"
+        f"{name}: sent {_TRIES} times, the archive has MD5 {found or 'none'}, here it is "
+        f"{file.md5}; run the command again later, and do not publish"
     )
 
 
 def _open(
-    archive: Archive, memory: Memory, version_of: str | None, draft: str | None, told: Any
-) -> tuple[Draft, str | None, bool]:
-    """Return the draft, the record it is a version of, and whether it has its description."""
+    archive: Archive, memory: Memory, version_of: str | None, draft: str | None, told: Description
+) -> Opened:
+    """Find or open the draft."""
     if draft is not None:
         if version_of is not None:
             raise ArchiveError("--draft goes on with a draft, --new-version opens one: give one")
@@ -173,12 +145,12 @@ def _open(
         if remembered is not None and remembered[0] == found.id:
             of = remembered[1]
         memory.keep(found.id, of)
-        return found, of, False
+        return Opened(found, of, described=False)
     remembered = memory.recall()
     if remembered is not None and version_of in (None, remembered[1]):
         identifier, of = remembered
         try:
-            return archive.draft(identifier), of, False
+            return Opened(archive.draft(identifier), of, described=False)
         except NoDraftError:
             published = archive.published(identifier)
             if published is not None and version_of is None:
@@ -192,7 +164,7 @@ def _open(
     else:
         opened, fresh = archive.new_version(version_of), False
     memory.keep(opened.id, version_of)
-    return opened, version_of, fresh
+    return Opened(opened, version_of, fresh)
 
 
 class Memory:

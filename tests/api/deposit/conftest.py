@@ -25,6 +25,7 @@ from api.deposit.bundle import Bundle, build
 from tests.api.deposit import small_bundle
 from tests.api.deposit.standins.depositions import Depositions
 from tests.api.deposit.standins.records import Records
+from tests.api.deposit.standins.replies import Reply
 from tests.api.deposit.standins.server import TOKEN, Fault, StandIn
 
 #: Requests of each step of an upload, as the two interfaces name them.
@@ -72,8 +73,9 @@ class Journey:
     bundle: Path
     archive: StandIn
     pauses: list[float] = field(default_factory=list)
+    timeout: float = 20.0
 
-    def fails(self, kind: int | str, step: str, times: int = 1, **headers: str) -> Fault:
+    def fails(self, kind: int | str | Reply, step: str, times: int = 1, **headers: str) -> Fault:
         named = {name.replace("_", "-"): value for name, value in headers.items()}
         fault = Fault(kind, STEPS[self.api][step], times, named)
         self.archive.faults.append(fault)
@@ -81,7 +83,10 @@ class Journey:
 
     def _client(self) -> Any:
         transport = Transport(
-            server_at(self.archive.address), Token(TOKEN), sleep=self.pauses.append, timeout=20.0
+            server_at(self.archive.address),
+            Token(TOKEN),
+            sleep=self.pauses.append,
+            timeout=self.timeout,
         )
         return transport, (RecordsArchive if self.api == "records" else DepositionsArchive)
 

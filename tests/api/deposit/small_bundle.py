@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import datetime as dt
 import json
-import zipfile
 from pathlib import Path
 
+from api.deposit.bundle import write_other_forms
 from api.deposit.citation import authors
 from api.deposit.crate import CRATE, crate
-from api.deposit.identity import Identity
+from api.deposit.database import DATABASE
+from api.deposit.identity import Identity, identity
 from api.deposit.package import DESCRIPTOR, package
+from api.deposit.packing import pack
 from api.deposit.tables import MeasuredTable
+from api.deposit.terms import terms
 from benchmark.datasets.checksums import contents, sha256, write_checksums
 
 PEOPLE = """\
@@ -34,11 +37,12 @@ def make(directory: Path, people: str = PEOPLE, readme: str = "# read me\n") -> 
         authors(citation, "CITATION.cff"),
         dt.date(2026, 11, 21),
         citation,
-        "",
-        "",
+        identity().code_licence,
+        identity().data_licence,
     )
     (directory / "benchmark").mkdir(parents=True, exist_ok=True)
     (directory / "bibliography").mkdir(exist_ok=True)
+    (directory / "survey").mkdir(exist_ok=True)
     (directory / "benchmark" / "one.csv").write_text("name\na\n")
     schema = {"fields": [{"name": "name", "type": "string"}], "primaryKey": ["name"]}
     table = MeasuredTable("one", "One", "One table.", "", schema)
@@ -49,20 +53,23 @@ def make(directory: Path, people: str = PEOPLE, readme: str = "# read me\n") -> 
         "README.md": readme,
         "bibliography/studies.bib": "@misc{a,\n  title = {A},\n}\n",
         "bibliography/studies.ris": "TY  - GEN\nTI  - A\nER  - \n",
-        "sun-sensor-atlas.sqlite": "no database, and none is asked for" * 1000,
+        "LICENSE": who.code_licence,
+        "survey/LICENSE": who.data_licence,
+        "bibliography/LICENSE": who.data_licence,
     }
     for name, text in files.items():
         (directory / name).write_text(text, "utf-8")
+    (directory / DATABASE).unlink(missing_ok=True)
+    write_other_forms(directory, json.loads(files[DESCRIPTOR]))
     for name in (CRATE, "checksums-sha256.txt"):
         (directory / name).unlink(missing_ok=True)
     described = {
         name: ((directory / name).stat().st_size, sha256(directory / name))
         for name in contents(directory)
     }
-    told = crate(who, described, {}, dict.fromkeys(described, "MIT"), ["sun sensor"])
+    told = crate(who, described, {}, {name: terms(name) for name in described}, ["sun sensor"])
     (directory / CRATE).write_text(json.dumps(told))
     write_checksums(directory)
-    with zipfile.ZipFile(directory.with_name(f"{directory.name}.zip"), "w") as archive:
-        for name in contents(directory):
-            archive.writestr(f"sun-sensor-atlas-0.1.0/{name}", (directory / name).read_bytes())
+    packed = directory.with_name(f"{directory.name}.zip")
+    pack(directory, packed, "sun-sensor-atlas-0.1.0", who.released)
     return directory

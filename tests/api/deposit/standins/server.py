@@ -10,9 +10,12 @@ import json
 import socket
 import threading
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Any
+
+from tests.api.deposit.standins.replies import Reply
 
 TOKEN = "tok-7f3a9c51d2e8"
 
@@ -33,13 +36,13 @@ class Fault:
     Attributes
     ----------
     kind : a status, "drop before" or "drop after" (the work is done, the answer is lost), "wrong
-        checksum", "redirect", "hold" (the answer waits until `released`)
+        checksum", "redirect", "hold" (the answer waits until `released`), or a `replies.Reply`
     at : method and path of a request -> whether it is met
     times : how often
     headers : of the answer
     """
 
-    kind: int | str
+    kind: int | str | Reply
     at: Callable[[str, str], bool]
     times: int = 1
     headers: Mapping[str, str] = field(default_factory=dict)
@@ -125,6 +128,9 @@ class _Handler(BaseHTTPRequestHandler):
         if kind == "drop before":
             self._drop()
             return
+        if isinstance(kind, bytes) or callable(kind):
+            self._answer_raw(kind)
+            return
         if kind == "redirect":
             self._say(302, {}, fault.headers)
             return
@@ -159,6 +165,15 @@ class _Handler(BaseHTTPRequestHandler):
     def _drop(self):
         self.connection.shutdown(socket.SHUT_RDWR)
         self.close_connection = True
+
+    def _answer_raw(self, reply: Reply):
+        self.close_connection = True
+        with suppress(OSError):  # the client may have had enough of it
+            self.connection.settimeout(20)
+            if callable(reply):
+                reply(self.connection.sendall)
+            else:
+                self.connection.sendall(reply)
 
     def _say(self, status: int, document: Any, headers: Mapping[str, str] | None = None):
         said = b"" if status == 204 else json.dumps(document).encode()

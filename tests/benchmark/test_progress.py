@@ -1,0 +1,76 @@
+"""How far something is, where there is no terminal: seldom, and with the time that is left."""
+
+from __future__ import annotations
+
+import sys
+
+import pytest
+
+from benchmark import processes
+from benchmark.progress import lines, told_progress
+
+
+@pytest.mark.parametrize(
+    ("each_s", "expected"),
+    [
+        (
+            1.0,
+            [
+                "building: 15 of 40, about 25 s left (data set 14)",
+                "building: 30 of 40, about 10 s left (data set 29)",
+            ],
+        ),
+        (
+            60.0,
+            [
+                "building: 1 of 4, about 3 min left (data set 0)",
+                "building: 2 of 4, about 2 min left (data set 1)",
+                "building: 3 of 4, about 60 s left (data set 2)",
+            ],
+        ),
+        (0.1, []),
+    ],
+)
+def test_lines_are_seldom_and_say_the_time_that_is_left(each_s, expected):
+    total = {1.0: 40, 60.0: 4, 0.1: 100}[each_s]
+    now = [0.0]
+    said: list[str] = []
+    report = lines("building", said.append, clock=lambda: now[0])
+    for done in range(total + 1):
+        report(done, total, f"data set {done - 1}")
+        now[0] += each_s
+    assert said == expected
+
+
+def test_nothing_is_said_of_what_has_no_parts_or_is_done():
+    now = [0.0]
+    said: list[str] = []
+    report = lines("building", said.append, clock=lambda: now[0])
+    for done, total in ((0, 0), (0, 3), (3, 3), (4, 3)):
+        now[0] += 100.0
+        report(done, total, "")
+    assert said == []
+
+
+def test_a_quiet_command_shows_nothing_even_on_a_terminal(monkeypatch, capsys):
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
+    with told_progress("building", quiet=True) as report:
+        report(1, 2, "pd-slit")
+    assert capsys.readouterr().err == ""
+
+
+def test_a_terminal_has_a_bar_with_the_time_that_is_left(monkeypatch, capsys):
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
+    with told_progress("building") as report:
+        report(1, 2, "pd-slit")
+    shown = capsys.readouterr().err
+    assert "1/2" in shown
+    assert "left" in shown
+
+
+def test_a_signal_that_was_lost_ends_what_is_done_at_the_next_step(monkeypatch):
+    with told_progress("building", quiet=True) as report:
+        report(1, 3, "")
+        monkeypatch.setattr(processes, "_told", [15])
+        with pytest.raises(KeyboardInterrupt):
+            report(2, 3, "")
