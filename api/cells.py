@@ -7,6 +7,8 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from registry.taxonomy import NO_IMPLEMENTATION_STATED, NONE_STATED
+
 LIST_SEPARATOR = "; "
 _PLAIN = frozenset((str, int, bool, type(None)))
 
@@ -31,6 +33,7 @@ def plain(value: Any) -> Any:
 def cell(value: Any) -> str:  # noqa: PLR0911 - a kind of value each
     """Return a value as the text of a CSV cell: lists joined by "; ", nothing found empty.
 
+    The taxonomy's value "None" is spelled out (`registry.taxonomy.NONE_STATED`), also in lists.
     Numbers have all their digits; the record spells its own shorter, to be compared by line
     (`benchmark.results.tables.spelt`).
     """
@@ -38,7 +41,7 @@ def cell(value: Any) -> str:  # noqa: PLR0911 - a kind of value each
     # asking whether text is a mapping takes longer than to write it.
     kind = type(value)
     if kind is str:
-        return str(value)
+        return NONE_STATED if value == NO_IMPLEMENTATION_STATED else str(value)
     if kind is int or (kind is float and math.isfinite(value)):
         return str(value)
     if value is None or (isinstance(value, float) and not math.isfinite(value)):

@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from api.cells import cell
+from registry.taxonomy import exported
 from survey_data.csv_writing import csv_text
 
 Row = Mapping[str, Any]
@@ -199,14 +200,16 @@ def csv_of(columns: Sequence[str], rows: Iterable[Row]) -> str:
     ----------
     columns : of the table, in order; what rows have besides is left out
     rows : one mapping a row; a member of a nested mapping is the column `outer_inner`. Lists are
-        joined by "; ", mappings that are a column themselves are JSON, nothing (None, NaN) is empty
+        joined by "; ", mappings that are a column themselves are JSON, nothing (None, NaN) is
+        empty, and the taxonomy's "None" is spelled out (`registry.taxonomy.exported`)
 
     Returns
     -------
     str
         A header and a line a row.
     """
-    return csv_text(columns, ([cell(v) for v in flat(row, columns).values()] for row in rows))
+    made = (flat(row, columns).items() for row in rows)
+    return csv_text(columns, ([cell(exported(*one)) for one in row] for row in made))
 
 
 def _values(row: Row, wanted: frozenset[str], prefix: str = "") -> Iterator[tuple[str, Any]]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
+from typing import Any
 
 from survey_data import labels
 from survey_data.nearest import nearest
@@ -41,8 +42,36 @@ _ALIKE = 0.5
 
 NO_IMPLEMENTATION_STATED = "None"
 """The taxonomy's own value for a study without a model, an extractor or an error."""
+NONE_STATED = "none stated"
+"""That value in tables for others: programs that read tables take the word None for no value."""
+_OF_IMPLEMENTATIONS = frozenset({"taxonomy", "extractor_taxonomy", "model_taxonomy", "category"})
 
 _CALIBRATION_NAMES = {"offline": "Offline calibration", "online": "Online calibration"}
+
+
+def exported(column: str, value: Any) -> Any:
+    """Return a value as a table for others writes it, so that nothing reads ``None``.
+
+    Parameters
+    ----------
+    column : of the table
+    value : of one cell
+
+    Returns
+    -------
+    object
+        `NONE_STATED` for the taxonomy's "None", which is a value; None in columns that say what
+        an implementation is called in the survey, where it means that the survey has no such
+        method; any other value as it is.
+    """
+    if value != NO_IMPLEMENTATION_STATED:
+        return value
+    return None if column in _OF_IMPLEMENTATIONS else NONE_STATED
+
+
+def exported_row(row: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a row with every cell as `exported` gives it."""
+    return {column: exported(column, value) for column, value in row.items()}
 
 
 class InvalidValueError(ValueError):

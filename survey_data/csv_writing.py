@@ -1,10 +1,29 @@
-"""Writing CSV: a header and rows, one record a line, quoted only where it must be."""
+"""Writing CSV: a header and rows, one record a line, quoted only where it must be.
+
+`escaped` makes of any such text one that a spreadsheet can open: programs such as Excel and
+LibreOffice run a cell that starts like a formula, whoever wrote it.
+"""
 
 from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterable, Sequence
+import re
+from collections.abc import Callable, Iterable, Iterator, Sequence
+
+#: Cells that a spreadsheet takes for a formula, as OWASP lists their first characters
+#: (https://owasp.org/www-community/attacks/CSV_Injection), also behind white space; apostrophes
+#: before them count as well, so that what `escaped` does can be undone.
+_FORMULA = re.compile(r"'*(?:[\t\r\n]|\s*[=+\-@＝＋－＠])")
+_NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
+
+
+class _Lines(list[str]):
+    """Takes the records that the csv module writes."""
+
+    def write(self, record: str) -> None:
+        # The csv module quotes a carriage return only where lines end in one.
+        self.append(record[:-2] + "\n")
 
 
 def csv_text(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
@@ -12,8 +31,52 @@ def csv_text(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
 
     Numbers have all the digits that they need to be read back the same.
     """
-    text = io.StringIO(newline="")
-    writer = csv.writer(text, lineterminator="\n")
+    lines = _Lines()
+    writer = csv.writer(lines, lineterminator="\r\n")
     writer.writerow(header)
     writer.writerows(rows)
-    return text.getvalue()
+    return "".join(lines)
+
+
+def escaped(text: str) -> str:
+    """Return a CSV text whose cells no spreadsheet runs as formulas.
+
+    A cell whose first character, white space aside, is ``=``, ``+``, ``-`` or ``@`` (or their
+    full-width forms), or that starts with a tab or a line break, gets an apostrophe before it.
+    Numbers stay as they are, and so does everything else.
+
+    Parameters
+    ----------
+    text : CSV with a header; commas separate cells
+
+    Returns
+    -------
+    str
+        The same table; `unescaped` gives the first back.
+    """
+    return _each_cell(text, escaped_cell)
+
+
+def unescaped(text: str) -> str:
+    """Return the CSV text that `escaped` was given."""
+    return _each_cell(text, unescaped_cell)
+
+
+def escaped_cell(cell: str) -> str:
+    """Return a cell as `escaped` writes it."""
+    return f"'{cell}" if _FORMULA.match(cell) and not _NUMBER.fullmatch(cell) else cell
+
+
+def unescaped_cell(cell: str) -> str:
+    """Return the cell that `escaped_cell` was given."""
+    return cell[1:] if cell.startswith("'") and _FORMULA.match(cell) else cell
+
+
+def _each_cell(text: str, change: Callable[[str], str]) -> str:
+    rows = ([change(cell) for cell in row] for row in _records(text))
+    header = next(rows, None)
+    return "" if header is None else csv_text(header, rows)
+
+
+def _records(text: str) -> Iterator[list[str]]:
+    return csv.reader(io.StringIO(text, newline=""))

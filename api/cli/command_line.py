@@ -24,6 +24,7 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 
 from api.cli.completion import VARIABLE
+from api.cli.spreadsheets import offer
 from benchmark.processes import (
     INTERRUPTED,
     end_with_coordinator,
@@ -118,6 +119,7 @@ def load(name: str) -> Any:
     app = importlib.import_module(f"api.cli.commands.{name}").app
     command = typer.main.get_command(app)
     command.name = name
+    offer(command)
     return command
 
 
@@ -209,7 +211,8 @@ def sunatlas(
 ) -> None:
     """Which sun sensor to build and how to calibrate it: studies, algorithms, measurements.
 
-    Commands that print a table take --format table, json or csv.
+    Commands that print a table take --format table, json or csv, and --safe for CSV that a
+    spreadsheet is to open.
     """
 
 

@@ -13,6 +13,7 @@ from typing import Annotated, Any
 import typer
 
 from api.cells import cell, plain
+from api.cli import spreadsheets
 from api.cli.layout import Column, laid_out, wrapped
 from api.columns import csv_of
 
@@ -59,7 +60,7 @@ def emit(
     if form is Format.JSON:
         emit_json(list(rows) if document is None else document)
     elif form is Format.CSV:
-        write(csv_of(columns, rows))
+        emit_csv(csv_of(columns, rows))
     else:
         if title is not None:
             say(title)
@@ -96,6 +97,11 @@ def table(
 def emit_json(document: Any) -> None:
     """Print a document as JSON; NaN and infinities, which JSON lacks, as null."""
     write(json.dumps(plain(document), indent=2, ensure_ascii=False) + "\n")
+
+
+def emit_csv(text: str) -> None:
+    """Print CSV, for a spreadsheet where `--safe` asks for that."""
+    write(spreadsheets.as_asked(text))
 
 
 def say(words: str, then: str = "") -> None:

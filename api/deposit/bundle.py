@@ -18,6 +18,8 @@ from typing import Any
 import survey_data
 from api.citations import bibtex, ris
 from api.deposit.citation import of_dataset
+from api.deposit.codemeta import NAME as CODEMETA
+from api.deposit.codemeta import codemeta_text
 from api.deposit.crate import CRATE, crate
 from api.deposit.database import DATABASE, write_database
 from api.deposit.errors import write_errors
@@ -28,6 +30,7 @@ from api.deposit.parquet import write_parquet
 from api.deposit.readme import BIBLIOGRAPHY, readme
 from api.deposit.tables import MeasuredTable, frames_table, measured_tables, read_descriptor
 from api.deposit.typed import typed_tables
+from api.metadata.bundled import documents
 from benchmark import datasets
 from benchmark.datasets.checksums import (
     CHECKSUMS,
@@ -167,12 +170,15 @@ def fill(
     descriptor = package(bundle, who, described, measured, exported, errors=errors)
     _write_json(bundle / DESCRIPTOR, descriptor)
     other_forms(bundle, descriptor)
+    for name, document in documents(bundle, who, descriptor).items():
+        _write_json(bundle / name, document)
     _write_bibliography(bundle)
     _write(bundle / "LICENSE", who.code_licence)
     for folder in ("survey", BIBLIOGRAPHY):
         _write(bundle / folder / "LICENSE", who.data_licence)
     record, facts = digest(sources.published), editions(sources.survey)
     _write(bundle / "CITATION.cff", of_dataset(who.citation, record, facts))
+    _write(bundle / CODEMETA, codemeta_text(who.citation))
     _write(bundle / "README.md", readme(who, descriptor))
     # The crate tells the checksum of every other file, so that a list of all comes after it, and
     # neither of the two stands in the other's way: the list has the crate, the crate not the list.

@@ -87,6 +87,20 @@ def authors(text: str, where: str | Path) -> tuple[Author, ...]:
     return tuple(_author(entry, f"{where}, author {n}") for n, entry in enumerate(listed, start=1))
 
 
+def persistent(text: str) -> str | None:
+    """Return the DOI that a CITATION.cff gives the work as an address; None where it gives none.
+
+    Parameters
+    ----------
+    text : of the file; its `doi`, else the first of its `identifiers` that is one
+    """
+    cited = yaml.safe_load(text) or {}
+    named = [cited.get("doi")]
+    named += [i.get("value") for i in cited.get("identifiers", ()) if i.get("type") == "doi"]
+    found = next((str(doi) for doi in named if doi), None)
+    return f"https://doi.org/{found.removeprefix('https://doi.org/')}" if found else None
+
+
 def of_dataset(text: str, record: str | None = None, editions: Sequence[Edition] = ()) -> str:
     """Return a CITATION.cff whose `type` says that it goes with a data set, not with code.
 

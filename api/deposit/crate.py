@@ -45,6 +45,7 @@ _LICENCES = {
 _KINDS = {
     "LICENSE": "Terms of use.",
     "CITATION.cff": "How to cite, in the Citation File Format.",
+    "codemeta.json": "The software in the words of CodeMeta 3.0.",
     "README.md": "What lies in the bundle, how to read and check it.",
     "datapackage.json": "Types, units, keys and meaning of every column (Data Package v2).",
     "sun-sensor-atlas.sqlite": "Every table in one SQLite file, with keys.",
@@ -173,6 +174,8 @@ def _described(path: str) -> str:
     folder, _, rest = path.partition("/")
     if folder == "parquet":
         return f"The table {rest.removesuffix('.parquet')} as Parquet."
+    if folder == "croissant":
+        return f"{rest.removesuffix('.json')} as programs for machine learning load it (Croissant)."
     if folder == "frames":
         dataset, _, name = rest.partition("/")
         kind = _KINDS.get(name.rpartition("/")[2], "Part")

@@ -248,6 +248,11 @@ _FIELDS: dict[str, tuple[Type, str]] = {
 }
 
 
+def described(column: str) -> tuple[Type, str]:
+    """Return type and meaning of a column; KeyError for one that nothing is known of."""
+    return _FIELDS[column]
+
+
 def schema(
     columns: Sequence[str],
     where: str,

@@ -9,6 +9,7 @@ from api.deposit.database import COLUMNS, DATABASE, TABLES
 from api.deposit.frames import FOLDER as FRAMES
 from api.deposit.frames import LEAST, ROOM, WHOLE
 from api.deposit.identity import Identity
+from api.metadata.bundled import FOLDER as CROISSANT
 from benchmark.datasets.checksums import CHECKSUMS
 
 BIBLIOGRAPHY = "bibliography"
@@ -106,7 +107,10 @@ stood, the Cramer-Rao bound of each sample, flat and dark readings, a picture, a
 ([Data Package v2](https://datapackage.org)) |
 | `ro-crate-metadata.json` | every file in the words of schema.org \
 ([RO-Crate 1.2](https://w3id.org/ro/crate/1.2)) |
+| `{CROISSANT}/` | record, facts and each data set as programs for machine learning load them \
+([Croissant 1.0](https://docs.mlcommons.org/croissant/)) |
 | `CITATION.cff` | how to cite |
+| `codemeta.json` | the software in the words of [CodeMeta](https://codemeta.github.io) |
 | `{CHECKSUMS}` | SHA-256 of every other file |
 
 ## Reading
@@ -138,7 +142,10 @@ their hashes.
 
 ## Tables
 
-An empty cell means that nothing is known.
+An empty cell means that nothing is known; `none stated`, and `None` in the tables of `survey/`,
+that a study states no model, extractor or error: pandas reads the latter from CSV with
+`keep_default_na=False`, and from Parquet as it is. Cells are written as they are: a spreadsheet may
+run one that starts with `=`, `+`, `-` or `@`, as bundles of others may hold.
 
 | file | table | what it holds |
 |---|---|---|

@@ -18,6 +18,7 @@ from benchmark.curves import record as curves
 from benchmark.leaderboard.board import build
 from benchmark.results.store import Store
 from registry.catalogue import catalogue
+from registry.taxonomy import exported
 from survey_data.csv_writing import csv_text
 
 #: Columns of sweeps that stand in the bundle under another name or value.
@@ -314,7 +315,8 @@ def _table(
     foreign: Mapping[str, tuple[str, str]] | None = None,
 ) -> MeasuredTable:
     columns = list(dict.fromkeys(column for row in rows for column in row))
-    text = csv_text(columns, ([cell(row.get(column)) for column in columns] for row in rows))
+    cells = ([cell(exported(name, row.get(name))) for name in columns] for row in rows)
+    text = csv_text(columns, cells)
     described = schema(columns, f"{name}.csv", primary=primary, foreign=foreign)
     return MeasuredTable(name, title, description, text, described)
 

@@ -13,6 +13,8 @@ import sys
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
+from api.deposit import codemeta
+from api.deposit.identity import identity
 from api.docs import assessment, boards, claims, curves, filters, front, limits, model_pages
 from api.docs.export import export_example
 from api.docs.parts import (
@@ -126,9 +128,10 @@ def every_page(directory: Path = DIRECTORY) -> Mapping[str, Mapping[str, Make]]:
 
 
 def every_picture() -> Mapping[str, Make]:
-    """Return what draws each picture."""
+    """Return what makes each picture, and the one file that is generated whole."""
     return {
         "answer.svg": front.picture,
+        f"../{codemeta.NAME}": lambda: codemeta.codemeta_text(identity().citation),
         **assessment.PICTURES,
         **curves.PICTURES,
         **model_pages.pictures(),

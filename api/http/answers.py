@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Coroutine, Mapping, Sequence
 from typing import Any, ClassVar, Protocol, cast
+from urllib.parse import quote
 
 from fastapi import Request, Response
 from fastapi.responses import JSONResponse
@@ -20,6 +21,7 @@ from api.http.negotiation import (
     JSON,
     PARQUET,
     PNG,
+    for_spreadsheets,
     wanted_type,
 )
 from api.http.pagination import Page
@@ -165,20 +167,52 @@ class Columns(Response):
     ----------
     content : the file's bytes
     name : that a client is told to save it under
+    links : values of the Link header
     status_code : which FastAPI documents by its default
     """
 
     media_type = PARQUET
     offered: ClassVar = (PARQUET,)
 
-    def __init__(self, content: bytes, name: str, status_code: int = 200) -> None:
+    def __init__(
+        self, content: bytes, name: str, links: Sequence[str] = (), status_code: int = 200
+    ) -> None:
         self.saved_as = {"Content-Disposition": f'attachment; filename="{name}"'}
+        if links:
+            self.saved_as["Link"] = ", ".join(links)
         super().__init__(content, status_code, self.saved_as)
 
     def representation(self, wanted: str) -> Representation:
         """Return the file."""
         headers = {"Vary": "Accept", **self.saved_as}
         return Representation(bytes(self.body), wanted, headers, compressible=False)
+
+
+class Linked(JSONResponse):
+    """A document of links, which names addresses whole and so is another at each of a service.
+
+    Parameters
+    ----------
+    document : the JSON object
+    links : values of the Link header
+    status_code : which FastAPI documents by its default
+    """
+
+    def __init_subclass__(cls) -> None:
+        """Offer the document by its own media type and as JSON."""
+        cls.offered = (str(cls.media_type), JSON)
+
+    offered: ClassVar[tuple[str, ...]] = (JSON,)
+
+    def __init__(
+        self, document: Mapping[str, Any], links: Sequence[str] = (), status_code: int = 200
+    ) -> None:
+        self.links = {"Link": ", ".join(links)} if links else {}
+        super().__init__(document, status_code, self.links)
+
+    def representation(self, wanted: str) -> Representation:
+        """Return the document."""
+        return Representation(bytes(self.body), wanted, self.links)
 
 
 class Kept(Protocol):
@@ -189,6 +223,32 @@ class Kept(Protocol):
     def representation(self, wanted: str) -> Representation:
         """Return the response in a media type."""
         ...
+
+
+def as_asked(made: Representation, wanted: str, request: Request) -> Representation:
+    """Return what was made as it is sent: of CSV, for a spreadsheet or with a link to that.
+
+    Parameters
+    ----------
+    made : in the media type `wanted`
+    request : whose query says which
+    """
+    query: bytes = request.scope["query_string"]
+    if wanted != CSV:
+        return made
+    if for_spreadsheets(query):
+        return made.for_spreadsheets()
+    if request.method != "GET":
+        return made
+    asked = query.decode("latin-1").split("&") if query else []
+    path = quote(request.scope["path"])
+    if not path.endswith(".csv") and not any(one.startswith("format=") for one in asked):
+        asked.append("format=csv")
+    asked = [one for one in asked if not one.startswith("safe=")]
+    return made.linked(
+        f'<{path}?{"&".join([*asked, "safe=true"])}>; rel="alternate"; type="text/csv"; '
+        'title="CSV for spreadsheets"'
+    )
 
 
 Handler = Callable[[Request], Coroutine[Any, Any, Response]]
@@ -210,7 +270,8 @@ class StrictRoute(APIRoute):
 class AnswerRoute(StrictRoute):
     """A route that computes each answer once, and gives it in the media type asked for.
 
-    What is asked by GET is kept by its path, query and media type. Facts do not change while the
+    What is asked by GET is kept by its path, query and media type, and where it names addresses
+    whole by that of the service. Facts do not change while the
     service runs, so nothing that is kept goes stale. The path function returns a `Kept`.
     """
 
@@ -219,6 +280,7 @@ class AnswerRoute(StrictRoute):
         compute = super().get_route_handler()
         straight = None if self.dependencies else direct(self.endpoint)
         offered = cast("type[Kept]", self.response_class).offered
+        whole = issubclass(cast("type[Kept]", self.response_class), Linked)
 
         async def answer(request: Request) -> Response:
             kept: RepresentationCache = request.app.state.kept
@@ -226,13 +288,14 @@ class AnswerRoute(StrictRoute):
             wanted = wanted_type(query, request.headers.get("accept"), offered)
             if request.method != "GET":
                 posted = cast("Kept", await compute(request))
-                return posted.representation(wanted).respond(request, conditional=False)
-            asked = (request.scope["path"], query, wanted)
+                told = as_asked(posted.representation(wanted), wanted, request)
+                return told.respond(request, conditional=False)
+            asked = (request.scope["path"], query, wanted, str(request.base_url) if whole else "")
             found = kept.get(asked)
             if found is None:
                 made = await straight(request) if straight else None
                 made = cast("Kept", made or await compute(request))
-                found = made.representation(wanted)
+                found = as_asked(made.representation(wanted), wanted, request)
                 kept.put(asked, found)
             return found.respond(request)
 

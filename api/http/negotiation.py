@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from functools import lru_cache
 from urllib.parse import parse_qsl
 
+from pydantic import TypeAdapter, ValidationError
+
 from api.http.problems import Problem, Violation
 
 JSON = "application/json"
@@ -27,6 +29,7 @@ CONTENT_TYPES = {
     CSL: CSL,
 }
 
+_YES = TypeAdapter(bool)
 _QUALITY = re.compile(r"(?:0(?:\.\d{0,3})?|1(?:\.0{0,3})?)\Z")
 
 
@@ -94,7 +97,7 @@ def wanted_type(query: bytes, accept: str | None, offered: tuple[str, ...]) -> s
     """
     # A name may be percent-encoded.
     if b"format" in query or b"%" in query:
-        pairs = parse_qsl(query.decode("latin-1"), keep_blank_values=True)
+        pairs = _pairs(query)
         asked = [value for name, value in pairs if name == "format"]
         form = FORMATS.get(asked[0]) if len(asked) == 1 else None
         if form in offered:
@@ -103,6 +106,28 @@ def wanted_type(query: bytes, accept: str | None, offered: tuple[str, ...]) -> s
                 raise Problem(406, "not-acceptable", errors=[error])
             return form
     return media_type(accept, offered)
+
+
+def for_spreadsheets(query: bytes) -> bool:
+    """Say whether a query asks for CSV that a spreadsheet can open (`safe`).
+
+    Raises
+    ------
+    Problem
+        422 where it neither asks for it nor does not.
+    """
+    if b"safe" not in query and b"%" not in query:
+        return False
+    asked = [value for name, value in _pairs(query) if name == "safe"]
+    try:
+        return all(map(_YES.validate_python, asked)) and bool(asked)
+    except ValidationError as error:
+        wrong = Violation("safe", ", ".join(asked), "true or false")
+        raise Problem(422, "invalid-value", errors=[wrong]) from error
+
+
+def _pairs(query: bytes) -> list[tuple[str, str]]:
+    return parse_qsl(query.decode("latin-1"), keep_blank_values=True)
 
 
 @lru_cache(256)

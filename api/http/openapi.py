@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import csv
+import inspect
 import io
 import json
 from collections.abc import Sequence
 from typing import Any
 
-from fastapi import FastAPI
+from fastapi import FastAPI, Request
 from fastapi.openapi.utils import get_openapi
 from fastapi.routing import APIRoute
 
@@ -165,6 +166,8 @@ def _refused(
 
 
 def _problem(route: APIRoute, known: Knowledge, arguments: dict[str, Any]) -> Problem | None:
+    if "request" in inspect.signature(route.endpoint).parameters:
+        arguments = {**arguments, "request": Request({"type": "http", "headers": []})}
     try:
         ask(route.endpoint, known, **arguments)
     except Problem as problem:

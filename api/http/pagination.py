@@ -18,7 +18,7 @@ from api.http.problems import Problem, Violation
 
 Row = TypeVar("Row")
 
-SHOWN_BY = {"limit", "cursor", "format", "fields"}
+SHOWN_BY = {"limit", "cursor", "format", "fields", "safe"}
 """Parameters that do not change which items a list has, or their order."""
 
 

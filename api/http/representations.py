@@ -12,6 +12,7 @@ from functools import cached_property
 from fastapi import Request, Response
 
 from api.http.negotiation import accepts_gzip
+from survey_data.csv_writing import escaped
 
 WORTH_COMPRESSING = 512  # bytes; below, the gzip frame eats what it saves
 REVALIDATE = (
@@ -78,6 +79,25 @@ class Representation:
     def _gzip_headers(self) -> dict[str, str]:
         # A strong validator names bytes, and these are others.
         return {**self._common, "ETag": f'"{self.digest}-gzip"', "Content-Encoding": "gzip"}
+
+    def linked(self, *links: str) -> Representation:
+        """Return the same bytes with further values of the Link header."""
+        if not links:
+            return self
+        before = [self._common["Link"]] if "Link" in self._common else []
+        made = self._of(self.body, {**self._common, "Link": ", ".join((*before, *links))})
+        if "digest" in vars(self):
+            made.digest = self.digest
+        return made
+
+    def for_spreadsheets(self) -> Representation:
+        """Return a CSV of which a spreadsheet runs no cell (`survey_data.csv_writing.escaped`)."""
+        return self._of(escaped(self.body.decode()).encode(), self._common)
+
+    def _of(self, body: bytes, headers: Mapping[str, str]) -> Representation:
+        return Representation(
+            body, headers["Content-Type"], headers, compressible=self.compressible
+        )
 
     def respond(self, request: Request, *, conditional: bool = True) -> Response:
         """Return the response to `request`: 304 where the client has these bytes already.

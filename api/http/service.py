@@ -27,8 +27,12 @@ from api.pages.routers import ROUTERS as PAGES
 DESCRIPTION = (
     "Which sun sensor to build and how to calibrate it: the literature as data, its algorithms "
     "as code, and both measured against the physical limit. Lists are paged (`limit`, `cursor`, "
-    "`Link`), tables come as CSV for `Accept: text/csv`, every answer has a strong `ETag`, and "
-    "every refusal is a problem document (RFC 9457) that names the nearest valid word."
+    "`Link`), tables come as CSV for `Accept: text/csv` or `format=csv`, every answer has a "
+    "strong `ETag`, and every refusal is a problem document (RFC 9457) that names the nearest "
+    "valid word. Spreadsheets run a cell that starts with `=`, `+`, `-` or `@` as a formula: with "
+    "`safe=true` such cells of a CSV, and those that start with a tab or a line break, get an "
+    "apostrophe before them; numbers stay. In CSV an empty cell says that nothing is known, and "
+    "`none stated` is the survey's value `None`, as JSON and queries call it."
 )
 ROUTERS = (*SERVICE, *PAGES)
 ROUTES = [route for router in ROUTERS for route in router.routes if isinstance(route, APIRoute)]

@@ -7,6 +7,7 @@ import { ATTRIBUTE_NAMES, LIMIT_NAMES, limitText, LIST_NAMES, plural, quoted, se
 
 /** Architectures and calibrations of an answer that is handed on. */
 const MOST = { limit: 500, calibrations: 500 };
+const SPREADSHEET = { format: "csv", safe: true };
 
 function chip(label, spoken, remove, not) {
   return h("button", {
@@ -67,6 +68,7 @@ export function showSummary(answer, studies) {
   byId("answer-links").replaceChildren(
     h("a", { href: url }, "This answer as JSON"),
     h("button", { type: "button", onclick: () => saveCsv(url, "recommendations.csv") }, "as CSV"),
+    h("a", { href: address("/v1/recommendations", { ...question(), ...MOST, ...SPREADSHEET }) }, "as CSV for spreadsheets"),
     copyable(commandLine(question()), "the command line of this answer"));
 }
 

@@ -65,6 +65,11 @@ def twin(path: str, query: str, suffix: str) -> str:
     return ("/answer" if path == "/" else path) + suffix + (f"?{query}" if query else "")
 
 
+def for_spreadsheets(path: str, query: str) -> str:
+    """Return the address of a page's CSV that a spreadsheet can open."""
+    return twin(path, "&".join(filter(None, (query, "safe=true"))), ".csv")
+
+
 def _asked(path: str, asked: dict[str, str]) -> str:
     return f"{path}?{urlencode(asked)}" if asked else path
 
@@ -72,6 +77,6 @@ def _asked(path: str, asked: dict[str, str]) -> str:
 GIVEN = (
     *(study_page, cited_study, cited_studies),
     *(algorithm_page, dataset_page, claim_page, architecture_page, value_page),
-    *(anchor, twin),
+    *(anchor, twin, for_spreadsheets),
 )
 """What templates are given."""

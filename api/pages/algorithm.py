@@ -9,12 +9,15 @@ from typing import Annotated, Any
 
 from fastapi import Path
 
+from api.deposit.identity import identity
 from api.http.answers import Answer
 from api.http.dependencies import Known
 from api.http.knowledge import Knowledge
 from api.http.models.algorithms import Algorithm, AlgorithmsQuery
 from api.http.models.parameters import OneOf
 from api.http.routers import algorithms as service
+from api.metadata import schema_org
+from api.metadata.signposting import landing_of_algorithm
 from api.pages import boards
 from api.pages.charts.lines import Line, LineChart
 from api.pages.methods import told
@@ -75,9 +78,12 @@ async def algorithm(known: Known, name: Name) -> View:
         if about.role == "extractor"
         else known.catalogue.models[name]
     )
+    landing = landing_of_algorithm(name, identity())
     return View(
         "algorithm.html",
         Answer(document, columns, lambda: [{**about.to_dict(), **place} for place in places]),
+        landing=landing,
+        entity=schema_org.algorithm(about, identity(), landing),
         about=about,
         stages=told(made),
         places=places,

@@ -9,6 +9,7 @@ from fastapi import Request
 from pydantic import ValidationError
 
 from api.columns import RECOMMENDATIONS
+from api.deposit.identity import identity
 from api.http.answers import Answer
 from api.http.dependencies import Known
 from api.http.knowledge import Knowledge
@@ -16,6 +17,8 @@ from api.http.models.recommendations import RequirementsQuery
 from api.http.problems import Problem
 from api.http.refusals import refusal
 from api.http.routers import recommendations as service
+from api.metadata import schema_org
+from api.metadata.signposting import landing_of_atlas
 from api.pages.addresses import architecture_page
 from api.pages.charts.scatter import Point, Scatter
 from api.pages.editions import edition_shown
@@ -73,9 +76,12 @@ async def answer(known: Known, request: Request) -> View:
     told = await service.recommendations(known, asked)
     document = told.document
     best = _best_measured(document)
+    landing = landing_of_atlas(identity())
     return View(
         "answer.html",
         told,
+        landing=landing,
+        entity=schema_org.atlas(identity(), known.measurements.presets),
         problem=None,
         asked=asked,
         editions=edition_shown(known, asked.edition, request),

@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 from fastapi import Path, Query
 from pydantic import Field
 
+from api.deposit.identity import identity
 from api.http.answers import Answer
 from api.http.dependencies import Known
 from api.http.knowledge import Knowledge
@@ -17,6 +18,9 @@ from api.http.models.datasets import DatasetsQuery
 from api.http.models.parameters import GIVEN
 from api.http.problems import Problem, Violation
 from api.http.routers import datasets as service
+from api.http.routers.metadata import landing_of_dataset
+from api.metadata import schema_org
+from api.metadata.served import MEASURED
 from api.pages import boards
 from api.pages.charts.heat import heat_map
 from api.pages.charts.lines import Line, LineChart
@@ -88,9 +92,12 @@ async def dataset(
     document = {**card, "condition": condition, "board": board}
     held = table.rows().get(name)
     realism = next((r for r in known.measurements.realism if r["dataset"] == name), None)
+    landing = landing_of_dataset(known, name)
     return View(
         "dataset.html",
         Answer(document, BOARD_COLUMNS, lambda: board),
+        landing=landing,
+        entity=schema_org.dataset(card, identity(), landing, MEASURED),
         condition=condition,
         shown=shown,
         sampled=samples.is_there(name, known.measurements.directory),

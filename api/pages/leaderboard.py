@@ -9,10 +9,13 @@ from fastapi import Query
 from pydantic import Field
 
 from api.columns import ARCHITECTURES
+from api.deposit.identity import identity
 from api.http.answers import Answer
 from api.http.dependencies import Known
 from api.http.models.base import Question
 from api.http.models.parameters import GIVEN
+from api.metadata import schema_org
+from api.metadata.signposting import landing_of_record
 from api.pages.sensors import best_built
 from api.pages.serving import PageRouter, View
 from benchmark.leaderboard.overview import ROLES, overview
@@ -43,9 +46,12 @@ async def leaderboard(known: Known, query: Annotated[LeaderboardQuery, Query()])
     order = query.order or "error"
     rows = _ordered(best_built(known), ORDERS[order])
     document = {"items": rows, **overview(known.measurements.leaderboard)}
+    landing = landing_of_record(identity())
     return View(
         "leaderboard.html",
         Answer(document, ARCHITECTURES, lambda: rows),
+        landing=landing,
+        entity=schema_org.record(identity(), landing, known.measurements.digest),
         order=order,
         tally=tally(rows),
         roles=ROLES,

@@ -9,11 +9,12 @@ from typing import Any, ClassVar
 from fastapi import APIRouter, Request, Response
 from fastapi.exceptions import RequestValidationError
 
-from api.http.answers import Answer, Handler, StrictRoute
-from api.http.negotiation import BIBTEX, CSV, JSON, media_type
+from api.http.answers import Answer, Handler, StrictRoute, as_asked
+from api.http.negotiation import BIBTEX, CSV, JSON, for_spreadsheets, media_type
 from api.http.problems import Problem
 from api.http.refusals import refusal
 from api.http.representations import Representation, RepresentationCache
+from api.metadata.signposting import Landing, headers
 from api.pages.rendering import render
 
 HTML = "text/html"
@@ -32,24 +33,38 @@ class View(Response):
     ----------
     template : file name in `templates/`
     told : the document, of which the twins are made; `told` in the template
+    landing : where the page leads machines; None where it describes nothing of its own
+    entity : what the page is about, in the words of schema.org; goes with `landing`
     context : what the template is given besides
     """
 
     media_type = HTML
     offered: ClassVar = OFFERED
 
-    def __init__(self, template: str, told: Answer, /, **context: Any) -> None:
+    def __init__(
+        self,
+        template: str,
+        told: Answer,
+        /,
+        *,
+        landing: Landing | None = None,
+        entity: Mapping[str, Any] | None = None,
+        **context: Any,
+    ) -> None:
         super().__init__()
         self.template = template
         self.told = told
-        self.context = context
+        self.landing = landing
+        self.context = {"entity": entity, **context}
 
     def representation(self, wanted: str, path: str = "/", query: str = "") -> Representation:
         """Return the page in a media type; `path` and `query` are what was asked for."""
         if wanted != HTML:
-            return self.told.representation(wanted)
+            links = self.landing.links_of_metadata() if self.landing else ()
+            return self.told.representation(wanted).linked(*headers(links))
         context = {"told": self.told.document, "path": path, "query": query, **self.context}
-        return page_bytes(render(self.template, context))
+        links = self.landing.links() if self.landing else ()
+        return page_bytes(render(self.template, context)).linked(*headers(links))
 
 
 def page_bytes(text: str) -> Representation:
@@ -82,14 +97,17 @@ class PageRoute(StrictRoute):
         async def answer(request: Request) -> Response:
             kept: RepresentationCache = request.app.state.kept
             path, query = request.scope["path"], _filled(request.scope["query_string"])
-            request.scope["query_string"] = query
             wanted = twin or media_type(request.headers.get("accept"), OFFERED)
             asked = (path, query, wanted)
+            # How a table is written, which is settled here, is no question to a page.
+            request.scope["query_string"] = _without_safe(query) if wanted == CSV else query
             found = kept.get(asked)
             if found is None:
                 try:
                     made: View = await compute(request)  # type: ignore[assignment]
                     found = made.representation(wanted, path, query.decode("latin-1"))
+                    request.scope["query_string"] = query
+                    found = as_asked(found, wanted, request)
                 except (Problem, RequestValidationError) as error:
                     if wanted != HTML:
                         raise
@@ -107,6 +125,12 @@ class PageRoute(StrictRoute):
 def _filled(query: bytes) -> bytes:
     """Return a query without its empty fields: a form sends those that nobody filled in."""
     return b"&".join(field for field in query.split(b"&") if field.partition(b"=")[2])
+
+
+def _without_safe(query: bytes) -> bytes:
+    """Return a query without `safe`, which has to be yes or no."""
+    for_spreadsheets(query)
+    return b"&".join(field for field in query.split(b"&") if field.partition(b"=")[0] != b"safe")
 
 
 def _problem(error: Problem | RequestValidationError, request: Request) -> Problem:

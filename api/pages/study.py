@@ -10,6 +10,8 @@ from api.http.dependencies import Known
 from api.http.models.studies import StudiesQuery
 from api.http.models.words import StudyKey
 from api.http.routers import studies as told
+from api.metadata import schema_org
+from api.metadata.signposting import landing_of_study
 from api.pages.editions import edition_shown
 from api.pages.serving import PageRouter, View
 from registry.fidelity.grading import GRADES as IN_WORDS
@@ -64,7 +66,7 @@ async def studies(known: Known, query: Annotated[StudiesQuery, Query()], request
         answer,
         asked=query,
         selection=query.model_dump(
-            exclude_defaults=True, exclude={"format", "fields", "limit", "cursor", "sort"}
+            exclude_defaults=True, exclude={"format", "fields", "limit", "cursor", "sort", "safe"}
         ),
         untitled=sum(not item["title"] for item in answer.document["items"]),
         filters={name: known.taxonomy.to_dict()[name] for name in FILTERS},
@@ -81,9 +83,12 @@ async def study(known: Known, key: Annotated[StudyKey, Path()]) -> View:
     """One study: attributes with their basis, what it runs, reported beside measured."""
     answer = await told.study(known, key)
     claims = [e.claim for e in known.measurements.claims.values() if key in e.claim.study]
+    landing = landing_of_study(key, answer.document["doi"])
     return View(
         "study.html",
         answer,
+        landing=landing,
+        entity=schema_org.study(answer.document, landing),
         names=NAMES,
         bases=BASES,
         grades=GRADES,

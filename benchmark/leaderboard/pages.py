@@ -16,6 +16,8 @@ from benchmark.leaderboard.architectures import architectures, first_boards
 from benchmark.leaderboard.scope import BEHIND, CLOSE, UNITS, UNITS_BEHIND
 from benchmark.results.tables import spelt, text_of
 from benchmark.sweeps import tables as sweep_tables
+from registry.taxonomy import exported_row
+from survey_data.csv_writing import escaped
 from survey_data.whole_files import replace_file
 
 Board = Mapping[str, Any]
@@ -172,7 +174,7 @@ def to_csv(board: Board) -> str:
     joined = (
         {**row, "unit_rms_deg": _joined(row), "studies": ";".join(row["studies"])} for row in rows
     )
-    return text_of(columns, joined)
+    return text_of(columns, map(exported_row, joined))
 
 
 def _joined(row: Row) -> str | None:
@@ -261,10 +263,23 @@ FORMATS: Mapping[str, Callable[[Board], str]] = {
 }
 
 
-def render(board: Board, out: Path) -> list[Path]:
-    """Write every derived file to a directory, each whole or not at all; returns their paths."""
+def render(board: Board, out: Path, *, for_spreadsheets: bool = False) -> list[Path]:
+    """Write every derived file to a directory, each whole or not at all; returns their paths.
+
+    Parameters
+    ----------
+    board
+        The leaderboard.
+    out
+        The directory.
+    for_spreadsheets
+        Whether no spreadsheet shall run a cell of the CSV files (`csv_writing.escaped`).
+    """
     paths = []
     for name, made in FORMATS.items():
-        replace_file(out / name, made(board))
+        text = made(board)
+        if for_spreadsheets and name.endswith(".csv"):
+            text = escaped(text)
+        replace_file(out / name, text)
         paths.append(out / name)
     return paths

@@ -14,6 +14,7 @@ from typing import Any
 from benchmark.reference.series import SWEEPS
 from benchmark.results.tables import text_of
 from benchmark.sweeps.plan import SERIES
+from registry.taxonomy import exported_row
 
 Row = Mapping[str, Any]
 
@@ -87,7 +88,7 @@ def to_csv(rows: Sequence[Row]) -> str:
     """Write all columns of all rows."""
     columns = list(dict.fromkeys(column for row in rows for column in row)) or list(_IDENTITY)
     columns = [*_IDENTITY, *(column for column in columns if column not in _IDENTITY)]
-    return text_of(columns, rows)
+    return text_of(columns, map(exported_row, rows))
 
 
 def to_markdown(rows: Sequence[Row]) -> list[str]:

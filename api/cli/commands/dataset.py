@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from api.cli import completion
+from api.cli import completion, spreadsheets
 from api.cli.asking import ask, knowledge
 from api.cli.measuring import AVAILABLE_WORKERS, ManyWorkersOption
 from api.cli.tables import Format, FormatOption, emit, say
@@ -189,7 +189,7 @@ def errors(
         emit(rows, SAMPLE_ERRORS, form, title=f"{len(rows)} errors")
         return
     if out.suffix != ".parquet":
-        replace_file(out, csv_of(SAMPLE_ERRORS, rows))
+        replace_file(out, spreadsheets.as_asked(csv_of(SAMPLE_ERRORS, rows)))
     typer.echo(f"wrote {out}", err=True)
 
 

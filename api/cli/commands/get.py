@@ -14,7 +14,7 @@ from urllib.parse import unquote
 import typer
 from starlette.types import ASGIApp
 
-from api.cli.tables import Format, FormatOption, emit
+from api.cli.tables import Format, FormatOption, emit, emit_csv
 from api.cli.wrong_call import WrongCallError
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
@@ -49,8 +49,11 @@ def get(
         rows = csv.DictReader(io.StringIO(body.decode(), newline=""))
         emit([_typed(row) for row in rows], tuple(rows.fieldnames or ()), form)
         return
+    if form is Format.CSV:
+        emit_csv(body.decode())
+        return
     sys.stdout.flush()
-    sys.stdout.buffer.write(body if form is Format.CSV else body.rstrip(b"\n") + b"\n")
+    sys.stdout.buffer.write(body.rstrip(b"\n") + b"\n")
     sys.stdout.buffer.flush()
 
 

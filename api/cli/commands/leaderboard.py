@@ -218,6 +218,11 @@ def render(
     out: Annotated[
         Path, typer.Option(help="Directory to write to.", file_okay=False, show_default=False)
     ],
+    *,
+    safe: Annotated[
+        bool,
+        typer.Option("--safe", help="Let no spreadsheet run a cell of the CSV files as a formula."),
+    ] = False,
 ) -> None:
     """Write the whole leaderboard as leaderboard.{json,csv,md,html} and sweeps.csv.
 
@@ -229,7 +234,7 @@ def render(
     board = knowledge().measurements.leaderboard
     if not board["datasets"]:
         raise WrongCallError(f"nothing is published in {PUBLISHED}; `sunatlas leaderboard update`")
-    for path in pages.render(board, out):
+    for path in pages.render(board, out, for_spreadsheets=safe):
         typer.echo(str(path))
 
 

@@ -46,6 +46,10 @@ class TableQuestion(Question):
         description="What to answer in, as a link can say it; it has to be among what the Accept "
         "header takes, if there is one. Left out, that header decides.",
     )
+    safe: bool = Field(
+        default=False,
+        description="CSV for spreadsheets: cells that would run as formulas are escaped.",
+    )
 
 
 _CitedFormat = Literal["json", "csv", "bibtex", "ris", "csl"] | None

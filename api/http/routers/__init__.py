@@ -15,6 +15,7 @@ from api.http.routers import (
     flows,
     guide,
     leaderboard,
+    metadata,
     page,
     realism,
     recommendations,
@@ -25,29 +26,33 @@ from api.http.routers import (
     taxonomy,
 )
 
-ROUTERS = tuple(
-    subject.router
-    for subject in (
-        taxonomy,
-        studies,
-        flows,
-        figures,
-        recommendations,
-        algorithms,
-        datasets,
-        realism,
-        results,
-        leaderboard,
-        sweeps,
-        curves,
-        assessment,
-        claims,
-        compare,
-        search,
-        advice,
-        about,
-        guide,
-        page,
-    )
+ROUTERS = (
+    metadata.router,  # before what takes its words for names of data sets
+    metadata.root,
+    *(
+        subject.router
+        for subject in (
+            taxonomy,
+            studies,
+            flows,
+            figures,
+            recommendations,
+            algorithms,
+            datasets,
+            realism,
+            results,
+            leaderboard,
+            sweeps,
+            curves,
+            assessment,
+            claims,
+            compare,
+            search,
+            advice,
+            about,
+            guide,
+            page,
+        )
+    ),
 )
 """In the order of the documentation."""

@@ -7,6 +7,7 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Query
 
 from api import columns
+from api.deposit.identity import identity
 from api.http.answers import Answer, AnswerRoute, Columns, Picture, listing
 from api.http.dependencies import AS_ACCEPTED, NO_PARAMETERS, Known, TableOnly
 from api.http.models.base import Selected
@@ -16,6 +17,7 @@ from api.http.models.words import DatasetName
 from api.http.pagination import ordered, page
 from api.http.problems import Problem
 from api.http.sample_errors import chosen, rows_of
+from api.metadata.signposting import headers, landing_of_dataset
 from benchmark.results import samples
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
@@ -49,7 +51,8 @@ async def dataset(
     of each split, and where its picture is. As CSV: the hashes and bounds.
     """
     card = known.measurements.card(name)
-    return Answer(card, columns.DATASET, lambda: card["data"])
+    link = ", ".join(_links(known, name))
+    return Answer(card, columns.DATASET, lambda: card["data"], link)
 
 
 @router.get(
@@ -115,6 +118,13 @@ def directions_file(known: Known, name: Name) -> Columns:
 
 def _file(known: Known, path: str, name: str) -> Columns:
     try:
-        return Columns(known.measurements.file(path), name)
+        return Columns(known.measurements.file(path), name, _links(known, name.partition(".")[0]))
     except FileNotFoundError:
         raise Problem(404, "not-published", f"no {name} is published") from None
+
+
+def _links(known: Known, name: str) -> tuple[str, ...]:
+    """Return the links of a data set's content (Signposting)."""
+    sampled = samples.is_there(name, known.measurements.directory)
+    landing = landing_of_dataset(name, identity(), sampled=sampled)
+    return headers(landing.links_of_content())

@@ -7,6 +7,7 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Query
 
 from api import columns
+from api.deposit.identity import identity
 from api.http.answers import Answer, AnswerRoute, listing
 from api.http.dependencies import AS_ACCEPTED, Known, TableOnly
 from api.http.models.base import Selected
@@ -19,6 +20,7 @@ from api.http.models.boards import (
 from api.http.models.scores import Leaderboard, LeaderboardQuery, LeaderboardRows
 from api.http.models.words import DatasetName
 from api.http.pagination import narrowed, ordered, page
+from api.metadata.signposting import headers, landing_of_record
 from benchmark.leaderboard.architectures import architectures as best_of_each
 from benchmark.leaderboard.board import at_field, within_error
 from benchmark.leaderboard.overview import overview as overview_of
@@ -42,7 +44,8 @@ async def leaderboard(
     """
     board = {k: v for k, v in known.measurements.leaderboard.items() if k != "sweeps"}
     board["record"] = known.measurements.record
-    return Answer(board, columns.LEADERBOARD, known.measurements.board_rows)
+    link = ", ".join(headers(landing_of_record(identity()).links_of_content()))
+    return Answer(board, columns.LEADERBOARD, known.measurements.board_rows, link)
 
 
 @router.get(

@@ -2,82 +2,19 @@
 
 from __future__ import annotations
 
-import csv
 import itertools
-import math
-import shlex
 from collections import Counter, defaultdict
-from pathlib import Path
 from typing import Any
-from xml.etree import ElementTree as ET
 
 import pytest
 
-import survey_data
 from api.figures.catalogue import LEVELS, TITLES, evidence_map, figure
 from api.figures.statements import number_of_studies, statements
-from api.http.measurements import Measurements
-from benchmark.plan.combinations import cells, scorable
-from benchmark.results.store import PUBLISHED, Store
-from registry.catalogue import catalogue
-from registry.evidence import Evidence
-from registry.fitting import stages
-from registry.possibility import GIVES, TELLS
 from registry.studies import facts
 from registry.taxonomy import InvalidValueError
+from tests.api.figures.conftest import Values, having, read
 
-TABLES = Path(survey_data.__file__).parent
 FLOWS = ("error", "performance", "cross-analysis", "task", "aggregate")
-Values = dict[str, dict[str, set[str]]]
-
-
-def read(name: str) -> list[dict[str, str]]:
-    with (TABLES / f"{name}.csv").open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
-
-
-@pytest.fixture(scope="module")
-def values() -> Values:
-    """Study -> level -> values."""
-    found: Values = {row["key"]: defaultdict(set) for row in read("studies")}
-    category = {(r["attribute"], r["value"]): r["category"] for r in read("taxonomy")}
-    ring = {row["model"]: row["calibration"] for row in read("model_families")}
-    for row in read("attributes"):
-        attribute, value = row["attribute"], row["value"]
-        if not value:
-            continue
-        of = found[row["study"]]
-        of[attribute].add(value)
-        if attribute == "model":
-            of["model_category"].add(category["model", value])
-            of["calibration"].add("None" if value == "None" else ring.get(value, "offline"))
-        if attribute == "extractor":
-            of["extractor_family"].add(category["extractor", value])
-    return found
-
-
-@pytest.fixture(scope="module")
-def sensors() -> dict[str, set[tuple[str, str]]]:
-    """Study with several sensors -> detector and mask of each."""
-    found: dict[str, set[tuple[str, str]]] = defaultdict(set)
-    for row in read("architectures"):
-        found[row["study"]].add((row["detector"], row["mask"]))
-    return found
-
-
-def having(
-    values: Values,
-    sensors: dict[str, set[tuple[str, str]]],
-    one: tuple[str, str],
-    other: tuple[str, str],
-) -> set[str]:
-    """Studies with both values, on one sensor where detector and mask are meant."""
-    keys = {k for k, of in values.items() if one[1] in of[one[0]] and other[1] in of[other[0]]}
-    if {one[0], other[0]} != {"detector", "mask"}:
-        return keys
-    named = dict([one, other])
-    pair = (named["detector"], named["mask"])
-    return {key for key in keys if key not in sensors or pair in sensors[key]}
 
 
 @pytest.mark.parametrize("name", FLOWS)
@@ -219,153 +156,6 @@ def test_a_matrix_counts_the_studies_with_both_and_shows_every_gap(
             keys = {key for key, of in values.items() if pair <= of[rows]}
         assert set(row["studies"]) == keys
         assert row["count"] == len(keys)
-
-
-def test_a_model_is_impossible_with_another_category_than_its_own() -> None:
-    table = evidence_map(facts(), {}, "model", "model_category").rows
-    possible = {(row["row"], row["column"]) for row in table if row["state"] != "impossible"}
-    assert ("SPM", "Geometric") in possible
-    assert ("SPM", "LUT") not in possible
-    assert len(possible) == len(facts().taxonomy.values("model"))
-
-
-def test_states_are_drawn_as_cells_of_their_own(evidence: Evidence) -> None:
-    found = evidence_map(facts(), evidence=evidence)
-    assert sum(found.counts.values()) == len(found.rows) == 100
-    for drawing in found.drawings.values():
-        root = ET.fromstring(drawing.document("t", "d", ""))
-        marks = [set(e.get("class", "").split()) for e in root.iter()]
-        cells = [classes for classes in marks if "cell" in classes]
-        assert len(cells) == len(found.rows)
-        for state in ("impossible", "unknown", "unstudied"):
-            assert sum(state in classes for classes in cells) == found.counts[state] > 0
-        assert sum("dot" in classes for classes in marks) == found.counts["measured"]
-
-
-@pytest.fixture(scope="module")
-def measurements() -> Measurements:
-    return Measurements()
-
-
-@pytest.fixture(scope="module")
-def evidence(measurements: Measurements) -> Evidence:
-    return Evidence(catalogue(), measurements.pipelines, scorable())
-
-
-def place(row: Any) -> tuple[str, str, str]:
-    return row["dataset"], row["extractor"], row["model"]
-
-
-@pytest.fixture(scope="module")
-def own_errors(measurements: Measurements) -> dict[tuple[str, str, str], float]:
-    """Geometric mean over units of the error under the first condition, by pipeline."""
-    units: dict[tuple[str, str, str], list[float]] = defaultdict(list)
-    for row in Store(PUBLISHED).rows(unit=None):
-        first = measurements.presets[row["dataset"]].conditions[0]
-        if row["condition"] == first and row["charged_deg"]:
-            units[place(row)].append(row["charged_deg"])
-    return {key: math.exp(sum(map(math.log, of)) / len(of)) for key, of in units.items()}
-
-
-@pytest.mark.parametrize(
-    ("rows", "columns"), [("detector", "mask"), ("detector", "extractor"), ("mask", "model")]
-)
-def test_each_pair_is_in_the_state_that_sets_of_studies_and_scores_say(
-    rows: str,
-    columns: str,
-    *,
-    values: Values,
-    sensors: dict[str, set[tuple[str, str]]],
-    evidence: Evidence,
-    measurements: Measurements,
-    own_errors: dict[tuple[str, str, str], float],
-) -> None:
-    """Independent: studies from the files, scores from the rows of the record."""
-    presets = measurements.presets
-    own = catalogue()
-
-    def has(row: Any, level: str, value: str) -> bool:
-        if level in ("detector", "mask"):
-            return bool(getattr(presets[row["dataset"]], level) == value)
-        if level == "extractor":
-            return own.extractor(row["extractor"]).about.taxonomy == value
-        meant = facts().taxonomy.kinds("model", value)
-        return not set(meant).isdisjoint(stages(own.model(row["model"])))
-
-    scores = [score for score in measurements.nominal.values() if score["rms_deg"] is not None]
-    for row in evidence_map(facts(), {}, rows, columns, evidence=evidence).rows:
-        pair = (rows, row["row"]), (columns, row["column"])
-        scored = [score for score in scores if all(has(score, *value) for value in pair)]
-        assert row["pipelines"] == len(scored)
-        unknown = {
-            key
-            for key, of in values.items()
-            for (level, value), other in (pair, pair[::-1])
-            if value in of[level] and not of[other[0]]
-        }
-        assert set(row["unknown"]) == unknown
-        assert row["count"] == len(having(values, sensors, *pair))
-        assert (row["state"] == "measured") == bool(scored)
-        if row["state"] == "studied":
-            assert row["count"]
-        if row["state"] in ("impossible", "unknown", "unstudied"):
-            assert not row["count"]
-            assert (row["state"] == "impossible") == bool(row["reason"])
-        if row["state"] == "unknown":
-            assert unknown
-        if row["state"] == "unstudied":
-            assert not unknown
-        if scored and row["best_own_deg"] is not None:
-            assert row["best_own_deg"] == pytest.approx(
-                min(own_errors[place(score)] for score in scored if score["availability"] >= 0.95)
-            )
-
-
-def test_every_data_set_gives_readings_that_its_detector_gives_and_its_mask_lets_tell(
-    measurements: Measurements,
-) -> None:
-    for preset in measurements.presets.values():
-        assert str(preset.observation) in GIVES[preset.detector]
-        assert str(preset.observation) in TELLS.get(preset.mask, {str(preset.observation)})
-    assert set(GIVES) == set(facts().taxonomy.values("detector"))
-
-
-def test_pairs_that_no_extractor_can_read_are_impossible_where_no_study_has_them(
-    evidence: Evidence,
-) -> None:
-    found = {
-        (row["row"], row["column"]): row
-        for row in evidence_map(facts(), {}, "detector", "extractor", evidence=evidence).rows
-    }
-    assert found["CMOS", "Voltage balance"]["state"] == "impossible"
-    assert found["QPD", "BCTM"]["state"] == "impossible"
-    assert "QPD gives currents" in found["QPD", "BCTM"]["reason"]
-    assert found["Event", "ESCM"]["state"] == "measured"
-    against = {
-        pair: row["studies"] for pair, row in found.items() if row["reason"] and row["count"]
-    }
-    # Merchan2023 has both an event sensor's method and CMOS; Post2013 two sensors.
-    assert against == {("CMOS", "ESCM"): ["Merchan2023"], ("PVA", "BCTM"): ["Post2013"]}
-
-
-def test_a_gap_leads_to_what_could_be_measured(evidence: Evidence) -> None:
-    for rows, columns in (("detector", "mask"), ("extractor", "model"), ("detector", "model")):
-        for row in evidence_map(facts(), {}, rows, columns, evidence=evidence).rows:
-            if row["state"] == "impossible":
-                assert row["command"] == row["leads_to"] == ""
-            if "--extractor" in row["command"]:
-                words = shlex.split(row["command"])
-                named = dict(zip(words[2::2], words[3::2], strict=True))
-                of = {"extractor": named["--extractor"], "model": named["--model"]}
-                found = cells(named["--dataset"], None, of["extractor"], of["model"])
-                assert found, row["command"]
-    sensor = next(
-        row
-        for row in evidence_map(facts(), evidence=evidence).rows
-        if (row["row"], row["column"]) == ("CCD", "Single-Ap.")
-    )
-    assert sensor["state"] == "measured"
-    assert sensor["leads_to"] == "/architectures/CCD/Single-Ap."
 
 
 @pytest.mark.parametrize(("rows", "columns"), [("colour", "mask"), ("detector", "masks")])

@@ -48,7 +48,8 @@ class Page(HTMLParser):
             self.unmatched.append(f"</{tag}> in {'/'.join(self.open[-3:])}")
 
     def handle_data(self, data: str) -> None:
-        if self.open and self.open[-1] in {"script", "style"} and data.strip():
+        linked = self.tags and self.tags[-1] == ("script", {"type": "application/ld+json"})
+        if self.open and self.open[-1] in {"script", "style"} and data.strip() and not linked:
             self.inline.append(data)
 
     def having(self, name: str) -> list[tuple[str, str]]:

@@ -1,0 +1,80 @@
+"""codemeta.json (CodeMeta 3.0), made of CITATION.cff so that the two cannot differ.
+
+CITATION.cff is the one file a person fills in; `make docs` writes codemeta.json beside it.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Mapping
+from typing import Any
+
+import yaml
+
+from api.deposit.citation import Author, authors, persistent
+
+CONTEXT = "https://w3id.org/codemeta/3.0"
+NAME = "codemeta.json"
+_SPDX = "https://spdx.org/licenses/"
+
+
+def codemeta(citation: str) -> dict[str, Any]:
+    """Return the metadata of the software.
+
+    Parameters
+    ----------
+    citation : text of CITATION.cff
+
+    Raises
+    ------
+    CitationError
+        Where that cannot be read.
+    """
+    people = authors(citation, "CITATION.cff")
+    cited: Mapping[str, Any] = yaml.safe_load(citation)
+    licences = cited.get("license", [])
+    licences = [licences] if isinstance(licences, str) else list(licences)
+    given = {
+        "@context": CONTEXT,
+        "@type": "SoftwareSourceCode",
+        "identifier": persistent(citation),
+        "name": cited.get("title"),
+        "description": _line(cited.get("abstract")),
+        "version": _text(cited.get("version")),
+        "datePublished": _text(cited.get("date-released")),
+        "license": [f"{_SPDX}{licence}" for licence in licences],
+        "author": [_author(one) for one in people],
+        "keywords": list(cited.get("keywords", ())),
+        "codeRepository": cited.get("repository-code"),
+        "url": cited.get("url"),
+        "programmingLanguage": {"@type": "ComputerLanguage", "name": "Python"},
+        "applicationCategory": "Science",
+    }
+    return {name: value for name, value in given.items() if value not in (None, [], "")}
+
+
+def codemeta_text(citation: str) -> str:
+    """Return `codemeta` as the file has it."""
+    return json.dumps(codemeta(citation), indent=2, ensure_ascii=False) + "\n"
+
+
+def _author(author: Author) -> dict[str, Any]:
+    if author.name:
+        return {"@type": "Organization", "name": author.name}
+    affiliation = {"@type": "Organization", "name": author.affiliation}
+    return {
+        **({"@id": f"https://orcid.org/{author.orcid}"} if author.orcid else {}),
+        "@type": "Person",
+        "givenName": author.given,
+        "familyName": author.family,
+        **({"affiliation": affiliation} if author.affiliation else {}),
+    }
+
+
+def _line(text: Any) -> str:
+    return re.sub(r"\s+", " ", str(text or "")).strip()
+
+
+def _text(value: Any) -> str | None:
+    return None if value is None else str(value)

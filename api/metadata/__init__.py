@@ -1,0 +1,1 @@
+"""Metadata for machines: Croissant, schema.org, Signposting, CodeMeta."""

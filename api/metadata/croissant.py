@@ -1,0 +1,246 @@
+"""Croissant 1.0 (MLCommons): a data set as programs for machine learning load it.
+
+A document names files with their SHA-256 and what each column of their tables holds. The same
+builder describes files that the service serves and files that lie in the deposit's bundle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from hashlib import sha256
+from typing import Any
+
+from api.deposit.citation import Author
+from api.deposit.identity import Identity
+from api.metadata.terms import LICENCES
+
+CONFORMS_TO = "http://mlcommons.org/croissant/1.0"
+#: Types of a Table Schema, and of Arrow, in the words of schema.org.
+TYPES: Mapping[str, str] = {
+    "string": "sc:Text",
+    "integer": "sc:Integer",
+    "year": "sc:Integer",
+    "number": "sc:Float",
+    "boolean": "sc:Boolean",
+}
+PARQUET = ("application/x-parquet", "application/vnd.apache.parquet")
+"""What Croissant calls Parquet, and its registered media type."""
+
+#: The context that the specification asks for, word by word.
+CONTEXT: Mapping[str, Any] = {
+    "@language": "en",
+    "@vocab": "https://schema.org/",
+    "citeAs": "cr:citeAs",
+    "column": "cr:column",
+    "conformsTo": "dct:conformsTo",
+    "cr": "http://mlcommons.org/croissant/",
+    "rai": "http://mlcommons.org/croissant/RAI/",
+    "data": {"@id": "cr:data", "@type": "@json"},
+    "dataType": {"@id": "cr:dataType", "@type": "@vocab"},
+    "dct": "http://purl.org/dc/terms/",
+    "equivalentProperty": "cr:equivalentProperty",
+    "examples": {"@id": "cr:examples", "@type": "@json"},
+    "extract": "cr:extract",
+    "field": "cr:field",
+    "fileProperty": "cr:fileProperty",
+    "fileObject": "cr:fileObject",
+    "fileSet": "cr:fileSet",
+    "format": "cr:format",
+    "includes": "cr:includes",
+    "isLiveDataset": "cr:isLiveDataset",
+    "jsonPath": "cr:jsonPath",
+    "key": "cr:key",
+    "md5": "cr:md5",
+    "parentField": "cr:parentField",
+    "path": "cr:path",
+    "recordSet": "cr:recordSet",
+    "references": "cr:references",
+    "regex": "cr:regex",
+    "repeated": "cr:repeated",
+    "replace": "cr:replace",
+    "samplingRate": "cr:samplingRate",
+    "sc": "https://schema.org/",
+    "separator": "cr:separator",
+    "source": "cr:source",
+    "subField": "cr:subField",
+    "transform": "cr:transform",
+}
+
+Column = tuple[str, str, str]
+"""Name, type as a Table Schema calls it, and meaning."""
+
+
+@dataclass(frozen=True)
+class File:
+    """A file of a data set.
+
+    Attributes
+    ----------
+    name : of the file, unique within the data set
+    address : where it is: a URL, or a path from the folder of the document
+    media_types : the first is the one that Croissant knows
+    description : what it holds
+    size : bytes
+    digest : SHA-256, hexadecimal
+    """
+
+    name: str
+    address: str
+    media_types: tuple[str, ...]
+    description: str
+    size: int
+    digest: str
+
+    @classmethod
+    def of(
+        cls, content: bytes, name: str, address: str, media_types: tuple[str, ...], description: str
+    ) -> File:
+        """Return a file by its bytes."""
+        digest = sha256(content).hexdigest()
+        return cls(name, address, media_types, description, len(content), digest)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the file as Croissant describes it."""
+        types = self.media_types
+        return {
+            "@type": "cr:FileObject",
+            "@id": self.name,
+            "name": self.name,
+            "description": self.description,
+            "contentUrl": self.address,
+            "contentSize": f"{self.size} B",
+            "encodingFormat": types[0] if len(types) == 1 else list(types),
+            "sha256": self.digest,
+        }
+
+
+@dataclass(frozen=True)
+class Table:
+    """What the rows of a file hold.
+
+    Attributes
+    ----------
+    name : unique within the data set
+    file : name of the file
+    description : what a row is
+    columns : in order
+    key : columns that tell rows apart
+    """
+
+    name: str
+    file: str
+    description: str
+    columns: Sequence[Column]
+    key: Sequence[str] = field(default=())
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the table as Croissant describes it, a record set."""
+        keys = [{"@id": f"{self.name}/{column}"} for column in self.key]
+        return {
+            "@type": "cr:RecordSet",
+            "@id": self.name,
+            "name": self.name,
+            "description": self.description,
+            **({"key": keys[0] if len(keys) == 1 else keys} if keys else {}),
+            "field": [self._field(*column) for column in self.columns],
+        }
+
+    def _field(self, name: str, kind: str, meaning: str) -> dict[str, Any]:
+        return {
+            "@type": "cr:Field",
+            "@id": f"{self.name}/{name}",
+            "name": name,
+            "description": meaning,
+            "dataType": TYPES[kind],
+            "source": {"fileObject": {"@id": self.file}, "extract": {"column": name}},
+        }
+
+
+@dataclass(frozen=True)
+class Described:
+    """What a document says of a data set as a whole.
+
+    Attributes
+    ----------
+    name, description : of the data set
+    address : of its page; None where it has none, as in a bundle
+    version : major.minor.patch
+    keywords : words to find it by
+    licence : "MIT" or "CC-BY-4.0"
+    """
+
+    name: str
+    description: str
+    address: str | None
+    version: str
+    keywords: Sequence[str]
+    licence: str = "MIT"
+
+
+def croissant(
+    what: Described, who: Identity, files: Sequence[File], tables: Sequence[Table]
+) -> dict[str, Any]:
+    """Return the metadata of a data set as JSON-LD.
+
+    Parameters
+    ----------
+    what : the data set
+    who : made it
+    files : of the data set
+    tables : in the files
+
+    Raises
+    ------
+    ValueError
+        Where a table is of no file, or two things have one name.
+    """
+    names = [file.name for file in files]
+    of_none = [table.name for table in tables if table.file not in names]
+    if of_none:
+        raise ValueError(f"table {of_none[0]}: expected a file among {', '.join(names)}")
+    every = [*names, *(table.name for table in tables)]
+    twice = sorted({name for name in every if every.count(name) > 1})
+    if twice:
+        raise ValueError(f"{twice[0]}: two files or tables of that name")
+    return {
+        "@context": dict(CONTEXT),
+        "@type": "sc:Dataset",
+        "conformsTo": CONFORMS_TO,
+        "name": what.name,
+        "description": what.description,
+        **({"url": what.address} if what.address else {}),
+        "version": what.version,
+        "datePublished": who.released.isoformat(),
+        "license": LICENCES[what.licence],
+        "creator": [creator(author) for author in who.authors],
+        "keywords": list(what.keywords),
+        "citeAs": cite_as(what, who),
+        "isAccessibleForFree": True,
+        "distribution": [file.to_dict() for file in files],
+        "recordSet": [table.to_dict() for table in tables],
+    }
+
+
+def creator(author: Author) -> dict[str, Any]:
+    """Return an author as schema.org describes a person or an organisation."""
+    if author.name:
+        return {"@type": "sc:Organization", "name": author.name}
+    return {
+        "@type": "sc:Person",
+        "name": author.title,
+        "givenName": author.given,
+        "familyName": author.family,
+        **({"url": f"https://orcid.org/{author.orcid}"} if author.orcid else {}),
+    }
+
+
+def cite_as(what: Described, who: Identity) -> str:
+    """Return a BibTeX entry of a data set of a version of the Atlas."""
+    key = "".join(c if c.isalnum() else "-" for c in what.name).strip("-").lower()
+    names = " and ".join(f"{{{a.name}}}" if a.name else a.inverted for a in who.authors)
+    return (
+        f"@misc{{{key}, title = {{{{{what.name}}}}}, author = {{{names}}}, "
+        f"year = {{{who.released.year}}}, version = {{{what.version}}}, "
+        f"note = {{{who.title} {who.version}}}}}"
+    )

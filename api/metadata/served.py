@@ -1,0 +1,160 @@
+"""What the service has of each data set and of the leaderboard, as Croissant describes it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from api import columns
+from api.deposit.errors import DIRECTIONS, ERRORS
+from api.deposit.fields import described
+from api.deposit.identity import Identity
+from api.metadata.croissant import PARQUET, Column, Described, File, Table
+from benchmark.results import samples
+
+CSV = ("text/csv",)
+SUBJECTS = ("sun sensor", "calibration", "simulation", "benchmark")
+#: Columns of the leaderboard that the deposit's tables do not have, or name otherwise.
+RANKED: Mapping[str, tuple[str, str]] = {
+    "best_of_extractor": (
+        "boolean",
+        "Whether no other pipeline of its extractor ranks before it in the condition.",
+    ),
+    "studies": (
+        "string",
+        "Mapped studies that used the pipeline on such a sensor, separated by semicolons.",
+    ),
+    "latency_us": (
+        "number",
+        "Extraction and prediction of one sample on the machine that serves, microseconds.",
+    ),
+    "time_ratio": ("number", "The same over the time of a reference."),
+    "field_deg": ("number", "Angle of the boresight that the error is over; empty: not asked."),
+    "field_rms_deg": ("number", "Root mean square error over that field; empty: not asked."),
+    "widest_field_deg": ("number", "Widest field that keeps an error; empty: not asked."),
+}
+
+
+#: What is measured on a data set, by the names of columns.
+MEASURED: Mapping[str, str] = {
+    field["name"]: field["description"]
+    for field in (*ERRORS, *DIRECTIONS)
+    if field["type"] == "number"
+}
+
+
+def of_dataset(card: Mapping[str, Any], base: str | None) -> Described:
+    """Return what a data set is.
+
+    Parameters
+    ----------
+    card : of the data set
+    base : address of the service, ending in a slash; None where there is none, as in a bundle
+    """
+    name = card["name"]
+    return Described(
+        f"Sun Sensor Atlas: {name}",
+        f"{card['description']} Simulated {card['observation']} of a {card['detector']} detector "
+        f"behind a {card['mask']} mask, with the true directions of the Sun and errors of "
+        "every pipeline.",
+        f"{base}datasets/{name}" if base else None,
+        f"{card['version']}.0.0",
+        (*SUBJECTS, card["detector"], card["mask"], card["observation"]),
+    )
+
+
+def of_record(who: Identity, base: str | None) -> Described:
+    """Return what the leaderboard is; parameters as of `of_dataset`."""
+    return Described(
+        f"{who.title}: leaderboard",
+        "Errors of every pipeline of extractor, compensations and calibration model on simulated "
+        "sun sensors, ranked within each data set and condition beside the Cramer-Rao bound.",
+        f"{base}leaderboard" if base else None,
+        who.version,
+        (*SUBJECTS, "leaderboard", "Cramer-Rao bound"),
+    )
+
+
+def tables_of_samples(errors: str, directions: str) -> list[Table]:
+    """Return the tables of a data set's errors and directions, by the names of their files."""
+    return [
+        Table(
+            "errors",
+            errors,
+            "Error of a pipeline on a sample of the test split, under the nominal condition.",
+            _columns(ERRORS),
+            ("extractor", "model", "unit", "sample"),
+        ),
+        Table(
+            "directions",
+            directions,
+            "A sample of the test split: the true direction and the bound.",
+            _columns(DIRECTIONS),
+            ("sample",),
+        ),
+    ]
+
+
+def files_of_samples(name: str, contents: Mapping[str, bytes], base: str) -> list[File]:
+    """Return the files of a data set's errors and directions, as served.
+
+    Parameters
+    ----------
+    name : of the data set
+    contents : bytes by `errors` and `directions`
+    base : address of the service, ending in a slash
+    """
+    said = {
+        "errors": f"Errors sample by sample, condition {samples.CONDITION}.",
+        "directions": "Directions of the test samples, and their bounds.",
+    }
+    return [
+        File.of(
+            content,
+            f"{name}.{kind}.parquet",
+            f"{base}v1/datasets/{name}/{kind}.parquet",
+            PARQUET,
+            said[kind],
+        )
+        for kind, content in contents.items()
+    ]
+
+
+def table_of_data(content: bytes, name: str, base: str) -> tuple[File, Table]:
+    """Return the CSV of a data set's hashes and bounds, as served; parameters as above."""
+    file = File.of(
+        content,
+        f"{name}.csv",
+        f"{base}v1/datasets/{name}?format=csv",
+        CSV,
+        "Hash of each split in each condition, and its Cramer-Rao bound.",
+    )
+    said = "A split of the data set in a condition."
+    known = [(column, *described(column)) for column in columns.DATASET]
+    return file, Table("splits", file.name, said, known, ("condition", "split"))
+
+
+def table_of_ranks(content: bytes, base: str) -> tuple[File, Table]:
+    """Return the CSV of the leaderboard, as served.
+
+    Parameters
+    ----------
+    content : its bytes
+    base : address of the service, ending in a slash
+    """
+    file = File.of(
+        content,
+        "leaderboard.csv",
+        f"{base}v1/leaderboard?format=csv",
+        CSV,
+        "Every pipeline on every data set and condition, ranked.",
+    )
+    known: Sequence[Column] = [
+        (column, *(RANKED.get(column) or described(column))) for column in columns.LEADERBOARD
+    ]
+    key = ("dataset", "condition", "extractor", "model")
+    return file, Table("ranks", file.name, "A pipeline on a data set in a condition.", known, key)
+
+
+def _columns(fields: Sequence[Mapping[str, Any]]) -> list[Column]:
+    return [(one["name"], one["type"], one["description"]) for one in fields]

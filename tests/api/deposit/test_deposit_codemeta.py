@@ -1,0 +1,96 @@
+"""codemeta.json and CITATION.cff say the same: one is made of the other."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+from api.deposit.citation import persistent
+from api.deposit.codemeta import NAME, codemeta
+
+ROOT = Path(__file__).resolve().parents[3]
+#: By Citation File Format: in CodeMeta (https://codemeta.github.io/crosswalk/).
+SAME = {
+    "title": "name",
+    "version": "version",
+    "date-released": "datePublished",
+    "keywords": "keywords",
+    "repository-code": "codeRepository",
+    "url": "url",
+}
+PUBLISHED = """\
+cff-version: 1.2.0
+message: Cite it.
+type: software
+title: "Atlas: of Suns"
+abstract: >-
+  Two
+  lines.
+authors:
+  - family-names: Sommer
+    given-names: Ada
+    name-particle: von
+    orcid: https://orcid.org/0009-0000-0012-3455
+    affiliation: Institute of Light
+  - name: The others
+version: 1.10
+date-released: "2027-01-31"
+license: MIT
+doi: 10.5281/zenodo.1234
+repository-code: https://code.example/atlas
+"""
+
+
+def told(citation: str) -> tuple[dict[str, Any], dict[str, Any]]:
+    return yaml.safe_load(citation), codemeta(citation)
+
+
+@pytest.mark.parametrize("citation", [(ROOT / "CITATION.cff").read_text("utf-8"), PUBLISHED])
+def test_the_two_agree(citation: str) -> None:
+    cited, made = told(citation)
+    for theirs, ours in SAME.items():
+        expected = cited.get(theirs)
+        expected = str(expected) if isinstance(expected, float) else expected
+        assert made.get(ours) == expected, ours
+    assert made["description"] == " ".join(cited["abstract"].split())
+    licences = [cited["license"]] if isinstance(cited["license"], str) else cited["license"]
+    assert made["license"] == [f"https://spdx.org/licenses/{licence}" for licence in licences]
+    assert len(made["author"]) == len(cited["authors"])
+    assert made["@context"] == "https://w3id.org/codemeta/3.0"
+
+
+def test_people_are_named_by_their_identifiers() -> None:
+    _, made = told(PUBLISHED)
+    assert made["author"] == [
+        {
+            "@id": "https://orcid.org/0009-0000-0012-3455",
+            "@type": "Person",
+            "givenName": "Ada",
+            "familyName": "von Sommer",
+            "affiliation": {"@type": "Organization", "name": "Institute of Light"},
+        },
+        {"@type": "Organization", "name": "The others"},
+    ]
+    assert made["identifier"] == persistent(PUBLISHED) == "https://doi.org/10.5281/zenodo.1234"
+
+
+def test_the_file_of_the_repository_is_of_this_citation_and_version() -> None:
+    file = json.loads((ROOT / NAME).read_text("utf-8"))
+    assert file == codemeta((ROOT / "CITATION.cff").read_text("utf-8"))
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+    assert file["version"] == project["version"]
+    assert file["keywords"] == project["keywords"]
+
+
+def test_a_doi_is_found_wherever_the_format_allows_it() -> None:
+    listed = (
+        "identifiers:\n  - {type: url, value: https://x.example}\n  - {type: doi, value: 10.1/a}"
+    )
+    assert persistent(listed) == "https://doi.org/10.1/a"
+    assert persistent("doi: https://doi.org/10.1/b") == "https://doi.org/10.1/b"
+    assert persistent("title: None") is None

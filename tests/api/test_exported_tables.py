@@ -1,0 +1,214 @@
+"""What every CSV has in common: no word for what is not known, and a form for spreadsheets."""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from collections.abc import Iterator
+
+import pytest
+from fastapi import APIRouter, FastAPI
+from typer.testing import CliRunner
+
+from api.cli import command_line
+from api.cli.command_line import COMMANDS, app
+from api.http import handlers
+from api.http.answers import Answer, AnswerRoute
+from api.http.dependencies import AS_ACCEPTED, TableOnly
+from api.http.reference import target
+from api.http.representations import RepresentationCache
+from benchmark.leaderboard import pages
+from registry.taxonomy import NONE_STATED, exported
+from survey_data.csv_writing import escaped, unescaped
+from tests.api.conftest import Client
+
+WORDS = frozenset({"none", "nan", "null", "n/a", "na", "<na>", "nat", "inf", "-inf", "undefined"})
+#: A term of the glossary, and names of sensors in JSON, which has a null.
+THINGS = {("/glossary.csv", "term", "NaN")}
+PAGES = (
+    *("/answer.csv", "/studies.csv", "/studies/Coutinho2022.csv", "/algorithms.csv"),
+    *("/algorithms/weighted-spots.csv", "/datasets.csv", "/datasets/pd-slit.csv", "/claims.csv"),
+    *("/leaderboard.csv", "/glossary.csv", "/detectors.csv", "/masks.csv", "/masks/Slit.csv"),
+    *("/architectures/PD/Slit.csv", "/compare.csv", "/search.csv?q=None", "/figures.csv"),
+    *("/figures/error.csv", "/claims/C04.csv"),
+)
+WHOLE = (
+    *("/v1/studies?limit=500", "/v1/algorithms?limit=500", "/v1/results?limit=500"),
+    *("/v1/leaderboard/cmos-single-aperture?limit=500", "/v1/datasets?limit=500"),
+    *("/v1/studies/Duan2006", "/v1/figures/matrix", "/v1/recommendations?limit=100"),
+)
+
+
+def tables(atlas: Client) -> list[str]:
+    """Addresses of every table: each endpoint's example, whole lists, and pages."""
+    paths = atlas.get("/openapi.json").json()["paths"]
+    found = [
+        target(path, methods["get"])[0]
+        for path, methods in paths.items()
+        if "text/csv" in methods.get("get", {}).get("responses", {}).get("200", {})["content"]
+    ]
+    assert len(found) > 25
+    return [*found, *WHOLE, *PAGES]
+
+
+def words_for_nothing(address: str, text: str) -> list[tuple[str, str, str]]:
+    """Return (address, column, cell) of cells, or items of lists in them, that say "nothing"."""
+    rows = csv.DictReader(io.StringIO(text, newline=""))
+    cells = [(column, cell) for row in rows for column, cell in row.items()]
+    return [
+        (address, column, cell)
+        for column, cell in cells
+        if any(item.casefold() in WORDS for item in re.split("; ?", cell))
+    ]
+
+
+def test_no_table_has_a_word_for_what_is_not_known(atlas: Client) -> None:
+    found = set()
+    for address in tables(atlas):
+        answer = atlas.get(address, accept="text/csv")
+        assert answer.status_code == 200, address
+        found |= set(words_for_nothing(address, answer.text))
+    assert found == THINGS
+
+
+def test_files_of_the_leaderboard_have_none_either(atlas: Client) -> None:
+    board = atlas.app.state.knowledge.measurements.leaderboard
+    for name in ("leaderboard.csv", "sweeps.csv"):
+        text = pages.FORMATS[name](board)
+        assert text.count("\n") > 1000
+        assert not words_for_nothing(name, text)
+
+
+def test_the_survey_s_none_is_told_apart_from_what_is_unknown(atlas: Client) -> None:
+    tables = {row["key"]: row for row in atlas.table("/v1/studies?limit=500")}
+    listed = {item["key"]: item for item in atlas.get("/v1/studies?limit=500").json()["items"]}
+    none = [key for key, item in listed.items() if item["values"]["model"] == ["None"]]
+    unknown = [key for key, item in listed.items() if not item["values"].get("detector")]
+    assert none
+    assert unknown
+    assert {tables[key]["model"] for key in none} == {NONE_STATED}
+    assert {tables[key]["detector"] for key in unknown} == {""}
+
+
+def test_a_method_without_a_name_in_the_survey_has_an_empty_cell(atlas: Client) -> None:
+    ours = atlas.get("/v1/algorithms?limit=500").json()["items"]
+    ours = [item["name"] for item in ours if item["taxonomy"] == "None"]
+    rows = {row["name"]: row for row in atlas.table("/v1/algorithms?limit=500")}
+    assert ours
+    assert all(rows[name]["taxonomy"] == rows[name]["category"] == "" for name in ours)
+    assert exported("model", "None") == NONE_STATED
+    assert exported("model_taxonomy", "None") is None
+    assert exported("model_taxonomy", "SPM") == "SPM"
+
+
+ROWS = [{"name": '=HYPERLINK("http://x")', "value": -1.5}, {"name": "-", "value": 2}]
+
+
+@pytest.fixture
+def small() -> Iterator[Client]:
+    """A service of one table whose cells are formulas."""
+    router = APIRouter(route_class=AnswerRoute, default_response_class=Answer)
+
+    @router.get("/v1/made")
+    async def made(query: TableOnly = AS_ACCEPTED) -> Answer:
+        return Answer({"rows": ROWS}, ("name", "value"), lambda: ROWS)
+
+    service = FastAPI()
+    service.state.kept = RepresentationCache()
+    service.include_router(router)
+    handlers.install(service, list(router.routes))
+    client = Client(service)
+    yield client
+    client.close()
+
+
+def test_a_table_is_for_spreadsheets_where_it_is_asked_to_be(small: Client) -> None:
+    plain = small.get("/v1/made?format=csv")
+    safe = small.get("/v1/made?format=csv&safe=true")
+    assert plain.text == 'name,value\n"=HYPERLINK(""http://x"")",-1.5\n-,2\n'
+    assert safe.text == 'name,value\n"\'=HYPERLINK(""http://x"")",-1.5\n\'-,2\n'
+    assert safe.headers["etag"] != plain.headers["etag"]
+    assert small.get("/v1/made?safe=true", accept="text/csv").text == safe.text
+    assert small.get("/v1/made?safe=false&format=csv").text == plain.text
+    assert small.get("/v1/made?safe=true").json() == {"rows": ROWS}
+    for wrong in ("safe=maybe", "safe=", "safe=true&safe=false"):
+        assert small.get(f"/v1/made?format=csv&{wrong}").status_code == 422, wrong
+
+
+def test_every_table_has_a_form_for_spreadsheets_and_leads_there(atlas: Client) -> None:
+    for address in tables(atlas):
+        plain = atlas.get(address, accept="text/csv")
+        there = plain.links["alternate"]["url"]
+        assert plain.links["alternate"]["type"] == "text/csv"
+        safe = atlas.get(there, accept="*/*" if ".csv" in address else "text/csv")
+        assert safe.status_code == 200, there
+        assert safe.headers["content-type"] == plain.headers["content-type"]
+        assert safe.text == escaped(plain.text)
+        assert unescaped(safe.text) == plain.text
+        assert "alternate" not in safe.links
+
+
+def test_pages_offer_it(atlas: Client) -> None:
+    for address in ("/", "/studies?mask=Slit", "/datasets/pd-slit", "/figures/error"):
+        page = atlas.get(address, accept="text/html").text
+        offered = re.search(r'href="([^"]+\.csv\?[^"]*safe=true)"', page)
+        assert offered, address
+        assert atlas.get(offered[1].replace("&amp;", "&")).status_code == 200
+    refused = atlas.get("/studies.csv?safe=perhaps")
+    assert refused.status_code == 422
+    assert refused.json()["errors"][0]["parameter"] == "safe"
+
+
+def with_format(command, path):
+    """Give (path, command) of all commands below one that print tables."""
+    if any("--format" in parameter.opts for parameter in command.params):
+        yield path, command
+    for name, member in getattr(command, "commands", {}).items():
+        yield from with_format(member, (*path, name))
+
+
+def test_every_command_with_a_table_takes_safe() -> None:
+    found = [
+        (path, command)
+        for name in COMMANDS
+        for path, command in with_format(command_line.load(name), (name,))
+    ]
+    assert len(found) > 25
+    for path, command in found:
+        assert any("--safe" in parameter.opts for parameter in command.params), path
+
+
+def run(*arguments: str) -> tuple[int, bytes, str]:
+    ended = CliRunner().invoke(app, arguments)
+    return ended.exit_code, ended.stdout_bytes, ended.stderr
+
+
+def test_safe_is_of_the_table_and_of_one_call(monkeypatch: pytest.MonkeyPatch) -> None:
+    from api.cli.commands import dataset
+
+    monkeypatch.setattr(dataset, "csv_of", lambda *_: "name\n=1\n")
+    monkeypatch.setattr("api.cli.tables.csv_of", lambda *_: "name\n=1\n-2\n")
+    plain = run("dataset", "list", "--format", "csv")
+    assert plain == (0, b"name\n=1\n-2\n", "")
+    assert run("dataset", "list", "--format", "csv", "--safe") == (0, b"name\n'=1\n-2\n", "")
+    assert run("dataset", "list", "--format", "csv") == plain
+
+
+@pytest.mark.parametrize("form", [(), ("--format", "json")])
+def test_safe_without_csv_is_refused(form: tuple[str, ...]) -> None:
+    code, printed, said = run("dataset", "list", "--safe", *form)
+    assert (code, printed) == (2, b"")
+    assert "--format csv" in said
+
+
+def test_an_address_and_a_file_are_safe_too(tmp_path) -> None:
+    code, printed, _ = run("get", "/v1/taxonomy", "--format", "csv", "--safe")
+    assert code == 0
+    assert printed.startswith(b"attribute,value,")
+    code, _, said = run(
+        *("dataset", "errors", "pd-slit", "--unit", "0"),
+        *("--out", str(tmp_path / "errors.csv"), "--safe"),
+    )
+    assert code == 0, said
+    assert (tmp_path / "errors.csv").read_text().startswith("extractor,model,")

@@ -1,0 +1,63 @@
+"""Classes, numbers and kinds of accuracy agree in the table of attributes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+import survey_data
+from survey_data.validation.rules import check_rules
+
+
+def located(problems: list[survey_data.Problem], row: int, column: str | None = None) -> bool:
+    """Say whether a problem names this row (and column, if one is given)."""
+    return any(
+        p.row == row and p.column is not None and (column is None or p.column == column)
+        for p in problems
+    )
+
+
+def place(copy: Any, study: str, attribute: str) -> int:
+    rows = copy.rows("attributes")
+    return next(i for i, cells in enumerate(rows, 1) if cells[:2] == [study, attribute])
+
+
+@pytest.mark.parametrize(("filed", "number"), [("FSS", "0.01"), ("VFSS", "0.0167"), ("CSS", "0.3")])
+def test_a_class_that_its_number_contradicts_is_refused(filed: str, number: str, copy: Any) -> None:
+    copy.set("attributes", place(copy, "Xie2012", "accuracy_deg"), "value", number)
+    row = place(copy, "Xie2012", "accuracy")
+    copy.set("attributes", row, "value", filed)
+    assert located(copy.found("attributes.csv"), row, "value")
+
+
+@pytest.mark.parametrize("basis", ["survey-text", "authors-table"])
+@pytest.mark.parametrize("attribute", ["accuracy", "accuracy_deg"])
+def test_a_printed_class_or_number_may_contradict_the_other(
+    basis: str, attribute: str, copy: Any
+) -> None:
+    copy.set("attributes", place(copy, "Xie2012", "accuracy"), "value", "CSS")
+    copy.set("attributes", place(copy, "Xie2012", attribute), "basis", basis)
+    assert survey_data.validate(copy.directory) == []
+
+
+def test_a_kind_needs_a_number_and_is_one_of_those_there_are(copy: Any) -> None:
+    row = place(copy, "Sun2023", "accuracy_kind")
+    copy.set("attributes", row, "value", "2sigma")
+    assert located(copy.found("attributes.csv"), row, "value")
+    copy.set("attributes", row, "value", "1sigma")
+    rows = [c for c in copy.rows("attributes") if c[:2] != ["Sun2023", "accuracy_deg"]]
+    copy.write("attributes", rows)
+    assert located(copy.found("attributes.csv"), row - 1, "attribute")
+
+
+@pytest.mark.parametrize("value", ["CSS", "FSS", "VFSS", "UFSS"])
+@pytest.mark.parametrize("column", ["min_deg", "max_deg"])
+def test_accuracy_classes_leave_no_gap(
+    value: str, column: str, tables: survey_data.SurveyTables
+) -> None:
+    taxonomy = tables.taxonomy.copy()
+    assert check_rules({"taxonomy": taxonomy}) == []
+    taxonomy.loc[taxonomy["value"] == value, column] = 0.3
+    assert {p.column for p in check_rules({"taxonomy": taxonomy})} <= {"min_deg", "max_deg"}
+    assert check_rules({"taxonomy": taxonomy})
