@@ -174,7 +174,11 @@ def test_one_command_adds_a_study_another_removes_it_and_git_sees_nothing(tmp_pa
     template = tmp_path / "doe.toml"
     said("add", "--init", "Doe2026", str(template))
     text = template.read_text("utf-8")
-    for column, value in (("title", "T"), ("type", "preprint"), ("url", "https://example.org")):
+    for column, value in (
+        ("title", "T"),
+        ("type", "preprint"),
+        ("url", "https://arxiv.org/abs/2030.00001"),
+    ):
         text = text.replace(f'{column} = ""', f'{column} = "{value}"')
     template.write_text(text, "utf-8")
     two = tmp_path / "two.toml"

@@ -159,6 +159,7 @@ def test_of_several_numbers_the_best_counts() -> None:
             "value": "",
             "basis": "unknown",
             "source": "",
+            "source_name": "",
             "note": "why",
             "role": "",
             "name_in_study": "",

@@ -27,7 +27,7 @@ name = "graph network"
 nearest = true
 role = "proposed"
 basis = "full-text"
-source = "https://example.org/text"
+source = "https://arxiv.org/abs/2030.00001"
 note = "chapter 3"
 
 [[detector]]

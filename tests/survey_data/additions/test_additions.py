@@ -112,6 +112,8 @@ def test_a_study_of_the_survey_cannot_be_removed_or_added_again(
         ('source = "10.1234/made.up"', "", 'basis = "abstract"', "abstract needs a source"),
         ('name = "graph network"', "", "nearest = true", "nearest = true needs a name"),
         ("nearest = true", 'nearest = "yes"', "nearest =", "nearest: expected true or false"),
+        ("https://arxiv.org", "https://scribd.com", "https://scribd", "source: .*document sharing"),
+        ("https://arxiv.org", "http://10.0.0.1", "http://10", "source: a raw address"),
         ("[[detector]]", "[detector]", "[detector]", r"detector: expected tables \[\[detector\]\]"),
         ('"A sun sensor', '"A \\u0007sun sensor', "title =", r"title: holds the character U\+0007"),
         ("https://doi.org/10.1234/made.up", "made.up", "doi =", "doi: expected a DOI such as"),
@@ -203,7 +205,8 @@ def test_an_empty_template_names_every_word_and_is_refused_only_for_what_is_miss
 
 def test_uncommented_lines_of_an_empty_template_make_a_study(known: Vocabulary) -> None:
     text = empty_template(
-        known, {"key": "Doe2030", "year": "2030", "title": "T", "url": "https://x"}
+        known,
+        {"key": "Doe2030", "year": "2030", "title": "T", "url": "https://arxiv.org/abs/2030.00001"},
     )
     text = text.replace('type = ""', 'type = "report"').replace(
         'identity = ""', 'identity = "recalled"'

@@ -35,7 +35,7 @@ def additions(draw: st.DrawFn) -> Addition:
         "venue": draw(st.one_of(st.just(""), TEXT)),
         "type": draw(st.sampled_from(list(known.words["type"]))),
         "doi": draw(st.sampled_from(["", "10.1234/a(b)c", "10.99999/x;y<z>"])),
-        "url": "https://example.org/" + draw(st.sampled_from(["", "a?b=c", "ü"])),
+        "url": "https://arxiv.org/" + draw(st.sampled_from(["", "a?b=c", "ü"])),
         "identity": draw(st.sampled_from(list(known.words["identity"]))),
         "note": draw(st.one_of(st.just(""), TEXT)),
     }
