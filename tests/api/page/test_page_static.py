@@ -27,6 +27,8 @@ class Tags(HTMLParser):
         self._inside = ""
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        if ("type", "application/ld+json") in attrs:  # data, which nothing loads or runs
+            return
         self.tags.append((tag, dict(attrs)))
         self._inside = tag
 
