@@ -13,20 +13,21 @@ from survey_data.additions.faults import FaultsError
 from survey_data.additions.reading import Addition, read_addition
 from survey_data.additions.template import filled_template
 from survey_data.additions.toml_lines import parse_toml
-from survey_data.additions.vocabulary import Vocabulary, vocabulary
+from survey_data.additions.vocabulary import vocabulary
 from survey_data.additions.writing import (
     read_study,
 )
 from survey_data.problems import SurveyImportError
 from tests.survey_data.additions.offered_study import content, offered
 
+KNOWN = vocabulary()
 WORDS = st.text(st.characters(exclude_categories=("C", "Z")), min_size=1, max_size=8)
 TEXT = st.lists(WORDS, min_size=1, max_size=5).map(" ".join)
 
 
 @st.composite
 def additions(draw: st.DrawFn) -> Addition:
-    known = vocabulary()
+    known = KNOWN
     study = {
         "key": "Doe2030",
         "title": draw(TEXT),
@@ -75,11 +76,9 @@ def additions(draw: st.DrawFn) -> Addition:
 
 @given(additions())
 @settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
-def test_a_template_gives_back_the_rows_it_was_written_from(
-    known: Vocabulary, addition: Addition
-) -> None:
+def test_a_template_gives_back_the_rows_it_was_written_from(addition: Addition) -> None:
     text = filled_template(addition)
-    again = read_addition(parse_toml(text, "study.toml"), known)
+    again = read_addition(parse_toml(text, "study.toml"), KNOWN)
     assert again == addition
 
 

@@ -23,6 +23,7 @@ ROOT = Path(__file__).parents[3]
 FILE = ROOT / ".github" / "ISSUE_TEMPLATE" / "study.yml"
 WORKFLOW = ROOT / ".github" / "workflows" / "study.yml"
 
+KNOWN = vocabulary()
 FILLED = {
     "Key": "Doe2030",
     "Title": "A sun sensor that nobody built",
@@ -119,11 +120,9 @@ def test_hostile_words_stay_in_their_own_cell_or_are_refused(
 
 
 @given(st.dictionaries(st.sampled_from(labels()), st.text(max_size=60)))
-def test_any_words_give_a_template_of_texts_or_a_refusal(
-    known: Vocabulary, words: dict[str, str]
-) -> None:
+def test_any_words_give_a_template_of_texts_or_a_refusal(words: dict[str, str]) -> None:
     try:
-        values = tomllib.loads(template_of(body(words), known))
+        values = tomllib.loads(template_of(body(words), KNOWN))
     except (FaultsError, tomllib.TOMLDecodeError):
         return  # a character that TOML does not have is refused by line where it is read
     for value in values.values():
