@@ -37,7 +37,7 @@ def test_a_chain_says_what_its_parts_say():
         "focal_length_mm", "cover_glass", "mask_thickness_mm", "aperture_width_mm",
     )  # fmt: skip
     assert {"Wei2011", "Antonello2018", "Chang2006"} == set(about.studies)
-    assert about.version == 1
+    assert about.version == 2  # its parts' together: MaskShadow has been corrected once
     assert Chain((AngularLoss,), SixFaces).about.accepts == {FeatureKind.SIGNALS}
 
 

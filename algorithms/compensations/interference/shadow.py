@@ -29,7 +29,7 @@ class MaskShadow(CalibratedCompensation):
     """Spots brought from the middle of what a thick mask lets through to a thin one's.
 
     Light passes where the projections of the mask's two faces overlap; the middle of that lens is
-    the mean of both, so that the spot moves as if the aperture stood half a thickness higher.
+    the mean of both, so that the spot moves as if a thin aperture stood in the mask's middle.
     Beyond the angle at which they part, nothing passes.
 
     Parameters
@@ -44,6 +44,9 @@ class MaskShadow(CalibratedCompensation):
         Its aperture's diameter d, positive.
     centre : tuple of two float
         Feature (x, y) of the spot when the Sun is on the boresight.
+    drawn_mm : float, optional
+        Distance that the model behind counts with, positive: the thin mask's whose spots come
+        out. The lower face's where None.
 
     Attributes
     ----------
@@ -62,9 +65,11 @@ class MaskShadow(CalibratedCompensation):
     Implements: eq:shadcomp (model:shad, Antonello2018) with the elevation e: ``R_C0 = (t + h)
     tan(pi/2 - e)``, ``R_C1 = h tan(pi/2 - e)``, the spot's centre their mean. Survey prints the
     distance of the arcs' centres as ``h tan(pi/2 - alpha)``; corrected because it is ``R_C0 -
-    R_C1 = t tan(pi/2 - e)``. Features come out as of a mask without thickness at the lower face:
-    multiplied by ``h / (h + t / 2)``. For a centroid that weighs light evenly this is exact; a
-    drawing that counts h from the mask's middle, as `SensorGeometry` does, has the factor in it.
+    R_C1 = t tan(pi/2 - e)``. Features come out as of a mask without thickness at ``drawn_mm``:
+    multiplied by ``drawn_mm / (h + t / 2)``. For a centroid that weighs parallel light evenly this
+    is exact. Drawn from the mask's middle, as `SensorGeometry` is, the factor is one and only
+    darkness is told: what other methods of finding the spot leave is `pinhole-shadow`'s, and the
+    light that balances lose is `slit-shadow`'s.
 
     Shapes: features ``(x, y)`` (N, 2), in px or dimensionless, to the same.
 
@@ -90,6 +95,7 @@ class MaskShadow(CalibratedCompensation):
         studies=("Antonello2018",),
         labels=("model:shad", "eq:shadcomp"),
         origin="survey",
+        version=2,
         needs=("focal_length_mm", "mask_thickness_mm", "aperture_width_mm"),
         accepts=POSITIONS,
         ahead_of=("spm",),
@@ -100,16 +106,20 @@ class MaskShadow(CalibratedCompensation):
     thickness_mm: float
     aperture_mm: float
     centre: tuple[float, float] = (0.0, 0.0)
+    drawn_mm: float | None = None
 
     def __post_init__(self) -> None:
         by = self.about.name
         require_projection(by, self.focal_length_mm, self.unit_mm, self.centre)
         require_positive(by, thickness_mm=self.thickness_mm, aperture_mm=self.aperture_mm)
+        if self.drawn_mm is not None:
+            require_positive(by, drawn_mm=self.drawn_mm)
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
         """Return the compensation of the sensor's mask, whose middle the drawing counts from.
 
+        Spots come out for the drawing's own distance, which models behind divide by.
         UnsuitableDesignError where the mask has no thickness.
         """
         cls.about.require_kind(kind)
@@ -126,18 +136,20 @@ class MaskShadow(CalibratedCompensation):
             thickness_mm=thickness,
             aperture_mm=geometry.aperture_width_mm or 0.0,
             centre=drawn["centre"],
+            drawn_mm=drawn["focal_length_mm"],
         )
 
     def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
         """Learn nothing: the mask is the drawing's."""
 
     def apply(self, features: Floats, context: Columns) -> Floats:
-        """Spots (N, 2) as of a mask without thickness at its lower face."""
+        """Spots (N, 2) as of a mask without thickness at the drawn distance."""
         del context
         moved = (features - np.asarray(self.centre)) * self.unit_mm
         middle = self.focal_length_mm + self.thickness_mm / 2.0
         tangent = np.sqrt(moved[:, 0] ** 2 + moved[:, 1] ** 2) / middle
         dark = ~(self.thickness_mm * tangent < self.aperture_mm)
-        found = moved * (self.focal_length_mm / middle) / self.unit_mm + np.asarray(self.centre)
+        drawn = self.focal_length_mm if self.drawn_mm is None else self.drawn_mm
+        found = moved * (drawn / middle) / self.unit_mm + np.asarray(self.centre)
         found[dark] = np.nan
         return np.asarray(found)
