@@ -36,8 +36,8 @@ from benchmark.processes import (
 # name -> its line in `sunatlas --help`; the module is api.cli.commands.<name>.
 COMMANDS: dict[str, str] = {
     "serve": "Serve the page, the guide and the HTTP interface.",
-    "survey": "Check the survey's tables, import the authors' own, or add later studies.",
-    "studies": "List the studies and how far each one runs, or show one.",
+    "survey": "Check the survey's tables, import or add studies.",
+    "studies": "List studies with the grade of each run, or show one.",
     "recommend": "Rank the sensors and calibrations that meet requirements.",
     "plan": "Tell what of a suite is to be measured, and why.",
     "run": "Run a study's pipelines, or a suite.",

@@ -205,7 +205,7 @@ def test_empty_cells_are_filled_by_the_rules_of_the_data(
     assert {p.assumed[empty][:2] for p in found.pipelines} == {"D0"}
 
 
-@pytest.mark.parametrize(("key", "relative"), [("Duan2006", "Mafi2023")])
+@pytest.mark.parametrize(("key", "relative"), [("Duan2006", "Radan2019")])
 def test_a_study_runs_where_a_relative_with_the_same_compensation_does(
     survey: Facts, everything: dict[str, Resolution], key: str, relative: str
 ) -> None:

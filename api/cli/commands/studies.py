@@ -94,7 +94,7 @@ def studies(
         ),
     ] = StudyFormat.TABLE,
 ) -> None:
-    """List the studies and how near to each what runs of it is, or show one.
+    """List studies with the grade of each run, or show one.
 
     A run is faithful where its sensor, condition, methods and compensations are the study's own,
     stated or inferred with a reason; close where one part departs from the study, a stand-in where

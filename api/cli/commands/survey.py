@@ -16,7 +16,7 @@ from survey_data import FidelityReport, Problem, labels, recorded_facts
 from survey_data.descriptor import DATA_DIRECTORY
 
 app = typer.Typer(
-    help="Check the survey's tables, import the authors' own, or add later studies.",
+    help="Check the survey's tables, import or add studies.",
     add_completion=False,
     rich_markup_mode=None,
 )

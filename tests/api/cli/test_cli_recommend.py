@@ -154,9 +154,9 @@ def test_what_cannot_be_met_names_the_requirement_and_what_would_help(atlas):
 
 
 def test_what_is_far_finer_where_it_answers_is_named_by_command_page_and_table(atlas):
-    """Several apertures without what tells them apart: what answers everywhere is coarse."""
-    apart = ["FEIC", "FMMS", "MCAM", "MT-ACM"]
-    asked = {"detector": "CMOS", "mask": "Multi-Ap.", "exclude_extractor": apart}
+    """A lens without the fine extractors: what answers everywhere is coarse."""
+    fine = ["HT", "MT-ACM", "PPE", "PM", "None", "BCTM"]
+    asked = {"detector": "CCD", "mask": "Lens", "exclude_extractor": fine}
     (place,) = atlas.get("/v1/recommendations", params=asked).json()["architectures"]
     finer = place["best"]["measured"]["finer"]
     assert 0.5 <= finer["availability"] < 0.95

@@ -18,11 +18,13 @@ from survey_data.additions.writing import (
     read_study,
 )
 from survey_data.problems import SurveyImportError
+from survey_data.sources import fault
 from tests.survey_data.additions.offered_study import content, offered
 
 KNOWN = vocabulary()
 WORDS = st.text(st.characters(exclude_categories=("C", "Z")), min_size=1, max_size=8)
 TEXT = st.lists(WORDS, min_size=1, max_size=5).map(" ".join)
+SOURCE = TEXT.filter(lambda text: not fault(text))
 
 
 @st.composite
@@ -59,7 +61,7 @@ def additions(draw: st.DrawFn) -> Addition:
         for value in values:
             at = {"study": "Doe2030", "attribute": attribute, "value": value}
             basis = draw(st.sampled_from([b for b in known.bases if b != "unknown"]))
-            cells = {"basis": basis, "source": draw(TEXT), "note": draw(TEXT)}
+            cells = {"basis": basis, "source": draw(SOURCE), "note": draw(TEXT)}
             rows["attributes"].append({**dict.fromkeys(own, ""), **at, **cells})
             if definition.named and draw(st.booleans()):
                 nearest = draw(st.sampled_from(["true", "false"]))

@@ -86,7 +86,7 @@ def test_currents_behind_openings_are_geometric_by_measurement_or_diffracted() -
         for preset in [datasets.get(name)]
         if preset.observation is Observation.CURRENTS and preset.mask != "Maskless"
     }
-    assert set(regimes) == {*SETUPS, "pd-slit", "pd-slit-glass", "pd-code-dial"}
+    assert set(regimes) == {*SETUPS, "pd-slit", "pd-slit-glass", "pd-code-dial", "qpd-orbit"}
     for name, regime in regimes.items():
         assert "fresnel_number" not in regime
         if name == "pd-code-dial":
