@@ -19,7 +19,7 @@ from api.deposit.verification import verify as verified
 from benchmark.progress import told_progress
 
 if TYPE_CHECKING:
-    from api.deposit.archives.contract import Archive
+    from api.deposit.archives.archive import Archive
     from api.deposit.archives.server import Server
 
 app = typer.Typer(

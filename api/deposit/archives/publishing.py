@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from api.deposit.archives.archive import Archive
 from api.deposit.archives.contract import (
-    Archive,
     ArchiveError,
     NoDraftError,
     Published,

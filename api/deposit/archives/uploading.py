@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
+from api.deposit.archives.archive import Archive
 from api.deposit.archives.contract import (
-    Archive,
     ArchiveError,
     Draft,
     NoDraftError,
