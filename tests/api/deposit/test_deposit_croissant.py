@@ -72,6 +72,7 @@ def test_the_survey_s_none_is_a_value_and_unknown_is_none(built: Bundle) -> None
     assert None in values.values()
 
 
+@pytest.mark.slow
 def test_samples_of_a_data_set_are_loaded_as_numbers(built: Bundle) -> None:
     path = built.directory / "croissant" / "pd-slit.json"
     dataset = read(path)

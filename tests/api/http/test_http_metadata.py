@@ -107,6 +107,7 @@ def test_croissant_loads_errors_with_their_types(atlas, address, load) -> None:
         assert row["error_deg"] == (None if pd.isna(known["error_deg"]) else known["error_deg"])
 
 
+@pytest.mark.slow
 def test_croissant_loads_the_leaderboard(atlas, address, load) -> None:
     rows = rows_of(load(f"{address}/v1/leaderboard/croissant.json"), "ranks")
     table = atlas.table("/v1/leaderboard")

@@ -92,7 +92,8 @@ def test_it_is_small_and_holds_nothing_that_can_be_derived():
 
 #: Of which four samples take seconds: light from the Earth, motion, tables of holes, megapixels.
 COSTLY = {
-    "ccd-lens", "ccd-multi-aperture", "ccd-orbit", "ccd-periodic", "ccd-single-aperture",
+    "ccd-lens", "ccd-multi-aperture", "ccd-multi-slit-orbit", "ccd-orbit", "ccd-periodic",
+    "ccd-single-aperture", "cmos-multi-aperture-glass", "cmos-single-aperture-thick", "qpd-orbit",
     "cmos-compound-eye", "cmos-encoded", "cmos-encoded-sizes", "cmos-l-slit", "cmos-lens",
     "cmos-multi-aperture", "cmos-single-aperture", "cmos-single-aperture-pinhole", "cmos-slit",
     "event-l-slit", "event-single-aperture", "ltf-maskless-cube", "pd-albedo-orbit",

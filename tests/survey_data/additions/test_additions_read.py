@@ -77,7 +77,7 @@ def additions(draw: st.DrawFn) -> Addition:
 
 
 @given(additions())
-@settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=25, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_a_template_gives_back_the_rows_it_was_written_from(addition: Addition) -> None:
     text = filled_template(addition)
     again = read_addition(parse_toml(text, "study.toml"), KNOWN)
