@@ -17,7 +17,7 @@ NARROWEST, WIDEST = 25.0, 84.0  # columns, px
 GAP = 2.0  # between cells
 SHADES = 5
 GAP_BELOW_LEGEND = 10.0
-DOT = 5.0
+DOT = 4.0
 _AIR = 6.0
 _SIGNS = {"impossible": "×", "unknown": "?"}
 
@@ -174,7 +174,10 @@ def _cell(cell: Cell, x: float, y: float, frame: _Frame) -> str:
             sign = _SIGNS[cell.state]
             shapes.append(svg.text(*middle, sign, "quiet", size=frame.size, anchor="middle"))
     if cell.measured:
-        at = (x + frame.step - GAP - DOT, y + GAP + 1)
+        at = (
+            x + frame.step - GAP / 2 - DOT,
+            y + GAP / 2,
+        )  # the corner: numbers of two digits are wide
         shapes.append(
             svg.rectangle(*at, DOT, DOT, f"dot d{shade if cell.count else 0}", rx=DOT / 2)
         )
