@@ -148,6 +148,8 @@ def _write_template(key: str, file: Path | None, chosen_key: str | None, folder:
     digits = "".join(letter for letter in key if letter.isdigit())
     publication = {"key": key, "year": digits}
     known = vocabulary(folder)
+    if taken := known.taken.get(key.casefold()):
+        raise WrongCallError(f"--init: {key}: {taken}")
     if file is not None and file.suffix.casefold() in SUFFIXES:
         found = chosen(read_publications(file), chosen_key, file.name)
         typer.echo(empty_template(known, {**found, "key": key}), nl=False)

@@ -264,3 +264,10 @@ def test_an_import_is_of_one_thing(arguments):
     shown = survey("import", *arguments)
     assert shown.exit_code == 2
     assert shown.stdout == ""
+
+
+@pytest.mark.parametrize("key", ["Liebe2001", "Herman2025c"])
+def test_no_template_is_written_for_a_key_that_is_taken(key, tmp_path):
+    shown = survey("add", "--init", key, tmp_path / "new.toml")
+    assert (shown.exit_code, key in shown.stderr) == (2, True)
+    assert not list(tmp_path.iterdir())
