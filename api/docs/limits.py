@@ -9,8 +9,8 @@ from typing import Any
 from api.docs.markdown import table
 from benchmark.leaderboard.headlines import headlines
 from benchmark.leaderboard.holding import table as holding
-from benchmark.leaderboard.holding.measure import WORSE
 from benchmark.leaderboard.holding.sentences import NEAR, PARTS, bound_of, verdict
+from benchmark.leaderboard.holding.variants import WORSE
 from benchmark.leaderboard.realism import realism
 from benchmark.results.store import Store
 

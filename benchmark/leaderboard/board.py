@@ -13,7 +13,6 @@ from typing import Any
 
 from benchmark.contract import ON_BENCH, Cell
 from benchmark.datasets import get, names
-from benchmark.datasets.corrected import references_used
 from benchmark.datasets.pins import Pin, Place
 from benchmark.datasets.realism import standing
 from benchmark.leaderboard.beside import expected_on_bench, on_bench, twins_of
@@ -141,6 +140,8 @@ def build(
 
 def _facts(name: str, found: Judged, pin: Pin | None, rows: Sequence[Row]) -> dict[str, Any]:
     """Return what the board of a data set's first condition states once."""
+    from benchmark.datasets.corrected import references_used  # noqa: PLC0415 - loads Numba
+
     controls = {"oracle": "oracle_deg", "boresight": "boresight_deg"}
     return {
         "smallest_ratio": found.smallest_ratio,

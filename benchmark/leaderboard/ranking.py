@@ -16,7 +16,6 @@ from typing import Any
 import numpy as np
 
 from benchmark.contract import Cell
-from benchmark.metrics import paired
 from benchmark.metrics.score import is_available, stored
 
 Row = Mapping[str, Any]
@@ -147,6 +146,8 @@ def judged(rows: Sequence[Row], spread: Sequence[Spread]) -> Judged:
     spread
         Errors of each row's pipeline.
     """
+    from benchmark.metrics import paired  # noqa: PLC0415 - loads SciPy
+
     known = [at for at, row in enumerate(rows) if row["rms_deg"] is not None]
     ranked = [at for at in known if is_available(rows[at])] or known
     tested = [at for at in ranked if len(spread[at].known_deg) >= paired.FEWEST_UNITS]

@@ -19,19 +19,11 @@ from benchmark.datasets.features import features_of
 from benchmark.datasets.preset import Preset
 from benchmark.datasets.samples import Samples
 from benchmark.leaderboard.holding import perfected
+from benchmark.leaderboard.holding.variants import VARIANTS
 from benchmark.metrics.score import separation_deg
 from benchmark.running.task import BENCHES
 from benchmark.running.threads import one_thread
 from benchmark.simulator.light.memory import memory
-
-#: What is made perfect by itself, all else as it is.
-SINGLE = ("lamp", "calibration_noise", "noise", "references", "fixed_pattern", "surroundings")
-#: All of that perfect; then fitted to the test poses as well; the same of the true places.
-JOINT = ("perfect", "perfect_dense", "places", "places_dense")
-#: What is made worse: directions that benches give, readings without correction.
-WORSE = ("bench", "uncorrected")
-#: Everything that is scored.
-VARIANTS = ("as_is", *WORSE, *SINGLE, *JOINT)
 
 #: What a calibration is told: features, Suns, context.
 _Told = tuple[Floats, Floats, Mapping[str, NDArray[Any]] | None]

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from benchmark.leaderboard.holding.measure import SINGLE
+from benchmark.leaderboard.holding.variants import SINGLE
 
 Row = Mapping[str, Any]
 

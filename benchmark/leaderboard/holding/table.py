@@ -9,7 +9,7 @@ from statistics import geometric_mean
 from typing import Any, cast
 
 from benchmark.datasets.preset import Preset
-from benchmark.leaderboard.holding.measure import VARIANTS, held
+from benchmark.leaderboard.holding.variants import VARIANTS
 from benchmark.leaderboard.ranking import order
 from benchmark.metrics.score import stored
 from benchmark.plan.parts import Parts
@@ -24,7 +24,6 @@ from benchmark.results.tables import (
     text_of,
     word,
 )
-from benchmark.running.workers import as_completed
 from survey_data.locks import held_alone
 from survey_data.whole_files import replace_file
 
@@ -121,6 +120,8 @@ def renew(
     HeldError
         When another process renews the table.
     """
+    from benchmark.running.workers import as_completed  # noqa: PLC0415 - loads Numba
+
     if workers < 1:
         raise ValueError(f"workers must be at least 1; got {workers}")
     with held_alone(path):
@@ -142,6 +143,8 @@ def _measured(task: tuple[Mapping[str, Any], Parts]) -> Row:
 
 def measured(score: Mapping[str, Any], parts: Parts) -> Row:
     """Return the row of one score, measured now."""
+    from benchmark.leaderboard.holding.measure import held  # noqa: PLC0415 - loads Numba
+
     found = held(
         cast("Preset", parts.preset(score["dataset"])),
         score["condition"],

@@ -10,7 +10,8 @@ from algorithms.models.geometric.pinhole import BuiltPinhole
 from benchmark import datasets
 from benchmark.datasets.corrected import correction
 from benchmark.leaderboard.holding import perfected
-from benchmark.leaderboard.holding.measure import SINGLE, VARIANTS, directions, held
+from benchmark.leaderboard.holding.measure import directions, held
+from benchmark.leaderboard.holding.variants import SINGLE, VARIANTS
 from benchmark.metrics.score import separation_deg
 from benchmark.plan.parts import installed
 from benchmark.running.task import Task, measure

@@ -4,7 +4,7 @@ import pytest
 
 from benchmark.leaderboard.holding import __main__ as command
 from benchmark.leaderboard.holding import sentences, table
-from benchmark.leaderboard.holding.measure import VARIANTS
+from benchmark.leaderboard.holding.variants import VARIANTS
 from benchmark.leaderboard.scope import compared
 from benchmark.plan.parts import installed
 from benchmark.results.store import Store
