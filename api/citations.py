@@ -118,7 +118,7 @@ def _blank(study: Study) -> str:
 
 
 def names(authors: str) -> list[tuple[str, str]]:
-    """Split authors into (family, given), by BibTeX's own rule; ("", "") stands for others.
+    """Split authors into (family, given) by BibTeX's rule; ("", "") means "and others".
 
     The family name is the last word and what precedes it in lower case. Remarks in parentheses are
     dropped.

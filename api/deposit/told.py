@@ -16,7 +16,7 @@ from survey_data.findings.publications import publications
 
 
 def resolution() -> list[Mapping[str, Any]]:
-    """Return a row for each pipeline of each study in each setting that stands for the study.
+    """Return a row for each study, pipeline and setting (data set, condition) used for the study.
 
     Of both editions, each study's own beside it.
     """

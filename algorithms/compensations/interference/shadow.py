@@ -67,9 +67,9 @@ class MaskShadow(CalibratedCompensation):
     distance of the arcs' centres as ``h tan(pi/2 - alpha)``; corrected because it is ``R_C0 -
     R_C1 = t tan(pi/2 - e)``. Features come out as of a mask without thickness at ``drawn_mm``:
     multiplied by ``drawn_mm / (h + t / 2)``. For a centroid that weighs parallel light evenly this
-    is exact. Drawn from the mask's middle, as `SensorGeometry` is, the factor is one and only
-    darkness is told: what other methods of finding the spot leave is `pinhole-shadow`'s, and the
-    light that balances lose is `slit-shadow`'s.
+    is exact. Drawn from the mask's middle, as `SensorGeometry` is, the factor is one, and all
+    that remains is a NaN row where no light passes. `pinhole-shadow` corrects what spot finders
+    other than a centroid leave, `slit-shadow` the light that balances lose.
 
     Shapes: features ``(x, y)`` (N, 2), in px or dimensionless, to the same.
 

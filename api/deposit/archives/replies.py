@@ -1,4 +1,4 @@
-"""What is read of an archive's answers, by both interfaces: a model for each.
+"""Typed models of the archive's replies, for both interfaces.
 
 More members than are read may be there; one that is missing or of another type is named
 (`api.deposit.archives.reading`).

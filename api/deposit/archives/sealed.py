@@ -91,7 +91,7 @@ class SealedBundle:
     Attributes
     ----------
     files : that an archive is sent, by name
-    description : what the archive is told
+    description : metadata sent to the archive
     """
 
     files: Mapping[str, SealedFile]

@@ -146,7 +146,7 @@ def _said(item: Mapping[str, Any]) -> list[str]:
 
 
 def _scores(pipeline: RunnablePipeline, known: Knowledge) -> list[dict[str, Any]]:
-    """Return what is published of a pipeline in each setting that stands for the study."""
+    """Return a pipeline's published scores in each setting used for the study."""
     found = []
     for one in pipeline.settings:
         at = one.dataset, one.condition, pipeline.extractor, pipeline.model
