@@ -138,7 +138,7 @@ def require_within_files(path: Path) -> None:
     RootOfFilesError
         Where it is the root of a file system: `/`, a drive, or where one is mounted.
     """
-    if not path.name or path.is_mount():
+    if not path.name or (path.is_mount() and not path.is_symlink()):
         raise RootOfFilesError(
             f"{path}: the root of a file system cannot be replaced; expected a directory in it; "
             "nothing was written"

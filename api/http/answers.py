@@ -142,7 +142,7 @@ class CitedAnswer(Answer):
             return super().representation(wanted)
         if self.narrowed:
             error = Violation("fields", form, "no columns beside references; leave out fields")
-            raise Problem(422, "invalid-value", errors=[error])
+            raise Problem(400, "not-combinable", errors=[error])
         saved = f'attachment; filename="{self.name}.{citations.SUFFIXES[form]}"'
         headers = {"Content-Disposition": saved, **self.links}
         body = citations.FORMS[form](self.studies).encode()

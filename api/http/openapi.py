@@ -24,7 +24,8 @@ from survey_data.csv_writing import csv_text
 
 LONGEST_TEXT = 160  # characters of a text in an example
 REFUSALS = {
-    400: "A parameter that is not declared, or a request that cannot be read.",
+    400: "A parameter that is not declared, parameters that do not go together, or a request that "
+    "cannot be read.",
     404: "No such thing; the nearest is named.",
     405: "The path does not offer this method.",
     406: "None of the accepted media types is offered.",

@@ -105,7 +105,9 @@ def _expected(schema: Schema) -> str:
         case "integer":
             return f"an integer from {schema['minimum']} to {schema['maximum']}"
         case "number":
-            return f"a number above {schema['exclusiveMinimum']}, at most {schema['maximum']:g}"
+            above = "above" if "exclusiveMinimum" in schema else "of at least"
+            least = schema.get("exclusiveMinimum", schema.get("minimum"))
+            return f"a number {above} {least}, at most {schema['maximum']:g}"
     if not schema["maxLength"]:
         return "nothing: there is no valid value"
     return f"text of {schema['minLength']} to {schema['maxLength']} characters"

@@ -40,9 +40,14 @@ OPERATIONS = [
     ("GET", "/v1/search"),
     ("GET", "/v1/advice"),
     ("GET", "/v1/protocol"),
+    ("GET", "/v1/editions"),
+    ("GET", "/v1/datasets/{name}/croissant.json"),
+    ("GET", "/v1/datasets/{name}/linkset.json"),
+    ("GET", "/v1/leaderboard/croissant.json"),
+    ("GET", "/v1/leaderboard/linkset.json"),
     ("GET", "/healthz"),
 ]
-PLAIN = {"/healthz"}
+PLAIN = {"/healthz", "/v1/leaderboard/croissant.json", "/v1/leaderboard/linkset.json"}
 # Nothing but `format` can be asked for, and so little else be right.
 ONLY_FORMAT = {"/v1/figures", "/v1/taxonomy", "/v1/leaderboard", "/v1/protocol"}
 # A cursor cannot be told from its schema: one that was never given out is a 400 (see the check).
@@ -70,8 +75,9 @@ def refused_by_problem(context, response, case):
     assert document["type"].startswith("urn:problem-type:sun-sensor-atlas:")
     assert document["detail"]
     if case.meta.generation.mode is GenerationMode.POSITIVE:
-        # What cannot be told from a schema: which pipelines are scored on a data set.
-        assert document["type"].endswith((":invalid-cursor", ":not-comparable"))
+        # What a schema cannot tell: which pipelines are scored on a data set, what goes together.
+        unsaid = (":invalid-cursor", ":not-comparable", ":not-combinable")
+        assert document["type"].endswith(unsaid)
 
 
 @pytest.mark.slow

@@ -162,3 +162,11 @@ def test_csv_rows_are_the_calibrations_of_the_architectures(atlas):
     assert [row["calibration_studies"] for row in rows] == [
         "; ".join(one["studies"]) for a in found for one in a["calibrations"]
     ]
+
+
+def test_a_number_below_its_smallest_is_refused_in_words(atlas):
+    """Some limits take their least value, a bench of 0 deg among them; others do not."""
+    for name, expected in (("bench_deg", "of at least 0"), ("max_error_deg", "above 0")):
+        answer = atlas.get("/v1/recommendations", params={name: -1})
+        assert answer.status_code == 422
+        assert expected in answer.json()["errors"][0]["expected"]
