@@ -11,8 +11,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from api.cells import cell
+from files.csv_writing import csv_text
 from registry.taxonomy import exported
-from survey_data.csv_writing import csv_text
 
 Row = Mapping[str, Any]
 

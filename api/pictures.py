@@ -27,9 +27,9 @@ from importlib.metadata import version
 from pathlib import Path
 
 from benchmark.processes import end_with_coordinator, for_coordinator
-from survey_data.leftovers import temporary_directory
-from survey_data.locks import held_in_turn
-from survey_data.whole_files import replace_file
+from files.atomic import replace_file
+from files.locks import held_in_turn
+from files.temporary import temporary_directory
 
 #: Pictures that come with the code, ``<data set>.<digest of what it shows>.png``.
 PUBLISHED = Path(__file__).resolve().parents[1] / "benchmark" / "datasets" / "pictures"
@@ -42,7 +42,7 @@ OTHERS_KEPT = 3
 AT_ONCE = 2
 
 _ROOT = Path(__file__).resolve().parents[1]
-_MAKERS = ("algorithms", "benchmark", "survey_data")
+_MAKERS = ("algorithms", "benchmark", "files", "survey_data")
 #: What a picture is made by, beside the data set.
 _DRAWN_BY = ("benchmark.datasets.preview", "benchmark.datasets.preview_sheet", "benchmark.drawing")
 _DRAWING_WITH = ("matplotlib", "numpy", "scipy", "opencv-python-headless")

@@ -19,7 +19,7 @@ from functools import cache
 from types import FrameType
 from typing import NoReturn
 
-from survey_data.locks import HeldError
+from files.locks import HeldError
 
 #: In the environment of a process that is to end with the one of this number.
 COORDINATOR = "SUNATLAS_COORDINATOR"

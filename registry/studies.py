@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from types import MappingProxyType
 
+from files.numerals import decimal
 from registry.fidelity.particulars import (
     CompensatedModel,
     MethodVariant,
@@ -46,7 +47,6 @@ from survey_data.editions import (
     SURVEY,
     Choice,
 )
-from survey_data.numerals import decimal
 from survey_data.reported import KIND_OF, statistics
 from survey_data.texts import load_texts
 

@@ -10,6 +10,7 @@ import importlib
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from files.problems import Problem
     from survey_data.findings.checks import FindingVerdict
     from survey_data.findings.report import FidelityReport, fidelity
     from survey_data.importing.columns import ColumnMapping, match_columns
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from survey_data.importing.plan import Difference, ImportPlan, differences, plan_import
     from survey_data.importing.reading import read_table
     from survey_data.importing.table_import import apply_import, import_table
-    from survey_data.problems import Problem, SurveyDataError, SurveyImportError
+    from survey_data.problems import SurveyDataError, SurveyImportError
     from survey_data.tables import SurveyTables, load
     from survey_data.validation.validate import validate
 

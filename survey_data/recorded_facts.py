@@ -9,9 +9,10 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from survey_data import manifest
+from files import manifest
+from files.problems import Problem
 from survey_data.descriptor import DATA_DIRECTORY, DESCRIPTOR_FILE, file_name, table_names
-from survey_data.problems import Problem, SurveyDataError
+from survey_data.problems import SurveyDataError
 
 COMMAND = "python -m survey_data.recorded_facts"
 

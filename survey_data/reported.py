@@ -13,10 +13,10 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Literal
 
+from files.numerals import decimal
+from files.whole_csv import read_whole_records
 from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name
-from survey_data.numerals import decimal
 from survey_data.problems import SurveyDataError
-from survey_data.whole_records import read_whole_records
 
 _TABLE = "statistics"
 UNSPECIFIED = "unspecified"

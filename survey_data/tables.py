@@ -8,7 +8,9 @@ from pathlib import Path
 
 import pandas as pd
 
-from survey_data.csv_reading import Records
+from files.numerals import decimal, integer
+from files.problems import Problem
+from files.strict_csv import Records
 from survey_data.descriptor import (
     DATA_DIRECTORY,
     column_types,
@@ -17,9 +19,8 @@ from survey_data.descriptor import (
     table_names,
 )
 from survey_data.editions import BY_STUDY, EXTENSION, EXTENSION_TABLES, SURVEY, Choice
-from survey_data.numerals import decimal, integer
-from survey_data.problems import Problem, SurveyDataError
-from survey_data.whole_records import read_table_records
+from survey_data.problems import SurveyDataError
+from survey_data.table_records import read_table_records
 
 FIRST_ROW = 2  # the header is row 1, and the tables keep one record a line
 

@@ -15,7 +15,7 @@ import pytest
 pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).parents[1]
-FLOORS = ("survey_data", "registry", "algorithms", "benchmark", "api")
+FLOORS = ("files", "survey_data", "registry", "algorithms", "benchmark", "api")
 RECIPE = re.compile(r"```python file=(\S+)\n(.*?)```", re.DOTALL)
 PAGES = ("add-an-algorithm.md", "add-a-data-set.md")
 

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-FLOORS = ("survey_data", "registry", "algorithms", "benchmark", "api")
+FLOORS = ("files", "survey_data", "registry", "algorithms", "benchmark", "api")
 
 LINT = "from importlinter.cli import lint_imports_command; lint_imports_command()"
 #: Prints the modules of every circle of imports, those inside functions included.

@@ -57,7 +57,7 @@ COMMANDS: dict[str, str] = {
 }
 DEBUG = "SUNATLAS_DEBUG"
 _NO_ROOM = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EBADF})
-_OURS = frozenset({"algorithms", "api", "benchmark", "registry", "survey_data"})
+_OURS = frozenset({"algorithms", "api", "benchmark", "files", "registry", "survey_data"})
 
 
 class LazyCommands(TyperGroup):

@@ -16,15 +16,15 @@ from pathlib import Path
 from typing import Any
 
 from api.cli.working import working_directory
+from files.atomic import replace_file
 from registry.measured import Measured, Measurements, Score
-from survey_data.whole_files import replace_file
 
 FILE = "prepared-measurements.json"
 
 _ROOT = Path(__file__).resolve().parents[2]
 _PUBLISHED = _ROOT / "benchmark" / "published"
 #: Python files that make it, and what they read beside the times.
-_CODE = ("algorithms", "benchmark", "registry", "survey_data")
+_CODE = ("algorithms", "benchmark", "files", "registry", "survey_data")
 _MAKERS = ("api/http/measurements.py", "api/cli/prepared.py")
 _READ = ("components.json", "pins.csv", "scores/*.csv")
 _TIMES = "times.csv"

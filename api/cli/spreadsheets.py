@@ -11,7 +11,7 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 
 from api.cli.wrong_call import WrongCallError
-from survey_data.csv_writing import escaped
+from files.csv_writing import escaped
 
 HELP = (
     "With --format csv: let no spreadsheet run a cell as a formula. A cell that starts with =, +, "

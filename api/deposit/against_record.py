@@ -30,7 +30,7 @@ from benchmark.datasets.export_verification import verify as verify_export
 from benchmark.datasets.pins import Pin, Place
 from benchmark.progress import ProgressCallback, silent
 from benchmark.results.store import PUBLISHED, Store
-from survey_data.leftovers import temporary_directory
+from files.temporary import temporary_directory
 
 
 def differences(

@@ -45,10 +45,10 @@ from benchmark.datasets.checksums import (
 )
 from benchmark.progress import ProgressCallback, silent
 from benchmark.results.store import PUBLISHED, Store
+from files.atomic import replacing, require_within_files
+from files.manifest import digest
 from survey_data.descriptor import file_name
 from survey_data.editions import editions
-from survey_data.manifest import digest
-from survey_data.whole_files import replacing, require_within_files
 
 SURVEY = Path(survey_data.__file__).parent
 

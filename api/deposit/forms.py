@@ -20,7 +20,7 @@ from api.deposit.package import CC_BY, MIT
 from api.deposit.parquet import arrow_table
 from api.deposit.terms import FACTS, terms
 from api.deposit.typed import TypedTable, typed_tables
-from survey_data.leftovers import temporary_directory
+from files.temporary import temporary_directory
 
 Problem = tuple[str, str]
 FOLDER = "parquet"

@@ -17,9 +17,9 @@ from benchmark.claims.ledger import Entry, ledger
 from benchmark.curves import record as curves
 from benchmark.leaderboard.board import build
 from benchmark.results.store import Store
+from files.csv_writing import csv_text
 from registry.catalogue import catalogue
 from registry.taxonomy import exported
-from survey_data.csv_writing import csv_text
 
 #: Columns of sweeps that stand in the bundle under another name or value.
 _RENAMED = frozenset({"series", "sweep", "point", "unit"})

@@ -31,9 +31,9 @@ from api.docs.parts import (
 from api.guide import dictionary, found, python_page, words
 from api.guide.blocks import rerun
 from benchmark.processes import call_to_end
-from survey_data.leftovers import temporary_directory
-from survey_data.locks import held_in_turn
-from survey_data.whole_files import replace_file
+from files.atomic import replace_file
+from files.locks import held_in_turn
+from files.temporary import temporary_directory
 
 DIRECTORY = Path(__file__).resolve().parents[2] / "docs"
 

@@ -21,8 +21,8 @@ from api.cli.working import working_directory
 from api.guide.atlas import atlas_links
 from api.guide.chapters import ROOT
 from benchmark.progress import ProgressCallback, silent
-from survey_data.leftovers import temporary_directory
-from survey_data.whole_files import replacing, require_within_files
+from files.atomic import replacing, require_within_files
+from files.temporary import temporary_directory
 
 BUILDERS = ("sphinx", "myst-parser", "furo")
 INSTALL = "pip install 'sun-sensor-atlas[guide]'"

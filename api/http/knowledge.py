@@ -14,6 +14,7 @@ from api.http.measurements import Measurements
 from api.pictures import Pictures
 from api.search.entries import entries
 from api.search.index import Index
+from files.manifest import digest
 from registry.catalogue import Catalogue, catalogue
 from registry.evidence import Evidence
 from registry.measured import Measurements as Measured
@@ -23,7 +24,6 @@ from registry.taxonomy import Taxonomy
 from survey_data import labels
 from survey_data.descriptor import DATA_DIRECTORY
 from survey_data.editions import Choice, Edition, editions
-from survey_data.manifest import digest
 
 
 class Knowledge:

@@ -16,9 +16,9 @@ from benchmark.leaderboard.scope import Studied, studies_of_pipelines
 from benchmark.results import recorded, samples
 from benchmark.results.pipelines import pipelines, standard_benches
 from benchmark.results.store import PUBLISHED, Store
+from files import manifest
+from files.reading import read_bytes
 from registry.measured import Measured
-from survey_data import manifest
-from survey_data.file_bytes import read_bytes
 
 if TYPE_CHECKING:
     import pandas as pd

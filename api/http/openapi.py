@@ -20,7 +20,7 @@ from api.http.models.problems import ProblemDocument
 from api.http.negotiation import CITATIONS, CSV, JSON
 from api.http.problems import MEDIA_TYPE, Problem
 from api.http.refusals import refusal, schemas
-from survey_data.csv_writing import csv_text
+from files.csv_writing import csv_text
 
 LONGEST_TEXT = 160  # characters of a text in an example
 REFUSALS = {

@@ -13,11 +13,11 @@ from typing import Any
 from api.cells import LIST_SEPARATOR, cell
 from api.columns import RECOMMENDATIONS, flat
 from api.http.recommended import KeptPieces
+from files.csv_writing import csv_text
 from registry.designs import DesignTable, Kept
 from registry.paths import path_table
 from registry.ranking import support
 from registry.recommendation import Answered
-from survey_data.csv_writing import csv_text
 
 MEASURED = tuple(name for name in RECOMMENDATIONS if name.startswith("measured_"))
 _NOT_MEASURED = "," * (len(MEASURED) - 1)

@@ -12,7 +12,7 @@ from functools import cached_property
 from fastapi import Request, Response
 
 from api.http.negotiation import accepts_gzip
-from survey_data.csv_writing import escaped
+from files.csv_writing import escaped
 
 WORTH_COMPRESSING = 512  # bytes; below, the gzip frame eats what it saves
 REVALIDATE = (
@@ -91,7 +91,7 @@ class Representation:
         return made
 
     def for_spreadsheets(self) -> Representation:
-        """Return a CSV of which a spreadsheet runs no cell (`survey_data.csv_writing.escaped`)."""
+        """Return a CSV of which a spreadsheet runs no cell (`files.csv_writing.escaped`)."""
         return self._of(escaped(self.body.decode()).encode(), self._common)
 
     def _of(self, body: bytes, headers: Mapping[str, str]) -> Representation:

@@ -21,8 +21,8 @@ from benchmark.claims.rules import FIRST_TRIAL, Claim
 from benchmark.metrics.score import stored
 from benchmark.results import recorded
 from benchmark.results.closure import closure_digest
-from survey_data.file_bytes import FileRefusedError
-from survey_data.json_reading import members, read_json, require, require_kind
+from files.reading import FileRefusedError
+from files.strict_json import members, read_json, require, require_kind
 
 #: Where the published ones are.
 PUBLISHED = Path(__file__).resolve().parents[1] / "published" / "claims"

@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Literal, TypeVar, cast, get_args
 
 import survey_data
-from survey_data.csv_reading import read_records
-from survey_data.numerals import decimal, integer
+from files.numerals import decimal, integer
+from files.strict_csv import read_records
 
 DIRECTORY = Path(__file__).resolve().parent
 

@@ -17,7 +17,7 @@ from benchmark.contract import UnknownNameError
 from benchmark.processes import call_to_end
 from benchmark.running.threads import one_thread
 from benchmark.running.workers import in_order
-from survey_data.locks import held_alone
+from files.locks import held_alone
 
 
 def measured(claim: str) -> list[Trial]:

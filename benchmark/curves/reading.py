@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from benchmark.metrics.score import stored
-from survey_data.file_bytes import FileRefusedError
-from survey_data.json_reading import members, require, require_kind
+from files.reading import FileRefusedError
+from files.strict_json import members, require, require_kind
 
 #: A row of the record: plain JSON values.
 Row = dict[str, Any]

@@ -15,8 +15,8 @@ from benchmark.results.components import Components
 from benchmark.results.digests import modules_digest
 from benchmark.results.store import PUBLISHED
 from benchmark.results.tables import StoreError
-from survey_data.file_bytes import FileRefusedError
-from survey_data.json_reading import members, read_json
+from files.reading import FileRefusedError
+from files.strict_json import members, read_json
 
 NAME = "curves.json"
 #: Layout of the file; raised when a member changes its meaning.

@@ -24,7 +24,7 @@ from benchmark.progress import ProgressCallback, terminal_progress
 from benchmark.results.components import Components, current
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running.workers import as_completed
-from survey_data.locks import held_alone
+from files.locks import held_alone
 
 
 @dataclass(frozen=True)

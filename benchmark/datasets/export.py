@@ -39,9 +39,9 @@ from benchmark.datasets.samples import samples_hash
 from benchmark.metrics.bounds import Bound
 from benchmark.metrics.score import stored
 from benchmark.progress import ProgressCallback, silent
-from survey_data.file_bytes import FileRefusedError
-from survey_data.json_reading import read_json
-from survey_data.whole_files import replacing, require_within_files
+from files.atomic import replacing, require_within_files
+from files.reading import FileRefusedError
+from files.strict_json import read_json
 
 CARD = "card.json"
 #: Layout of an export; raised when a file or a field changes its meaning.

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from survey_data.csv_writing import csv_text
+from files.csv_writing import csv_text
 
 Arrays = Mapping[str, NDArray[Any]]
 

@@ -28,7 +28,7 @@ from benchmark.datasets.pins import BOUND_TOLERANCE, Pin, Place, alike
 from benchmark.datasets.samples import HEAD, head_hash, samples_hash
 from benchmark.metrics.score import stored
 from benchmark.progress import ProgressCallback, silent
-from survey_data.leftovers import temporary_directory
+from files.temporary import temporary_directory
 
 Problem = tuple[str, str]
 

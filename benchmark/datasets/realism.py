@@ -14,7 +14,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from survey_data.csv_reading import read_records
+from files.strict_csv import read_records
 from survey_data.hardware import Hardware, hardware
 
 FILE = Path(__file__).parent / "realism.csv"

@@ -34,8 +34,8 @@ from benchmark.running import pinning
 from benchmark.running.kernels import update_with_older_kernels
 from benchmark.running.run import RunInterruptedError
 from benchmark.sweeps import run as sweeps
+from files.temporary import temporary_directory
 from survey_data import recorded_facts
-from survey_data.leftovers import temporary_directory
 
 #: On the pinned environment scores are identical. Elsewhere another order of a sum changes last
 #: bits, which a fit may amplify a million times before it is refused.

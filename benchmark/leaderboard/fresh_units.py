@@ -24,7 +24,7 @@ from benchmark.processes import call_to_end
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.results.tables import Row
 from benchmark.running.run import run
-from survey_data.leftovers import temporary_directory
+from files.temporary import temporary_directory
 
 #: Units that no board is made of.
 FRESH = range(scope.UNITS, scope.UNITS + 5)

@@ -15,7 +15,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from survey_data.csv_reading import read_records
+from files.strict_csv import read_records
 
 FILE = Path(__file__).parent / "headlines.csv"
 COLUMNS = (

@@ -16,9 +16,9 @@ from benchmark.leaderboard.architectures import architectures, first_boards
 from benchmark.leaderboard.scope import BEHIND, CLOSE, UNITS, UNITS_BEHIND
 from benchmark.results.tables import spelt, text_of
 from benchmark.sweeps import tables as sweep_tables
+from files.atomic import replace_file
+from files.csv_writing import escaped
 from registry.taxonomy import exported_row
-from survey_data.csv_writing import escaped
-from survey_data.whole_files import replace_file
 
 Board = Mapping[str, Any]
 Row = Mapping[str, Any]

@@ -15,7 +15,7 @@ from collections.abc import Iterator
 from functools import lru_cache
 from pathlib import Path
 
-FIRST_PARTY = ("survey_data", "algorithms", "registry", "benchmark", "api")
+FIRST_PARTY = ("files", "survey_data", "algorithms", "registry", "benchmark", "api")
 
 # Fields of syntax nodes that say how a thing was written, or that only some Python versions have.
 _NOT_CODE = frozenset({"ctx", "kind", "type_comment", "type_ignores"})

@@ -17,8 +17,8 @@ from benchmark.contract import Cell, Preset
 from benchmark.metrics.score import METRIC_VERSION
 from benchmark.plan.parts import Parts
 from benchmark.results.digests import dataset_digest, harness_digest, method_digest
-from survey_data.file_bytes import FileRefusedError
-from survey_data.json_reading import members, read_json, require_kind
+from files.reading import FileRefusedError
+from files.strict_json import members, read_json, require_kind
 
 #: Layout of the stored files; raised when a field changes its meaning.
 SCHEMA_VERSION = 2

@@ -16,9 +16,9 @@ from pathlib import Path
 from typing import Any
 
 from benchmark.results.tables import StoreError
-from survey_data.file_bytes import FileRefusedError, read_bytes
-from survey_data.json_reading import parse_json
-from survey_data.whole_files import naming
+from files.atomic import naming
+from files.reading import FileRefusedError, read_bytes
+from files.strict_json import parse_json
 
 _LARGEST = 2_000_000_000
 _CHAIN = re.compile(rb'(.*), "chain": "([0-9a-f]{16})"\}', re.DOTALL)

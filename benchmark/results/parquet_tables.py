@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from benchmark.results.tables import StoreError
-from survey_data.file_bytes import FileRefusedError, read_bytes
+from files.reading import FileRefusedError, read_bytes
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -23,8 +23,8 @@ from benchmark.results.journal import Journal
 from benchmark.results.samples import CellErrors, Directions, SampleErrors
 from benchmark.results.store import Store
 from benchmark.results.tables import Row, StoreError
-from survey_data.leftovers import remove_leftovers
-from survey_data.locks import HeldError, held_alone
+from files.locks import HeldError, held_alone
+from files.temporary import remove_leftovers
 
 Point = tuple[str, str, str, str]  # (series, sweep, point, extractor)
 

@@ -1,4 +1,4 @@
-"""A record held against its `survey_data.manifest`: what no command wrote so is named."""
+"""A record held against its `files.manifest`: what no command wrote so is named."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from benchmark.results.tables import StoreError
-from survey_data import manifest
-from survey_data.file_bytes import FileRefusedError, is_there
-from survey_data.problems import Problem
+from files import manifest
+from files.problems import Problem
+from files.reading import FileRefusedError, is_there
 
 #: Takes over what was changed by hand, in the record and in the facts.
 COMMAND = "python -m benchmark.suites.taking_over"

@@ -8,7 +8,7 @@ A store is a directory:
 - ``sweeps.csv``: one row an extractor and point of a sweep (`benchmark.sweeps`).
 - ``pins.csv``: hash and bound of each generated split (`benchmark.results.pins`).
 - ``components.json``: facts and digests of what the numbers are of.
-- ``manifest.json``: digests of all these, by which a change by hand shows (`survey_data.manifest`).
+- ``manifest.json``: digests of all these, by which a change by hand shows (`files.manifest`).
 
 All depend on code and data only, never on time or machine. A running runner keeps its progress in
 ``.sunatlas/journal.jsonl`` (`benchmark.results.record`).
@@ -41,7 +41,7 @@ from benchmark.results.tables import (
     text_of,
     word,
 )
-from survey_data.file_bytes import is_there
+from files.reading import is_there
 from survey_data.nearest import nearest
 
 if TYPE_CHECKING:

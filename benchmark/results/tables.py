@@ -8,9 +8,9 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
-from survey_data.csv_writing import csv_text
-from survey_data.file_bytes import FileRefusedError, read_text
-from survey_data.numerals import decimal, integer
+from files.csv_writing import csv_text
+from files.numerals import decimal, integer
+from files.reading import FileRefusedError, read_text
 
 Row = dict[str, Any]
 Reader = Callable[[str], Any]

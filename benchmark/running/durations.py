@@ -16,7 +16,7 @@ from benchmark.contract import Cell
 from benchmark.results.store import Store
 from benchmark.results.tables import number, read, text_of, whole, word
 from benchmark.running.task import Task
-from survey_data.whole_files import replace_file
+from files.atomic import replace_file
 
 #: Name of the file, beside a store's journal.
 DURATIONS = "durations.csv"

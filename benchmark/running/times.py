@@ -29,9 +29,9 @@ from benchmark.results.components import Components, current
 from benchmark.results.tables import StoreError, above_zero, read, text_of, word
 from benchmark.running.threads import one_thread
 from benchmark.running.timing import best_of, best_time
-from survey_data.leftovers import remove_leftovers
-from survey_data.locks import held_in_turn
-from survey_data.whole_files import replace_file
+from files.atomic import replace_file
+from files.locks import held_in_turn
+from files.temporary import remove_leftovers
 
 #: Name of the file.
 TIMES = "times.csv"

@@ -15,7 +15,8 @@ from benchmark.claims import outcomes
 from benchmark.curves import record as curves
 from benchmark.results import recorded, samples
 from benchmark.results.store import PUBLISHED, Store
-from survey_data import manifest, recorded_facts
+from files import manifest
+from survey_data import recorded_facts
 from survey_data.problems import SurveyDataError
 
 

@@ -15,7 +15,7 @@ from benchmark.results.record import opened
 from benchmark.results.store import Store
 from benchmark.running import durations, pinning, times
 from benchmark.running.task import data_condition
-from survey_data.leftovers import temporary_directory
+from files.temporary import temporary_directory
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from benchmark.datasets.features import features_of
 from benchmark.drawing import plain_style
 from benchmark.metrics.score import separation_deg
 from benchmark.plan.parts import installed
-from survey_data.whole_files import replace_file
+from files.atomic import replace_file
 
 if TYPE_CHECKING:
     from algorithms.filtering.sequence import SunFilter

@@ -14,12 +14,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from files.atomic import replace_file
+from files.reading import FileRefusedError
+from files.strict_json import read_json
 from survey_data.additions.faults import Fault, FaultsError
 from survey_data.additions.vocabulary import Definition, Vocabulary, vocabulary
-from survey_data.file_bytes import FileRefusedError
-from survey_data.json_reading import read_json
 from survey_data.problems import SurveyImportError
-from survey_data.whole_files import replace_file
 
 _MOST_CHARACTERS = 65_536  # of an issue's body, by GitHub
 _EMPTY = frozenset({"_No response_", "None", ""})

@@ -8,10 +8,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from files.reading import FileRefusedError, read_bytes
+from files.strict_json import read_json
 from survey_data.additions.faults import Fault, FaultsError, one_of
-from survey_data.file_bytes import FileRefusedError, read_bytes
 from survey_data.importing.bibliography import read_bibliography
-from survey_data.json_reading import read_json
 
 Publication = dict[str, str]
 """Columns of the table of studies."""

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from files.reading import FileRefusedError, read_bytes
 from survey_data.additions.faults import Fault, FaultsError
-from survey_data.file_bytes import FileRefusedError, read_bytes
 
 Place = tuple[str | int, ...]
 """Keys and positions that lead to a value, such as ``("model", 0, "basis")``."""

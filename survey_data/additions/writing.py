@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
+from files.csv_writing import csv_text
+from files.strict_csv import read_records
 from survey_data.additions.faults import Fault, FaultsError, one_of
 from survey_data.additions.publications import chosen, read_publications
 from survey_data.additions.reading import Addition, Row, read_addition
 from survey_data.additions.toml_lines import TomlDocument, read_toml
 from survey_data.additions.vocabulary import vocabulary
-from survey_data.csv_reading import read_records
-from survey_data.csv_writing import csv_text
 from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name
 from survey_data.editions import FOLDER
 from survey_data.importing.writing import held_tables, require_valid, write_valid

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from survey_data.file_bytes import FileRefusedError, read_bytes
+from files.reading import FileRefusedError, read_bytes
 from survey_data.problems import SurveyImportError
 
 #: Fields that name where a work is published, first of these that is there.

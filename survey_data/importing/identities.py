@@ -11,8 +11,8 @@ from typing import Any, Literal
 
 import pandas as pd
 
-from survey_data.csv_reading import read_records
-from survey_data.csv_writing import csv_text
+from files.csv_writing import csv_text
+from files.strict_csv import read_records
 from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name
 from survey_data.importing.bibliography import Entry, read_bibliography
 from survey_data.importing.text_similarity import normalise, similarity

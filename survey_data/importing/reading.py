@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from survey_data.file_bytes import FileRefusedError, read_bytes
+from files.reading import FileRefusedError, read_bytes
 from survey_data.importing.workbooks import LARGEST_CELLS, LARGEST_ROWS, Row, read_workbook
 from survey_data.problems import SurveyImportError
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from survey_data.csv_reading import read_records
-from survey_data.csv_writing import csv_text
+from files.csv_writing import csv_text
+from files.strict_csv import read_records
 from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name
 from survey_data.importing.columns import match_columns
 from survey_data.importing.plan import (

@@ -7,11 +7,11 @@ from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
+from files.locks import held_in_turn
+from files.manifest import write_recorded
+from files.reading import FileRefusedError
+from files.temporary import temporary_directory
 from survey_data.descriptor import DESCRIPTOR_FILE, file_name, table_names
-from survey_data.file_bytes import FileRefusedError
-from survey_data.leftovers import temporary_directory
-from survey_data.locks import held_in_turn
-from survey_data.manifest import write_recorded
 from survey_data.problems import SurveyImportError
 from survey_data.validation.validate import validate
 

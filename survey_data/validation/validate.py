@@ -13,7 +13,10 @@ from typing import Any
 
 import frictionless
 
-from survey_data.csv_reading import Records
+from files.problems import Problem
+from files.reading import FileRefusedError
+from files.strict_csv import Records
+from files.strict_json import read_json
 from survey_data.descriptor import (
     DATA_DIRECTORY,
     DESCRIPTOR_FILE,
@@ -22,12 +25,9 @@ from survey_data.descriptor import (
     primary_key,
     table_names,
 )
-from survey_data.file_bytes import FileRefusedError
-from survey_data.json_reading import read_json
-from survey_data.problems import Problem
+from survey_data.table_records import read_table_records
 from survey_data.tables import MAY_BE_EMPTY, typed_frame
 from survey_data.validation.rules import check_rules
-from survey_data.whole_records import read_table_records
 
 
 def validate(directory: str | Path | None = None) -> list[Problem]:

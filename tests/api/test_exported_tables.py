@@ -19,8 +19,8 @@ from api.http.dependencies import AS_ACCEPTED, TableOnly
 from api.http.reference import target
 from api.http.representations import RepresentationCache
 from benchmark.leaderboard import pages
+from files.csv_writing import escaped, unescaped
 from registry.taxonomy import NONE_STATED, exported
-from survey_data.csv_writing import escaped, unescaped
 from tests.api.conftest import Client
 
 WORDS = frozenset({"none", "nan", "null", "n/a", "na", "<na>", "nat", "inf", "-inf", "undefined"})

@@ -18,7 +18,7 @@ PROGRAM = """
 import sys, time
 from pathlib import Path
 from benchmark.processes import call_to_end
-from survey_data.leftovers import scratch_directory
+from files.temporary import scratch_directory
 
 def main():
     with scratch_directory(Path(sys.argv[1]) / "out"):
@@ -114,7 +114,7 @@ def test_a_second_writer_is_told_in_one_line(tmp_path: Path) -> None:
     program = (
         "import sys; from pathlib import Path\n"
         "from benchmark.processes import call_to_end\n"
-        "from survey_data.locks import held_alone\n"
+        "from files.locks import held_alone\n"
         "def main():\n"
         "    with held_alone(Path(sys.argv[1])), held_alone(Path(sys.argv[1])): pass\n"
         "call_to_end(main)\n"

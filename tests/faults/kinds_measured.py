@@ -30,7 +30,7 @@ from benchmark.results.components import Components
 from benchmark.results.journal import Journal
 from benchmark.results.record import Record
 from benchmark.results.store import PUBLISHED, SWEPT, Store
-from survey_data import manifest
+from files import manifest
 from tests.faults.forging import forged_export
 from tests.faults.forging_bundles import forged_bundle
 from tests.faults.kind import OTHERS, Kind, RefusedError

@@ -12,9 +12,9 @@ from pathlib import Path
 import pytest
 
 import survey_data
+from files.manifest import FILE
 from survey_data.additions.vocabulary import Vocabulary, vocabulary
 from survey_data.descriptor import DATA_DIRECTORY, DESCRIPTOR_FILE, file_name, table_names
-from survey_data.manifest import FILE
 
 
 @dataclass(frozen=True)

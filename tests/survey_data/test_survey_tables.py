@@ -13,9 +13,9 @@ import pandas as pd
 import pytest
 
 import survey_data
+from files.csv_writing import csv_text
+from files.strict_csv import read_records
 from survey_data.accuracy_classes import accuracy_class
-from survey_data.csv_reading import read_records
-from survey_data.csv_writing import csv_text
 from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name, table_names
 
 

@@ -88,7 +88,7 @@ FORM = {
 @pytest.mark.parametrize("kind", FORM)
 @pytest.mark.parametrize("table", ALL)
 def test_broken_form_is_located_in_every_table(kind: str, table: str, copy: Any) -> None:
-    from survey_data.csv_reading import read_records
+    from files.strict_csv import read_records
 
     corrupt, row = FORM[kind]
     path = copy.path(table)

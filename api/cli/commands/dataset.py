@@ -27,7 +27,7 @@ from benchmark.progress import terminal_progress, told_progress
 from benchmark.results import samples
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import pinning
-from survey_data.whole_files import replace_file
+from files.atomic import replace_file
 
 app = typer.Typer(
     help="List, describe, export or verify the standard datasets.",

@@ -11,6 +11,7 @@ import typer
 
 from api.cli.tables import Format, FormatOption, emit, emit_json, say
 from api.cli.wrong_call import WrongCallError
+from files.atomic import replace_file
 from survey_data.additions.faults import FaultsError
 from survey_data.additions.publications import SUFFIXES, chosen, read_publications
 from survey_data.additions.reading import Addition
@@ -18,7 +19,6 @@ from survey_data.additions.template import empty_template
 from survey_data.additions.vocabulary import vocabulary
 from survey_data.additions.writing import add_study, read_study, remove_study, verify_study
 from survey_data.descriptor import DATA_DIRECTORY
-from survey_data.whole_files import replace_file
 
 _CELLS = ("attribute", "value", "name", "role", "basis", "source", "note")
 _PIPELINES = ("detector", "mask", "extractor", "model", "datasets", "assumed")

@@ -23,7 +23,7 @@ from api.deposit.package import NAME
 from api.deposit.packing import PackingError, check
 from api.deposit.verification import verify
 from benchmark.datasets.checksums import contents
-from survey_data.leftovers import scratch_directory
+from files.temporary import scratch_directory
 
 #: Files that are also sent by themselves, to be read or searched without the zip.
 APART = ("README.md", "sun-sensor-atlas.sqlite", "studies.bib", "studies.ris")

@@ -21,7 +21,7 @@ from api.deposit.archives.contract import (
 )
 from api.deposit.archives.metadata import Description
 from api.deposit.archives.sealed import BundleError, SealedBundle, SealedFile, sealed
-from survey_data.whole_files import replace_file
+from files.atomic import replace_file
 
 #: How often a file whose checksum came back wrong is sent.
 _TRIES = 3

@@ -24,8 +24,8 @@ from benchmark.results.tables import (
     text_of,
     word,
 )
-from survey_data.locks import held_alone
-from survey_data.whole_files import replace_file
+from files.atomic import replace_file
+from files.locks import held_alone
 
 PATH = Path(__file__).with_name("held_back.csv")
 

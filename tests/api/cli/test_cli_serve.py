@@ -20,8 +20,9 @@ from typer.testing import CliRunner
 from api.cli import asking
 from api.cli.command_line import app
 from api.cli.commands.serve import address, listen
+from files import manifest
 from registry import studies
-from survey_data import manifest, recorded_facts
+from survey_data import recorded_facts
 from survey_data.descriptor import DATA_DIRECTORY
 
 ROOT = Path(__file__).resolve().parents[3]

@@ -18,7 +18,7 @@ from benchmark.plan.parts import Parts, installed
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running.run import run
 from benchmark.suites import planning
-from survey_data import manifest
+from files import manifest
 
 
 def sunatlas(*arguments: object) -> Any:

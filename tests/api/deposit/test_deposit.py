@@ -25,8 +25,8 @@ from benchmark.claims.rules import claims
 from benchmark.datasets.checksums import CHECKSUMS, write_checksums
 from benchmark.results import samples
 from benchmark.results.store import PUBLISHED, Store
+from files import atomic, manifest
 from registry.taxonomy import exported_row
-from survey_data import manifest, whole_files
 from survey_data.editions import editions
 from tests.api.deposit.conftest import FRAMES
 
@@ -283,9 +283,9 @@ def test_a_bundle_that_cannot_be_moved_into_place_leaves_the_earlier_one(
         return refuse() if path.name == "README.md" else replace(path, target)
 
     if exchanged:
-        monkeypatch.setattr(whole_files, "exchange", refuse)
+        monkeypatch.setattr(atomic, "exchange", refuse)
     else:
-        monkeypatch.setattr(whole_files, "exchange", lambda *_: False)
+        monkeypatch.setattr(atomic, "exchange", lambda *_: False)
         monkeypatch.setattr(Path, "replace", refuse_readme)
     with pytest.raises(OSError, match="Input/output"):
         build(out)

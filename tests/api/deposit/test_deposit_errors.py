@@ -14,7 +14,7 @@ from api.deposit.verification import verify
 from benchmark.contract import Cell
 from benchmark.results.samples import COLUMNS, DIRECTION_COLUMNS, Directions, SampleErrors
 from benchmark.results.store import PUBLISHED
-from survey_data.manifest import digest
+from files.manifest import digest
 
 NAME = "ccd-lens"
 

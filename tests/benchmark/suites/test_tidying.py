@@ -19,7 +19,7 @@ from benchmark.running import times
 from benchmark.running.durations import Durations
 from benchmark.running.run import run, stale
 from benchmark.suites.tidying import Tidied, tidy, would_tidy
-from survey_data import manifest
+from files import manifest
 
 NOTHING = (0, 0, 0)
 

@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 
 import survey_data
-from survey_data import manifest, recorded_facts
+from files import manifest
+from survey_data import recorded_facts
 from survey_data.additions.faults import FaultsError
 from survey_data.additions.reading import read_addition
 from survey_data.additions.template import empty_template

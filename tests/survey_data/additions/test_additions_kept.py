@@ -38,7 +38,7 @@ import os, sys
 from pathlib import Path
 from survey_data.additions import writing
 count, folder, path = int(sys.argv[1]), Path(sys.argv[2]), Path(sys.argv[3])
-import survey_data.whole_files as whole
+import files.atomic as whole
 def counted(real):
     def step(*given, **more):
         global count

@@ -9,15 +9,15 @@ from pathlib import Path
 import pytest
 
 import survey_data
-from survey_data import leftovers
-from survey_data.leftovers import remove_leftovers, scratch_directory, temporary_directory
-from survey_data.whole_files import replace_file
+from files import temporary
+from files.atomic import replace_file
+from files.temporary import remove_leftovers, scratch_directory, temporary_directory
 
 ROOT = Path(survey_data.__file__).parent.parent
 MAKING = """
 import os, sys
 from pathlib import Path
-from survey_data.leftovers import scratch_directory, scratch_file, temporary_directory
+from files.temporary import scratch_directory, scratch_file, temporary_directory
 here = Path(sys.argv[1])
 with scratch_directory(here / "out") as out, scratch_file(here / "table.csv") as file, \\
         temporary_directory() as temporary:
@@ -38,7 +38,7 @@ def maker(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     """A process that is making two things in tmp_path and one among temporary files."""
     (tmp_path / "temporary").mkdir()
     monkeypatch.setenv("TMPDIR", str(tmp_path / "temporary"))
-    monkeypatch.setattr(leftovers.tempfile, "tempdir", None)
+    monkeypatch.setattr(temporary.tempfile, "tempdir", None)
     command = [sys.executable, "-c", MAKING, str(tmp_path)]
     with subprocess.Popen(
         command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, cwd=ROOT, text=True
@@ -93,7 +93,7 @@ def test_what_merely_looks_alike_stays(tmp_path: Path) -> None:
 def test_one_whose_scratch_is_taken_before_it_is_locked_makes_another(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    real, taken = leftovers._locked, []
+    real, taken = temporary._locked, []
 
     def late(path: Path, descriptor: int) -> int:
         if not taken:
@@ -102,7 +102,7 @@ def test_one_whose_scratch_is_taken_before_it_is_locked_makes_another(
             assert not path.exists()
         return real(path, descriptor)
 
-    monkeypatch.setattr(leftovers, "_locked", late)
+    monkeypatch.setattr(temporary, "_locked", late)
     with scratch_directory(tmp_path / "out") as path:
         assert path.is_dir()
         assert path != taken[0]

@@ -17,7 +17,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from survey_data.leftovers import fcntl, is_at
+from files.temporary import fcntl, is_at
 
 #: The module of that name, where this system has no flock.
 filelock: Any = None if fcntl else import_module("filelock")

@@ -2,7 +2,7 @@
 
 Everything is made beside its place and put into it in one step: who reads meanwhile sees the
 earlier content or the new one, never neither, and a process that is killed leaves no half of
-either. What it was making is removed by the next that writes there (`survey_data.leftovers`).
+either. What it was making is removed by the next that writes there (`files.temporary`).
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
-from survey_data.exchange import exchange
-from survey_data.leftovers import remove_leftovers, scratch_directory, scratch_file
-from survey_data.locks import held_in_turn
+from files.exchange import exchange
+from files.locks import held_in_turn
+from files.temporary import remove_leftovers, scratch_directory, scratch_file
 
 
 def replace_file(path: Path, content: str | bytes) -> bool:
@@ -72,14 +72,14 @@ def naming(path: Path) -> Iterator[None]:
 def replacing(*targets: Path) -> Iterator[tuple[Path, ...]]:
     """Make files and directories elsewhere; they take their places when the block ends.
 
-    Each takes its place in one step (`survey_data.exchange`); of several, a kill may leave the
+    Each takes its place in one step (`files.exchange`); of several, a kill may leave the
     first ones new and the last ones old, each whole. Where the file system cannot exchange two
     directories, an earlier directory stays where it is and its files are replaced one at a time:
     a kill may then leave new files among old ones, which checksums tell and the next run mends.
 
     An error in the block leaves the targets as they are, and so does one in putting the new ones
     in place: what had been there is put back. Another process that replaces the first target
-    waits (`survey_data.locks`).
+    waits (`files.locks`).
 
     Parameters
     ----------

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from survey_data.problems import Problem
+from files.problems import Problem
 
 _CELL = re.compile(r'(?:"([^"]*(?:""[^"]*)*)"|([^",]*))(,|\Z)')
 _CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f]")

@@ -1,33 +1,23 @@
 """Records of a CSV file that is whole: a plain file, cut nowhere, every letter as it was written.
 
-`csv_reading` reads what stands in the lines; here is what a file must be before that.
+`strict_csv` reads what stands in the lines; here is what a file must be before that.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 
-from survey_data.csv_reading import Records, read_records
-from survey_data.descriptor import column_types, file_name
-from survey_data.file_bytes import FileRefusedError, read_bytes
-from survey_data.problems import Problem
+from files.problems import Problem
+from files.reading import FileRefusedError, read_bytes
+from files.strict_csv import Records, read_records
 
 #: Stands where an earlier program lost a letter.
 _LOST = "\ufffd"
 
 
-def read_table_records(folder: Path, table: str) -> Records:
-    """Read a table of a folder as `read_whole_records` does; problems name its file there."""
-    name = file_name(table)
-    records = read_whole_records(folder / name, list(column_types(table)))
-    records.problems = [replace(each, file=name) for each in records.problems]
-    return records
-
-
 def read_whole_records(path: Path, columns: Sequence[str]) -> Records:
-    """Read a CSV file as `csv_reading.read_records` does, and report what is damaged beyond that.
+    """Read a CSV file as `strict_csv.read_records` does, and report what is damaged beyond that.
 
     Parameters
     ----------

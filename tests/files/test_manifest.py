@@ -6,9 +6,10 @@ from pathlib import Path
 import pytest
 
 import survey_data
-from survey_data import manifest, recorded_facts
+from files import manifest
+from files.manifest import FILE, NEXT, differences, write_recorded
+from survey_data import recorded_facts
 from survey_data.descriptor import DATA_DIRECTORY
-from survey_data.manifest import FILE, NEXT, differences, write_recorded
 
 TABLE = "name,size,colour\none,1,red\ntwo,2,green\nthree,3,blue\n"
 NAMES = ("table.csv", "inner/said.json")

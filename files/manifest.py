@@ -17,10 +17,10 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
-from survey_data.file_bytes import FileRefusedError, is_there, read_bytes
-from survey_data.json_reading import members, read_json
-from survey_data.problems import Problem
-from survey_data.whole_files import replace_file, replacing
+from files.atomic import replace_file, replacing
+from files.problems import Problem
+from files.reading import FileRefusedError, is_there, read_bytes
+from files.strict_json import members, read_json
 
 FILE = "manifest.json"
 #: What the files are about to be: written before them and renamed to `FILE` after the last, so
@@ -141,7 +141,7 @@ def write_recorded(
         just written.
     together
         Sub-folder that all of them stand in: it changes places with a new one in one step
-        (`whole_files.replacing`), so that no kill leaves some of them new and others old.
+        (`atomic.replacing`), so that no kill leaves some of them new and others old.
 
     Returns
     -------

@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 
 import survey_data
-from survey_data import whole_files
-from survey_data.whole_files import RootOfFilesError, replace_file, replacing
+from files import atomic
+from files.atomic import RootOfFilesError, replace_file, replacing
 
 ROOT = Path(survey_data.__file__).parent.parent
 
@@ -74,7 +74,7 @@ def test_a_kill_before_the_rename_leaves_the_earlier_file(tmp_path: Path) -> Non
     replace_file(path, "old")
     code = (
         "import os, sys; from pathlib import Path\n"
-        "from survey_data.whole_files import replace_file\n"
+        "from files.atomic import replace_file\n"
         "Path.replace = lambda *_: os._exit(9)\n"
         "replace_file(Path(sys.argv[1]), 'new')\n"
     )
@@ -117,7 +117,7 @@ def test_a_directory_without_permission_to_write_is_refused(writing: str, tmp_pa
     held.chmod(0o500)
     code = (
         "import os, sys; from pathlib import Path\n"
-        "from survey_data.whole_files import RootOfFilesError, replace_file, replacing\n"
+        "from files.atomic import RootOfFilesError, replace_file, replacing\n"
         "path = Path(sys.argv[1]) / 'out'\n"
         "if os.geteuid() == 0: os.setuid(65534)  # root writes everywhere\n"
         f"try: {writing}\n"
@@ -196,9 +196,9 @@ def counted(
         return stepping
 
     if way == "exchange":
-        patch(whole_files, "exchange", counting(whole_files.exchange))
+        patch(atomic, "exchange", counting(atomic.exchange))
     else:
-        patch(whole_files, "exchange", lambda _one, _other: False)
+        patch(atomic, "exchange", lambda _one, _other: False)
         patch(Path, "rename", counting(Path.rename))
         patch(Path, "replace", counting(Path.replace))
 
@@ -221,7 +221,7 @@ def test_a_file_system_without_an_exchange_gives_the_same(
     earlier: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Nested directories, an entry of another kind, and one that is no longer wanted."""
-    monkeypatch.setattr(whole_files, "exchange", lambda _one, _other: False)
+    monkeypatch.setattr(atomic, "exchange", lambda _one, _other: False)
     for name in ("deep/kept", "deep/gone", "was-directory/inside"):
         (earlier / "out" / name).parent.mkdir(exist_ok=True)
         (earlier / "out" / name).write_text("old")
@@ -243,8 +243,8 @@ def test_a_kill_at_any_step_leaves_an_out_and_the_next_run_nothing_else(
 ) -> None:
     code = (
         "import os, sys; from pathlib import Path\n"
-        "sys.path.insert(0, 'tests/survey_data')\n"
-        "import shutil, test_whole_files as tests\n"
+        "sys.path.insert(0, 'tests/files')\n"
+        "import shutil, test_atomic as tests\n"
         "here, way, last = Path(sys.argv[1]), sys.argv[2], int(sys.argv[3])\n"
         "tests.counted(way, lambda step: os._exit(9) if step == last else None, setattr)\n"
         "shutil.rmtree = lambda *_, **__: os._exit(9)\n"  # a step later: all is in place
@@ -266,7 +266,7 @@ def test_a_kill_at_any_step_leaves_an_out_and_the_next_run_nothing_else(
 def test_a_new_file_has_the_permissions_that_the_umask_leaves(tmp_path: Path) -> None:
     code = (
         "import os, sys; from pathlib import Path\n"
-        "from survey_data.whole_files import RootOfFilesError, replace_file, replacing\n"
+        "from files.atomic import RootOfFilesError, replace_file, replacing\n"
         "os.umask(0o077)\n"
         "here = Path(sys.argv[1])\n"
         "replace_file(here / 'deep' / 'file', 'mine')\n"

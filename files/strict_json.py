@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from survey_data.file_bytes import LARGEST, FileRefusedError, read_text
+from files.reading import LARGEST, FileRefusedError, read_text
 
 #: Deeper than any document of the project, and far from where Python gives up.
 DEEPEST = 50

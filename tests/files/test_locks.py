@@ -10,13 +10,13 @@ from pathlib import Path
 import pytest
 
 import survey_data
-from survey_data.locks import HeldError, held_alone, held_in_turn, lock_file
+from files.locks import HeldError, held_alone, held_in_turn, lock_file
 
 ROOT = Path(survey_data.__file__).parent.parent
 HOLDING = """
 import sys
 from pathlib import Path
-from survey_data.locks import held_alone
+from files.locks import held_alone
 with held_alone(Path(sys.argv[1])):
     print("held", flush=True)
     sys.stdin.read()

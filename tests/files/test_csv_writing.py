@@ -10,7 +10,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from survey_data.csv_writing import csv_text, escaped, unescaped
+from files.csv_writing import csv_text, escaped, unescaped
 
 STARTS = "=+-@\t\r\n＝＋－＠"
 LETTERS = "=+-@'\t\r\n\" ,;a1.eE＝＋－＠|!(ä"
