@@ -17,6 +17,7 @@ from algorithms.contract import (
     SensorGeometry,
     UnusableDataError,
 )
+from algorithms.documented import documented
 from algorithms.models.geometric.detector_faces import Normals, require_normals
 from algorithms.models.physics_informed.assembled_faces import inverted
 
@@ -34,6 +35,7 @@ SURELY_LIT = 0.1
 _ROUNDS = 20
 
 
+@documented
 @dataclass
 class AngularLoss(CalibratedCompensation):
     """Signals of photodiodes turned into cosines of incidence by their angular response.
@@ -43,8 +45,6 @@ class AngularLoss(CalibratedCompensation):
 
     Parameters
     ----------
-    face_normals : tuple of K vectors
-        Unit normals of the faces in the order of the features, K at least 3, spanning space.
     response : {"kelly", "fitted"}
         The published cubic, or the one that fits the calibration best, the same for all faces.
 
@@ -54,15 +54,6 @@ class AngularLoss(CalibratedCompensation):
         Signal of each face at normal incidence.
     response_ : ndarray, shape (4,)
         Coefficients of 1, c, c^2 and c^3; ``f(1) = 1``.
-    samples_ : int
-        Calibration samples with features.
-    data_digest_ : str
-        Of these samples.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -77,10 +68,6 @@ class AngularLoss(CalibratedCompensation):
     samples light a face, or a lit face's signal is not positive. Normals are taken as drawn.
 
     Cost: 6 Newton's steps of 12 operations a face.
-
-    References
-    ----------
-    Yousefian2017; survey model:nonlin, eq:kellycos.
 
     Examples
     --------

@@ -16,6 +16,7 @@ from algorithms.contract import (
     SensorGeometry,
     UnusableDataError,
 )
+from algorithms.documented import documented
 from algorithms.models.geometric.detector_faces import Normals, require_normals
 
 SMALLEST_SPREAD_K = 2.0
@@ -30,17 +31,13 @@ FEWEST_LIT = 12
 _ROUNDS = 10
 
 
+@documented
 @dataclass
 class TemperatureDrift(CalibratedCompensation):
     """Signals brought to one temperature by each face's own temperature coefficient.
 
     A photodiode's current grows by some hundredths of a per cent a kelvin, each a little
     differently; what is common to all faces drops out of a direction, the differences do not.
-
-    Parameters
-    ----------
-    face_normals : tuple of K vectors
-        Unit normals of the faces in the order of the features, K at least 3, spanning space.
 
     Attributes
     ----------
@@ -50,15 +47,6 @@ class TemperatureDrift(CalibratedCompensation):
         Their standard errors.
     reference_k_ : float
         Mean temperature of the calibration, K.
-    samples_ : int
-        Calibration samples with features.
-    data_digest_ : str
-        Of these samples.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -73,10 +61,6 @@ class TemperatureDrift(CalibratedCompensation):
     temperature stays the same, or fewer than 12 samples light a face.
 
     Cost: 3 operations a face.
-
-    References
-    ----------
-    Lu2017a; survey model:temp, eq:tempcomp.
 
     Examples
     --------

@@ -16,12 +16,14 @@ from algorithms.contract import (
     SensorGeometry,
     UnsuitableDesignError,
 )
+from algorithms.documented import documented
 from algorithms.inputs import require_positive
 
 #: Slants of the two slits, degrees, to within this.
 _DIAGONAL_DEG, _SAME_DEG = 45.0, 1e-6
 
 
+@documented
 @dataclass
 class SlitShadow(CalibratedCompensation):
     """Balances of photodiode pairs behind thick slits, brought to those behind thin ones.
@@ -40,13 +42,6 @@ class SlitShadow(CalibratedCompensation):
     ----------
     samples_ : int
         Calibration samples with features; nothing is learnt of them.
-    data_digest_ : str
-        Of these samples.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -63,10 +58,6 @@ class SlitShadow(CalibratedCompensation):
     Failure: a NaN row for a NaN feature row.
 
     Cost: 6 operations a sample.
-
-    References
-    ----------
-    Chang2006; survey model:shad, alg:VB.
 
     Examples
     --------

@@ -10,6 +10,7 @@ import numpy as np
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.cube_currents import CubeCurrents
 from algorithms.contract import AboutCompensation, FeatureKind, Floats
+from algorithms.documented import documented
 from algorithms.row_arithmetic import normalised
 
 ITERATIONS = 8
@@ -20,6 +21,7 @@ ITERATIONS = 8
 _AWAY = 0.1
 
 
+@documented
 @dataclass
 class SunAndEarth(CubeCurrents):
     """Differences of opposite faces as Sun and Earth together, less what the Earth sends.
@@ -27,27 +29,11 @@ class SunAndEarth(CubeCurrents):
     The Earth's light comes from about the nadir, the more of it the fuller the Earth is seen; how
     much is learnt from the calibration. What is left of the sum is the Sun's.
 
-    Parameters
-    ----------
-    face_normals : tuple of six vectors
-        The six directions +x, -x, +y, -y, +z, -z, each once, in the order of the features.
-
     Attributes
     ----------
     albedo_ : float
         Length of the Earth's vector when it is seen full, in units of one Sun; 0 where the
         calibration shows none.
-    one_sun_ : ndarray, shape (6,)
-        Current of each face under perpendicular sunlight, in units of the features.
-    samples_ : int
-        Calibration samples with features.
-    data_digest_ : str
-        Of these samples.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -62,10 +48,6 @@ class SunAndEarth(CubeCurrents):
     lights a face. Clouds and coasts are not in the model.
 
     Cost: 8 steps of 20 operations a sample.
-
-    References
-    ----------
-    Bhanderi2006; survey model:albedo, eq:albedo2.
 
     Examples
     --------

@@ -9,9 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from algorithms.contract import AboutExtractor, Extractor, FeatureKind, Floats, Observation
+from algorithms.documented import documented
 from algorithms.inputs import as_frames
 
 
+@documented
 @dataclass(frozen=True)
 class DoubleBalance(Extractor):
     """Balance of five areas in a window of 21 x 21 pixels around the brightest pixel.
@@ -51,10 +53,6 @@ class DoubleBalance(Extractor):
     with another beside it in the window. A second spot outside is ignored.
 
     Cost: 1 operation a pixel for the maxima, 3 a pixel of the window and move.
-
-    References
-    ----------
-    Xie2014, deBoer2013; survey fe:dbcm, alg:DBCM.
 
     Examples
     --------

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from algorithms.contract import AboutExtractor, Extractor, FeatureKind, Floats, Observation
+from algorithms.documented import documented
 from algorithms.extractors.frames.background import (
     Background,
     background_level,
@@ -22,6 +23,7 @@ from algorithms.row_arithmetic import quotient_rows
 _DEVIATIONS = 6.0
 
 
+@documented
 @dataclass(frozen=True)
 class BasicCentroid(Extractor):
     """Intensity-weighted mean position of all light in the frame.
@@ -38,11 +40,6 @@ class BasicCentroid(Extractor):
         Odd side, at least 3, of a square window that starts on the brightest pixel and is moved
         onto its own centroid until it stays; None sums the whole frame, as published.
 
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
-
     Notes
     -----
     Implements: alg:BCM (fe:bcm, Chang2008): ``x_c = sum(x I) / sum(I)``, ``y_c = sum(y I) /
@@ -55,10 +52,6 @@ class BasicCentroid(Extractor):
     signs that almost cancel). A second spot or a cut one is averaged in unseen.
 
     Cost: 4 operations a pixel, one pass.
-
-    References
-    ----------
-    Chang2008; survey fe:bcm, alg:BCM.
 
     Examples
     --------
@@ -94,6 +87,7 @@ class BasicCentroid(Extractor):
         return _box_centroids(frames, self.background, self.window_px, reach=0)
 
 
+@documented
 @dataclass(frozen=True)
 class ThresholdedCentroid(Extractor):
     """Intensity-weighted mean position of the light above a threshold.
@@ -114,11 +108,6 @@ class ThresholdedCentroid(Extractor):
         Odd side, at least 3, of a square window that starts on the brightest pixel and is moved
         onto its own centroid until it stays; None sums the whole frame, as published.
 
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
-
     Notes
     -----
     Implements: alg:BCTM (fe:bctm, He2005): ``I' = max(I - mu I_max, 0)``, ``x_c = sum(x I') /
@@ -137,10 +126,6 @@ class ThresholdedCentroid(Extractor):
 
     Cost: 1 operation a pixel for the maxima, 3 a pixel of the sides, 6 a pixel in rows that hold a
     pixel above the threshold; integer sums are exact.
-
-    References
-    ----------
-    He2005; survey fe:bctm, alg:BCTM.
 
     Examples
     --------
@@ -213,6 +198,7 @@ class ThresholdedCentroid(Extractor):
         return _inside(found, usable, shape)
 
 
+@documented
 @dataclass(frozen=True)
 class FilteredCentroid(Extractor):
     """Intensity-weighted mean position of the frame smoothed by a 3 x 3 mean.
@@ -231,11 +217,6 @@ class FilteredCentroid(Extractor):
         brightest pixel and is moved onto its own centroid until it stays; None sums the whole
         frame, as published.
 
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
-
     Notes
     -----
     Implements: alg:IFM (fe:ifm, Chang2008): ``I_mn = (1/9) sum_{i=m-1..m+1} sum_{j=n-1..n+1}
@@ -251,10 +232,6 @@ class FilteredCentroid(Extractor):
     signs that almost cancel).
 
     Cost: 4 operations a pixel, one pass.
-
-    References
-    ----------
-    Chang2008; survey fe:ifm, alg:IFM.
 
     Examples
     --------

@@ -9,9 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from algorithms.contract import AboutExtractor, Extractor, FeatureKind, Floats, Observation
+from algorithms.documented import documented
 from algorithms.inputs import as_frames
 
 
+@documented
 @dataclass(frozen=True)
 class PixelMax(Extractor):
     """Column and row whose summed light is largest.
@@ -33,10 +35,6 @@ class PixelMax(Extractor):
     contrast (all dark or all saturated) or holds a NaN or infinity.
 
     Cost: 2 operations a pixel, one pass.
-
-    References
-    ----------
-    Coutinho2022; survey fe:pm, alg:PM.
 
     Examples
     --------

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from algorithms.contract import AboutExtractor, Extractor, FeatureKind, Floats, Observation
+from algorithms.documented import documented
 from algorithms.inputs import as_frames
 from algorithms.row_arithmetic import medians
 
@@ -16,6 +17,7 @@ Crossing = Literal["pixel", "linear"]
 """``pixel``: the first entry above the threshold. ``linear``: interpolated to the entry before."""
 
 
+@documented
 @dataclass(frozen=True)
 class MultipleThresholdCentroid(Extractor):
     """Midpoint between a profile's two flanks, averaged over many thresholds.
@@ -35,11 +37,6 @@ class MultipleThresholdCentroid(Extractor):
     crossing : {"pixel", "linear"}
         Whether a rise counts at its pixel, as published, or is interpolated to the entry before.
 
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
-
     Notes
     -----
     Implements: alg:MTACM1, alg:MTACM2 (fe:mtacm, Massari2004): ``N_TH > sigma sqrt(e) / dx``,
@@ -56,10 +53,6 @@ class MultipleThresholdCentroid(Extractor):
     give the middle between their outer flanks unseen.
 
     Cost: 2 operations a pixel for the profiles, the median of each, and 4 a threshold.
-
-    References
-    ----------
-    Massari2004; survey fe:mtacm, alg:MTACM1, alg:MTACM2.
 
     Examples
     --------

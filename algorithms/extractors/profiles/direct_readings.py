@@ -16,29 +16,19 @@ from algorithms.contract import (
     Observation,
     SensorGeometry,
 )
+from algorithms.documented import documented
 from algorithms.extractors.profiles.slit_lines import dark_level
 from algorithms.inputs import as_currents, require_positive
 
 _NEEDS = ("line_axes", "line_pixels", "slits")
 
 
+@documented
 @dataclass(frozen=True)
 class DirectProfile(Extractor):
     """Light of every pixel of every line: the reading less what is dark on its line.
 
     Nothing is located; a model that knows the pattern of the slits correlates with it.
-
-    Parameters
-    ----------
-    line_axes : tuple of {"x", "y"}
-        The detector axis along which each line lies, in the order of a profile's columns.
-    line_pixels : int
-        Pixels of a line, positive.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -52,10 +42,6 @@ class DirectProfile(Extractor):
     median.
 
     Cost: a median and one operation a pixel.
-
-    References
-    ----------
-    Tsuno2019, Kondo2024; survey fe:direct.
 
     Examples
     --------
@@ -96,6 +82,7 @@ class DirectProfile(Extractor):
         return _light(observations, len(self.line_axes), self.line_pixels, self.about.name)
 
 
+@documented
 @dataclass(frozen=True)
 class ThresholdProfile(Extractor):
     """Light of every pixel above a fraction of its line's brightest, zero elsewhere.
@@ -105,19 +92,10 @@ class ThresholdProfile(Extractor):
 
     Parameters
     ----------
-    line_axes : tuple of {"x", "y"}
-        The detector axis along which each line lies, in the order of a profile's columns.
-    line_pixels : int
-        Pixels of a line, positive.
     threshold : float
         The fraction mu, in (0, 1), of the line's brightest pixel above what is dark. The survey
         gives no value; 0.1 is ours: a ruler's few large pixels share a slit's light, and what the
         dim one has of it counts.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -131,10 +109,6 @@ class ThresholdProfile(Extractor):
     median.
 
     Cost: a median and 3 operations a pixel.
-
-    References
-    ----------
-    Chen2006; survey fe:bctm, alg:BCTM.
 
     Examples
     --------

@@ -18,6 +18,7 @@ from algorithms.contract import (
     SensorGeometry,
     UnsuitableDesignError,
 )
+from algorithms.documented import documented
 from algorithms.extractors.profiles.single_spot import require_one_spot, spot_size_px
 from algorithms.extractors.profiles.slit_lines import NEEDS, SlitLines, box_means, dark_level
 from algorithms.extractors.profiles.spot_spectra import SpotSpectra, require_frequencies
@@ -29,6 +30,7 @@ Shape = Literal["round", "square"]
 _PASSES = 2
 
 
+@documented
 @dataclass(frozen=True)
 class LinearPhase(SlitLines):
     """Shift of the slits' light by the slope of its phase against a reference's.
@@ -38,26 +40,10 @@ class LinearPhase(SlitLines):
 
     Parameters
     ----------
-    line_axes : tuple of {"x", "y"}
-        The detector axis along which each line lies, in the order of a profile's columns.
-    line_pixels : int
-        Pixels of a line, at least 1.
-    slits : tuple of (float, float, float)
-        Offset from the line's middle, px, tangent of the slant and width along the line, px, of
-        each slit; all lines lie behind the same. At most two different slants.
-    reach_px : float
-        Largest displacement of the shadow on either axis, px, positive; used where slants differ.
-    margin_px : float
-        What a spot is wider than its slit on each side, px, positive.
     frequencies : int or None
         How many frequencies from the lowest on are fitted. The study gives no limit. None, ours,
         takes those whose power stands out of the noise, nine times, as the spectrum itself tells
         that from a quarter of the sampling on.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -73,19 +59,12 @@ class LinearPhase(SlitLines):
     whose phases are summed over the slits of one slant: what is left to unwrap is a fraction of a
     turn, and the other spots stay out.
 
-    Shapes: profiles (N, A L) of A lines, any unit, to ``(x_px, y_px)`` (N, 2), counted from the
-    first pixel of a line whose middle is the sensor's.
-
     Failure: a NaN row for a profile without contrast (all dark or all saturated), one that holds
     a NaN or infinity, where a slit's spot is missing, cut by the line's end or covered by
     another's, and where light elsewhere is half as bright (a second Sun, noise alone).
 
     Cost: 2 operations a pixel and slit, the median of each line, and 8 a frequency and pixel of
     the windows, half as many as pixels.
-
-    References
-    ----------
-    Enright2007b; survey fe:linearphase, alg:linearphase.
 
     Examples
     --------
@@ -127,6 +106,7 @@ class LinearPhase(SlitLines):
         return self.spots(shifts)
 
 
+@documented
 @dataclass(frozen=True)
 class FrameLinearPhase(Extractor):
     """Position of a spot by the slopes of the phases of its column and row sums.
@@ -145,11 +125,6 @@ class FrameLinearPhase(Extractor):
     frequencies : int or None
         How many frequencies from the lowest on are fitted; None as in `LinearPhase`.
 
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
-
     Notes
     -----
     Implements: alg:linearphase (fe:linearphase, Enright2007b) on the sums by columns and rows.
@@ -167,10 +142,6 @@ class FrameLinearPhase(Extractor):
 
     Cost: 2 operations a pixel for the sums, 4 a pixel of the window and 16 a frequency and
     column of it, half as many as columns.
-
-    References
-    ----------
-    Enright2007b; survey fe:linearphase, alg:linearphase.
 
     Examples
     --------

@@ -16,11 +16,13 @@ from algorithms.contract import (
     Observation,
     SensorGeometry,
 )
+from algorithms.documented import documented
 from algorithms.extractors.profiles.single_spot import require_one_spot, spot_size_px
 from algorithms.extractors.profiles.slit_lines import NEEDS, SlitLines, dark_level
 from algorithms.inputs import as_frames, require_positive
 
 
+@documented
 @dataclass(frozen=True)
 class PeakDetection(SlitLines):
     """Brightest pixel of a line behind one slit; behind several, their pattern's brightest place.
@@ -31,26 +33,10 @@ class PeakDetection(SlitLines):
 
     Parameters
     ----------
-    line_axes : tuple of {"x", "y"}
-        The detector axis along which each line lies, in the order of a profile's columns.
-    line_pixels : int
-        Pixels of a line, at least 1.
-    slits : tuple of (float, float, float)
-        Offset from the line's middle, px, tangent of the slant and width along the line, px, of
-        each slit; all lines lie behind the same. At most two different slants.
-    reach_px : float
-        Largest displacement of the shadow on either axis, px, positive; used where slants differ.
-    margin_px : float
-        What a spot is wider than its slit on each side, px, positive.
     alone : bool
         Whether light elsewhere that is half as bright as the pattern's darkest pixel gives
         nothing (a second Sun, noise alone, a hot pixel). Ours: the published method always
         answers.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -61,19 +47,12 @@ class PeakDetection(SlitLines):
     those that a Sun in the field explains and that keep all spots apart. Of maxima that are
     equal within a slit's width (a saturated spot) the middle of the first and the last counts.
 
-    Shapes: profiles (N, A L) of A lines, any unit, to ``(x_px, y_px)`` (N, 2), counted from the
-    first pixel of a line whose middle is the sensor's.
-
     Failure: a NaN row for a profile without contrast (all dark or all saturated), one that holds
     a NaN or infinity, and behind two slants where no Sun in the field explains two patterns apart.
     Noise alone, a second Sun, a hot pixel, and a slit's spot that is missing, off the line or
     covered by another's give a place unseen, unless `alone` is asked for.
 
     Cost: 1 operation a pixel and slit, and the median of each line.
-
-    References
-    ----------
-    Enright2006b; survey fe:peak, alg:PDsp, alg:PDmp.
 
     Examples
     --------
@@ -106,6 +85,7 @@ class PeakDetection(SlitLines):
         return self.spots(self.locate(lines, floors, smooth=False, alone=self.alone))
 
 
+@documented
 @dataclass(frozen=True)
 class FramePeak(Extractor):
     """Brightest pixel of a frame with one spot.
@@ -117,11 +97,6 @@ class FramePeak(Extractor):
     ----------
     width_px : float or None
         Width of the widest spot: maxima further apart are two spots. None tells none apart.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -136,10 +111,6 @@ class FramePeak(Extractor):
     than `width_px`. A second spot that is darker, a hot pixel and noise alone cannot be told.
 
     Cost: 1 operation a pixel, and a second look at rows that hold the maximum.
-
-    References
-    ----------
-    Enright2006b; survey fe:peak, alg:PDsp.
 
     Examples
     --------

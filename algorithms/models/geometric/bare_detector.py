@@ -11,9 +11,11 @@ import numpy as np
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.forward import ForwardModel
 from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
+from algorithms.documented import documented
 from algorithms.models.nominal_projection import nominal_projection, require_projection
 
 
+@documented
 @dataclass
 class BareDetector(ForwardModel):
     """Homography of a detector that stands any way behind its mask, after a radial stretch.
@@ -21,36 +23,11 @@ class BareDetector(ForwardModel):
     Eight numbers hold all that a plane behind a pinhole can do: scales, turns, tilts, skew, and a
     mirror. Refraction and the aperture's depth stretch tangents about the mask's normal before.
 
-    Parameters
-    ----------
-    focal_length_mm : float
-        Nominal distance from aperture to detector, positive.
-    unit_mm : float
-        Pixel pitch, positive.
-    centre : tuple of two float
-        Nominal spot (x, y) when the Sun is on the boresight.
-    extrapolation : float
-        How far past the convex hull of the calibrated features answers may go, as a share of its
-        half width, from 0 up; infinity for anywhere.
-
     Attributes
     ----------
     vector_ : ndarray, shape (10,)
         The homography's first eight elements by rows, the ninth being 1, in nominal focal lengths
         off the nominal centre; k1 and k2.
-    covariance_ : ndarray, shape (10, 10)
-        Of their errors.
-    condition_ : float
-        Of the equations at the solution.
-    quality_ : FitQuality
-        Residuals, and the ten with their standard errors by name.
-    hull_ : Hull
-        Of the calibrated features.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -60,17 +37,11 @@ class BareDetector(ForwardModel):
     about its optical axis, a bare sensor's before the detector's tilt, about the mask's normal.
     Hence a class of its own. The start is the affine map that fits best.
 
-    Shapes: features ``(x, y)`` (N, 2), in px, to unit vectors (N, 3).
-
     Failure: a NaN row for a NaN feature row, outside the hull, and where the steps have not come
     to rest within 6e-8 deg. fit raises UnusableDataError below 6 samples, where they do not settle
     the parameters, or do not belong together.
 
     Cost: 36 times 30 operations a sample; the fit, some ten times 21 passes of 30.
-
-    References
-    ----------
-    Survey model:cam, eq:cameq.
 
     Examples
     --------

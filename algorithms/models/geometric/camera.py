@@ -11,9 +11,11 @@ import numpy as np
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.forward import ForwardModel
 from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
+from algorithms.documented import documented
 from algorithms.models.nominal_projection import nominal_projection, require_projection
 
 
+@documented
 @dataclass
 class LensCamera(ForwardModel):
     """Camera with OpenCV's intrinsics: two focal lengths, principal point, lens distortion.
@@ -23,36 +25,14 @@ class LensCamera(ForwardModel):
 
     Parameters
     ----------
-    focal_length_mm : float
-        Nominal distance from lens to detector, positive.
-    unit_mm : float
-        Pixel pitch, positive.
-    centre : tuple of two float
-        Nominal spot (x, y) when the Sun is on the boresight.
     distortion : tuple of two float
         Nominal (k1, k2), where the fit starts.
-    extrapolation : float
-        How far past the convex hull of the calibrated features answers may go, as a share of its
-        half width, from 0 up; infinity for anywhere.
 
     Attributes
     ----------
     vector_ : ndarray, shape (11,)
         Focal lengths along x and y in mm, principal point (x, y) in px, k1, k2, p1, p2, the
         camera's rotation and tilts about x and y in degrees.
-    covariance_ : ndarray, shape (11, 11)
-        Of their errors.
-    condition_ : float
-        Of the equations at the solution.
-    quality_ : FitQuality
-        Residuals, and the eleven with their standard errors by name.
-    hull_ : Hull
-        Of the calibrated features.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -65,18 +45,12 @@ class LensCamera(ForwardModel):
     target stands, which of the Sun at infinity nothing tells. In a narrow field tilts, principal
     point and p1, p2 act nearly alike; their standard errors then say so.
 
-    Shapes: features ``(x, y)`` (N, 2), in px, to unit vectors (N, 3).
-
     Failure: a NaN row for a NaN feature row, outside the hull, and where the steps have not come
     to rest within 6e-8 deg, as where the distortion folds the picture back. fit raises
     UnusableDataError below 6 samples, where they do not settle the parameters, or do not belong
     together.
 
     Cost: 36 times 40 operations a sample; the fit, some ten times 23 passes of 40.
-
-    References
-    ----------
-    Saleem2019; survey model:cam, eq:cameq.
 
     Examples
     --------

@@ -12,6 +12,7 @@ from algorithms.angles import rotations_from_sun
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.parametric import ParametricModel
 from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
+from algorithms.documented import documented
 from algorithms.models.nominal_projection import (
     POSITIONS,
     nominal_projection,
@@ -19,6 +20,7 @@ from algorithms.models.nominal_projection import (
 )
 
 
+@documented
 @dataclass
 class LeastSquaresGeometry(ParametricModel):
     """Pinhole projection with focal length, two boresight offsets and zero point calibrated.
@@ -30,34 +32,15 @@ class LeastSquaresGeometry(ParametricModel):
     ----------
     focal_length_mm : float
         Nominal distance F from aperture to detector, positive.
-    unit_mm : float
-        Displacement of the spot for one unit of feature, positive: the pixel pitch for spots,
-        half the aperture's width for balances.
     centre : tuple of two float
         Nominal feature (x, y) of the spot when both angles are zero; where the fit of the zero
         point starts.
 
-    extrapolation : float
-        How far past the convex hull of the calibrated features answers may go, as a share of its
-        half width, from 0 up; infinity for anywhere.
 
     Attributes
     ----------
     vector_ : ndarray, shape (5,)
         Delta F in mm, alpha_0 and beta_0 in degrees, x_zp and y_zp in the features' unit.
-    covariance_ : ndarray, shape (5, 5)
-        Of their errors.
-    condition_ : float
-        Of the equations at the solution.
-    quality_ : FitQuality
-        Residuals, and the five with their standard errors by name.
-    hull_ : Hull
-        Of the calibrated features.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -74,8 +57,6 @@ class LeastSquaresGeometry(ParametricModel):
     angles: exact for a turntable whose zero is off, and for a head turned about its y axis; a
     head turned about x is matched only near beta = 0.
 
-    Shapes: features ``(x, y)`` (N, 2), in px or dimensionless, to unit vectors (N, 3).
-
     Failure: a NaN row for a NaN feature row and outside the hull. fit raises UnusableDataError
     below 3 samples, where the samples do not settle the five parameters (all in one place, or one
     axis swept alone), where it does not converge, or where its residuals are as large as the
@@ -83,10 +64,6 @@ class LeastSquaresGeometry(ParametricModel):
 
     Cost: 5 transcendental functions and 20 operations a sample; the fit, some ten times eleven
     passes over the samples.
-
-    References
-    ----------
-    Rufino2004a; survey model:lsq, eq:lsq.
 
     Examples
     --------

@@ -14,10 +14,12 @@ from algorithms.contract import (
     Floats,
     SensorGeometry,
 )
+from algorithms.documented import documented
 from algorithms.models.geometric.detector_faces import axis_faces
 from algorithms.row_arithmetic import normalised
 
 
+@documented
 @dataclass
 class SixFaces(CalibratedModel):
     """Sun vector whose components are the brighter face of each opposite pair of a cube.
@@ -41,11 +43,6 @@ class SixFaces(CalibratedModel):
     hull_ : Hull
         Without sides.
 
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
-
     Notes
     -----
     Implements: eq:msfstd (model:base, Allgeier2009): ``I_a = max(I_x-, I_x+)``, ``I_b =
@@ -60,10 +57,6 @@ class SixFaces(CalibratedModel):
     face is taken for Sun where it is the brighter of its pair.
 
     Cost: 14 operations and one root a sample.
-
-    References
-    ----------
-    Allgeier2009; survey model:base, eq:msfstd.
 
     Examples
     --------

@@ -10,6 +10,7 @@ import numpy as np
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.quality import Parameter
 from algorithms.contract import AboutModel, FeatureKind, Floats, UnusableDataError
+from algorithms.documented import documented
 from algorithms.inputs import require_samples
 from algorithms.models.geometric.panoramic import WeightedCells
 
@@ -19,6 +20,7 @@ _STEADIEST = 1e-9
 _STEPS = 20
 
 
+@documented
 @dataclass
 class WarmCells(WeightedCells):
     """Weighted least squares over the lit cells, their reference currents led by temperature.
@@ -28,19 +30,11 @@ class WarmCells(WeightedCells):
 
     Parameters
     ----------
-    face_normals : tuple of K vectors
-        Unit installation vectors of the cells in the order of the features, K at least 3,
-        spanning space.
-    weighting : {"signal", "equal"}
-        Weight of a lit cell: its signal over its reference current, or 1.
     largest_incidence_deg : float
         In (0, 90); a cell counts as lit where its signal over its reference current reaches the
         cosine.
     reference_temperature_K : float
         T_0, positive.
-    extrapolation : float
-        How far past the cone of calibrated directions answers may go, in radians, from 0 up;
-        infinity for anywhere.
 
     Attributes
     ----------
@@ -50,15 +44,6 @@ class WarmCells(WeightedCells):
         Its standard error.
     reference_ : ndarray, shape (K,)
         Current of every cell under perpendicular sunlight at T_0, in units of the features.
-    quality_ : FitQuality
-        How good the fit is.
-    hull_ : Hull
-        Cone of the calibrated directions.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -80,10 +65,6 @@ class WarmCells(WeightedCells):
     hardly differ. Albedo is taken for Sun.
 
     Cost: 22 operations a cell, 32 a sample.
-
-    References
-    ----------
-    Zhang2022b; survey model:pano, eq:msfpano.
 
     Examples
     --------

@@ -12,6 +12,7 @@ from algorithms.angles import tangents_from_sun
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.parametric import ParametricModel
 from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
+from algorithms.documented import documented
 from algorithms.inputs import require_samples
 from algorithms.models.nominal_projection import (
     POSITIONS,
@@ -21,6 +22,7 @@ from algorithms.models.nominal_projection import (
 from algorithms.row_arithmetic import normalised
 
 
+@documented
 @dataclass
 class BuiltPinhole(ParametricModel):
     """Pinhole with everything an assembly can do to it: seven numbers and a mirror.
@@ -28,38 +30,12 @@ class BuiltPinhole(ParametricModel):
     The detector may be turned about the boresight, mounted from its back, and have another scale
     along either axis; the head may be tilted. What no such sensor explains is left as residual.
 
-    Parameters
-    ----------
-    focal_length_mm : float
-        Nominal distance from aperture to detector, positive.
-    unit_mm : float
-        Displacement of the spot for one unit of feature, positive: the pixel pitch for spots,
-        half the aperture's width for balances.
-    centre : tuple of two float
-        Nominal feature (x, y) of the spot when the Sun is on the boresight.
-    extrapolation : float
-        How far past the convex hull of the calibrated features answers may go, as a share of its
-        half width, from 0 up; infinity for anywhere.
-
     Attributes
     ----------
     mirrored_ : bool
         Whether x runs the other way.
     vector_ : ndarray, shape (7,)
         Focal lengths along x and y in mm, rotation and the two tilts in degrees, centre (x, y).
-    covariance_ : ndarray, shape (7, 7)
-        Of their errors.
-    condition_ : float
-        Of the equations at the solution.
-    quality_ : FitQuality
-        Residuals, and the seven with their standard errors by name.
-    hull_ : Hull
-        Of the calibrated features.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -68,16 +44,10 @@ class BuiltPinhole(ParametricModel):
     R_z(rotation) t / |t|``. In a narrow field a tilt moves the spots as the centre does; their
     standard errors then say so, and directions hold all the same.
 
-    Shapes: features ``(x, y)`` (N, 2), in px or dimensionless, to unit vectors (N, 3).
-
     Failure: a NaN row for a NaN feature row and outside the hull. fit raises UnusableDataError
     below 4 samples, where they do not settle the parameters, or do not belong together.
 
     Cost: 25 operations and one root a sample; the fit, some ten times fifteen passes.
-
-    References
-    ----------
-    Survey model:spm, model:lsq, eq:stdproj.
 
     Examples
     --------

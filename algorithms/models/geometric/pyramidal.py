@@ -18,6 +18,7 @@ from algorithms.contract import (
     UnsuitableDesignError,
     UnusableDataError,
 )
+from algorithms.documented import documented
 from algorithms.inputs import require_samples
 from algorithms.models.geometric.detector_faces import (
     UNIT_TOLERANCE,
@@ -30,6 +31,7 @@ from algorithms.row_arithmetic import normalised
 Coefficient = Literal["common", "each"]
 
 
+@documented
 @dataclass
 class RegularPyramid(FacesModel):
     """Each component of the Sun vector is the signals' mean, weighted by the faces' normals.
@@ -49,23 +51,11 @@ class RegularPyramid(FacesModel):
     dark_fraction : float
         Share of the row's largest signal, in [0, 1), up to which a face counts as dark: what dark
         current and stray light may look like.
-    extrapolation : float
-        How far past the cone of calibrated directions answers may go, in radians, from 0 up;
-        infinity for anywhere.
 
     Attributes
     ----------
     coefficients_ : ndarray, shape (M,)
         xi of every face: cosine of incidence per unit of signal.
-    quality_ : FitQuality
-        How good the fit is.
-    hull_ : Hull
-        Cone of the directions it gives for the calibration.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -83,10 +73,6 @@ class RegularPyramid(FacesModel):
     raises UnusableDataError where no sample lights all faces.
 
     Cost: 6 operations a face and one root a sample.
-
-    References
-    ----------
-    Wang2019; survey model:pyra, eq:msfpyra1, eq:msfpyra2.
 
     Examples
     --------

@@ -9,10 +9,12 @@ import numpy as np
 
 from algorithms.calibration.calibrated import CalibratedModel, Columns
 from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
+from algorithms.documented import documented
 from algorithms.models.geometric.detector_faces import Normals, require_square_pairs, row_sums
 from algorithms.row_arithmetic import normalised
 
 
+@documented
 @dataclass
 class SolarPanels(CalibratedModel):
     """Sum of the lit panels' normals, each weighted by its current, scaled to length one.
@@ -37,11 +39,6 @@ class SolarPanels(CalibratedModel):
     hull_ : Hull
         Without sides.
 
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
-
     Notes
     -----
     Implements: eq:msfsc (model:solarpanel, Nurgizat2021): ``n = sum_i n_i I_i / sqrt(sum_i
@@ -58,10 +55,6 @@ class SolarPanels(CalibratedModel):
     result.
 
     Cost: 40 operations and one root a sample.
-
-    References
-    ----------
-    Nurgizat2021; survey model:solarpanel, eq:msfsc.
 
     Examples
     --------

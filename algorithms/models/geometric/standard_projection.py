@@ -9,6 +9,7 @@ import numpy as np
 
 from algorithms.calibration.calibrated import CalibratedModel, Columns
 from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
+from algorithms.documented import documented
 from algorithms.models.nominal_projection import (
     POSITIONS,
     nominal_projection,
@@ -16,6 +17,7 @@ from algorithms.models.nominal_projection import (
 )
 
 
+@documented
 @dataclass
 class StandardProjection(CalibratedModel):
     """Direction from the aperture's centre through the spot, by the nominal geometry.
@@ -27,11 +29,6 @@ class StandardProjection(CalibratedModel):
     ----------
     focal_length_mm : float
         Distance h from aperture to detector, positive.
-    unit_mm : float
-        Displacement of the spot for one unit of feature, positive: the pixel pitch s for spots,
-        half the aperture's width d for balances.
-    centre : tuple of two float
-        Feature (x, y) of the spot when the Sun is on the boresight.
 
     extrapolation : float
         As `CalibratedModel` has it; a drawing holds everywhere, whatever was calibrated.
@@ -42,11 +39,6 @@ class StandardProjection(CalibratedModel):
         How many calibration samples there were, and how far off the drawing is.
     hull_ : Hull
         Without sides.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -60,10 +52,6 @@ class StandardProjection(CalibratedModel):
     Failure: a NaN row for a NaN feature row.
 
     Cost: 11 operations a sample.
-
-    References
-    ----------
-    deBoer2013; survey model:spm, eq:stdproj, alg:VB.
 
     Examples
     --------

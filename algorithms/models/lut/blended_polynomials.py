@@ -22,6 +22,7 @@ from algorithms.contract import (
     SensorGeometry,
     UnusableDataError,
 )
+from algorithms.documented import documented
 from algorithms.inputs import require_positive, require_samples
 from algorithms.models.lut.error_tables import (
     MAX_NODES,
@@ -48,6 +49,7 @@ DEGREES = (2, 4, 6, 8, 12)
 """Of each row, tried where none is given; the study's is the last."""
 
 
+@documented
 @dataclass
 class BlendedPolynomials(CalibratedModel):
     """Nominal angles corrected by polynomials of one angle, blended between rows of the other.
@@ -57,13 +59,6 @@ class BlendedPolynomials(CalibratedModel):
 
     Parameters
     ----------
-    focal_length_mm : float
-        Nominal distance from aperture to detector, positive.
-    unit_mm : float
-        Displacement of the spot for one unit of feature, positive: the pixel pitch for spots,
-        half the aperture's width for balances.
-    centre : tuple of two float
-        Nominal feature (x, y) of the spot when the Sun is on the boresight.
     interval_deg : float
         Distance in alpha between rows, positive; the study's is 1.
     degree : int, optional
@@ -72,9 +67,6 @@ class BlendedPolynomials(CalibratedModel):
     smoothing : float, optional
         Weight of the squared second differences of coefficients from row to row against one
         sample's squared error, positive; 1e-3 only fills rows no sample settles. None: chosen.
-    extrapolation : float
-        How far past the convex hull of the calibrated features answers may go, as a share of its
-        half width, from 0 up; infinity for anywhere.
 
     Attributes
     ----------
@@ -88,15 +80,6 @@ class BlendedPolynomials(CalibratedModel):
         Given or chosen.
     validated_deg_ : float or None
         Error on samples left out, where they chose a setting.
-    quality_ : FitQuality
-        How good the fit is.
-    hull_ : Hull
-        Of the calibrated features.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -105,8 +88,6 @@ class BlendedPolynomials(CalibratedModel):
     rows are fitted at once to samples anywhere, in Chebyshev polynomials, which span the same
     functions without the loss of digits.
 
-    Shapes: features ``(x, y)`` (N, 2), in px or dimensionless, to unit vectors (N, 3).
-
     Failure: a NaN row for a NaN feature row, outside the hull, or where an angle reaches 90
     degrees. fit raises UnusableDataError below 2 (n + 1) samples, where they do not settle a
     polynomial on two rows, where they settle the rows so badly that rounding would show, or past
@@ -114,10 +95,6 @@ class BlendedPolynomials(CalibratedModel):
 
     Cost: 12 (n + 1) operations a sample, and 2 a facet of the hull; the fit solves one sparse
     system in A (n + 1) unknowns.
-
-    References
-    ----------
-    He2013; survey model:lut, eq:stdproj.
 
     Examples
     --------

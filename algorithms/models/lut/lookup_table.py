@@ -14,6 +14,7 @@ from algorithms.calibration.calibrated import CalibratedModel, Columns
 from algorithms.calibration.hull import spacing
 from algorithms.calibration.quality import Setting
 from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
+from algorithms.documented import documented
 from algorithms.inputs import require_positive
 from algorithms.models.lut.error_tables import (
     MAX_BAND,
@@ -35,6 +36,7 @@ from algorithms.models.nominal_projection import (
 from algorithms.models.non_physical.regression_axes import sun_from_target
 
 
+@documented
 @dataclass
 class ErrorTable(CalibratedModel):
     """Nominal angles corrected by a table of their errors, interpolated between its nodes.
@@ -44,22 +46,12 @@ class ErrorTable(CalibratedModel):
 
     Parameters
     ----------
-    focal_length_mm : float
-        Nominal distance from aperture to detector, positive.
-    unit_mm : float
-        Displacement of the spot for one unit of feature, positive: the pixel pitch for spots,
-        half the aperture's width for balances.
-    centre : tuple of two float
-        Nominal feature (x, y) of the spot when the Sun is on the boresight.
     interval_deg : float
         Distance between nodes, positive; the study's is 1.
     smoothing : float, optional
         Weight of the table's squared second differences against one sample's squared error,
         positive; 1e-3 only fills nodes that no sample settles. None: chosen from the calibration
         samples by cross-validation, on a table as coarse as their poses.
-    extrapolation : float
-        How far past the convex hull of the calibrated features answers may go, as a share of its
-        half width, from 0 up; infinity for anywhere.
 
     Attributes
     ----------
@@ -71,15 +63,6 @@ class ErrorTable(CalibratedModel):
         Given or chosen.
     validated_deg_ : float or None
         Error on samples left out, where they chose the smoothing.
-    quality_ : FitQuality
-        How good the fit is.
-    hull_ : Hull
-        Of the calibrated features.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -87,18 +70,12 @@ class ErrorTable(CalibratedModel):
     eq:stdproj, e bilinear between the nodes of a two-dimensional table of 1 degree interval. The
     nodes are the least-squares ones for samples anywhere, so repeats are averaged.
 
-    Shapes: features ``(x, y)`` (N, 2), in px or dimensionless, to unit vectors (N, 3).
-
     Failure: a NaN row for a NaN feature row, outside the hull, or where an angle reaches 90
     degrees. fit raises UnusableDataError below 3 samples, for samples on one line, or for a table
     past 250,000 nodes.
 
     Cost: 40 operations a sample, and 2 a facet of the hull; the fit solves one sparse system in
     A B unknowns.
-
-    References
-    ----------
-    He2013; survey model:lut, eq:stdproj.
 
     Examples
     --------

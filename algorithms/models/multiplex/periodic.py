@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from algorithms.calibration.calibrated import CalibratedModel, Columns
 from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
+from algorithms.documented import documented
 from algorithms.models.multiplex.dial_code import (
     NEEDS,
     Axes,
@@ -22,6 +23,7 @@ from algorithms.models.multiplex.dial_code import (
 _START = (0.0, 0.0, 0.0, 1.0, 0.0)
 
 
+@documented
 @dataclass
 class PeriodicCode(CalibratedModel):
     """Coarse cell and fine phase of each dial, its periodic error and its assembly taken out.
@@ -32,22 +34,13 @@ class PeriodicCode(CalibratedModel):
 
     Parameters
     ----------
-    bits : int
-        Coarse tracks of each dial, in [1, 16].
     cell_mm : float
         Length of a Gray cell, positive, below `period_mm`.
     period_mm : float
         Period of the fine rows.
-    focal_length_mm : float
-        Nominal distance from the slit to the dials, positive.
-    axes : tuple of {"x", "y"}
-        Along which detector axis each dial lies, in the order of the features.
     smallest_contrast : float
         Amplitude of the fine rows over their mean, in [0, 1), below which they say nothing; a
         slit of half a period gives 2/pi, light without a pattern 0.
-    extrapolation : float
-        How far past the cone of calibrated directions answers may go, in radians, from 0 up;
-        infinity for anywhere.
 
     Attributes
     ----------
@@ -56,15 +49,6 @@ class PeriodicCode(CalibratedModel):
         radians.
     conversion_ : ndarray, shape (2, 4)
         (a, b, c, d) of the dials along x and y, a = -1.
-    quality_ : FitQuality
-        How good the fit is.
-    hull_ : Hull
-        Cone of the calibrated directions.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -85,10 +69,6 @@ class PeriodicCode(CalibratedModel):
     raises UnusableDataError where the samples do not settle the ten parameters.
 
     Cost: 2 arc tangents, 2 sines and 60 operations a sample.
-
-    References
-    ----------
-    Fan2013; survey model:periodic, eq:pamulti, eq:fourier.
 
     Examples
     --------

@@ -17,10 +17,12 @@ from algorithms.contract import (
     SensorGeometry,
     UnsuitableDesignError,
 )
+from algorithms.documented import documented
 from algorithms.inputs import require_positive
 from algorithms.models.geometric.single_slit import DeflectedSlits
 
 
+@documented
 @dataclass
 class ReticlePhase(DeflectedSlits):
     """A reticle of equal slits over a line of pixels, placed by the phase of all of its light.
@@ -30,24 +32,9 @@ class ReticlePhase(DeflectedSlits):
 
     Parameters
     ----------
-    focal_length_mm : float
-        Nominal distance from the slits to the lines, positive.
-    pixel_pitch_mm : float
-        Distance of two pixels, positive.
-    centre_px : tuple of two float
-        Spot (x, y) when the Sun is on the boresight.
-    line_axes : tuple of {"x", "y"}
-        The detector axis along which each of the two lines lies.
     slits : tuple of (float, float, float)
         Position mm, slant deg and width mm of each slit over a line; equal, on one
         raster without gaps.
-    cover_glass : tuple of (float, float)
-        Thickness mm and index of each plate between slits and lines.
-    extrapolation : float
-        How far past the cone of calibrated directions answers may go, in radians, from 0 up;
-        infinity for anywhere.
-    line_pixels : int
-        Pixels of a line, positive.
     smallest_contrast : float
         Length of the phase over the light, in [0, 1), below which it says nothing;
         a half-open reticle gives 0.64 less what diffraction and the Sun's width take.
@@ -57,19 +44,6 @@ class ReticlePhase(DeflectedSlits):
     vector_ : ndarray, shape (10,)
         Of the assembly, as of the slit model: focal length, deflection and inclination of each
         line, mm and degrees; centre (x, y) in px; tilts about x and y in degrees.
-    covariance_ : ndarray, shape (10, 10)
-        Of their errors.
-    condition_ : float
-        Of the equations at the solution.
-    quality_ : FitQuality
-        Residuals, and the ten with their standard errors by name.
-    hull_ : Hull
-        Cone of the calibrated directions.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----

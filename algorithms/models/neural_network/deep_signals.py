@@ -19,6 +19,7 @@ from algorithms.contract import (
     UnsuitableDesignError,
     UnusableDataError,
 )
+from algorithms.documented import documented
 from algorithms.models.neural_network.direction_errors import (
     Correction,
     combined,
@@ -32,6 +33,7 @@ MAX_SIGNALS = 8
 """Every signal has a unit of the first layer that sees all others."""
 
 
+@documented
 @dataclass
 class DeepSignals(FacesModel):
     """A Sun direction from all signals in common proportion, corrected by a deep network.
@@ -46,13 +48,6 @@ class DeepSignals(FacesModel):
         Detectors K, 2 to 8.
     hidden : int
         Units of each of the two hidden layers, 1 to 40.
-    restarts : int
-        Trainings from other weights, 1 to 50, of which the best on samples held out is kept.
-    seed : int
-        Of the weights that trainings start from, not negative; the same fit for the same seed.
-    extrapolation : float
-        How far past the cone of calibrated directions answers may go, in radians, from 0 up;
-        infinity for anywhere.
 
     Attributes
     ----------
@@ -65,13 +60,6 @@ class DeepSignals(FacesModel):
         The network, with its error on the samples held out.
     quality_ : FitQuality
         Residuals, error on samples held out, units and steps.
-    hull_ : Hull
-        Cone of the directions it gives for the calibration.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -87,8 +75,6 @@ class DeepSignals(FacesModel):
     Marquardt's method on four fifths of the poses until the error on the other fifth, in blocks, no
     longer falls.
 
-    Shapes: signals (N, K), in any common unit, to unit vectors (N, 3), all directions.
-
     Failure: a NaN row for a NaN feature row, and outside the cone. What the calibration never
     showed, such as the Earth's light to one made on the ground, is corrected wrongly. Faces that
     all see Sun and Earth measure little but the sum of both: where the Earth stands differently for
@@ -97,10 +83,6 @@ class DeepSignals(FacesModel):
     UnsuitableDesignError for more than eight detectors.
 
     Cost: 1200 operations a sample for four signals. A fit takes some 10 ms a sample and start.
-
-    References
-    ----------
-    Soken2023; survey model:nn, model:dnn.
 
     Examples
     --------

@@ -11,6 +11,7 @@ import numpy as np
 from algorithms.calibration.calibrated import CalibratedModel, Columns
 from algorithms.calibration.quality import Setting
 from algorithms.contract import AboutModel, Floats
+from algorithms.documented import documented
 from algorithms.models.neural_network.direction_errors import (
     Correction,
     combined,
@@ -26,6 +27,7 @@ from algorithms.row_arithmetic import normalised
 _CUBIC = tuple((total - j, j) for total in range(4) for j in range(total + 1))
 
 
+@documented
 @dataclass
 class DeepSurface(CalibratedModel):
     """Cubic surfaces of both features, and a deep network for what they leave.
@@ -37,18 +39,9 @@ class DeepSurface(CalibratedModel):
     ----------
     hidden : int
         Units of each of the two hidden layers, 1 to 40.
-    restarts : int
-        Trainings from other weights, 1 to 50, of which the best on samples held out is kept.
-    seed : int
-        Of the weights that trainings start from, not negative; the same fit for the same seed.
-    extrapolation : float
-        How far past the convex hull of the calibrated features answers may go, as a share of its
-        half width, from 0 up; infinity for anywhere. Further out a network says nothing.
 
     Attributes
     ----------
-    middle_, half_range_ : ndarray, shape (2,)
-        The features' scaling ``u = (feature - middle) / half_range`` onto [-1, 1].
     coefficients_ : ndarray, shape (10, 2)
         Of ``u_x^i u_y^j``, i + j <= 3, by total degree and then by j, in ``tan(beta)`` and
         ``tan(alpha)``.
@@ -56,13 +49,6 @@ class DeepSurface(CalibratedModel):
         The network, with its error on the samples held out.
     quality_ : FitQuality
         Residuals, error on samples held out, units and steps.
-    hull_ : Hull
-        Of the calibrated features.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -74,17 +60,11 @@ class DeepSurface(CalibratedModel):
     Marquardt's method on four fifths of the poses until the error on the other fifth, in blocks, no
     longer falls.
 
-    Shapes: features ``(x, y)`` (N, 2), in px or dimensionless, to unit vectors (N, 3).
-
     Failure: a NaN row for a NaN feature row, or outside the hull. fit raises UnusableDataError for
     fewer poses than the network has weights an output, 60 for eight units, or where they lie on one
     line.
 
     Cost: 1000 operations a sample. A fit takes some 5 ms a pose and start.
-
-    References
-    ----------
-    Sun2023; Soken2023; survey model:nn, model:dnn.
 
     Examples
     --------

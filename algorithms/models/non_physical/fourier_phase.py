@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from algorithms.calibration.calibrated import CalibratedModel, Columns
 from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
+from algorithms.documented import documented
 from algorithms.models.multiplex.dial_code import (
     NEEDS,
     Axes,
@@ -22,6 +23,7 @@ from algorithms.models.multiplex.dial_code import (
 MAX_HARMONICS = 16
 
 
+@documented
 @dataclass
 class FourierPhase(CalibratedModel):
     """Coarse cell and fine phase of each dial, the phase error a Fourier series of the phase.
@@ -32,24 +34,15 @@ class FourierPhase(CalibratedModel):
 
     Parameters
     ----------
-    bits : int
-        Coarse tracks of each dial, in [1, 16].
     cell_mm : float
         Length of a Gray cell, positive, below `period_mm`.
     period_mm : float
         Period of the fine rows.
-    focal_length_mm : float
-        Nominal distance from the slit to the dials, positive.
-    axes : tuple of {"x", "y"}
-        Along which detector axis each dial lies, in the order of the features.
     smallest_contrast : float
         Amplitude of the fine rows over their mean, in [0, 1), below which they say nothing; a
         slit of half a period gives 2/pi, light without a pattern 0.
     harmonics : int
         Terms of the series, in [1, 16]; 4 reach the first one that plain windows cause.
-    extrapolation : float
-        How far past the cone of calibrated directions answers may go, in radians, from 0 up;
-        infinity for anywhere.
 
     Attributes
     ----------
@@ -59,15 +52,6 @@ class FourierPhase(CalibratedModel):
     conversion_ : ndarray, shape (3, 3)
         Projection H: ``(tan(beta), tan(alpha), 1)`` in proportion to ``H (T_x, T_y, 1)``,
         ``H_33 = 1``.
-    quality_ : FitQuality
-        How good the fit is.
-    hull_ : Hull
-        Cone of the calibrated directions.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -88,10 +72,6 @@ class FourierPhase(CalibratedModel):
     UnusableDataError where the samples do not settle every parameter.
 
     Cost: 2 arc tangents, 4 sines a harmonic and 60 operations a sample.
-
-    References
-    ----------
-    Fan2013; survey model:fourier, eq:fourier, eq:pamulti.
 
     Examples
     --------

@@ -17,6 +17,7 @@ from algorithms.contract import (
     SensorGeometry,
     UnusableDataError,
 )
+from algorithms.documented import documented
 from algorithms.models.geometric.detector_faces import (
     Normals,
     opposite_pairs,
@@ -27,6 +28,7 @@ from algorithms.models.non_physical.trigonometric import FEWEST_LIT, SMALLEST_CO
 from algorithms.row_arithmetic import normalised
 
 
+@documented
 @dataclass
 class AveragedPanelCurves(FacesModel):
     """One trigonometric curve for both panels of a pair; the lit one's gives an angle, its sign.
@@ -39,9 +41,6 @@ class AveragedPanelCurves(FacesModel):
     face_normals : tuple of six vectors
         Unit normals of the panels in the order of the features: three pairs of opposite ones,
         the pairs square to each other, in any order and turned any way.
-    extrapolation : float
-        How far past the cone of calibrated directions answers may go, in radians, from 0 up;
-        infinity for anywhere.
 
     Attributes
     ----------
@@ -52,13 +51,6 @@ class AveragedPanelCurves(FacesModel):
         Their standard errors.
     quality_ : FitQuality
         Residuals, and the nine with their standard errors by pair from 0.
-    hull_ : Hull
-        Cone of the directions it gives for the calibration.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -78,10 +70,6 @@ class AveragedPanelCurves(FacesModel):
     curve turns back among them.
 
     Cost: 30 operations and 4 roots a sample.
-
-    References
-    ----------
-    Richie2015; survey model:trig.
 
     Examples
     --------

@@ -18,6 +18,7 @@ from algorithms.contract import (
     SensorGeometry,
     UnusableDataError,
 )
+from algorithms.documented import documented
 from algorithms.models.geometric.detector_faces import (
     Normals,
     opposite_pairs,
@@ -33,6 +34,7 @@ FEWEST_LIT = 8
 """Samples that light a panel below which its opposite speaks for it."""
 
 
+@documented
 @dataclass
 class TrigonometricPanels(FacesModel):
     """Each panel's signal a cosine with amplitude, phase and offset; the lit ones give the Sun.
@@ -45,9 +47,6 @@ class TrigonometricPanels(FacesModel):
     face_normals : tuple of six vectors
         Unit normals of the panels in the order of the features: three pairs of opposite ones,
         the pairs square to each other, in any order and turned any way.
-    extrapolation : float
-        How far past the cone of calibrated directions answers may go, in radians, from 0 up;
-        infinity for anywhere.
 
     Attributes
     ----------
@@ -60,13 +59,6 @@ class TrigonometricPanels(FacesModel):
         Standard errors of offset and amplitudes; NaN for a panel that its opposite speaks for.
     quality_ : FitQuality
         Residuals, and offsets and amplitudes with standard errors by panel from 0.
-    hull_ : Hull
-        Cone of the directions it gives for the calibration.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -85,10 +77,6 @@ class TrigonometricPanels(FacesModel):
     or by some that do not settle its cosine, or where three cosines lie in one plane.
 
     Cost: 40 operations, 9 looked-up numbers and one root a sample.
-
-    References
-    ----------
-    Richie2015; survey model:trig.
 
     Examples
     --------

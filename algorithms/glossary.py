@@ -1,0 +1,50 @@
+"""Parameters and attributes that unrelated classes share, described once; `documented` reads them.
+
+Only docstrings here: what explains a parameter does not enter the digest of what it computes.
+
+Parameters
+----------
+focal_length_mm : float
+    Distance from mask or lens to detector, positive; nominal where the model fits it.
+unit_mm : float
+    Displacement of the spot for one unit of feature, positive: the pixel pitch for spots, half
+    the aperture's width for balances.
+centre : tuple of two float
+    Feature (x, y) of the spot when the Sun is on the boresight; nominal where the model fits it.
+face_normals : tuple of K vectors
+    Unit normals of the faces in the order of the features, K at least 3, spanning space.
+pixel_pitch_mm : float
+    Distance of two pixels, positive.
+line_axes : tuple of {"x", "y"}
+    The detector axis along which each line lies, in the order of a profile's columns.
+line_pixels : int
+    Pixels of a line, at least 1.
+axes : tuple of {"x", "y"}
+    Along which detector axis each dial lies, in the order of the features.
+bits : int
+    Coarse tracks of each dial, in [1, 16].
+light : {"spot", "any"}
+    What the light looks like: one whole, compact and symmetric spot, anything else being no
+    answer; or streaks, rings and stars too, as lenses and slits make them.
+longest_px : float or None
+    Longest half axis that the outline of one spot has, px, positive; None where no design tells.
+    See `algorithms.extractors.frames.mirror.extractor`.
+saturation : float or None
+    A reading that reaches it says only "at least": the row is NaN.
+iterations : int
+    Steps, at least 1, after which the fit is given up.
+restarts : int
+    Trainings from other weights, 1 to 50, of which the best on samples held out is kept.
+seed : int
+    Of the weights that trainings start from, not negative; the same fit for the same seed.
+
+Attributes
+----------
+middle_, half_range_ : ndarray, shape (2,)
+    The features' scaling ``u = (feature - middle) / half_range`` onto [-1, 1].
+
+Raises
+------
+ValueError
+    If a parameter is not as said above; the message names it.
+"""
