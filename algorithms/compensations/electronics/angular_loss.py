@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import ClassVar, Literal, Self, get_args
+from typing import ClassVar, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,6 @@ from algorithms.contract import (
     AboutCompensation,
     FeatureKind,
     Floats,
-    SensorGeometry,
     UnusableDataError,
 )
 from algorithms.documented import documented
@@ -114,13 +113,6 @@ class AngularLoss(CalibratedCompensation):
                 f"{self.about.name}: response must be one of {', '.join(get_args(Response))}; "
                 f"got {self.response!r}"
             )
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
-        """Return the published compensation of the sensor's faces."""
-        cls.about.require_kind(kind)
-        geometry.require("face_normals", by=cls.about.name)
-        return cls(geometry.face_normals or ())
 
     def columns(self) -> int:
         """One a face."""

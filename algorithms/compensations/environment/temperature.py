@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import numpy as np
 
@@ -13,7 +13,6 @@ from algorithms.contract import (
     AboutCompensation,
     FeatureKind,
     Floats,
-    SensorGeometry,
     UnusableDataError,
 )
 from algorithms.documented import documented
@@ -101,13 +100,6 @@ class TemperatureDrift(CalibratedCompensation):
 
     def __post_init__(self) -> None:
         require_normals(self.face_normals, self.about.name)
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
-        """Return the compensation of the sensor's faces."""
-        cls.about.require_kind(kind)
-        geometry.require("face_normals", by=cls.about.name)
-        return cls(geometry.face_normals or ())
 
     def columns(self) -> int:
         """One a face."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Literal, Self
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,7 +14,6 @@ from algorithms.contract import (
     FeatureKind,
     Floats,
     Observation,
-    SensorGeometry,
 )
 from algorithms.documented import documented
 from algorithms.extractors.profiles.slit_lines import dark_level
@@ -70,12 +69,6 @@ class DirectProfile(Extractor):
     def features(self) -> tuple[str, ...]:
         """One name a pixel, line after line."""
         return _pixel_names(self.line_axes, self.line_pixels)
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry) -> Self:
-        """All pixels of the sensor's lines."""
-        geometry.require(*cls.about.needs, by=cls.about.name)
-        return cls(geometry.line_axes or (), geometry.line_pixels or 0)
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Signals (N, A L) of profiles (N, A L); ValueError on wrong input."""
@@ -142,12 +135,6 @@ class ThresholdProfile(Extractor):
     def features(self) -> tuple[str, ...]:
         """One name a pixel, line after line."""
         return _pixel_names(self.line_axes, self.line_pixels)
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry) -> Self:
-        """All pixels of the sensor's lines."""
-        geometry.require(*cls.about.needs, by=cls.about.name)
-        return cls(geometry.line_axes or (), geometry.line_pixels or 0)
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Signals (N, A L) of profiles (N, A L); ValueError on wrong input."""

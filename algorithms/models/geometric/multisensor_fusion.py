@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import numpy as np
 
@@ -12,7 +12,6 @@ from algorithms.contract import (
     AboutModel,
     FeatureKind,
     Floats,
-    SensorGeometry,
 )
 from algorithms.documented import documented
 from algorithms.models.geometric.detector_faces import axis_faces
@@ -85,13 +84,6 @@ class SixFaces(CalibratedModel):
     def __post_init__(self) -> None:
         super().__post_init__()
         axis_faces(self.face_normals, self.about.name)
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
-        """Return the model of the sensor's six faces."""
-        cls.about.require_kind(kind)
-        geometry.require("face_normals", by=cls.about.name)
-        return cls(geometry.face_normals or ())
 
     def columns(self) -> int:
         """Six faces."""

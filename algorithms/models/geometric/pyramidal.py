@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import ClassVar, Literal, Self, get_args
+from typing import ClassVar, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,6 @@ from algorithms.contract import (
     AboutModel,
     FeatureKind,
     Floats,
-    SensorGeometry,
     UnsuitableDesignError,
     UnusableDataError,
 )
@@ -115,16 +114,6 @@ class RegularPyramid(FacesModel):
             raise ValueError(
                 f"{self.about.name}: dark_fraction must be in [0, 1); got {self.dark_fraction!r}"
             )
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
-        """Return the published model of the sensor's pyramid.
-
-        UnsuitableDesignError where it is none.
-        """
-        cls.about.require_kind(kind)
-        geometry.require("face_normals", by=cls.about.name)
-        return cls(geometry.face_normals or ())
 
     def columns(self) -> int:
         """One a face."""

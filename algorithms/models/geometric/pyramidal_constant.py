@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import numpy as np
 
@@ -13,7 +13,6 @@ from algorithms.contract import (
     AboutModel,
     FeatureKind,
     Floats,
-    SensorGeometry,
     UnsuitableDesignError,
     UnusableDataError,
 )
@@ -103,16 +102,6 @@ class SteadyPyramid(FacesModel):
             raise ValueError(
                 f"{self.about.name}: largest_misfit must be positive; got {self.largest_misfit!r}"
             )
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
-        """Return the model of the sensor's pyramid.
-
-        UnsuitableDesignError where it is none.
-        """
-        cls.about.require_kind(kind)
-        geometry.require("face_normals", by=cls.about.name)
-        return cls(geometry.face_normals or ())
 
     def columns(self) -> int:
         """One a face."""

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import numpy as np
 
 from algorithms.calibration.calibrated import CalibratedModel, Columns
-from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
+from algorithms.contract import AboutModel, FeatureKind, Floats
 from algorithms.documented import documented
 from algorithms.models.geometric.detector_faces import Normals, require_square_pairs, row_sums
 from algorithms.row_arithmetic import normalised
@@ -82,13 +82,6 @@ class SolarPanels(CalibratedModel):
     def __post_init__(self) -> None:
         super().__post_init__()
         self._normals()
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
-        """Return the model of the sensor's six panels."""
-        cls.about.require_kind(kind)
-        geometry.require("face_normals", by=cls.about.name)
-        return cls(geometry.face_normals or ())
 
     def columns(self) -> int:
         """Six panels."""

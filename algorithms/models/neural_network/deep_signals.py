@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import ClassVar, Self
 
@@ -10,7 +9,6 @@ import numpy as np
 
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.faces_model import FacesModel
-from algorithms.calibration.quality import Setting
 from algorithms.contract import (
     AboutModel,
     FeatureKind,
@@ -21,6 +19,7 @@ from algorithms.contract import (
 )
 from algorithms.documented import documented
 from algorithms.models.neural_network.direction_errors import (
+    Corrected,
     Correction,
     combined,
     learn_correction,
@@ -35,7 +34,7 @@ MAX_SIGNALS = 8
 
 @documented
 @dataclass
-class DeepSignals(FacesModel):
+class DeepSignals(Corrected, FacesModel):
     """A Sun direction from all signals in common proportion, corrected by a deep network.
 
     The network learns from the signals themselves how far the direction is off: by light from the
@@ -160,23 +159,6 @@ class DeepSignals(FacesModel):
             seed=self.seed,
             by=by,
         )
-
-    def settings(self) -> Mapping[str, Setting]:
-        """Give the units, and the steps at which the held-out error was least."""
-        return {"hidden": self.hidden, "steps": self.correction_.steps}
-
-    def validation_rms_deg(self) -> float:
-        """Error on the samples held out."""
-        return self.correction_.held_deg
-
-    def answer(self, features: Floats, context: Columns) -> Floats:
-        """Directions (N, 3) of signals (N, K)."""
-        del context
-        inputs = self._scaled(features)
-        return self.correction_.corrected(self._base(inputs), inputs)
-
-    def _scaled(self, features: Floats) -> Floats:
-        return np.asarray((features - self.middle_) / self.half_range_)
 
     def _base(self, inputs: Floats) -> Floats:
         """Directions (N, 3) before they are corrected."""

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import ClassVar
 
 import numpy as np
 
 from algorithms.calibration.calibrated import CalibratedModel, Columns
-from algorithms.calibration.quality import Setting
 from algorithms.contract import AboutModel, Floats
 from algorithms.documented import documented
 from algorithms.models.neural_network.direction_errors import (
+    Corrected,
     Correction,
     combined,
     learn_correction,
@@ -29,7 +28,7 @@ _CUBIC = tuple((total - j, j) for total in range(4) for j in range(total + 1))
 
 @documented
 @dataclass
-class DeepSurface(CalibratedModel):
+class DeepSurface(Corrected, CalibratedModel):
     """Cubic surfaces of both features, and a deep network for what they leave.
 
     The surfaces take up what is smooth, the network what is not: a spot that is cut off at the
@@ -120,23 +119,6 @@ class DeepSurface(CalibratedModel):
             seed=self.seed,
             by=by,
         )
-
-    def settings(self) -> Mapping[str, Setting]:
-        """Give the units, and the steps at which the held-out error was least."""
-        return {"hidden": self.hidden, "steps": self.correction_.steps}
-
-    def validation_rms_deg(self) -> float:
-        """Error on the samples held out."""
-        return self.correction_.held_deg
-
-    def answer(self, features: Floats, context: Columns) -> Floats:
-        """Directions (N, 3) of features (N, 2)."""
-        del context
-        inputs = self._scaled(features)
-        return self.correction_.corrected(self._base(inputs), inputs)
-
-    def _scaled(self, features: Floats) -> Floats:
-        return np.asarray((features - self.middle_) / self.half_range_)
 
     def _base(self, inputs: Floats) -> Floats:
         """Directions (N, 3) of the surfaces."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import numpy as np
 
@@ -14,7 +14,6 @@ from algorithms.contract import (
     AboutModel,
     FeatureKind,
     Floats,
-    SensorGeometry,
     UnusableDataError,
 )
 from algorithms.documented import documented
@@ -106,13 +105,6 @@ class AveragedPanelCurves(FacesModel):
     def __post_init__(self) -> None:
         super().__post_init__()
         require_square_pairs(self.face_normals, self.about.name)
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
-        """Return the model of the sensor's six panels."""
-        cls.about.require_kind(kind)
-        geometry.require("face_normals", by=cls.about.name)
-        return cls(geometry.face_normals or ())
 
     def columns(self) -> int:
         """Six panels."""

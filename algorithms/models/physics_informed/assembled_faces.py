@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import ClassVar, Literal, Self, get_args
+from typing import ClassVar, Literal, get_args
 
 import numpy as np
 
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.faces_model import FacesModel
 from algorithms.calibration.quality import Parameter
-from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
+from algorithms.contract import AboutModel, FeatureKind, Floats
 from algorithms.documented import documented
 from algorithms.inputs import require_positive
 from algorithms.models.geometric.detector_faces import Normals, require_normals
@@ -140,13 +140,6 @@ class AssembledFaces(FacesModel):
                 f"{self.about.name}: response must be one of {', '.join(get_args(Sharing))}; "
                 f"got {self.response!r}"
             )
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
-        """Return the model that starts from the sensor's drawing."""
-        cls.about.require_kind(kind)
-        geometry.require("face_normals", by=cls.about.name)
-        return cls(geometry.face_normals or ())
 
     def columns(self) -> int:
         """One a face."""
