@@ -31,6 +31,17 @@ longest_px : float or None
     See `algorithms.extractors.frames.mirror.extractor`.
 saturation : float or None
     A reading that reaches it says only "at least": the row is NaN.
+window_px : int or None
+    Odd side, at least 3, of a square window that starts on the brightest pixel and is moved onto
+    its own centroid until it stays; None sums the whole frame, as published.
+accuracy_px : float
+    Wanted accuracy dx of a position, at least 1e-4 px: sets the number of thresholds.
+disc_deg : float
+    Full angle of the Sun's disc, in (0, 10).
+cell_mm : float
+    Length of a Gray cell, positive, below `period_mm`.
+period_mm : float
+    Period of the fine rows.
 iterations : int
     Steps, at least 1, after which the fit is given up.
 restarts : int
@@ -42,6 +53,8 @@ Attributes
 ----------
 middle_, half_range_ : ndarray, shape (2,)
     The features' scaling ``u = (feature - middle) / half_range`` onto [-1, 1].
+validated_deg_ : float or None
+    Error on samples left out, where they chose a setting.
 
 Raises
 ------

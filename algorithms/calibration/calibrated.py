@@ -52,7 +52,7 @@ class CalibratedModel(Model):
     Attributes
     ----------
     quality_ : FitQuality
-        Residuals, parameters with standard errors, settings chosen.
+        Residuals, those of samples held out too, parameters with standard errors, settings chosen.
     hull_ : Hull
         Where answers are given: of the calibrated features where there are two, else the cone of
         the calibrated directions.

@@ -33,8 +33,6 @@ class SolarDiscBias(CalibratedCompensation):
     ----------
     focal_length_mm : float
         Distance h from mask to detector, positive.
-    disc_deg : float
-        Full angle of the Sun's disc, in (0, 10).
 
     Attributes
     ----------

@@ -50,8 +50,6 @@ class PinholeShadow(CalibratedCompensation):
         Of the mask, t, positive, less than twice the focal length.
     aperture_mm : float
         Its hole's diameter d, positive.
-    disc_deg : float
-        Full angle of the Sun's disc, in (0, 10).
 
     Attributes
     ----------
@@ -81,9 +79,8 @@ class PinholeShadow(CalibratedCompensation):
     Examples
     --------
     >>> import numpy as np
-    >>> from algorithms.angles import sun_from_angles
-    >>> steps = [-40, -20, 0, 20, 40]
-    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> from algorithms.examples import sun_grid
+    >>> sun = sun_grid(range(-40, 41, 20))
     >>> tangents = sun[:, :2] / sun[:, 2:]
     >>> mask = PinholeShadow(1.0, unit_mm=1.0, thickness_mm=0.1, aperture_mm=0.2, disc_deg=2.0)
     >>> outlines = mask.seen(tangents, share=0.5)

@@ -56,9 +56,8 @@ class DoubleBalance(Extractor):
 
     Examples
     --------
-    >>> import numpy as np
-    >>> y, x = np.mgrid[:31, :33]
-    >>> frames = 200 * np.exp(-((x - 16.3) ** 2 + (y - 14.8) ** 2) / 6)[None]
+    >>> from algorithms.examples import spot_frame
+    >>> frames = spot_frame(16.3, 14.8, 31, 33)
     >>> DoubleBalance().extract(frames).round(2)
     array([[16.29, 14.8 ]])
     """

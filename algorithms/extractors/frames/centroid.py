@@ -36,9 +36,6 @@ class BasicCentroid(Extractor):
     background : {"none", "border", "median"}
         Level subtracted from every pixel before the sums; residuals below it count negative, so
         that noise averages out. The published method subtracts nothing.
-    window_px : int or None
-        Odd side, at least 3, of a square window that starts on the brightest pixel and is moved
-        onto its own centroid until it stays; None sums the whole frame, as published.
 
     Notes
     -----
@@ -55,9 +52,8 @@ class BasicCentroid(Extractor):
 
     Examples
     --------
-    >>> import numpy as np
-    >>> y, x = np.mgrid[:21, :25]
-    >>> frames = 200 * np.exp(-((x - 12.3) ** 2 + (y - 9.8) ** 2) / 6)[None]
+    >>> from algorithms.examples import spot_frame
+    >>> frames = spot_frame(12.3, 9.8)
     >>> BasicCentroid().extract(frames).round(2)
     array([[12.3,  9.8]])
     >>> BasicCentroid(background="median").extract(frames + 50).round(2)
@@ -104,9 +100,6 @@ class ThresholdedCentroid(Extractor):
         light of the spot's rim.
     background : {"none", "border", "median"}
         Level subtracted from every pixel first. The published method subtracts nothing.
-    window_px : int or None
-        Odd side, at least 3, of a square window that starts on the brightest pixel and is moved
-        onto its own centroid until it stays; None sums the whole frame, as published.
 
     Notes
     -----
@@ -129,9 +122,8 @@ class ThresholdedCentroid(Extractor):
 
     Examples
     --------
-    >>> import numpy as np
-    >>> y, x = np.mgrid[:21, :25]
-    >>> frames = 200 * np.exp(-((x - 12.3) ** 2 + (y - 9.8) ** 2) / 6)[None]
+    >>> from algorithms.examples import spot_frame
+    >>> frames = spot_frame(12.3, 9.8)
     >>> ThresholdedCentroid().extract(frames + 50).round(2)
     array([[12.3,  9.8]])
     """
@@ -235,9 +227,8 @@ class FilteredCentroid(Extractor):
 
     Examples
     --------
-    >>> import numpy as np
-    >>> y, x = np.mgrid[:21, :25]
-    >>> frames = 200 * np.exp(-((x - 12.3) ** 2 + (y - 9.8) ** 2) / 6)[None]
+    >>> from algorithms.examples import spot_frame
+    >>> frames = spot_frame(12.3, 9.8)
     >>> FilteredCentroid(window_px=11).extract(frames).round(2)
     array([[12.29,  9.81]])
     """

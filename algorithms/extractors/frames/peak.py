@@ -38,9 +38,8 @@ class PixelMax(Extractor):
 
     Examples
     --------
-    >>> import numpy as np
-    >>> y, x = np.mgrid[:21, :25]
-    >>> frames = 200 * np.exp(-((x - 12.3) ** 2 + (y - 9.8) ** 2) / 6)[None]
+    >>> from algorithms.examples import spot_frame
+    >>> frames = spot_frame(12.3, 9.8)
     >>> PixelMax().extract(frames)
     array([[12., 10.]])
     """

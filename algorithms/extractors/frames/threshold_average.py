@@ -28,8 +28,6 @@ class MultipleThresholdCentroid(Extractor):
 
     Parameters
     ----------
-    accuracy_px : float
-        Wanted accuracy dx of a position, at least 1e-4 px: sets the number of thresholds.
     lowest, highest : float
         Fractions of the profile's height above its floor between which thresholds lie. Ours: the
         study leaves them open; noise must stay below the lowest, and the top is too flat to tell
@@ -56,9 +54,8 @@ class MultipleThresholdCentroid(Extractor):
 
     Examples
     --------
-    >>> import numpy as np
-    >>> y, x = np.mgrid[:21, :25]
-    >>> frames = 200 * np.exp(-((x - 12.3) ** 2 + (y - 9.8) ** 2) / 6)[None]
+    >>> from algorithms.examples import spot_frame
+    >>> frames = spot_frame(12.3, 9.8)
     >>> MultipleThresholdCentroid(crossing="linear").extract(frames).round(2)
     array([[12.3,  9.8]])
     """

@@ -50,11 +50,9 @@ class ProfileCentroid(SlitLines):
 
     Examples
     --------
-    >>> import numpy as np
-    >>> places = np.arange(80) - np.array([[43.3], [36.8]])
-    >>> profiles = 200 * np.clip(3.5 - abs(places), 0, 1).reshape(1, -1)
-    >>> lines = dict(line_axes=("x", "y"), line_pixels=80, slits=((0.0, 0.0, 6.0),))
-    >>> ProfileCentroid(**lines, reach_px=20.0, margin_px=2.0).extract(profiles).round(2)
+    >>> from algorithms.examples import slit_profiles
+    >>> profiles, design = slit_profiles(43.3, 36.8)
+    >>> ProfileCentroid(**design).extract(profiles).round(2)
     array([[43.3, 36.8]])
     """
 
@@ -112,11 +110,9 @@ class ProfileThresholdedCentroid(SlitLines):
 
     Examples
     --------
-    >>> import numpy as np
-    >>> places = np.arange(80) - np.array([[43.3], [36.8]])
-    >>> profiles = 200 * np.clip(3.5 - abs(places), 0, 1).reshape(1, -1)
-    >>> lines = dict(line_axes=("x", "y"), line_pixels=80, slits=((0.0, 0.0, 6.0),))
-    >>> method = ProfileThresholdedCentroid(**lines, reach_px=20.0, margin_px=2.0)
+    >>> from algorithms.examples import slit_profiles
+    >>> profiles, design = slit_profiles(43.3, 36.8)
+    >>> method = ProfileThresholdedCentroid(**design)
     >>> method.extract(profiles + 40).round(1)
     array([[43.4, 36.8]])
     """
@@ -162,8 +158,6 @@ class ProfileThresholdAverage(SlitLines):
 
     Parameters
     ----------
-    accuracy_px : float
-        Wanted accuracy dx of a position, at least 1e-4 px: sets the number of thresholds.
     lowest, highest : float
         Fractions of the light's height above dark between which thresholds lie, as on frames.
     crossing : {"pixel", "linear"}
@@ -186,11 +180,9 @@ class ProfileThresholdAverage(SlitLines):
 
     Examples
     --------
-    >>> import numpy as np
-    >>> places = np.arange(80) - np.array([[43.3], [36.8]])
-    >>> profiles = 200 * np.clip(3.5 - abs(places), 0, 1).reshape(1, -1)
-    >>> lines = dict(line_axes=("x", "y"), line_pixels=80, slits=((0.0, 0.0, 6.0),))
-    >>> method = ProfileThresholdAverage(**lines, reach_px=20.0, margin_px=2.0, crossing="linear")
+    >>> from algorithms.examples import slit_profiles
+    >>> profiles, design = slit_profiles(43.3, 36.8)
+    >>> method = ProfileThresholdAverage(**design, crossing="linear")
     >>> method.extract(profiles + 40).round(1)
     array([[43.4, 36.7]])
     """

@@ -68,11 +68,9 @@ class LinearPhase(SlitLines):
 
     Examples
     --------
-    >>> import numpy as np
-    >>> places = np.arange(80) - np.array([[43.3], [36.8]])
-    >>> profiles = 200 * np.clip(3.5 - abs(places), 0, 1).reshape(1, -1)
-    >>> lines = dict(line_axes=("x", "y"), line_pixels=80, slits=((0.0, 0.0, 6.0),))
-    >>> LinearPhase(**lines, reach_px=20.0, margin_px=2.0).extract(profiles).round(1)
+    >>> from algorithms.examples import slit_profiles
+    >>> profiles, design = slit_profiles(43.3, 36.8)
+    >>> LinearPhase(**design).extract(profiles).round(1)
     array([[43.3, 36.8]])
     """
 
@@ -145,9 +143,8 @@ class FrameLinearPhase(Extractor):
 
     Examples
     --------
-    >>> import numpy as np
-    >>> y, x = np.mgrid[:31, :33]
-    >>> frames = 200 * np.clip(5.5 - np.hypot(x - 16.3, y - 14.8), 0, 1)[None]
+    >>> from algorithms.examples import disc_frame
+    >>> frames = disc_frame(16.3, 14.8)
     >>> FrameLinearPhase(width_px=10.0).extract(frames).round(1)
     array([[16.3, 14.8]])
     """

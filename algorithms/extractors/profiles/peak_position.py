@@ -77,11 +77,9 @@ class PeakPositionEstimate(SlitLines):
 
     Examples
     --------
-    >>> import numpy as np
-    >>> places = np.arange(80) - np.array([[43.3], [36.8]])
-    >>> profiles = 200 * np.clip(3.5 - abs(places), 0, 1).reshape(1, -1)
-    >>> lines = dict(line_axes=("x", "y"), line_pixels=80, slits=((0.0, 0.0, 6.0),))
-    >>> PeakPositionEstimate(**lines, reach_px=20.0, margin_px=2.0).extract(profiles).round(1)
+    >>> from algorithms.examples import slit_profiles
+    >>> profiles, design = slit_profiles(43.3, 36.8)
+    >>> PeakPositionEstimate(**design).extract(profiles).round(1)
     array([[43.3, 36.8]])
     """
 
@@ -219,9 +217,8 @@ class FramePeakPositionEstimate(Extractor):
 
     Examples
     --------
-    >>> import numpy as np
-    >>> y, x = np.mgrid[:21, :25]
-    >>> frames = 200 * np.exp(-((x - 12.3) ** 2 + (y - 9.8) ** 2) / 6)[None]
+    >>> from algorithms.examples import spot_frame
+    >>> frames = spot_frame(12.3, 9.8)
     >>> FramePeakPositionEstimate(image="gaussian").extract(frames).round(2)
     array([[12.3,  9.8]])
     """

@@ -88,12 +88,10 @@ class SlitImage(SlitLines):
 
     Examples
     --------
-    >>> import numpy as np
-    >>> places = np.arange(80) - np.array([[43.3], [36.8]])
-    >>> profiles = 200 * np.clip(3.5 - abs(places), 0, 1).reshape(1, -1)
-    >>> lines = dict(line_axes=("x", "y"), line_pixels=80, slits=((0.0, 0.0, 6.0),))
-    >>> drawn = dict(reach_px=20.0, margin_px=2.0, height_px=50.0, pixel_mm=0.05)
-    >>> SlitImage(**lines, **drawn).extract(profiles).round(1)
+    >>> from algorithms.examples import slit_profiles
+    >>> profiles, design = slit_profiles(43.3, 36.8)
+    >>> drawn = dict(height_px=50.0, pixel_mm=0.05)
+    >>> SlitImage(**design, **drawn).extract(profiles).round(1)
     array([[43.3, 36.8]])
     """
 

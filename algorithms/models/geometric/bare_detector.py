@@ -46,9 +46,8 @@ class BareDetector(ForwardModel):
     Examples
     --------
     >>> import numpy as np
-    >>> from algorithms.angles import sun_from_angles
-    >>> steps = [-40, -20, 0, 20, 40]
-    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> from algorithms.examples import sun_grid
+    >>> sun = sun_grid(range(-40, 41, 20))
     >>> x, y = (sun[:, :2] / sun[:, 2:]).T
     >>> tilted = 200.0 * np.column_stack([x, y]) / (1.0 + 0.05 * x)[:, None]
     >>> model = BareDetector(focal_length_mm=2.0, unit_mm=0.01).fit(tilted, sun)

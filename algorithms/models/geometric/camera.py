@@ -54,10 +54,8 @@ class LensCamera(ForwardModel):
 
     Examples
     --------
-    >>> import numpy as np
-    >>> from algorithms.angles import sun_from_angles
-    >>> steps = [-30, -15, 0, 15, 30]
-    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> from algorithms.examples import sun_grid
+    >>> sun = sun_grid(range(-30, 31, 15))
     >>> tangents = sun[:, :2] / sun[:, 2:]
     >>> stretch = 1.0 - 0.1 * (tangents**2).sum(axis=1, keepdims=True)
     >>> model = LensCamera(focal_length_mm=3.0, unit_mm=0.01).fit(305.0 * stretch * tangents, sun)

@@ -67,10 +67,9 @@ class LeastSquaresGeometry(ParametricModel):
 
     Examples
     --------
-    >>> import numpy as np
-    >>> from algorithms.angles import angles_from_sun, sun_from_angles
-    >>> steps = [-20, 0, 20]
-    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> from algorithms.angles import angles_from_sun
+    >>> from algorithms.examples import sun_grid
+    >>> sun = sun_grid(range(-20, 21, 20))
     >>> spots = 212.0 * sun[:, :2] / sun[:, 2:] + (100.7, 79.5)  # 0.12 mm too long
     >>> model = LeastSquaresGeometry(focal_length_mm=2.0, unit_mm=0.01, centre=(100.0, 80.0))
     >>> round(model.fit(spots, sun).quality_.parameter("focal_length_error").value, 4)

@@ -53,10 +53,8 @@ class MultiSlit(SlitModel):
 
     Examples
     --------
-    >>> import numpy as np
-    >>> from algorithms.angles import sun_from_angles
-    >>> steps = [-40, -20, 0, 20, 40]
-    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> from algorithms.examples import sun_grid
+    >>> sun = sun_grid(range(-40, 41, 20))
     >>> spots = 24.5 * sun[:, :2] / sun[:, 2:]  # 1.225 mm over pixels of 50 um
     >>> lines = dict(line_axes=("x", "y"), slits=((-0.6, 0.0, 0.2), (0.7, 0.0, 0.2)))
     >>> model = MultiSlit(focal_length_mm=1.2, pixel_pitch_mm=0.05, centre_px=(0.0, 0.0), **lines)

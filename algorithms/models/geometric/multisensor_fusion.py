@@ -7,7 +7,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from algorithms.calibration.calibrated import CalibratedModel, Columns
+from algorithms.calibration.calibrated import Columns
+from algorithms.calibration.drawn import DrawnModel
 from algorithms.contract import (
     AboutModel,
     FeatureKind,
@@ -20,7 +21,7 @@ from algorithms.row_arithmetic import normalised
 
 @documented
 @dataclass
-class SixFaces(CalibratedModel):
+class SixFaces(DrawnModel):
     """Sun vector whose components are the brighter face of each opposite pair of a cube.
 
     Each face's signal is the cosine of its angle to the Sun, so the lit one of a pair is that
@@ -32,16 +33,6 @@ class SixFaces(CalibratedModel):
         Unit normals of the detectors in the order of the features; the six directions +x, -x,
         +y, -y, +z, -z, each once, in any order.
 
-    extrapolation : float
-        As `CalibratedModel` has it; a drawing holds everywhere, whatever was calibrated.
-
-    Attributes
-    ----------
-    quality_ : FitQuality
-        How many calibration samples there were, and how far off the drawing is.
-    hull_ : Hull
-        Without sides.
-
     Notes
     -----
     Implements: eq:msfstd (model:base, Allgeier2009): ``I_a = max(I_x-, I_x+)``, ``I_b =
@@ -49,8 +40,7 @@ class SixFaces(CalibratedModel):
     I_b^2 + I_c^2)``. The survey leaves the sign open: it is the side of the brighter face, plus
     when both are equal. A pair whose two signals are negative (noise in the dark) gives 0.
 
-    Shapes: signals (N, 6), in any common unit, to unit vectors (N, 3), all directions. Nothing is
-    learnt; fit checks its input and says how far off the drawing is.
+    Shapes: signals (N, 6), in any common unit, to unit vectors (N, 3), all directions.
 
     Failure: a NaN row for a NaN feature row, or where no signal is positive. Albedo on an unlit
     face is taken for Sun where it is the brighter of its pair.
@@ -79,7 +69,6 @@ class SixFaces(CalibratedModel):
     face_normals: tuple[tuple[float, float, float], ...]
 
     frontal: ClassVar[bool] = False
-    bounded: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -88,9 +77,6 @@ class SixFaces(CalibratedModel):
     def columns(self) -> int:
         """Six faces."""
         return 6
-
-    def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
-        """Learn nothing: the drawing is all there is."""
 
     def answer(self, features: Floats, context: Columns) -> Floats:
         """Directions (N, 3) of signals (N, 6)."""

@@ -58,10 +58,8 @@ class NSlit(SlitModel):
 
     Examples
     --------
-    >>> import numpy as np
-    >>> from algorithms.angles import sun_from_angles
-    >>> steps = [-40, -20, 0, 20, 40]
-    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> from algorithms.examples import sun_grid
+    >>> sun = sun_grid(range(-40, 41, 20))
     >>> spots = 100.0 * sun[:, :2] / sun[:, 2:]
     >>> slits = ((-3.0, 45.0, 0.1), (0.0, 0.0, 0.1), (3.0, 45.0, 0.1))
     >>> lines = dict(line_axes=("y",), slits=slits, centre_px=(0.0, 0.0))

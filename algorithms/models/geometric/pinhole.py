@@ -52,9 +52,8 @@ class BuiltPinhole(ParametricModel):
     Examples
     --------
     >>> import numpy as np
-    >>> from algorithms.angles import sun_from_angles
-    >>> steps = [-40, -20, 0, 20, 40]
-    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> from algorithms.examples import sun_grid
+    >>> sun = sun_grid(range(-40, 41, 20))
     >>> x, y = (200.0 * sun[:, :2] / sun[:, 2:]).T
     >>> turned = np.column_stack([y, x])  # a quarter turn and a mirror
     >>> model = BuiltPinhole(focal_length_mm=2.1, unit_mm=0.01).fit(turned, sun)

@@ -68,9 +68,8 @@ class QuadrantGap(ForwardModel):
     Examples
     --------
     >>> import numpy as np
-    >>> from algorithms.angles import sun_from_angles
-    >>> steps = [-30, -15, 0, 15, 30]
-    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> from algorithms.examples import sun_grid
+    >>> sun = sun_grid(range(-30, 31, 15))
     >>> model = QuadrantGap(focal_length_mm=1.0, aperture_width_mm=2.0, aperture_shape="round")
     >>> gapped = np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.2])
     >>> balances = model.cast(gapped, sun[:, :2] / sun[:, 2:])

@@ -54,9 +54,8 @@ class DeflectedSlits(SlitModel):
     Examples
     --------
     >>> import numpy as np
-    >>> from algorithms.angles import sun_from_angles
-    >>> steps = [-40, -20, 0, 20, 40]
-    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> from algorithms.examples import sun_grid
+    >>> sun = sun_grid(range(-40, 41, 20))
     >>> x, y = (sun[:, :2] / sun[:, 2:]).T
     >>> spots = 350.0 * np.column_stack([x / (1 - 0.02 * y), y])  # one end of x's slit is lower
     >>> lines = dict(line_axes=("x", "y"), slits=((0.0, 0.0, 0.1),), centre_px=(0.0, 0.0))

@@ -7,7 +7,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from algorithms.calibration.calibrated import CalibratedModel, Columns
+from algorithms.calibration.calibrated import Columns
+from algorithms.calibration.drawn import DrawnModel
 from algorithms.contract import AboutModel, FeatureKind, Floats
 from algorithms.documented import documented
 from algorithms.models.geometric.detector_faces import Normals, require_square_pairs, row_sums
@@ -16,7 +17,7 @@ from algorithms.row_arithmetic import normalised
 
 @documented
 @dataclass
-class SolarPanels(CalibratedModel):
+class SolarPanels(DrawnModel):
     """Sum of the lit panels' normals, each weighted by its current, scaled to length one.
 
     On a body with panels square to each other every current is a component of the Sun vector, so
@@ -29,16 +30,6 @@ class SolarPanels(CalibratedModel):
         Unit normals of the panels in the order of the features: three pairs of opposite ones,
         the pairs square to each other, in any order and turned any way.
 
-    extrapolation : float
-        As `CalibratedModel` has it; a drawing holds everywhere, whatever was calibrated.
-
-    Attributes
-    ----------
-    quality_ : FitQuality
-        How many calibration samples there were, and how far off the drawing is.
-    hull_ : Hull
-        Without sides.
-
     Notes
     -----
     Implements: eq:msfsc (model:solarpanel, Nurgizat2021): ``n = sum_i n_i I_i / sqrt(sum_i
@@ -47,8 +38,7 @@ class SolarPanels(CalibratedModel):
     is a unit vector where one panel of each pair is lit; the length is scaled to one where stray
     light or albedo lights both. A panel is lit whose signal is positive.
 
-    Shapes: signals (N, 6), in any common unit, to unit vectors (N, 3), all directions. Nothing is
-    learnt; fit checks its input and says how far off the drawing is.
+    Shapes: signals (N, 6), in any common unit, to unit vectors (N, 3), all directions.
 
     Failure: a NaN row for a NaN feature row, or where no signal is positive, or opposite ones
     cancel. Albedo is taken for Sun, and differences between the panels go straight into the
@@ -77,7 +67,6 @@ class SolarPanels(CalibratedModel):
     face_normals: Normals
 
     frontal: ClassVar[bool] = False
-    bounded: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -86,9 +75,6 @@ class SolarPanels(CalibratedModel):
     def columns(self) -> int:
         """Six panels."""
         return 6
-
-    def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
-        """Learn nothing: the drawing is all there is."""
 
     def answer(self, features: Floats, context: Columns) -> Floats:
         """Directions (N, 3) of signals (N, 6)."""

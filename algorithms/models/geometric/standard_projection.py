@@ -7,7 +7,8 @@ from typing import ClassVar, Self
 
 import numpy as np
 
-from algorithms.calibration.calibrated import CalibratedModel, Columns
+from algorithms.calibration.calibrated import Columns
+from algorithms.calibration.drawn import DrawnModel
 from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
 from algorithms.documented import documented
 from algorithms.models.nominal_projection import (
@@ -19,7 +20,7 @@ from algorithms.models.nominal_projection import (
 
 @documented
 @dataclass
-class StandardProjection(CalibratedModel):
+class StandardProjection(DrawnModel):
     """Direction from the aperture's centre through the spot, by the nominal geometry.
 
     One multiplication an axis turns the spot's place into the tangents of the Sun angles; errors
@@ -30,24 +31,11 @@ class StandardProjection(CalibratedModel):
     focal_length_mm : float
         Distance h from aperture to detector, positive.
 
-    extrapolation : float
-        As `CalibratedModel` has it; a drawing holds everywhere, whatever was calibrated.
-
-    Attributes
-    ----------
-    quality_ : FitQuality
-        How many calibration samples there were, and how far off the drawing is.
-    hull_ : Hull
-        Without sides.
-
     Notes
     -----
     Implements: eq:stdproj (model:spm, deBoer2013): ``alpha = arctan(Y s / h)``,
     ``beta = arctan(X s / h)`` with X, Y counted from the centre; for balances (alg:VB)
     ``tan(beta) = S_A d / (2 h)``, ``tan(alpha) = S_B d / (2 h)``.
-
-    Shapes: features ``(x, y)`` (N, 2), in px or dimensionless, to unit vectors (N, 3). Nothing is
-    learnt; fit checks its input and says how far off the drawing is.
 
     Failure: a NaN row for a NaN feature row.
 
@@ -78,8 +66,6 @@ class StandardProjection(CalibratedModel):
     unit_mm: float
     centre: tuple[float, float] = (0.0, 0.0)
 
-    bounded: ClassVar[bool] = False
-
     def __post_init__(self) -> None:
         super().__post_init__()
         require_projection(self.about.name, self.focal_length_mm, self.unit_mm, self.centre)
@@ -88,9 +74,6 @@ class StandardProjection(CalibratedModel):
     def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
         """Return the model of the sensor's drawing."""
         return cls(**nominal_projection(geometry, kind, cls.about))
-
-    def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
-        """Learn nothing: the drawing is all there is."""
 
     def answer(self, features: Floats, context: Columns) -> Floats:
         """Directions (N, 3) of features (N, 2)."""

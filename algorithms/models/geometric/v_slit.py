@@ -57,10 +57,8 @@ class VSlit(SlitModel):
 
     Examples
     --------
-    >>> import numpy as np
-    >>> from algorithms.angles import sun_from_angles
-    >>> steps = [-40, -20, 0, 20, 40]
-    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> from algorithms.examples import sun_grid
+    >>> sun = sun_grid(range(-40, 41, 20))
     >>> spots = 180.0 * sun[:, :2] / sun[:, 2:]
     >>> lines = dict(line_axes=("y",), slits=((-3.3, 0.0, 0.1), (0.5, 45.0, 0.1)))
     >>> model = VSlit(focal_length_mm=1.7, pixel_pitch_mm=0.01, centre_px=(0.0, 0.0), **lines)

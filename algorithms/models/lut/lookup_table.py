@@ -61,8 +61,6 @@ class ErrorTable(CalibratedModel):
         Errors of alpha and beta at the nodes.
     smoothing_ : float
         Given or chosen.
-    validated_deg_ : float or None
-        Error on samples left out, where they chose the smoothing.
 
     Notes
     -----
@@ -79,10 +77,9 @@ class ErrorTable(CalibratedModel):
 
     Examples
     --------
-    >>> import numpy as np
-    >>> from algorithms.angles import angles_from_sun, sun_from_angles
-    >>> steps = np.arange(-10, 11, 2)
-    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> from algorithms.angles import angles_from_sun
+    >>> from algorithms.examples import sun_grid
+    >>> sun = sun_grid(range(-10, 11, 2))
     >>> bent = 200.0 * (sun[:, :2] / sun[:, 2:]) ** 3  # what the drawing does not know
     >>> spots = 200.0 * sun[:, :2] / sun[:, 2:] + bent
     >>> model = ErrorTable(focal_length_mm=2.0, unit_mm=0.01, interval_deg=2.0).fit(spots, sun)

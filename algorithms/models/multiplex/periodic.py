@@ -34,10 +34,6 @@ class PeriodicCode(CalibratedModel):
 
     Parameters
     ----------
-    cell_mm : float
-        Length of a Gray cell, positive, below `period_mm`.
-    period_mm : float
-        Period of the fine rows.
     smallest_contrast : float
         Amplitude of the fine rows over their mean, in [0, 1), below which they say nothing; a
         slit of half a period gives 2/pi, light without a pattern 0.

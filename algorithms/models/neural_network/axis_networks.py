@@ -50,8 +50,6 @@ class AxisNetworks(CalibratedModel):
         Error on the samples held out, of both angles together.
     steps_ : tuple of two int
         Steps of training to the networks kept.
-    quality_ : FitQuality
-        Residuals, error on samples held out, units and steps.
 
     Notes
     -----
@@ -72,10 +70,9 @@ class AxisNetworks(CalibratedModel):
 
     Examples
     --------
-    >>> import numpy as np
-    >>> from algorithms.angles import angles_from_sun, sun_from_angles
-    >>> steps = np.arange(-30, 31, 5)
-    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> from algorithms.angles import angles_from_sun
+    >>> from algorithms.examples import sun_grid
+    >>> sun = sun_grid(range(-30, 31, 5))
     >>> spots = 200.0 * sun[:, :2] / sun[:, 2:] + (100.0, 80.0)
     >>> model = AxisNetworks().fit(spots, sun)
     >>> angles_from_sun(model.predict([spots[0], [900.0, 80.0]])).round(2)

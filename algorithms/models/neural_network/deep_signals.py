@@ -45,8 +45,6 @@ class DeepSignals(Corrected, FacesModel):
     ----------
     signals : int
         Detectors K, 2 to 8.
-    hidden : int
-        Units of each of the two hidden layers, 1 to 40.
 
     Attributes
     ----------
@@ -55,10 +53,6 @@ class DeepSignals(Corrected, FacesModel):
         never changed is left alone.
     coefficients_ : ndarray, shape (K + 1, 3)
         Of one and of each scaled signal in s_x, s_y and s_z, before they are brought to length one.
-    correction_ : Correction
-        The network, with its error on the samples held out.
-    quality_ : FitQuality
-        Residuals, error on samples held out, units and steps.
 
     Notes
     -----

@@ -34,20 +34,11 @@ class DeepSurface(Corrected, CalibratedModel):
     The surfaces take up what is smooth, the network what is not: a spot that is cut off at the
     field's edge bends a response more than a few powers follow.
 
-    Parameters
-    ----------
-    hidden : int
-        Units of each of the two hidden layers, 1 to 40.
-
     Attributes
     ----------
     coefficients_ : ndarray, shape (10, 2)
         Of ``u_x^i u_y^j``, i + j <= 3, by total degree and then by j, in ``tan(beta)`` and
         ``tan(alpha)``.
-    correction_ : Correction
-        The network, with its error on the samples held out.
-    quality_ : FitQuality
-        Residuals, error on samples held out, units and steps.
 
     Notes
     -----
@@ -68,9 +59,9 @@ class DeepSurface(Corrected, CalibratedModel):
     Examples
     --------
     >>> import numpy as np
-    >>> from algorithms.angles import angles_from_sun, sun_from_angles
-    >>> steps = np.arange(-30, 31, 5)
-    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> from algorithms.angles import angles_from_sun
+    >>> from algorithms.examples import sun_grid
+    >>> sun = sun_grid(range(-30, 31, 5))
     >>> balances = np.tanh(sun[:, :2] / sun[:, 2:])
     >>> model = DeepSurface().fit(balances, sun)
     >>> angles_from_sun(model.predict([balances[0], [9.0, 0.0]])).round(1)

@@ -56,7 +56,15 @@ class Correction:
 class Corrected:
     """What models share that correct directions `_base` by a network: mixed into a model.
 
-    Both read features scaled onto [-1, 1].
+    Parameters
+    ----------
+    hidden : int
+        Units of each of the two hidden layers, 1 to 40.
+
+    Attributes
+    ----------
+    correction_ : Correction
+        The network, with its error on the samples held out.
     """
 
     hidden: int

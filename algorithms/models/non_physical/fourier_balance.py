@@ -53,8 +53,6 @@ class FourierBalance(CalibratedModel):
     whitening_ : ndarray, shape (2, 2 + 2 N, 2 + 2 N)
         Inverse of each design's triangular factor: rows of terms times it have the squared length
         that their value's variance is, for errors of size one.
-    validated_deg_ : float or None
-        Error on samples left out, where they chose the order.
 
     Notes
     -----
@@ -74,9 +72,9 @@ class FourierBalance(CalibratedModel):
     Examples
     --------
     >>> import numpy as np
-    >>> from algorithms.angles import angles_from_sun, sun_from_angles
-    >>> steps = np.arange(-30, 31, 3)
-    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> from algorithms.angles import angles_from_sun
+    >>> from algorithms.examples import sun_grid
+    >>> sun = sun_grid(range(-30, 31, 3))
     >>> tangents = sun[:, :2] / sun[:, 2:]
     >>> balances = tangents + 0.01 * np.sin(12 * tangents)
     >>> model = FourierBalance(harmonics=6).fit(balances, sun)

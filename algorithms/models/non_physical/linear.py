@@ -57,10 +57,9 @@ class LinearFit(CalibratedModel):
 
     Examples
     --------
-    >>> import numpy as np
-    >>> from algorithms.angles import angles_from_sun, sun_from_angles
-    >>> steps = [-5, 0, 5]
-    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> from algorithms.angles import angles_from_sun
+    >>> from algorithms.examples import sun_grid
+    >>> sun = sun_grid(range(-5, 6, 5))
     >>> balances = 4.0 * sun[:, :2] / sun[:, 2:] + 0.01
     >>> model = LinearFit().fit(balances, sun)
     >>> model.coefficients_.round(2)

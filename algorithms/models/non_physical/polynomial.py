@@ -57,8 +57,6 @@ class AxisPolynomial(CalibratedModel):
     whitening_ : ndarray, shape (2, n + 1, n + 1)
         Inverse of each design's triangular factor: rows of terms times it have the squared length
         that their value's variance is, for errors of size one.
-    validated_deg_ : float or None
-        Error on samples left out, where they chose the degree.
 
     Notes
     -----
@@ -75,10 +73,9 @@ class AxisPolynomial(CalibratedModel):
 
     Examples
     --------
-    >>> import numpy as np
-    >>> from algorithms.angles import angles_from_sun, sun_from_angles
-    >>> steps = np.arange(-30, 31, 5)
-    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> from algorithms.angles import angles_from_sun
+    >>> from algorithms.examples import sun_grid
+    >>> sun = sun_grid(range(-30, 31, 5))
     >>> spots = 200.0 * sun[:, :2] / sun[:, 2:] + (100.0, 80.0)
     >>> model = AxisPolynomial(degree=5).fit(spots, sun)
     >>> angles_from_sun(model.predict([spots[0], [900.0, 80.0]])).round(1)
@@ -184,8 +181,6 @@ class SurfacePolynomial(CalibratedModel):
     whitening_ : ndarray, shape (terms, terms)
         Inverse of the design's triangular factor: rows of terms times it have the squared length
         that their value's variance is, for errors of size one.
-    validated_deg_ : float or None
-        Error on samples left out, where they chose the degree.
 
     Notes
     -----
@@ -202,9 +197,9 @@ class SurfacePolynomial(CalibratedModel):
     Examples
     --------
     >>> import numpy as np
-    >>> from algorithms.angles import angles_from_sun, sun_from_angles
-    >>> steps = np.arange(-20, 21, 5)
-    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> from algorithms.angles import angles_from_sun
+    >>> from algorithms.examples import sun_grid
+    >>> sun = sun_grid(range(-20, 21, 5))
     >>> x, y = (200.0 * sun[:, :2] / sun[:, 2:]).T
     >>> turned = np.column_stack([x - 0.1 * y, y + 0.1 * x])
     >>> model = SurfacePolynomial(degree=5).fit(turned, sun)

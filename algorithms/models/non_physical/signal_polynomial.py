@@ -69,8 +69,6 @@ class SignalPolynomial(FacesModel):
         Of the terms, in s_x, s_y and s_z.
     dropped_ : int
         Terms up to the degree that the samples do not tell from others, left out.
-    validated_deg_ : float or None
-        Error on samples left out, where they chose the degree.
     quality_ : FitQuality
         Residuals, the degree, the terms kept and those left out.
 

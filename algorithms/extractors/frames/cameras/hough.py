@@ -219,9 +219,8 @@ class HoughCircle(Extractor):
 
     Examples
     --------
-    >>> import numpy as np
-    >>> y, x = np.mgrid[:31, :33]
-    >>> frames = 200 * np.clip(5.5 - np.hypot(x - 16.3, y - 14.8), 0, 1)[None]
+    >>> from algorithms.examples import disc_frame
+    >>> frames = disc_frame(16.3, 14.8)
     >>> HoughCircle().extract(frames).round(1)
     array([[16.3, 14.8]])
     """
