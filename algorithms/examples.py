@@ -89,3 +89,74 @@ def turning_body() -> tuple[Floats, Floats, dict[str, Floats]]:
         "rate_deg_s": np.column_stack(rate),
     }
     return 100.0 * sun[:, :2] / sun[:, 2:], sun, context
+
+
+def dial_signals(
+    sun: ArrayLike, *, bits: int, cell_mm: float, period_mm: float, focal_length_mm: float
+) -> Floats:
+    """Signals (N, 2 (bits + 4)) of the tracks of two ideal code dials, along x and y."""
+    rows: list[Floats] = []
+    for tangents in _tangents(sun).T:
+        place = focal_length_mm * tangents
+        cell = np.floor(place / cell_mm).astype(int) + 2 ** (bits - 1)
+        rows += [((cell ^ (cell >> 1)) >> bit) & 1 for bit in reversed(range(bits))]
+        phase = 2 * np.pi * place / period_mm
+        waves = np.cos(phase), np.sin(phase)
+        rows += [(1 + sign * wave) / 2 for sign in (-1, 1) for wave in waves]
+    return np.transpose(rows).astype(np.float64)
+
+
+def slit_light(
+    sun: ArrayLike,
+    focal_length_mm: float,
+    *,
+    slits: tuple[tuple[float, float, float], ...],
+    pixel_pitch_mm: float,
+    centre_px: tuple[float, float],
+    line_axes: tuple[str, ...],
+    line_pixels: int,
+) -> Floats:
+    """Light (N, A L) of slits square to each of A lines of L pixels, of a Sun without width."""
+    at = pixel_pitch_mm * (np.arange(line_pixels) - centre_px[0])
+    lines = []
+    for axis in line_axes:
+        shift = focal_length_mm * _tangents(sun)[:, "xy".index(axis), None]
+        away = [np.abs(at - shift - place) for place, _, _ in slits]
+        edges = [
+            (width / 2.0 - far) / pixel_pitch_mm + 0.5
+            for far, (_, _, width) in zip(away, slits, strict=True)
+        ]
+        lines.append(np.clip(edges, 0.0, 1.0).sum(axis=0))
+    return np.hstack(lines)
+
+
+def coded_design() -> dict[str, Any]:
+    """Design of a mask of 361 apertures, each a little off its place on a lattice of 30 px."""
+    steps = 30.0 * np.arange(-9, 10)
+    lattice = np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2)
+    holes = lattice + np.random.default_rng(1).uniform(-6.0, 6.0, lattice.shape)
+    return {
+        "apertures_px": tuple((x, y, 5.0) for x, y in holes.tolist()),
+        "spots": 20,
+        "focal_length_mm": 2.0,
+        "pixel_pitch_mm": 0.01,
+        "centre_px": (49.5, 49.5),
+        "size_px": (100.0, 100.0),
+    }
+
+
+def coded_lists(sun: ArrayLike) -> Floats:
+    """Spots (N, 60) of the mask of `coded_design` that fall on its detector."""
+    holes = np.array(coded_design()["apertures_px"])[:, :2]
+    tangents = _tangents(sun)
+    lists = np.zeros((len(tangents), 20, 3))
+    for row, tangent in zip(lists, tangents, strict=True):
+        away = holes + 200.0 * tangent
+        seen = away[(np.abs(away) < 44.0).all(axis=1)]
+        row[: len(seen), :2], row[: len(seen), 2] = 49.5 + seen, 1.0
+    return lists.reshape(len(lists), -1)
+
+
+def _tangents(sun: ArrayLike) -> Floats:
+    vectors = np.asarray(sun, dtype=np.float64)
+    return np.asarray(vectors[:, :2] / vectors[:, 2:])

@@ -64,14 +64,12 @@ class TemperatureDrift(CalibratedCompensation):
     Examples
     --------
     >>> import numpy as np
+    >>> from algorithms.examples import face_signals, sun_grid
     >>> faces = ((0.6, 0.0, 0.8), (-0.6, 0.0, 0.8), (0.0, 0.6, 0.8), (0.0, -0.6, 0.8))
-    >>> rng = np.random.default_rng(1)
-    >>> sun = rng.normal((0, 0, 4), 1, (60, 3)); sun /= np.linalg.norm(sun, axis=1, keepdims=True)
-    >>> warm = {"temperature_K": rng.uniform(270, 330, 60)}
-    >>> cold = sun @ np.array(faces).T
-    >>> signals = cold * (1 + 1e-3 * (warm["temperature_K"] - 300)[:, None])
-    >>> drift = TemperatureDrift(faces).fit(signals, sun, warm)
-    >>> ratio = drift.transform(signals, warm) / cold
+    >>> sun, warm = sun_grid(range(-20, 21, 5)), {"temperature_K": 270 + 37 * np.arange(81) % 61}
+    >>> fall = 1 + 1e-3 * (warm["temperature_K"] - 300)[:, None]
+    >>> drift = TemperatureDrift(faces).fit(face_signals(sun, faces) * fall, sun, warm)
+    >>> ratio = drift.transform(face_signals(sun, faces) * fall, warm) / face_signals(sun, faces)
     >>> float(np.ptp(ratio / ratio[0, 0]).round(6))
     0.0
     """

@@ -52,14 +52,11 @@ class SunAndEarth(CubeCurrents):
     Examples
     --------
     >>> import numpy as np
+    >>> from algorithms.examples import face_signals
     >>> faces = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
-    >>> sun = np.array([[0.6, 0.0, 0.8], [0.0, 0.6, 0.8]])
-    >>> nadir = {"nadir": np.array([[0.0, 0.0, -1.0], [0.0, 0.0, -1.0]])}
-    >>> earth = 0.2 * 0.9**2 * nadir["nadir"]
-    >>> normals = np.array(faces).T
-    >>> seen = (sun @ normals).clip(0) + (earth @ normals).clip(0)
-    >>> clean = SunAndEarth(faces).fit(seen, sun, nadir)
-    >>> round(clean.albedo_, 2)
+    >>> sun, nadir = np.array([[0.6, 0.0, 0.8], [0.0, 0.6, 0.8]]), np.array([[0.0, 0.0, -1.0]] * 2)
+    >>> seen = face_signals(sun, faces) + face_signals(0.2 * 0.9**2 * nadir, faces)
+    >>> round(SunAndEarth(faces).fit(seen, sun, {"nadir": nadir}).albedo_, 2)
     0.2
     """
 

@@ -69,16 +69,14 @@ class WarmCells(WeightedCells):
     Examples
     --------
     >>> import numpy as np
+    >>> from algorithms.examples import face_signals
     >>> normals = ((0.6, 0.0, 0.8), (-0.6, 0.0, 0.8), (0.0, 0.6, 0.8), (0.0, -0.6, 0.8))
     >>> sun = np.array([[0.0, 0.0, 1.0], [0.28, 0.0, 0.96], [0.0, -0.28, 0.96]])
     >>> warm = {"temperature_K": np.array([298.15, 318.15, 338.15])}
     >>> fall = 1.0 - 0.004 * (warm["temperature_K"] - 298.15)
-    >>> signals = np.maximum(sun @ np.array(normals).T, 0.0) * fall[:, None]
-    >>> model = WarmCells(normals).fit(signals, sun, warm)
+    >>> model = WarmCells(normals).fit(face_signals(sun, normals) * fall[:, None], sun, warm)
     >>> round(model.coefficient_, 6)
     0.004
-    >>> model.predict(signals[1:2], {"temperature_K": [318.15]}).round(3)
-    array([[0.28, 0.  , 0.96]])
     """
 
     about: ClassVar = AboutModel(

@@ -45,30 +45,11 @@ class CodedCorrelation(CodedMask):
 
     Examples
     --------
-    >>> import numpy as np
     >>> from algorithms.angles import angles_from_sun, sun_from_angles
-    >>> rng = np.random.default_rng(1)
-    >>> lattice = 30.0 * np.stack(np.meshgrid(np.arange(-9, 10), np.arange(-9, 10)), -1)
-    >>> holes = lattice.reshape(-1, 2) + rng.uniform(-6, 6, (361, 2))
-    >>> def spots(sun):
-    ...     rows = np.zeros((len(sun), 20, 3))
-    ...     for row, tangents in zip(rows, sun[:, :2] / sun[:, 2:]):
-    ...         seen = holes + 49.5 + 200.0 * tangents
-    ...         seen = seen[(np.abs(seen - 49.5) < 44).all(axis=1)]
-    ...         row[: len(seen)] = np.column_stack([seen, np.ones(len(seen))])
-    ...     return rows.reshape(len(sun), 60)
-    ...
-    >>> model = CodedCorrelation(
-    ...     tuple((x, y, 5.0) for x, y in holes.tolist()),
-    ...     spots=20,
-    ...     focal_length_mm=2.0,
-    ...     pixel_pitch_mm=0.01,
-    ...     centre_px=(49.5, 49.5),
-    ...     size_px=(100.0, 100.0),
-    ... )
-    >>> sun = sun_from_angles(rng.uniform(-40, 40, (60, 2)))
-    >>> found = model.fit(spots(sun), sun).predict(spots(sun_from_angles([[12.3, -4.5]])))
-    >>> angles_from_sun(found).round(3)
+    >>> from algorithms.examples import coded_design, coded_lists, sun_grid
+    >>> sun = sun_grid(range(-40, 41, 10))
+    >>> model = CodedCorrelation(**coded_design()).fit(coded_lists(sun), sun)
+    >>> angles_from_sun(model.predict(coded_lists(sun_from_angles([[12.3, -4.5]])))).round(3)
     array([[12.3, -4.5]])
     """
 

@@ -70,25 +70,14 @@ class ReticlePhase(DeflectedSlits):
 
     Examples
     --------
-    >>> import numpy as np
     >>> from algorithms.angles import angles_from_sun, sun_from_angles
-    >>> places = [-1.5, -0.5, 0.5, 1.5]  # mm, and as wide as half a period of 1 mm
-    >>> def signals(sun):  # two lines of 200 px of 0.1 mm
-    ...     shifts = 3.0 * sun[:, :2] / sun[:, 2:]
-    ...     u = 0.1 * (np.arange(200) - 99.5)
-    ...     away = np.abs(u - shifts[..., None, None] - np.array(places)[:, None])
-    ...     return np.clip((0.25 - away) / 0.1 + 0.5, 0, 1).sum(axis=2).reshape(len(sun), 400)
-    ...
-    >>> model = ReticlePhase(
-    ...     focal_length_mm=2.9,
-    ...     pixel_pitch_mm=0.1,
-    ...     centre_px=(99.5, 99.5),
-    ...     line_axes=("x", "y"),
-    ...     slits=tuple((place, 0.0, 0.5) for place in places),
-    ...     line_pixels=200,
-    ... )
-    >>> sun = sun_from_angles(np.random.default_rng(1).uniform(-50, 50, (60, 2)))
-    >>> found = model.fit(signals(sun), sun).predict(signals(sun_from_angles([[12.3, -4.5]])))
+    >>> from algorithms.examples import slit_light, sun_grid
+    >>> places = (-1.5, -0.5, 0.5, 1.5)  # mm
+    >>> design = dict(slits=tuple((place, 0.0, 0.5) for place in places), pixel_pitch_mm=0.1)
+    >>> design |= dict(centre_px=(99.5, 99.5), line_axes=("x", "y"), line_pixels=200)
+    >>> sun = sun_grid(range(-50, 51, 10))
+    >>> model = ReticlePhase(2.9, **design).fit(slit_light(sun, 3.0, **design), sun)
+    >>> found = model.predict(slit_light(sun_from_angles([[12.3, -4.5]]), 3.0, **design))
     >>> angles_from_sun(found).round(1)
     array([[12.3, -4.5]])
     """

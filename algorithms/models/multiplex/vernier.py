@@ -72,25 +72,14 @@ class OpticalVernier(DeflectedSlits):
 
     Examples
     --------
-    >>> import numpy as np
     >>> from algorithms.angles import angles_from_sun, sun_from_angles
+    >>> from algorithms.examples import slit_light, sun_grid
     >>> places = [0.32 * (k - 7.5) for k in range(16) if k not in (2, 11)]  # mm
-    >>> def signals(sun):  # two lines of 104 px of 0.1 mm
-    ...     shifts = sun[:, :2] / sun[:, 2:]
-    ...     u = 0.1 * (np.arange(104) - 51.5)
-    ...     away = np.abs(u - shifts[..., None, None] - np.array(places)[:, None])
-    ...     return np.clip((0.075 - away) / 0.1 + 0.5, 0, 1).sum(axis=2).reshape(len(sun), 208)
-    ...
-    >>> model = OpticalVernier(
-    ...     focal_length_mm=1.02,
-    ...     pixel_pitch_mm=0.1,
-    ...     centre_px=(51.5, 51.5),
-    ...     line_axes=("x", "y"),
-    ...     slits=tuple((place, 0.0, 0.15) for place in places),
-    ...     line_pixels=104,
-    ... )
-    >>> sun = sun_from_angles(np.random.default_rng(1).uniform(-60, 60, (60, 2)))
-    >>> found = model.fit(signals(sun), sun).predict(signals(sun_from_angles([[12.3, -4.5]])))
+    >>> design = dict(slits=tuple((place, 0.0, 0.15) for place in places), pixel_pitch_mm=0.1)
+    >>> design |= dict(centre_px=(51.5, 51.5), line_axes=("x", "y"), line_pixels=104)
+    >>> sun = sun_grid(range(-60, 61, 12))
+    >>> model = OpticalVernier(1.02, **design).fit(slit_light(sun, 1.0, **design), sun)
+    >>> found = model.predict(slit_light(sun_from_angles([[12.3, -4.5]]), 1.0, **design))
     >>> angles_from_sun(found).round(1)
     array([[12.3, -4.5]])
     """

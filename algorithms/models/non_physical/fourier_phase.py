@@ -71,21 +71,13 @@ class FourierPhase(CalibratedModel):
 
     Examples
     --------
-    >>> import numpy as np
     >>> from algorithms.angles import angles_from_sun, sun_from_angles
+    >>> from algorithms.examples import dial_signals, sun_grid
     >>> design = dict(bits=5, cell_mm=0.15, period_mm=0.3, focal_length_mm=2.0)
-    >>> def signals(sun):
-    ...     rows = []
-    ...     for place in (2.0 * sun[:, :2] / sun[:, 2:]).T:
-    ...         cell = np.floor(place / 0.15).astype(int) + 16
-    ...         rows += [((cell ^ (cell >> 1)) >> bit) & 1 for bit in (4, 3, 2, 1, 0)]
-    ...         p = 2 * np.pi * place / 0.3
-    ...         rows += [(1 + way * wave) / 2 for way in (-1, 1) for wave in (np.cos(p), np.sin(p))]
-    ...     return np.transpose(rows)
-    ...
-    >>> sun = sun_from_angles(np.random.default_rng(1).uniform(-30, 30, (60, 2)))
-    >>> model = FourierPhase(**design).fit(signals(sun), sun)
-    >>> angles_from_sun(model.predict(signals(sun_from_angles([[12.3, -4.5]])))).round(3)
+    >>> sun = sun_grid(range(-30, 31, 3))
+    >>> model = FourierPhase(**design).fit(dial_signals(sun, **design), sun)
+    >>> signals = dial_signals(sun_from_angles([[12.3, -4.5]]), **design)
+    >>> angles_from_sun(model.predict(signals)).round(3)
     array([[12.3, -4.5]])
     """
 

@@ -78,11 +78,10 @@ class SigmoidBalance(ParametricModel):
     Examples
     --------
     >>> import numpy as np
-    >>> from algorithms.angles import angles_from_sun, sun_from_angles
-    >>> steps = np.arange(-50, 51, 5)
-    >>> grid = np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2)
-    >>> sun = sun_from_angles(grid)
-    >>> balances = 0.9 * np.tanh(np.radians(1.4 * grid[:, ::-1] - 2.0)) + 0.01
+    >>> from algorithms.angles import angles_from_sun
+    >>> from algorithms.examples import sun_grid
+    >>> sun = sun_grid(range(-50, 51, 5))
+    >>> balances = 0.9 * np.tanh(np.radians(1.4 * angles_from_sun(sun)[:, ::-1] - 2.0)) + 0.01
     >>> model = SigmoidBalance().fit(balances, sun)
     >>> [round(model.quality_.parameter(f"{name}_beta").value, 3) for name in ("bend", "skew")]
     [1.96, -0.049]

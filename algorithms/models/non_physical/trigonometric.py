@@ -80,16 +80,13 @@ class TrigonometricPanels(FacesModel):
     Examples
     --------
     >>> import numpy as np
+    >>> from algorithms.examples import face_signals
     >>> panels = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
     >>> sun = np.random.default_rng(1).normal(size=(200, 3))
     >>> sun /= np.linalg.norm(sun, axis=1, keepdims=True)
-    >>> gains = np.array([1.0, 1.1, 0.9, 1.0, 1.2, 1.0])
-    >>> signals = np.maximum(sun @ np.array(panels).T, 0.0) * gains
-    >>> model = TrigonometricPanels(panels).fit(signals, sun)
-    >>> np.linalg.norm(model.amplitudes_, axis=1).round(3)
+    >>> signals = face_signals(sun, panels) * (1.0, 1.1, 0.9, 1.0, 1.2, 1.0)
+    >>> np.linalg.norm(TrigonometricPanels(panels).fit(signals, sun).amplitudes_, axis=1).round(3)
     array([1. , 1.1, 0.9, 1. , 1.2, 1. ])
-    >>> model.predict([[0.6, 0.0, 0.0, 0.8, 0.0, 0.0]]).round(3) + 0.0
-    array([[ 0.6, -0.8,  0. ]])
     """
 
     about: ClassVar = AboutModel(
