@@ -34,11 +34,6 @@ class SolarDiscBias(CalibratedCompensation):
     focal_length_mm : float
         Distance h from mask to detector, positive.
 
-    Attributes
-    ----------
-    samples_ : int
-        Calibration samples with features; nothing is learnt of them.
-
     Notes
     -----
     Implements: model:solar (Antonello2018), in words there: light that is not parallel alters the
@@ -91,9 +86,6 @@ class SolarDiscBias(CalibratedCompensation):
     def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
         """Return the compensation for the sensor's drawing and the Sun seen from the Earth."""
         return cls(**nominal_projection(geometry, kind, cls.about))
-
-    def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
-        """Learn nothing: the Sun's size is known."""
 
     def apply(self, features: Floats, context: Columns) -> Floats:
         """Spots (N, 2) of the Sun's centre."""

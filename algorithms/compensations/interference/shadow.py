@@ -46,11 +46,6 @@ class MaskShadow(CalibratedCompensation):
         Distance that the model behind counts with, positive: the thin mask's whose spots come
         out. The lower face's where None.
 
-    Attributes
-    ----------
-    samples_ : int
-        Calibration samples with features; nothing is learnt of them.
-
     Notes
     -----
     Implements: eq:shadcomp (model:shad, Antonello2018) with the elevation e: ``R_C0 = (t + h)
@@ -125,9 +120,6 @@ class MaskShadow(CalibratedCompensation):
             centre=drawn["centre"],
             drawn_mm=drawn["focal_length_mm"],
         )
-
-    def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
-        """Learn nothing: the mask is the drawing's."""
 
     def apply(self, features: Floats, context: Columns) -> Floats:
         """Spots (N, 2) as of a mask without thickness at the drawn distance."""

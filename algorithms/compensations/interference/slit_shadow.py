@@ -38,11 +38,6 @@ class SlitShadow(CalibratedCompensation):
     thickness_mm : float
         Of the mask, t, positive.
 
-    Attributes
-    ----------
-    samples_ : int
-        Calibration samples with features; nothing is learnt of them.
-
     Notes
     -----
     Implements: model:shad (Chang2006), in words there and in the study's abstract; the equation is
@@ -104,9 +99,6 @@ class SlitShadow(CalibratedCompensation):
                 f"axes, in a mask that has a thickness; got {slits!r} and {thickness:g} mm"
             )
         return cls(focal_length_mm=geometry.focal_length_mm or 0.0, thickness_mm=thickness)
-
-    def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
-        """Learn nothing: the walls are the drawing's."""
 
     def apply(self, features: Floats, context: Columns) -> Floats:
         """Balances (N, 2) as behind thin walls."""

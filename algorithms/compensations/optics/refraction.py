@@ -47,11 +47,6 @@ class Refraction(CalibratedCompensation):
     layers : tuple of (float, float)
         Thickness mm, positive, and refractive index, at least 1, of each plate.
 
-    Attributes
-    ----------
-    samples_ : int
-        Calibration samples with features; nothing is learnt of them.
-
     Notes
     -----
     Implements: eq:refcomp1, eq:refcomp3 (model:optic, Wei2011): with t = tan(theta), the spot
@@ -119,9 +114,6 @@ class Refraction(CalibratedCompensation):
         return cls(
             **nominal_projection(geometry, kind, cls.about), layers=geometry.cover_glass or ()
         )
-
-    def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
-        """Learn nothing: glass and distance are the drawing's."""
 
     def apply(self, features: Floats, context: Columns) -> Floats:
         """Spots (N, 2) where they would be without glass."""
