@@ -19,10 +19,6 @@ line_axes : tuple of {"x", "y"}
     The detector axis along which each line lies, in the order of a profile's columns.
 line_pixels : int
     Pixels of a line, at least 1.
-axes : tuple of {"x", "y"}
-    Along which detector axis each dial lies, in the order of the features.
-bits : int
-    Coarse tracks of each dial, in [1, 16].
 light : {"spot", "any"}
     What the light looks like: one whole, compact and symmetric spot, anything else being no
     answer; or streaks, rings and stars too, as lenses and slits make them.
@@ -38,10 +34,6 @@ accuracy_px : float
     Wanted accuracy dx of a position, at least 1e-4 px: sets the number of thresholds.
 disc_deg : float
     Full angle of the Sun's disc, in (0, 10).
-cell_mm : float
-    Length of a Gray cell, positive, below `period_mm`.
-period_mm : float
-    Period of the fine rows.
 iterations : int
     Steps, at least 1, after which the fit is given up.
 restarts : int

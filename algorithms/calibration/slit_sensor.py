@@ -96,14 +96,8 @@ class SlitModel(ForwardModel):
         """
         cls.about.require_kind(kind)
         geometry.require(*cls.about.needs, by=cls.about.name)
-        return cls(
-            focal_length_mm=geometry.focal_length_mm or 0.0,
-            pixel_pitch_mm=geometry.pixel_pitch_mm or 0.0,
-            centre_px=geometry.centre_px or (0.0, 0.0),
-            line_axes=geometry.line_axes or (),
-            slits=geometry.slits or (),
-            cover_glass=geometry.cover_glass or (),
-        )
+        design = {name: getattr(geometry, name) for name in cls.about.needs}
+        return cls(**design, cover_glass=geometry.cover_glass or ())
 
     @abstractmethod
     def require_slits(self) -> None:

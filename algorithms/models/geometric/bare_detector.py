@@ -4,20 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import numpy as np
 
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.forward import ForwardModel
-from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
+from algorithms.calibration.projection import ProjectionModel
+from algorithms.contract import AboutModel, FeatureKind, Floats
 from algorithms.documented import documented
-from algorithms.models.nominal_projection import nominal_projection, require_projection
 
 
 @documented
 @dataclass
-class BareDetector(ForwardModel):
+class BareDetector(ProjectionModel, ForwardModel):
     """Homography of a detector that stands any way behind its mask, after a radial stretch.
 
     Eight numbers hold all that a plane behind a pinhole can do: scales, turns, tilts, skew, and a
@@ -62,19 +62,6 @@ class BareDetector(ForwardModel):
         needs=("focal_length_mm", "pixel_pitch_mm", "centre_px"),
         accepts=frozenset({FeatureKind.SPOT}),
     )
-
-    focal_length_mm: float
-    unit_mm: float
-    centre: tuple[float, float] = (0.0, 0.0)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        require_projection(self.about.name, self.focal_length_mm, self.unit_mm, self.centre)
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
-        """Return the model that starts from the sensor's drawing."""
-        return cls(**nominal_projection(geometry, kind, cls.about))
 
     def names(self) -> Sequence[tuple[str, str]]:
         """Name and unit of each parameter."""

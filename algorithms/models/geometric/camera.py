@@ -10,14 +10,15 @@ import numpy as np
 
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.forward import ForwardModel
+from algorithms.calibration.projection import ProjectionModel
 from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
 from algorithms.documented import documented
-from algorithms.models.nominal_projection import nominal_projection, require_projection
+from algorithms.models.nominal_projection import nominal_projection
 
 
 @documented
 @dataclass
-class LensCamera(ForwardModel):
+class LensCamera(ProjectionModel, ForwardModel):
     """Camera with OpenCV's intrinsics: two focal lengths, principal point, lens distortion.
 
     A lens images tangents with a stretch that grows off its axis, and shifts them where its
@@ -73,14 +74,10 @@ class LensCamera(ForwardModel):
         accepts=frozenset({FeatureKind.SPOT}),
     )
 
-    focal_length_mm: float
-    unit_mm: float
-    centre: tuple[float, float] = (0.0, 0.0)
     distortion: tuple[float, float] = (0.0, 0.0)
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        require_projection(self.about.name, self.focal_length_mm, self.unit_mm, self.centre)
         if np.shape(self.distortion) != (2,) or not np.isfinite(self.distortion).all():
             raise ValueError(
                 f"{self.about.name}: distortion must be two finite numbers; got {self.distortion!r}"

@@ -4,25 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import numpy as np
 
 from algorithms.angles import rotations_from_sun
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.parametric import ParametricModel
-from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
+from algorithms.calibration.projection import ProjectionModel
+from algorithms.contract import AboutModel, Floats
 from algorithms.documented import documented
 from algorithms.models.nominal_projection import (
     POSITIONS,
-    nominal_projection,
-    require_projection,
 )
 
 
 @documented
 @dataclass
-class LeastSquaresGeometry(ParametricModel):
+class LeastSquaresGeometry(ProjectionModel, ParametricModel):
     """Pinhole projection with focal length, two boresight offsets and zero point calibrated.
 
     The five numbers that carry most of a built sensor's error are found by nonlinear least
@@ -88,19 +87,6 @@ class LeastSquaresGeometry(ParametricModel):
         needs=("focal_length_mm",),
         accepts=POSITIONS,
     )
-
-    focal_length_mm: float
-    unit_mm: float
-    centre: tuple[float, float] = (0.0, 0.0)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        require_projection(self.about.name, self.focal_length_mm, self.unit_mm, self.centre)
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
-        """Return the model that starts from the sensor's drawing."""
-        return cls(**nominal_projection(geometry, kind, cls.about))
 
     def names(self) -> Sequence[tuple[str, str]]:
         """Name and unit of each parameter."""

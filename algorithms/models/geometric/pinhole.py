@@ -4,27 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import numpy as np
 
 from algorithms.angles import tangents_from_sun
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.parametric import ParametricModel
-from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
+from algorithms.calibration.projection import ProjectionModel
+from algorithms.contract import AboutModel, Floats
 from algorithms.documented import documented
 from algorithms.inputs import require_samples
 from algorithms.models.nominal_projection import (
     POSITIONS,
-    nominal_projection,
-    require_projection,
 )
 from algorithms.row_arithmetic import normalised
 
 
 @documented
 @dataclass
-class BuiltPinhole(ParametricModel):
+class BuiltPinhole(ProjectionModel, ParametricModel):
     """Pinhole with everything an assembly can do to it: seven numbers and a mirror.
 
     The detector may be turned about the boresight, mounted from its back, and have another scale
@@ -69,20 +68,7 @@ class BuiltPinhole(ParametricModel):
         accepts=POSITIONS,
     )
 
-    focal_length_mm: float
-    unit_mm: float
-    centre: tuple[float, float] = (0.0, 0.0)
-
     mirrored_: bool = field(init=False, repr=False, compare=False)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        require_projection(self.about.name, self.focal_length_mm, self.unit_mm, self.centre)
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
-        """Return the model that starts from the sensor's drawing."""
-        return cls(**nominal_projection(geometry, kind, cls.about))
 
     def names(self) -> Sequence[tuple[str, str]]:
         """Name and unit of each parameter."""

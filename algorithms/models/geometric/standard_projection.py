@@ -3,24 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import numpy as np
 
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.drawn import DrawnModel
-from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
+from algorithms.calibration.projection import ProjectionModel
+from algorithms.contract import AboutModel, Floats
 from algorithms.documented import documented
 from algorithms.models.nominal_projection import (
     POSITIONS,
-    nominal_projection,
-    require_projection,
 )
 
 
 @documented
 @dataclass
-class StandardProjection(DrawnModel):
+class StandardProjection(ProjectionModel, DrawnModel):
     """Direction from the aperture's centre through the spot, by the nominal geometry.
 
     One multiplication an axis turns the spot's place into the tangents of the Sun angles; errors
@@ -61,19 +60,6 @@ class StandardProjection(DrawnModel):
         needs=("focal_length_mm",),
         accepts=POSITIONS,
     )
-
-    focal_length_mm: float
-    unit_mm: float
-    centre: tuple[float, float] = (0.0, 0.0)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        require_projection(self.about.name, self.focal_length_mm, self.unit_mm, self.centre)
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
-        """Return the model of the sensor's drawing."""
-        return cls(**nominal_projection(geometry, kind, cls.about))
 
     def answer(self, features: Floats, context: Columns) -> Floats:
         """Directions (N, 3) of features (N, 2)."""

@@ -4,22 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
 from algorithms.angles import angles_from_sun
 from algorithms.calibration.blocks import best, folds, splits
-from algorithms.calibration.calibrated import CalibratedModel, Columns
+from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.conditioning import WORST_CONDITION
 from algorithms.calibration.hull import spacing
+from algorithms.calibration.projection import ProjectionModel
 from algorithms.calibration.quality import Setting
 from algorithms.contract import (
     AboutModel,
-    FeatureKind,
     Floats,
-    SensorGeometry,
     UnusableDataError,
 )
 from algorithms.documented import documented
@@ -37,9 +36,7 @@ from algorithms.models.lut.error_tables import (
 )
 from algorithms.models.nominal_projection import (
     POSITIONS,
-    nominal_projection,
     nominal_tangents,
-    require_projection,
 )
 from algorithms.models.non_physical.regression_axes import sun_from_target
 
@@ -51,7 +48,7 @@ DEGREES = (2, 4, 6, 8, 12)
 
 @documented
 @dataclass
-class BlendedPolynomials(CalibratedModel):
+class BlendedPolynomials(ProjectionModel):
     """Nominal angles corrected by polynomials of one angle, blended between rows of the other.
 
     A table of polynomial coefficients takes far less room than one of nodes; weighting the two
@@ -117,9 +114,6 @@ class BlendedPolynomials(CalibratedModel):
         accepts=POSITIONS,
     )
 
-    focal_length_mm: float
-    unit_mm: float
-    centre: tuple[float, float] = (0.0, 0.0)
     interval_deg: float = 1.0
     degree: int | None = None
     smoothing: float | None = None
@@ -135,7 +129,6 @@ class BlendedPolynomials(CalibratedModel):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        require_projection(self.about.name, self.focal_length_mm, self.unit_mm, self.centre)
         smoothing = 1.0 if self.smoothing is None else self.smoothing
         require_positive(self.about.name, interval_deg=self.interval_deg, smoothing=smoothing)
         if self.degree is not None and not 1 <= self.degree <= MAX_DEGREE:
@@ -143,11 +136,6 @@ class BlendedPolynomials(CalibratedModel):
                 f"{self.about.name}: degree must be from 1 to {MAX_DEGREE}, or None; "
                 f"got {self.degree!r}"
             )
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
-        """Return the rows over the sensor's nominal angles, at the published interval."""
-        return cls(**nominal_projection(geometry, kind, cls.about))
 
     def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
         """Solve for all rows' coefficients."""

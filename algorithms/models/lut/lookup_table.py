@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
 import numpy as np
 
 from algorithms.angles import angles_from_sun
 from algorithms.calibration.blocks import best, folds, splits
-from algorithms.calibration.calibrated import CalibratedModel, Columns
+from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.hull import spacing
+from algorithms.calibration.projection import ProjectionModel
 from algorithms.calibration.quality import Setting
-from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
+from algorithms.contract import AboutModel, Floats
 from algorithms.documented import documented
 from algorithms.inputs import require_positive
 from algorithms.models.lut.error_tables import (
@@ -29,16 +30,14 @@ from algorithms.models.lut.error_tables import (
 )
 from algorithms.models.nominal_projection import (
     POSITIONS,
-    nominal_projection,
     nominal_tangents,
-    require_projection,
 )
 from algorithms.models.non_physical.regression_axes import sun_from_target
 
 
 @documented
 @dataclass
-class ErrorTable(CalibratedModel):
+class ErrorTable(ProjectionModel):
     """Nominal angles corrected by a table of their errors, interpolated between its nodes.
 
     Whatever the error comes from, the table holds it as measured over the field of view; its
@@ -98,9 +97,6 @@ class ErrorTable(CalibratedModel):
         accepts=POSITIONS,
     )
 
-    focal_length_mm: float
-    unit_mm: float
-    centre: tuple[float, float] = (0.0, 0.0)
     interval_deg: float = 1.0
     smoothing: float | None = None
 
@@ -114,14 +110,8 @@ class ErrorTable(CalibratedModel):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        require_projection(self.about.name, self.focal_length_mm, self.unit_mm, self.centre)
         smoothing = 1.0 if self.smoothing is None else self.smoothing
         require_positive(self.about.name, interval_deg=self.interval_deg, smoothing=smoothing)
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
-        """Return the table over the sensor's nominal angles, at the published interval."""
-        return cls(**nominal_projection(geometry, kind, cls.about))
 
     def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
         """Solve for the table's nodes."""
