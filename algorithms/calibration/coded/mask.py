@@ -7,14 +7,15 @@ from abc import abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple, Self, cast
+from typing import TYPE_CHECKING, Self, cast
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from algorithms.angles import tangents_from_sun
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.coded.places import offsets_of, turn_of
+from algorithms.calibration.coded.reading import CodeReading, MaskDrawing
 from algorithms.calibration.forward import ForwardModel
 from algorithms.contract import (
     FeatureKind,
@@ -74,36 +75,6 @@ _ODD = (0.35, 0.1)
 _ENOUGH = 0.5
 #: Rounds of reading the code and placing the apertures.
 _ROUNDS = 3
-
-
-class CodeReading(NamedTuple):
-    """What lists of spots (N, 3 K) say of a mask of A apertures.
-
-    Attributes
-    ----------
-    displacement
-        (N, 2) px of the mask's middle on the detector; NaN where the code is not read.
-    apertures
-        (N, K) the aperture of each spot that was used; -1 for the others.
-    ambiguous
-        (N,) whether several places of the mask explain the spots.
-    """
-
-    displacement: Floats
-    apertures: NDArray[np.int64]
-    ambiguous: NDArray[np.bool_]
-
-
-class _Drawn(NamedTuple):
-    """A mask's drawing as the kernels take it."""
-
-    places: Floats  # (A, 2)
-    widths: Floats  # (A,)
-    reach: float
-    tolerance: float
-    widest: float
-    view: Floats  # (7,)
-    noise: tuple[float, ...]
 
 
 @dataclass
@@ -385,7 +356,7 @@ class CodedMask(ForwardModel):
         return CodeReading(displacement, apertures, verdicts == evidence_kernel.SEVERAL)
 
     @cached_property
-    def _drawn(self) -> _Drawn:
+    def _drawn(self) -> MaskDrawing:
         from algorithms.calibration.coded import table  # noqa: PLC0415 - Numba, at first use
 
         rows = np.array(self.apertures_px)
@@ -394,7 +365,7 @@ class CodedMask(ForwardModel):
         rim, sun = rows[:, 2].max() / 2.0 + _RIM_PX, _SOLAR_DIAMETER * focal / 2.0
         tolerance = min(self.tolerance_px, least / 6.0)
         area = math.log(self.size_px[0] * self.size_px[1])
-        return _Drawn(
+        return MaskDrawing(
             rows[:, :2],
             rows[:, 2].copy(),
             _REACH * most,
