@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from algorithms.contract import AboutModel, FeatureKind
 from algorithms.documented import documented
@@ -17,10 +17,9 @@ if TYPE_CHECKING:
     from algorithms.filtering.filters import Filter
 
 
-def _online(name: str) -> AboutModel:
-    """Describe a filter that the survey names in its section on online methods, and no more."""
-    accepts, labels = frozenset(FeatureKind), ("model:mnc",)
-    return AboutModel(name=name, taxonomy="None", labels=labels, accepts=accepts, context=CONTEXT)
+_READS: dict[str, Any] = {"accepts": frozenset(FeatureKind), "context": CONTEXT}
+#: Of filters that the survey names in its section on online methods, and says no more of.
+_ONLINE: dict[str, Any] = {"taxonomy": "None", "labels": ("model:mnc",), **_READS}
 
 
 @documented
@@ -47,7 +46,7 @@ class ExtendedKalmanFilter(SunFilter):
     array([0.49, 0.38, 0.79])
     """
 
-    about: ClassVar = _online("extended-kalman")
+    about: ClassVar = AboutModel(name="extended-kalman", **_ONLINE)
 
 
 @documented
@@ -71,7 +70,7 @@ class CubatureKalmanFilter(SunFilter):
     array([0.49, 0.38, 0.79])
     """
 
-    about: ClassVar = _online("cubature-kalman")
+    about: ClassVar = AboutModel(name="cubature-kalman", **_ONLINE)
 
     def rule(self) -> Filter:
         """Take the cubature rule's points."""
@@ -106,7 +105,7 @@ class UnscentedKalmanFilter(SunFilter):
     array([0.49, 0.38, 0.79])
     """
 
-    about: ClassVar = _online("unscented-kalman")
+    about: ClassVar = AboutModel(name="unscented-kalman", **_ONLINE)
 
     kappa: float = 1.0
 
@@ -150,7 +149,7 @@ class RobustKalmanFilter(SunFilter):
     array([0.49, 0.38, 0.79])
     """
 
-    about: ClassVar = _online("robust-kalman")
+    about: ClassVar = AboutModel(name="robust-kalman", **_ONLINE)
 
     limit: float = 2.0
 
@@ -192,7 +191,7 @@ class AdaptiveKalmanFilter(SunFilter):
     array([0.49, 0.38, 0.79])
     """
 
-    about: ClassVar = _online("adaptive-kalman")
+    about: ClassVar = AboutModel(name="adaptive-kalman", **_ONLINE)
 
     window: float = 50.0
 
@@ -236,7 +235,7 @@ class MultipleModelEstimation(SunFilter):
     array([0.49, 0.38, 0.79])
     """
 
-    about: ClassVar = _online("multiple-models")
+    about: ClassVar = AboutModel(name="multiple-models", **_ONLINE)
 
     noise_scales: tuple[float, ...] = (0.25, 1.0, 4.0)
 
@@ -298,8 +297,7 @@ class ConsiderKalmanFilter(SunFilter):
         studies=("OKeefe2017",),
         labels=("model:mnc", "eq:mnoise"),
         origin="survey",
-        accepts=frozenset(FeatureKind),
-        context=CONTEXT,
+        **_READS,
     )
 
     gain_deviation: float = 0.01
@@ -366,8 +364,7 @@ class AssemblyDriftFilter(SunFilter):
         studies=("Radan2019",),
         labels=("model:assem", "model:mnc"),
         origin="survey",
-        accepts=frozenset(FeatureKind),
-        context=CONTEXT,
+        **_READS,
     )
 
     gain_deviation: float = 0.01
