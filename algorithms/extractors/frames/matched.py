@@ -17,6 +17,7 @@ from algorithms.contract import (
     SensorGeometry,
     UnsuitableDesignError,
 )
+from algorithms.documented import documented
 from algorithms.extractors.frames.one_light import (
     Judged,
     Light,
@@ -43,6 +44,7 @@ _MISFIT = 1.5
 _UNTOLD = np.empty((0, 2))
 
 
+@documented
 @dataclass(frozen=True)
 class MatchedProfile(Extractor):
     """Maximum-likelihood centre of a round spot whose profile is taken from the frame itself.
@@ -58,17 +60,6 @@ class MatchedProfile(Extractor):
         Fraction of the peak above the background, in (0, 1), for the start.
     steps : int
         Gauss-Newton steps, at least 1, each with the profile about the last centre.
-    light : {"spot", "any"}
-        What the light looks like: one whole, compact and symmetric spot, anything else being no
-        answer; or streaks, rings and stars too, as lenses and slits make them.
-    longest_px : float or None
-        Longest half axis that the outline of one spot has, px, positive; None where no design
-        tells. See `algorithms.extractors.frames.mirror.extractor`.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -183,6 +174,7 @@ class MatchedProfile(Extractor):
         return found
 
 
+@documented
 @dataclass(frozen=True)
 class GaussianFit(Extractor):
     """Least-squares fit of a Gaussian on a background to the whole frame.
@@ -195,19 +187,6 @@ class GaussianFit(Extractor):
     ----------
     tolerance_px : float
         The fit ends when a step moves centre and widths by less.
-    iterations : int
-        Steps, at least 1, after which the fit is given up.
-    light : {"spot", "any"}
-        What the light looks like: one whole, compact and symmetric spot, anything else being no
-        answer; or streaks, rings and stars too, as lenses and slits make them.
-    longest_px : float or None
-        Longest half axis that the outline of one spot has, px, positive; None where no design
-        tells. See `algorithms.extractors.frames.mirror.extractor`.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -232,9 +211,8 @@ class GaussianFit(Extractor):
 
     Examples
     --------
-    >>> import numpy as np
-    >>> y, x = np.mgrid[:21, :25]
-    >>> frames = 200 * np.exp(-((x - 12.3) ** 2 + (y - 9.8) ** 2) / 6)[None]
+    >>> from algorithms.examples import spot_frame
+    >>> frames = spot_frame(12.3, 9.8)
     >>> GaussianFit().extract(frames + 50).round(3)
     array([[12.3,  9.8]])
     """
