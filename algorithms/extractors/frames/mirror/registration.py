@@ -8,6 +8,19 @@ depart are left out (`outlier_kernel`). After the first turn the background's sl
 (`ring_kernel`); shapes are looked at in the end (`shape_kernel`, `ghost_kernel`), and what speaks
 against an answer is concluded from all that (`doubts_kernel`).
 
+About a point m / 2, m whole, pixels x and m - x pair without interpolation. With f the spot about
+its centre c, d = 2 c - m and u = x - m / 2, a pair's difference is ``D = f(u - d/2) - f(u + d/2)``
+and its mean ``S = (f(u - d/2) + f(u + d/2)) / 2``, so that ``D = -2 tanh(d . grad / 2) S``: a
+filter on S that depends on d alone. Noise of D and S is independent where both pixels have the
+same, and so is that of different pairs: d solves the weighted least squares of D on the slopes of
+S, by steps. Half of the Fisher information about c is in f(u - d/2), half in its mirror image, and
+an unknown but symmetric f is orthogonal to both: nothing of the Cramer-Rao bound is lost.
+
+A weight is one over the variance: of a dark pixel, and of what neighbouring departures differ by
+where there is light, by the mean light around; weights as sharp as a rim would turn what slopes
+miss of it into a share of d. The slopes that weigh are smoothed as long as that lowers the
+variance, and products with those that predict are freed of the noise that both have in common.
+
 The stages share these arrays, a row a frame. Lengths are in pixels, light is over the peak's.
 
 - `lights`, `boxes`, `states`, `grounds` and `forms`: records, see `records`.
