@@ -239,7 +239,7 @@ class WeightedSpots(Extractor):
         # a spot's pixels and its surroundings', elongated as spots of great incidence are
         most = min((math.ceil(2.0 * size) + 9) ** 2, height * width)
         pixels = np.empty((6, starts.shape[1] * most))
-        form = np.empty(6)
+        form = np.empty(1, dtype=spot_pixels_kernel.FORM)[0]
         centres = np.full_like(starts, np.nan)
         variances, misfits = np.full((2, *starts.shape[:2]), np.nan)
         for k, frame in enumerate(frames):
