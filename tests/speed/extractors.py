@@ -21,7 +21,6 @@ from numpy.typing import NDArray
 from algorithms.contract import Extractor, FeatureKind, Floats, Observation, SensorGeometry
 from algorithms.discovery import discover_extractors
 from algorithms.extractors.frames.centroid import BasicCentroid, FilteredCentroid
-from algorithms.extractors.frames.matched import MatchedProfile
 from algorithms.extractors.frames.template import TemplateMatch
 from algorithms.extractors.frames.threshold_average import MultipleThresholdCentroid
 from benchmark import datasets
@@ -121,7 +120,6 @@ def single_spot(half_px: float, size_px: int) -> dict[str, Extractor]:
         "ifm background=border": FilteredCentroid(background="border"),
         "mt-acm crossing=linear": MultipleThresholdCentroid(crossing="linear"),
         "tm binarise=no": TemplateMatch(width_px=float(2 * half_px), binarise=False),
-        "matched-profile steps=2": MatchedProfile(steps=2),
     }
     return {name: found[name] for name in sorted(found)}
 

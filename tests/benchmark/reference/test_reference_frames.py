@@ -50,16 +50,16 @@ def test_frames_are_the_expected_light_with_its_noise_and_always_the_same():
 
 @pytest.mark.slow
 def test_errors_over_the_bound_on_the_reference_sets():
-    """The matched profile near the bound, moments and balance a few times above it."""
+    """Registration near the bound, moments and balance a few times above it."""
     rows = {
         (row.set_name, row.method): row.over_bound
         for name in ("disc", "gaussian")
         for row in speed_extractors.measure(
-            REFERENCE_SETS[name], 300, 1, ["matched-profile", "dbcm", "bctm", "tm"]
+            REFERENCE_SETS[name], 300, 1, ["mirror", "dbcm", "bctm", "tm"]
         )
     }
-    assert rows["disc", "matched-profile"] < 1.15
-    assert rows["gaussian", "matched-profile"] < 1.15
+    assert rows["disc", "mirror"] < 1.15
+    assert rows["gaussian", "mirror"] < 1.15
     assert rows["disc", "dbcm"] < 3.0
     assert rows["gaussian", "dbcm"] < 1.7
 
