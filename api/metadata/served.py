@@ -145,7 +145,7 @@ def table_of_ranks(content: bytes, base: str) -> tuple[File, Table]:
     file = File.of(
         content,
         "leaderboard.csv",
-        f"{base}v1/leaderboard?format=csv",
+        f"{base}v1/leaderboard?format=csv&whole=true",
         CSV,
         "Every pipeline on every data set and condition, ranked.",
     )
