@@ -215,7 +215,7 @@ def _advice() -> str:
         first = recommend({"task": [task]}, knowledge().measured, limit=1).architectures[0]
         by_data: dict[object, list[tuple[float, bool]]] = {}
         for one in first.calibrations:
-            for measured in filter(None, (one.measured, *one.others)):
+            for measured in filter(None, (one.measured, *one.other_datasets)):
                 error = measured["own_deg"]
                 if isinstance(error, float):
                     evident = bool(one.advised or one.studies)

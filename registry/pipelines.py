@@ -1,6 +1,7 @@
-"""What measured pipelines are judged by under hazards and over a field, as columns.
+"""Measured pipelines as arrays: the errors, shares and times that requirements are held against.
 
-As `registry.measured` judges each by itself. Only who answers imports this module: it needs NumPy.
+`registry.measured` judges one pipeline by the same rules. Needs NumPy, so that only modules that
+answer questions import it.
 """
 
 from __future__ import annotations
@@ -8,15 +9,14 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterable, Sequence
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from registry.designs import Limits
-from registry.draws import at_confidence
-from registry.kept_answers import KeptAnswers
-from registry.measured import LEAST_ANSWERED, Draws, Judged, Measured, Partly, Score
+from registry.draws import at_confidence, unit_errors
+from registry.measured import LEAST_ANSWERED, Draws, Judged, Measured, Score
 from registry.requirements import UNITS
 
 Flags = NDArray[np.bool_]
@@ -24,23 +24,30 @@ Numbers = NDArray[np.float64]
 Positions = NDArray[np.int64]
 
 
-class PipelineColumns:
-    """Columns of measured pipelines.
+NOT_COUNTED = 255
+"""Stands for a number of units where none is asked for."""
+
+#: Fields and sets of hazards whose errors are kept, some 200 kB each.
+MOST_ERRORS = 96
+
+
+class PipelineTable:
+    """Measured pipelines as arrays.
 
     Parameters
     ----------
     rows : the pipelines
-    places : the architecture that each is on, by position
-    design_of : the design that each belongs to, by position
+    places : position of the architecture of each
+    design_of : position of the design of each
     """
 
     def __init__(self, rows: tuple[Measured, ...], places: Positions, design_of: Positions) -> None:
         self.rows = rows
         self.row_place = places
         self.design_of = design_of
-        self._of_hazards: dict[str, Scores] = {}
-        self._overs: dict[tuple[str, float | None], Numbers] = {}
-        self._judgements: KeptAnswers[Judgements] = KeptAnswers()
+        self.scores = lru_cache(None)(self._scores_under)
+        self.reading = lru_cache(None)(self._reading)
+        self._errors = lru_cache(MOST_ERRORS)(self._errors_under)
 
     def half_field(self, half_field_deg: float | None) -> float | None:
         """Return the least half field that tells apart the same pipelines as one asked for does.
@@ -102,106 +109,120 @@ class PipelineColumns:
         """Fixed error of the standard bench of each pipeline's data set."""
         return numbers(row.bench_deg for row in self.rows)
 
-    @cached_property
-    def needs(self) -> tuple[frozenset[str], ...]:
-        """What each pipeline reads beside the sensor."""
-        return tuple(frozenset(row.needs) for row in self.rows)
+    def _reading(self, need: str) -> Flags:
+        """Return the pipelines that read something beside the sensor."""
+        return np.array([need in row.needs for row in self.rows], bool)
 
-    def judgements(
+    def errors(
         self,
         hazards: tuple[str, ...],
         half_field_deg: float | None,
         draws: Draws | None = None,
-    ) -> Judgements:
-        """Return what pipelines are judged by; kept for the next question."""
-        half = self.half_field(half_field_deg)
-        key = (hazards, half, draws)
-        return self._judgements.get(key, lambda: Judgements(self, hazards, half, draws))
+    ) -> PipelineErrors:
+        """Return the errors of all pipelines under hazards, over a field, at a confidence."""
+        return self._errors(hazards, self.half_field(half_field_deg), draws)
 
-    def over(self, hazard: str, half: float | None) -> Numbers:
-        """Return the error of every score under a hazard ("" for nominal), by `Measured.over`."""
-        found = self._overs.get((hazard, half))
-        if found is None:
-            found = self._overs[hazard, half] = self.scores(hazard).over(half)
-        return found
+    def _errors_under(
+        self, hazards: tuple[str, ...], half: float | None, draws: Draws | None
+    ) -> PipelineErrors:
+        return PipelineErrors(self, hazards, half, draws)
 
-    def scores(self, hazard: str) -> Scores:
+    def _scores_under(self, hazard: str) -> Scores:
         """Return the scores of all pipelines under a hazard; "" for the nominal ones."""
-        found = self._of_hazards.get(hazard)
-        if found is None:
-            pairs = [
-                (at, score)
-                for at, row in enumerate(self.rows)
-                for score in (row.hazards.get(hazard, ()) if hazard else (row.nominal,))
-            ]
-            found = self._of_hazards[hazard] = Scores(pairs, self.half_fov_deg)
-        return found
+        pairs = [
+            (at, score)
+            for at, row in enumerate(self.rows)
+            for score in (row.hazards.get(hazard, ()) if hazard else (row.nominal,))
+        ]
+        return Scores(pairs, self.half_fov_deg)
 
     def tried(self, hazard: str) -> Flags:
         """Say of each pipeline whether a condition of its data set tries a hazard."""
         return self.scores(hazard).tried
 
 
-class Judgements:
-    """What every pipeline is judged by under some hazards over a field.
+class PipelineErrors:
+    """Errors of all pipelines under hazards, over a field, at a confidence.
 
     Attributes
     ----------
-    error_deg : as `Measured.judged` has it, shape (pipelines,)
-    nominal_deg : the nominal error over that field
-    by_error : positions of pipelines by design, of each the least error first
+    own_deg : largest error with true directions, shape (pipelines,); infinite where a pipeline
+        answers too seldom or its data set lacks the field
+    error_deg : the same on calibration benches, as `Measured.judged` computes it
+    nominal_deg : error of the first condition alone
+    by_error : positions of the pipelines, by design and then by error
+    rank : position of each error among all different ones; equal errors share a rank
     """
 
     def __init__(
         self,
-        columns: PipelineColumns,
+        table: PipelineTable,
         hazards: tuple[str, ...],
         half: float | None,
         draws: Draws | None,
     ) -> None:
-        self.columns = columns
+        self.table = table
         self.hazards = hazards
         self.half = half
         self.draws = draws
-        self.nominal_deg = columns.over("", half)
-        self.error_deg = self.nominal_deg.copy()
+        self.nominal_deg = table.scores("").over(half)
+        self.own_deg = self.nominal_deg.copy()
         for hazard in hazards:
-            scores = columns.scores(hazard)
-            np.maximum.at(self.error_deg, scores.rows, columns.over(hazard, half))
-        self.own_deg = self.error_deg
+            scores = table.scores(hazard)
+            np.maximum.at(self.own_deg, scores.rows, scores.over(half))
+        self.error_deg = self.own_deg
         if draws is not None:
-            bench, share = draws
-            benches = columns.bench_deg
-            benches = benches if bench is None else np.full(len(benches), bench)
-            self.error_deg = at_confidence(self.own_deg, columns.unit_ratios, benches, share)
-        self.by_error = np.lexsort((self.error_deg, columns.design_of))
-        self._kept: dict[int, Judged] = {}
+            share = draws[1]
+            self.error_deg = at_confidence(self.own_deg, table.unit_ratios, self.bench_deg, share)
+        self.by_error = np.lexsort((self.error_deg, table.design_of))
+        self.rank = np.unique(self.error_deg, return_inverse=True)[1]
+        self.of = lru_cache(None)(self._judged)
+
+    @property
+    def bench_deg(self) -> Numbers:
+        """Fixed error of the bench of each pipeline: the one asked for, or its data set's."""
+        bench = None if self.draws is None else self.draws[0]
+        own = self.table.bench_deg
+        return own if bench is None else np.full(len(own), bench)
+
+    def _judged(self, row: int) -> Judged:
+        """Return the error of one pipeline, with its condition and field."""
+        return self.table.rows[row].judged(self.hazards, self.half, self.draws)
+
+    @cached_property
+    def _unit_errors(self) -> Numbers:
+        """Error that each of ten units keeps at the confidence, shape (pipelines, 10)."""
+        assert self.draws is not None  # noqa: S101 - without draws no unit is counted
+        ratios, share = self.table.unit_ratios, self.draws[1]
+        return unit_errors(self.own_deg, ratios, self.bench_deg, share)
+
+    def units_within(self, limit_deg: float | None) -> NDArray[np.uint8]:
+        """Return how many of ten units of each pipeline keep a limit on the error.
+
+        `NOT_COUNTED` where no limit is asked for, and where a pipeline has no error.
+        """
+        if limit_deg is None or self.draws is None:
+            return np.full(len(self.own_deg), NOT_COUNTED, np.uint8)
+        found: NDArray[np.uint8] = (self._unit_errors <= limit_deg).sum(axis=1, dtype=np.uint8)
+        found[np.isinf(self.own_deg)] = NOT_COUNTED
+        return found
 
     @cached_property
     def tried(self) -> Flags:
         """Whether the data set of a pipeline tries all of the hazards."""
-        found = np.ones(len(self.columns.rows), bool)
+        found = np.ones(len(self.table.rows), bool)
         for hazard in self.hazards:
-            found &= self.columns.tried(hazard)
+            found &= self.table.tried(hazard)
         return found
 
     @cached_property
     def availability(self) -> Numbers:
         """Least answered share, as `Measured.availability`; NaN where one is unknown."""
-        found = self.columns.scores("").share.copy()
+        found = self.table.scores("").share.copy()
         for hazard in self.hazards:
-            scores = self.columns.scores(hazard)
+            scores = self.table.scores(hazard)
             with np.errstate(invalid="ignore"):  # an unknown share makes the least unknown
                 np.minimum.at(found, scores.rows, scores.share)
-        return found
-
-    def of(self, row: int) -> Judged:
-        """Return what one pipeline is judged by, with condition and field."""
-        found = self._kept.get(row)
-        if found is None:
-            half = self.half
-            of_row = self.columns.rows[row]
-            found = self._kept[row] = of_row.judged(self.hazards, half, self.draws)
         return found
 
     @cached_property
@@ -210,13 +231,14 @@ class Judgements:
 
         As `Measured.partly` finds them, of those that answer often enough to be named.
         """
-        columns, half = self.columns, self.half
-        known, judged = self.tried.copy(), np.ones(len(columns.rows), bool)
+        table, half = self.table, self.half
+        known, judged = self.tried.copy(), np.ones(len(table.rows), bool)
         if half is not None:
-            known &= columns.half_fov_deg >= half
-        largest = np.zeros(len(columns.rows))
+            known &= table.half_fov_deg >= half
+        largest = np.zeros(len(table.rows))
         for hazard in ("", *self.hazards):
-            scores, over = columns.scores(hazard), columns.over(hazard, half)
+            scores = table.scores(hazard)
+            over = scores.over(half)
             seldom = np.isinf(over)
             error = np.where(seldom, scores.rms, over)
             known[scores.rows[np.isnan(error)]] = False
@@ -224,7 +246,7 @@ class Judgements:
             with np.errstate(invalid="ignore"):  # those are left out
                 np.maximum.at(largest, scores.rows, error)
         named = np.flatnonzero(known & ~judged & (self.availability >= LEAST_ANSWERED))
-        places = columns.row_place[named]
+        places = table.row_place[named]
         order = np.lexsort((largest[named], places))
         return named[order], places[order]
 
@@ -236,21 +258,37 @@ class Judgements:
         limits : of these hazards and this field; those on answers and time are kept
         designs : those whose pipelines may be named
         """
-        columns, (rows, places) = self.columns, self._seldom
+        table, (rows, places) = self.table, self._seldom
         if not len(rows):
             return {}
-        among = designs[columns.design_of[rows]]
+        among = designs[table.design_of[rows]]
         if limits.min_availability is not None:
             among &= self.availability[rows] >= limits.min_availability
         if limits.max_latency_us is not None:
-            among &= columns.latency_us[rows] <= limits.max_latency_us
+            among &= table.latency_us[rows] <= limits.max_latency_us
         rows, places = rows[among], places[among]
         first = begins(places)
         return dict(zip(places[first].tolist(), rows[first].tolist(), strict=True))
 
-    def partly_of(self, row: int) -> Partly[Measured] | None:
-        """Return how one pipeline does that answers too seldom."""
-        return self.columns.rows[row].partly(self.hazards, self.half)
+    def document(self, row: int, units_within: int, finer: int) -> dict[str, object]:
+        """Return one pipeline as in the HTTP answer.
+
+        Parameters
+        ----------
+        row : position of the pipeline
+        units_within : units that keep the limit on the error, or `NOT_COUNTED`
+        finer : pipeline on the same sensor that answers too seldom to be judged; -1 for none
+        """
+        rows, field = self.table.rows, (self.hazards, self.half)
+        partly = None if finer < 0 else rows[finer].partly(*field)
+        return rows[row].to_dict(
+            self.of(row),
+            rows[row].judged(*field),
+            *field,
+            bench_deg=None if self.draws is None else self.draws[0],
+            units_within=None if units_within == NOT_COUNTED else units_within,
+            partly=() if partly is None else (partly,),
+        )
 
     def keeping(self, limits: Limits, max_error_deg: float | None = None) -> Flags:
         """Say of each pipeline whether it keeps limits, which are of these hazards and field."""
@@ -262,10 +300,10 @@ class Judgements:
         if limits.min_availability is not None:
             found &= self.availability >= limits.min_availability
         if limits.max_latency_us is not None:
-            found &= self.columns.latency_us <= limits.max_latency_us
+            found &= self.table.latency_us <= limits.max_latency_us
         if limits.exclude_needs:
-            avoided = frozenset(limits.exclude_needs)
-            found &= np.array([not (needs & avoided) for needs in self.columns.needs], bool)
+            for need in limits.exclude_needs:
+                found &= ~self.table.reading(need)
         if max_error_deg is not None:
             found &= self.error_deg <= max_error_deg
         return found
