@@ -14,8 +14,8 @@ from api.deposit import claims, told
 from api.deposit.fields import schema
 from benchmark import datasets
 from benchmark.claims.ledger import Entry, ledger
-from benchmark.curves import record as curves
 from benchmark.leaderboard.board import build
+from benchmark.learning_curves import record as curves
 from benchmark.results.store import Store
 from files.csv_writing import csv_text
 from registry.catalogue import catalogue

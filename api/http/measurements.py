@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 from api.columns import SAMPLE_ERRORS
 from api.deposit.identity import version
-from benchmark.curves import record as curves
 from benchmark.datasets.pins import Pin
 from benchmark.leaderboard.board import build
 from benchmark.leaderboard.scope import Studied, studies_of_pipelines
+from benchmark.learning_curves import record as curves
 from benchmark.results import recorded, samples
 from benchmark.results.pipelines import pipelines, standard_benches
 from benchmark.results.store import PUBLISHED, Store

@@ -25,8 +25,8 @@ from api.pages import boards
 from api.pages.charts.heat import heat_map
 from api.pages.charts.lines import Line, LineChart
 from api.pages.serving import PageRouter, View
+from benchmark.error_budget import sentences, table
 from benchmark.leaderboard.architectures import architectures as best_of_each
-from benchmark.leaderboard.holding import sentences, table
 from benchmark.metrics.score import AVAILABLE
 from benchmark.results import samples
 from survey_data.nearest import nearest

@@ -15,13 +15,13 @@ from pathlib import Path
 from typing import Any
 
 from benchmark.contract import Cell
-from benchmark.curves import run as curves
-from benchmark.curves.record import NAME as CURVES
 from benchmark.leaderboard import scope
 from benchmark.leaderboard.board import board_of
 from benchmark.leaderboard.consistency import contradictions
 from benchmark.leaderboard.pages import PAGE, page
 from benchmark.leaderboard.update import update
+from benchmark.learning_curves import run as curves
+from benchmark.learning_curves.record import NAME as CURVES
 from benchmark.metrics.rings import RINGS
 from benchmark.metrics.score import METRICS, RING_DIGITS, SIGNIFICANT_DIGITS
 from benchmark.plan.parts import Parts, installed
@@ -271,7 +271,9 @@ def _outdated(store: Store, parts: Parts) -> Iterator[Difference]:
         told = ("absent", "planned") if state == "absent" else ("present", "not planned")
         yield Difference(store.sweeps_path.name, f"{point}/row", *told)
     for leader, why in curves.behind(store.directory, parts):
-        yield Difference(CURVES, str(leader), why, "renewed by `python -m benchmark.curves`")
+        yield Difference(
+            CURVES, str(leader), why, "renewed by `python -m benchmark.learning_curves`"
+        )
 
 
 def _is_used(name: str, store: Store) -> bool:

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from benchmark.claims import outcomes
-from benchmark.curves import record as curves
+from benchmark.learning_curves import record as curves
 from benchmark.results import recorded, samples
 from benchmark.results.store import PUBLISHED, Store
 from files import manifest

@@ -10,10 +10,10 @@ import numpy as np
 from algorithms.contract import Extractor, Floats, UnusableDataError
 from algorithms.pipeline import checked
 from benchmark.metrics.score import stored
-from benchmark.reference.series import KEPT_PX, WRONG_PX, Drawn, Series, Setting
 from benchmark.results.store import SWEPT
 from benchmark.running.threads import one_thread
 from benchmark.sweeps.plan import SERIES, Point
+from benchmark.synthetic_features.series import KEPT_PX, WRONG_PX, Drawn, Series, Setting
 
 Row = dict[str, Any]
 

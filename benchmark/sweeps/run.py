@@ -20,7 +20,6 @@ from algorithms.contract import Extractor
 from algorithms.discovery import discover_extractors
 from benchmark.plan.parts import Parts
 from benchmark.progress import ProgressCallback, terminal_progress
-from benchmark.reference.series import SWEEPS, Setting
 from benchmark.results.components import Components, current
 from benchmark.results.digests import series_digest
 from benchmark.results.record import Record, opened, point_of
@@ -29,6 +28,7 @@ from benchmark.results.tables import Row
 from benchmark.running.workers import as_completed
 from benchmark.sweeps.measure import measure, refused_row
 from benchmark.sweeps.plan import SERIES, Planned, Point, planned
+from benchmark.synthetic_features.series import SWEEPS, Setting
 
 Extractors = Mapping[str, type[Extractor]]
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import survey_data
 from benchmark.claims import outcomes
-from benchmark.curves import record as curves
+from benchmark.learning_curves import record as curves
 from benchmark.results import recorded
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import times

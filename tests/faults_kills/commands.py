@@ -33,8 +33,8 @@ from api.cli.commands import leaderboard as leaderboard_command
 from api.deposit import bundle
 from api.docs import documentation
 from benchmark.claims import run as claims_run
-from benchmark.curves import run as curves_run
-from benchmark.leaderboard.holding import table
+from benchmark.error_budget import table
+from benchmark.learning_curves import run as curves_run
 from benchmark.plan.combinations import cells
 from benchmark.processes import call_to_end
 from benchmark.progress import silent
@@ -183,12 +183,12 @@ def measure_claims(*names: str) -> None:
 
 
 def learn() -> None:
-    """`python -m benchmark.curves` of a small record, with two workers."""
+    """`python -m benchmark.learning_curves` of a small record, with two workers."""
     program(lambda: curves_run.update("store", 2, silent, parts=small.curve_parts()))
 
 
 def hold_back(*datasets: str) -> None:
-    """`python -m benchmark.leaderboard.holding` of scores that are given."""
+    """`python -m benchmark.error_budget` of scores that are given."""
     _give(table, "measured", small.held_back)
     score = {"condition": "quiet", "extractor": "one", "model": "two", "rms_deg": 0.05}
     score |= {"bound_deg": 0.005, "bound_unit_deg": 0.005, "answered": 40, "judged": 40}
@@ -296,10 +296,10 @@ COMMANDS: Mapping[str, Command] = {
         "`python -m benchmark.claims.run`", _nothing, lambda: measure_claims(*_CLAIMS)
     ),
     "curves": Command(
-        "`python -m benchmark.curves`", lambda: small.write_scores(Path("store")), learn
+        "`python -m benchmark.learning_curves`", lambda: small.write_scores(Path("store")), learn
     ),
     "holding": Command(
-        "`python -m benchmark.leaderboard.holding`",
+        "`python -m benchmark.error_budget`",
         lambda: Path("held.csv").write_text(",".join(table._COLUMNS) + "\n"),
         hold_back,
     ),

@@ -16,7 +16,7 @@ from benchmark.claims.experiment import Trial
 from benchmark.claims.rules import claims
 from benchmark.contract import Cell
 from benchmark.datasets.pins import Pin
-from benchmark.leaderboard.holding import table
+from benchmark.error_budget import table
 from benchmark.plan.combinations import cells
 from benchmark.plan.parts import Parts, installed
 from benchmark.results.components import current

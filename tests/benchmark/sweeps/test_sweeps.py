@@ -14,13 +14,13 @@ import pytest
 
 from algorithms.contract import AboutExtractor, FeatureKind, Observation
 from algorithms.discovery import discover_extractors
-from benchmark.reference.series import SWEEPS
 from benchmark.results.record import point_of
 from benchmark.results.store import Store
 from benchmark.sweeps import pictures as sweep_pictures
 from benchmark.sweeps import plan as sweep_plan
 from benchmark.sweeps import run as sweeps
 from benchmark.sweeps import tables as sweep_tables
+from benchmark.synthetic_features.series import SWEEPS
 
 
 @dataclass(frozen=True)

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from algorithms.contract import AboutExtractor, Extractor, FeatureKind, Observation
-from benchmark.reference.frame_sets import FRAME_SETS
-from benchmark.reference.series import WRONG_PX
 from benchmark.sweeps.measure import measure
 from benchmark.sweeps.plan import SERIES, Point, planned
+from benchmark.synthetic_features.frame_sets import FRAME_SETS
+from benchmark.synthetic_features.series import WRONG_PX
 
 FRAMES = SERIES["frames"]
 SETTINGS = {setting.point: setting for setting in FRAMES.settings()}

@@ -39,7 +39,7 @@ def picture(rows: Sequence[Row]) -> str:
     Parameters
     ----------
     rows
-        As `benchmark.curves.record.shown` gives them.
+        As `benchmark.learning_curves.record.shown` gives them.
     """
     return svg(lambda: figure(rows), _ABOUT)
 

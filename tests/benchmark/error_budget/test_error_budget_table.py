@@ -2,9 +2,9 @@
 
 import pytest
 
-from benchmark.leaderboard.holding import __main__ as command
-from benchmark.leaderboard.holding import sentences, table
-from benchmark.leaderboard.holding.variants import VARIANTS
+from benchmark.error_budget import __main__ as command
+from benchmark.error_budget import sentences, table
+from benchmark.error_budget.variants import VARIANTS
 from benchmark.leaderboard.scope import compared
 from benchmark.plan.parts import installed
 from benchmark.results.store import Store
@@ -37,7 +37,7 @@ def leading():
 def test_every_data_set_of_the_leaderboard_has_a_row_of_the_score_that_leads_it(leading):
     assert leading.keys() == {row["dataset"] for row in Store().rows()}
     behind = table.behind(table.rows(), leading)
-    assert behind == [], "run `python -m benchmark.leaderboard.holding`"
+    assert behind == [], "run `python -m benchmark.error_budget`"
     assert table.rows().keys() == leading.keys()
 
 

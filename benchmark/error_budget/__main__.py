@@ -1,11 +1,11 @@
-"""Renew the table: `python -m benchmark.leaderboard.holding [DATASET ...]`."""
+"""Renew the table: `python -m benchmark.error_budget [DATASET ...]`."""
 
 from __future__ import annotations
 
 import argparse
 import sys
 
-from benchmark.leaderboard.holding import table
+from benchmark.error_budget import table
 from benchmark.leaderboard.scope import compared
 from benchmark.plan.parts import installed
 from benchmark.processes import call_to_end
@@ -16,7 +16,7 @@ from benchmark.results.store import Store
 def main(arguments: list[str] | None = None) -> int:
     """Measure the data sets whose best score has changed, those named, or all."""
     parser = argparse.ArgumentParser(
-        prog="python -m benchmark.leaderboard.holding", description=main.__doc__
+        prog="python -m benchmark.error_budget", description=main.__doc__
     )
     parser.add_argument("datasets", nargs="*", metavar="DATASET")
     parser.add_argument("--all", action="store_true", help="measure every data set again")

@@ -3,11 +3,11 @@
 import pytest
 
 from benchmark.contract import Cell
-from benchmark.curves import record
-from benchmark.curves.measure import DRAWS, UNITS, measure
-from benchmark.curves.outcome import row_of
-from benchmark.curves.run import behind, tasks_of, wanted
 from benchmark.leaderboard.check import RELATIVE_TOLERANCE
+from benchmark.learning_curves import record
+from benchmark.learning_curves.measure import DRAWS, UNITS, measure
+from benchmark.learning_curves.outcome import row_of
+from benchmark.learning_curves.run import behind, tasks_of, wanted
 from benchmark.plan.parts import installed
 from benchmark.results.store import PUBLISHED, Store
 
@@ -27,7 +27,7 @@ def cell(leader, unit=0):
 
 
 def test_they_are_of_the_code_and_of_the_leaders_as_they_are(rows):
-    assert behind() == [], "run `python -m benchmark.curves`"
+    assert behind() == [], "run `python -m benchmark.learning_curves`"
     assert list(rows) == wanted(Store(), installed())
     assert {leader.dataset for leader in rows} == set(installed().presets)
 

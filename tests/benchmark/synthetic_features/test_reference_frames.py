@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmark.reference.frames import REFERENCE_SETS
+from benchmark.synthetic_features.frames import REFERENCE_SETS
 from tests.speed import extractors as speed_extractors
 
 

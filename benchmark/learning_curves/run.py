@@ -15,10 +15,10 @@ from pathlib import Path
 from typing import Any
 
 from benchmark.contract import Cell
-from benchmark.curves import record
-from benchmark.curves.leaders import Leader, leaders
-from benchmark.curves.measure import Learnt, Task, measure
-from benchmark.curves.outcome import row_of
+from benchmark.learning_curves import record
+from benchmark.learning_curves.leaders import Leader, leaders
+from benchmark.learning_curves.measure import Learnt, Task, measure
+from benchmark.learning_curves.outcome import row_of
 from benchmark.plan.parts import Parts, installed
 from benchmark.progress import ProgressCallback, terminal_progress
 from benchmark.results.components import Components, current

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.contract import Floats, Observation, SensorGeometry
-from benchmark.reference.light import Profile
 from benchmark.seeds import generator
+from benchmark.synthetic_features.light import Profile
 
 #: Peak signal over noise of the noise sweep, and of the reference setting of most series.
 SNRS = (5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0)

@@ -18,8 +18,8 @@ from benchmark.datasets.corrected import correction
 from benchmark.datasets.features import features_of
 from benchmark.datasets.preset import Preset
 from benchmark.datasets.samples import Samples
-from benchmark.leaderboard.holding import perfected
-from benchmark.leaderboard.holding.variants import VARIANTS
+from benchmark.error_budget import perfected
+from benchmark.error_budget.variants import VARIANTS
 from benchmark.metrics.score import separation_deg
 from benchmark.running.task import BENCHES
 from benchmark.running.threads import one_thread

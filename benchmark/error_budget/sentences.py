@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from benchmark.leaderboard.holding.variants import SINGLE
+from benchmark.error_budget.variants import SINGLE
 
 Row = Mapping[str, Any]
 
@@ -74,7 +74,7 @@ def bound_of(row: Row) -> float:
 
 
 def verdict(row: Row) -> Verdict:
-    """Judge a row of `benchmark.leaderboard.holding.table`."""
+    """Judge a row of `benchmark.error_budget.table`."""
     parts = contributions(row)
     leading = max(parts, key=lambda part: parts[part])
     ratio = row["rms_deg"] / bound_of(row)

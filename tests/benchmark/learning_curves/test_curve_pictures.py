@@ -5,7 +5,7 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 
-from benchmark.curves import pictures, record
+from benchmark.learning_curves import pictures, record
 
 SVG = "{http://www.w3.org/2000/svg}"
 

@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from algorithms.contract import Floats, Observation, SensorGeometry
-from benchmark.reference.light import (
+from benchmark.seeds import generator
+from benchmark.synthetic_features.light import (
     BACKGROUND_E,
     bars,
     detected,
@@ -16,7 +17,7 @@ from benchmark.reference.light import (
     position_bound,
     variance_e,
 )
-from benchmark.reference.series import (
+from benchmark.synthetic_features.series import (
     GLINT,
     Drawn,
     Setting,
@@ -28,7 +29,6 @@ from benchmark.reference.series import (
     phases,
     word,
 )
-from benchmark.seeds import generator
 
 _PITCH_MM = 0.0125
 _FOCAL_MM = 1.25

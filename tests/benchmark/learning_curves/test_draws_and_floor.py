@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from benchmark.curves.draws import LADDER, sizes, subsets
-from benchmark.curves.floor import NEAR, floor_of, reached_from
-from benchmark.curves.reading import half_of
+from benchmark.learning_curves.draws import LADDER, sizes, subsets
+from benchmark.learning_curves.floor import NEAR, floor_of, reached_from
+from benchmark.learning_curves.reading import half_of
 
 STEPS = sizes(441)
 

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from benchmark.canonical import digest
-from benchmark.curves.leaders import Leader
-from benchmark.curves.reading import Row, require_row, summary
+from benchmark.learning_curves.leaders import Leader
+from benchmark.learning_curves.reading import Row, require_row, summary
 from benchmark.results import recorded
 from benchmark.results.components import Components
 from benchmark.results.digests import modules_digest
@@ -27,10 +27,10 @@ _CODE = (
     "algorithms.kernels.reference_correction",
     "algorithms.pipeline",
     "algorithms.references",
-    "benchmark.curves.draws",
-    "benchmark.curves.floor",
-    "benchmark.curves.measure",
-    "benchmark.curves.outcome",
+    "benchmark.learning_curves.draws",
+    "benchmark.learning_curves.floor",
+    "benchmark.learning_curves.measure",
+    "benchmark.learning_curves.outcome",
     "benchmark.datasets.corrected",
     "benchmark.datasets.features",
     "benchmark.metrics.score",

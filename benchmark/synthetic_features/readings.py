@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from algorithms.contract import Floats, Observation, SensorGeometry
-from benchmark.reference.light import READ_NOISE_E, peak_e, position_bound
-from benchmark.reference.series import Drawn, Setting, noise, pedestals, word
 from benchmark.seeds import generator
+from benchmark.synthetic_features.light import READ_NOISE_E, peak_e, position_bound
+from benchmark.synthetic_features.series import Drawn, Setting, noise, pedestals, word
 
 _FACES = (
     *((1.0, 0.0, 0.0), (-1.0, 0.0, 0.0), (0.0, 1.0, 0.0)),

@@ -9,9 +9,9 @@ from algorithms.contract import FeatureKind
 from algorithms.models.geometric.pinhole import BuiltPinhole
 from benchmark import datasets
 from benchmark.datasets.corrected import correction
-from benchmark.leaderboard.holding import perfected
-from benchmark.leaderboard.holding.measure import directions, held
-from benchmark.leaderboard.holding.variants import SINGLE, VARIANTS
+from benchmark.error_budget import perfected
+from benchmark.error_budget.measure import directions, held
+from benchmark.error_budget.variants import SINGLE, VARIANTS
 from benchmark.metrics.score import separation_deg
 from benchmark.plan.parts import installed
 from benchmark.running.task import Task, measure

@@ -16,8 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.contract import Floats
-from benchmark.reference.light import position_bound
-from benchmark.reference.shapes import (
+from benchmark.seeds import generator
+from benchmark.synthetic_features.light import position_bound
+from benchmark.synthetic_features.shapes import (
     BACKGROUND_E,
     Shape,
     airy,
@@ -30,7 +31,6 @@ from benchmark.reference.shapes import (
     stretched,
     variance_e,
 )
-from benchmark.seeds import generator
 
 #: What a method is held to on a set, if to anything.
 Kind = Literal["symmetric", "stray", "fault"]

@@ -9,15 +9,15 @@ from fake_poses import Guess, Lines, Plane, Readings, mean_square
 from fake_results import numbers
 
 from benchmark.contract import Cell
-from benchmark.curves import record
-from benchmark.curves.draws import sizes
-from benchmark.curves.floor import NEAR
-from benchmark.curves.leaders import LEADING, Leader, leaders
-from benchmark.curves.measure import DRAWS, UNITS, Task, measure
-from benchmark.curves.outcome import row_of
-from benchmark.curves.reading import summary
-from benchmark.curves.run import behind, update
 from benchmark.datasets.pins import Pin
+from benchmark.learning_curves import record
+from benchmark.learning_curves.draws import sizes
+from benchmark.learning_curves.floor import NEAR
+from benchmark.learning_curves.leaders import LEADING, Leader, leaders
+from benchmark.learning_curves.measure import DRAWS, UNITS, Task, measure
+from benchmark.learning_curves.outcome import row_of
+from benchmark.learning_curves.reading import summary
+from benchmark.learning_curves.run import behind, update
 from benchmark.plan.parts import Parts
 from benchmark.progress import silent
 from benchmark.results.components import current

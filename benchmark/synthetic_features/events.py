@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from algorithms.contract import Floats, Observation, SensorGeometry
-from benchmark.reference.light import bars, position_bound
-from benchmark.reference.series import (
+from benchmark.synthetic_features.light import bars, position_bound
+from benchmark.synthetic_features.series import (
     Drawn,
     Setting,
     locations,

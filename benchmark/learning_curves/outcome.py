@@ -9,9 +9,9 @@ import numpy as np
 
 from algorithms.contract import Floats
 from benchmark import seeds
-from benchmark.curves.floor import NEAR, Flags, Floor, floor_of, reached_from
-from benchmark.curves.measure import Learnt
-from benchmark.curves.reading import Row
+from benchmark.learning_curves.floor import NEAR, Flags, Floor, floor_of, reached_from
+from benchmark.learning_curves.measure import Learnt
+from benchmark.learning_curves.reading import Row
 from benchmark.metrics.score import AVAILABLE, stored
 
 #: Digits of errors along a curve, and of shares; floors have those of scores.

@@ -18,10 +18,10 @@ from algorithms.chain import Scored
 from algorithms.contract import Context, Extractor, Floats, UnusableDataError
 from algorithms.pipeline import Pipeline
 from benchmark.contract import Preset
-from benchmark.curves.draws import Rows, sizes, subsets
-from benchmark.curves.leaders import Leader
 from benchmark.datasets.corrected import correction
 from benchmark.datasets.features import features_of
+from benchmark.learning_curves.draws import Rows, sizes, subsets
+from benchmark.learning_curves.leaders import Leader
 from benchmark.metrics.score import score
 from benchmark.running.task import reason_of
 from benchmark.running.threads import one_thread

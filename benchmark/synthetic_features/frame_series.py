@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from algorithms.contract import Floats, Observation, SensorGeometry
-from benchmark.reference.frame_sets import FRAME_SETS, FrameSet
-from benchmark.reference.series import Drawn, Setting, word
+from benchmark.synthetic_features.frame_sets import FRAME_SETS, FrameSet
+from benchmark.synthetic_features.series import Drawn, Setting, word
 
 #: Names the frames that are published; whoever draws others takes a number.
 _SEED = "published"

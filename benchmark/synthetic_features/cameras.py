@@ -7,8 +7,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from algorithms.contract import Floats, Observation, SensorGeometry
-from benchmark.reference.light import position_bound
-from benchmark.reference.series import (
+from benchmark.seeds import generator
+from benchmark.simulator.optics.assembly import Assembly
+from benchmark.simulator.readout.noise import NoiseStreams
+from benchmark.simulator.scene import Scene
+from benchmark.simulator.sensors.black_sun import BlackSunSensor
+from benchmark.simulator.sensors.blooming import BloomingSensor
+from benchmark.simulator.sensors.lens_camera import LensCamera
+from benchmark.synthetic_features.light import position_bound
+from benchmark.synthetic_features.series import (
     SNRS,
     Drawn,
     Setting,
@@ -17,13 +24,6 @@ from benchmark.reference.series import (
     number,
     phases,
 )
-from benchmark.seeds import generator
-from benchmark.simulator.optics.assembly import Assembly
-from benchmark.simulator.readout.noise import NoiseStreams
-from benchmark.simulator.scene import Scene
-from benchmark.simulator.sensors.black_sun import BlackSunSensor
-from benchmark.simulator.sensors.blooming import BloomingSensor
-from benchmark.simulator.sensors.lens_camera import LensCamera
 
 _BOUND_SAMPLES = 3
 

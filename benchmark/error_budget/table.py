@@ -9,7 +9,7 @@ from statistics import geometric_mean
 from typing import Any, cast
 
 from benchmark.datasets.preset import Preset
-from benchmark.leaderboard.holding.variants import VARIANTS
+from benchmark.error_budget.variants import VARIANTS
 from benchmark.leaderboard.ranking import order
 from benchmark.metrics.score import stored
 from benchmark.plan.parts import Parts
@@ -143,7 +143,7 @@ def _measured(task: tuple[Mapping[str, Any], Parts]) -> Row:
 
 def measured(score: Mapping[str, Any], parts: Parts) -> Row:
     """Return the row of one score, measured now."""
-    from benchmark.leaderboard.holding.measure import held  # noqa: PLC0415 - loads Numba
+    from benchmark.error_budget.measure import held  # noqa: PLC0415 - loads Numba
 
     found = held(
         cast("Preset", parts.preset(score["dataset"])),

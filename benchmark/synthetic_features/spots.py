@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from algorithms.contract import Floats, Observation, SensorGeometry
-from benchmark.reference.frames import REFERENCE_SETS
-from benchmark.reference.light import (
+from benchmark.seeds import generator
+from benchmark.synthetic_features.frames import REFERENCE_SETS
+from benchmark.synthetic_features.light import (
     BACKGROUND_E,
     detected,
     peak_e,
@@ -17,7 +18,7 @@ from benchmark.reference.light import (
     spots,
     variance_e,
 )
-from benchmark.reference.series import (
+from benchmark.synthetic_features.series import (
     GLINT,
     Drawn,
     Setting,
@@ -29,7 +30,6 @@ from benchmark.reference.series import (
     phases,
     word,
 )
-from benchmark.seeds import generator
 
 _PITCH_MM, _FOCAL_MM = 0.05, 1.5
 #: Samples the bound is averaged over: it varies with the sub-pixel phase only.
