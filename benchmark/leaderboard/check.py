@@ -20,8 +20,6 @@ from benchmark.leaderboard.board import board_of
 from benchmark.leaderboard.consistency import contradictions
 from benchmark.leaderboard.pages import PAGE, page
 from benchmark.leaderboard.update import update
-from benchmark.learning_curves import run as curves
-from benchmark.learning_curves.record import NAME as CURVES
 from benchmark.metrics.rings import RINGS
 from benchmark.metrics.score import METRICS, RING_DIGITS, SIGNIFICANT_DIGITS
 from benchmark.plan.parts import Parts, installed
@@ -31,6 +29,7 @@ from benchmark.results.components import current
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.results.tables import Row
 from benchmark.running import pinning
+from benchmark.running.experiment import Recorded, due, experiments
 from benchmark.running.kernels import update_with_older_kernels
 from benchmark.running.run import RunInterruptedError
 from benchmark.sweeps import run as sweeps
@@ -270,10 +269,11 @@ def _outdated(store: Store, parts: Parts) -> Iterator[Difference]:
     for point, state in sweeps.unplanned(store.swept(), parts.extractors):
         told = ("absent", "planned") if state == "absent" else ("present", "not planned")
         yield Difference(store.sweeps_path.name, f"{point}/row", *told)
-    for leader, why in curves.behind(store.directory, parts):
-        yield Difference(
-            CURVES, str(leader), why, "renewed by `python -m benchmark.learning_curves`"
-        )
+    for name, kind in experiments().items():
+        if issubclass(kind, Recorded) and (store.directory / kind.record.name).is_file():
+            should = f"renewed by `python -m benchmark.experiments {name}`"
+            for cell, why in due(kind(store.directory, parts)):
+                yield Difference(kind.record.name, str(cell), why, should)
 
 
 def _is_used(name: str, store: Store) -> bool:

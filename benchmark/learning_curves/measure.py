@@ -48,6 +48,10 @@ class Task:
         By name, those that the leaders name.
     all_observable
         Whether the direction is known to be observable from every test sample.
+    bounds_deg
+        Cramer-Rao bound of each leader's score, root mean square.
+    bench_deg
+        Fixed error of the standard bench's directions, root mean square; None where none is pinned.
     """
 
     preset: Preset
@@ -55,6 +59,8 @@ class Task:
     extractors: Mapping[str, type[Extractor]]
     models: Mapping[str, Scored]
     all_observable: bool
+    bounds_deg: Mapping[Leader, float]
+    bench_deg: float | None
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 from benchmark.metrics.score import stored
-from files.reading import FileRefusedError
 from files.strict_json import members, require, require_kind
 
 #: A row of the record: plain JSON values.
@@ -30,28 +29,25 @@ _MEMBERS: Mapping[str, type | tuple[type, ...]] = {
 }
 
 
-def require_row(path: Path, number: int, row: object) -> None:
+def require_row(path: Path, row: object) -> None:
     """Raise FileRefusedError, naming the curve, for what is no row of the record."""
-    try:
-        held: Row = members(row, path, _MEMBERS)
-        named = f"{held['dataset']}, place {held['place']}"
-        for name, value in held.items():
-            kind = (int, type(None)) if name in _FROM else _ANGLE
-            if name == "points":
-                for point in value:
-                    where = f"{named}, points"
-                    require_kind(point, list, path, where)
-                    require(len(point) == len(POINT), path, f"{where}: expected {len(POINT)} each")
-                    _require_sizes(path, where, point, _ANGLE)
-            elif isinstance(value, list):
-                _require_sizes(path, f"{named}, {name}", value, kind)
-            elif isinstance(value, int | float):
-                _require_sizes(path, f"{named}, {name}", [value], (*_ANGLE, bool))
-        lengths = {len(held[name]) for name in _FROM}
-        one_length = len(lengths) == 1 and 0 not in lengths
-        require(one_length, path, f"{named}: {', '.join(_FROM)} are empty or of other lengths")
-    except FileRefusedError as error:
-        raise FileRefusedError(path, f"curve {number}: {error.reason}") from error
+    held: Row = members(row, path, _MEMBERS)
+    named = f"{held['dataset']}, place {held['place']}"
+    for name, value in held.items():
+        kind = (int, type(None)) if name in _FROM else _ANGLE
+        if name == "points":
+            for point in value:
+                where = f"{named}, points"
+                require_kind(point, list, path, where)
+                require(len(point) == len(POINT), path, f"{where}: expected {len(POINT)} each")
+                _require_sizes(path, where, point, _ANGLE)
+        elif isinstance(value, list):
+            _require_sizes(path, f"{named}, {name}", value, kind)
+        elif isinstance(value, int | float):
+            _require_sizes(path, f"{named}, {name}", [value], (*_ANGLE, bool))
+    lengths = {len(held[name]) for name in _FROM}
+    one_length = len(lengths) == 1 and 0 not in lengths
+    require(one_length, path, f"{named}: {', '.join(_FROM)} are empty or of other lengths")
 
 
 #: Lists of numbers of poses, by draw.

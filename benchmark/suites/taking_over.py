@@ -12,9 +12,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from benchmark.claims import outcomes
-from benchmark.learning_curves import record as curves
 from benchmark.results import recorded, samples
 from benchmark.results.store import PUBLISHED, Store
+from benchmark.running.experiment import Recorded, experiments
 from files import manifest
 from survey_data import recorded_facts
 from survey_data.problems import SurveyDataError
@@ -58,7 +58,9 @@ def renew(directory: Path) -> list[str]:
     for name in samples.datasets(directory):
         samples.read(name, directory)
         samples.read_directions(name, directory)
-    curves.read(directory)
+    for kind in experiments().values():
+        if issubclass(kind, Recorded):
+            kind.record.read(directory)
     outcomes.read(directory / "claims")
     return manifest.renew(directory, recorded.names(directory))
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import survey_data
 from benchmark.claims import outcomes
-from benchmark.learning_curves import record as curves
+from benchmark.learning_curves.record import RECORD as CURVES
 from benchmark.results import recorded
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import times
@@ -58,7 +58,7 @@ def _read_record(folder: Path) -> Any:
 
 def _read_files(folder: Path) -> Any:
     store = Store(folder)
-    read = (store.rows(None), store.pins(), store.swept(), curves.read(folder))
+    read = (store.rows(None), store.pins(), store.swept(), CURVES.read(folder))
     return repr((*read, outcomes.read(folder / "claims")))
 
 

@@ -34,7 +34,7 @@ from api.deposit import bundle
 from api.docs import documentation
 from benchmark.claims import run as claims_run
 from benchmark.error_budget import table
-from benchmark.learning_curves import run as curves_run
+from benchmark.experiments.learning_curves import LearningCurves
 from benchmark.plan.combinations import cells
 from benchmark.processes import call_to_end
 from benchmark.progress import silent
@@ -42,6 +42,7 @@ from benchmark.results.store import Store
 from benchmark.running import compiling, pinning
 from benchmark.running import run as runner
 from benchmark.running import times as running_times
+from benchmark.running.experiment import update
 from benchmark.suites import tidying
 from tests.faults_kills import small
 
@@ -183,8 +184,8 @@ def measure_claims(*names: str) -> None:
 
 
 def learn() -> None:
-    """`python -m benchmark.learning_curves` of a small record, with two workers."""
-    program(lambda: curves_run.update("store", 2, silent, parts=small.curve_parts()))
+    """`python -m benchmark.experiments learning_curves`, small, with two workers."""
+    program(lambda: update(LearningCurves("store", small.curve_parts()), 2, silent))
 
 
 def hold_back(*datasets: str) -> None:
@@ -296,7 +297,9 @@ COMMANDS: Mapping[str, Command] = {
         "`python -m benchmark.claims.run`", _nothing, lambda: measure_claims(*_CLAIMS)
     ),
     "curves": Command(
-        "`python -m benchmark.learning_curves`", lambda: small.write_scores(Path("store")), learn
+        "`python -m benchmark.experiments learning_curves`",
+        lambda: small.write_scores(Path("store")),
+        learn,
     ),
     "holding": Command(
         "`python -m benchmark.error_budget`",

@@ -10,18 +10,20 @@ from fake_results import numbers
 
 from benchmark.contract import Cell
 from benchmark.datasets.pins import Pin
-from benchmark.learning_curves import record
+from benchmark.experiments.learning_curves import LearningCurves
 from benchmark.learning_curves.draws import sizes
 from benchmark.learning_curves.floor import NEAR
 from benchmark.learning_curves.leaders import LEADING, Leader, leaders
 from benchmark.learning_curves.measure import DRAWS, UNITS, Task, measure
 from benchmark.learning_curves.outcome import row_of
 from benchmark.learning_curves.reading import summary
-from benchmark.learning_curves.run import behind, update
+from benchmark.learning_curves.record import RECORD
 from benchmark.plan.parts import Parts
 from benchmark.progress import silent
 from benchmark.results.components import current
 from benchmark.results.store import Store
+from benchmark.results.tables import StoreError
+from benchmark.running.experiment import due, update
 
 LEADER = Leader("fake-plane", 1, "nominal", "fake-readings", "fake-lines")
 BOUND, BENCH = float(np.sqrt(mean_square(np.inf))), 0.5
@@ -32,7 +34,9 @@ def task(preset=None, *models):
     known = {model.about.name: model for model in models or (Lines,)}
     found = [replace(LEADER, place=place, model=name) for place, name in enumerate(known, start=1)]
     extractors = {"fake-readings": Readings}
-    return Task(preset or Plane(), tuple(found), extractors, known, all_observable=True)
+    return Task(
+        preset or Plane(), tuple(found), extractors, known, True, dict.fromkeys(found, BOUND), BENCH
+    )
 
 
 @pytest.fixture(scope="module")
@@ -158,43 +162,43 @@ def store(tmp_path):
 
 
 def test_the_file_is_the_same_for_any_number_of_workers_and_nothing_is_measured_twice(store):
-    first = update(store, 1, silent, parts=PARTS)
-    path = store / record.NAME
+    first = update(LearningCurves(store, PARTS), 1, silent)
+    path = store / RECORD.name
     text = path.read_bytes()
     assert (first.planned, first.computed) == (4, 4)
-    assert {row["bench_deg"] for row in record.read(store).values()} == {BENCH}
-    assert update(store, 1, silent, parts=PARTS).computed == 0
+    assert {row["bench_deg"] for row in RECORD.read(store).values()} == {BENCH}
+    assert update(LearningCurves(store, PARTS), 1, silent).computed == 0
     assert path.read_bytes() == text
     path.unlink()
-    assert update(store, 2, silent, parts=PARTS).computed == 4
+    assert update(LearningCurves(store, PARTS), 2, silent).computed == 4
     assert path.read_bytes() == text
-    assert behind(store, PARTS) == []
+    assert due(LearningCurves(store, PARTS)) == []
     with pytest.raises(ValueError, match="workers"):
-        update(store, 0, silent, parts=PARTS)
+        update(LearningCurves(store, PARTS), 0, silent)
 
 
 def test_what_is_of_other_code_data_or_leaders_is_named_and_renewed_alone(store):
-    update(store, 1, silent, parts=PARTS)
-    path = store / record.NAME
+    update(LearningCurves(store, PARTS), 1, silent)
+    path = store / RECORD.name
     text = path.read_bytes()
     held = json.loads(text)
     held["curves"][0]["key"] = "0" * 16
     held["curves"][1]["model"] = "gone"
     path.write_text(json.dumps(held), "utf-8")
-    said = behind(store, PARTS)
-    assert [why for _, why in said] == ["of other code or data", "absent", "no longer leads"]
-    assert update(store, 1, silent, parts=PARTS).computed == 2
+    said = due(LearningCurves(store, PARTS))
+    assert [why for _, why in said] == ["of other code or data", "absent", "no longer wanted"]
+    assert update(LearningCurves(store, PARTS), 1, silent).computed == 2
     assert path.read_bytes() == text
     changed = replace(
         PARTS, presets={**PARTS.presets, "fake-other": Plane("fake-other", version=2)}
     )
-    assert {leader.dataset for leader, _ in behind(store, changed)} == {"fake-other"}
+    assert {leader.dataset for leader, _ in due(LearningCurves(store, changed))} == {"fake-other"}
 
 
 def test_a_file_of_something_else_is_named(tmp_path):
-    assert record.read(tmp_path) == {}
-    path = tmp_path / record.NAME
+    assert RECORD.read(tmp_path) == {}
+    path = tmp_path / RECORD.name
     for text in ("[", "[]", '{"schema": 2, "curves": [{"dataset": "d"}]}', '{"schema": 1}'):
         path.write_text(text)
-        with pytest.raises(record.CurvesError, match=r"curves\.json"):
-            record.read(tmp_path)
+        with pytest.raises(StoreError, match=r"curves\.json"):
+            RECORD.read(tmp_path)

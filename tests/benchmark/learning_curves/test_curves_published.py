@@ -1,20 +1,23 @@
 """The committed learning curves: of the board and the code as they are, and in line with scores."""
 
+from itertools import chain
+
 import pytest
 
 from benchmark.contract import Cell
+from benchmark.experiments.learning_curves import LearningCurves
 from benchmark.leaderboard.check import RELATIVE_TOLERANCE
-from benchmark.learning_curves import record
-from benchmark.learning_curves.measure import DRAWS, UNITS, measure
-from benchmark.learning_curves.outcome import row_of
-from benchmark.learning_curves.run import behind, tasks_of, wanted
+from benchmark.learning_curves.measure import DRAWS, UNITS
+from benchmark.learning_curves.record import RECORD
 from benchmark.plan.parts import installed
+from benchmark.progress import silent
 from benchmark.results.store import PUBLISHED, Store
+from benchmark.running.experiment import due, measured
 
 
 @pytest.fixture(scope="module")
 def rows():
-    return record.read()
+    return RECORD.read()
 
 
 @pytest.fixture(scope="module")
@@ -27,13 +30,13 @@ def cell(leader, unit=0):
 
 
 def test_they_are_of_the_code_and_of_the_leaders_as_they_are(rows):
-    assert behind() == [], "run `python -m benchmark.learning_curves`"
-    assert list(rows) == wanted(Store(), installed())
+    assert due(LearningCurves()) == [], "run `python -m benchmark.experiments learning_curves`"
+    assert list(rows) == LearningCurves().cells()
     assert {leader.dataset for leader in rows} == set(installed().presets)
 
 
 def test_the_file_is_small():
-    assert (PUBLISHED / record.NAME).stat().st_size < 150_000
+    assert (PUBLISHED / RECORD.name).stat().st_size < 150_000
 
 
 def test_with_all_poses_the_errors_are_the_published_scores(rows, scores):
@@ -68,16 +71,14 @@ def test_each_is_of_enough_draws_over_two_units_and_of_no_floor_above_its_end(ro
 @pytest.mark.slow
 def test_measured_again_they_are_the_same(rows):
     """Of data sets whose curves take seconds."""
-    store, parts = Store(), installed()
-    chosen = [one for one in wanted(store, parts) if one.dataset == "pd-code-dial"]
-    for task in tasks_of(chosen, parts, store):
-        for learnt in measure(task):
-            known = {name: value for name, value in rows[learnt.leader].items() if name != "key"}
-            again = row_of(learnt, known["bound_deg"], known["bench_deg"])
-            for name in ("needed", "error_from", "answers_from", "floor", "refusal", "poses"):
-                assert again[name] == known[name], name
-            for point, before in zip(again["points"], known["points"], strict=True):
-                assert [value is None for value in point] == [value is None for value in before]
-                assert [value for value in point if value is not None] == pytest.approx(
-                    [value for value in before if value is not None], rel=1e-3
-                )
+    experiment = LearningCurves()
+    chosen = experiment.named(["pd-code-dial"])
+    for leader, again in chain.from_iterable(measured(experiment, chosen, 1, silent)):
+        known = {name: value for name, value in rows[leader].items() if name != "key"}
+        for name in ("needed", "error_from", "answers_from", "floor", "refusal", "poses"):
+            assert again[name] == known[name], name
+        for point, before in zip(again["points"], known["points"], strict=True):
+            assert [value is None for value in point] == [value is None for value in before]
+            assert [value for value in point if value is not None] == pytest.approx(
+                [value for value in before if value is not None], rel=1e-3
+            )
