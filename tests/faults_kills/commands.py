@@ -33,7 +33,7 @@ from api.cli.commands import leaderboard as leaderboard_command
 from api.deposit import bundle
 from api.docs import documentation
 from benchmark.claims import run as claims_run
-from benchmark.error_budget import table
+from benchmark.experiments.error_budget import ErrorBudget
 from benchmark.experiments.learning_curves import LearningCurves
 from benchmark.plan.combinations import cells
 from benchmark.processes import call_to_end
@@ -188,15 +188,13 @@ def learn() -> None:
     program(lambda: update(LearningCurves("store", small.curve_parts()), 2, silent))
 
 
-def hold_back(*datasets: str) -> None:
-    """`python -m benchmark.error_budget` of scores that are given."""
-    _give(table, "measured", small.held_back)
-    score = {"condition": "quiet", "extractor": "one", "model": "two", "rms_deg": 0.05}
-    score |= {"bound_deg": 0.005, "bound_unit_deg": 0.005, "answered": 40, "judged": 40}
-    leading = {f"set-{n}": {"dataset": f"set-{n}", **score} for n in range(8)}
-    program(
-        lambda: table.renew(leading, small.parts(), only=datasets or None, path=Path("held.csv"))
-    )
+def budget_errors(*datasets: str) -> None:
+    """`python -m benchmark.experiments error_budget` of data sets that are given."""
+    keys = {f"set-{n}": "of this code" for n in range(8)}
+    _give(ErrorBudget, "keys", lambda _: keys)
+    _give(ErrorBudget, "tasks", lambda _, cells: cells)
+    _give(ErrorBudget, "measure", staticmethod(small.error_budget))
+    program(lambda: update(ErrorBudget("store"), 1, silent, only=datasets or None))
 
 
 def empty_docs() -> None:
@@ -301,10 +299,8 @@ COMMANDS: Mapping[str, Command] = {
         lambda: small.write_scores(Path("store")),
         learn,
     ),
-    "holding": Command(
-        "`python -m benchmark.error_budget`",
-        lambda: Path("held.csv").write_text(",".join(table._COLUMNS) + "\n"),
-        hold_back,
+    "error_budget": Command(
+        "`python -m benchmark.experiments error_budget`", _nothing, budget_errors
     ),
     "docs": Command("`python -m api.docs.documentation`", empty_docs, document),
     "save": Command("`calibration.saving.save`", _nothing, lambda: program(save_calibration)),

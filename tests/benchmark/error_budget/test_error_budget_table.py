@@ -2,12 +2,12 @@
 
 import pytest
 
-from benchmark.error_budget import __main__ as command
-from benchmark.error_budget import sentences, table
+from benchmark.error_budget import sentences
+from benchmark.error_budget.record import RECORD
 from benchmark.error_budget.variants import VARIANTS
-from benchmark.leaderboard.scope import compared
-from benchmark.plan.parts import installed
+from benchmark.experiments.error_budget import ErrorBudget, leaders
 from benchmark.results.store import Store
+from benchmark.running.experiment import due
 
 SCORE = {
     "dataset": "ccd-slit",
@@ -29,20 +29,18 @@ def _row(**errors):
     return {**SCORE, **known, "surroundings_deg": None, **given}
 
 
-@pytest.fixture(scope="module")
-def leading():
-    return table.leaders(Store().rows(unit=None), compared(installed()))
-
-
-def test_every_data_set_of_the_leaderboard_has_a_row_of_the_score_that_leads_it(leading):
+def test_every_data_set_of_the_leaderboard_has_a_row_of_the_score_that_leads_it():
+    leading = ErrorBudget().leading
     assert leading.keys() == {row["dataset"] for row in Store().rows()}
-    behind = table.behind(table.rows(), leading)
-    assert behind == [], "run `python -m benchmark.error_budget`"
-    assert table.rows().keys() == leading.keys()
+    assert RECORD.read().keys() == leading.keys()
+
+
+def test_every_row_is_of_the_score_and_the_code_as_they_are():
+    assert due(ErrorBudget()) == [], "run `python -m benchmark.experiments error_budget`"
 
 
 def test_whatever_is_not_near_its_bound_has_a_sentence_with_its_measurement():
-    for name, row in table.rows().items():
+    for name, row in RECORD.read().items():
         found = sentences.verdict(row)
         assert name in found.sentence
         assert sentences.degrees(row["rms_deg"]) in found.sentence
@@ -157,9 +155,9 @@ def test_the_leader_is_chosen_over_its_units():
         ]
 
     rows = [*scored("lucky", 1.0, 9.0), *scored("steady", 2.0, 2.0), *scored("once", 4.0)]
-    assert table.leaders(rows, {"d": "c"})["d"]["model"] == "steady"
-    assert table.leaders(rows, {"d": "c"})["d"]["rms_deg"] == 2.0
-    assert table.leaders(rows, {"d": "other"}) == {}
+    assert leaders(rows, {"d": "c"})["d"]["model"] == "steady"
+    assert leaders(rows, {"d": "c"})["d"]["rms_deg"] == 2.0
+    assert leaders(rows, {"d": "other"}) == {}
 
 
 @pytest.mark.parametrize(
@@ -168,40 +166,3 @@ def test_the_leader_is_chosen_over_its_units():
 )
 def test_angles_have_two_digits(angle, said):
     assert sentences.degrees(angle) == said
-
-
-def test_only_what_is_behind_is_measured_and_what_is_gone_is_dropped(tmp_path, monkeypatch):
-    path = tmp_path / "held_back.csv"
-    measured = []
-
-    def pretend(score, _):
-        measured.append(score["dataset"])
-        return {**_row(), **score}
-
-    monkeypatch.setattr(table, "measured", pretend)
-    leading = {name: {**SCORE, "dataset": name} for name in ("a", "b", "c")}
-    assert table.renew(leading, installed(), path=path) == ["a", "b", "c"]
-    leading.pop("a")
-    leading["b"] = {**leading["b"], "extractor": "pd"}
-    assert table.renew(leading, installed(), path=path) == ["b"]
-    assert table.renew(leading, installed(), path=path) == []
-    assert table.renew(leading, installed(), only=["c"], path=path) == ["c"]
-    assert measured == ["a", "b", "c", "b", "c"]
-    known = table.rows(path)
-    assert list(known) == ["b", "c"]
-    assert known["b"]["extractor"] == "pd"
-    assert known["b"]["surroundings_deg"] is None
-
-
-def test_workers_are_counted(tmp_path, capsys):
-    with pytest.raises(ValueError, match="workers"):
-        table.renew({}, installed(), path=tmp_path / "held_back.csv", workers=0)
-    with pytest.raises(SystemExit):
-        command.main(["--workers", "0"])
-    assert "--workers" in capsys.readouterr().err
-
-
-def test_a_data_set_that_nothing_leads_is_refused(capsys):
-    with pytest.raises(SystemExit):
-        command.main(["ccd-slitt"])
-    assert "no score leads on ccd-slitt" in capsys.readouterr().err
