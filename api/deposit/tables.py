@@ -94,7 +94,7 @@ def measured_tables(published: Path) -> list[MeasuredTable]:
         *([_sweeps(swept)] if swept else []),
         *_curves(curves.shown(published), foreign),
         *_told(foreign),
-        *_claims(ledger(published / "claims")),
+        *_claims(ledger(published)),
     ]
 
 

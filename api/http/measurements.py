@@ -143,7 +143,7 @@ class Measurements:
         """The survey's claims with their verdicts, by id."""
         from benchmark.claims.ledger import ledger  # noqa: PLC0415 - SciPy's distributions
 
-        return {entry.claim.id: entry for entry in ledger(self._store.directory / "claims")}
+        return {entry.claim.id: entry for entry in ledger(self._store.directory)}
 
     @cached_property
     def realism(self) -> Sequence[Row]:

@@ -40,7 +40,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--all", action="store_true", help="measure every cell, due or not")
     parser.add_argument("--workers", type=int, default=1, metavar="N", help="processes")
     parser.add_argument("--directory", type=Path, default=PUBLISHED, help="of the record")
-    options = parser.parse_args(arguments)
+    options = parser.parse_intermixed_args(arguments)
     if options.workers < 1:
         parser.error(f"--workers must be at least 1; got {options.workers}")
     if options.name is not None and options.name not in known:

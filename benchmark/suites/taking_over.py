@@ -11,7 +11,6 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from benchmark.claims import outcomes
 from benchmark.results import recorded, samples
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running.experiment import Recorded, experiments
@@ -49,7 +48,7 @@ def renew(directory: Path) -> list[str]:
 
     Raises
     ------
-    StoreError, ComponentsError, OutcomeError
+    StoreError, ComponentsError
         Where a file cannot be read; the manifest is left as it is.
     """
     store = Store(directory)
@@ -61,7 +60,6 @@ def renew(directory: Path) -> list[str]:
     for kind in experiments().values():
         if issubclass(kind, Recorded):
             kind.record.read(directory)
-    outcomes.read(directory / "claims")
     return manifest.renew(directory, recorded.names(directory))
 
 

@@ -32,7 +32,8 @@ from api.cli.commands import gc as gc_command
 from api.cli.commands import leaderboard as leaderboard_command
 from api.deposit import bundle
 from api.docs import documentation
-from benchmark.claims import run as claims_run
+from benchmark.experiments import __main__ as experiments_run
+from benchmark.experiments.claims import Claims
 from benchmark.experiments.error_budget import ErrorBudget
 from benchmark.experiments.learning_curves import LearningCurves
 from benchmark.plan.combinations import cells
@@ -178,9 +179,10 @@ def compile_all() -> None:
 
 
 def measure_claims(*names: str) -> None:
-    """`python -m benchmark.claims.run` of claims, with two workers."""
-    _give(claims_run, "measured", small.trials)
-    program(lambda: claims_run.main([*names, "--directory", "outcomes", "--workers", "2"]))
+    """`python -m benchmark.experiments claims`, with two workers."""
+    _give(Claims, "measure", staticmethod(small.claim))
+    call = ["claims", *names, "--directory", "store", "--workers", "2"]
+    program(lambda: experiments_run.main(call))
 
 
 def learn() -> None:
@@ -292,7 +294,7 @@ COMMANDS: Mapping[str, Command] = {
     ),
     "compile": Command("`compile`", _nothing, compile_all),
     "claims": Command(
-        "`python -m benchmark.claims.run`", _nothing, lambda: measure_claims(*_CLAIMS)
+        "`python -m benchmark.experiments claims`", _nothing, lambda: measure_claims(*_CLAIMS)
     ),
     "curves": Command(
         "`python -m benchmark.experiments learning_curves`",
