@@ -17,6 +17,7 @@ from benchmark.claims.ledger import Entry, ledger
 from benchmark.leaderboard.board import build
 from benchmark.learning_curves import record as curves
 from benchmark.results.store import Store
+from benchmark.sweeps import record as sweeps
 from files.csv_writing import csv_text
 from registry.catalogue import catalogue
 from registry.taxonomy import exported
@@ -76,7 +77,7 @@ def measured_tables(published: Path) -> list[MeasuredTable]:
         )
     names = {"extractor": ("algorithms", "name"), "model": ("algorithms", "name")}
     foreign = {"dataset": ("datasets", "name"), **names}
-    swept = store.swept()
+    swept = sweeps.swept(published)
     return [
         _algorithms(),
         _datasets(),

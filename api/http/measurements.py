@@ -16,6 +16,7 @@ from benchmark.learning_curves import record as curves
 from benchmark.results import recorded, samples
 from benchmark.results.pipelines import pipelines, standard_benches
 from benchmark.results.store import PUBLISHED, Store
+from benchmark.sweeps.record import swept
 from files import manifest
 from files.reading import read_bytes
 from registry.measured import Measured
@@ -119,7 +120,7 @@ class Measurements:
     @cached_property
     def sweeps(self) -> Sequence[Row]:
         """Rows of the sweeps on reference features, in order."""
-        return self._store.swept()
+        return swept(self._store.directory)
 
     @cached_property
     def curves(self) -> Sequence[Row]:

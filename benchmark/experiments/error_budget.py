@@ -15,8 +15,7 @@ from benchmark.contract import Cell
 from benchmark.datasets.preset import Preset
 from benchmark.error_budget.measure import held
 from benchmark.error_budget.record import RECORD, SCORE
-from benchmark.leaderboard.ranking import order
-from benchmark.leaderboard.scope import compared
+from benchmark.metrics.ranking import order
 from benchmark.metrics.score import stored
 from benchmark.results.components import current
 from benchmark.results.digests import modules_digest
@@ -62,7 +61,8 @@ class ErrorBudget(Recorded[str]):
     @cached_property
     def leading(self) -> dict[str, Row]:
         """Scores by data set."""
-        return leaders(Store(self.directory).rows(unit=None), compared(self.parts))
+        first = {name: preset.conditions[0] for name, preset in self.parts.presets.items()}
+        return leaders(Store(self.directory).rows(unit=None), first)
 
     def keys(self) -> Mapping[str, str]:
         """Digest the code, the score, and the data set, extractor and model of each."""

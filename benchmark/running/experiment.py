@@ -25,7 +25,7 @@ from typing import Any, ClassVar, Generic
 from benchmark.contract import UnknownNameError
 from benchmark.plan.parts import Parts, installed
 from benchmark.progress import ProgressCallback, terminal_progress
-from benchmark.results.row_file import C, Row, RowFile
+from benchmark.results.row_file import C, Record, Row
 from benchmark.results.store import PUBLISHED
 from files.locks import held_alone
 
@@ -103,7 +103,7 @@ class Recorded(Experiment[C]):
         The file.
     """
 
-    record: ClassVar[RowFile[Any]]
+    record: ClassVar[Record[Any]]
 
     @abstractmethod
     def keys(self) -> Mapping[C, str]:
@@ -230,7 +230,9 @@ def update(
         if only is None:
             rows = {cell: row for cell, row in rows.items() if cell not in old}
         for found in measured(experiment, missing, workers, progress):
-            rows |= {cell: {**row, "key": keys[cell]} for cell, row in found}
+            for cell, row in found:
+                rows.pop(cell, None)  # what is new stands last
+                rows[cell] = {**row, "key": keys[cell]}
             record.write(rows, directory)
         if rows.keys() != stored.keys():
             record.write(rows, directory)

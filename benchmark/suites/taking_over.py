@@ -53,7 +53,6 @@ def renew(directory: Path) -> list[str]:
     """
     store = Store(directory)
     store.rows(unit=None)
-    store.swept()
     for name in samples.datasets(directory):
         samples.read(name, directory)
         samples.read_directions(name, directory)

@@ -11,6 +11,7 @@ from benchmark.datasets import Preset
 from benchmark.datasets.standard import ccd_lens, cmos_lens
 from benchmark.simulator.sensors.black_sun import BlackSunSensor
 from benchmark.simulator.sensors.blooming import BloomingSensor
+from benchmark.sweeps.points import Point
 from benchmark.synthetic_features.cameras import CameraSeries
 from benchmark.synthetic_features.events import EVENTS
 from benchmark.synthetic_features.frame_series import FramesSeries
@@ -74,19 +75,6 @@ _READINGS_OF: Mapping[FeatureKind, tuple[str, ...]] = MappingProxyType(
 )
 #: What is no estimate of a place: lists of spots, readings of pixels.
 _UNMEASURED = frozenset({FeatureKind.SPOTS, FeatureKind.SIGNALS})
-
-
-@dataclass(frozen=True, order=True)
-class Point:
-    """One extractor at one point of a series, by names."""
-
-    series: str
-    sweep: str
-    point: str
-    extractor: str
-
-    def __str__(self) -> str:
-        return f"{self.series}/{self.sweep}/{self.point}/{self.extractor}"
 
 
 @dataclass(frozen=True)

@@ -59,7 +59,7 @@ def _read_files(folder: Path) -> Any:
     store = Store(folder)
     records = [kind.record for kind in experiments().values() if issubclass(kind, Recorded)]
     kept = [record.read(folder) for record in records]
-    return repr((store.rows(None), store.pins(), store.swept(), kept))
+    return repr((store.rows(None), store.pins(), kept))
 
 
 _OFFERED = (

@@ -27,7 +27,7 @@ from benchmark.results import recorded
 from benchmark.results.components import Components
 from benchmark.results.journal import Journal
 from benchmark.results.record import Record
-from benchmark.results.store import PUBLISHED, SWEPT, Store
+from benchmark.results.store import PUBLISHED, Store
 from benchmark.running.experiment import due, repeated
 from files import manifest
 from tests.faults.forging import forged_export
@@ -66,15 +66,11 @@ def _journal(folder: Path) -> list[Path]:
         datasets={"d": sensor},
         extractors={"e": {"version": 1, "taxonomy": "BCM", "digest": "e"}},
         models={f"m{k}": {"version": 1, "taxonomy": "LSQ", "digest": f"m{k}"} for k in range(8)},
-        series={"s": {"digest": "s"}},
     )
     record.keep(known, pins=[Pin("d", "c", "test", 1, 9, "h", "hh", 9, 0.25, 0.2)])
     for k in range(8):
         row = {"status": "ok", **dict.fromkeys(METRICS), "rms_deg": 0.1 * k, "reason": ""}
         record.keep(known, scores={Cell("d", "c", "e", f"m{k}", 0): row})
-    swept = {"series": "s", "sweep": "noise", "point": "50", "extractor": "e", "status": "ok"}
-    swept |= {"value": 50.0, "n": 3, "unit": "px", **dict.fromkeys(SWEPT, 0.5), "reason": ""}
-    record.keep(known, swept=[swept])
     return [record.journal]
 
 
@@ -87,7 +83,10 @@ def _is_start(result: Any, reference: Any) -> bool:
     return bool(result == reference[: len(result)])
 
 
-_SMALL = ("pins.csv", "components.json", "curves.json", "claims.json", "error_budget.json")
+_SMALL = (
+    *("pins.csv", "components.json", "curves.json", "claims.json", "error_budget.json"),
+    "sweeps.json",
+)
 
 
 @cache

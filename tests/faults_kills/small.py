@@ -77,7 +77,7 @@ def write_scores(directory: Path) -> None:
     pins = [
         Pin(name, "nominal", "test", 1, 2000, "h", "hh", 2000, 0.01, 0.01) for name in known.presets
     ]
-    Store(directory).write(scores, pins, [], current(known))
+    Store(directory).write(scores, pins, current(known))
 
 
 def claim(name: str) -> list[tuple[str, dict[str, Any]]]:

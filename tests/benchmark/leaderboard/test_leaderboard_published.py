@@ -83,8 +83,8 @@ def test_it_is_small_and_holds_nothing_that_can_be_derived():
     sets = {cell.dataset for cell in plan.cells()}
     errors = {f"samples/{name}{kind}.parquet" for name in sets for kind in ("", ".directions")}
     assert names == {
-        *tables, *errors, "pins.csv", "sweeps.csv", "claims.json", "curves.json", "components.json",
-        "error_budget.json", "leaderboard.md", "manifest.json",
+        *tables, *errors, "pins.csv", "sweeps.csv", "sweeps.json", "claims.json", "curves.json",
+        "components.json", "error_budget.json", "leaderboard.md", "manifest.json",
     }  # fmt: skip
 
 

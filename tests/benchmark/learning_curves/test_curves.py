@@ -157,7 +157,7 @@ def store(tmp_path):
         Pin(n, "nominal", "test", 1, 2000, "h", "hh", 2000, BOUND, BOUND, bench_deg=BENCH)
         for n in PARTS.presets
     ]
-    Store(tmp_path).write(scores, pins, [], current(PARTS))
+    Store(tmp_path).write(scores, pins, current(PARTS))
     return tmp_path
 
 

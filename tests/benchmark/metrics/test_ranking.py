@@ -7,7 +7,7 @@ import pytest
 
 from benchmark.contract import Cell
 from benchmark.leaderboard.beside import expected_on_bench, on_bench, twins_of
-from benchmark.leaderboard.ranking import Spread, judged, order, spreads
+from benchmark.metrics.ranking import Spread, judged, order, spreads
 from benchmark.metrics.score import METRICS
 
 
