@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from benchmark.contract import UnknownNameError
-from benchmark.experiments.__main__ import main
+from benchmark.experiments import __main__ as command
 from benchmark.progress import silent
 from benchmark.results.row_file import Row, RowFile
 from benchmark.results.tables import StoreError
-from benchmark.running.experiment import Recorded, due, experiments, repeated, update
+from benchmark.running.experiment import Recorded, Report, due, experiments, repeated, update
 from files.strict_json import members
 
 
@@ -105,10 +105,41 @@ def test_a_row_that_is_none_is_named(tmp_path: Path, edit: Any, said: str) -> No
         due(experiment)
 
 
+class Sums(Report[int]):
+    name = "sums"
+
+    def cells(self) -> list[int]:
+        return [1, 2]
+
+    def tasks(self, cells: Sequence[int]) -> Sequence[int]:
+        return cells
+
+    @staticmethod
+    def measure(task: int) -> list[tuple[int, Row]]:
+        return [(task, {"sum": task + task})]
+
+    def lines(self, rows: Mapping[int, Row]) -> Iterator[str]:
+        return (f"{cell} and itself are {row['sum']}" for cell, row in rows.items())
+
+    def passed(self, rows: Mapping[int, Row]) -> bool:
+        return all(row["sum"] < 4 for row in rows.values())
+
+
+def test_a_report_is_printed_and_its_exit_code_says_whether_it_passed(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(command, "experiments", lambda: {"sums": Sums})
+    assert command.main(["sums", "1"]) == 0
+    assert capsys.readouterr().out == "1 and itself are 2\n"
+    assert command.main(["sums"]) == 1
+    assert "2 and itself are 4" in capsys.readouterr().out
+
+
 def test_every_module_of_the_folder_is_an_experiment() -> None:
     found = experiments()
-    assert {"error_budget", "learning_curves"} <= found.keys()
-    assert len({kind.record.name for kind in found.values() if issubclass(kind, Recorded)}) >= 2
+    recorded = {name for name, kind in found.items() if issubclass(kind, Recorded)}
+    assert recorded == {"claims", "error_budget", "learning_curves", "sweeps"}
+    assert found.keys() - recorded == {"networks", "regret", "selection"}
 
 
 def test_calls_that_make_no_sense_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
@@ -118,5 +149,5 @@ def test_calls_that_make_no_sense_are_refused(capsys: pytest.CaptureFixture[str]
         (["error_budget", "ccd-slitt"], "ccd-slitt"),
     ):
         with pytest.raises(SystemExit):
-            main(call)
+            command.main(call)
         assert said in capsys.readouterr().err
