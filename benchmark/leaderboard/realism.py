@@ -14,7 +14,7 @@ from typing import Any
 
 from benchmark.datasets import get, names
 from benchmark.datasets.realism import Standing, figures, standings
-from benchmark.leaderboard.ranking import order
+from benchmark.metrics.ranking import order
 from benchmark.metrics.rings import EDGES_DEG, field_error
 from survey_data.hardware import Hardware
 from survey_data.reported import reported

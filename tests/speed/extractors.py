@@ -24,8 +24,8 @@ from algorithms.extractors.frames.centroid import BasicCentroid, FilteredCentroi
 from algorithms.extractors.frames.template import TemplateMatch
 from algorithms.extractors.frames.threshold_average import MultipleThresholdCentroid
 from benchmark import datasets
-from benchmark.reference.frames import REFERENCE_SETS, ReferenceSet
 from benchmark.running.threads import one_thread
+from benchmark.synthetic_features.frames import REFERENCE_SETS, ReferenceSet
 from tests.speed.extractor_limits import (
     NOISE_RANGE_E,
     OPENCV,

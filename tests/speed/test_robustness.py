@@ -9,9 +9,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmark.reference.frame_sets import FRAME_SETS, Scenes
-from benchmark.reference.frames import REFERENCE_SETS
-from benchmark.reference.shapes import (
+from benchmark.synthetic_features.frame_sets import FRAME_SETS, Scenes
+from benchmark.synthetic_features.frames import REFERENCE_SETS
+from benchmark.synthetic_features.shapes import (
     EDGE_PX,
     disc,
     gaussian,

@@ -8,7 +8,7 @@ import json
 import numpy as np
 import pytest
 
-from benchmark.reference.frames import REFERENCE_SETS
+from benchmark.synthetic_features.frames import REFERENCE_SETS
 from tests.speed import extractor_peers as speed_extractors_peers
 from tests.speed import extractors as speed_extractors
 from tests.speed.extractor_limits import (
