@@ -256,7 +256,7 @@ def test_a_kill_at_any_step_leaves_an_out_and_the_next_run_nothing_else(
         [["held"], ["new"]] if way == "exchange" else [["held"], ["held", "new"], ["new"]]
     )
     assert (earlier / "out.zip").read_text() in ("old zip", "new zip")
-    assert len(names(earlier)) == 4, "the killed run left its scratch directory and its lock"
+    assert len(names(earlier)) == 5, "the killed run left its temporary directory and two locks"
     renew(earlier)
     assert names(earlier) == ["out", "out.zip"]
     assert names(earlier / "out") == ["new"]
