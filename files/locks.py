@@ -18,7 +18,7 @@ from pathlib import Path
 _LOG = logging.getLogger("sunatlas")
 
 
-class HeldError(RuntimeError):
+class LockedError(RuntimeError):
     """Another process writes there; the message names both.
 
     Attributes
@@ -37,7 +37,7 @@ class HeldError(RuntimeError):
 
 
 @contextmanager
-def held_in_turn(place: Path) -> Iterator[None]:
+def wait_for_lock(place: Path) -> Iterator[None]:
     """Lock a path; wait, with a line in the log, while another process has locked it.
 
     Parameters
@@ -55,13 +55,13 @@ def held_in_turn(place: Path) -> Iterator[None]:
 
 
 @contextmanager
-def held_alone(place: Path) -> Iterator[None]:
-    """Lock a path as `held_in_turn`, but raise HeldError at once where another process has."""
+def lock_or_refuse(place: Path) -> Iterator[None]:
+    """Lock a path as `wait_for_lock`, but raise LockedError at once where another process has."""
     with _lock(place, wait=False):
         yield
 
 
-def lock_file(place: Path) -> Path:
+def lock_path(place: Path) -> Path:
     """Return the path of a place's lock."""
     return place.with_name(f".{place.name}.lock")
 
@@ -70,14 +70,14 @@ def lock_file(place: Path) -> Path:
 def _lock(place: Path, *, wait: bool) -> Iterator[None]:
     from filelock import FileLock, Timeout  # noqa: PLC0415 - as slow to load as a command's help
 
-    file = lock_file(place)
+    file = lock_path(place)
     file.parent.stat()  # filelock would make the directory
     lock = FileLock(file)
     try:
         lock.acquire(blocking=False)
     except Timeout as error:
         if not wait:
-            raise HeldError(_holder(file), place) from error
+            raise LockedError(_holder(file), place) from error
         _LOG.warning("waiting for another %s, which writes to %s", _holder(file), place)
         lock.acquire()
     try:

@@ -17,10 +17,10 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from files.locks import HeldError, held_alone, held_in_turn
+from files.locks import LockedError, lock_or_refuse, wait_for_lock
 
 SUFFIX = ".sunatlas"
-#: Names of what is made, and of the locks on them (`locks.lock_file`).
+#: Names of what is made, and of the locks on them (`locks.lock_path`).
 _NAME = re.compile(
     r"(?:\.(?=\.))?(?P<name>\.(?P<of>.+)\.\d+-[0-9a-f]{8}" + re.escape(SUFFIX) + r")(?:\.lock)?",
     re.DOTALL,
@@ -29,7 +29,7 @@ _TEMPORARY = "temporary"
 
 
 @contextmanager
-def scratch_file(target: Path) -> Iterator[Path]:
+def temporary_file_beside(target: Path) -> Iterator[Path]:
     """Make an empty file beside a target.
 
     It is gone at the end unless it was renamed; so are stale files of the same target. The file has
@@ -41,8 +41,8 @@ def scratch_file(target: Path) -> Iterator[Path]:
 
 
 @contextmanager
-def scratch_directory(target: Path) -> Iterator[Path]:
-    """Make a directory beside a target, for this user alone; gone at the end as `scratch_file`."""
+def temporary_directory_beside(target: Path) -> Iterator[Path]:
+    """Make a directory beside a target, for this user alone; it is gone at the end."""
     with _name_beside(target) as path:
         path.mkdir(mode=0o700)
         yield path
@@ -52,11 +52,11 @@ def scratch_directory(target: Path) -> Iterator[Path]:
 @contextmanager
 def temporary_directory() -> Iterator[Path]:
     """Make a directory among the system's temporary files; those of killed processes go."""
-    with scratch_directory(Path(tempfile.gettempdir()) / _TEMPORARY) as path:
+    with temporary_directory_beside(Path(tempfile.gettempdir()) / _TEMPORARY) as path:
         yield path
 
 
-def remove_leftovers(directory: Path, of: str | None = None) -> None:
+def remove_stale_files(directory: Path, of: str | None = None) -> None:
     """Remove what dead processes left in a directory.
 
     What cannot be removed, or is another user's, stays.
@@ -74,16 +74,16 @@ def remove_leftovers(directory: Path, of: str | None = None) -> None:
         return
     found = [match for name in entries if (match := _NAME.fullmatch(name))]
     for name in {match["name"] for match in found if of in (None, match["of"])}:
-        with suppress(OSError, HeldError), held_alone(directory / name):
+        with suppress(OSError, LockedError), lock_or_refuse(directory / name):
             _remove(directory / name)
 
 
 @contextmanager
 def _name_beside(target: Path) -> Iterator[Path]:
     """Lock a new name beside a target; whatever has it at the end is removed."""
-    remove_leftovers(target.parent, target.name)
+    remove_stale_files(target.parent, target.name)
     name = f".{target.name}.{os.getpid()}-{secrets.token_hex(4)}{SUFFIX}"
-    with held_in_turn(path := target.with_name(name)):
+    with wait_for_lock(path := target.with_name(name)):
         try:
             yield path
         finally:

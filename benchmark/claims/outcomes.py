@@ -22,7 +22,7 @@ from benchmark.metrics.score import stored
 from benchmark.results import recorded
 from benchmark.results.closure import closure_digest
 from files.reading import FileRefusedError
-from files.strict_json import members, read_json, require, require_kind
+from files.strict_json import read_json, refuse_unless, require_members, require_type
 
 #: Where the published ones are.
 PUBLISHED = Path(__file__).resolve().parents[1] / "published" / "claims"
@@ -138,9 +138,9 @@ def write(outcome: Outcome, directory: Path = PUBLISHED) -> None:
 
 def _read(path: Path) -> Outcome:
     try:
-        document = members(read_json(path), path, _MEMBERS)
+        document = require_members(read_json(path), path, _MEMBERS)
         named = document["claim"]
-        require(named == path.stem, path, f"is of claim {named!r}, by its content")
+        refuse_unless(named == path.stem, path, f"is of claim {named!r}, by its content")
         return Outcome(
             document["claim"],
             document["code"],
@@ -163,15 +163,15 @@ _MEMBERS = {
 
 
 def _curve(path: Path, name: str, line: Any) -> Curve:
-    members(line, path, dict.fromkeys(("across", "median", "low", "high"), list))
+    require_members(line, path, dict.fromkeys(("across", "median", "low", "high"), list))
     for place in line["across"]:
-        require_kind(place, (str, int, float), path, f"{name}, across")
+        require_type(place, (str, int, float), path, f"{name}, across")
     curve = Curve(
         tuple(line["across"]),
         *(_given(path, f"{name}, {k}", line[k]) for k in ("median", "low", "high")),
     )
     lengths = {len(part) for part in (curve.across, curve.median, curve.low, curve.high)}
-    require(len(lengths) == 1, path, f"{name}: its lists are of different lengths")
+    refuse_unless(len(lengths) == 1, path, f"{name}: its lists are of different lengths")
     return curve
 
 
@@ -201,8 +201,8 @@ def _numbers(values: Any) -> tuple[float, ...]:
 
 
 def _given(path: Path, name: str, values: Any) -> tuple[float, ...]:
-    for value in require_kind(values, list, path, name):
-        require_kind(value, (int, float, type(None)), path, name)
+    for value in require_type(values, list, path, name):
+        require_type(value, (int, float, type(None)), path, name)
     return tuple(math.nan if value is None else float(value) for value in values)
 
 

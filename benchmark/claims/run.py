@@ -17,7 +17,7 @@ from benchmark.contract import UnknownNameError
 from benchmark.processes import call_to_end
 from benchmark.running.threads import one_thread
 from benchmark.running.workers import in_order
-from files.locks import held_alone
+from files.locks import lock_or_refuse
 
 
 def measured(claim: str) -> list[Trial]:
@@ -60,11 +60,11 @@ def run(
     ------
     UnknownNameError
         For a claim that has no experiment.
-    HeldError
+    LockedError
         When another process measures claims.
     """
     directory.mkdir(parents=True, exist_ok=True)
-    with held_alone(directory / "outcomes"):
+    with lock_or_refuse(directory / "outcomes"):
         chosen = list(due(directory) if names is None else names)
         for name in chosen:
             if name not in found():

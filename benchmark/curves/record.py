@@ -16,7 +16,7 @@ from benchmark.results.digests import modules_digest
 from benchmark.results.store import PUBLISHED
 from benchmark.results.tables import StoreError
 from files.reading import FileRefusedError
-from files.strict_json import members, read_json
+from files.strict_json import read_json, require_members
 
 NAME = "curves.json"
 #: Layout of the file; raised when a member changes its meaning.
@@ -84,7 +84,7 @@ def read(directory: Path | str = PUBLISHED) -> dict[Leader, Row]:
     """
     path = Path(directory) / NAME
     try:
-        held = members(read_json(path), path, {"schema": int, "curves": list})
+        held = require_members(read_json(path), path, {"schema": int, "curves": list})
         if held["schema"] != SCHEMA_VERSION:
             raise CurvesError(f"{path}: expected schema {SCHEMA_VERSION}, got {held['schema']!r}")
         found: dict[Leader, Row] = {}

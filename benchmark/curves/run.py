@@ -24,7 +24,7 @@ from benchmark.progress import ProgressCallback, terminal_progress
 from benchmark.results.components import Components, current
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running.workers import as_completed
-from files.locks import held_alone
+from files.locks import lock_or_refuse
 
 
 @dataclass(frozen=True)
@@ -90,12 +90,12 @@ def update(
         For less than one worker.
     StoreError, ComponentsError
         For a file that cannot be read.
-    HeldError
+    LockedError
         When another process brings them up to date.
     """
     if workers < 1:
         raise ValueError(f"workers must be at least 1; got {workers}")
-    with held_alone(Path(directory) / record.NAME):
+    with lock_or_refuse(Path(directory) / record.NAME):
         return _updated(directory, workers, progress, parts)
 
 

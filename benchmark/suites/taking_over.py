@@ -60,7 +60,7 @@ def renew(directory: Path) -> list[str]:
         samples.read_directions(name, directory)
     curves.read(directory)
     outcomes.read(directory / "claims")
-    return manifest.renew(directory, recorded.names(directory))
+    return manifest.rewrite_manifest(directory, recorded.names(directory))
 
 
 if __name__ == "__main__":

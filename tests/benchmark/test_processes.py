@@ -18,10 +18,10 @@ PROGRAM = """
 import sys, time
 from pathlib import Path
 from benchmark.processes import call_to_end
-from files.temporary import scratch_directory
+from files.temporary import temporary_directory_beside
 
 def main():
-    with scratch_directory(Path(sys.argv[1]) / "out"):
+    with temporary_directory_beside(Path(sys.argv[1]) / "out"):
         print("working", flush=True)
         time.sleep(600)
 
@@ -114,9 +114,9 @@ def test_a_second_writer_is_told_in_one_line(tmp_path: Path) -> None:
     program = (
         "import sys; from pathlib import Path\n"
         "from benchmark.processes import call_to_end\n"
-        "from files.locks import held_alone\n"
+        "from files.locks import lock_or_refuse\n"
         "def main():\n"
-        "    with held_alone(Path(sys.argv[1])), held_alone(Path(sys.argv[1])): pass\n"
+        "    with lock_or_refuse(Path(sys.argv[1])), lock_or_refuse(Path(sys.argv[1])): pass\n"
         "call_to_end(main)\n"
     )
     process = start(program, tmp_path / "out")

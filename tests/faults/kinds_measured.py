@@ -159,7 +159,7 @@ def _forged_bundle(rng: random.Random, folder: Path) -> str:
 def _outcome(folder: Path) -> list[Path]:
     (folder / "claims").mkdir()
     path = Path(shutil.copy(PUBLISHED / "claims" / f"{_CLAIM}.json", folder / "claims"))
-    manifest.renew(folder, recorded.names(folder))
+    manifest.rewrite_manifest(folder, recorded.names(folder))
     return [path]
 
 
@@ -195,7 +195,7 @@ def _forged_outcome(rng: random.Random, folder: Path) -> str:
         at = rng.choice([k for k, value in enumerate(part) if value])
         part[at] *= rng.choice([1.001, 2.0])
     path.write_text(json.dumps(document))
-    manifest.renew(folder, recorded.names(folder))
+    manifest.rewrite_manifest(folder, recorded.names(folder))
     return f"forged: {what}"
 
 

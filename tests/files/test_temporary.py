@@ -12,17 +12,17 @@ import pytest
 import survey_data
 from files import temporary
 from files.atomic import replace_file
-from files.locks import lock_file
-from files.temporary import remove_leftovers, scratch_directory, temporary_directory
+from files.locks import lock_path
+from files.temporary import remove_stale_files, temporary_directory, temporary_directory_beside
 
 ROOT = Path(survey_data.__file__).parent.parent
 MAKING = """
 import os, sys
 from pathlib import Path
-from files.temporary import scratch_directory, scratch_file, temporary_directory
+from files.temporary import temporary_directory_beside, temporary_file_beside, temporary_directory
 here = Path(sys.argv[1])
-with scratch_directory(here / "out") as out, scratch_file(here / "table.csv") as file, \\
-        temporary_directory() as temporary:
+with temporary_directory_beside(here / "out") as out, \\
+        temporary_file_beside(here / "table.csv") as file, temporary_directory() as temporary:
     for path in (out / "half", file, temporary / "half"):
         path.write_text("half")
     print("made", flush=True)
@@ -57,17 +57,17 @@ def test_leftovers_of_a_dead_process_are_removed_and_a_living_one_keeps_its_own(
     made = [name for name in names(tmp_path) if name != "temporary"]
     assert len(made) == 4, "two, and a lock of each"
     assert all(f".{maker.pid}-" in name for name in made), "people see whose it is"
-    remove_leftovers(tmp_path)
+    remove_stale_files(tmp_path)
     with temporary_directory():
         assert len(names(tmp_path / "temporary")) == 4
     assert [name for name in names(tmp_path) if name != "temporary"] == made
     maker.kill()
     maker.wait()
-    remove_leftovers(tmp_path, "out")
+    remove_stale_files(tmp_path, "out")
     assert [name[:11] for name in names(tmp_path)] == ["..table.csv", ".table.csv.", "temporary"]
     replace_file(tmp_path / "table.csv", "whole")
     with temporary_directory() as mine:
-        assert names(tmp_path / "temporary") == [lock_file(mine).name, mine.name]
+        assert names(tmp_path / "temporary") == [lock_path(mine).name, mine.name]
     assert names(tmp_path) == ["table.csv", "temporary"]
     assert names(tmp_path / "temporary") == []
 
@@ -88,9 +88,9 @@ def test_what_merely_looks_alike_stays(tmp_path: Path) -> None:
         (tmp_path / name).write_text("somebody's")
     (tmp_path / ".out.12-0123abcd.sunatlas").write_text("left")
     (tmp_path / "..out.13-0123abcd.sunatlas.lock").write_text("13\n")
-    remove_leftovers(tmp_path)
+    remove_stale_files(tmp_path)
     assert names(tmp_path) == sorted(kept)
-    remove_leftovers(tmp_path / "missing")
+    remove_stale_files(tmp_path / "missing")
 
 
 def test_many_that_write_and_tidy_at_once_keep_their_own(tmp_path: Path) -> None:
@@ -98,8 +98,8 @@ def test_many_that_write_and_tidy_at_once_keep_their_own(tmp_path: Path) -> None
 
     def work() -> None:
         for _ in range(20):
-            with scratch_directory(tmp_path / "out") as path:
-                remove_leftovers(tmp_path)
+            with temporary_directory_beside(tmp_path / "out") as path:
+                remove_stale_files(tmp_path)
                 (path / "mine").write_text("mine")
                 made.append(path.stat().st_mode & 0o777)
 
@@ -117,5 +117,5 @@ def test_a_symbolic_link_is_not_followed(tmp_path: Path) -> None:
     (tmp_path / "precious").mkdir()
     (tmp_path / "precious" / "file").write_text("kept")
     (tmp_path / ".out.12-0123abcd.sunatlas").symlink_to("precious")
-    remove_leftovers(tmp_path)
+    remove_stale_files(tmp_path)
     assert (tmp_path / "precious" / "file").read_text() == "kept"

@@ -25,7 +25,7 @@ from benchmark.results.tables import (
     word,
 )
 from files.atomic import replace_file
-from files.locks import held_alone
+from files.locks import lock_or_refuse
 
 PATH = Path(__file__).with_name("held_back.csv")
 
@@ -117,14 +117,14 @@ def renew(
     ------
     ValueError
         For less than one worker.
-    HeldError
+    LockedError
         When another process renews the table.
     """
     from benchmark.running.workers import as_completed  # noqa: PLC0415 - loads Numba
 
     if workers < 1:
         raise ValueError(f"workers must be at least 1; got {workers}")
-    with held_alone(path):
+    with lock_or_refuse(path):
         known = {name: row for name, row in rows(path).items() if name in leading}
         wanted = [n for n in leading if n in only] if only is not None else behind(known, leading)
         progress(0, len(wanted), "")
