@@ -28,7 +28,7 @@ from pathlib import Path
 
 from benchmark.processes import end_with_coordinator, for_coordinator
 from files.atomic import replace_file
-from files.locks import held_in_turn
+from files.locks import wait_for_lock
 from files.temporary import temporary_directory
 
 #: Pictures that come with the code, ``<data set>.<digest of what it shows>.png``.
@@ -134,7 +134,7 @@ def draw(directory: Path, names: Iterable[str]) -> None:
     for name in names:
         path = place(directory, name)
         path.parent.mkdir(parents=True, exist_ok=True)
-        with held_in_turn(path):
+        with wait_for_lock(path):
             if not path.is_file():
                 replace_file(path, preview_png(datasets.get(name)))
 

@@ -19,7 +19,7 @@ from functools import cache
 from types import FrameType
 from typing import NoReturn
 
-from files.locks import HeldError
+from files.locks import LockedError
 
 #: In the environment of a process that is to end with the one of this number.
 COORDINATOR = "SUNATLAS_COORDINATOR"
@@ -80,7 +80,7 @@ def call_to_end(main: Callable[[], int]) -> NoReturn:
         status = main()
     except KeyboardInterrupt:
         status = exit_code()
-    except HeldError as error:
+    except LockedError as error:
         sys.stderr.write(f"{error}\n")
         status = 1
     except Exception:

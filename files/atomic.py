@@ -13,8 +13,8 @@ from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 from files.exchange import exchange
-from files.locks import held_in_turn
-from files.temporary import remove_leftovers, scratch_directory, scratch_file
+from files.locks import wait_for_lock
+from files.temporary import remove_stale_files, temporary_directory_beside, temporary_file_beside
 
 
 def replace_file(path: Path, content: str | bytes) -> bool:
@@ -43,10 +43,10 @@ def replace_file(path: Path, content: str | bytes) -> bool:
     wanted = content.encode() if isinstance(content, str) else content
     known = path.is_file()
     if known and path.read_bytes() == wanted:
-        remove_leftovers(path.parent, path.name)
+        remove_stale_files(path.parent, path.name)
         return False
     path.parent.mkdir(parents=True, exist_ok=True)
-    with naming(path), scratch_file(path) as scratch:
+    with name_file_in_errors(path), temporary_file_beside(path) as scratch:
         with scratch.open("wb") as file:
             file.write(wanted)
             file.flush()
@@ -58,7 +58,7 @@ def replace_file(path: Path, content: str | bytes) -> bool:
 
 
 @contextmanager
-def naming(path: Path) -> Iterator[None]:
+def name_file_in_errors(path: Path) -> Iterator[None]:
     """Let errors of the file system that name no file, as of a full disk, name this one."""
     try:
         yield
@@ -69,7 +69,7 @@ def naming(path: Path) -> Iterator[None]:
 
 
 @contextmanager
-def replacing(*targets: Path) -> Iterator[tuple[Path, ...]]:
+def replace_all(*targets: Path) -> Iterator[tuple[Path, ...]]:
     """Make files and directories elsewhere; they take their places when the block ends.
 
     Each takes its place in one step (`files.exchange`); of several, a kill may leave the
@@ -94,21 +94,21 @@ def replacing(*targets: Path) -> Iterator[tuple[Path, ...]]:
 
     Raises
     ------
-    RootOfFilesError
+    FileSystemRootError
         Where a target is the root of a file system.
     OSError
         Where it cannot be written; one that names no file, as of a full disk, names the first
         target, and one of a file being made its place.
     """
     for target in targets:
-        require_within_files(target)
+        require_replaceable(target)
     # Beside the targets: a rename is only atomic within a file system.
     first = targets[0]
     with (
-        naming(first),
+        name_file_in_errors(first),
         _made_parents(first),
-        held_in_turn(first),
-        scratch_directory(first) as scratch,
+        wait_for_lock(first),
+        temporary_directory_beside(first) as scratch,
     ):
         made, before = scratch / "made", scratch / "before"
         made.mkdir()
@@ -126,20 +126,20 @@ def replacing(*targets: Path) -> Iterator[tuple[Path, ...]]:
             undo.pop_all()
 
 
-class RootOfFilesError(ValueError):
+class FileSystemRootError(ValueError):
     """A path is the root of a file system, which cannot be replaced."""
 
 
-def require_within_files(path: Path) -> None:
+def require_replaceable(path: Path) -> None:
     """Refuse a path that cannot be replaced, before anything is made for it.
 
     Raises
     ------
-    RootOfFilesError
+    FileSystemRootError
         Where it is the root of a file system: `/`, a drive, or where one is mounted.
     """
     if not path.name or (path.is_mount() and not path.is_symlink()):
-        raise RootOfFilesError(
+        raise FileSystemRootError(
             f"{path}: the root of a file system cannot be replaced; expected a directory in it; "
             "nothing was written"
         )

@@ -1,6 +1,6 @@
 """Writing CSV: a header and rows, one record a line, quoted only where it must be.
 
-`escaped` makes of any such text one that a spreadsheet can open: programs such as Excel and
+`escape_formulas` makes of any such text one that a spreadsheet can open: programs such as Excel and
 LibreOffice run a cell that starts like a formula, whoever wrote it.
 """
 
@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 
 #: Cells that a spreadsheet takes for a formula, as OWASP lists their first characters
 #: (https://owasp.org/www-community/attacks/CSV_Injection), also behind white space; apostrophes
-#: before them count as well, so that what `escaped` does can be undone.
+#: before them count as well, so that what `escape_formulas` does can be undone.
 _FORMULA = re.compile(r"'*(?:[\t\r\n]|\s*[=+\-@＝＋－＠])")
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 
@@ -38,7 +38,7 @@ def csv_text(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
     return "".join(lines)
 
 
-def escaped(text: str) -> str:
+def escape_formulas(text: str) -> str:
     """Return a CSV text whose cells no spreadsheet runs as formulas.
 
     A cell whose first character, white space aside, is ``=``, ``+``, ``-`` or ``@`` (or their
@@ -52,23 +52,23 @@ def escaped(text: str) -> str:
     Returns
     -------
     str
-        The same table; `unescaped` gives the first back.
+        The same table; `unescape_formulas` gives the first back.
     """
-    return _each_cell(text, escaped_cell)
+    return _each_cell(text, escape_cell)
 
 
-def unescaped(text: str) -> str:
-    """Return the CSV text that `escaped` was given."""
-    return _each_cell(text, unescaped_cell)
+def unescape_formulas(text: str) -> str:
+    """Return the CSV text that `escape_formulas` was given."""
+    return _each_cell(text, unescape_cell)
 
 
-def escaped_cell(cell: str) -> str:
-    """Return a cell as `escaped` writes it."""
+def escape_cell(cell: str) -> str:
+    """Return a cell as `escape_formulas` writes it."""
     return f"'{cell}" if _FORMULA.match(cell) and not _NUMBER.fullmatch(cell) else cell
 
 
-def unescaped_cell(cell: str) -> str:
-    """Return the cell that `escaped_cell` was given."""
+def unescape_cell(cell: str) -> str:
+    """Return the cell that `escape_cell` was given."""
     return cell[1:] if cell.startswith("'") and _FORMULA.match(cell) else cell
 
 

@@ -17,10 +17,10 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
-from files.atomic import replace_file, replacing
+from files.atomic import replace_all, replace_file
 from files.problems import Problem
-from files.reading import FileRefusedError, is_there, read_bytes
-from files.strict_json import members, read_json
+from files.reading import FileRefusedError, path_exists, read_bytes
+from files.strict_json import read_json, require_members
 
 FILE = "manifest.json"
 #: What the files are about to be: written before them and renamed to `FILE` after the last, so
@@ -62,7 +62,7 @@ class Entry:
         )
 
 
-def read(folder: Path, name: str = FILE) -> dict[str, Entry] | None:
+def read_manifest(folder: Path, name: str = FILE) -> dict[str, Entry] | None:
     """Return the entries of a folder's manifest by file; None where there is none.
 
     Raises
@@ -72,14 +72,14 @@ def read(folder: Path, name: str = FILE) -> dict[str, Entry] | None:
     """
     path = folder / name
     try:
-        held = members(read_json(path), path, {"schema": int, "files": dict})
+        held = require_members(read_json(path), path, {"schema": int, "files": dict})
     except FileNotFoundError:
         return None
     if held["schema"] != SCHEMA:
         raise FileRefusedError(path, f"expected schema {SCHEMA}, got {held['schema']}")
     found = {}
     for file, entry in held["files"].items():
-        members(entry, path, dict.fromkeys(("sha256", "columns", "rows"), str))
+        require_members(entry, path, dict.fromkeys(("sha256", "columns", "rows"), str))
         try:
             rows, columns = (b64decode(entry[k], validate=True) for k in ("rows", "columns"))
         except ValueError as error:
@@ -101,9 +101,9 @@ def differences(folder: Path, names: Collection[str], *, required: bool = False)
         Whether it is a problem that there is no manifest; else nothing is known and nothing said.
     """
     try:
-        entries = read(folder)
+        entries = read_manifest(folder)
         # A damaged one of these tells nothing: the files are then held against the other alone.
-        coming = read(folder, NEXT) if is_there(folder / NEXT) else None
+        coming = read_manifest(folder, NEXT) if path_exists(folder / NEXT) else None
     except FileRefusedError as error:
         return [Problem(FILE, error.line, None, error.reason)]
     if entries is None:
@@ -141,7 +141,7 @@ def write_recorded(
         just written.
     together
         Sub-folder that all of them stand in: it changes places with a new one in one step
-        (`atomic.replacing`), so that no kill leaves some of them new and others old.
+        (`atomic.replace_all`), so that no kill leaves some of them new and others old.
 
     Returns
     -------
@@ -155,7 +155,7 @@ def write_recorded(
     OSError
         A file cannot be written.
     """
-    entries = read(folder)
+    entries = read_manifest(folder)
     recorded = entries is not None or start
     entries = _as_left(folder, entries or {}) if recorded else {}
     encoded = {k: v.encode() if isinstance(v, str) else v for k, v in contents.items()}
@@ -164,8 +164,8 @@ def write_recorded(
             entries.pop(name, None)
         elif name not in entries or entries[name].sha256 != hashlib.sha256(data).hexdigest():
             entries[name] = Entry.of(name, data)
-    if recorded and not _is(folder / FILE, spelt(entries)):
-        replace_file(folder / NEXT, spelt(entries))
+    if recorded and not _is(folder / FILE, manifest_text(entries)):
+        replace_file(folder / NEXT, manifest_text(entries))
     if together is not None:
         changed = _replace_folder(folder, together, encoded)
         encoded = {}
@@ -174,11 +174,11 @@ def write_recorded(
     for name, data in encoded.items():
         if data is not None:
             changed |= replace_file(folder / name, data)
-        elif is_there(folder / name):
+        elif path_exists(folder / name):
             (folder / name).unlink()
             changed = True
     if recorded:
-        settle(folder)
+        finish_interrupted_write(folder)
     return changed
 
 
@@ -190,7 +190,7 @@ def _replace_folder(folder: Path, name: str, contents: Mapping[str, bytes | None
     wanted = {file: data for file, data in {**known, **coming}.items() if data is not None}
     if wanted == known:
         return False
-    with replacing(old) as (new,):
+    with replace_all(old) as (new,):
         new.mkdir(mode=0o777 & old.stat().st_mode)
         for file, data in wanted.items():
             (new / file).write_bytes(data)
@@ -206,7 +206,7 @@ def _as_left(folder: Path, entries: Mapping[str, Entry]) -> dict[str, Entry]:
     """
     found = dict(entries)
     try:
-        coming = read(folder, NEXT)
+        coming = read_manifest(folder, NEXT)
     except FileRefusedError:
         return found  # damaged, it tells nothing
     if coming is None:
@@ -222,37 +222,37 @@ def _as_left(folder: Path, entries: Mapping[str, Entry]) -> dict[str, Entry]:
     return found
 
 
-def renew(folder: Path, names: Collection[str]) -> list[str]:
+def rewrite_manifest(folder: Path, names: Collection[str]) -> list[str]:
     """Take all the files of a folder as they are into its manifest; return those that were not.
 
     For a change by hand that is meant; whether the files are sound is for the caller to know.
     """
     try:
-        known = read(folder) or {}
+        known = read_manifest(folder) or {}
     except FileRefusedError:
         known = {}
     entries = {name: Entry.of(name, read_bytes(folder / name)) for name in names}
-    replace_file(folder / FILE, spelt(entries))
+    replace_file(folder / FILE, manifest_text(entries))
     (folder / NEXT).unlink(missing_ok=True)
     return sorted(name for name in {*entries, *known} if entries.get(name) != known.get(name))
 
 
-def digest(folder: Path) -> str | None:
+def manifest_digest(folder: Path) -> str | None:
     """Return the SHA-256 of a folder's manifest, which names all that is in it; None without."""
     path = folder / FILE
     return hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else None
 
 
-def settle(folder: Path) -> None:
+def finish_interrupted_write(folder: Path) -> None:
     """Finish what a killed command left: the coming manifest is the manifest if the files are so.
 
     Where the files are still those of the manifest there is, the coming one is dropped. Where they
     are some of both, both stay: the command is to be run again.
     """
     path = folder / NEXT
-    if not is_there(path):
+    if not path_exists(path):
         return
-    coming, standing = read(folder, NEXT) or {}, read(folder) or {}
+    coming, standing = read_manifest(folder, NEXT) or {}, read_manifest(folder) or {}
     for entries, act in ((coming, lambda: path.replace(folder / FILE)), (standing, path.unlink)):
         names = {*coming, *standing}
         if not any(list(_of_file(folder, n, entries.get(n), n in entries)) for n in names):
@@ -260,7 +260,7 @@ def settle(folder: Path) -> None:
             return
 
 
-def spelt(entries: Mapping[str, Entry]) -> str:
+def manifest_text(entries: Mapping[str, Entry]) -> str:
     """Spell a manifest: a line a file, sorted."""
     lines = ",\n".join(f"{json.dumps(name)}: {entries[name].text()}" for name in sorted(entries))
     return f'{{"schema": {SCHEMA}, "files": {{\n{lines}\n}}}}\n'

@@ -14,7 +14,7 @@ _WHOLE = re.compile(r"[+-]?[0-9]+", re.ASCII)
 _LONGEST = 40
 
 
-def decimal(text: str) -> float:
+def parse_decimal(text: str) -> float:
     """Read a finite decimal number; ValueError for anything else."""
     if len(text) > _LONGEST or _NUMBER.fullmatch(text) is None:
         raise ValueError(f"expected a number, got {text[:_LONGEST]!r}")
@@ -24,7 +24,7 @@ def decimal(text: str) -> float:
     return number
 
 
-def integer(text: str) -> int:
+def parse_integer(text: str) -> int:
     """Read a whole number; ValueError for anything else."""
     if len(text) > _LONGEST or _WHOLE.fullmatch(text) is None:
         raise ValueError(f"expected a whole number, got {text[:_LONGEST]!r}")

@@ -44,7 +44,7 @@ class FileRefusedError(ValueError):
         super().__init__(f"{place}: {reason}")
 
 
-def is_there(path: Path) -> bool:
+def path_exists(path: Path) -> bool:
     """Say whether anything has this name, be it a directory or a link to nothing."""
     return os.path.lexists(path)
 
@@ -59,7 +59,7 @@ def read_bytes(path: Path, largest: int = LARGEST) -> bytes:
     FileRefusedError
         It is no regular file, cannot be opened, or is larger than `largest` bytes.
     """
-    if not is_there(path):
+    if not path_exists(path):
         raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(path))
     try:
         # Never waits: a pipe that nobody writes to would else be waited for.

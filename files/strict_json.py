@@ -1,4 +1,8 @@
-"""Strict reading of JSON: unique keys, finite numbers, bounded size and depth; no traceback."""
+"""Strict reading of JSON: unique keys, finite numbers, bounded size and depth; no traceback.
+
+Pydantic would keep the last of two equal keys in silence, and its JSON errors know no line of the
+file; so the standard library reads, with hooks that refuse.
+"""
 
 from __future__ import annotations
 
@@ -54,7 +58,7 @@ def parse_json(text: str, path: Path) -> Any:
     return value
 
 
-def members(value: Any, path: Path, expected: Mapping[str, type | tuple[type, ...]]) -> Any:
+def require_members(value: Any, path: Path, expected: Mapping[str, type | tuple[type, ...]]) -> Any:
     """Return an object that has these members and no others, each of its type.
 
     Raises
@@ -67,7 +71,7 @@ def members(value: Any, path: Path, expected: Mapping[str, type | tuple[type, ..
     for name, kind in expected.items():
         if name not in value:
             raise FileRefusedError(path, f"the member {name!r} is missing")
-        require_kind(value[name], kind, path, name)
+        require_type(value[name], kind, path, name)
     unknown = sorted(value.keys() - expected.keys())
     if unknown:
         raise FileRefusedError(
@@ -76,7 +80,7 @@ def members(value: Any, path: Path, expected: Mapping[str, type | tuple[type, ..
     return value
 
 
-def require_kind(
+def require_type(
     value: Any, kind: type | tuple[type, ...], path: Path, where: str, line: int | None = None
 ) -> Any:
     """Return a value of this type; FileRefusedError naming where another stands."""
@@ -88,7 +92,7 @@ def require_kind(
     return value
 
 
-def require(holds: bool, path: Path, reason: str) -> None:
+def refuse_unless(holds: bool, path: Path, reason: str) -> None:
     """Raise FileRefusedError with a reason unless something holds."""
     if not holds:
         raise FileRefusedError(path, reason)

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from types import MappingProxyType
 
-from files.numerals import decimal
+from files.numerals import parse_decimal
 from registry.fidelity.particulars import (
     CompensatedModel,
     MethodVariant,
@@ -317,7 +317,7 @@ def _verified(tables: Tables) -> dict[str, list[Verification]]:
 def _require_number(key: str, attribute: str, value: str) -> None:
     """Raise InvalidValueError for a numeric cell that is no finite number, spelt plainly."""
     try:
-        decimal(value)
+        parse_decimal(value)
     except ValueError as error:
         raise InvalidValueError(f"{key} {attribute}", value, "a number in degrees") from error
 

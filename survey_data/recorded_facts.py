@@ -58,7 +58,7 @@ def renew(directory: Path | str = DATA_DIRECTORY) -> list[str]:
 
     if problems := validate(directory):
         raise SurveyDataError(tuple(problems))
-    return manifest.renew(Path(directory), names())
+    return manifest.rewrite_manifest(Path(directory), names())
 
 
 def main() -> int:

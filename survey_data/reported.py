@@ -13,7 +13,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Literal
 
-from files.numerals import decimal
+from files.numerals import parse_decimal
 from files.whole_csv import read_whole_records
 from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name
 from survey_data.problems import SurveyDataError
@@ -90,7 +90,7 @@ def statistics(directory: Path | None = None) -> Mapping[str, Statistic]:
         raise SurveyDataError(tuple(records.problems))
     return MappingProxyType(
         {
-            kind: Statistic(kind, name, decimal(divisor), description)
+            kind: Statistic(kind, name, parse_decimal(divisor), description)
             for _, (kind, name, divisor, description) in records.rows
         }
     )

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from files.numerals import decimal, integer
+from files.numerals import parse_decimal, parse_integer
 from files.problems import Problem
 from files.strict_csv import Records
 from survey_data.descriptor import (
@@ -179,8 +179,8 @@ def _truth(text: str) -> bool:
 
 _CONVERSIONS: dict[str, tuple[Callable[[str], object], str]] = {
     "string": (str, "str"),
-    "integer": (integer, "Int64"),
-    "year": (integer, "Int64"),
-    "number": (decimal, "float64"),
+    "integer": (parse_integer, "Int64"),
+    "year": (parse_integer, "Int64"),
+    "number": (parse_decimal, "float64"),
     "boolean": (_truth, "boolean"),
 }

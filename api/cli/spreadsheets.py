@@ -11,7 +11,7 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 
 from api.cli.wrong_call import WrongCallError
-from files.csv_writing import escaped
+from files.csv_writing import escape_formulas
 
 HELP = (
     "With --format csv: let no spreadsheet run a cell as a formula. A cell that starts with =, +, "
@@ -23,7 +23,7 @@ _WANTED: ContextVar[bool] = ContextVar("safe", default=False)
 
 def as_asked(text: str) -> str:
     """Return CSV as the running command is to write it."""
-    return escaped(text) if _WANTED.get() else text
+    return escape_formulas(text) if _WANTED.get() else text
 
 
 def offer(command: Any) -> None:

@@ -45,8 +45,8 @@ from benchmark.datasets.checksums import (
 )
 from benchmark.progress import ProgressCallback, silent
 from benchmark.results.store import PUBLISHED, Store
-from files.atomic import replacing, require_within_files
-from files.manifest import digest
+from files.atomic import replace_all, require_replaceable
+from files.manifest import manifest_digest
 from survey_data.descriptor import file_name
 from survey_data.editions import editions
 
@@ -113,7 +113,7 @@ def build(
         Where a table cannot be read or has a column nothing is known of.
     """
     out = Path(os.path.abspath(out))  # noqa: PTH100 - resolve() would follow a symbolic link
-    require_within_files(out)
+    require_replaceable(out)
     archive = out.with_name(f"{out.name}.zip")
     _require_ours(out)
     _require_our_archive(archive)
@@ -128,7 +128,7 @@ def build(
     pins = Store(published).pins()
     names = datasets.names() if frames is None else frames
     total = len(names) + 2
-    with replacing(out, archive) as (bundle, zipped):
+    with replace_all(out, archive) as (bundle, zipped):
         bundle.mkdir()
         exported = write_frames(
             bundle, names, pins, lambda done, _total, what: progress(done, total, what)
@@ -185,7 +185,7 @@ def fill(
     _write(bundle / "LICENSE", who.code_licence)
     for folder in FACTS:
         _write(bundle / folder / "LICENSE", who.data_licence)
-    record, facts = digest(sources.published), editions(sources.survey)
+    record, facts = manifest_digest(sources.published), editions(sources.survey)
     _write(bundle / "CITATION.cff", of_dataset(who.citation, record, facts))
     _write(bundle / CODEMETA, codemeta_text(who.citation))
     _write(bundle / "README.md", readme(who, descriptor))

@@ -32,7 +32,7 @@ from api.guide import dictionary, found, python_page, words
 from api.guide.blocks import rerun
 from benchmark.processes import call_to_end
 from files.atomic import replace_file
-from files.locks import held_in_turn
+from files.locks import wait_for_lock
 from files.temporary import temporary_directory
 
 DIRECTORY = Path(__file__).resolve().parents[2] / "docs"
@@ -205,7 +205,7 @@ def regenerate(directory: Path = DIRECTORY, *, write: bool = True) -> list[str]:
         if not path.is_file() or path.read_text("utf-8") != new:
             behind[picture] = new
     if write:
-        with held_in_turn(directory / "pages"):
+        with wait_for_lock(directory / "pages"):
             for page, new in behind.items():
                 replace_file(directory / page, new)
     return sorted(behind)

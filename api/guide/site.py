@@ -21,7 +21,7 @@ from api.cli.working import working_directory
 from api.guide.atlas import atlas_links
 from api.guide.chapters import ROOT
 from benchmark.progress import ProgressCallback, silent
-from files.atomic import replacing, require_within_files
+from files.atomic import replace_all, require_replaceable
 from files.temporary import temporary_directory
 
 BUILDERS = ("sphinx", "myst-parser", "furo")
@@ -114,10 +114,10 @@ def build(out: Path, progress: ProgressCallback = silent) -> list[str]:
     from sphinx.errors import SphinxError  # noqa: PLC0415
 
     out = out.resolve()
-    require_within_files(out)
+    require_replaceable(out)
     _require_ours(out)
     told = io.StringIO()
-    with temporary_directory() as scratch, replacing(out) as (made,):
+    with temporary_directory() as scratch, replace_all(out) as (made,):
         try:
             sphinx = Sphinx(
                 srcdir=source(),

@@ -14,7 +14,7 @@ from api.http.measurements import Measurements
 from api.pictures import Pictures
 from api.search.entries import entries
 from api.search.index import Index
-from files.manifest import digest
+from files.manifest import manifest_digest
 from registry.catalogue import Catalogue, catalogue
 from registry.evidence import Evidence
 from registry.measured import Measurements as Measured
@@ -62,7 +62,7 @@ class Knowledge:
     def facts_digest(self) -> str | None:
         """SHA-256 of the manifest of the facts, as they were when they were read."""
         _ = self.facts
-        return digest(DATA_DIRECTORY)
+        return manifest_digest(DATA_DIRECTORY)
 
     @property
     def taxonomy(self) -> Taxonomy:

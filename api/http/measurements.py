@@ -54,11 +54,11 @@ class Measurements:
     @cached_property
     def digest(self) -> str | None:
         """SHA-256 of the manifest of the published files; None where there is none."""
-        return manifest.digest(self._store.directory)
+        return manifest.manifest_digest(self._store.directory)
 
     @property
     def record(self) -> Mapping[str, str | None]:
-        """Which record this is: version of the atlas, and `digest`."""
+        """Which record this is: version of the atlas, and `manifest_digest`."""
         return {"version": version(), "sha256": self.digest}
 
     @cached_property

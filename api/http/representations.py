@@ -12,7 +12,7 @@ from functools import cached_property
 from fastapi import Request, Response
 
 from api.http.negotiation import accepts_gzip
-from files.csv_writing import escaped
+from files.csv_writing import escape_formulas
 
 WORTH_COMPRESSING = 512  # bytes; below, the gzip frame eats what it saves
 REVALIDATE = (
@@ -91,8 +91,8 @@ class Representation:
         return made
 
     def for_spreadsheets(self) -> Representation:
-        """Return a CSV of which a spreadsheet runs no cell (`files.csv_writing.escaped`)."""
-        return self._of(escaped(self.body.decode()).encode(), self._common)
+        """Return a CSV of which a spreadsheet runs no cell (`csv_writing.escape_formulas`)."""
+        return self._of(escape_formulas(self.body.decode()).encode(), self._common)
 
     def _of(self, body: bytes, headers: Mapping[str, str]) -> Representation:
         return Representation(

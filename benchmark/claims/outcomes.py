@@ -20,7 +20,7 @@ from benchmark.claims.rules import FIRST_TRIAL, Claim
 from benchmark.metrics.score import stored
 from benchmark.results.row_file import Row, RowFile
 from benchmark.results.store import PUBLISHED
-from files.strict_json import members, require, require_kind
+from files.strict_json import refuse_unless, require_members, require_type
 
 Values = Mapping[str, Sequence[float]]
 
@@ -149,23 +149,23 @@ _PARTS = ("across", "median", "low", "high")
 
 
 def _require_row(path: Path, row: object) -> None:
-    held: Row = members(row, path, _MEMBERS)
+    held: Row = require_members(row, path, _MEMBERS)
     for member in ("values", "second"):
         for name, values in held[member].items():
             _require_numbers(path, name, values)
     for name, line in held["lines"].items():
-        members(line, path, dict.fromkeys(_PARTS, list))
+        require_members(line, path, dict.fromkeys(_PARTS, list))
         for place in line["across"]:
-            require_kind(place, (str, int, float), path, f"{name}, across")
+            require_type(place, (str, int, float), path, f"{name}, across")
         for part in _PARTS[1:]:
             _require_numbers(path, f"{name}, {part}", line[part])
         lengths = {len(line[part]) for part in _PARTS}
-        require(len(lengths) == 1, path, f"{name}: its lists are of different lengths")
+        refuse_unless(len(lengths) == 1, path, f"{name}: its lists are of different lengths")
 
 
 def _require_numbers(path: Path, where: str, values: object) -> None:
-    for value in require_kind(values, list, path, where):
-        require_kind(value, (int, float, type(None)), path, where)
+    for value in require_type(values, list, path, where):
+        require_type(value, (int, float, type(None)), path, where)
 
 
 def _claim(row: Row) -> str:

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Literal, TypeVar, cast, get_args
 
 import survey_data
-from files.numerals import decimal, integer
+from files.numerals import parse_decimal, parse_integer
 from files.strict_csv import read_records
 
 DIRECTORY = Path(__file__).resolve().parent
@@ -156,7 +156,7 @@ def _claim(
     names = [rule.name for rule in rules]
     if len(set(names)) < len(names):
         raise RulesError(f"claim {key} has two rules of one name among {', '.join(names)}")
-    trials = _number(plan["trials"], integer, f"claim {key}, trials")
+    trials = _number(plan["trials"], parse_integer, f"claim {key}, trials")
     if trials < FEWEST_TRIALS:
         raise RulesError(f"claim {key} plans {trials} trials; at least {FEWEST_TRIALS} decide")
     return Claim(
@@ -183,8 +183,8 @@ def _rule(row: Mapping[str, str]) -> Rule:
         statistic=row["statistic"],
         scale=cast("Scale", _one_of(row["scale"], Scale, place)),
         relation=cast("Relation", _one_of(row["relation"], Relation, place)),
-        limit=_number(row["limit"], decimal, f"{place}, limit"),
-        upper=_number(row["upper"], decimal, f"{place}, upper") if row["upper"] else math.nan,
+        limit=_number(row["limit"], parse_decimal, f"{place}, limit"),
+        upper=_number(row["upper"], parse_decimal, f"{place}, upper") if row["upper"] else math.nan,
         timed=_one_of(row["timed"], Literal["yes", ""], place) == "yes",
     )
     if (rule.relation == "within") != (rule.upper > rule.limit):

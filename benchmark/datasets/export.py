@@ -39,7 +39,7 @@ from benchmark.datasets.samples import samples_hash
 from benchmark.metrics.bounds import Bound
 from benchmark.metrics.score import stored
 from benchmark.progress import ProgressCallback, silent
-from files.atomic import replacing, require_within_files
+from files.atomic import replace_all, require_replaceable
 from files.reading import FileRefusedError
 from files.strict_json import read_json
 
@@ -133,9 +133,9 @@ def export(
     if n is not None and n < 1:
         raise ValueError(f"n must be at least 1; got {n}")
     out = Path(os.path.abspath(out))  # noqa: PTH100 - resolve() would follow a symbolic link
-    require_within_files(out)
+    require_replaceable(out)
     _require_free(out, force=force)
-    with replacing(out) as (made,):
+    with replace_all(out) as (made,):
         _require_free(out, force=force)  # again: this process may have waited for another
         made.mkdir()
         files: list[dict[str, Any]] = []

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from benchmark.error_budget.variants import VARIANTS
 from benchmark.results.row_file import Row, RowFile
-from files.strict_json import members, require
+from files.strict_json import refuse_unless, require_members
 
 #: Which score the row is of, as the record has it.
 SCORE = ("condition", "extractor", "model", "rms_deg", "bound_deg", "bound_unit_deg")
@@ -20,10 +20,10 @@ _MEMBERS: Mapping[str, type | tuple[type, ...]] = {
 
 
 def _require_row(path: Path, row: object) -> None:
-    held: Row = members(row, path, _MEMBERS)
+    held: Row = require_members(row, path, _MEMBERS)
     for name in ("answered", "judged", *_ANGLES):
         least = f"{name}: expected a number of at least 0, got {held[name]}"
-        require(held[name] is None or held[name] >= 0, path, least)
+        refuse_unless(held[name] is None or held[name] >= 0, path, least)
 
 
 def _dataset(row: Row) -> str:

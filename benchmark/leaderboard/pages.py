@@ -17,7 +17,7 @@ from benchmark.leaderboard.scope import BEHIND, CLOSE, UNITS, UNITS_BEHIND
 from benchmark.results.tables import spelt, text_of
 from benchmark.sweeps import tables as sweep_tables
 from files.atomic import replace_file
-from files.csv_writing import escaped
+from files.csv_writing import escape_formulas
 from registry.taxonomy import exported_row
 
 Board = Mapping[str, Any]
@@ -273,13 +273,13 @@ def render(board: Board, out: Path, *, for_spreadsheets: bool = False) -> list[P
     out
         The directory.
     for_spreadsheets
-        Whether no spreadsheet shall run a cell of the CSV files (`csv_writing.escaped`).
+        Whether no spreadsheet shall run a cell of the CSV files (`csv_writing.escape_formulas`).
     """
     paths = []
     for name, made in FORMATS.items():
         text = made(board)
         if for_spreadsheets and name.endswith(".csv"):
-            text = escaped(text)
+            text = escape_formulas(text)
         replace_file(out / name, text)
         paths.append(out / name)
     return paths

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from benchmark.metrics.score import stored
-from files.strict_json import members, require, require_kind
+from files.strict_json import refuse_unless, require_members, require_type
 
 #: A row of the record: plain JSON values.
 Row = dict[str, Any]
@@ -31,15 +31,17 @@ _MEMBERS: Mapping[str, type | tuple[type, ...]] = {
 
 def require_row(path: Path, row: object) -> None:
     """Raise FileRefusedError, naming the curve, for what is no row of the record."""
-    held: Row = members(row, path, _MEMBERS)
+    held: Row = require_members(row, path, _MEMBERS)
     named = f"{held['dataset']}, place {held['place']}"
     for name, value in held.items():
         kind = (int, type(None)) if name in _FROM else _ANGLE
         if name == "points":
             for point in value:
                 where = f"{named}, points"
-                require_kind(point, list, path, where)
-                require(len(point) == len(POINT), path, f"{where}: expected {len(POINT)} each")
+                require_type(point, list, path, where)
+                refuse_unless(
+                    len(point) == len(POINT), path, f"{where}: expected {len(POINT)} each"
+                )
                 _require_sizes(path, where, point, _ANGLE)
         elif isinstance(value, list):
             _require_sizes(path, f"{named}, {name}", value, kind)
@@ -47,7 +49,7 @@ def require_row(path: Path, row: object) -> None:
             _require_sizes(path, f"{named}, {name}", [value], (*_ANGLE, bool))
     lengths = {len(held[name]) for name in _FROM}
     one_length = len(lengths) == 1 and 0 not in lengths
-    require(one_length, path, f"{named}: {', '.join(_FROM)} are empty or of other lengths")
+    refuse_unless(one_length, path, f"{named}: {', '.join(_FROM)} are empty or of other lengths")
 
 
 #: Lists of numbers of poses, by draw.
@@ -58,9 +60,9 @@ def _require_sizes(
     path: Path, where: str, values: Sequence[object], kind: tuple[type, ...]
 ) -> None:
     for value in values:
-        require_kind(value, kind, path, where)
+        require_type(value, kind, path, where)
         least = f"{where}: expected a number of at least 0, got {value}"
-        require(not (isinstance(value, int | float) and value < 0), path, least)
+        refuse_unless(not (isinstance(value, int | float) and value < 0), path, least)
 
 
 def summary(row: Row) -> Row:

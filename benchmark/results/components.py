@@ -18,7 +18,7 @@ from benchmark.metrics.score import METRIC_VERSION
 from benchmark.plan.parts import Parts
 from benchmark.results.digests import dataset_digest, harness_digest, method_digest
 from files.reading import FileRefusedError
-from files.strict_json import members, read_json, require_kind
+from files.strict_json import read_json, require_members, require_type
 
 #: Layout of the stored files; raised when a field changes its meaning.
 SCHEMA_VERSION = 2
@@ -150,7 +150,7 @@ class Components:
             )
         try:
             layout = {"schema": int, "metric": int, "harness": str, **dict.fromkeys(_KINDS, dict)}
-            members(held, path, layout)
+            require_members(held, path, layout)
             kinds: dict[str, Any] = {kind: held[kind] for kind in _KINDS}
             for kind, facts in kinds.items():
                 for name, one in facts.items():
@@ -192,12 +192,12 @@ _MEMBERS: Mapping[str, Mapping[str, type | tuple[type, ...]]] = {
 
 def _require_facts(path: Path, kind: str, name: str, facts: Any) -> None:
     """Raise FileRefusedError, naming the component, for facts that are not of its kind."""
-    require_kind(facts, dict, path, f"{kind}/{name}")
+    require_type(facts, dict, path, f"{kind}/{name}")
     expected = _MEMBERS[kind]
     for member, types in expected.items():
         if member not in facts:
             raise FileRefusedError(path, f"{kind}/{name}: the member {member!r} is missing")
-        require_kind(facts[member], types, path, f"{kind}/{name}/{member}")
+        require_type(facts[member], types, path, f"{kind}/{name}/{member}")
     if unknown := sorted(facts.keys() - expected.keys()):
         raise FileRefusedError(path, f"{kind}/{name}: unknown member {unknown[0]!r}")
 

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from benchmark.results.tables import StoreError
-from files.atomic import naming
+from files.atomic import name_file_in_errors
 from files.reading import FileRefusedError, read_bytes
 from files.strict_json import parse_json
 
@@ -58,7 +58,7 @@ class Journal:
             line, last = chained(json.dumps(record, allow_nan=False), last)
             text += f"{line}\n"
         self.path.parent.mkdir(parents=True, exist_ok=True)
-        with naming(self.path), self.path.open("ab") as file:
+        with name_file_in_errors(self.path), self.path.open("ab") as file:
             file.write(text.encode())
             file.flush()
             os.fsync(file.fileno())

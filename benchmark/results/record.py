@@ -23,11 +23,11 @@ from benchmark.results.journal import Journal
 from benchmark.results.samples import CellErrors, Directions, SampleErrors
 from benchmark.results.store import Store
 from benchmark.results.tables import Row, StoreError
-from files.locks import HeldError, held_alone
-from files.temporary import remove_leftovers
+from files.locks import LockedError, lock_or_refuse
+from files.temporary import remove_stale_files
 
 
-class StoreLockedError(HeldError):
+class StoreLockedError(LockedError):
     """Another runner is writing to the store."""
 
     def __init__(self, holder: str, store: Path) -> None:
@@ -237,11 +237,11 @@ def opened(store: Store) -> Iterator[Record]:
     directory.mkdir(parents=True, exist_ok=True)
     with ExitStack() as stack:
         try:
-            stack.enter_context(held_alone(directory / "store"))
-        except HeldError as error:
+            stack.enter_context(lock_or_refuse(directory / "store"))
+        except LockedError as error:
             raise StoreLockedError(error.holder, store.directory) from error
         for place in (store.directory, store.scores_directory, store.samples_directory, directory):
-            remove_leftovers(place)
+            remove_stale_files(place)
         recorded.require_unchanged(store.directory)
         record = Record(store)
         record.cut_torn()

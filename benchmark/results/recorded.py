@@ -8,7 +8,7 @@ from pathlib import Path
 from benchmark.results.tables import StoreError
 from files import manifest
 from files.problems import Problem
-from files.reading import FileRefusedError, is_there
+from files.reading import FileRefusedError, path_exists
 
 #: Takes over what was changed by hand, in the record and in the facts.
 COMMAND = "python -m benchmark.suites.taking_over"
@@ -70,8 +70,8 @@ def write(folder: Path, contents: Mapping[str, str | bytes | None], *, start: bo
         Where the manifest cannot be read; nothing has been written.
     """
     try:
-        if start and not is_there(folder / manifest.FILE) and (there := names(folder)):
-            manifest.renew(folder, there)  # a record that is older than manifests
+        if start and not path_exists(folder / manifest.FILE) and (there := names(folder)):
+            manifest.rewrite_manifest(folder, there)  # a record that is older than manifests
         return manifest.write_recorded(folder, contents, start=start)
     except FileRefusedError as error:
         raise StoreError(str(error)) from error

@@ -12,7 +12,7 @@ from benchmark.results import recorded
 from benchmark.results.store import PUBLISHED
 from benchmark.results.tables import Reader, StoreError, read, text_of
 from files.reading import FileRefusedError
-from files.strict_json import members, read_json, require_kind
+from files.strict_json import read_json, require_members, require_type
 
 #: Plain JSON values.
 Row = dict[str, Any]
@@ -74,7 +74,7 @@ class RowFile(Generic[C]):
         """
         path = Path(directory) / self.name
         try:
-            held = members(read_json(path), path, {"schema": int, self.listed: list})
+            held = require_members(read_json(path), path, {"schema": int, self.listed: list})
             if held["schema"] != self.schema:
                 raise StoreError(f"{path}: expected schema {self.schema}, got {held['schema']!r}")
             found: dict[C, Row] = {}
@@ -176,8 +176,10 @@ class TableFile(Generic[C]):
     def _groups(self, directory: Path) -> dict[str, Row]:
         path = directory / self.shared_name
         try:
-            held = require_kind(read_json(path), dict, path, "groups")
-            return {group: members(facts, path, self.shared) for group, facts in held.items()}
+            held = require_type(read_json(path), dict, path, "groups")
+            return {
+                group: require_members(facts, path, self.shared) for group, facts in held.items()
+            }
         except FileNotFoundError:
             return {}
         except FileRefusedError as error:

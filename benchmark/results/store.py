@@ -41,7 +41,7 @@ from benchmark.results.tables import (
     text_of,
     word,
 )
-from files.reading import is_there
+from files.reading import path_exists
 from survey_data.nearest import nearest
 
 if TYPE_CHECKING:
@@ -123,7 +123,7 @@ class Store:
             For a line that is no row of scores, or one that is there twice.
         """
         folder = self.scores_directory
-        if is_there(folder) and not folder.is_dir():
+        if path_exists(folder) and not folder.is_dir():
             raise StoreError(f"{folder}: expected a directory of tables")
         found: dict[Cell, Row] = {}
         for path in sorted(self.scores_directory.glob("*.csv")):

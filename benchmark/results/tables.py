@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from files.csv_writing import csv_text
-from files.numerals import decimal, integer
+from files.numerals import parse_decimal, parse_integer
 from files.reading import FileRefusedError, read_text
 
 Row = dict[str, Any]
@@ -23,7 +23,7 @@ class StoreError(ValueError):
 
 def number(text: str) -> float | None:
     """Read a finite number, None from an empty cell; ValueError for anything else."""
-    return decimal(text) if text else None
+    return parse_decimal(text) if text else None
 
 
 def size(text: str) -> float | None:
@@ -46,7 +46,7 @@ def share(text: str) -> float | None:
 
 def whole(text: str) -> int | None:
     """Read a whole number, None from an empty cell; ValueError for anything else."""
-    return integer(text) if text else None
+    return parse_integer(text) if text else None
 
 
 def count(text: str) -> int | None:

@@ -27,7 +27,7 @@ from benchmark.plan.parts import Parts, installed
 from benchmark.progress import ProgressCallback, terminal_progress
 from benchmark.results.row_file import C, Record, Row
 from benchmark.results.store import PUBLISHED
-from files.locks import held_alone
+from files.locks import lock_or_refuse
 
 #: Numbers of another processor may differ by this share.
 RELATIVE_TOLERANCE = 2e-4
@@ -222,7 +222,7 @@ def update(
     started = time.perf_counter()
     record, directory = experiment.record, experiment.directory
     directory.mkdir(parents=True, exist_ok=True)
-    with held_alone(directory / record.name):
+    with lock_or_refuse(directory / record.name):
         keys, stored = experiment.keys(), record.read(directory)
         old = {cell for cell, _ in _due(experiment, stored, keys)}
         missing = [cell for cell in keys if cell in (old if only is None else only)]

@@ -30,8 +30,8 @@ from benchmark.results.tables import StoreError, above_zero, read, text_of, word
 from benchmark.running.threads import one_thread
 from benchmark.running.timing import best_of, best_time
 from files.atomic import replace_file
-from files.locks import held_in_turn
-from files.temporary import remove_leftovers
+from files.locks import wait_for_lock
+from files.temporary import remove_stale_files
 
 #: Name of the file.
 TIMES = "times.csv"
@@ -158,7 +158,7 @@ def update(
     first = {name: preset.conditions[0] for name, preset in known.presets.items()}
     planned = [cell for cell in cells(parts=known) if cell.condition == first[cell.dataset]]
     with _held(directory):  # also where nothing is missing: what a killed process left goes
-        remove_leftovers(directory, TIMES)
+        remove_stale_files(directory, TIMES)
         there = times_of_code(directory, known, components)
     missing = [cell for cell in planned if _pipeline(cell) not in there]
     with terminal_progress() if progress is None else nullcontext(progress) as report:
@@ -189,7 +189,7 @@ def drop_outdated(directory: Path, parts: Parts, components: Components) -> int:
 def _held(directory: Path) -> AbstractContextManager[None]:
     """Hold the table of times."""
     directory.mkdir(parents=True, exist_ok=True)
-    return held_in_turn(directory / TIMES)
+    return wait_for_lock(directory / TIMES)
 
 
 def _write(directory: Path, kept: Mapping[Place, Time]) -> None:

@@ -59,7 +59,7 @@ def renew(directory: Path) -> list[str]:
     for kind in experiments().values():
         if issubclass(kind, Recorded):
             kind.record.read(directory)
-    return manifest.renew(directory, recorded.names(directory))
+    return manifest.rewrite_manifest(directory, recorded.names(directory))
 
 
 if __name__ == "__main__":

@@ -14,6 +14,7 @@ from typing import Any
 import cv2
 import matplotlib.image
 import numpy as np
+from benchmark.reference.frames import REFERENCE_SETS
 from numpy.typing import NDArray
 
 from algorithms.extractors.frames.cameras import dark_holes_kernel
@@ -21,7 +22,6 @@ from algorithms.extractors.frames.cameras.hough import HoughCircle, HoughLines
 from algorithms.extractors.frames.mirror import search_kernel
 from algorithms.extractors.frames.multi_spot import correlation_kernel, spots_kernel
 from algorithms.kernels import moments
-from benchmark.reference.frames import REFERENCE_SETS
 
 Frames = NDArray[Any]
 #: What is timed, on what: ours, OpenCV's, and how their results differ.

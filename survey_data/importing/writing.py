@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
-from files.locks import held_in_turn
+from files.locks import wait_for_lock
 from files.manifest import write_recorded
 from files.reading import FileRefusedError
 from files.temporary import temporary_directory
@@ -28,7 +28,7 @@ def held_tables(folder: Path) -> Iterator[None]:
     with ExitStack() as stack:
         try:
             with suppress(FileNotFoundError):  # reading says that there are no tables
-                stack.enter_context(held_in_turn(folder / "tables"))
+                stack.enter_context(wait_for_lock(folder / "tables"))
         except OSError as error:
             raise _unwritable(folder, error) from error
         yield

@@ -18,10 +18,10 @@ PROGRAM = """
 import sys, time
 from pathlib import Path
 from benchmark.processes import call_to_end
-from files.temporary import scratch_directory
+from files.temporary import temporary_directory_beside
 
 def main():
-    with scratch_directory(Path(sys.argv[1]) / "out"):
+    with temporary_directory_beside(Path(sys.argv[1]) / "out"):
         print("working", flush=True)
         time.sleep(600)
 
@@ -86,7 +86,7 @@ def test_a_program_that_is_told_to_end_removes_what_it_was_making(
 ) -> None:
     process = start(PROGRAM, tmp_path)
     assert first_line(process) == "working"
-    assert len(list(tmp_path.iterdir())) == 1
+    assert len(list(tmp_path.iterdir())) == 2, "a directory and its lock"
     process.send_signal(number)
     _, said = process.communicate(timeout=60)
     assert (process.returncode, said) == (code, "")
@@ -114,9 +114,9 @@ def test_a_second_writer_is_told_in_one_line(tmp_path: Path) -> None:
     program = (
         "import sys; from pathlib import Path\n"
         "from benchmark.processes import call_to_end\n"
-        "from files.locks import held_alone\n"
+        "from files.locks import lock_or_refuse\n"
         "def main():\n"
-        "    with held_alone(Path(sys.argv[1])), held_alone(Path(sys.argv[1])): pass\n"
+        "    with lock_or_refuse(Path(sys.argv[1])), lock_or_refuse(Path(sys.argv[1])): pass\n"
         "call_to_end(main)\n"
     )
     process = start(program, tmp_path / "out")

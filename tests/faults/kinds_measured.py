@@ -155,7 +155,7 @@ def _forged_bundle(rng: random.Random, folder: Path) -> str:
 
 def _outcome(folder: Path) -> list[Path]:
     CLAIMS.write({_CLAIM: CLAIMS.read()[_CLAIM]}, folder)
-    manifest.renew(folder, recorded.names(folder))
+    manifest.rewrite_manifest(folder, recorded.names(folder))
     return [folder / CLAIMS.name]
 
 
@@ -192,7 +192,7 @@ def _forged_outcome(rng: random.Random, folder: Path) -> str:
         at = rng.choice([k for k, value in enumerate(part) if value])
         part[at] *= rng.choice([1.001, 2.0])
     CLAIMS.write(rows, folder)
-    manifest.renew(folder, recorded.names(folder))
+    manifest.rewrite_manifest(folder, recorded.names(folder))
     return f"forged: {what}"
 
 

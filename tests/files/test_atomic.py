@@ -14,7 +14,7 @@ import pytest
 
 import survey_data
 from files import atomic
-from files.atomic import RootOfFilesError, replace_file, replacing
+from files.atomic import FileSystemRootError, replace_all, replace_file
 
 ROOT = Path(survey_data.__file__).parent.parent
 
@@ -106,18 +106,18 @@ def test_a_place_that_cannot_be_written_is_named(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("no directory")
     with pytest.raises(FileExistsError, match="file"):
         replace_file(tmp_path / "file" / "inside", "new")
-    with pytest.raises(FileExistsError, match="file"), replacing(tmp_path / "file" / "out"):
+    with pytest.raises(FileExistsError, match="file"), replace_all(tmp_path / "file" / "out"):
         pytest.fail("nothing can be made there")
 
 
-@pytest.mark.parametrize("writing", ["replace_file(path, 'new')", "replacing(path).__enter__()"])
+@pytest.mark.parametrize("writing", ["replace_file(path, 'new')", "replace_all(path).__enter__()"])
 def test_a_directory_without_permission_to_write_is_refused(writing: str, tmp_path: Path) -> None:
     held = tmp_path / "held"
     held.mkdir()
     held.chmod(0o500)
     code = (
         "import os, sys; from pathlib import Path\n"
-        "from files.atomic import RootOfFilesError, replace_file, replacing\n"
+        "from files.atomic import FileSystemRootError, replace_file, replace_all\n"
         "path = Path(sys.argv[1]) / 'out'\n"
         "if os.geteuid() == 0: os.setuid(65534)  # root writes everywhere\n"
         f"try: {writing}\n"
@@ -147,7 +147,7 @@ def untouched(directory: Path) -> bool:
 
 
 def renew(directory: Path) -> None:
-    with replacing(directory / "out", directory / "out.zip") as (out, zipped):
+    with replace_all(directory / "out", directory / "out.zip") as (out, zipped):
         out.mkdir()
         (out / "new").write_text("new")
         zipped.write_text("new zip")
@@ -167,7 +167,7 @@ def test_directory_and_file_take_their_places(
 
 def test_an_error_while_making_leaves_what_was_there(earlier: Path) -> None:
     def half_way() -> None:
-        with replacing(earlier / "out") as (out,):
+        with replace_all(earlier / "out") as (out,):
             out.mkdir()
             (out / "new").write_text("new")
             raise RuntimeError("half way")
@@ -225,7 +225,7 @@ def test_a_file_system_without_an_exchange_gives_the_same(
     for name in ("deep/kept", "deep/gone", "was-directory/inside"):
         (earlier / "out" / name).parent.mkdir(exist_ok=True)
         (earlier / "out" / name).write_text("old")
-    with replacing(earlier / "out") as (out,):
+    with replace_all(earlier / "out") as (out,):
         (out / "deep").mkdir(parents=True)
         (out / "deep" / "kept").write_text("new")
         (out / "was-directory").write_text("new")
@@ -256,7 +256,7 @@ def test_a_kill_at_any_step_leaves_an_out_and_the_next_run_nothing_else(
         [["held"], ["new"]] if way == "exchange" else [["held"], ["held", "new"], ["new"]]
     )
     assert (earlier / "out.zip").read_text() in ("old zip", "new zip")
-    assert len(names(earlier)) == 4, "the killed run left its scratch directory and its lock"
+    assert len(names(earlier)) == 5, "the killed run left its temporary directory and two locks"
     renew(earlier)
     assert names(earlier) == ["out", "out.zip"]
     assert names(earlier / "out") == ["new"]
@@ -266,11 +266,11 @@ def test_a_kill_at_any_step_leaves_an_out_and_the_next_run_nothing_else(
 def test_a_new_file_has_the_permissions_that_the_umask_leaves(tmp_path: Path) -> None:
     code = (
         "import os, sys; from pathlib import Path\n"
-        "from files.atomic import RootOfFilesError, replace_file, replacing\n"
+        "from files.atomic import FileSystemRootError, replace_file, replace_all\n"
         "os.umask(0o077)\n"
         "here = Path(sys.argv[1])\n"
         "replace_file(here / 'deep' / 'file', 'mine')\n"
-        "with replacing(here / 'out') as (out,): out.mkdir(); (out / 'held').write_text('mine')\n"
+        "with replace_all(here / 'out') as (out,): out.mkdir(); (out / 'held').write_text('mine')\n"
         "os._exit(9)\n"
     )
     killed(code, tmp_path)
@@ -288,14 +288,14 @@ def test_a_full_disk_is_told_with_the_name_of_the_file(
     with pytest.raises(OSError, match="No space left") as caught:
         replace_file(tmp_path / "file", "new")
     assert caught.value.filename == str(tmp_path / "file")
-    with pytest.raises(OSError, match="No space left") as caught, replacing(tmp_path / "out"):
+    with pytest.raises(OSError, match="No space left") as caught, replace_all(tmp_path / "out"):
         full()
     assert caught.value.filename == str(tmp_path / "out")
     assert names(tmp_path) == []
 
 
 def interrupted(out: Path, beside: Path | None = None) -> None:
-    with replacing(out) as (made,):
+    with replace_all(out) as (made,):
         made.mkdir()
         if beside is not None:
             beside.write_text("theirs")
@@ -307,7 +307,7 @@ def test_directories_above_are_made_and_go_again_after_an_error(tmp_path: Path) 
     with pytest.raises(KeyboardInterrupt):
         interrupted(out)
     assert list(tmp_path.iterdir()) == []
-    with replacing(out) as (made,):
+    with replace_all(out) as (made,):
         made.write_text("whole")
     assert out.read_text() == "whole"
 
@@ -322,13 +322,13 @@ def test_a_directory_above_that_somebody_uses_stays_after_an_error(tmp_path: Pat
 def test_the_root_of_a_file_system_is_not_replaced(path: Path) -> None:
     if not path.is_mount():
         pytest.skip(f"{path} is no mount here")
-    with pytest.raises(RootOfFilesError, match="cannot be replaced"), replacing(path):
+    with pytest.raises(FileSystemRootError, match="cannot be replaced"), replace_all(path):
         pytest.fail("it would be replaced")
 
 
 def test_an_error_of_a_file_being_made_names_its_place(tmp_path: Path) -> None:
     def write() -> None:
-        with replacing(tmp_path / "out") as (made,):
+        with replace_all(tmp_path / "out") as (made,):
             made.mkdir()
             (made / "sub" / "file").write_text("")
 

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from files.csv_writing import csv_text, escaped, unescaped
+from files.csv_writing import csv_text, escape_formulas, unescape_formulas
 
 STARTS = "=+-@\t\r\n＝＋－＠"
 LETTERS = "=+-@'\t\r\n\" ,;a1.eE＝＋－＠|!(ä"
@@ -56,23 +56,25 @@ def runs(cell: str) -> bool:
 @given(TABLES)
 @example([['=HYPERLINK("http://x","y")', "@SUM(1)"], ["\t=1", "\r=1"], [" =1", "-1+cmd|' /C'!A0"]])
 def test_a_spreadsheet_finds_no_formula(rows: list[list[str]]) -> None:
-    for row in read(escaped(csv_text(["a", "b"], rows)))[1:]:
+    for row in read(escape_formulas(csv_text(["a", "b"], rows)))[1:]:
         assert not any(map(runs, row)), row
 
 
 @given(st.lists(NUMBERS, min_size=1, max_size=5))
 def test_numbers_stay_numbers(numbers: list[float]) -> None:
     text = csv_text(["n"], [[n] for n in numbers])
-    assert escaped(text) == text
-    assert [float(cell) for (cell,) in read(escaped(text))[1:]] == [float(n) for n in numbers]
+    assert escape_formulas(text) == text
+    assert [float(cell) for (cell,) in read(escape_formulas(text))[1:]] == [
+        float(n) for n in numbers
+    ]
 
 
 @given(TABLES)
 @example([["'=1", "'-5"], ["''", "'"], ["'\t", "-"]])
 def test_escaping_is_undone_and_touches_nothing_else(rows: list[list[str]]) -> None:
     text = csv_text(["a", "b"], rows)
-    safe = escaped(text)
-    assert unescaped(safe) == text
+    safe = escape_formulas(text)
+    assert unescape_formulas(safe) == text
     for before, after in zip(read(text), read(safe), strict=True):
         assert all(b in {a, a[1:]} for b, a in zip(before, after, strict=True))
         plain = [(b, a) for b, a in zip(before, after, strict=True) if not runs(b)]
@@ -102,4 +104,4 @@ def test_written_cells_are_read_back_as_they_were(rows: list[list[str]]) -> None
     ],
 )
 def test_what_is_escaped(cell: str, written: str) -> None:
-    assert escaped(csv_text(["a", "b"], [[cell, "x"]])) == f"a,b\n{written},x\n"
+    assert escape_formulas(csv_text(["a", "b"], [[cell, "x"]])) == f"a,b\n{written},x\n"

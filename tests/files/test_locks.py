@@ -10,14 +10,14 @@ from pathlib import Path
 import pytest
 
 import survey_data
-from files.locks import HeldError, held_alone, held_in_turn, lock_file
+from files.locks import LockedError, lock_or_refuse, lock_path, wait_for_lock
 
 ROOT = Path(survey_data.__file__).parent.parent
 HOLDING = """
 import sys
 from pathlib import Path
-from files.locks import held_alone
-with held_alone(Path(sys.argv[1])):
+from files.locks import lock_or_refuse
+with lock_or_refuse(Path(sys.argv[1])):
     print("held", flush=True)
     sys.stdin.read()
 """
@@ -45,7 +45,7 @@ def test_another_process_is_refused_in_a_sentence_that_names_the_first(
     place: Path, holder: subprocess.Popen[str]
 ) -> None:
     expected = f"another process {holder.pid} is writing to {place}"
-    with pytest.raises(HeldError, match=expected), held_alone(place):
+    with pytest.raises(LockedError, match=expected), lock_or_refuse(place):
         pytest.fail("two hold it")
 
 
@@ -54,8 +54,8 @@ def test_a_killed_process_holds_nothing_and_its_lock_file_goes_with_the_next(
 ) -> None:
     holder.kill()
     holder.wait()
-    assert lock_file(place).exists()
-    with held_alone(place):
+    assert lock_path(place).exists()
+    with lock_or_refuse(place):
         pass
     assert list(place.parent.iterdir()) == []
 
@@ -66,7 +66,7 @@ def test_one_that_waits_says_for_whom_and_goes_on_when_the_first_has_ended(
     entered = threading.Event()
 
     def wait() -> None:
-        with held_in_turn(place):
+        with wait_for_lock(place):
             entered.set()
 
     waiting = threading.Thread(target=wait)
@@ -87,7 +87,7 @@ def test_many_that_come_and_go_never_meet(place: Path) -> None:
 
     def work() -> None:
         for _ in range(30):
-            with held_in_turn(place):
+            with wait_for_lock(place):
                 inside.append(1)
                 met.append(len(inside))
                 inside.pop()
@@ -102,7 +102,7 @@ def test_many_that_come_and_go_never_meet(place: Path) -> None:
 
 
 def test_an_error_inside_releases(place: Path) -> None:
-    with pytest.raises(RuntimeError, match="inside"), held_alone(place):
+    with pytest.raises(RuntimeError, match="inside"), lock_or_refuse(place):
         raise RuntimeError("inside")
-    with held_alone(place):
+    with lock_or_refuse(place):
         pass

@@ -107,7 +107,7 @@ def test_what_a_kill_leaves_is_no_change_by_hand_and_the_next_run_ends_it(
         raise KeyboardInterrupt
 
     monkeypatch.setattr(manifest, "replace_file", dies)
-    monkeypatch.setattr(manifest, "settle", settled)
+    monkeypatch.setattr(manifest, "finish_interrupted_write", settled)
     with pytest.raises(KeyboardInterrupt):
         write_recorded(folder, wanted)
     assert (folder / NEXT).exists()
@@ -136,23 +136,23 @@ def test_the_next_command_need_not_take_away_what_a_killed_one_took(folder, monk
     assert not (folder / "inner/said.json").exists()
     write_recorded(folder, {"table.csv": changed})
     assert not (folder / NEXT).exists()
-    assert "inner/said.json" not in manifest.read(folder)
+    assert "inner/said.json" not in manifest.read_manifest(folder)
     assert [str(p) for p in differences(folder, ("table.csv",))] == []
 
 
 def test_settling_finishes_or_drops_what_a_kill_left(folder):
-    entries = manifest.read(folder)
+    entries = manifest.read_manifest(folder)
     changed = TABLE.replace("red", "rot")
     coming = {**entries, "table.csv": manifest.Entry.of("table.csv", changed.encode())}
-    (folder / NEXT).write_text(manifest.spelt(coming))
-    manifest.settle(folder)
+    (folder / NEXT).write_text(manifest.manifest_text(coming))
+    manifest.finish_interrupted_write(folder)
     assert not (folder / NEXT).exists()
-    assert manifest.read(folder) == entries, "nothing had been written"
-    (folder / NEXT).write_text(manifest.spelt(coming))
+    assert manifest.read_manifest(folder) == entries, "nothing had been written"
+    (folder / NEXT).write_text(manifest.manifest_text(coming))
     (folder / "table.csv").write_text(changed)
-    manifest.settle(folder)
+    manifest.finish_interrupted_write(folder)
     assert not (folder / NEXT).exists()
-    assert manifest.read(folder) == coming, "everything had"
+    assert manifest.read_manifest(folder) == coming, "everything had"
 
 
 def test_our_own_facts_are_as_their_commands_wrote_them():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import threading
 from pathlib import Path
 
 import pytest
@@ -11,16 +12,17 @@ import pytest
 import survey_data
 from files import temporary
 from files.atomic import replace_file
-from files.temporary import remove_leftovers, scratch_directory, temporary_directory
+from files.locks import lock_path
+from files.temporary import remove_stale_files, temporary_directory, temporary_directory_beside
 
 ROOT = Path(survey_data.__file__).parent.parent
 MAKING = """
 import os, sys
 from pathlib import Path
-from files.temporary import scratch_directory, scratch_file, temporary_directory
+from files.temporary import temporary_directory_beside, temporary_file_beside, temporary_directory
 here = Path(sys.argv[1])
-with scratch_directory(here / "out") as out, scratch_file(here / "table.csv") as file, \\
-        temporary_directory() as temporary:
+with temporary_directory_beside(here / "out") as out, \\
+        temporary_file_beside(here / "table.csv") as file, temporary_directory() as temporary:
     for path in (out / "half", file, temporary / "half"):
         path.write_text("half")
     print("made", flush=True)
@@ -53,19 +55,19 @@ def test_leftovers_of_a_dead_process_are_removed_and_a_living_one_keeps_its_own(
     tmp_path: Path, maker: subprocess.Popen[str]
 ) -> None:
     made = [name for name in names(tmp_path) if name != "temporary"]
-    assert len(made) == 2
+    assert len(made) == 4, "two, and a lock of each"
     assert all(f".{maker.pid}-" in name for name in made), "people see whose it is"
-    remove_leftovers(tmp_path)
+    remove_stale_files(tmp_path)
     with temporary_directory():
-        assert len(names(tmp_path / "temporary")) == 2
+        assert len(names(tmp_path / "temporary")) == 4
     assert [name for name in names(tmp_path) if name != "temporary"] == made
     maker.kill()
     maker.wait()
-    remove_leftovers(tmp_path, "out")
-    assert [name[:10] for name in names(tmp_path)] == [".table.csv", "temporary"]
+    remove_stale_files(tmp_path, "out")
+    assert [name[:11] for name in names(tmp_path)] == ["..table.csv", ".table.csv.", "temporary"]
     replace_file(tmp_path / "table.csv", "whole")
     with temporary_directory() as mine:
-        assert names(tmp_path / "temporary") == [mine.name]
+        assert names(tmp_path / "temporary") == [lock_path(mine).name, mine.name]
     assert names(tmp_path) == ["table.csv", "temporary"]
     assert names(tmp_path / "temporary") == []
 
@@ -77,7 +79,7 @@ def test_a_write_of_what_is_there_already_removes_leftovers_too(
     maker.kill()
     maker.wait()
     assert not replace_file(tmp_path / "table.csv", "whole")
-    assert [name[:5] for name in names(tmp_path)] == [".out.", "table", "tempo"]
+    assert [name[:5] for name in names(tmp_path)] == ["..out", ".out.", "table", "tempo"]
 
 
 def test_what_merely_looks_alike_stays(tmp_path: Path) -> None:
@@ -85,28 +87,29 @@ def test_what_merely_looks_alike_stays(tmp_path: Path) -> None:
     for name in kept:
         (tmp_path / name).write_text("somebody's")
     (tmp_path / ".out.12-0123abcd.sunatlas").write_text("left")
-    remove_leftovers(tmp_path)
+    (tmp_path / "..out.13-0123abcd.sunatlas.lock").write_text("13\n")
+    remove_stale_files(tmp_path)
     assert names(tmp_path) == sorted(kept)
-    remove_leftovers(tmp_path / "missing")
+    remove_stale_files(tmp_path / "missing")
 
 
-def test_one_whose_scratch_is_taken_before_it_is_locked_makes_another(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    real, taken = temporary._locked, []
+def test_many_that_write_and_tidy_at_once_keep_their_own(tmp_path: Path) -> None:
+    """A name is locked before anything has it: nobody takes what is being made for stale."""
 
-    def late(path: Path, descriptor: int) -> int:
-        if not taken:
-            taken.append(path)
-            remove_leftovers(tmp_path)  # as another process does at this moment
-            assert not path.exists()
-        return real(path, descriptor)
+    def work() -> None:
+        for _ in range(20):
+            with temporary_directory_beside(tmp_path / "out") as path:
+                remove_stale_files(tmp_path)
+                (path / "mine").write_text("mine")
+                made.append(path.stat().st_mode & 0o777)
 
-    monkeypatch.setattr(temporary, "_locked", late)
-    with scratch_directory(tmp_path / "out") as path:
-        assert path.is_dir()
-        assert path != taken[0]
-        assert path.stat().st_mode & 0o777 == 0o700
+    made: list[int] = []
+    threads = [threading.Thread(target=work) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(60)
+    assert made == [0o700] * 80
     assert names(tmp_path) == []
 
 
@@ -114,5 +117,5 @@ def test_a_symbolic_link_is_not_followed(tmp_path: Path) -> None:
     (tmp_path / "precious").mkdir()
     (tmp_path / "precious" / "file").write_text("kept")
     (tmp_path / ".out.12-0123abcd.sunatlas").symlink_to("precious")
-    remove_leftovers(tmp_path)
+    remove_stale_files(tmp_path)
     assert (tmp_path / "precious" / "file").read_text() == "kept"

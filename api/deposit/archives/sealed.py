@@ -23,7 +23,7 @@ from api.deposit.package import NAME
 from api.deposit.packing import PackingError, check
 from api.deposit.verification import verify
 from benchmark.datasets.checksums import contents
-from files.temporary import scratch_directory
+from files.temporary import temporary_directory_beside
 
 #: Files that are also sent by themselves, to be read or searched without the zip.
 APART = ("README.md", "sun-sensor-atlas.sqlite", "studies.bib", "studies.ris")
@@ -122,7 +122,7 @@ def sealed(directory: Path) -> Iterator[SealedBundle]:
         raise BundleError(
             f"{packed}: has {size:,} bytes; expected at most {limits.LARGEST:,}; nothing was sent"
         )
-    with scratch_directory(directory) as private:
+    with temporary_directory_beside(directory) as private:
         copy = private / directory.name
         copied_zip = private / packed.name
         for name in names:

@@ -14,7 +14,7 @@ from api.deposit.verification import verify
 from benchmark.contract import Cell
 from benchmark.results.samples import COLUMNS, DIRECTION_COLUMNS, Directions, SampleErrors
 from benchmark.results.store import PUBLISHED
-from files.manifest import digest
+from files.manifest import manifest_digest
 
 NAME = "ccd-lens"
 
@@ -49,4 +49,4 @@ def test_a_bundle_has_the_errors_of_its_record_and_holds(tmp_path):
         assert path in (bundle / "checksums-sha256.txt").read_text("utf-8")
     assert pd.read_parquet(bundle / f"benchmark/samples/{NAME}.parquet")["error_deg"][0] == 0.25
     cited = yaml.safe_load((bundle / "CITATION.cff").read_text("utf-8"))["identifiers"]
-    assert f"sha256:{digest(published)}" in [identifier["value"] for identifier in cited]
+    assert f"sha256:{manifest_digest(published)}" in [identifier["value"] for identifier in cited]

@@ -15,11 +15,11 @@ from benchmark.progress import silent
 from benchmark.results.row_file import Row, RowFile
 from benchmark.results.tables import StoreError
 from benchmark.running.experiment import Recorded, Report, due, experiments, repeated, update
-from files.strict_json import members
+from files.strict_json import require_members
 
 
 def _require(path: Path, row: object) -> None:
-    members(row, path, {"cell": str, "square": float, "key": str})
+    require_members(row, path, {"cell": str, "square": float, "key": str})
 
 
 class Squares(Recorded[str]):
