@@ -5,7 +5,7 @@ from http.client import HTTPConnection
 
 import pytest
 
-from tests.speed.service import serving
+from tools.bench.service import serving
 
 
 @pytest.fixture(scope="module")
