@@ -22,7 +22,6 @@ from signposting import find_signposting_http, find_signposting_http_link, find_
 
 from api import columns
 from api.deposit.identity import identity
-from api.http.service import create_app
 from api.metadata.signposting import landing_of_study
 from benchmark import datasets
 from tests.api.conftest import Client
@@ -43,11 +42,12 @@ DATASETS = ("pd-slit", "cmos-single-aperture")
 
 
 @pytest.fixture(scope="module")
-def address() -> Iterator[str]:
-    """A service on a port of its own."""
+def address(atlas: Client) -> Iterator[str]:
+    """The service on a port."""
     with socket.socket() as listener:
         listener.bind(("127.0.0.1", 0))
-        server = uvicorn.Server(uvicorn.Config(create_app(), log_level="warning", ws="none"))
+        options = {"log_level": "warning", "ws": "none", "lifespan": "off"}
+        server = uvicorn.Server(uvicorn.Config(atlas.app, **options))
         thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]}, daemon=True)
         thread.start()
         deadline = time.monotonic() + 120

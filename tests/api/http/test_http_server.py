@@ -10,7 +10,7 @@ from tools.bench.service import serving
 
 @pytest.fixture(scope="module")
 def connection(atlas):
-    with serving([atlas.app]) as (opened,):
+    with serving([atlas.app], lifespan="off") as (opened,):
         yield opened
 
 
