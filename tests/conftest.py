@@ -21,6 +21,20 @@ settings.register_profile(
 settings.load_profile("any-machine")
 
 
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Try properties on a third of their examples where the slow tests are left out too."""
+    if "not slow" not in config.option.markexpr:
+        return
+    done = set()
+    for item in items:
+        test = getattr(item, "obj", None)
+        own = getattr(test, "_hypothesis_internal_use_settings", None)  # no public way to change it
+        if own is not None and test not in done:
+            done.add(test)
+            fewer = min(own.max_examples, max(10, own.max_examples // 3))
+            test._hypothesis_internal_use_settings = settings(own, max_examples=fewer)
+
+
 def pytest_collection_finish() -> None:
     """What is loaded by now stays, and what tests share too: a quarter of the suite's time would
     go into the collector's walks over it, were they as frequent as in a small process.
