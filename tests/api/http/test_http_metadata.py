@@ -98,10 +98,12 @@ def test_croissant_loads_what_is_served_of_a_data_set(atlas, address, load, name
 
 
 def test_croissant_loads_errors_with_their_types(atlas, address, load) -> None:
-    rows = rows_of(load(f"{address}/v1/datasets/pd-slit/croissant.json"), "errors")
+    records = load(f"{address}/v1/datasets/pd-slit/croissant.json").records("errors")
     published = atlas.app.state.knowledge.measurements.sample_errors("pd-slit")
-    assert len(rows) == len(published)
-    for row, (_, known) in zip(rows[::997], published.iloc[::997].iterrows(), strict=True):
+    assert len(published) > 2000
+    first = zip(range(2000), records, published.itertuples(index=False), strict=False)
+    for _, named, told in list(first)[::97]:
+        row, known = {k.removeprefix("errors/"): v for k, v in named.items()}, told._asdict()
         assert row["extractor"].decode() == known["extractor"]
         assert (row["unit"], row["sample"]) == (known["unit"], known["sample"])
         assert row["error_deg"] == (None if pd.isna(known["error_deg"]) else known["error_deg"])
@@ -122,8 +124,9 @@ def test_croissant_loads_the_leaderboard(atlas, address, load) -> None:
         assert row["rms_deg"] == (expected and pytest.approx(expected, rel=1e-14))
 
 
-def test_every_data_set_has_valid_croissant_with_digests_of_what_is_served(atlas, load) -> None:
-    for name in datasets.names():
+@pytest.mark.parametrize("step", [5, pytest.param(1, marks=pytest.mark.slow)])
+def test_data_sets_have_valid_croissant_with_digests_of_what_is_served(atlas, load, step) -> None:
+    for name in datasets.names()[::step]:
         answer = atlas.get(f"/v1/datasets/{name}/croissant.json")
         assert answer.headers["content-type"] == "application/ld+json"
         document = answer.json()

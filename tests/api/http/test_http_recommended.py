@@ -70,7 +70,7 @@ def test_what_is_kept_is_bounded_and_changes_no_answer(
 ) -> None:
     monkeypatch.setattr(recommended, "MOST_BYTES", 3000)
     measured = Measurements(known.measured.rows)
-    for number, drawn in enumerate(drawn_requirements(12, SEED + 1, known.facts)):
+    for number, drawn in enumerate(drawn_requirements(4, SEED + 1, known.facts)):
         found = answered(drawn, measured, facts=known.facts)
         told = recommend(drawn, known.measured, facts=known.facts)
         assert encoded_answer(found).body == to_json(told.to_dict(), inf_nan_mode="null"), number

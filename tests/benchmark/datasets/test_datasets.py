@@ -38,6 +38,8 @@ COSTLY = {
     "cmos-encoded-sizes",
     "cmos-l-slit",
     "cmos-multi-aperture",
+    "cmos-multi-aperture-glass",
+    "cmos-single-aperture-thick",
     "cmos-single-aperture",
     "cmos-slit",
     "event-l-slit",
