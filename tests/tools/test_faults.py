@@ -12,6 +12,7 @@ QUICK = [kind for kind in (*GIVEN, *MEASURED) if kind.name.startswith(NAMES)]
 
 @pytest.mark.parametrize("kind", QUICK, ids=lambda kind: kind.name)
 def test_no_damaged_file_is_taken_wrongly_or_ends_in_a_traceback(kind, tmp_path):
-    tried = list(cases(kind, 4, 2, tmp_path))
-    assert len(tried) == 4
+    count = 2 if kind.name.startswith("claim") else 4  # each looks through all code
+    tried = list(cases(kind, count, 2, tmp_path))
+    assert len(tried) == count
     assert [case for case in tried if case.outcome in FAULTS] == []

@@ -35,6 +35,7 @@ COSTLY = {
     "ccd-single-aperture",
     "cmos-compound-eye",
     "cmos-encoded",
+    "cmos-encoded-oblique",
     "cmos-encoded-sizes",
     "cmos-l-slit",
     "cmos-multi-aperture",
