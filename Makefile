@@ -88,25 +88,25 @@ lint: $(DEVELOPING) ## ruff, mypy (strict), the floors, the guide without warnin
 	$(BIN)/sunatlas guide build --strict --out out/guide
 
 bench: $(PEERS) ## every speed and accuracy limit, as ratios measured in the same run; lists the broken ones (SEED=N repeats its frames)
-	$(BIN)/python -m tests.speed $(if $(SEED),--seed $(SEED))
+	$(BIN)/python -m tools.bench $(if $(SEED),--seed $(SEED))
 
 load: $(COMPILED) ## thousands of random requests, then 200 clients at once, against a running service
-	$(BIN)/python -m tests.load $(if $(SEED),--seed $(SEED))
+	$(BIN)/python -m tools.load $(if $(SEED),--seed $(SEED))
 
 mutants: $(MUTANTS) ## put small faults into the code, one at a time; list those that no test notices
 	mkdir -p out
-	$(BIN)/python -m tests.mutants --workers $(WORKERS) --report out/mutants.md
+	$(BIN)/python -m tools.mutation --workers $(WORKERS) --report out/mutants.md
 
 faults: $(COMPILED) ## try a thousand damaged files on every reader (minutes); renews docs/faults.md
-	$(BIN)/python -m tests.faults --report docs/faults.md
+	$(BIN)/python -m tools.faults --report docs/faults.md
 
 faults-kills: $(COMPILED) ## kill every writing command 300 times at moments drawn by SEED, and let pairs write at once
 	mkdir -p out
-	$(BIN)/python -m tests.faults_kills --report out/faults-kills.md $(if $(SEED),--seed $(SEED))
+	$(BIN)/python -m tools.faults.kills --report out/faults-kills.md $(if $(SEED),--seed $(SEED))
 
 MINUTES ?= 60
 faults-load: $(COMPILED) ## 20 mixed requests a second on the service for MINUTES=60
-	$(BIN)/python -m tests.faults_load --minutes $(MINUTES) --report out/faults-load.md $(if $(SEED),--seed $(SEED))
+	$(BIN)/python -m tools.faults.load --minutes $(MINUTES) --report out/faults-load.md $(if $(SEED),--seed $(SEED))
 
 leaderboard: $(SERVING) ## bring scores and leaderboard up to date with code and data
 	$(BIN)/sunatlas leaderboard update --workers $(WORKERS)

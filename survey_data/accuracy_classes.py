@@ -34,11 +34,20 @@ def accuracy_class(taxonomy: pd.DataFrame, accuracy_deg: float) -> str:
     LookupError
         No class holds it (negative or not a number).
     """
+    return _within(_limits(taxonomy), accuracy_deg)
+
+
+def _limits(taxonomy: pd.DataFrame) -> list[tuple[str, float, float]]:
+    """Return name, least and upper limit of each class; the last has none above."""
     classes = taxonomy[taxonomy["attribute"] == "accuracy"]
-    for row in classes.to_dict("records"):
-        upper = float("inf") if pd.isna(row["max_deg"]) else row["max_deg"]
-        if row["min_deg"] <= accuracy_deg < upper:
-            return str(row["value"])
+    upper = classes["max_deg"].fillna(float("inf"))
+    return list(zip(classes["value"].map(str), classes["min_deg"], upper, strict=True))
+
+
+def _within(classes: list[tuple[str, float, float]], accuracy_deg: float) -> str:
+    for name, least, upper in classes:
+        if least <= accuracy_deg < upper:
+            return name
     raise LookupError(f"no accuracy class holds {accuracy_deg} deg")
 
 
@@ -56,13 +65,14 @@ def class_disagreements(
     angles = reported[reported["degrees"].between(0, 180, inclusive="right")]
     numbers = {row.study: row for row in angles.itertuples(index=False)}
     at = known["attribute"] == "accuracy"
+    classes = _limits(taxonomy)
     rows = known[at].itertuples(index=False)
     for index, row in zip(known.index[at].tolist(), rows, strict=True):
         number = numbers.get(row.study)
         if number is None:
             continue
         degrees = float(str(number.degrees))
-        by_limits = accuracy_class(taxonomy, degrees)
+        by_limits = _within(classes, degrees)
         if by_limits != row.value:
             printed = not PRINTED.isdisjoint({row.basis, number.basis})
             yield (

@@ -21,6 +21,20 @@ settings.register_profile(
 settings.load_profile("any-machine")
 
 
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Try properties on a third of their examples where the slow tests are left out too."""
+    if "not slow" not in config.option.markexpr:
+        return
+    done = set()
+    for item in items:
+        test = getattr(item, "obj", None)
+        own = getattr(test, "_hypothesis_internal_use_settings", None)  # no public way to change it
+        if own is not None and test not in done:
+            done.add(test)
+            fewer = min(own.max_examples, max(10, own.max_examples // 3))
+            test._hypothesis_internal_use_settings = settings(own, max_examples=fewer)
+
+
 def pytest_collection_finish() -> None:
     """What is loaded by now stays, and what tests share too: a quarter of the suite's time would
     go into the collector's walks over it, were they as frequent as in a small process.
@@ -31,20 +45,64 @@ def pytest_collection_finish() -> None:
 
 
 @pytest.fixture(scope="session", autouse=True)
-def _same_cells_are_checked_once() -> Iterator[None]:
-    """Many tests begin with tables as they are shipped, half a second of frictionless each."""
-    import survey_data.validation.validate as validation
+def _same_cells_are_read_and_checked_once() -> Iterator[None]:
+    """Many tests begin with the shipped tables and change a cell: what else there is, is known.
 
-    check, known = validation._check_schema, {}
+    A file is read again where its bytes differ, a table typed where its cells do, and checked by
+    frictionless where its cells or those of a table that its keys refer to do.
+    """
+    from survey_data import table_records, tables
+    from survey_data.descriptor import descriptor, file_name
+    from survey_data.validation import validate as validation
 
-    def checked(sound):
-        key = repr({table: (records.header, records.rows) for table, records in sound.items()})
-        if key not in known:
-            known[key] = check(sound)
-        return list(known[key])
+    schemas = {each["name"]: each["schema"] for each in descriptor()["resources"]}
+    referred = {
+        table: {key["reference"]["resource"] for key in schema.get("foreignKeys", ())}
+        for table, schema in schemas.items()
+    }
+    read, typed, check = (
+        table_records.read_whole_records,
+        tables.typed_frame,
+        validation._check_schema,
+    )
+    files, frames, found = {}, {}, {}
+
+    def kept_records(path, columns):
+        if not path.is_file():
+            return read(path, columns)
+        key = (path.name, path.read_bytes(), tuple(columns))
+        if key not in files:
+            files[key] = read(path, columns)
+        kept = files[key]
+        rows = [(row, list(cells)) for row, cells in kept.rows]
+        return type(kept)(list(kept.header), rows, list(kept.problems))
+
+    def kept_frame(table, records):
+        key = (table, repr(records.rows))
+        if key not in frames:
+            frames[key] = typed(table, records)
+        frame, flaws = frames[key]
+        return frame.copy(deep=False), list(flaws)  # pandas copies what is written to
+
+    def kept_problems(sound):
+        cells = {table: (records.header, records.rows) for table, records in sound.items()}
+        said = {table: repr(of) for table, of in cells.items()}
+        problems = []
+        for table in sound:
+            those = {table: sound[table]}
+            those |= {name: sound[name] for name in referred[table] if name in sound}
+            key = (table, *(said[name] for name in those))
+            if key not in found:
+                elsewhere = {file_name(name) for name in those if name != table}
+                found[key] = [each for each in check(those) if each.file not in elsewhere]
+            problems += found[key]
+        return problems
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(validation, "_check_schema", checked)
+        patch.setattr(table_records, "read_whole_records", kept_records)
+        patch.setattr(tables, "typed_frame", kept_frame)
+        patch.setattr(validation, "typed_frame", kept_frame)
+        patch.setattr(validation, "_check_schema", kept_problems)
         yield
 
 

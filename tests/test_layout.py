@@ -6,7 +6,7 @@ from collections import Counter
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-CODE = ("files", "survey_data", "registry", "algorithms", "benchmark", "api", "tests")
+CODE = ("files", "survey_data", "registry", "algorithms", "benchmark", "api", "tools", "tests")
 SOURCE = {".py", ".js", ".css", ".html"}
 MOST_FILES, MOST_LINES = 25, 400
 

@@ -21,9 +21,11 @@ def problem(table: str, index: int, column: str, message: str) -> Problem:
 
 def texts(frame: pd.DataFrame, *columns: str) -> Iterator[tuple[int, tuple[str, ...]]]:
     """Yield (index, cells as text, '' where missing) of some columns."""
-    parts = [frame[column].astype(object).where(frame[column].notna(), "") for column in columns]
-    for index, cells in enumerate(zip(*parts, strict=True)):
-        yield index, tuple(str(cell) for cell in cells)
+    parts = [
+        ["" if missing else str(cell) for cell, missing in zip(column, column.isna(), strict=True)]
+        for column in (frame[name] for name in columns)
+    ]
+    yield from enumerate(zip(*parts, strict=True))
 
 
 def stated(frames: Frames) -> dict[tuple[str, str], set[str]]:

@@ -36,7 +36,7 @@ def addresses() -> list[str]:
     return found
 
 
-@pytest.mark.parametrize("edition", ["survey", "all"])
+@pytest.mark.parametrize("edition", ["all", pytest.param("survey", marks=pytest.mark.slow)])
 def test_everything_is_served_of_both_editions(atlas: Client, edition: str) -> None:
     asked = [f"{address}?edition={edition}" for address in addresses()]
     asked += [f"{path}?format=csv&edition={edition}" for path in TABLES]

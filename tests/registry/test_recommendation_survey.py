@@ -13,7 +13,7 @@ from registry.judging import Question
 from registry.recommendation import recommend
 from registry.requirements import Requirements
 from registry.studies import Facts
-from tests.speed.recommendations import worst_question
+from tools.bench.recommendations import worst_question
 
 LEVELS = ("task", "detector", "mask", "model", "extractor")
 Rows = list[Mapping[str, list[str]]]

@@ -4,7 +4,6 @@ import csv
 import io
 import json
 
-import pytest
 from typer.testing import CliRunner
 
 from api.cli.command_line import app
@@ -61,8 +60,3 @@ def test_the_page_lists_every_leader_and_who_does_not_reach_its_floor(monkeypatc
     assert len(page.unreached().splitlines()) == (2 + len(short) if short else 1)
     monkeypatch.setattr(page, "_rows", lambda: [row for row in rows if row not in short])
     assert page.unreached().startswith("Every leader")
-
-
-@pytest.mark.parametrize("value", [None, 7])
-def test_poses_that_are_too_few_are_said(value):
-    assert page._poses(value) == ("more" if value is None else "7")

@@ -13,7 +13,7 @@ from api.deposit import against_record, bundle
 from api.deposit.database import DATABASE
 from api.deposit.package import DESCRIPTOR
 from api.deposit.verification import verify
-from tests.faults.forging_bundles import FORGERIES, fit
+from tools.faults.forging_bundles import FORGERIES, fit
 
 pytestmark = pytest.mark.slow  # a bundle and each comparison take seconds
 FRAMES = ("pd-slit",)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.speed.service import serving
+from tools.bench.service import serving
 
 PAGE = Path(__file__).resolve().parents[3] / "docs" / "http.md"
 SNIPPETS = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import shlex
 from collections import defaultdict
+from functools import cache
 from typing import Any
 from xml.etree import ElementTree as ET
 
@@ -84,14 +85,16 @@ def test_each_pair_is_in_the_state_that_sets_of_studies_and_scores_say(
     """Independent: studies from the files, scores from the rows of the record."""
     presets = measurements.presets
     own = catalogue()
+    extracted = cache(lambda name: own.extractor(name).about.taxonomy)
+    staged = cache(lambda name: set(stages(own.model(name))))
+    meant = cache(lambda value: set(facts().taxonomy.kinds("model", value)))
 
     def has(row: Any, level: str, value: str) -> bool:
         if level in ("detector", "mask"):
             return bool(getattr(presets[row["dataset"]], level) == value)
         if level == "extractor":
-            return own.extractor(row["extractor"]).about.taxonomy == value
-        meant = facts().taxonomy.kinds("model", value)
-        return not set(meant).isdisjoint(stages(own.model(row["model"])))
+            return bool(extracted(row["extractor"]) == value)
+        return not meant(value).isdisjoint(staged(row["model"]))
 
     scores = [score for score in measurements.nominal.values() if score["rms_deg"] is not None]
     for row in evidence_map(facts(), {}, rows, columns, evidence=evidence).rows:

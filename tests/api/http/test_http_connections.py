@@ -8,7 +8,7 @@ from contextlib import ExitStack
 import pytest
 
 from api.http.server.connections import BoundedProtocol
-from tests.speed.service import serving
+from tools.bench.service import serving
 
 
 class Impatient(BoundedProtocol):

@@ -5,12 +5,12 @@ from http.client import HTTPConnection
 
 import pytest
 
-from tests.speed.service import serving
+from tools.bench.service import serving
 
 
 @pytest.fixture(scope="module")
 def connection(atlas):
-    with serving([atlas.app]) as (opened,):
+    with serving([atlas.app], lifespan="off") as (opened,):
         yield opened
 
 

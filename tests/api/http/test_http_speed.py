@@ -3,7 +3,7 @@
 import itertools
 import json
 
-from tests.speed import service as speed
+from tools.bench import service as speed
 
 
 def test_queries_that_are_to_differ_do(atlas):

@@ -14,7 +14,7 @@ import pytest
 import uvicorn
 from playwright.sync_api import Browser, expect, sync_playwright
 
-from api.http.service import create_app
+from tests.api.conftest import Client
 from tests.api.page.delivery import InPieces
 from tests.api.page.visiting import NARROW, PATIENCE_MS, WIDE, Visit
 
@@ -23,11 +23,11 @@ QUIET = ["--disable-gpu", "--disable-quic", "--no-first-run", "--disable-backgro
 
 
 @pytest.fixture(scope="module")
-def address() -> Iterator[str]:
+def address(atlas: Client) -> Iterator[str]:
     with socket.socket() as listener:
         listener.bind(("127.0.0.1", 0))
-        service = InPieces(create_app())
-        server = uvicorn.Server(uvicorn.Config(service, log_level="warning", ws="none"))
+        options = {"log_level": "warning", "ws": "none", "lifespan": "off"}
+        server = uvicorn.Server(uvicorn.Config(InPieces(atlas.app), **options))
         thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]}, daemon=True)
         thread.start()
         deadline = time.monotonic() + PATIENCE_MS / 1e3

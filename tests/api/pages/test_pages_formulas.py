@@ -3,14 +3,11 @@
 import html
 import re
 from collections import Counter
-from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from api.guide import site
-from api.http.page import page_files
 from api.mathml import mathml
 from api.pages.formulas import tex
 from api.pages.methods import marked
@@ -70,21 +67,6 @@ def test_a_function_s_name_with_a_digit_is_one_name() -> None:
     assert "variable" not in drawn.partition("<mo")[0]
     assert "<mo />" not in drawn
     assert html.unescape(re.sub("<[^>]+>", "", drawn)) == "atan2(y,x)"
-
-
-def test_formulas_look_for_fonts_for_mathematics_then_for_text_and_load_none() -> None:
-    guide = (Path(site.__file__).parent / "static" / "guide.css").read_text()
-    page = "".join(path.read_text() for path in page_files().values() if path.suffix == ".css")
-    for styles in (page, guide):
-        (stack,) = re.findall(r"^math \{([^}]+)\}", styles, re.MULTILINE)
-        named, font = re.findall(r"(?:--names|font-family): ([^;]+)", stack)
-        assert '"Cambria Math"' in font  # of Windows
-        assert '"STIX Two Math"' in font  # of macOS and iOS
-        assert font.endswith("var(--names), math, serif")
-        assert '"Times New Roman"' in named
-        assert "math mi.variable { font-style: italic; text-transform: none; }" in styles
-        assert "@font-face" not in styles
-        assert "url(" not in styles
 
 
 def names_of(text: str) -> Counter[str]:

@@ -13,7 +13,7 @@ from benchmark.datasets import export_verification
 from benchmark.datasets.export import CARD, ExportError, export
 from benchmark.datasets.export_verification import verify
 from benchmark.results.store import PUBLISHED, Store
-from tests.faults import forging
+from tools.faults import forging
 
 PINS = Store(PUBLISHED).pins()
 FORGERIES = (

@@ -23,8 +23,8 @@ from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensors.lit_pixels import LitPixels
 from benchmark.simulator.sensors.multi_spot_frames import MultiSpotSensor
-from tests.speed.comparing import Subject
-from tests.speed.frames import frames_of_many_spots
+from tools.bench.comparing import Subject
+from tools.bench.frames import frames_of_many_spots
 
 LIGHT = Irradiance(stray=0.002, stray_spread=0.0004)
 

@@ -196,18 +196,6 @@ def test_an_axis_leaves_a_margin_and_starts_at_zero_where_that_is_near(
     assert preview._range(np.array(values)) == pytest.approx(limits)
 
 
-@pytest.mark.parametrize(
-    ("units", "said"),
-    [
-        ("microamperes (N, 4), float64", "microamperes"),
-        ("counts, float64", "counts"),
-        ("DN; ", "DN"),
-    ],
-)
-def test_units_are_words(units: str, said: str) -> None:
-    assert preview._unit(preset_of(np.zeros((1, 1)), units=units)) == said
-
-
 def test_a_sweep_is_of_the_row_a_third_up_in_order_of_beta(sheet: MagicMock) -> None:
     axis = np.linspace(-30.0, 30.0, 7)
     alpha, beta = np.repeat(axis, 7), np.tile(axis[::-1], 7)

@@ -92,7 +92,8 @@ def test_it_is_small_and_holds_nothing_that_can_be_derived():
 COSTLY = {
     "ccd-lens", "ccd-multi-aperture", "ccd-multi-slit-orbit", "ccd-orbit", "ccd-periodic",
     "ccd-single-aperture", "cmos-multi-aperture-glass", "cmos-single-aperture-thick", "qpd-orbit",
-    "cmos-compound-eye", "cmos-encoded", "cmos-encoded-sizes", "cmos-l-slit", "cmos-lens",
+    "cmos-compound-eye", "cmos-encoded", "cmos-encoded-oblique", "cmos-encoded-sizes",
+    "cmos-l-slit", "cmos-lens",
     "cmos-multi-aperture", "cmos-single-aperture", "cmos-single-aperture-pinhole", "cmos-slit",
     "event-l-slit", "event-single-aperture", "ltf-maskless-cube", "pd-albedo-orbit",
     "pd-maskless-cube", "pd-maskless-pyramid", "pd-orbit", "pva-maskless-panels",

@@ -210,7 +210,13 @@ def test_what_measures_a_task_is_of_its_data_and_methods_alone() -> None:
     assert dask_cluster.code_of(real) != dask_cluster.code_of([of_a])
 
 
-@pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "nowhere", "tcp://"])
+@pytest.mark.parametrize(
+    "address",
+    [
+        "nowhere",
+        *[pytest.param(a, marks=pytest.mark.slow) for a in ("tcp://127.0.0.1:1", "tcp://")],
+    ],
+)
 def test_an_address_where_nothing_answers_is_named(
     address: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:

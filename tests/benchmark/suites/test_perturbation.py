@@ -20,11 +20,17 @@ def test_counts_stay_and_other_numbers_move_by_a_rounding():
     np.testing.assert_array_equal(moved, perturbed(values, "test"))
 
 
-def test_no_model_of_a_cube_hangs_on_rounding():
-    wanted = cells("pd-maskless-cube", "nominal")
-    wanted += cells("pd-maskless-cube", "misaligned", models="assembled-faces")
+@pytest.mark.parametrize(
+    "wanted",
+    [
+        cells("pd-maskless-cube", "misaligned", models="assembled-faces"),
+        pytest.param(cells("pd-maskless-cube", "nominal"), marks=pytest.mark.slow),
+    ],
+    ids=["assembled-faces", "every model"],
+)
+def test_no_model_of_a_cube_hangs_on_rounding(wanted):
     found = search(wanted, installed())
-    assert found.cells > 6
+    assert found.cells == len(wanted) > 0
     assert [str(one) for one in found.moved] == []
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from benchmark.synthetic_features.frames import REFERENCE_SETS
-from tests.speed import extractors as speed_extractors
+from tools.bench import extractors as speed_extractors
 
 
 @pytest.mark.parametrize("name", ["disc", "gaussian"])

@@ -105,18 +105,16 @@ HOSTILE = (
 
 
 @pytest.mark.parametrize("words", HOSTILE)
-@pytest.mark.parametrize("label", labels())
-def test_hostile_words_stay_in_their_own_cell_or_are_refused(
-    known: Vocabulary, label: str, words: str
-) -> None:
-    try:
-        text = template_of(body({**FILLED, label: words}), known)
-        addition = read_addition(parse_toml(text, "issue"), known)
-    except FaultsError:
-        return
-    assert addition.key == "Doe2030"
-    models = {r["value"] for r in addition.rows["attributes"] if r["attribute"] == "model"}
-    assert models == {"DNN", "ICM/Albedo"}  # nothing was smuggled in
+def test_hostile_words_stay_in_their_own_cell_or_are_refused(known: Vocabulary, words: str) -> None:
+    for label in labels():
+        try:
+            text = template_of(body({**FILLED, label: words}), known)
+            addition = read_addition(parse_toml(text, "issue"), known)
+        except FaultsError:
+            continue
+        assert addition.key == "Doe2030", label
+        models = {r["value"] for r in addition.rows["attributes"] if r["attribute"] == "model"}
+        assert models == {"DNN", "ICM/Albedo"}, label  # nothing was smuggled in
 
 
 @given(st.dictionaries(st.sampled_from(labels()), st.text(max_size=60)))

@@ -8,13 +8,11 @@ import numpy as np
 import pytest
 
 from benchmark import datasets
-from benchmark.datasets.conditions.full_frames import for_bound
 from benchmark.simulator.light.memory import LightMemory
 from benchmark.simulator.light.sun_disc import from_angles
 from benchmark.simulator.masks.apertures import Aperture
 from benchmark.simulator.masks.errors import MaskErrors
 from benchmark.simulator.masks.layouts import grid
-from benchmark.simulator.optics import diffraction_tables
 from benchmark.simulator.optics.assembly import Assembly
 from benchmark.simulator.optics.diffraction import Spectrum
 from benchmark.simulator.optics.projection import Camera
@@ -73,16 +71,6 @@ def test_tables_of_the_drawn_height_serve_the_built_one(error_mm: float) -> None
     columns = np.arange(160)
     middles = [np.sum(light[0].sum(axis=0) * columns) / light.sum() for light in (found, expected)]
     assert middles[0] == pytest.approx(middles[1], abs=1e-3)
-
-
-def test_units_and_bounds_look_up_the_same_tables() -> None:
-    asked = []
-    tables = diffraction_tables._tables
-    for sensor in (sensor_of(0.8, holes=2), sensor_of(0.8, holes=2, error_mm=0.003)):
-        for one in (sensor, for_bound(sensor)):
-            (group,) = one._spots.groups
-            asked.append(tuple(id(tables(size)) for size in group.sizes))
-    assert len(set(asked)) == 1
 
 
 def test_holes_built_as_drawn_need_no_tables_of_others() -> None:

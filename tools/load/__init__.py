@@ -1,0 +1,1 @@
+"""Campaigns against a running service: `python -m tools.load`, in its own time (`make load`)."""
