@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import fields, replace
 from functools import partial
+from typing import Any
 
 from benchmark.datasets.conditions.flight import Flight, FlightPreset, Span
 from benchmark.datasets.conditions.instruments import ABOARD
@@ -12,11 +13,13 @@ from benchmark.datasets.conditions.propagation import GLASS
 from benchmark.datasets.preset import Condition, Preset
 from benchmark.simulator.flight.attitude import Attitude
 from benchmark.simulator.flight.drift import AssemblyDrift, PhotodiodeDrift, ThermalCycle
+from benchmark.simulator.flight.drifting_cells import DriftingSolarCellSensor
 from benchmark.simulator.flight.orbit import CircularOrbit
 from benchmark.simulator.flight.time_series import DriftingFaceSensor, DriftingFrameSensor
 from benchmark.simulator.light.environment import Earth
 from benchmark.simulator.sensors.diffractive_frames import DiffractiveFrameSensor
 from benchmark.simulator.sensors.faces import FaceSensor
+from benchmark.simulator.sensors.solar_cells import SolarCellSensor
 
 #: An aluminium spacer of 2 mm lengthens, unequal expansion shifts the mask, the bracket bends; and
 #: all of it creeps.
@@ -114,21 +117,27 @@ def frames_aloft(ground: Preset, drift: AssemblyDrift) -> dict[str, Condition]:
     }
 
 
-def photodiodes_aloft(ground: Preset, drift: PhotodiodeDrift) -> dict[str, Condition]:
-    """Return the conditions of a ground dataset's photodiodes in orbit, Earth in view."""
+def photodiodes_aloft(
+    ground: Preset, drift: PhotodiodeDrift, what: str = "photodiodes"
+) -> dict[str, Condition]:
+    """Return the conditions of a ground dataset's photodiodes or cells in orbit, Earth in view."""
 
-    def flying(condition: str) -> DriftingFaceSensor:
+    def flying(condition: str) -> DriftingFaceSensor | DriftingSolarCellSensor:
         still = ground.condition(condition).sensor
-        same = {f.name: getattr(still, f.name) for f in fields(FaceSensor)}
-        return DriftingFaceSensor(**same, drift=drift, thermal=ThermalCycle())
+        cells = isinstance(still, SolarCellSensor)
+        kind = SolarCellSensor if cells else FaceSensor
+        same: dict[str, Any] = {f.name: getattr(still, f.name) for f in fields(kind)}
+        made = DriftingSolarCellSensor if cells else DriftingFaceSensor
+        return made(**same, drift=drift, thermal=ThermalCycle())
 
     nominal, light = flying("nominal"), ground.condition("nominal").irradiance
     seen = partial(Condition, irradiance=light, earth=Earth())
     return {
         "nominal": seen(
             f"The nominal unit design of {ground.name} in orbit: sunlit Earth in view, gain "
-            "+0.1 %/K with 0.02 %/K from face to face, 2 % a year of ageing with 1 % from face to "
-            "face.",
+            f"{100 * drift.gain_per_k:+g} %/K with {100 * drift.gain_per_k_spread:g} %/K from face "
+            f"to face, {100 * drift.loss_per_year:g} % a year of ageing with "
+            f"{100 * drift.loss_per_year_spread:g} % from face to face.",
             nominal,
         ),
         "no-albedo": seen("The nominal sensor over a black Earth.", nominal, earth=None),
@@ -138,7 +147,7 @@ def photodiodes_aloft(ground: Preset, drift: PhotodiodeDrift) -> dict[str, Condi
         ),
         "high-noise": seen("The nominal sensor with ten times the noise.", flying("high-noise")),
         "misaligned": seen(
-            "The nominal sensor with photodiodes mounted 2 deg off their faces' normals.",
+            f"The nominal sensor with {what} mounted 2 deg off their faces' normals.",
             flying("misaligned"),
         ),
         "hot": seen(_HOT, replace(nominal, thermal=_WARM)),
