@@ -19,7 +19,7 @@ from algorithms.contract import (
     Model,
     SensorGeometry,
 )
-from algorithms.pipeline import Pipeline
+from algorithms.pipeline import Pipeline, staged
 
 
 @dataclass(frozen=True)
@@ -74,11 +74,8 @@ class Chain:
 
     def for_sensor(self, geometry: SensorGeometry, kind: FeatureKind) -> Model:
         """Return all parts unfitted; UnsuitableDesignError where one does not suit the sensor."""
-        made = Chained(
-            self.about,
-            tuple(stage.for_sensor(geometry, kind) for stage in self.compensations),
-            self.model.for_sensor(geometry, kind),
-        )
+        stages, behind = staged(self.compensations, geometry, kind)
+        made = Chained(self.about, stages, self.model.for_sensor(behind, kind))
         return cast("Model", made)  # whose about is its own, not its class's
 
     def pipeline(self, extractor: type[Extractor], geometry: SensorGeometry) -> Pipeline:

@@ -132,6 +132,11 @@ class Compensation(Protocol):
         cls.about.require_kind(kind)
         return cls(**_drawn(cls, geometry))
 
+    @classmethod
+    def design_behind(cls, geometry: SensorGeometry) -> SensorGeometry:
+        """Return the design that the stages behind this one are made for: without its effect."""
+        return geometry
+
     @abstractmethod
     def fit(self, features: ArrayLike, sun: ArrayLike, context: Context | None = None) -> Self:
         """Learn from features (N, F) and unit vectors (N, 3); NaN feature rows are left out.

@@ -85,11 +85,8 @@ class Pipeline:
     ) -> Self:
         """All parts with the parameters this sensor's design asks for."""
         kind = extractor.about.kind
-        return cls(
-            extractor.for_sensor(geometry),
-            model.for_sensor(geometry, kind),
-            tuple(stage.for_sensor(geometry, kind) for stage in compensations),
-        )
+        stages, behind = staged(compensations, geometry, kind)
+        return cls(extractor.for_sensor(geometry), model.for_sensor(behind, kind), stages)
 
     @property
     def stages(self) -> tuple[Compensation | Model, ...]:
@@ -154,6 +151,47 @@ class Pipeline:
             fitted = [f.name for f in dataclasses.fields(cast("Any", stage)) if not f.init]
             if not all(hasattr(stage, name) for name in fitted):
                 raise NotFittedError(f"{stage.about.name} is not fitted yet; call fit first")
+
+
+def staged(
+    compensations: Sequence[type[Compensation]], geometry: SensorGeometry, kind: FeatureKind
+) -> tuple[tuple[Compensation, ...], SensorGeometry]:
+    """Make compensations for a sensor, each for the design that those before it leave.
+
+    Parameters
+    ----------
+    compensations : sequence of class
+        In the order they are applied.
+    geometry : SensorGeometry
+        Of the sensor.
+    kind : FeatureKind
+        What the extractor gives.
+
+    Returns
+    -------
+    tuple
+        The stages unfitted, and the design that the model behind them is made for.
+
+    Raises
+    ------
+    UnsuitableDesignError
+        Where one does not suit the sensor.
+
+    Examples
+    --------
+    >>> from algorithms.compensations.optics.refraction import Refraction
+    >>> design = SensorGeometry(
+    ...     focal_length_mm=2.0, aperture_width_mm=1.0, cover_glass=((0.5, 1.5),)
+    ... )
+    >>> (glass,), behind = staged((Refraction,), design, FeatureKind.BALANCE)
+    >>> glass.layers, behind.cover_glass
+    (((0.5, 1.5),), None)
+    """
+    stages: list[Compensation] = []
+    for compensation in compensations:
+        stages.append(compensation.for_sensor(geometry, kind))
+        geometry = compensation.design_behind(geometry)
+    return tuple(stages), geometry
 
 
 def extracted(

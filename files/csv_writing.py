@@ -15,6 +15,8 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 #: (https://owasp.org/www-community/attacks/CSV_Injection), also behind white space; apostrophes
 #: before them count as well, so that what `escape_formulas` does can be undone.
 _FORMULA = re.compile(r"'*(?:[\t\r\n]|\s*[=+\-@＝＋－＠])")
+#: The same after a semicolon, at which spreadsheets of many countries cut; a quote opens a cell.
+_AFTER_SEMICOLON = re.compile(r"""'*"*'*(?:[\t\r\n]|\s*[=+\-@＝＋－＠])""")
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 
 
@@ -42,8 +44,9 @@ def escape_formulas(text: str) -> str:
     """Return a CSV text whose cells no spreadsheet runs as formulas.
 
     A cell whose first character, white space aside, is ``=``, ``+``, ``-`` or ``@`` (or their
-    full-width forms), or that starts with a tab or a line break, gets an apostrophe before it.
-    Numbers stay as they are, and so does everything else.
+    full-width forms), or that starts with a tab or a line break, gets an apostrophe before it; so
+    does what follows a semicolon within a cell, where many spreadsheets cut. Numbers stay as they
+    are, and so does everything else.
 
     Parameters
     ----------
@@ -64,12 +67,22 @@ def unescape_formulas(text: str) -> str:
 
 def escape_cell(cell: str) -> str:
     """Return a cell as `escape_formulas` writes it."""
-    return f"'{cell}" if _FORMULA.match(cell) and not _NUMBER.fullmatch(cell) else cell
+    if _NUMBER.fullmatch(cell):
+        return cell
+    return _each_part(cell, lambda part, formula: f"'{part}" if formula.match(part) else part)
 
 
 def unescape_cell(cell: str) -> str:
     """Return the cell that `escape_cell` was given."""
-    return cell[1:] if cell.startswith("'") and _FORMULA.match(cell) else cell
+    return _each_part(
+        cell,
+        lambda part, formula: part[1:] if part.startswith("'") and formula.match(part) else part,
+    )
+
+
+def _each_part(cell: str, change: Callable[[str, re.Pattern[str]], str]) -> str:
+    first, *rest = cell.split(";")
+    return ";".join([change(first, _FORMULA), *(change(p, _AFTER_SEMICOLON) for p in rest)])
 
 
 def _each_cell(text: str, change: Callable[[str], str]) -> str:

@@ -18,9 +18,9 @@ from pathlib import Path
 from types import FrameType
 
 from starlette.types import ASGIApp, Message
-from tests.speed.service import drawn
 
 from api.http.service import create_app
+from tools.bench.service import drawn
 
 ROOT = Path(__file__).parents[1]
 WARM, TRACED = 100, 20

@@ -30,6 +30,9 @@ LineAxis = Literal["x", "y"]
 Slit = tuple[float, float, float]
 Plate = tuple[float, float]
 
+#: Slants of two crossed slits, degrees, to within this.
+_DIAGONAL_DEG, _SAME_DEG = 45.0, 1e-6
+
 #: What every model of lines behind slits needs of a sensor's design.
 NEEDS = ("focal_length_mm", "pixel_pitch_mm", "centre_px", "line_axes", "slits")
 
@@ -197,3 +200,16 @@ def shadow(
     reach = tangents[:, 0] + slant * tangents[:, 1]
     place = height_mm * reach + (position + along + slant * across)
     return np.asarray(place / ((c + slant * s) * cos_rise + c_n * reach) - position)
+
+
+def require_crossed_slits(geometry: SensorGeometry, by: str) -> None:
+    """Raise UnsuitableDesignError unless there are two slits of one width, 45 deg to the axes."""
+    slits = geometry.slits or ()
+    slants = sorted(slant for _, slant, _ in slits)
+    crossed = len(slants) == 2 and np.allclose(
+        slants, (-_DIAGONAL_DEG, _DIAGONAL_DEG), rtol=0.0, atol=_SAME_DEG
+    )
+    if not (crossed and slits[0][2] == slits[1][2]):
+        raise UnsuitableDesignError(
+            f"{by} needs two slits of one width, 45 deg to either side of the axes; got {slits!r}"
+        )

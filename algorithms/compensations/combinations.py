@@ -15,8 +15,8 @@ from algorithms.about import AboutModel
 from algorithms.chain import Chain
 from algorithms.contract import Compensation, Model
 
-#: What is planned of a combination of spots: behind one shape of opening, round or square. Behind
-#: slits the parts are planned by themselves.
+#: What is planned of a combination of spots: behind one shape of opening, round or square. One with
+#: a model of slits is planned behind these.
 OPENING = ("aperture_shape",)
 
 
@@ -57,6 +57,7 @@ class Combination(Chain):
 #: Combinations by name, each with the studies that used it.
 USED: Mapping[str, tuple[str, ...]] = {
     "optical + lut": ("Delgado2011", "Delgado2012a", "Delgado2012b", "Delgado2013", "Ortega2009"),
+    "optical + multi-slit": ("Enright2007a",),
 }
 
 
@@ -95,8 +96,10 @@ def combinations(
                 f"a combination names compensations and a model; of {name!r} "
                 f"{', '.join(unknown) or 'no part'} is {'none' if unknown else 'a compensation'}"
             )
+        model = models[last]
+        needs = () if "slits" in model.about.needs else OPENING
         made = Combination(
-            tuple(compensations[part] for part in stages), models[last], tuple(studies), OPENING
+            tuple(compensations[part] for part in stages), model, tuple(studies), needs
         )
         if not frozenset.intersection(*(stage.about.accepts for stage in made.stages)):
             raise ValueError(f"the parts of {name!r} read different features")

@@ -8,22 +8,35 @@ from typing import Annotated
 import typer
 
 from api.cli.completion import values
+from registry.taxonomy import NO_IMPLEMENTATION_STATED, NONE_STATED
 
 
 def _option(attribute: str) -> typer.models.OptionInfo:
     text = f"Only with this {attribute}; may be repeated."
-    found: typer.models.OptionInfo = typer.Option(
-        f"--{attribute}", help=text, show_default=False, autocompletion=values(attribute)
-    )
-    return found
+    return _values(f"--{attribute}", attribute, text)
 
 
 def _excluded(attribute: str) -> typer.models.OptionInfo:
     text = f"Never this {attribute}; may be repeated."
+    return _values(f"--exclude-{attribute}", attribute, text)
+
+
+def _values(name: str, attribute: str, text: str) -> typer.models.OptionInfo:
     found: typer.models.OptionInfo = typer.Option(
-        f"--exclude-{attribute}", help=text, show_default=False, autocompletion=values(attribute)
+        name,
+        help=text,
+        show_default=False,
+        autocompletion=values(attribute),
+        callback=_as_in_the_taxonomy,
     )
     return found
+
+
+def _as_in_the_taxonomy(given: list[str] | None) -> list[str] | None:
+    """Take "none stated", as tables print it, for the taxonomy's "None"."""
+    if given is None:
+        return None
+    return [NO_IMPLEMENTATION_STATED if value == NONE_STATED else value for value in given]
 
 
 class Edition(StrEnum):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any
 
-from fastapi import Query
+from fastapi import Query, Request
 from pydantic import Field
 
 from api.comparing import MOST, SEPARATOR, compare_architectures, compare_pipelines
@@ -13,10 +13,11 @@ from api.http.answers import Answer
 from api.http.dependencies import Known
 from api.http.knowledge import Knowledge
 from api.http.models import words
-from api.http.models.base import Question
 from api.http.models.parameters import GIVEN, Several, several
+from api.http.models.studies import OfEdition
 from api.http.problems import Problem, Violation
 from api.pages.charts.lines import Line, LineChart
+from api.pages.editions import edition_shown
 from api.pages.sensors import best_built
 from api.pages.serving import PageRouter, View
 from benchmark.metrics.score import AVAILABLE
@@ -34,7 +35,7 @@ FEWEST = 2
 START = ("CMOS:Encoded", "CMOS:Single-Ap.", "QPD:Single-Ap.", "PD:Maskless")
 
 
-class CompareQuery(Question):
+class CompareQuery(OfEdition):
     """What is compared: architectures, or pipelines of a data set."""
 
     architecture: Several[str] = several("Two to four of detector:mask.")
@@ -44,9 +45,9 @@ class CompareQuery(Question):
 
 
 @router.page("/compare")
-async def compare(known: Known, query: Annotated[CompareQuery, Query()]) -> View:
+async def compare(known: Known, query: Annotated[CompareQuery, Query()], request: Request) -> View:
     """Side by side what was asked for; else what can be."""
-    document = _compared(known, query)
+    document = _compared(known.of(query.edition), query)
     items: list[Mapping[str, Any]] = document["items"]
     pipelines = bool(query.dataset)
     names = [
@@ -58,6 +59,7 @@ async def compare(known: Known, query: Annotated[CompareQuery, Query()]) -> View
         "compare.html",
         Answer(document, COLUMNS, lambda: [{c: i.get(c) for c in COLUMNS} for i in items]),
         asked=query,
+        editions=edition_shown(known, query.edition, request),
         names=names,
         pipelines=pipelines,
         most=MOST,

@@ -6,15 +6,17 @@ from collections.abc import Mapping
 from functools import cache
 from typing import Annotated, Any
 
-from fastapi import Path
+from fastapi import Path, Query, Request
 
 from api.http.answers import Answer
 from api.http.dependencies import Known
 from api.http.knowledge import Knowledge
 from api.http.models import words
 from api.http.models.recommendations import RequirementsQuery
+from api.http.models.studies import OfEdition
 from api.http.routers import recommendations as service
 from api.pages import boards
+from api.pages.editions import edition_shown
 from api.pages.serving import PageRouter, View
 from benchmark.leaderboard.architectures import architectures
 from registry.studies import Study
@@ -72,17 +74,22 @@ def _pairs(
     return sorted(partners.values(), key=lambda e: -len(e["studies"]))
 
 
-def _every(known: Knowledge, attribute: str) -> Answer:
+def _every(known: Knowledge, query: OfEdition, request: Request, attribute: str) -> View:
+    shown, known = edition_shown(known, query.edition, request), known.of(query.edition)
     values = known.taxonomy.values(attribute)
     told = [_told(known, attribute, value) for value in values]
-    return Answer(
+    answer = Answer(
         {"attribute": attribute, "items": told},
         COLUMNS,
         lambda: [{name: row[name] for name in COLUMNS} for row in told],
     )
+    return View("values.html", answer, editions=shown)
 
 
-def _one(known: Knowledge, attribute: str, value: str) -> View:
+def _one(
+    known: Knowledge, query: OfEdition, request: Request, *, attribute: str, value: str
+) -> View:
+    shown, known = edition_shown(known, query.edition, request), known.of(query.edition)
     document = {"attribute": attribute, **_told(known, attribute, value)}
     rows = [
         {
@@ -93,7 +100,10 @@ def _one(known: Knowledge, attribute: str, value: str) -> View:
     ]
     hardware = [h for h in _hardware().values() if getattr(h, attribute) == value]
     return View(
-        "value.html", Answer(document, ARCHITECTURE_COLUMNS, lambda: rows), hardware=hardware
+        "value.html",
+        Answer(document, ARCHITECTURE_COLUMNS, lambda: rows),
+        hardware=hardware,
+        editions=shown,
     )
 
 
@@ -104,28 +114,35 @@ def _hardware() -> Mapping[str, Any]:
     return hardware()
 
 
+Edition = Annotated[OfEdition, Query()]
+
+
 @router.page("/detectors")
-async def detectors(known: Known) -> View:
+async def detectors(known: Known, query: Edition, request: Request) -> View:
     """Every detector of the taxonomy."""
-    return View("values.html", _every(known, "detector"))
+    return _every(known, query, request, "detector")
 
 
 @router.page("/masks")
-async def masks(known: Known) -> View:
+async def masks(known: Known, query: Edition, request: Request) -> View:
     """Every mask of the taxonomy."""
-    return View("values.html", _every(known, "mask"))
+    return _every(known, query, request, "mask")
 
 
 @router.page("/detectors/{detector}")
-async def detector(known: Known, detector: Annotated[words.Detector, Path()]) -> View:
+async def detector(
+    known: Known, detector: Annotated[words.Detector, Path()], query: Edition, request: Request
+) -> View:
     """One detector: studies, masks it stands behind, data sets, built sensors."""
-    return _one(known, "detector", detector)
+    return _one(known, query, request, attribute="detector", value=detector)
 
 
 @router.page("/masks/{mask}")
-async def mask(known: Known, mask: Annotated[words.Mask, Path()]) -> View:
+async def mask(
+    known: Known, mask: Annotated[words.Mask, Path()], query: Edition, request: Request
+) -> View:
     """One mask: studies, detectors behind it, data sets, built sensors."""
-    return _one(known, "mask", mask)
+    return _one(known, query, request, attribute="mask", value=mask)
 
 
 @router.page("/architectures/{detector}/{mask}")
@@ -133,13 +150,22 @@ async def architecture(
     known: Known,
     detector: Annotated[words.Detector, Path()],
     mask: Annotated[words.Mask, Path()],
+    query: Edition,
+    request: Request,
 ) -> View:
     """One architecture: advice, studies, data sets, and every calibration of it."""
-    given = {"detector": [detector], "mask": [mask], "limit": 1, "calibrations": MOST}
+    given = {
+        "detector": [detector],
+        "mask": [mask],
+        "limit": 1,
+        "calibrations": MOST,
+        "edition": query.edition,
+    }
     asked = RequirementsQuery.model_validate(given)
     answer = await service.recommendations(known, asked)
     found = answer.document["architectures"]
-    studies = [s.key for s in known.facts.studies.values() if (detector, mask) in s.architectures]
+    every = known.of(query.edition).facts.studies.values()
+    studies = [s.key for s in every if (detector, mask) in s.architectures]
     cards = [c for c in known.measurements.cards if (c["detector"], c["mask"]) == (detector, mask)]
     leaders = [
         dict(row, name=f"{row['extractor']} → {row['model']}, {row['dataset']}")
@@ -153,6 +179,7 @@ async def architecture(
         mask=mask,
         architecture=found[0] if found else None,
         studies=studies,
+        editions=edition_shown(known, query.edition, request),
         cards=cards,
         field=boards.field_chart(leaders, "name"),
     )

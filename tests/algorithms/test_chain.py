@@ -12,9 +12,11 @@ from algorithms.compensations.combinations import combinations
 from algorithms.compensations.electronics.angular_loss import AngularLoss
 from algorithms.compensations.interference.shadow import MaskShadow
 from algorithms.compensations.optics.refraction import Refraction
-from algorithms.contract import FeatureKind, UnsuitableDesignError
+from algorithms.contract import FeatureKind, SensorGeometry, UnsuitableDesignError
 from algorithms.discovery import discover_chains, discover_compensations, discover_models
 from algorithms.extractors.frames.centroid import BasicCentroid
+from algorithms.extractors.profiles.centroid import ProfileCentroid
+from algorithms.models.geometric.multi_slit import MultiSlit
 from algorithms.models.geometric.multisensor_fusion import SixFaces
 from algorithms.models.geometric.standard_projection import StandardProjection
 from algorithms.models.non_physical.polynomial import SurfacePolynomial
@@ -74,6 +76,31 @@ def test_a_combination_says_who_used_it_and_what_it_needs():
     assert lut.about.needs == ("focal_length_mm", "cover_glass", "aperture_shape")
     assert lut.about.version == 1
     assert lut.modules == Chain(lut.compensations, lut.model).modules  # its numbers are the parts'
+
+
+def test_glass_that_a_compensation_takes_out_is_not_the_models_behind(field):
+    design = SensorGeometry(
+        focal_length_mm=1.8,
+        pixel_pitch_mm=0.01,
+        centre_px=(500.0, 500.0),
+        half_fov_deg=50.0,
+        line_axes=("x", "y"),
+        line_pixels=1000,
+        slits=((-0.6, 0.0, 0.2), (0.7, 0.0, 0.2)),
+        cover_glass=((0.5, 1.5),),
+    )
+    chain = discover_chains()["optical + multi-slit"]
+    assert chain.about.needs == ("focal_length_mm", "cover_glass", *MultiSlit.about.needs[1:])
+    assert "Enright2007a" in chain.about.studies
+    made = chain.for_sensor(design, FeatureKind.SPOT)
+    assert made.model.cover_glass == ()
+    assert chain.pipeline(ProfileCentroid, design).model == made.model
+    tangents, vector = field[:, :2] / field[:, 2:], np.array([1.8, 0.0] * 2 + [0.0] * 4)
+    under_glass = MultiSlit.for_sensor(design, FeatureKind.SPOT).cast(vector, tangents)
+    in_air = made.model.cast(vector, tangents)
+    assert np.abs(under_glass - in_air).max() > 10.0
+    freed = made.compensations[0].fit(under_glass, field).transform(under_glass)
+    np.testing.assert_allclose(freed, in_air, atol=1e-9)
 
 
 @pytest.mark.parametrize(

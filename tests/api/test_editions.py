@@ -20,8 +20,9 @@ from tests.api.conftest import Client
 LATER = "Herman2025c"
 TABLES = ("/v1/studies", "/v1/recommendations", *(f"/v1/flows/{name}" for name in CHARTS))
 FIGURES = (*TITLES, MATRIX)
+SENSORS = ("/detectors", "/masks", "/detectors/CMOS", "/masks/Slit", "/architectures/CMOS/Slit")
 PAGES = ("/", "/studies", "/scatter", *(f"/figures/{name}" for name in FIGURES))
-TWINS = ("/answer", "/studies", *(f"/figures/{name}" for name in FIGURES))
+TWINS = ("/answer", "/studies", "/compare", *SENSORS, *(f"/figures/{name}" for name in FIGURES))
 
 
 def later() -> list[str]:
@@ -30,7 +31,7 @@ def later() -> list[str]:
 
 def addresses() -> list[str]:
     """Every address that takes an edition, in every form."""
-    found = [*PAGES, *TABLES, *(f"/v1/figures/{name}" for name in FIGURES)]
+    found = [*PAGES, *SENSORS, *TABLES, "/compare", *(f"/v1/figures/{name}" for name in FIGURES)]
     found += [f"{path}{suffix}" for path in TWINS for suffix in (".json", ".csv")]
     found += [f"/figures/{n}{suffix}" for n in FIGURES for suffix in (".svg", ".plotly.json")]
     return found
@@ -89,6 +90,25 @@ def test_a_recommendation_names_later_studies_only_where_asked(atlas: Client) ->
     assert not keys("survey") & set(later())
     assert keys("all") >= keys("survey")
     assert keys("all") & set(later())
+
+
+def test_sensors_and_comparisons_have_later_studies_only_where_asked(atlas: Client) -> None:
+    known = facts("all").studies
+    key, (detector, mask) = next((k, p) for k in later() for p in known[k].architectures)
+    compared = f"compare.json?architecture={detector}:{mask}&architecture=CMOS:Encoded"
+    for address in (
+        f"/detectors/{detector}.json",
+        f"/masks/{mask}.json",
+        f"/architectures/{detector}/{mask}.json",
+        f"/{compared}",
+        f"/v1/{compared.replace('.json', '')}",
+    ):
+        more = f"{'&' if '?' in address else '?'}edition=all"
+        assert f'"{key}"' not in atlas.get(address).text, address
+        assert f'"{key}"' in atlas.get(address + more).text, address
+    page = f"/detectors/{detector}"
+    assert f'href="{page}?edition=all"' in atlas.get(page).text
+    assert f"/studies/{key}" in atlas.get(f"{page}?edition=all").text
 
 
 def test_search_finds_a_later_study_by_what_it_calls_itself(atlas: Client) -> None:

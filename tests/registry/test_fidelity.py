@@ -252,6 +252,8 @@ def test_settings_of_the_survey_are_conditions_that_data_sets_have(
         ("Frezza2022", "pd-orbit", "nominal"),
         ("Nurgizat2021", "pva-maskless-panels", "albedo"),
         ("Hermoso2022b", "pva-maskless-panels", "hot"),  # the temperature of its panels
+        ("Zhang2022b", "pva-orbit", "nominal"),  # albedo and its cells' temperature, both told
+        ("Pita2014", "pva-maskless-pyramid", "nominal"),
         ("Chang2008", "cmos-single-aperture", "nominal"),  # a bench, the data set made after it
     ],
 )
@@ -261,6 +263,30 @@ def test_studies_stand_where_what_they_are_about_is_shown(
     best = everything[key].best
     assert best is not None
     assert (best.settings[0].dataset, best.settings[0].condition) == (dataset, condition)
+
+
+@pytest.mark.parametrize(
+    ("key", "detector", "extractor", "model"),
+    [
+        ("Abhilash2014", "PD", "voltage-balance", "slit-pairs"),
+        ("Chang2006", "PD", "voltage-balance", "slit-shadow + slit-pairs"),
+        ("Enright2007a", "CCD", "ppe", "optical + multi-slit"),
+        ("Pita2014", "PVA", "direct", "pyramidal"),
+        ("Wang2019", "PVA", "direct", "pyramidal"),
+        ("Zhang2022b", "PVA", "direct", "panoramic-temperature"),
+    ],
+)
+def test_a_study_runs_by_the_methods_that_it_is_mapped_to(
+    everything: dict[str, Resolution], key: str, detector: str, extractor: str, model: str
+) -> None:
+    found = everything[key]
+    assert found.fidelity.grade == "faithful"
+    ran = {(p.detector, p.extractor, p.model) for p in found.pipelines}
+    assert (detector, extractor, model) in ran
+
+
+def test_ninety_studies_are_faithful(everything: dict[str, Resolution]) -> None:
+    assert tally(found.fidelity.grade for found in everything.values())["faithful"] >= 90
 
 
 @pytest.mark.parametrize("key", ["Radan2019", "Fan2017"])

@@ -9,6 +9,7 @@ import numpy as np
 
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.compensated import CalibratedCompensation
+from algorithms.calibration.slit_sensor import require_crossed_slits
 from algorithms.contract import (
     AboutCompensation,
     FeatureKind,
@@ -18,9 +19,6 @@ from algorithms.contract import (
 )
 from algorithms.documented import documented
 from algorithms.inputs import require_positive
-
-#: Slants of the two slits, degrees, to within this.
-_DIAGONAL_DEG, _SAME_DEG = 45.0, 1e-6
 
 
 @documented
@@ -68,7 +66,7 @@ class SlitShadow(CalibratedCompensation):
         labels=("model:shad", "alg:VB"),
         needs=("focal_length_mm", "mask_thickness_mm", "slits"),
         accepts=frozenset({FeatureKind.BALANCE}),
-        ahead_of=("spm", "polynomial-1d", "polynomial-2d"),
+        ahead_of=("spm", "slit-pairs", "polynomial-1d", "polynomial-2d"),
     )
 
     focal_length_mm: float
@@ -88,15 +86,11 @@ class SlitShadow(CalibratedCompensation):
         """
         cls.about.require_kind(kind)
         geometry.require(*cls.about.needs, by=cls.about.name)
-        slits, thickness = geometry.slits or (), geometry.mask_thickness_mm or 0.0
-        slants = sorted(slant for _, slant, _ in slits)
-        crossed = len(slants) == 2 and np.allclose(
-            slants, (-_DIAGONAL_DEG, _DIAGONAL_DEG), rtol=0.0, atol=_SAME_DEG
-        )
-        if not (crossed and slits[0][2] == slits[1][2] and thickness > 0):
+        require_crossed_slits(geometry, by=cls.about.name)
+        thickness = geometry.mask_thickness_mm or 0.0
+        if thickness <= 0:
             raise UnsuitableDesignError(
-                f"{cls.about.name} needs two slits of one width, 45 deg to either side of the "
-                f"axes, in a mask that has a thickness; got {slits!r} and {thickness:g} mm"
+                f"{cls.about.name} needs slits in a mask that has a thickness; got {thickness:g} mm"
             )
         return cls(focal_length_mm=geometry.focal_length_mm or 0.0, thickness_mm=thickness)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
 import numpy as np
@@ -114,6 +114,11 @@ class Refraction(CalibratedCompensation):
         return cls(
             **nominal_projection(geometry, kind, cls.about), layers=geometry.cover_glass or ()
         )
+
+    @classmethod
+    def design_behind(cls, geometry: SensorGeometry) -> SensorGeometry:
+        """Return the design without glass, so that no model behind refracts once more."""
+        return replace(geometry, cover_glass=None)
 
     def apply(self, features: Floats, context: Columns) -> Floats:
         """Spots (N, 2) where they would be without glass."""

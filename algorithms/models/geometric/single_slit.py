@@ -123,10 +123,24 @@ class DeflectedSlits(SlitModel):
         for number, axis in enumerate(self.line_axes):
             focal, theta, delta = vector[3 * number : 3 * number + 3]
             u, v = tangents.T if axis == "x" else tangents.T[::-1]
-            slope, turn = np.tan(np.radians(delta)), np.tan(np.radians(theta))
-            let_in = u * slope / (1.0 - v * slope)
-            let_in = (let_in - turn) / (1.0 + let_in * turn)  # tan(arctan(let_in) - theta)
             place = 0 if axis == "x" else 1
             zero = (vector[6 + place] - self.centre_px[place]) * self.pixel_pitch_mm
-            found[:, number] = (focal - glass) * (u + v * let_in) + zero
+            found[:, number] = (focal - glass) * deflected(u, v, theta, delta) + zero
         return found
+
+
+def deflected(along: Floats, across: Floats, theta_deg: float, delta_deg: float) -> Floats:
+    """Tangents (N,) of u' that a slit deflected and inclined gives for those of u and v.
+
+    The bracket of eq:slit: ``tan(u) + tan(v) tan(arctan(tan(u) tan(delta) / (1 - tan(v)
+    tan(delta))) - theta)``, u along the line and v across it.
+
+    Examples
+    --------
+    >>> deflected(np.array([1.0]), np.array([0.5]), theta_deg=0.0, delta_deg=0.0)
+    array([1.])
+    """
+    slope, turn = np.tan(np.radians(delta_deg)), np.tan(np.radians(theta_deg))
+    let_in = along * slope / (1.0 - across * slope)
+    let_in = (let_in - turn) / (1.0 + let_in * turn)  # tan(arctan(let_in) - theta)
+    return np.asarray(along + across * let_in)

@@ -9,6 +9,7 @@ from pydantic import AfterValidator, ConfigDict, Field
 from api.comparing import FEWEST, MOST, SEPARATOR
 from api.http.models.base import Shape, TableQuestion
 from api.http.models.parameters import GIVEN, OneOf
+from api.http.models.studies import OfEdition
 from api.http.models.words import Condition, DatasetName
 from registry.measured import FINER
 from registry.studies import facts
@@ -28,7 +29,7 @@ Architecture = Annotated[str, OneOf(_architectures)]
 Pipeline = Annotated[str, Field(min_length=3, max_length=120)]
 
 
-class CompareQuery(TableQuestion):
+class CompareQuery(OfEdition, TableQuestion):
     """What is compared: pipelines on a data set, or architectures."""
 
     model_config = ConfigDict(

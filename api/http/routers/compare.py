@@ -27,7 +27,7 @@ async def compare(known: Known, query: Annotated[CompareQuery, Query()]) -> Answ
     far finer on the part that it answers stands in columns of its own.
     """
     try:
-        document = _compared(known, query)
+        document = _compared(known.of(query.edition), query)
     except InvalidValueError as error:
         came = None if error.value is None else str(error.value)
         violation = Violation(error.parameter, came, error.expected, error.nearest)

@@ -12,10 +12,12 @@ from benchmark.datasets.conditions.propagation import GLASS
 from benchmark.datasets.preset import Condition, Preset
 from benchmark.simulator.flight.attitude import Attitude
 from benchmark.simulator.flight.drift import AssemblyDrift, PhotodiodeDrift, ThermalCycle
+from benchmark.simulator.flight.drifting_cells import DriftingSolarCellSensor
 from benchmark.simulator.flight.orbit import CircularOrbit
 from benchmark.simulator.flight.time_series import DriftingFaceSensor, DriftingFrameSensor
 from benchmark.simulator.sensors.diffractive_frames import DiffractiveFrameSensor
 from benchmark.simulator.sensors.faces import FaceSensor
+from benchmark.simulator.sensors.solar_cells import SolarCellSensor
 
 #: An aluminium spacer of 2 mm lengthens, unequal expansion shifts the mask, the bracket bends; and
 #: all of it creeps.
@@ -86,21 +88,26 @@ def frames_aloft(ground: Preset, drift: AssemblyDrift) -> dict[str, Condition]:
     return conditions_aloft(ground, flying, still, texts)
 
 
-def photodiodes_aloft(ground: Preset, drift: PhotodiodeDrift) -> dict[str, Condition]:
-    """Return the conditions of a ground dataset's photodiodes in orbit."""
+def photodiodes_aloft(
+    ground: Preset, drift: PhotodiodeDrift, what: str = "photodiodes"
+) -> dict[str, Condition]:
+    """Return the conditions of a ground dataset's photodiodes or cells in orbit, Earth in view."""
 
-    def flying(condition: str) -> DriftingFaceSensor:
-        same = grounded(ground, condition, FaceSensor)
-        return DriftingFaceSensor(**same, drift=drift, thermal=ThermalCycle())
+    def flying(condition: str) -> DriftingFaceSensor | DriftingSolarCellSensor:
+        cells = isinstance(ground.condition(condition).sensor, SolarCellSensor)
+        same = grounded(ground, condition, SolarCellSensor if cells else FaceSensor)
+        made = DriftingSolarCellSensor if cells else DriftingFaceSensor
+        return made(**same, drift=drift, thermal=ThermalCycle())
 
     still = replace(flying("nominal"), drift=PhotodiodeDrift())
     texts = {
         "nominal": f"The nominal unit design of {ground.name} in orbit: sunlit Earth in view, gain "
-        "+0.1 %/K with 0.02 %/K from face to face, 2 % a year of ageing with 1 % from face to "
-        "face.",
+        f"{100 * drift.gain_per_k:+g} %/K with {100 * drift.gain_per_k_spread:g} %/K from face "
+        f"to face, {100 * drift.loss_per_year:g} % a year of ageing with "
+        f"{100 * drift.loss_per_year_spread:g} % from face to face.",
         "low-noise": "The nominal sensor with a tenth of the noise and a 16-bit converter.",
         "high-noise": "The nominal sensor with ten times the noise.",
-        "misaligned": "The nominal sensor with photodiodes mounted 2 deg off their faces' normals.",
+        "misaligned": f"The nominal sensor with {what} mounted 2 deg off their faces' normals.",
         "stable": "The nominal sensor without thermal drift and ageing of its gains.",
     }
     return conditions_aloft(ground, flying, still, texts, black_earth=True)

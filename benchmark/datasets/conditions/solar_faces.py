@@ -18,7 +18,6 @@ class _Words:
     what: str
     new: str
     cosine: str
-    off: str
     aged: str
 
 
@@ -26,7 +25,6 @@ _PANELS = _Words(
     "panels",
     "New panels of two cells in series, matched to 2 %",
     "with cells that follow Lambert's cosine",
-    "their faces'",
     "cells have lost 20 % of their current, 5 % more or less from cell to cell, and the weaker one "
     "of a panel counts",
 )
@@ -34,7 +32,6 @@ _CELLS = _Words(
     "cells",
     "New cells, matched to 2 %",
     "with Lambert's cosine",
-    "the sphere's",
     "20 % of the current lost, 5 % more or less from cell to cell",
 )
 
@@ -61,9 +58,10 @@ def cells_on(normals: Normals, sunlit_ua: float, in_series: int = 1) -> SolarCel
     )
 
 
-def solar_conditions(sensor: SolarCellSensor) -> dict[str, Condition]:
-    """Return the conditions of panels where cells are in series, else of single cells."""
+def solar_conditions(sensor: SolarCellSensor, body: str = "sphere") -> dict[str, Condition]:
+    """Return the conditions of panels where cells are in series, else of single cells on a body."""
     cells = sensor.cells
+    off = "their faces'" if cells.in_series > 1 else f"the {body}'s"
     words = _PANELS if cells.in_series > 1 else _CELLS
     what = words.what
     seen = partial(Condition, irradiance=LIGHT)
@@ -76,7 +74,7 @@ def solar_conditions(sensor: SolarCellSensor) -> dict[str, Condition]:
         "cosine": seen(f"The nominal {what} {words.cosine}.", replace(sensor, response="cosine")),
         **noises(sensor, what, "a 16-bit"),
         "misaligned": seen(
-            f"The nominal {what} mounted 2 deg off {words.off} normals.",
+            f"The nominal {what} mounted 2 deg off {off} normals.",
             replace(sensor, normal_error_deg=2.0),
         ),
         "hot": seen(

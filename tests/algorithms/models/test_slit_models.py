@@ -11,6 +11,7 @@ from algorithms.contract import FeatureKind, SensorGeometry, UnusableDataError
 from algorithms.models.geometric.multi_slit import MultiSlit
 from algorithms.models.geometric.n_slit import NSlit
 from algorithms.models.geometric.single_slit import DeflectedSlits
+from algorithms.models.geometric.slit_pairs import DeflectedSlitPairs
 from algorithms.models.geometric.v_slit import VSlit
 
 MIDDLE = 500.0
@@ -28,6 +29,10 @@ BUILT = {
     "slit": (
         DeflectedSlits(focal_length_mm=3.5, slits=((0.0, 0.0, 0.1),), **TWO_LINES),
         (3.53, 0.5, 1.0, 3.48, -0.4, -0.8, 505.0, 496.0, 1.0, -0.7),
+    ),
+    "slit-pairs": (
+        DeflectedSlitPairs(focal_length_mm=0.5, unit_mm=2.0),
+        (0.51, 0.5, 1.0, 0.49, -0.4, -0.8, 0.02, -0.01, 1.0, -0.7),
     ),
     "multi-slit": (
         MultiSlit(focal_length_mm=1.2, slits=ROW, **TWO_LINES),
@@ -172,6 +177,48 @@ def test_deflected_or_inclined_slits_are_found_from_traced_rays(theta, delta):
         assert found[f"focal_length_{axis}"] == pytest.approx(3.55, abs=1e-7)
         assert found[f"deflection_{axis}"] == pytest.approx(theta, abs=1e-6)
         assert found[f"inclination_{axis}"] == pytest.approx(delta, abs=1e-6)
+
+
+def across_pairs(head, theta_deg, delta_deg):
+    """Balances of strips of light counted point by point over pairs of photodiodes.
+
+    Both pairs' slits are turned or inclined about their own middles; a strip's place over a pair is
+    the mean of its places along the pair's breadth.
+    """
+    width, gap, height = 2.8, 0.05, 0.52
+    phi, tilt = np.radians([theta_deg, -delta_deg])
+    way = np.array([np.sin(phi) * np.cos(tilt), np.cos(phi) * np.cos(tilt), np.sin(tilt)])
+    sides = []
+    for along, across in (((1.0, 1.0), (-1.0, 1.0)), ((-1.0, 1.0), (1.0, 1.0))):
+        turned_head = np.column_stack(
+            [head[:, :2] @ np.array(way_mm) / np.sqrt(2.0) for way_mm in (along, across)]
+            + [head[:, 2]]
+        )
+        light = np.zeros((len(head), 2))
+        for breadth in np.linspace(-1.0, 1.0, 21):
+            line = np.array([0.0, breadth, -height]), np.array([1.0, 0.0, 0.0])
+            middle = met(turned_head, (np.zeros(3), way), line)
+            light[:, 0] += np.clip(middle + width / 2 - gap / 2, 0.0, None)
+            light[:, 1] += np.clip(-gap / 2 - middle + width / 2, 0.0, None)
+        sides.append(light)
+    (q2, q4), (q1, q3) = (light.T for light in sides)
+    total = q1 + q2 + q3 + q4
+    return np.column_stack([q2 + q3 - q1 - q4, q1 + q2 - q3 - q4]) / total[:, None]
+
+
+@pytest.mark.parametrize(("theta", "delta"), [(0.7, 0.0), (0.0, 1.3)])
+def test_deflected_or_inclined_slits_over_pairs_are_found_from_counted_strips(theta, delta):
+    """A strip's middle is what a line of pixels sees; a gap scales the balance as a height does."""
+    sun = field(50.0)
+    balances = across_pairs(sun, theta, delta)
+    width = np.sqrt(2.0) * 2.8
+    model = DeflectedSlitPairs(focal_length_mm=0.5, unit_mm=width / 2.0).fit(balances, sun)
+    assert separation_deg(model.predict(balances), sun).max() < 1e-3
+    found = {parameter.name: parameter.value for parameter in model.quality_.parameters}
+    for pair in "uv":
+        assert found[f"focal_length_{pair}"] == pytest.approx(0.52 * 2.8 / 2.75, rel=1e-4)
+        assert found[f"deflection_{pair}"] == pytest.approx(theta, abs=1e-3)
+        assert found[f"inclination_{pair}"] == pytest.approx(delta, abs=1e-3)
 
 
 @pytest.mark.parametrize("share", [0.5, 0.3])

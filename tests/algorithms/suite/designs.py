@@ -54,6 +54,7 @@ OWN_DESIGN = {
         "mask_thickness_mm": 0.1,
         "slits": ((0.0, 45.0, 0.1), (0.0, -45.0, 0.1)),
     },
+    "slit-pairs": {"slits": ((0.0, 45.0, 0.1), (0.0, -45.0, 0.1))},
     "pinhole-shadow": {"mask_thickness_mm": 0.1, "aperture_shape": "round"},
     "escm": {"aperture_width_mm": 0.04},
     "escm-wta": {"aperture_width_mm": 0.04},

@@ -63,6 +63,13 @@ def test_filters_by_grade_divide_the_studies():
     assert "settled by:" in shown
 
 
+@pytest.mark.parametrize("attribute", ["model", "extractor"])
+def test_a_filter_takes_what_tables_print_for_none(attribute):
+    value = table("studies", "--model", "None", "--extractor", "BCTM")[0]["model"]
+    found = {s["key"] for s in answer("studies", f"--{attribute}", value)}
+    assert found == studies_with(attribute, "None")
+
+
 def test_filters_keep_what_has_one_of_the_values_of_every_attribute():
     found = {s["key"] for s in answer("studies", "--detector", "CMOS", "--mask", "Multi-Ap.")}
     assert found == studies_with("detector", "CMOS") & studies_with("mask", "Multi-Ap.")

@@ -172,6 +172,14 @@ def finer_built(board: Mapping[str, Any]) -> list[dict[str, Any]]:
     ]
 
 
+def test_data_sets_that_nothing_is_measured_on_yet_are_listed(
+    atlas: Client, client_of: Callable[..., Client], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(dataset.boards, "first_rows", lambda *_: [])
+    fresh = client_of(create_app(atlas.app.state.knowledge))
+    assert "pd-orbit" in fresh.get("/datasets", accept="text/html").text
+
+
 @pytest.mark.parametrize("address", ["/datasets", "/leaderboard", "/detectors/CCD"])
 def test_what_is_far_finer_on_a_part_stands_beside_the_best(
     atlas: Client, client_of: Callable[..., Client], monkeypatch: pytest.MonkeyPatch, address: str

@@ -27,6 +27,7 @@ FACED = [
     ("pd-maskless-pyramid", "pyramidal"),
     ("pd-maskless-pyramid", "panoramic"),
     ("qpd-maskless-pyramid", "pyramidal"),
+    ("pva-maskless-pyramid", "pyramidal"),
     ("pva-maskless-sphere", "panoramic"),
     ("pva-maskless-panels", "solar-panel"),
     ("pd-maskless-cube", "solar-panel"),

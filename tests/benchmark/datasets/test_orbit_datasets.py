@@ -18,7 +18,10 @@ from benchmark.simulator.flight.orbit import CircularOrbit
 from benchmark.simulator.light.environment import Earth
 from benchmark.simulator.sensors.faces import FaceSensor
 
-NAMES = ("pd-orbit", "pd-albedo-orbit", "ccd-orbit", "qpd-orbit", "ccd-multi-slit-orbit")
+NAMES = (
+    *("pd-orbit", "pd-albedo-orbit", "ccd-orbit", "qpd-orbit", "ccd-multi-slit-orbit"),
+    "pva-orbit",
+)
 PRESETS = {name: datasets.get(name) for name in NAMES}
 VECTORS = ("magnetic_field_nT", "nadir", "sun_inertial", "nadir_inertial")
 

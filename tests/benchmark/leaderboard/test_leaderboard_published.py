@@ -97,7 +97,7 @@ COSTLY = {
     "cmos-multi-aperture", "cmos-single-aperture", "cmos-single-aperture-pinhole", "cmos-slit",
     "event-l-slit", "event-single-aperture", "ltf-maskless-cube", "pd-albedo-orbit",
     "pd-maskless-cube", "pd-maskless-pyramid", "pd-orbit", "pva-maskless-panels",
-    "pva-maskless-sphere",
+    "pva-maskless-pyramid", "pva-maskless-sphere", "pva-orbit",
 }  # fmt: skip
 BY_COST = [
     pytest.param(name, marks=pytest.mark.slow) if name in COSTLY else name

@@ -39,6 +39,7 @@ ANALOG = (
     "pd-slit",
     "psd-single-aperture",
     "pva-maskless-panels",
+    "pva-maskless-pyramid",
     "pva-maskless-sphere",
     "qpd-maskless-pyramid",
 )

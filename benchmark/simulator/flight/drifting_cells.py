@@ -1,0 +1,74 @@
+"""Solar cells in orbit, each at its own temperature: `DriftingSolarCellSensor`."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from algorithms.contract import Floats
+from benchmark.seeds import generator
+from benchmark.simulator.flight.drift import (
+    REFERENCE_K,
+    PhotodiodeDrift,
+    ThermalCycle,
+    dark_levels,
+)
+from benchmark.simulator.flight.time_series import timed
+from benchmark.simulator.readout import currents as readout
+from benchmark.simulator.readout.references import References
+from benchmark.simulator.scene import Scene
+from benchmark.simulator.sensor import FixedPattern
+from benchmark.simulator.sensors.solar_cells import SolarCellSensor
+
+
+@dataclass(frozen=True)
+class DriftingSolarCellSensor(SolarCellSensor):
+    """Solar cells on faces whose currents follow temperature and age.
+
+    A cell is as warm as the body, and by `cells.heating_k` warmer in mean sunlight. The cells' own
+    temperature and its coefficient, and the dark current's temperature, are not used: those of
+    `thermal` and `drift` take their place.
+    """
+
+    drift: PhotodiodeDrift = field(default_factory=PhotodiodeDrift)
+    thermal: ThermalCycle = field(default_factory=ThermalCycle)
+
+    def fixed_pattern(self, *names: str | int) -> FixedPattern:
+        """As `SolarCellSensor`; with ``gain_per_k`` and ``loss_per_year`` (K,), the cells' own."""
+        spread = generator(*names, "drift").standard_normal((2, len(self.normals)))
+        drift = self.drift
+        return {
+            **super().fixed_pattern(*names),
+            "gain_per_k": drift.gain_per_k + drift.gain_per_k_spread * spread[0],
+            "loss_per_year": drift.loss_per_year + drift.loss_per_year_spread * spread[1],
+        }
+
+    def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
+        """(N, K) mean microamperes; TypeError for a scene that is not a `TimedScene`."""
+        at = timed(scene, self)
+        light = self.received(scene, pattern)
+        warmer = at.temperature_k[:, None] + self.cells.heating_k * light - REFERENCE_K
+        factor = (1.0 + warmer * pattern["gain_per_k"]) * (
+            1.0 - at.age_years[:, None] * pattern["loss_per_year"]
+        )
+        string = pattern["gain"] * np.min(pattern["cells"], axis=1)
+        dark = dark_levels(self.readout.dark, at.temperature_k)
+        return np.asarray(self.readout.sunlit_ua * light * string * factor + dark[:, None])
+
+    def unit_variance(self, expected: Floats, scene: Scene, references: References) -> Floats:
+        """Squared microamperes that unknown currents and the spread of their drifts add.
+
+        References are taken at 25 deg C before the flight: they tell nothing of the drifts.
+        """
+        at = timed(scene, self)
+        light = expected - dark_levels(self.readout.dark, at.temperature_k)[:, None]
+        parts = self.readout.gain_mismatch, self.cells.mismatch, self.cells.loss_spread
+        spread = math.sqrt(math.fsum(part**2 for part in parts))
+        still = readout.spread(self.readout, spread, references)
+        received = light / self.readout.sunlit_ua
+        warmer = at.temperature_k[:, None] + self.cells.heating_k * received - REFERENCE_K
+        warmed = self.drift.gain_per_k_spread * warmer
+        aged = self.drift.loss_per_year_spread * at.age_years[:, None]
+        return still.variance(light) + light**2 * (warmed**2 + aged**2)
