@@ -1,0 +1,1 @@
+"""Programs for development: what measures and checks the project beside its tests."""
