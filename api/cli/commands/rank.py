@@ -59,7 +59,7 @@ def rank(
     store: StoreOption = None,
     form: FormatOption = Format.TABLE,
 ) -> None:
-    """Check one algorithm, measure it and show it on the board of a data set.
+    """Check one algorithm, measure it and show it on a board.
 
     An extractor, a model or a compensation is found by its name or its file and checked by the
     common test suite; what fails is printed, and nothing is measured. Then its pipelines are
