@@ -28,7 +28,7 @@ CHAPTERS: dict[str, tuple[str, ...]] = {
         "models/neural-network",
         "filters",
     ),
-    "Data": ("datasets", "survey", "guide/data-dictionary"),
+    "Data": ("datasets", "survey", "guide/data-dictionary", "nomenclature"),
     "Interfaces": ("http", "guide/python", "command-line", "deposit"),
     "Adding to it": (
         "guide/add-an-algorithm",
@@ -37,6 +37,17 @@ CHAPTERS: dict[str, tuple[str, ...]] = {
         "architecture",
         "faults",
         "faults-kills",
+    ),
+    "Decisions": (
+        "decisions/README",
+        "decisions/true-directions",
+        "decisions/paired-judgement",
+        "decisions/code-digests",
+        "decisions/record-in-git",
+        "decisions/diffraction",
+        "decisions/editions",
+        "decisions/service-alone",
+        "decisions/builders-and-locks",
     ),
 }
 
