@@ -11,6 +11,7 @@ import os
 import subprocess
 import sys
 import time
+import urllib.request
 from pathlib import Path
 
 LIMIT_S_A_MINUTE = 1.0
@@ -38,8 +39,9 @@ def main() -> int:
     command = (sys.executable, "-m", "api.cli.command_line", "serve", "--port", "0")
     with subprocess.Popen(command, stdout=subprocess.PIPE, start_new_session=True) as service:
         try:
-            if service.stdout is not None:
-                service.stdout.readline()  # the address, printed when it is ready
+            address = service.stdout.readline().split()[3].decode() if service.stdout else ""
+            with urllib.request.urlopen(f"{address}/healthz", timeout=600) as answer:
+                answer.read()  # connections wait until it is ready
             ready = time.perf_counter() - started
             time.sleep(SETTLING_S)
             before, counts = processes(service.pid), set()
