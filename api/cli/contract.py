@@ -60,7 +60,7 @@ def name_of(given: str) -> str:
         raise WrongCallError(f"{given} holds {', '.join(names)}; name one of them")
     raise WrongCallError(
         f"{given}: no public class with extract, transform or predict; an algorithm is one file in "
-        f"{ROOT / 'algorithms'}/extractors, compensations or models ({GUIDE})"
+        f"algorithms/extractors/, compensations/ or models/ of {ROOT} ({GUIDE})"
     )
 
 
