@@ -2,7 +2,21 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 ROOT = "index"
+
+_HERE = Path(__file__).resolve().parent
+
+
+def _decisions() -> tuple[str, ...]:
+    """Return the pages of decisions, their list first: of a checkout, else of the wheel."""
+    for docs in (_HERE.parents[1] / "docs", _HERE / "source"):
+        names = sorted(path.stem for path in docs.glob("decisions/*.md"))
+        if names:
+            return tuple(f"decisions/{name}" for name in names)  # README: capitals sort first
+    return ()
+
 
 #: Caption of the sidebar, and its pages in docs/ without their suffix.
 CHAPTERS: dict[str, tuple[str, ...]] = {
@@ -38,17 +52,7 @@ CHAPTERS: dict[str, tuple[str, ...]] = {
         "faults",
         "faults-kills",
     ),
-    "Decisions": (
-        "decisions/README",
-        "decisions/true-directions",
-        "decisions/paired-judgement",
-        "decisions/code-digests",
-        "decisions/record-in-git",
-        "decisions/diffraction",
-        "decisions/editions",
-        "decisions/service-alone",
-        "decisions/builders-and-locks",
-    ),
+    "Decisions": _decisions(),
 }
 
 
